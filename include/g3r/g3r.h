@@ -1,0 +1,176 @@
+// g3r: from an unoriented point cloud to globally consistent outward normals and a watertight mesh.
+//
+//   g3r::Orientation o = g3r::orient(points);            // unit normals, same order and count as the points
+//   g3r::Reconstruction r = g3r::reconstruct(points);    // the same, and a mesh
+//
+// Method: Wu, Xiao, Chen, "Surface Reconstruction via Green's 3rd Identity", SIGGRAPH 2026,
+// doi 10.1145/3799902.3811154. Formulas and signs: docs/math.md.
+#pragma once
+
+#include <g3r/error.h>
+#include <g3r/mesh.h>
+#include <g3r/points.h>
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace g3r {
+
+/// A named set of defaults. Every option that is set explicitly wins over the preset.
+enum class Preset {
+  kDefault,  ///< the best normals we know how to make
+  kPaper     ///< the published method to the letter: 20 steepest-descent + 60 conjugate-gradient steps, no refinement
+};
+
+/// How the linear system is solved.
+enum class Solver {
+  kAuto,              ///< dense for small inputs under the paper preset, conjugate gradients otherwise
+  kDense,             ///< assemble the 3N x 3N normal matrix and factor it; O(N^2) memory, O(N^3) time
+  kConjugateGradient  ///< matrix-free iterations
+};
+
+/// Width of the Gaussian mollifier of the Laplace kernel.
+struct Epsilon {
+  enum class Unit {
+    kAuto,      ///< chosen from the cloud
+    kInput,     ///< units of the input coordinates
+    kPercent,   ///< percent of the bounding box diagonal
+    kSpacing,   ///< multiples of the point spacing h
+    kNormalised ///< units of the normalised box, whose longest side is 2/1.1 (the paper's units)
+  };
+  Unit unit = Unit::kAuto;
+  double value = 0;  ///< > 0 unless automatic
+};
+
+/// Progress and cancellation. Both are optional; both may be used from another thread.
+struct Monitor {
+  /// Called on the calling thread as (stage, fraction in [0, 1]); returning false cancels.
+  std::function<bool(std::string_view stage, double fraction)> progress;
+  /// When it becomes true the running call stops within a fraction of a second and throws Cancelled.
+  const std::atomic<bool>* cancel = nullptr;
+};
+
+/// All parameters of orient(). The defaults work for every input; 0 and "" mean automatic.
+struct Options {
+  Preset preset = Preset::kDefault;
+  Epsilon epsilon;
+  int degree = -1;             ///< highest degree of the harmonic polynomials, 0..8; -1: preset's (2)
+  std::string harmonics;       ///< subset instead of a degree: "1,x,y,z", "degree:0-2", "x,y,z,xy"
+  Solver solver = Solver::kAuto;
+  std::string schedule;        ///< iterations, for example "20 sd 60 cg"
+  double tolerance = -1;       ///< stop when the relative residual of the normal equations falls below; 0: never; -1: preset's
+  double accuracy = 1e-3;      ///< relative l2 error allowed in the hierarchical sums, 1e-6..1e-1; 0: direct sums
+  bool condition_number = false;  ///< dense solver only: also compute the condition number
+  int threads = 0;             ///< 0: all cores. The result does not depend on it
+  std::uint64_t seed = 0;      ///< reserved for steps that sample; the present method draws no random number
+  std::size_t max_memory = 0;  ///< bytes; refuse before the solve when the plan exceeds it. 0: no limit
+};
+
+/// One step of the iterative solver.
+struct Iteration {
+  std::string kind;     ///< "sd" or "cg"
+  double residual = 0;  ///< |A^T (b - A eta)| / |A^T b| after the step
+};
+
+/// What was done and how it went; report_json() writes it out. Lengths in input units unless said otherwise.
+struct Stats {
+  std::size_t points = 0;                 ///< given
+  std::size_t used = 0;                   ///< distinct finite points solved for
+  std::size_t dropped_non_finite = 0;
+  std::size_t merged_duplicates = 0;      ///< points beyond the first at the same place
+  Vec3 box_centre{0, 0, 0};
+  double box_side = 0;                    ///< longest side of the bounding box
+  double spacing = 0;                     ///< typical distance between neighbours, square root of area per point
+  double epsilon = 0;
+  int depth = 0;                          ///< octree depth of the mesher, 0 if no mesh was made
+  std::string preset;
+  std::string method;
+  std::string solver;                     ///< "dense" or "cg"
+  std::string harmonics;                  ///< the functions used, for example "degree:0-2"
+  std::string sums;                       ///< "direct" or "hierarchical"
+  double accuracy = 0;
+  std::vector<Iteration> iterations;
+  double tolerance = 0;
+  bool converged = false;
+  double condition_number = 0;            ///< 0 unless asked for
+  double confidence_mean = 0;
+  double confidence_below_half = 0;       ///< share of the points, 0..1
+  std::vector<std::pair<std::string, double>> seconds;  ///< per stage, in order
+  std::size_t planned_memory_bytes = 0;
+  std::size_t peak_memory_bytes = 0;      ///< of the whole process
+  int threads = 0;
+  std::vector<std::string> warnings;
+};
+
+/// Normals for every input point, in input order.
+struct Orientation {
+  std::vector<Vec3> normals;      ///< N unit outward normals; (0, 0, 0) only for points that are not finite
+  std::vector<double> areas;      ///< N areas in squared input units (a duplicate carries its share); 0 for non-finite points
+  std::vector<float> confidence;  ///< N values in [0, 1]: 1 = sure of the side, 0 = could be inside-out. docs/math.md says how
+  Stats stats;
+};
+
+/// Orients an unoriented cloud of a closed surface. O(N log N) time, O(N) memory.
+/// Throws InvalidInput (fewer than 4 distinct finite points, all on a line, an option out of range), Cancelled,
+/// std::bad_alloc. The result depends neither on the order of the points nor on the number of threads.
+[[nodiscard]] Orientation orient(const PointsView& points, const Options& options = {}, const Monitor& monitor = {});
+
+/// Parameters of the mesher.
+struct MeshOptions {
+  int depth = 0;  ///< octree depth, 4..12; 0: from the density of the points (10 in the paper preset)
+};
+
+/// A mesh together with the normals it was made from.
+struct Reconstruction {
+  Orientation orientation;
+  Mesh mesh;
+  MeshCheck check;
+};
+
+/// Orients a cloud and meshes it. Throws like orient(), and Unavailable when built without a mesher.
+[[nodiscard]] Reconstruction reconstruct(const PointsView& points, const Options& options = {}, const MeshOptions& mesh_options = {},
+                                         const Monitor& monitor = {});
+
+/// Meshes points that already have outward normals: N points and N normals (any length but zero).
+/// Points with a non-finite coordinate or a zero normal are left out.
+[[nodiscard]] Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const MeshOptions& options = {},
+                                 const Monitor& monitor = {});
+
+/// What orient() would do with this cloud, without solving: counts, box, spacing, epsilon, memory plan.
+[[nodiscard]] Stats plan(const PointsView& points, const Options& options = {});
+
+/// The report as JSON, schema version 1 (docs/report.md). `mesh` may be null.
+[[nodiscard]] std::string report_json(const Stats& stats, const MeshCheck* mesh = nullptr);
+
+/// The winding field w and its gradient, evaluable anywhere:
+///   w(x) = sum_i g_s(|y_i - x|) (y_i - x) . eta_i       about 1 inside, 0 outside, 1/2 on the surface
+/// with eta_i = areas[i] * normals[i] and g_s the Gaussian-mollified kernel of width s (docs/math.md).
+class Field {
+ public:
+  /// From oriented points; `width` s in input units, 0: 0.55 spacings. Throws InvalidInput like orient().
+  Field(const PointsView& points, const Orientation& orientation, double width = 0);
+  ~Field();
+  Field(Field&&) noexcept;
+  Field& operator=(Field&&) noexcept;
+
+  /// w at Q query points: Q values. O(N + Q log N) after a build of O(N log N).
+  [[nodiscard]] std::vector<double> value(const PointsView& queries, const Monitor& monitor = {}) const;
+  /// Gradient of w at Q query points, in 1 / input units; points inward.
+  [[nodiscard]] std::vector<Vec3> gradient(const PointsView& queries, const Monitor& monitor = {}) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Version of the library, "major.minor.patch".
+[[nodiscard]] std::string_view version();
+
+}  // namespace g3r

@@ -1,0 +1,63 @@
+// The only file that names the threading library. Every loop is over blocks whose bounds do not depend on the number of
+// threads, and reductions add block results in block order, so results are the same bytes for any number of threads.
+#pragma once
+
+#include <g3r/error.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <vector>
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+#include <tbb/task_arena.h>
+
+namespace g3r::parallel {
+
+/// Number of threads a request for `threads` gets: 0 asks for all cores.
+inline int thread_count(int threads) { return threads > 0 ? threads : tbb::info::default_concurrency(); }
+
+/// Runs `work()` with at most `threads` threads (0: all cores) and returns what it returns.
+template <class Work>
+auto with_threads(int threads, Work&& work) {
+  tbb::task_arena arena(thread_count(threads));
+  return arena.execute(std::forward<Work>(work));
+}
+
+/// body(i) for i in [0, count), each call independent of the others. `cancel` (may be null) stops the loop with Cancelled.
+template <class Body>
+void for_each(std::size_t count, const Body& body, const std::atomic<bool>* cancel = nullptr) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1), [&](const tbb::blocked_range<std::size_t>& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      if (cancel != nullptr && cancel->load(std::memory_order_relaxed)) throw Cancelled();
+      body(i);
+    }
+  });
+}
+
+/// body(begin, end) over [0, count) cut into blocks of `block` items.
+template <class Body>
+void for_blocks(std::size_t count, std::size_t block, const Body& body, const std::atomic<bool>* cancel = nullptr) {
+  for_each((count + block - 1) / block, [&](std::size_t b) { body(b * block, std::min(count, (b + 1) * block)); }, cancel);
+}
+
+/// Sum of term(begin, end) over blocks, added in block order.
+template <class T, class Term>
+T sum_blocks(std::size_t count, std::size_t block, T zero, const Term& term) {
+  std::vector<T> partial((count + block - 1) / block, zero);
+  for_blocks(count, block, [&](std::size_t begin, std::size_t end) { partial[begin / block] = term(begin, end); });
+  T total = zero;
+  for (const T& part : partial) total += part;
+  return total;
+}
+
+/// Sorts by a strict total order (no two items equal), so the result is unique.
+template <class Iterator, class Less>
+void sort(Iterator begin, Iterator end, const Less& less) {
+  tbb::parallel_sort(begin, end, less);
+}
+
+}  // namespace g3r::parallel

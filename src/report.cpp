@@ -1,0 +1,2 @@
+// Stats and MeshCheck as JSON.
+#include <g3r/g3r.h>
