@@ -1,0 +1,37 @@
+// Scores against a reference, as defined by the paper (docs/math.md): AE_p, PCO for normals; CD, AE_m, HD for meshes.
+#pragma once
+
+#include <g3r/mesh.h>
+#include <g3r/points.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace g3r {
+
+/// Normals against true normals, both N, any non-zero length.
+struct NormalScore {
+  double ae = 0;    ///< AE_p = mean (1 - n . n_true) / 2, in 0..1
+  double pco = 0;   ///< share of points with n . n_true > 0, in 0..1
+  std::size_t points = 0;
+};
+[[nodiscard]] NormalScore score_normals(const std::vector<Vec3>& normals, const std::vector<Vec3>& truth);
+
+/// Mesh against true mesh, both sampled uniformly by area with `samples` points from `seed`.
+struct MeshScore {
+  double chamfer = 0;    ///< CD: mean of the two one-sided mean distances to the other surface
+  double ae = 0;         ///< AE_m: mean (1 - n . n') / 2 over the same closest pairs, both directions
+  double hausdorff = 0;  ///< HD: largest distance, both directions
+};
+[[nodiscard]] MeshScore score_mesh(const Mesh& mesh, const Mesh& truth, std::size_t samples = 200000, std::uint64_t seed = 0);
+
+/// Points on a mesh, uniform by area, with the normals of their triangles.
+struct Samples {
+  std::vector<Vec3> points;
+  std::vector<Vec3> normals;
+};
+/// `noise`: standard deviation of an isotropic Gaussian displacement, in mesh units. The same seed gives the same bytes everywhere.
+[[nodiscard]] Samples sample_mesh(const Mesh& mesh, std::size_t count, std::uint64_t seed, double noise = 0);
+
+}  // namespace g3r
