@@ -29,6 +29,13 @@ enum class Preset {
   kPaper     ///< the published method to the letter: 20 steepest-descent + 60 conjugate-gradient steps, no refinement
 };
 
+/// Which equations are solved. All have the true normals as their solution; docs/math.md derives both.
+enum class Method {
+  kAuto,   ///< the preset's: energy by default, green in the paper preset
+  kGreen,  ///< least squares over Green's identity for all harmonics, as published
+  kEnergy  ///< the identities centred at every point: Stokes single layer energy plus winding number 1/2
+};
+
 /// How the linear system is solved.
 enum class Solver {
   kAuto,              ///< dense for small inputs under the paper preset, conjugate gradients otherwise
@@ -60,6 +67,7 @@ struct Monitor {
 /// All parameters of orient(). The defaults work for every input; 0 and "" mean automatic.
 struct Options {
   Preset preset = Preset::kDefault;
+  Method method = Method::kAuto;
   Epsilon epsilon;
   int degree = -1;             ///< highest degree of the harmonic polynomials, 0..8; -1: preset's (2)
   std::string harmonics;       ///< subset instead of a degree: "1,x,y,z", "degree:0-2", "x,y,z,xy"
