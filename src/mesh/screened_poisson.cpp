@@ -4,11 +4,15 @@
 #include <open3d/geometry/PointCloud.h>
 #include <open3d/geometry/TriangleMesh.h>
 
+#include <cstdio>
+#include <iostream>
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <new>
+#include <streambuf>
 #include <string>
-#include <utility>
+#include <thread>
 
 #include "mesh/vector.h"
 
@@ -55,6 +59,40 @@ UnitBox validated_box(const std::vector<Vec3>& points, const std::vector<Vec3>& 
   return {box.centre(), side};
 }
 
+/// While it lives, what this thread writes to std::cerr vanishes and what other threads write arrives: Open3D's reconstruction prints
+/// warnings there that it cannot be told to keep.
+class SilentErrorStream : private std::streambuf {
+ public:
+  SilentErrorStream() : kept_(std::cerr.rdbuf(this)) {}
+  ~SilentErrorStream() override { std::cerr.rdbuf(kept_); }
+  SilentErrorStream(const SilentErrorStream&) = delete;
+  SilentErrorStream& operator=(const SilentErrorStream&) = delete;
+
+ private:
+  int overflow(int c) override { return silenced() || c == EOF ? 0 : kept_->sputc(static_cast<char>(c)); }
+  std::streamsize xsputn(const char* text, std::streamsize size) override { return silenced() ? size : kept_->sputn(text, size); }
+  int sync() override { return silenced() ? 0 : kept_->pubsync(); }
+  [[nodiscard]] bool silenced() const { return std::this_thread::get_id() == thread_; }
+
+  std::thread::id thread_ = std::this_thread::get_id();
+  std::streambuf* kept_;
+};
+
+/// Calls Open3D, which keeps its thread pool in static variables: one call at a time.
+std::shared_ptr<open3d::geometry::TriangleMesh> run_open3d(const open3d::geometry::PointCloud& cloud, int depth) {
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
+  const SilentErrorStream silence;
+  try {
+    return std::get<0>(open3d::geometry::TriangleMesh::CreateFromPointCloudPoisson(cloud, static_cast<std::size_t>(depth), 0, kCubePerBox,
+                                                                                   false, kThreads));
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw InvalidInput(std::string("screened Poisson reconstruction failed: ") + error.what());
+  }
+}
+
 /// Copies the triangles with the vertices that they use, in the order of their first use.
 Mesh to_mesh(const open3d::geometry::TriangleMesh& from, const UnitBox& box) {
   constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
@@ -89,20 +127,7 @@ Mesh screened_poisson(const std::vector<Vec3>& points, const std::vector<Vec3>& 
     cloud.points_.push_back(box.to_unit(points[i]));
     cloud.normals_.emplace_back(n[0], n[1], n[2]);
   }
-
-  std::shared_ptr<open3d::geometry::TriangleMesh> found;
-  {
-    // The implementation keeps its thread pool in static variables.
-    static std::mutex one_at_a_time;
-    const std::lock_guard lock(one_at_a_time);
-    try {
-      found = std::get<0>(open3d::geometry::TriangleMesh::CreateFromPointCloudPoisson(cloud, static_cast<std::size_t>(depth), 0,
-                                                                                      kCubePerBox, false, kThreads));
-    } catch (const std::runtime_error& error) {  // Open3D reports everything this way; std::bad_alloc passes
-      throw InvalidInput(std::string("screened Poisson reconstruction failed: ") + error.what());
-    }
-  }
-  Mesh mesh = to_mesh(*found, box);
+  Mesh mesh = to_mesh(*run_open3d(cloud, depth), box);
   if (mesh.triangles.empty()) throw InvalidInput("screened Poisson reconstruction found no surface");
   return mesh;
 }
