@@ -7,9 +7,9 @@
 #include <g3r/mesh.h>
 
 #include <algorithm>
-#include <numeric>
 
-#include "cpu/parallel.h"
+#include "mesh/disjoint_sets.h"
+#include "mesh/sides.h"
 #include "mesh/used_vertices.h"
 #include "mesh/vector.h"
 
@@ -21,75 +21,18 @@ using vector::cross;
 using vector::dot;
 using vector::subtract;
 
-/// Disjoint sets of 0..n-1 with path halving.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t n) : parent_(n), count_(n) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
-
-  std::size_t find(std::size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::size_t i, std::size_t j) {
-    i = find(i);
-    j = find(j);
-    if (i == j) return;
-    parent_[std::max(i, j)] = std::min(i, j);
-    --count_;
-  }
-  [[nodiscard]] std::size_t count() const { return count_; }
-
- private:
-  std::vector<std::size_t> parent_;
-  std::size_t count_;
-};
-
-/// One side of a triangle: from corner `corner` (3 f + k) to the next corner of f. low <= high are its vertices.
-struct Side {
-  std::uint32_t low;
-  std::uint32_t high;
-  std::size_t corner;
-};
-
-std::size_t next_corner(std::size_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
-
-/// All 3F sides; those of one edge are adjacent.
-std::vector<Side> sorted_sides(const Mesh& mesh) {
-  std::vector<Side> sides;
-  sides.reserve(3 * mesh.triangles.size());
-  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t from = mesh.triangles[f][k];
-      const std::uint32_t to = mesh.triangles[f][(k + 1) % 3];
-      sides.push_back({std::min(from, to), std::max(from, to), 3 * f + k});
-    }
-  }
-  parallel::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    if (a.low != b.low) return a.low < b.low;
-    if (a.high != b.high) return a.high < b.high;
-    return a.corner < b.corner;
-  });
-  return sides;
-}
-
 /// Counts edges and vertices, joins triangles and corners across edges, and fills in the topological fields.
 class Topology {
  public:
   explicit Topology(const Mesh& mesh)
       : mesh_(mesh), triangles_(mesh.triangles.size()), corners_(3 * mesh.triangles.size()), bad_vertex_(mesh.vertices.size(), 0) {
-    const std::vector<Side> sides = sorted_sides(mesh);
-    for (std::size_t begin = 0; begin < sides.size();) {
-      std::size_t end = begin + 1;
-      while (end < sides.size() && sides[end].low == sides[begin].low && sides[end].high == sides[begin].high) ++end;
-      add_edge(sides.data() + begin, end - begin);
-      begin = end;
-    }
+    for_each_edge(mesh, [&](const Side* sides, std::size_t count) { add_edge(sides, count); });
   }
 
   void fill(MeshCheck& check) {
     std::vector<char> fans(mesh_.vertices.size(), 0);  // 0, 1, or 2 for more
     for (std::size_t c = 0; c < 3 * mesh_.triangles.size(); ++c) {
-      if (corners_.find(c) == c) fans[vertex(c)] = static_cast<char>(std::min(2, fans[vertex(c)] + 1));
+      if (corners_.find(c) == c) fans[vertex_of(mesh_, c)] = static_cast<char>(std::min(2, fans[vertex_of(mesh_, c)] + 1));
     }
     for (std::size_t v = 0; v < fans.size(); ++v) {
       check.vertices += fans[v] > 0 ? 1 : 0;
@@ -109,28 +52,22 @@ class Topology {
   }
 
  private:
-  [[nodiscard]] std::uint32_t vertex(std::size_t corner) const { return mesh_.triangles[corner / 3][corner % 3]; }
-
   /// `sides`: the `count` sides between the same two vertices.
   void add_edge(const Side* sides, std::size_t count) {
     ++edges_;
     const bool loop = sides[0].low == sides[0].high;  // a triangle that names a vertex twice
     std::size_t forward = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      if (vertex(sides[i].corner) == sides[0].low) ++forward;
+      if (is_forward(mesh_, sides[i])) ++forward;
       if (i == 0 || loop) continue;
       triangles_.join(sides[0].corner / 3, sides[i].corner / 3);
-      corners_.join(corner_at(sides[0], sides[0].low), corner_at(sides[i], sides[0].low));
-      corners_.join(corner_at(sides[0], sides[0].high), corner_at(sides[i], sides[0].high));
+      corners_.join(corner_at(mesh_, sides[0], sides[0].low), corner_at(mesh_, sides[i], sides[0].low));
+      corners_.join(corner_at(mesh_, sides[0], sides[0].high), corner_at(mesh_, sides[i], sides[0].high));
     }
     if (loop || count != 2) ++edges_not_of_two_;
     if (count == 1 && !loop) ++boundary_edges_;
     if (loop || count > 2 || (count == 2 && forward != 1)) ++nonmanifold_edges_;
     if (loop || count > 2) bad_vertex_[sides[0].low] = bad_vertex_[sides[0].high] = 1;
-  }
-
-  [[nodiscard]] std::size_t corner_at(const Side& side, std::uint32_t v) const {
-    return vertex(side.corner) == v ? side.corner : next_corner(side.corner);
   }
 
   const Mesh& mesh_;

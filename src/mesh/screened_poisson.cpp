@@ -14,6 +14,7 @@
 #include <string>
 #include <thread>
 
+#include "mesh/split_nonmanifold.h"
 #include "mesh/vector.h"
 
 namespace g3r {
@@ -127,7 +128,8 @@ Mesh screened_poisson(const std::vector<Vec3>& points, const std::vector<Vec3>& 
     cloud.points_.push_back(box.to_unit(points[i]));
     cloud.normals_.emplace_back(n[0], n[1], n[2]);
   }
-  Mesh mesh = to_mesh(*run_open3d(cloud, depth), box);
+  // Where the surface touches itself, Open3D lets more than two triangles share an edge.
+  Mesh mesh = split_nonmanifold(to_mesh(*run_open3d(cloud, depth), box));
   if (mesh.triangles.empty()) throw InvalidInput("screened Poisson reconstruction found no surface");
   return mesh;
 }
