@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cstdlib>
-#include <fstream>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -61,14 +60,6 @@ PictureOptions small(std::vector<Layer> layers = {}) {
   return options;
 }
 
-// With G3R_KEEP_PICTURES=folder the pictures are kept for people to look at.
-void keep(const char* name, const std::vector<std::uint8_t>& bytes) {
-  if (const char* folder = std::getenv("G3R_KEEP_PICTURES")) {
-    std::ofstream(std::string(folder) + "/" + name, std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  }
-}
-
 TEST(ViewPng, OneLayerIsTwoByTwoTilesSeveralAreRowsOfFour) {
   Scene scene = testing::torus_points(2000);
   const Decoded one = decode(view_png(scene, small()));
@@ -82,7 +73,6 @@ TEST(ViewPng, OneLayerIsTwoByTwoTilesSeveralAreRowsOfFour) {
 TEST(ViewPng, OutwardNormalsAreBlueInAllViewsInwardOnesRed) {
   Scene scene = testing::torus_points(4000);
   const auto bytes = view_png(scene, small({Layer::kNormals}));
-  keep("torus_normals.png", bytes);
   const Decoded outward = decode(bytes);
   for (Vec3& n : scene.normals) n = {-n[0], -n[1], -n[2]};
   const Decoded inward = decode(view_png(scene, small({Layer::kNormals})));
@@ -100,7 +90,6 @@ TEST(ViewPng, ClosedMeshShowsNoInsideAndTurnedMeshNothingElse) {
   testing::add_cube(scene.mesh, {0, 0, 0}, 0.3);
   PictureOptions options = small({Layer::kMesh});
   const auto bytes = view_png(scene, options);
-  keep("torus_mesh.png", bytes);
   EXPECT_LT(tint(decode(bytes), 0, 0, 240).red, 10);
   for (auto& t : scene.mesh.triangles) std::swap(t[1], t[2]);
   EXPECT_GT(tint(decode(view_png(scene, options)), 0, 0, 240).red, 8000);
@@ -114,7 +103,6 @@ TEST(ViewPng, EveryLayerDrawsSomething) {
   PictureOptions options = small(layers);
   options.dark = true;
   const auto bytes = view_png(scene, options);
-  keep("torus_layers.png", bytes);
   const Decoded image = decode(bytes);
   for (int row = 0; row < 6; ++row) {
     int bright = 0;

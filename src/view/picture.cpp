@@ -23,9 +23,12 @@ constexpr int kViews = 4;
 constexpr double kHalfAngle = 0.21;       // 24 degrees in all: depth is felt, proportions stay true
 constexpr double kMargin = 1.08;          // empty border around the object
 constexpr double kDiscPerSpacing = 0.85;  // discs just overlap
-constexpr float kSmoothCosine = 0.7F;     // sharper edges than this (45 degrees) stay sharp when shaded
+constexpr double kDotPerSpacing = 0.45;   // points without normals stay apart
+constexpr float kHorizon = -0.2F;         // a disc is told to face away below this cosine: at the silhouette, noise alone turns it
+constexpr double kSmoothCosine = 0.8;     // edges sharper than this (37 degrees) stay sharp when shaded
 
-constexpr unsigned kGrey = 0xb4b9c1;
+constexpr unsigned kNearGrey = 0x7d838c;
+constexpr unsigned kFarGrey = 0xd5d9df;
 constexpr unsigned kOutside = 0x4f86d9;
 constexpr unsigned kInside = 0xe0483e;
 constexpr unsigned kMeshOutside = 0xa9bdd8;
@@ -64,57 +67,106 @@ Eigen::Matrix3d axes_from(double azimuth, double elevation, Up up) {
   return axes;
 }
 
-// A camera of the given direction that has every point of the layer in sight.
-Camera fit_camera(const Scene& scene, bool mesh, const Eigen::Matrix3d& axes, const Vector3d& centre, double radius) {
-  Camera camera{axes, centre, 1 / radius, 1, kHalfAngle};
-  const double tangent = std::tan(kHalfAngle) / kMargin;
-  const auto include = [&](const Vec3& p) {
-    if (!view::is_finite(p)) return;
-    const Vector3d v = axes * (as_vector(p) - centre) / radius;
-    camera.distance = std::max(camera.distance, std::max(std::abs(v.x()), std::abs(v.y())) / tangent + v.z());
-  };
+// The points that a layer draws, and the vertices that triangles use.
+std::vector<Vector3d> drawn_points(const Scene& scene, bool mesh) {
+  std::vector<Vector3d> points;
   if (mesh) {
+    std::vector<bool> used(scene.mesh.vertices.size(), false);
     for (const auto& triangle : scene.mesh.triangles) {
-      for (const std::uint32_t v : triangle) include(scene.mesh.vertices[v]);
+      for (const std::uint32_t v : triangle) used[v] = true;
+    }
+    for (std::size_t v = 0; v < used.size(); ++v) {
+      if (used[v] && view::is_finite(scene.mesh.vertices[v])) points.push_back(as_vector(scene.mesh.vertices[v]));
     }
   } else {
-    for (const Vec3& p : scene.points) include(p);
+    for (const Vec3& p : scene.points) {
+      if (view::is_finite(p)) points.push_back(as_vector(p));
+    }
+  }
+  return points;
+}
+
+// A camera of the given direction that has all points in sight, and their picture in the middle.
+Camera fit_camera(const std::vector<Vector3d>& points, const Eigen::Matrix3d& axes, const Vector3d& centre, double radius) {
+  constexpr int kRounds = 4;  // each takes the offset of the picture to a small share of itself
+  Camera camera{axes, centre, 1 / radius, 1, kHalfAngle};
+  const double tangent = std::tan(kHalfAngle) / kMargin;
+  for (int round = 0; round < kRounds; ++round) {
+    double distance = 0.5;
+    for (const Vector3d& p : points) {
+      const Vector3d v = axes * (p - camera.centre) / radius;
+      distance = std::max(distance, std::max(std::abs(v.x()), std::abs(v.y())) / tangent + v.z());
+    }
+    camera.distance = distance;
+    if (round + 1 == kRounds) break;
+    Eigen::Array2d low = Eigen::Array2d::Constant(1), high = -low;  // tangents of the directions to the points
+    for (const Vector3d& p : points) {
+      const Vector3d v = axes * (p - camera.centre) / radius;
+      const Eigen::Array2d direction = v.head<2>().array() / (distance - v.z());
+      low = low.min(direction);
+      high = high.max(direction);
+    }
+    const Eigen::Array2d middle = (low + high) / 2 * distance * radius;
+    if (middle.allFinite()) camera.centre += axes.transpose() * Vector3d(middle.x(), middle.y(), 0);
   }
   return camera;
 }
 
-// Normals of the vertices in world space, weighted by area.
-std::vector<Vector3d> vertex_normals(const Mesh& mesh) {
-  std::vector<Vector3d> normals(mesh.vertices.size(), Vector3d::Zero());
-  for (const auto& t : mesh.triangles) {
+// Unit normals of the three corners of every triangle, in world space: the mean, weighted by area, of the normals of those
+// triangles at the vertex that make less than a crease with this one.
+std::vector<std::array<Vector3f, 3>> corner_normals(const Mesh& mesh) {
+  const std::size_t triangles = mesh.triangles.size();
+  std::vector<Vector3d> area(triangles);
+  std::vector<std::size_t> begin(mesh.vertices.size() + 1, 0);
+  for (std::size_t f = 0; f < triangles; ++f) {
+    const auto& t = mesh.triangles[f];
     const Vector3d a = as_vector(mesh.vertices[t[0]]);
-    const Vector3d n = (as_vector(mesh.vertices[t[1]]) - a).cross(as_vector(mesh.vertices[t[2]]) - a);
-    if (!n.allFinite()) continue;
-    for (const std::uint32_t v : t) normals[v] += n;
+    area[f] = (as_vector(mesh.vertices[t[1]]) - a).cross(as_vector(mesh.vertices[t[2]]) - a);
+    if (!area[f].allFinite()) area[f].setZero();
+    for (const std::uint32_t v : t) ++begin[v + 1];
   }
-  for (Vector3d& n : normals) n.normalize();
+  for (std::size_t v = 1; v < begin.size(); ++v) begin[v] += begin[v - 1];
+  std::vector<std::uint32_t> around(3 * triangles);
+  std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
+  for (std::size_t f = 0; f < triangles; ++f) {
+    for (const std::uint32_t v : mesh.triangles[f]) around[next[v]++] = static_cast<std::uint32_t>(f);
+  }
+
+  std::vector<std::array<Vector3f, 3>> normals(triangles);
+  parallel::for_blocks(triangles, 4096, [&](std::size_t first, std::size_t last) {
+    for (std::size_t f = first; f < last; ++f) {
+      const Vector3d own = area[f].normalized();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t v = mesh.triangles[f][k];
+        Vector3d sum = Vector3d::Zero();
+        for (std::size_t i = begin[v]; i < begin[v + 1]; ++i) {
+          const Vector3d& other = area[around[i]];
+          if (other.dot(own) > kSmoothCosine * other.norm()) sum += other;
+        }
+        normals[f][k] = sum.normalized().cast<float>();
+      }
+    }
+  });
   return normals;
 }
 
-void draw_mesh(Canvas& canvas, const Camera& camera, const Mesh& mesh, const std::vector<Vector3d>& normals) {
+void draw_mesh(Canvas& canvas, const Camera& camera, const Mesh& mesh, const std::vector<std::array<Vector3f, 3>>& normals) {
   const Vector3f front = view::linear_rgb(kMeshOutside);
   const Vector3f inside = view::linear_rgb(kInside);
   const Eigen::Matrix3f axes = camera.axes.cast<float>();
-  for (const auto& t : mesh.triangles) {
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
     std::array<Corner, 3> corner;
-    for (std::size_t k = 0; k < 3; ++k) corner[k].position = camera.to_view(as_vector(mesh.vertices[t[k]]));
-    const Vector3f flat = (corner[1].position - corner[0].position).cross(corner[2].position - corner[0].position).normalized();
-    if (!flat.allFinite()) continue;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vector3f smooth = axes * normals[t[k]].cast<float>();
-      corner[k].normal = smooth.dot(flat) > kSmoothCosine ? smooth : flat;
-      corner[k].color = mesh.colors.empty() ? front : byte_color(mesh.colors[t[k]]);
+      const std::uint32_t v = mesh.triangles[f][k];
+      corner[k] = {camera.to_view(as_vector(mesh.vertices[v])), axes * normals[f][k],
+                   mesh.colors.empty() ? front : byte_color(mesh.colors[v])};
     }
     canvas.draw_triangle(corner[0], corner[1], corner[2], inside);
   }
 }
 
-Vector3f disc_color(const Scene& scene, Layer layer, std::size_t i, bool outside) {
+// `height` towards the viewer, -1..1: points without light of their own fade into the distance.
+Vector3f disc_color(const Scene& scene, Layer layer, std::size_t i, bool outside, float height) {
   switch (layer) {
     case Layer::kNormals:
       return view::linear_rgb(outside ? kOutside : kInside);
@@ -128,11 +180,13 @@ Vector3f disc_color(const Scene& scene, Layer layer, std::size_t i, bool outside
     case Layer::kMesh:
       break;
   }
-  return view::linear_rgb(kGrey);
+  const float near = std::clamp((height + 1) / 2, 0.0F, 1.0F);
+  return view::linear_rgb(kFarGrey) * (1 - near) + view::linear_rgb(kNearGrey) * near;
 }
 
-void draw_points(Canvas& canvas, const Camera& camera, const Scene& scene, Layer layer, float radius) {
+void draw_points(Canvas& canvas, const Camera& camera, const Scene& scene, Layer layer, double spacing) {
   const bool oriented = !scene.normals.empty() && layer != Layer::kPoints;
+  const auto radius = static_cast<float>((oriented ? kDiscPerSpacing : kDotPerSpacing) * spacing * camera.scale);
   const Vector3f eye(0, 0, static_cast<float>(camera.distance));
   for (std::size_t i = 0; i < scene.points.size(); ++i) {
     if (!view::is_finite(scene.points[i])) continue;
@@ -141,7 +195,8 @@ void draw_points(Canvas& canvas, const Camera& camera, const Scene& scene, Layer
     if (oriented) n = (camera.axes * as_vector(view::unit_or_zero(scene.normals[i]))).cast<float>();
     const bool known = n.squaredNorm() > 0;
     const bool missing = layer == Layer::kNormals && !known;
-    canvas.draw_disc(p, n, radius, missing ? view::linear_rgb(kUnknown) : disc_color(scene, layer, i, n.dot(eye - p) > 0));
+    canvas.draw_disc(p, n, radius,
+                     missing ? view::linear_rgb(kUnknown) : disc_color(scene, layer, i, n.dot((eye - p).normalized()) > kHorizon, p.z()));
   }
 }
 
@@ -176,9 +231,14 @@ std::vector<std::uint8_t> view_png(const Scene& scene, const PictureOptions& opt
                                                           axes_from(90 * degree, 0, options.up), axes_from(0, 90 * degree, options.up)};
   const Vector3d centre = as_vector(box.centre());
   const double radius = std::max((as_vector(box.high) - as_vector(box.low)).norm() / 2, 1e-30);
-  const double spacing = view::estimate_spacing(scene.points, box);
-  const auto disc = static_cast<float>(spacing > 0 ? kDiscPerSpacing * spacing / radius : 0.02);
-  const std::vector<Vector3d> normals = vertex_normals(scene.mesh);
+  double spacing = view::estimate_spacing(scene.points, box);
+  if (spacing <= 0) spacing = 0.02 * radius;
+  const auto normals = corner_normals(scene.mesh);
+  std::array<std::vector<Vector3d>, 2> drawn;  // by points, by the mesh
+  for (const Layer layer : layers) {
+    const bool mesh = layer == Layer::kMesh;
+    if (drawn[mesh ? 1 : 0].empty()) drawn[mesh ? 1 : 0] = drawn_points(scene, mesh);
+  }
 
   const int rows = layers.size() == 1 ? 2 : static_cast<int>(layers.size());
   const int columns = layers.size() == 1 ? 2 : kViews;
@@ -186,12 +246,12 @@ std::vector<std::uint8_t> view_png(const Scene& scene, const PictureOptions& opt
   image.rgb.resize(3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
   parallel::for_each(static_cast<std::size_t>(rows * columns), [&](std::size_t tile) {
     const Layer layer = layers[tile / kViews];
-    const Camera camera = fit_camera(scene, layer == Layer::kMesh, directions[tile % kViews], centre, radius);
+    const Camera camera = fit_camera(drawn[layer == Layer::kMesh ? 1 : 0], directions[tile % kViews], centre, radius);
     Canvas canvas(camera, options.tile);
     if (layer == Layer::kMesh) {
       draw_mesh(canvas, camera, scene.mesh, normals);
     } else {
-      draw_points(canvas, camera, scene, layer, disc);
+      draw_points(canvas, camera, scene, layer, spacing);
     }
     const int column = static_cast<int>(tile) % columns;
     const int row = static_cast<int>(tile) / columns;
