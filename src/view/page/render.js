@@ -101,7 +101,9 @@ const kShaders = {
       vec3 n = gl_FrontFacing ? v_normal : -v_normal;
       n = dot(n, n) > 0.0 ? normalize(n) : flat_normal;
       if (dot(n, flat_normal) < 0.8) n = flat_normal;   // creases stay sharp
-      vec3 base = !gl_FrontFacing ? u_inside : u_mode == 2 ? ramp(v_value) : u_mode == 3 ? v_color : u_plain;
+      // At the silhouette rounding alone lets the far side through: seen from the edge, the inside is not told.
+      bool inside = !gl_FrontFacing && dot(flat_normal, normalize(-v_eye)) > 0.15;
+      vec3 base = inside ? u_inside : u_mode == 2 ? ramp(v_value) : u_mode == 3 ? v_color : u_plain;
       vec3 half_way = normalize(normalize(vec3(-0.45, 0.65, 0.75)) + vec3(0.0, 0.0, 1.0));
       color = vec4(base * light(n) + 0.10 * pow(max(0.0, dot(n, half_way)), 30.0), 1.0);
     }`],
