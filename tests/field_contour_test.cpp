@@ -14,7 +14,7 @@ namespace {
 using g3r::Mesh;
 using g3r::Vec3;
 using g3r::mesh::Octree;
-using g3r::mesh::RefinePoint;
+using g3r::mesh::RefineDisc;
 using g3r::testing::Topology;
 using g3r::testing::topology;
 
@@ -61,9 +61,9 @@ Octree uniform(int level) { return Octree({-1, -1, -1}, 2, {}, level); }
 Octree random_octree(std::mt19937_64& rng) {
   std::uniform_real_distribution<double> position(-1, 1);
   std::uniform_int_distribution<int> level(2, 6), count(1, 6);
-  std::vector<RefinePoint> requests;
+  std::vector<RefineDisc> requests;
   for (int i = count(rng); i > 0; --i)
-    requests.push_back({{position(rng), position(rng), position(rng)}, 0.05 + 0.1 * (position(rng) + 1), level(rng)});
+    requests.push_back({{position(rng), position(rng), position(rng)}, {}, 0.05 + 0.1 * (position(rng) + 1), 0, level(rng)});
   return Octree({-1, -1, -1}, 2, requests, 2);
 }
 

@@ -1,7 +1,9 @@
 #include "mesh/field_octree.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <new>
 
 #include "cpu/parallel.h"
 #include "g3r/error.h"
@@ -23,16 +25,21 @@ struct Frontier {
   std::vector<std::uint32_t> request;
 };
 
-bool touches(const RefinePoint& r, const Vec3& low, double side) {
+// Conservative: a box that touches the disc always passes, a few more near its rim do too.
+bool touches(const RefineDisc& r, const Vec3& low, double side) {
+  double squared = 0, along = 0, reach = 0;
   for (std::size_t a = 0; a < 3; ++a) {
-    if (r.centre[a] + r.radius < low[a] || r.centre[a] - r.radius > low[a] + side) return false;
+    const double d = std::max({low[a] - r.centre[a], 0.0, r.centre[a] - low[a] - side});
+    squared += d * d;
+    along += r.normal[a] * (low[a] + 0.5 * side - r.centre[a]);
+    reach += std::abs(r.normal[a]);
   }
-  return true;
+  return squared <= r.radius * r.radius && std::abs(along) <= 0.5 * side * reach + r.half_thickness;
 }
 
 }  // namespace
 
-Octree::Octree(const Vec3& low, double side, const std::vector<RefinePoint>& requests, int base_level, const std::atomic<bool>* cancel)
+Octree::Octree(const Vec3& low, double side, const std::vector<RefineDisc>& requests, int base_level, const std::atomic<bool>* cancel)
     : low_(low), unit_(side / static_cast<double>(std::uint32_t{1} << kMaxOctreeLevel)) {
   refine(requests, std::min(base_level, kMaxOctreeLevel), cancel);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -44,7 +51,7 @@ Octree::Octree(const Vec3& low, double side, const std::vector<RefinePoint>& req
   number_corners();
 }
 
-void Octree::refine(const std::vector<RefinePoint>& requests, int base_level, const std::atomic<bool>* cancel) {
+void Octree::refine(const std::vector<RefineDisc>& requests, int base_level, const std::atomic<bool>* cancel) {
   nodes_.push_back({});
   Frontier front{{0}, {0, requests.size()}, {}};
   front.request.resize(requests.size());
@@ -85,7 +92,7 @@ void Octree::refine(const std::vector<RefinePoint>& requests, int base_level, co
           const double side = unit_ * extent(child);
           next.node[8 * s + c] = base + c;
           for (std::size_t k = front.begin[split[s]]; k < front.begin[split[s] + 1]; ++k) {
-            const RefinePoint& r = requests[front.request[k]];
+            const RefineDisc& r = requests[front.request[k]];
             if (r.level > level + 1 && touches(r, low, side)) lists[8 * s + c].push_back(front.request[k]);
           }
         }

@@ -14,10 +14,12 @@ namespace g3r::mesh {
 /// Deepest level: corner coordinates fit in 21 bits, so that three of them fit in a 64-bit key.
 inline constexpr int kMaxOctreeLevel = 20;
 
-/// A request: leaves that touch the cube of half side `radius` around `centre` are at least `level` deep.
-struct RefinePoint {
+/// A request: leaves that touch the disc around `centre` of the given radius and half thickness are at least `level` deep.
+struct RefineDisc {
   Vec3 centre;
+  Vec3 normal{0, 0, 0};  ///< unit; zero asks for a ball
   double radius = 0;
+  double half_thickness = 0;
   int level = 0;
 };
 
@@ -32,7 +34,7 @@ class Octree {
  public:
   /// The cube [low, low + side]^3 refined as requested, every leaf at least at `base_level`. O(requests x touched leaves).
   /// Throws Cancelled.
-  Octree(const Vec3& low, double side, const std::vector<RefinePoint>& requests, int base_level, const std::atomic<bool>* cancel = nullptr);
+  Octree(const Vec3& low, double side, const std::vector<RefineDisc>& requests, int base_level, const std::atomic<bool>* cancel = nullptr);
 
   [[nodiscard]] const std::vector<OctreeNode>& nodes() const { return nodes_; }
   [[nodiscard]] std::size_t leaf_count() const { return leaf_nodes_.size(); }
@@ -53,7 +55,7 @@ class Octree {
   [[nodiscard]] int depth() const { return depth_; }
 
  private:
-  void refine(const std::vector<RefinePoint>& requests, int base_level, const std::atomic<bool>* cancel);
+  void refine(const std::vector<RefineDisc>& requests, int base_level, const std::atomic<bool>* cancel);
   void number_corners();
 
   Vec3 low_;
