@@ -1,0 +1,484 @@
+#include "mesh/field_contour.h"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <numeric>
+#include <unordered_map>
+
+#include "cpu/parallel.h"
+
+namespace g3r::mesh {
+namespace {
+
+constexpr std::size_t kMinTasks = 256;  // the traversal is cut into at least this many independent tasks where the tree allows it
+
+// Order of the four quadrants around an edge along axis d, counter-clockwise seen from +d: bit 0 = upper along d+1, bit 1 = along d+2.
+constexpr std::array<std::uint32_t, 4> kCycle{0, 1, 3, 2};
+
+struct ActiveEdge {
+  std::uint32_t low = 0, high = 0;      // corners
+  std::array<std::uint32_t, 4> leaf{};  // in the order of kCycle; a leaf twice as large may fill two adjacent places
+  std::uint8_t axis = 0;
+  bool inside_low = false;
+};
+
+// ---- traversal: every minimal edge of the octree exactly once (Ju et al. 2002, cell, face and edge procedures) ----
+
+enum class Kind : std::uint8_t { kCell, kFace, kEdge };
+
+struct Task {
+  Kind kind = Kind::kCell;
+  std::uint8_t axis = 0;                // normal of the face, direction of the edge
+  std::array<std::uint32_t, 4> node{};  // cell: 1; face: lower, upper; edge: quadrant bit 0 = upper along axis+1, bit 1 = along axis+2
+};
+
+class Traversal {
+ public:
+  Traversal(const Octree& octree, const std::vector<std::uint8_t>& inside) : octree_(octree), inside_(inside) {}
+
+  // One step: the tasks below `task`, or the edge it ends at.
+  template <class OnTask, class OnEdge>
+  void expand(const Task& task, const OnTask& on_task, const OnEdge& on_edge) const {
+    switch (task.kind) {
+      case Kind::kCell:
+        return expand_cell(task, on_task);
+      case Kind::kFace:
+        return expand_face(task, on_task);
+      case Kind::kEdge:
+        return expand_edge(task, on_task, on_edge);
+    }
+  }
+
+  void run(const Task& task, std::vector<ActiveEdge>& out) const {
+    expand(
+        task, [&](const Task& next) { run(next, out); }, [&](const ActiveEdge& e) { out.push_back(e); });
+  }
+
+ private:
+  bool internal(std::uint32_t n) const { return octree_.nodes()[n].first_child >= 0; }
+  std::uint32_t child(std::uint32_t n, std::uint32_t bits) const {
+    return internal(n) ? static_cast<std::uint32_t>(octree_.nodes()[n].first_child) + bits : n;
+  }
+
+  template <class OnTask>
+  void expand_cell(const Task& task, const OnTask& on_task) const {
+    const std::uint32_t n = task.node[0];
+    if (!internal(n)) return;
+    for (std::uint32_t c = 0; c < 8; ++c) on_task(Task{Kind::kCell, 0, {child(n, c)}});
+    for (std::uint32_t d = 0; d < 3; ++d) {
+      const std::uint32_t u = (d + 1) % 3, v = (d + 2) % 3;
+      for (std::uint32_t q = 0; q < 4; ++q) {
+        const std::uint32_t bits = ((q & 1U) << u) | ((q >> 1U) << v);
+        on_task(Task{Kind::kFace, static_cast<std::uint8_t>(d), {child(n, bits), child(n, bits | (1U << d))}});
+      }
+      for (std::uint32_t k = 0; k < 2; ++k) {
+        Task edge{Kind::kEdge, static_cast<std::uint8_t>(d), {}};
+        for (std::uint32_t q = 0; q < 4; ++q) edge.node[q] = child(n, (k << d) | ((q & 1U) << u) | ((q >> 1U) << v));
+        on_task(edge);
+      }
+    }
+  }
+
+  template <class OnTask>
+  void expand_face(const Task& task, const OnTask& on_task) const {
+    const std::array<std::uint32_t, 2> side{task.node[0], task.node[1]};
+    if (!internal(side[0]) && !internal(side[1])) return;
+    const std::uint32_t d = task.axis, u = (d + 1) % 3, v = (d + 2) % 3;
+    for (std::uint32_t q = 0; q < 4; ++q) {
+      const std::uint32_t bits = ((q & 1U) << u) | ((q >> 1U) << v);
+      on_task(Task{Kind::kFace, task.axis, {child(side[0], bits | (1U << d)), child(side[1], bits)}});
+    }
+    for (const std::uint32_t along : {u, v}) {
+      const std::uint32_t e1 = (along + 1) % 3, e2 = (along + 2) % 3;
+      for (std::uint32_t k = 0; k < 2; ++k) {
+        Task edge{Kind::kEdge, static_cast<std::uint8_t>(along), {}};
+        for (std::uint32_t q = 0; q < 4; ++q) {
+          const std::uint32_t b1 = q & 1U, b2 = q >> 1U;
+          const bool upper = (e1 == d ? b1 : b2) == 1;    // which of the two sides of the face
+          const std::uint32_t other = e1 == d ? b2 : b1;  // half within the face
+          const std::uint32_t other_axis = e1 == d ? e2 : e1;
+          const std::uint32_t bits = (k << along) | (other << other_axis) | (upper ? 0U : 1U << d);
+          edge.node[q] = child(side[upper ? 1 : 0], bits);
+        }
+        on_task(edge);
+      }
+    }
+  }
+
+  template <class OnTask, class OnEdge>
+  void expand_edge(const Task& task, const OnTask& on_task, const OnEdge& on_edge) const {
+    const std::uint32_t d = task.axis, u = (d + 1) % 3, v = (d + 2) % 3;
+    const auto bits_of = [&](std::uint32_t q) { return ((1U - (q & 1U)) << u) | ((1U - (q >> 1U)) << v); };
+    if (internal(task.node[0]) || internal(task.node[1]) || internal(task.node[2]) || internal(task.node[3])) {
+      for (std::uint32_t k = 0; k < 2; ++k) {
+        Task half{Kind::kEdge, task.axis, {}};
+        for (std::uint32_t q = 0; q < 4; ++q) half.node[q] = child(task.node[q], bits_of(q) | (k << d));
+        on_task(half);
+      }
+      return;
+    }
+    std::uint32_t smallest = 0;
+    for (std::uint32_t q = 1; q < 4; ++q) {
+      if (octree_.nodes()[task.node[q]].level > octree_.nodes()[task.node[smallest]].level) smallest = q;
+    }
+    const auto& corners = octree_.corners(static_cast<std::size_t>(octree_.nodes()[task.node[smallest]].leaf));
+    ActiveEdge edge;
+    edge.low = corners[bits_of(smallest)];
+    edge.high = corners[bits_of(smallest) | (1U << d)];
+    if (inside_[edge.low] == inside_[edge.high]) return;
+    edge.axis = task.axis;
+    edge.inside_low = inside_[edge.low] != 0;
+    for (std::size_t k = 0; k < 4; ++k) edge.leaf[k] = static_cast<std::uint32_t>(octree_.nodes()[task.node[kCycle[k]]].leaf);
+    on_edge(edge);
+  }
+
+  const Octree& octree_;
+  const std::vector<std::uint8_t>& inside_;
+};
+
+std::vector<ActiveEdge> active_edges(const Octree& octree, const std::vector<std::uint8_t>& inside, const std::atomic<bool>* cancel) {
+  const Traversal traversal(octree, inside);
+  std::vector<ActiveEdge> edges;
+  std::vector<Task> tasks{Task{}};
+  for (int round = 0; round < 12 && !tasks.empty() && tasks.size() < kMinTasks; ++round) {
+    std::vector<Task> next;
+    for (const Task& task : tasks) {
+      traversal.expand(
+          task, [&](const Task& t) { next.push_back(t); }, [&](const ActiveEdge& e) { edges.push_back(e); });
+    }
+    tasks = std::move(next);
+  }
+  std::vector<std::vector<ActiveEdge>> found(tasks.size());
+  parallel::for_each(
+      tasks.size(), [&](std::size_t t) { traversal.run(tasks[t], found[t]); }, cancel);
+  for (const auto& part : found) edges.insert(edges.end(), part.begin(), part.end());
+  return edges;
+}
+
+// ---- arcs: on every octree face the crossings of its rim are joined in pairs ----
+
+// Place `slot` of an edge and the next one are different leaves, and so share a face with the edge on its rim.
+struct FaceRecord {
+  std::uint64_t face = 0;  // the two leaves, which share at most one face
+  std::uint32_t edge = 0;
+  std::uint8_t slot = 0;
+  bool operator<(const FaceRecord& o) const { return face != o.face ? face < o.face : edge != o.edge ? edge < o.edge : slot < o.slot; }
+};
+
+struct Arc {
+  FaceRecord a, b;
+};
+
+std::vector<FaceRecord> face_records(const std::vector<ActiveEdge>& edges) {
+  std::vector<FaceRecord> records;
+  records.reserve(edges.size() * 4);
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    for (std::uint8_t k = 0; k < 4; ++k) {
+      const std::uint64_t a = edges[e].leaf[k], b = edges[e].leaf[(k + 1U) % 4U];
+      if (a != b) records.push_back({(std::min(a, b) << 32U) | std::max(a, b), static_cast<std::uint32_t>(e), k});
+    }
+  }
+  parallel::sort(records.begin(), records.end(), std::less<>());
+  return records;
+}
+
+// A face with four or more crossings on its rim.
+class AmbiguousFace {
+ public:
+  AmbiguousFace(const Octree& octree, const std::vector<ActiveEdge>& edges, std::vector<FaceRecord> rim) : rim_(std::move(rim)) {
+    const ActiveEdge& first = edges[rim_[0].edge];
+    const std::uint32_t u = (first.axis + 1U) % 3U, v = (first.axis + 2U) % 3U;
+    const std::uint32_t normal = rim_[0].slot % 2 == 0 ? u : v;
+    p_ = (normal + 1U) % 3U;
+    q_ = (normal + 2U) % 3U;
+    const auto node = [&](std::uint64_t leaf) { return octree.nodes()[octree.leaf_nodes()[leaf]]; };
+    const OctreeNode a = node(rim_[0].face >> 32U), b = node(rim_[0].face & 0xffffffffU);
+    const OctreeNode& small = a.level >= b.level ? a : b;
+    low_ = small.low;
+    extent_ = octree.extent(small);
+    std::array<double, 3> centre{};
+    for (const std::uint32_t axis : {p_, q_}) centre[axis] = low_[axis] + 0.5 * extent_;
+    centre[normal] = octree.corner_grid(first.low)[normal];
+    centre_ = octree.world(centre[0], centre[1], centre[2]);
+
+    std::vector<std::pair<double, std::size_t>> order;
+    for (std::size_t i = 0; i < rim_.size(); ++i) order.emplace_back(place(octree, edges[rim_[i].edge]), i);
+    std::sort(order.begin(), order.end());
+    std::vector<FaceRecord> sorted;
+    for (const auto& [s, i] : order) sorted.push_back(rim_[i]);
+    rim_ = std::move(sorted);
+    // Is the run of corners after the first crossing, going round, inside?
+    const ActiveEdge& e = edges[rim_[0].edge];
+    const bool forward = order[0].first < 2.0 * extent_;
+    run_inside_ = forward != e.inside_low;
+  }
+
+  [[nodiscard]] const Vec3& centre() const { return centre_; }
+
+  // If the centre is inside, the runs of outside corners are cut off, and the other way round.
+  void join(bool centre_inside, std::vector<Arc>& arcs) const {
+    const std::size_t n = rim_.size();
+    const std::size_t shift = run_inside_ != centre_inside ? 0 : 1;
+    for (std::size_t i = 0; i < n; i += 2) arcs.push_back({rim_[(i + shift) % n], rim_[(i + shift + 1) % n]});
+  }
+
+ private:
+  // Position of an edge's middle along the rim, counter-clockwise from the lower corner.
+  double place(const Octree& octree, const ActiveEdge& e) const {
+    const auto lo = octree.corner_grid(e.low), hi = octree.corner_grid(e.high);
+    const double s = extent_;
+    const double x = 0.5 * (lo[p_] + hi[p_]) - low_[p_], y = 0.5 * (lo[q_] + hi[q_]) - low_[q_];
+    if (e.axis == p_) return y < 0.5 * s ? x : 3 * s - x;
+    return x > 0.5 * s ? s + y : 4 * s - y;
+  }
+
+  std::vector<FaceRecord> rim_;
+  std::uint32_t p_ = 0, q_ = 1;
+  std::array<std::uint32_t, 3> low_{};
+  std::uint32_t extent_ = 1;
+  Vec3 centre_{};
+  bool run_inside_ = false;
+};
+
+// Arcs of all faces; those from `first_multiple` on come from faces with more than one.
+struct Arcs {
+  std::vector<Arc> arcs;
+  std::size_t first_multiple = 0;
+};
+
+Arcs join_arcs(const Octree& octree, const std::vector<ActiveEdge>& edges, const InsideTest& centre_inside) {
+  const std::vector<FaceRecord> records = face_records(edges);
+  Arcs out;
+  out.arcs.reserve(records.size() / 2);
+  std::vector<AmbiguousFace> ambiguous;
+  for (std::size_t i = 0; i < records.size();) {
+    std::size_t j = i;
+    while (j < records.size() && records[j].face == records[i].face) ++j;
+    if (j - i == 2) {
+      out.arcs.push_back({records[i], records[i + 1]});
+    } else {
+      ambiguous.emplace_back(
+          octree, edges,
+          std::vector<FaceRecord>(records.begin() + static_cast<std::ptrdiff_t>(i), records.begin() + static_cast<std::ptrdiff_t>(j)));
+    }
+    i = j;
+  }
+  out.first_multiple = out.arcs.size();
+  if (ambiguous.empty()) return out;
+  std::vector<Vec3> centres;
+  for (const AmbiguousFace& face : ambiguous) centres.push_back(face.centre());
+  const std::vector<std::uint8_t> inside = centre_inside(centres);
+  for (std::size_t f = 0; f < ambiguous.size(); ++f) ambiguous[f].join(inside[f] != 0, out.arcs);
+  return out;
+}
+
+// ---- sheets: the loops of arcs on the boundary of each leaf ----
+
+class Groups {
+ public:
+  explicit Groups(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0U); }
+  std::uint32_t find(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = find(a);
+    b = find(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+// Sheet of every (edge, place), 4 per edge.
+std::vector<std::uint32_t> label_sheets(const std::vector<ActiveEdge>& edges, const std::vector<Arc>& arcs, DualSurface& surface) {
+  if (edges.size() > (std::size_t{1} << 30U)) throw std::bad_alloc();
+  Groups groups(edges.size() * 4);
+  for (std::uint32_t e = 0; e < edges.size(); ++e) {
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      if (edges[e].leaf[k] == edges[e].leaf[(k + 1) % 4]) groups.join(4 * e + k, 4 * e + (k + 1) % 4);
+    }
+  }
+  const auto place_of = [&](std::uint32_t e, std::uint32_t leaf) {
+    std::uint32_t k = 0;
+    while (edges[e].leaf[k] != leaf) ++k;
+    return 4 * e + k;
+  };
+  for (const Arc& arc : arcs) {
+    for (const std::uint32_t leaf : {static_cast<std::uint32_t>(arc.a.face >> 32U), static_cast<std::uint32_t>(arc.a.face)}) {
+      groups.join(place_of(arc.a.edge, leaf), place_of(arc.b.edge, leaf));
+    }
+  }
+  std::vector<std::uint32_t> sheet(edges.size() * 4);
+  std::vector<std::size_t> count;
+  for (std::uint32_t i = 0; i < sheet.size(); ++i) {
+    const std::uint32_t root = groups.find(i);
+    if (root == i) {
+      sheet[i] = static_cast<std::uint32_t>(surface.patch_leaf.size());
+      surface.patch_leaf.push_back(edges[i / 4].leaf[i % 4]);
+      count.push_back(0);
+    } else {
+      sheet[i] = sheet[root];
+    }
+    const bool repeated =
+        i % 4 != 0 ? edges[i / 4].leaf[i % 4] == edges[i / 4].leaf[i % 4 - 1] : edges[i / 4].leaf[0] == edges[i / 4].leaf[3];
+    if (!repeated) ++count[sheet[i]];
+  }
+  surface.patch_begin.assign(count.size() + 1, 0);
+  for (std::size_t s = 0; s < count.size(); ++s) surface.patch_begin[s + 1] = surface.patch_begin[s] + count[s];
+  surface.patch_crossings.resize(surface.patch_begin.back());
+  std::vector<std::size_t> fill(surface.patch_begin.begin(), surface.patch_begin.end() - 1);
+  for (std::uint32_t e = 0; e < edges.size(); ++e) {
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      if (edges[e].leaf[k] != edges[e].leaf[(k + 3) % 4]) surface.patch_crossings[fill[sheet[4 * e + k]]++] = e;
+    }
+  }
+  return sheet;
+}
+
+// Two sheets joined by several arcs of one face would share several mesh edges: each of these gets a vertex in its middle.
+std::unordered_map<std::uint64_t, std::uint32_t> split_double_edges(const Arcs& arcs, const std::vector<std::uint32_t>& sheet,
+                                                                    DualSurface& surface) {
+  std::unordered_map<std::uint64_t, std::uint32_t> middle;  // (edge, slot) -> vertex
+  const auto pair_of = [&](const FaceRecord& r) {
+    const std::uint64_t a = sheet[4 * std::size_t{r.edge} + r.slot], b = sheet[4 * std::size_t{r.edge} + (r.slot + 1U) % 4U];
+    return (std::min(a, b) << 32U) | std::max(a, b);
+  };
+  for (std::size_t i = arcs.first_multiple; i < arcs.arcs.size();) {
+    std::size_t j = i;
+    while (j < arcs.arcs.size() && arcs.arcs[j].a.face == arcs.arcs[i].a.face) ++j;
+    for (std::size_t k = i; k < j; ++k) {
+      const std::uint64_t pair = pair_of(arcs.arcs[k].a);
+      bool repeated = false;
+      for (std::size_t l = i; l < j; ++l) repeated = repeated || (l != k && pair_of(arcs.arcs[l].a) == pair);
+      if (!repeated) continue;
+      const auto vertex = static_cast<std::uint32_t>(surface.patch_count() + surface.midpoints.size());
+      surface.midpoints.push_back({static_cast<std::uint32_t>(pair >> 32U), static_cast<std::uint32_t>(pair)});
+      for (const FaceRecord& r : {arcs.arcs[k].a, arcs.arcs[k].b}) middle[4 * std::uint64_t{r.edge} + r.slot] = vertex;
+    }
+    i = j;
+  }
+  return middle;
+}
+
+// A diagonal between opposite leaves belongs to this polygon alone if the leaves touch along this edge only.
+bool touch_only_here(const Octree& octree, const ActiveEdge& e, std::uint32_t leaf_a, std::uint32_t leaf_b) {
+  const OctreeNode& a = octree.nodes()[octree.leaf_nodes()[leaf_a]];
+  const OctreeNode& b = octree.nodes()[octree.leaf_nodes()[leaf_b]];
+  const std::uint32_t low = std::max(a.low[e.axis], b.low[e.axis]);
+  const std::uint32_t high = std::min(a.low[e.axis] + octree.extent(a), b.low[e.axis] + octree.extent(b));
+  return low == octree.corner_grid(e.low)[e.axis] && high == octree.corner_grid(e.high)[e.axis];
+}
+
+void make_polygons(const Octree& octree, const std::vector<ActiveEdge>& edges, const std::vector<std::uint32_t>& sheet,
+                   const std::unordered_map<std::uint64_t, std::uint32_t>& middle, DualSurface& surface) {
+  surface.polygon_begin.assign(1, 0);
+  surface.polygon_vertices.reserve(edges.size() * 4);
+  surface.crossings.reserve(edges.size());
+  surface.safe_diagonals.reserve(edges.size());
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const ActiveEdge& e = edges[i];
+    surface.crossings.push_back(e.inside_low ? Crossing{e.low, e.high} : Crossing{e.high, e.low});
+    const auto first = static_cast<std::ptrdiff_t>(surface.polygon_vertices.size());
+    std::vector<std::uint32_t>& polygon = surface.polygon_vertices;
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (e.leaf[k] != e.leaf[(k + 3) % 4]) polygon.push_back(sheet[4 * i + k]);
+      const auto found = middle.empty() ? middle.end() : middle.find(4 * i + k);
+      if (found != middle.end()) polygon.push_back(found->second);
+    }
+    if (!e.inside_low) std::reverse(polygon.begin() + first, polygon.end());
+    const std::size_t size = polygon.size() - static_cast<std::size_t>(first);
+    std::uint8_t safe = 0;
+    const bool plain = size == 4 && std::all_of(polygon.begin() + first, polygon.end(), [&](auto v) { return v < surface.patch_count(); });
+    if (plain) {
+      // Reversal keeps the parity of opposite places up to the shift by one place.
+      const bool even = touch_only_here(octree, e, e.leaf[0], e.leaf[2]), odd = touch_only_here(octree, e, e.leaf[1], e.leaf[3]);
+      safe = static_cast<std::uint8_t>(e.inside_low ? (even ? 1 : 0) | (odd ? 2 : 0) : (odd ? 1 : 0) | (even ? 2 : 0));
+    }
+    surface.safe_diagonals.push_back(safe);
+    surface.polygon_begin.push_back(polygon.size());
+  }
+}
+
+}  // namespace
+
+DualSurface contour(const Octree& octree, const std::vector<std::uint8_t>& inside, const InsideTest& centre_inside,
+                    const std::atomic<bool>* cancel) {
+  DualSurface surface;
+  const std::vector<ActiveEdge> edges = active_edges(octree, inside, cancel);
+  const Arcs arcs = join_arcs(octree, edges, centre_inside);
+  const std::vector<std::uint32_t> sheet = label_sheets(edges, arcs.arcs, surface);
+  const auto middle = split_double_edges(arcs, sheet, surface);
+  make_polygons(octree, edges, sheet, middle, surface);
+  return surface;
+}
+
+namespace {
+
+Vec3 sub(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+Vec3 cross(const Vec3& a, const Vec3& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
+double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+// Cosine between a triangle and the mean of the normals at its corners, the worse of two triangles; falls back on the angle between them.
+class DiagonalQuality {
+ public:
+  DiagonalQuality(const std::vector<Vec3>& positions, const std::vector<Vec3>& normals) : positions_(positions), normals_(normals) {}
+
+  double operator()(const std::array<std::uint32_t, 3>& s, const std::array<std::uint32_t, 3>& t) const {
+    const Vec3 a = unit_normal(s), b = unit_normal(t);
+    if (normals_.empty()) return dot(a, b);
+    return std::min(agreement(a, s), agreement(b, t)) + 1e-3 * dot(a, b);
+  }
+
+ private:
+  Vec3 unit_normal(const std::array<std::uint32_t, 3>& t) const {
+    Vec3 n = cross(sub(positions_[t[1]], positions_[t[0]]), sub(positions_[t[2]], positions_[t[0]]));
+    const double length = std::sqrt(dot(n, n));
+    for (double& c : n) c = length > 0 ? c / length : 0;
+    return n;
+  }
+  double agreement(const Vec3& n, const std::array<std::uint32_t, 3>& t) const {
+    double worst = 1;
+    for (const std::uint32_t v : t) worst = std::min(worst, dot(n, normals_[v]));
+    return worst;
+  }
+  const std::vector<Vec3>& positions_;
+  const std::vector<Vec3>& normals_;
+};
+
+}  // namespace
+
+Mesh triangulate(const DualSurface& surface, std::vector<Vec3> positions, const std::vector<Vec3>& normals) {
+  Mesh mesh;
+  mesh.triangles.reserve(surface.crossings.size() * 2);
+  const std::size_t sized = positions.size();
+  const DiagonalQuality quality(positions, normals);
+  std::vector<Vec3> centres;
+  for (std::size_t p = 0; p < surface.crossings.size(); ++p) {
+    const std::uint32_t* v = surface.polygon_vertices.data() + surface.polygon_begin[p];
+    const std::size_t n = surface.polygon_begin[p + 1] - surface.polygon_begin[p];
+    if (n == 3) {
+      mesh.triangles.push_back({v[0], v[1], v[2]});
+    } else if (surface.safe_diagonals[p] != 0) {
+      const std::array<std::uint32_t, 3> s{v[0], v[1], v[2]}, t{v[0], v[2], v[3]}, x{v[1], v[2], v[3]}, y{v[1], v[3], v[0]};
+      const bool first = surface.safe_diagonals[p] == 1 || (surface.safe_diagonals[p] == 3 && quality(s, t) >= quality(x, y));
+      mesh.triangles.push_back(first ? s : x);
+      mesh.triangles.push_back(first ? t : y);
+    } else {
+      Vec3 centre{0, 0, 0};
+      for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t a = 0; a < 3; ++a) centre[a] += positions[v[i]][a] / static_cast<double>(n);
+      }
+      const auto c = static_cast<std::uint32_t>(sized + centres.size());
+      centres.push_back(centre);
+      for (std::size_t i = 0; i < n; ++i) mesh.triangles.push_back({v[i], v[(i + 1) % n], c});
+    }
+  }
+  mesh.vertices = std::move(positions);
+  mesh.vertices.insert(mesh.vertices.end(), centres.begin(), centres.end());
+  return mesh;
+}
+
+}  // namespace g3r::mesh

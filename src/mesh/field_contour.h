@@ -1,0 +1,51 @@
+// Manifold dual contouring of a sign pattern on an octree: which vertices there are and how they are joined, no positions yet.
+//
+// Ju, Losasso, Schaefer, Warren, "Dual contouring of Hermite data", SIGGRAPH 2002 (one polygon per crossing edge);
+// Schaefer, Ju, Warren, "Manifold dual contouring", TVCG 2007 (one vertex per sheet). docs/meshing.md proves that the result is a
+// closed 2-manifold for every octree and every sign pattern whose boundary corners are outside.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "g3r/mesh.h"
+#include "mesh/field_octree.h"
+
+namespace g3r::mesh {
+
+/// An octree edge whose ends lie on different sides.
+struct Crossing {
+  std::uint32_t inside = 0;   ///< corner
+  std::uint32_t outside = 0;  ///< corner
+};
+
+/// The surface as a polygon mesh. Vertices 0..patches-1 are sheets, each within one leaf; the rest subdivide edges that would coincide.
+struct DualSurface {
+  std::vector<Crossing> crossings;                      ///< one per polygon
+  std::vector<std::uint32_t> patch_leaf;                ///< leaf that holds each sheet
+  std::vector<std::size_t> patch_begin;                 ///< patches + 1 offsets into patch_crossings
+  std::vector<std::uint32_t> patch_crossings;           ///< crossings on the rim of each sheet
+  std::vector<std::array<std::uint32_t, 2>> midpoints;  ///< for each further vertex, the two sheets it lies between
+  std::vector<std::size_t> polygon_begin;               ///< crossings + 1 offsets into polygon_vertices
+  std::vector<std::uint32_t> polygon_vertices;          ///< counter-clockwise seen from outside
+  std::vector<std::uint8_t> safe_diagonals;             ///< per polygon of four: bit 0: diagonal 0-2, bit 1: diagonal 1-3 may be used
+
+  [[nodiscard]] std::size_t patch_count() const { return patch_leaf.size(); }
+};
+
+/// Tells, for points at the centre of octree faces whose corner signs can be joined in two ways, whether they are inside.
+using InsideTest = std::function<std::vector<std::uint8_t>(const std::vector<Vec3>&)>;
+
+/// `inside`: one byte per corner, 0 for all corners on the boundary of the octree. O(leaves + crossings log crossings).
+/// Throws Cancelled.
+[[nodiscard]] DualSurface contour(const Octree& octree, const std::vector<std::uint8_t>& inside, const InsideTest& centre_inside,
+                                  const std::atomic<bool>* cancel = nullptr);
+
+/// Cuts the polygons into triangles; `positions` has one entry per vertex of the surface, `normals` (may be empty) one per sheet.
+/// Quadrilaterals are cut along the diagonal that bends less against the normals; other polygons get a vertex at their centre.
+[[nodiscard]] Mesh triangulate(const DualSurface& surface, std::vector<Vec3> positions, const std::vector<Vec3>& normals);
+
+}  // namespace g3r::mesh

@@ -1,0 +1,264 @@
+#include "mesh/field_local_fit.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nanoflann.hpp>
+
+#include "cpu/parallel.h"
+
+namespace g3r::mesh {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t kMaxNeighbours = 128;
+constexpr std::size_t kSpacingNeighbours = 8;
+constexpr double kSameSheet = 0.85;   // cosine: normals within about 32 degrees belong to one sheet
+constexpr std::size_t kMinSheet = 3;  // points; fewer are noise
+constexpr double kRidge = 1e-3;       // on the curvatures, relative to the weight of the data: keeps them bounded where points are few
+constexpr double kJointClear = 0.03;  // spacings: sheets closer than this to each other's points do not form a crease
+
+Vector3d vector(const Vec3& p) { return {p[0], p[1], p[2]}; }
+
+struct Cloud {
+  const std::vector<Vec3>& p;
+  [[nodiscard]] std::size_t kdtree_get_point_count() const { return p.size(); }
+  [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t d) const { return p[i][d]; }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+
+using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, std::uint32_t>;
+
+struct Member {
+  Vector3d p, n;
+  double weight = 0;
+  int sheet = -1;
+};
+
+Eigen::Matrix3d frame_of(const Vector3d& n) {
+  Eigen::Matrix3d f;
+  const Vector3d axis = std::abs(n.x()) < 0.6 ? Vector3d::UnitX() : std::abs(n.y()) < 0.6 ? Vector3d::UnitY() : Vector3d::UnitZ();
+  const Vector3d u = n.cross(axis).normalized();
+  f.row(0) = u;
+  f.row(1) = n.cross(u);
+  f.row(2) = n;
+  return f;
+}
+
+// Least squares: sum w [ (z - q(u, v))^2 + lambda h^2 |slope - grad q|^2 ], in units of h.
+Sheet fit_sheet(const std::vector<Member>& members, int which, double h, double normal_weight) {
+  Vector3d mean_p = Vector3d::Zero(), mean_n = Vector3d::Zero();
+  double total = 0;
+  for (const Member& m : members) {
+    if (m.sheet != which) continue;
+    mean_p += m.weight * m.p;
+    mean_n += m.weight * m.n;
+    total += m.weight;
+  }
+  Sheet s;
+  s.origin = mean_p / total;
+  s.frame = frame_of(mean_n.normalized());
+  Eigen::Matrix<double, 6, 6> normal_matrix = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
+  const auto add = [&](const Eigen::Matrix<double, 6, 1>& row, double value, double weight) {
+    normal_matrix.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
+    right += weight * value * row;
+  };
+  for (const Member& m : members) {
+    if (m.sheet != which) continue;
+    const Vector3d q = s.frame * (m.p - s.origin) / h;
+    const Vector3d n = s.frame * m.n;
+    const double u = q[0], v = q[1], up = std::max(n[2], 0.2);
+    Eigen::Matrix<double, 6, 1> row;
+    row << 1, u, v, u * u, u * v, v * v;
+    add(row, q[2], m.weight);
+    row << 0, 1, 0, 2 * u, v, 0;
+    add(row, -n[0] / up, m.weight * normal_weight);
+    row << 0, 0, 1, 0, u, 2 * v;
+    add(row, -n[1] / up, m.weight * normal_weight);
+  }
+  for (int k = 3; k < 6; ++k) normal_matrix(k, k) += kRidge * total;
+  normal_matrix(0, 0) += 1e-12 * total;
+  for (int k = 1; k < 3; ++k) normal_matrix(k, k) += 1e-9 * total;
+  const Eigen::Matrix<double, 6, 1> c = normal_matrix.selfadjointView<Eigen::Lower>().ldlt().solve(right);
+  const std::array<double, 6> unit{h, 1, 1, 1 / h, 1 / h, 1 / h};
+  for (std::size_t k = 0; k < 6; ++k) s.c[k] = c[static_cast<Eigen::Index>(k)] * unit[k];
+  return s;
+}
+
+Joint joint_of(const LocalSurface& s, const std::vector<Member>& members, int a, int b) {
+  double a_at_b = 0, b_at_a = 0, wa = 0, wb = 0;
+  for (const Member& m : members) {
+    if (m.sheet == b) {
+      a_at_b += m.weight * s.sheet[static_cast<std::size_t>(a)].distance(m.p);
+      wb += m.weight;
+    } else if (m.sheet == a) {
+      b_at_a += m.weight * s.sheet[static_cast<std::size_t>(b)].distance(m.p);
+      wa += m.weight;
+    }
+  }
+  a_at_b /= wb;
+  b_at_a /= wa;
+  const double clear = kJointClear * s.spacing;
+  if (a_at_b < -clear && b_at_a < -clear) return Joint::kConvex;
+  if (a_at_b > clear && b_at_a > clear) return Joint::kConcave;
+  return Joint::kNone;
+}
+
+}  // namespace
+
+double Sheet::distance(const Vector3d& x, Vector3d* gradient) const {
+  const Vector3d q = frame * (x - origin);
+  const double u = q[0], v = q[1];
+  const double gu = c[1] + 2 * c[3] * u + c[4] * v, gv = c[2] + c[4] * u + 2 * c[5] * v;
+  const double length = std::sqrt(1 + gu * gu + gv * gv);
+  if (gradient != nullptr) *gradient = frame.transpose() * Vector3d(-gu, -gv, 1) / length;
+  return (q[2] - (c[0] + c[1] * u + c[2] * v + c[3] * u * u + c[4] * u * v + c[5] * v * v)) / length;
+}
+
+double LocalSurface::distance(const Vector3d& x, int* active) const {
+  struct Part {
+    double f;
+    int sheet;
+  };
+  const auto combine = [](const Part& a, const Part& b, Joint joint) {
+    if (joint == Joint::kConvex) return a.f >= b.f ? a : b;
+    if (joint == Joint::kConcave) return a.f <= b.f ? a : b;
+    return a;
+  };
+  std::array<Part, 3> part{};
+  for (int k = 0; k < count; ++k) part[static_cast<std::size_t>(k)] = {sheet[static_cast<std::size_t>(k)].distance(x), k};
+  Part result = part[0];
+  if (count == 2) {
+    result = combine(part[0], part[1], joint[0]);
+  } else if (count == 3) {
+    // The pair that is joined in another way than the other two pairs is joined first.
+    if (joint[2] != Joint::kNone && joint[0] == joint[1]) {
+      result = combine(part[0], combine(part[1], part[2], joint[2]), joint[0]);
+    } else if (joint[1] != Joint::kNone && joint[0] == joint[2]) {
+      result = combine(combine(part[0], part[2], joint[1]), part[1], joint[0]);
+    } else if (joint[0] != Joint::kNone && joint[1] == joint[2]) {
+      result = combine(combine(part[0], part[1], joint[0]), part[2], joint[1]);
+    } else if (joint[0] == Joint::kNone) {
+      result = combine(part[0], joint[2] == Joint::kNone ? part[2] : combine(part[2], part[1], joint[2]), joint[1]);
+    } else {
+      const Part far = joint[2] == Joint::kNone ? part[1] : combine(part[1], part[2], joint[2]);
+      result = combine(part[0], far, joint[0]);
+      if (joint[2] == Joint::kNone && joint[1] != Joint::kNone) result = combine(result, part[2], joint[1]);
+    }
+  }
+  if (active != nullptr) *active = result.sheet;
+  return result.f;
+}
+
+struct LocalFit::Index {
+  Cloud cloud;
+  Tree tree;
+  explicit Index(const std::vector<Vec3>& p) : cloud{p}, tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(12)) {
+    tree.buildIndex();
+  }
+};
+
+LocalFit::LocalFit(const OrientedPoints& points, const LocalFitOptions& options)
+    : points_(points), options_(options), index_(std::make_unique<Index>(points.positions)) {
+  options_.neighbours = std::min({options_.neighbours, points.positions.size(), kMaxNeighbours});
+}
+LocalFit::~LocalFit() = default;
+
+void LocalFit::nearest(const Vector3d& x, std::size_t k, std::vector<std::uint32_t>& index, std::vector<double>& squared) const {
+  k = std::min(k, points_.positions.size());
+  index.resize(k);
+  squared.resize(k);
+  index_->tree.knnSearch(x.data(), k, index.data(), squared.data());
+}
+
+LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* direction) const {
+  thread_local std::vector<std::uint32_t> index;
+  thread_local std::vector<double> squared;
+  thread_local std::vector<Member> members;
+  nearest(x, options_.neighbours, index, squared);
+  LocalSurface out;
+  out.nearest = std::sqrt(squared[0]);
+  out.spacing = points_.spacing[index[0]];
+  const double h = out.spacing;
+  if (out.nearest > reach * h) return out;
+  const double scale = 1 / (2 * options_.width * options_.width * h * h);
+  members.clear();
+  double first = -1;
+  for (std::size_t i = 0; i < index.size(); ++i) {
+    const Vector3d n = vector(points_.normals[index[i]]);
+    if (direction != nullptr && n.dot(*direction) < -0.2) continue;
+    if (first < 0) first = squared[i];
+    const double exponent = (squared[i] - first) * scale;
+    if (exponent > 20) break;
+    members.push_back({vector(points_.positions[index[i]]), n, std::exp(-exponent), -1});
+  }
+  // Deal the points out: the nearest one left seeds a sheet, which takes those with similar normals.
+  for (int s = 0; s < 3 && out.count < 3; ++s) {
+    const auto seed = std::find_if(members.begin(), members.end(), [](const Member& m) { return m.sheet == -1; });
+    if (seed == members.end()) break;
+    Vector3d axis = seed->n;
+    std::size_t taken = 0;
+    for (int pass = 0; pass < 2; ++pass) {
+      Vector3d mean = Vector3d::Zero();
+      taken = 0;
+      for (Member& m : members) {
+        if (m.sheet != -1 && m.sheet != out.count) continue;
+        const bool same = m.n.dot(axis) > (options_.sharp ? kSameSheet : 0.0) || &m == &*seed;
+        m.sheet = same ? out.count : -1;
+        if (!same) continue;
+        mean += m.weight * m.n;
+        ++taken;
+      }
+      axis = mean.normalized();
+    }
+    if (taken < std::min(kMinSheet, members.size()) && out.count > 0) {
+      for (Member& m : members) {
+        if (m.sheet == out.count) m.sheet = -2;
+      }
+      continue;
+    }
+    out.sheet[static_cast<std::size_t>(out.count)] = fit_sheet(members, out.count, h, options_.normal_weight);
+    ++out.count;
+    if (!options_.sharp) break;
+  }
+  out.simple = out.count == 1 && std::all_of(members.begin(), members.end(), [](const Member& m) { return m.sheet == 0; });
+  if (out.count > 1) out.joint[0] = joint_of(out, members, 0, 1);
+  if (out.count > 2) {
+    out.joint[1] = joint_of(out, members, 0, 2);
+    out.joint[2] = joint_of(out, members, 1, 2);
+  }
+  return out;
+}
+
+std::vector<double> local_spacing(const std::vector<Vec3>& positions) {
+  const Cloud cloud{positions};
+  Tree tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(12));
+  tree.buildIndex();
+  const std::size_t n = positions.size(), k = std::min(kSpacingNeighbours + 1, n);
+  std::vector<std::uint32_t> index(n * k);
+  std::vector<double> raw(n), smooth(n);
+  parallel::for_blocks(n, 256, [&](std::size_t begin, std::size_t end) {
+    std::vector<double> squared(k);
+    for (std::size_t i = begin; i < end; ++i) {
+      tree.knnSearch(positions[i].data(), k, index.data() + i * k, squared.data());
+      raw[i] = squared[k - 1] * M_PI / static_cast<double>(std::max<std::size_t>(k - 1, 1));
+    }
+  });
+  parallel::for_blocks(n, 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      double sum = 0;
+      for (std::size_t j = 0; j < k; ++j) sum += raw[index[i * k + j]];
+      smooth[i] = std::sqrt(sum / static_cast<double>(k));
+    }
+  });
+  return smooth;
+}
+
+}  // namespace g3r::mesh

@@ -1,0 +1,86 @@
+// The surface near a place, fitted to the oriented points around it: one to three smooth sheets, joined by sharp creases.
+//
+// Each sheet is a quadratic height field fitted to positions and normals together (Hermite data); points are dealt out to sheets by
+// their normals, and sheets are joined by intersection or union as in Ohtake et al., "Multi-level partition of unity implicits",
+// SIGGRAPH 2003, and Fleishman et al., "Robust moving least-squares fitting with sharp features", SIGGRAPH 2005.
+#pragma once
+
+#include <g3r/points.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace g3r::mesh {
+
+/// Points with unit outward normals and the local spacing at each.
+struct OrientedPoints {
+  std::vector<Vec3> positions;
+  std::vector<Vec3> normals;
+  std::vector<double> spacing;
+};
+
+/// A smooth sheet: height a + b u + c v + d u^2 + e u v + g v^2 over a tangent plane, outside above.
+struct Sheet {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< rows: u, v, normal
+  std::array<double, 6> c{};
+
+  /// Distance to the sheet to first order, positive outside, and its gradient (about a unit vector; may be null).
+  double distance(const Eigen::Vector3d& x, Eigen::Vector3d* gradient = nullptr) const;
+};
+
+/// How two sheets bound the solid between them.
+enum class Joint : signed char {
+  kNone,    ///< they do not meet here
+  kConvex,  ///< inside = inside of both
+  kConcave  ///< inside = inside of either
+};
+
+/// The surface around one place.
+struct LocalSurface {
+  int count = 0;  ///< number of sheets, 0 if there is no point near; sheet 0 is the nearest
+  std::array<Sheet, 3> sheet;
+  std::array<Joint, 3> joint{};  ///< of sheets 0-1, 0-2, 1-2
+  double spacing = 0;            ///< local spacing h
+  double nearest = 0;            ///< distance from the place to the nearest point
+  bool simple = false;           ///< one sheet, and every point near belongs to it
+
+  /// Signed distance to the joined sheets, positive outside; which sheet it belongs to (may be null).
+  double distance(const Eigen::Vector3d& x, int* active = nullptr) const;
+};
+
+struct LocalFitOptions {
+  std::size_t neighbours = 20;
+  double width = 1.0;           ///< standard deviation of the Gaussian weight, in spacings
+  double normal_weight = 0.25;  ///< of the normals against the positions, dimensionless
+  bool sharp = true;            ///< several sheets; false under noise
+};
+
+class LocalFit {
+ public:
+  /// `points` must outlive this. O(N log N).
+  LocalFit(const OrientedPoints& points, const LocalFitOptions& options);
+  ~LocalFit();
+  LocalFit(const LocalFit&) = delete;
+  LocalFit& operator=(const LocalFit&) = delete;
+
+  /// The surface near `x`; no sheet if no point is within `reach` spacings. If `direction` is not null, points whose normals point
+  /// against it are left out. O(log N).
+  [[nodiscard]] LocalSurface fit(const Eigen::Vector3d& x, double reach, const Eigen::Vector3d* direction = nullptr) const;
+  /// The k points nearest to x, nearest first, and their squared distances.
+  void nearest(const Eigen::Vector3d& x, std::size_t k, std::vector<std::uint32_t>& index, std::vector<double>& squared) const;
+
+ private:
+  struct Index;
+  const OrientedPoints& points_;
+  LocalFitOptions options_;
+  std::unique_ptr<Index> index_;
+};
+
+/// h_i = d_8 sqrt(pi / 8) averaged over the neighbours, in input units. O(N log N).
+[[nodiscard]] std::vector<double> local_spacing(const std::vector<Vec3>& positions);
+
+}  // namespace g3r::mesh

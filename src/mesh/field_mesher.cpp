@@ -1,0 +1,161 @@
+#include "mesh/field_mesher.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "cpu/parallel.h"
+#include "g3r/error.h"
+#include "mesh/field_contour.h"
+#include "mesh/field_local_fit.h"
+#include "mesh/field_octree.h"
+#include "mesh/field_placement.h"
+
+namespace g3r {
+namespace {
+
+using mesh::LocalFit;
+using mesh::LocalFitOptions;
+using mesh::LocalSurface;
+using mesh::Octree;
+using mesh::OrientedPoints;
+using mesh::RefineDisc;
+
+constexpr double kCell = 0.8;        // finest cell, in median spacings
+constexpr double kDisc = 1.4;        // spacings: radius of the disc around each point that is refined; spans the holes of random sampling
+constexpr double kDiscHalf = 0.3;    // spacings: its half thickness; covers curvature within the disc
+constexpr double kMargin = 1.15;     // side of the octree over the longest side of the bounding box, at least
+constexpr int kBaseLevel = 4;        // coarsest leaves
+constexpr int kMaxSpread = 4;        // levels that locally dense or sparse sampling may add or take away
+constexpr double kLocalReach = 1.8;  // spacings from the nearest point within which the fitted surface gives the side
+constexpr double kFieldSure = 0.35;  // |w - level| from which the field overrules the fitted surface
+
+void report(const Monitor& monitor, double fraction) {
+  if (monitor.cancel != nullptr && monitor.cancel->load()) throw Cancelled();
+  if (monitor.progress && !monitor.progress("mesh", fraction)) throw Cancelled();
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+Octree make_octree(const OrientedPoints& points, const MeshOptions& options, const Monitor& monitor) {
+  Vec3 low = points.positions[0], high = low;
+  for (const Vec3& p : points.positions) {
+    for (std::size_t a = 0; a < 3; ++a) low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
+  }
+  const double longest = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+  const double h = median(points.spacing);
+  double side = longest * kMargin + 8 * h;
+  int level = options.depth;
+  if (level == 0) {
+    level = std::clamp(static_cast<int>(std::ceil(std::log2(side / (kCell * h)))), kBaseLevel, mesh::kMaxOctreeLevel - kMaxSpread);
+    side = std::max(side, kCell * h * std::exp2(level));
+  }
+  Vec3 corner{};
+  for (std::size_t a = 0; a < 3; ++a) corner[a] = 0.5 * (low[a] + high[a]) - 0.5 * side;
+  std::vector<RefineDisc> requests(points.positions.size());
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    const int spread = static_cast<int>(std::lround(std::log2(h / points.spacing[i])));
+    const int wanted = level + std::clamp(spread, -kMaxSpread, options.depth == 0 ? kMaxSpread : 0);
+    requests[i] = {points.positions[i], points.normals[i], kDisc * points.spacing[i], kDiscHalf * points.spacing[i],
+                   std::max(wanted, kBaseLevel)};
+  }
+  return Octree(corner, side, requests, std::min(kBaseLevel, level), monitor.cancel);
+}
+
+// Which side of the surface places are on: a positive value inside. Near the points it is minus the distance to the fitted surface,
+// unless the field is sure of the contrary; elsewhere it is the field, scaled to a length.
+class Side {
+ public:
+  Side(const LocalFit& local, const FieldSampler& sampler, double level, double spacing)
+      : local_(local), sampler_(sampler), level_(level), spacing_(spacing) {}
+
+  std::vector<double> operator()(const std::vector<Vec3>& places, const std::atomic<bool>* cancel) const {
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    std::vector<double> value(places.size(), unknown);
+    std::vector<std::uint8_t> sure(places.size(), 0);
+    parallel::for_blocks(
+        places.size(), 256,
+        [&](std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) {
+            const Eigen::Vector3d x(places[i][0], places[i][1], places[i][2]);
+            const LocalSurface fit = local_.fit(x, kLocalReach);
+            if (fit.count == 0) continue;
+            value[i] = -fit.distance(x);
+            sure[i] = fit.simple ? 1 : 0;
+          }
+        },
+        cancel);
+    std::vector<std::size_t> ask;
+    std::vector<Vec3> queries;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      if (sure[i] != 0) continue;
+      ask.push_back(i);
+      queries.push_back(places[i]);
+    }
+    std::vector<double> field;
+    sampler_.sample(queries, field, nullptr);
+    for (std::size_t k = 0; k < ask.size(); ++k) {
+      const double f = field[k] - level_;
+      double& v = value[ask[k]];
+      if (std::isnan(v) || (std::abs(f) >= kFieldSure && (v > 0) != (f > 0))) v = f * spacing_;
+    }
+    return value;
+  }
+
+ private:
+  const LocalFit& local_;
+  const FieldSampler& sampler_;
+  double level_, spacing_;
+};
+
+}  // namespace
+
+Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const FieldSampler& sampler, const MeshOptions& options,
+                const Monitor& monitor) {
+  if (points.size() != normals.size()) throw InvalidInput("points and normals differ in number");
+  if (points.size() < 4) throw InvalidInput("a mesh needs at least 4 points");
+  if (options.depth != 0 && (options.depth < 4 || options.depth > 12)) throw InvalidInput("mesh depth must be 4 to 12");
+  report(monitor, 0);
+  OrientedPoints oriented{points, normals, mesh::local_spacing(points)};
+  for (Vec3& n : oriented.normals) {
+    const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    if (!(length > 0)) throw InvalidInput("a normal is zero");
+    for (double& c : n) c /= length;
+  }
+  const double spacing = median(oriented.spacing);
+  if (!(spacing > 0)) throw InvalidInput("all points are at one place");
+  std::vector<double> at_points;
+  sampler.sample(points, at_points, nullptr);
+  const double level = median(std::move(at_points));
+  const LocalFit local(oriented, LocalFitOptions{});
+  report(monitor, 0.1);
+
+  const Octree octree = make_octree(oriented, options, monitor);
+  report(monitor, 0.2);
+  const Side side(local, sampler, level, spacing);
+  std::vector<Vec3> corners(octree.corner_count());
+  for (std::size_t c = 0; c < corners.size(); ++c) corners[c] = octree.corner_position(c);
+  const std::vector<double> value = side(corners, monitor.cancel);
+  std::vector<std::uint8_t> inside(corners.size());
+  for (std::size_t c = 0; c < corners.size(); ++c) inside[c] = value[c] > 0 && !octree.on_boundary(c) ? 1 : 0;
+  report(monitor, 0.6);
+
+  const auto centre_inside = [&](const std::vector<Vec3>& centres) {
+    std::vector<std::uint8_t> in;
+    for (const double v : side(centres, monitor.cancel)) in.push_back(v > 0 ? 1 : 0);
+    return in;
+  };
+  const mesh::DualSurface surface = mesh::contour(octree, inside, centre_inside, monitor.cancel);
+  report(monitor, 0.7);
+  mesh::PlacedVertices placed = mesh::place_vertices(octree, surface, value, local, monitor.cancel);
+  report(monitor, 0.95);
+  Mesh mesh = mesh::triangulate(surface, std::move(placed.positions), placed.normals);
+  report(monitor, 1);
+  return mesh;
+}
+
+}  // namespace g3r

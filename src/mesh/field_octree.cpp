@@ -1,0 +1,157 @@
+#include "mesh/field_octree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <new>
+
+#include "cpu/parallel.h"
+#include "g3r/error.h"
+
+namespace g3r::mesh {
+namespace {
+
+constexpr std::size_t kBlock = 1024;
+constexpr int kKeyBits = 21;  // a corner coordinate is 0..2^20 inclusive
+
+std::uint64_t corner_key(const std::array<std::uint32_t, 3>& c) {
+  return (std::uint64_t{c[2]} << (2 * kKeyBits)) | (std::uint64_t{c[1]} << kKeyBits) | c[0];
+}
+
+// Nodes of one level still to be looked at, with the requests that touch each of them.
+struct Frontier {
+  std::vector<std::uint32_t> node;
+  std::vector<std::size_t> begin;  // node.size() + 1 offsets into request
+  std::vector<std::uint32_t> request;
+};
+
+// Conservative: a box that touches the disc always passes, a few more near its rim do too.
+bool touches(const RefineDisc& r, const Vec3& low, double side) {
+  double squared = 0, along = 0, reach = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double d = std::max({low[a] - r.centre[a], 0.0, r.centre[a] - low[a] - side});
+    squared += d * d;
+    along += r.normal[a] * (low[a] + 0.5 * side - r.centre[a]);
+    reach += std::abs(r.normal[a]);
+  }
+  return squared <= r.radius * r.radius && std::abs(along) <= 0.5 * side * reach + r.half_thickness;
+}
+
+}  // namespace
+
+Octree::Octree(const Vec3& low, double side, const std::vector<RefineDisc>& requests, int base_level, const std::atomic<bool>* cancel)
+    : low_(low), unit_(side / static_cast<double>(std::uint32_t{1} << kMaxOctreeLevel)) {
+  refine(requests, std::min(base_level, kMaxOctreeLevel), cancel);
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    if (nodes_[i].first_child >= 0) continue;
+    nodes_[i].leaf = static_cast<std::int32_t>(leaf_nodes_.size());
+    leaf_nodes_.push_back(static_cast<std::uint32_t>(i));
+    depth_ = std::max(depth_, static_cast<int>(nodes_[i].level));
+  }
+  number_corners();
+}
+
+void Octree::refine(const std::vector<RefineDisc>& requests, int base_level, const std::atomic<bool>* cancel) {
+  nodes_.push_back({});
+  Frontier front{{0}, {0, requests.size()}, {}};
+  front.request.resize(requests.size());
+  for (std::size_t i = 0; i < requests.size(); ++i) front.request[i] = static_cast<std::uint32_t>(i);
+
+  for (int level = 0; level < kMaxOctreeLevel && !front.node.empty(); ++level) {
+    if (cancel != nullptr && cancel->load()) throw Cancelled();
+    // Split every node that some request wants deeper.
+    std::vector<std::size_t> split;
+    for (std::size_t f = 0; f < front.node.size(); ++f) {
+      bool deeper = level < base_level;
+      for (std::size_t k = front.begin[f]; !deeper && k < front.begin[f + 1]; ++k) deeper = requests[front.request[k]].level > level;
+      if (!deeper) continue;
+      OctreeNode& parent = nodes_[front.node[f]];
+      if (nodes_.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()) - 8) throw std::bad_alloc();
+      parent.first_child = static_cast<std::int32_t>(nodes_.size());
+      const OctreeNode copy = parent;
+      const std::uint32_t half = extent(copy) / 2;
+      for (std::uint32_t c = 0; c < 8; ++c) {
+        OctreeNode child;
+        child.level = static_cast<std::uint8_t>(level + 1);
+        for (std::size_t a = 0; a < 3; ++a) child.low[a] = copy.low[a] + ((c >> a) & 1U) * half;
+        nodes_.push_back(child);
+      }
+      split.push_back(f);
+    }
+    // Hand each request to the children it touches: count, then fill, so that the order does not depend on the threads.
+    Frontier next;
+    const std::size_t children = split.size() * 8;
+    next.node.resize(children);
+    std::vector<std::vector<std::uint32_t>> lists(children);
+    parallel::for_blocks(split.size(), 64, [&](std::size_t first, std::size_t last) {
+      for (std::size_t s = first; s < last; ++s) {
+        const auto base = static_cast<std::uint32_t>(nodes_[front.node[split[s]]].first_child);
+        for (std::uint32_t c = 0; c < 8; ++c) {
+          const OctreeNode& child = nodes_[base + c];
+          const Vec3 low = world(child.low[0], child.low[1], child.low[2]);
+          const double side = unit_ * extent(child);
+          next.node[8 * s + c] = base + c;
+          for (std::size_t k = front.begin[split[s]]; k < front.begin[split[s] + 1]; ++k) {
+            const RefineDisc& r = requests[front.request[k]];
+            if (r.level > level + 1 && touches(r, low, side)) lists[8 * s + c].push_back(front.request[k]);
+          }
+        }
+      }
+    });
+    next.begin.assign(children + 1, 0);
+    for (std::size_t c = 0; c < children; ++c) next.begin[c + 1] = next.begin[c] + lists[c].size();
+    next.request.resize(next.begin[children]);
+    for (std::size_t c = 0; c < children; ++c) {
+      std::copy(lists[c].begin(), lists[c].end(), next.request.begin() + static_cast<std::ptrdiff_t>(next.begin[c]));
+    }
+    front = std::move(next);
+  }
+}
+
+void Octree::number_corners() {
+  const std::size_t leaves = leaf_nodes_.size();
+  const auto key_of = [&](std::size_t leaf, std::uint32_t c) {
+    const OctreeNode& node = nodes_[leaf_nodes_[leaf]];
+    std::array<std::uint32_t, 3> g{};
+    for (std::size_t a = 0; a < 3; ++a) g[a] = node.low[a] + ((c >> a) & 1U) * extent(node);
+    return corner_key(g);
+  };
+  corner_keys_.resize(leaves * 8);
+  parallel::for_blocks(leaves, kBlock, [&](std::size_t first, std::size_t last) {
+    for (std::size_t l = first; l < last; ++l) {
+      for (std::uint32_t c = 0; c < 8; ++c) corner_keys_[8 * l + c] = key_of(l, c);
+    }
+  });
+  parallel::sort(corner_keys_.begin(), corner_keys_.end(), std::less<>());  // equal keys are interchangeable
+  corner_keys_.erase(std::unique(corner_keys_.begin(), corner_keys_.end()), corner_keys_.end());
+  corner_keys_.shrink_to_fit();
+  corners_.resize(leaves);
+  parallel::for_blocks(leaves, kBlock, [&](std::size_t first, std::size_t last) {
+    for (std::size_t l = first; l < last; ++l) {
+      for (std::uint32_t c = 0; c < 8; ++c) {
+        const auto at = std::lower_bound(corner_keys_.begin(), corner_keys_.end(), key_of(l, c));
+        corners_[l][c] = static_cast<std::uint32_t>(at - corner_keys_.begin());
+      }
+    }
+  });
+}
+
+std::array<std::uint32_t, 3> Octree::corner_grid(std::size_t corner) const {
+  const std::uint64_t key = corner_keys_[corner];
+  const std::uint64_t mask = (std::uint64_t{1} << kKeyBits) - 1;
+  return {static_cast<std::uint32_t>(key & mask), static_cast<std::uint32_t>((key >> kKeyBits) & mask),
+          static_cast<std::uint32_t>(key >> (2 * kKeyBits))};
+}
+
+bool Octree::on_boundary(std::size_t corner) const {
+  const auto g = corner_grid(corner);
+  const std::uint32_t top = std::uint32_t{1} << kMaxOctreeLevel;
+  return g[0] == 0 || g[1] == 0 || g[2] == 0 || g[0] == top || g[1] == top || g[2] == top;
+}
+
+Vec3 Octree::corner_position(std::size_t corner) const {
+  const auto g = corner_grid(corner);
+  return world(g[0], g[1], g[2]);
+}
+
+}  // namespace g3r::mesh

@@ -1,0 +1,70 @@
+// An adaptive octree over a cube, refined near given points, with its corners numbered. Flat arrays, children addressed by index.
+// No balance between neighbouring leaves is needed or made.
+#pragma once
+
+#include <g3r/points.h>
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace g3r::mesh {
+
+/// Deepest level: corner coordinates fit in 21 bits, so that three of them fit in a 64-bit key.
+inline constexpr int kMaxOctreeLevel = 20;
+
+/// A request: leaves that touch the disc around `centre` of the given radius and half thickness are at least `level` deep.
+struct RefineDisc {
+  Vec3 centre;
+  Vec3 normal{0, 0, 0};  ///< unit; zero asks for a ball
+  double radius = 0;
+  double half_thickness = 0;
+  int level = 0;
+};
+
+struct OctreeNode {
+  std::array<std::uint32_t, 3> low{};  ///< lower corner, in units of the smallest possible cell
+  std::int32_t first_child = -1;       ///< children are 8 consecutive nodes, child bit a set = upper half along axis a; -1: leaf
+  std::int32_t leaf = -1;              ///< number among the leaves; -1: internal
+  std::uint8_t level = 0;              ///< 0 = root
+};
+
+class Octree {
+ public:
+  /// The cube [low, low + side]^3 refined as requested, every leaf at least at `base_level`. O(requests x touched leaves).
+  /// Throws Cancelled.
+  Octree(const Vec3& low, double side, const std::vector<RefineDisc>& requests, int base_level, const std::atomic<bool>* cancel = nullptr);
+
+  [[nodiscard]] const std::vector<OctreeNode>& nodes() const { return nodes_; }
+  [[nodiscard]] std::size_t leaf_count() const { return leaf_nodes_.size(); }
+  /// Node index of each leaf.
+  [[nodiscard]] const std::vector<std::uint32_t>& leaf_nodes() const { return leaf_nodes_; }
+  /// Numbers of a leaf's eight corners, bit a of the position set = upper along axis a.
+  [[nodiscard]] const std::array<std::uint32_t, 8>& corners(std::size_t leaf) const { return corners_[leaf]; }
+  [[nodiscard]] std::size_t corner_count() const { return corner_keys_.size(); }
+  /// Integer coordinates of a corner, in units of the smallest possible cell.
+  [[nodiscard]] std::array<std::uint32_t, 3> corner_grid(std::size_t corner) const;
+  [[nodiscard]] bool on_boundary(std::size_t corner) const;
+  /// World coordinates of integer coordinates (fractions allowed).
+  [[nodiscard]] Vec3 world(double x, double y, double z) const { return {low_[0] + x * unit_, low_[1] + y * unit_, low_[2] + z * unit_}; }
+  [[nodiscard]] Vec3 corner_position(std::size_t corner) const;
+  /// Side of a node, in units of the smallest possible cell.
+  [[nodiscard]] std::uint32_t extent(const OctreeNode& node) const { return std::uint32_t{1} << (kMaxOctreeLevel - node.level); }
+  [[nodiscard]] double unit() const { return unit_; }
+  [[nodiscard]] int depth() const { return depth_; }
+
+ private:
+  void refine(const std::vector<RefineDisc>& requests, int base_level, const std::atomic<bool>* cancel);
+  void number_corners();
+
+  Vec3 low_;
+  double unit_ = 1;
+  int depth_ = 0;
+  std::vector<OctreeNode> nodes_;
+  std::vector<std::uint32_t> leaf_nodes_;
+  std::vector<std::array<std::uint32_t, 8>> corners_;
+  std::vector<std::uint64_t> corner_keys_;  // sorted
+};
+
+}  // namespace g3r::mesh

@@ -1,0 +1,23 @@
+// Where the vertices of the dual surface go: on the fitted surface, on its creases and corners where a leaf holds one.
+#pragma once
+
+#include <atomic>
+#include <vector>
+
+#include "mesh/field_contour.h"
+#include "mesh/field_local_fit.h"
+#include "mesh/field_octree.h"
+
+namespace g3r::mesh {
+
+struct PlacedVertices {
+  std::vector<Vec3> positions;  ///< one per vertex of the surface
+  std::vector<Vec3> normals;    ///< one per sheet, unit, outward
+};
+
+/// `value`: one per corner, positive inside, zero on the surface; only ratios across an edge matter.
+/// A vertex stays within `kReach` cells of its leaf. O(vertices). Throws Cancelled.
+[[nodiscard]] PlacedVertices place_vertices(const Octree& octree, const DualSurface& surface, const std::vector<double>& value,
+                                            const LocalFit& local, const std::atomic<bool>* cancel = nullptr);
+
+}  // namespace g3r::mesh
