@@ -130,8 +130,16 @@ struct Orientation {
 /// std::bad_alloc. The result depends neither on the order of the points nor on the number of threads.
 [[nodiscard]] Orientation orient(const PointsView& points, const Options& options = {}, const Monitor& monitor = {});
 
+/// How a surface is made from oriented points.
+enum class Mesher {
+  kAuto,    ///< the field mesher; screened Poisson in the paper preset where it was built in
+  kField,   ///< contours the winding field: closed and manifold by construction
+  kPoisson  ///< screened Poisson reconstruction (Kazhdan and Hoppe 2013); throws Unavailable when built without Open3D
+};
+
 /// Parameters of the mesher.
 struct MeshOptions {
+  Mesher mesher = Mesher::kAuto;
   int depth = 0;  ///< octree depth, 4..12; 0: from the density of the points (10 in the paper preset)
 };
 
@@ -148,6 +156,7 @@ struct Reconstruction {
 
 /// Meshes points that already have outward normals: N points and N normals (any length but zero).
 /// Points with a non-finite coordinate or a zero normal are left out.
+/// The field mesher takes the areas from the spacing of the points.
 [[nodiscard]] Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const MeshOptions& options = {},
                                  const Monitor& monitor = {});
 

@@ -118,6 +118,8 @@ Mesh to_mesh(const open3d::geometry::TriangleMesh& from, const UnitBox& box) {
 
 }  // namespace
 
+bool screened_poisson_available() { return true; }
+
 Mesh screened_poisson(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, int depth) {
   const UnitBox box = validated_box(points, normals, depth);
   open3d::geometry::PointCloud cloud;

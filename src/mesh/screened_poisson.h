@@ -18,6 +18,9 @@ inline constexpr int kMaxPoissonDepth = 12;
 /// `spacing`: square root of area per point, > 0; `box_side`: longest side of the bounding box, same unit. Result in 4..10.
 [[nodiscard]] int automatic_depth(double spacing, double box_side);
 
+/// Whether this build has screened_poisson().
+[[nodiscard]] bool screened_poisson_available();
+
 /// Meshes N points with their N outward normals of any length (the length has no influence). Triangles face the way the normals do, so the
 /// signed volume is positive. The mesh is manifold, and closed unless the surface leaves the cube around the points (an open sheet does).
 /// Every vertex is used by a triangle. Where points are dense the cells of the octree are 1.1 * (longest side of the box) / 2^depth wide.

@@ -164,7 +164,7 @@ struct FastSum::Impl {
 
   // Runs `inside(engine for these targets, their canonical order)` on targets in the cube, `outside(targets)` on the others.
   template <class Inside, class Outside>
-  void at(const std::vector<Vec3>& targets, const Inside& inside, const Outside& outside) const {
+  void at(const std::vector<Vec3>& targets, const std::atomic<bool>* stop, const Inside& inside, const Outside& outside) const {
     std::vector<std::uint32_t> index_in;
     std::vector<std::uint32_t> index_out;
     for (std::uint32_t i = 0; i < targets.size(); ++i) (in_cube(targets[i]) ? index_in : index_out).push_back(i);
@@ -179,7 +179,7 @@ struct FastSum::Impl {
       }
       std::visit(
           [&](const auto& own) {
-            std::decay_t<decltype(own)> engine_at(own, sorted, order.code, cancel);
+            std::decay_t<decltype(own)> engine_at(own, sorted, order.code, stop);
             inside(engine_at, index);
           },
           engine);
@@ -231,10 +231,10 @@ std::vector<Vec3> FastSum::winding_gradient(const std::vector<Vec3>& eta) {
   return out;
 }
 
-std::vector<double> FastSum::winding_at(const std::vector<Vec3>& eta, const std::vector<Vec3>& targets) const {
+std::vector<double> FastSum::winding_at(const std::vector<Vec3>& eta, const std::vector<Vec3>& targets, const std::atomic<bool>* cancel) const {
   std::vector<double> out(targets.size());
   impl_->at(
-      targets,
+      targets, cancel,
       [&](auto& engine, const std::vector<std::uint32_t>& index) {
         std::vector<double> sorted(index.size());
         green_into(engine, constant_harmonic(size()), eta, sorted);
@@ -247,10 +247,11 @@ std::vector<double> FastSum::winding_at(const std::vector<Vec3>& eta, const std:
   return out;
 }
 
-std::vector<Vec3> FastSum::winding_gradient_at(const std::vector<Vec3>& eta, const std::vector<Vec3>& targets) const {
+std::vector<Vec3> FastSum::winding_gradient_at(const std::vector<Vec3>& eta, const std::vector<Vec3>& targets,
+                                               const std::atomic<bool>* cancel) const {
   std::vector<Vec3> out(targets.size());
   impl_->at(
-      targets,
+      targets, cancel,
       [&](auto& engine, const std::vector<std::uint32_t>& index) {
         std::vector<Vec3> sorted(index.size());
         winding_gradient_into(engine, eta, sorted);

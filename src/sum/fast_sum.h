@@ -44,8 +44,11 @@ class FastSum {
   std::vector<Vec3> winding_gradient(const std::vector<Vec3>& eta);
 
   /// w and -grad w at other targets of [-1, 1]^3 (uniform width): any order, Q values. Targets outside the cube are summed directly.
-  [[nodiscard]] std::vector<double> winding_at(const std::vector<Vec3>& eta, const std::vector<Vec3>& targets) const;
-  [[nodiscard]] std::vector<Vec3> winding_gradient_at(const std::vector<Vec3>& eta, const std::vector<Vec3>& targets) const;
+  /// The value at a target depends on that target alone, not on the others of the call.
+  [[nodiscard]] std::vector<double> winding_at(const std::vector<Vec3>& eta, const std::vector<Vec3>& targets,
+                                               const std::atomic<bool>* cancel = nullptr) const;
+  [[nodiscard]] std::vector<Vec3> winding_gradient_at(const std::vector<Vec3>& eta, const std::vector<Vec3>& targets,
+                                                      const std::atomic<bool>* cancel = nullptr) const;
 
  private:
   struct Impl;

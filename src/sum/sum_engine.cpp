@@ -134,7 +134,7 @@ SumEngine<T>::SumEngine(const SumEngine& other, const std::vector<Vec3>& targets
       sources_(other.sources_),
       coefficients_(other.coefficients_),
       stride_(other.stride_) {
-  target_tree_ = std::make_shared<Octree>(build_octree(targets, morton, {sources_->widths[0]}, plan_.leaf_points));
+  target_tree_ = std::make_shared<Octree>(build_query_octree(targets, morton, sources_->tree));
   prepare(targets, {sources_->widths[0]});
 }
 

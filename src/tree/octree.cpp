@@ -91,18 +91,21 @@ Vec3 OctreeNode::centre() const {
   return {(2 * cell[0] + 1) * half - 1, (2 * cell[1] + 1) * half - 1, (2 * cell[2] + 1) * half - 1};
 }
 
-Octree build_octree(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const std::vector<double>& widths,
-                    std::size_t leaf_points) {
+namespace {
+
+// Splits level by level every node that `wanted(node)` names; children start as `split` makes them.
+template <class Wanted>
+Octree split_while(std::size_t points, const std::vector<std::uint64_t>& morton, const Wanted& wanted) {
   Octree tree;
   OctreeNode root;
-  root.end = static_cast<std::uint32_t>(points.size());
+  root.end = static_cast<std::uint32_t>(points);
   tree.nodes.push_back(root);
   tree.level_begin = {0, 1};
   while (tree.levels() <= kMaxLevel) {
     const std::uint32_t begin = tree.level_begin[tree.levels() - 1];
     const std::uint32_t end = tree.level_begin[tree.levels()];
     for (std::uint32_t i = begin; i < end; ++i) {
-      if (tree.nodes[i].count() > leaf_points && tree.nodes[i].level < kMaxLevel) split(morton, i, tree.nodes);
+      if (wanted(tree, i)) split(morton, i, tree.nodes);
     }
     if (tree.nodes.size() == end) break;
     tree.level_begin.push_back(static_cast<std::uint32_t>(tree.nodes.size()));
@@ -111,7 +114,36 @@ Octree build_octree(const std::vector<Vec3>& points, const std::vector<std::uint
     if (tree.nodes[i].leaf()) tree.leaves.push_back(i);
   }
   std::sort(tree.leaves.begin(), tree.leaves.end(), [&](std::uint32_t a, std::uint32_t b) { return tree.nodes[a].begin < tree.nodes[b].begin; });
+  return tree;
+}
+
+}  // namespace
+
+Octree build_octree(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const std::vector<double>& widths,
+                    std::size_t leaf_points) {
+  Octree tree = split_while(points.size(), morton, [&](const Octree& t, std::uint32_t i) {
+    return t.nodes[i].count() > leaf_points && t.nodes[i].level < kMaxLevel;
+  });
   measure(points, widths, tree);
+  return tree;
+}
+
+Octree build_query_octree(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Octree& guide) {
+  constexpr std::uint32_t kNone = 0xffffffffu;
+  std::vector<std::uint32_t> twin;  // the guide's node of the same cube, or kNone
+  Octree tree = split_while(points.size(), morton, [&](const Octree& t, std::uint32_t i) {
+    const OctreeNode& node = t.nodes[i];
+    std::uint32_t same = i == 0 ? 0 : kNone;
+    if (i > 0 && twin[node.parent] != kNone) {
+      const OctreeNode& above = guide.nodes[twin[node.parent]];
+      for (std::uint32_t c = above.first_child; c < above.first_child + above.child_count; ++c) {
+        if (guide.nodes[c].cell == node.cell) same = c;
+      }
+    }
+    twin.push_back(same);
+    return same != kNone && !guide.nodes[same].leaf();
+  });
+  for (OctreeNode& node : tree.nodes) node.radius = std::sqrt(3.0) * node.half_side();
   return tree;
 }
 

@@ -41,4 +41,8 @@ struct Octree {
 [[nodiscard]] Octree build_octree(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const std::vector<double>& widths,
                                   std::size_t leaf_points);
 
+/// Octree over other points (queries) in canonical order whose cubes are split exactly where `guide` splits them, with the cubes' own radii.
+/// What surrounds a query then depends on its position and the guide alone, not on the queries beside it. Width 0.
+[[nodiscard]] Octree build_query_octree(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Octree& guide);
+
 }  // namespace g3r
