@@ -46,11 +46,11 @@ void score_points(const Orientation& orientation, const Input& input, Row& row) 
   }
 }
 
-MeshRow score_reconstruction(const Orientation& orientation, const Input& input, const Mesh& truth, const Method& method,
+MeshRow score_reconstruction(const Orientation& orientation, const Input& input, const Mesh& truth, const Variant& variant,
                              std::uint64_t seed) {
   MeshRow row;
   const auto start = std::chrono::steady_clock::now();
-  const Mesh mesh = mesh_oriented(input.points, orientation.normals, method.mesh);
+  const Mesh mesh = mesh_oriented(input.points, orientation.normals, variant.mesh);
   row.seconds = seconds_since(start);
   row.check = check_mesh(mesh);
   const MeshScore score = score_mesh(mesh, truth, kMeshSamples, seed);
@@ -75,20 +75,20 @@ double area_under_curve(std::vector<float> high, std::vector<float> low) {
   return above / static_cast<double>(high.size()) / static_cast<double>(low.size());
 }
 
-Row measure(const std::string& model, const Mesh& truth, const Input& input, const InputKind& kind, const Method& method, bool with_mesh,
+Row measure(const std::string& model, const Mesh& truth, const Input& input, const InputKind& kind, const Variant& variant, bool with_mesh,
             std::uint64_t seed) {
   Row row;
   row.model = model;
   row.input = kind.name;
-  row.method = method.name;
+  row.method = variant.name;
   row.points = input.points.size();
   try {
     const auto start = std::chrono::steady_clock::now();
-    const Orientation orientation = orient(input.points, method.options);
+    const Orientation orientation = orient(input.points, variant.options);
     row.seconds = seconds_since(start);
     row.stats = orientation.stats;
     score_points(orientation, input, row);
-    if (with_mesh) row.mesh = score_reconstruction(orientation, input, truth, method, seed);
+    if (with_mesh) row.mesh = score_reconstruction(orientation, input, truth, variant, seed);
   } catch (const Error& error) {
     row.error = error.what();
   }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "inputs.h"
-#include "method.h"
+#include "variant.h"
 
 namespace g3r::bench {
 
@@ -38,7 +38,7 @@ struct Row {
 };
 
 /// Orients the input, scores it, and meshes it if asked to. Errors of g3r become Row::error.
-[[nodiscard]] Row measure(const std::string& model, const Mesh& truth, const Input& input, const InputKind& kind, const Method& method,
+[[nodiscard]] Row measure(const std::string& model, const Mesh& truth, const Input& input, const InputKind& kind, const Variant& variant,
                           bool with_mesh, std::uint64_t seed);
 
 /// Chance that a random item of `high` is above a random item of `low`, ties counting half: the area under the ROC curve. O(n log n).

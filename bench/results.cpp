@@ -77,6 +77,7 @@ Json row_json(const Row& row) {
   if (row.confidence_auc >= 0) json["confidence_auc"] = row.confidence_auc;
   if (row.outlier_confidence >= 0) json["outlier_confidence"] = row.outlier_confidence;
   json["seconds"] = row.seconds;
+  for (const auto& [stage, seconds] : row.stats.seconds) json["stage_seconds"][stage] = seconds;
   json["spacing"] = row.stats.spacing;
   json["epsilon"] = row.stats.epsilon;
   json["harmonics"] = row.stats.harmonics;
