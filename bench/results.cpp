@@ -88,6 +88,7 @@ Json row_json(const Row& row) {
   json["converged"] = row.stats.converged;
   json["peak_memory_bytes"] = row.stats.peak_memory_bytes;
   if (row.mesh) json["mesh"] = mesh_json(*row.mesh);
+  if (!row.mesh_error.empty()) json["mesh_error"] = row.mesh_error;
   return json;
 }
 
@@ -156,6 +157,7 @@ void write_cell(const Row& row, std::ostream& out) {
     out << separator << shown(score, score.value(row));
     separator = " / ";
   }
+  if (!row.mesh_error.empty()) out << " no mesh: " << row.mesh_error;
   if (!row.mesh) return;
   for (const Score& score : mesh_scores()) out << separator << shown(score, score.value(row));
   const MeshCheck& check = row.mesh->check;

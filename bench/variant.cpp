@@ -9,8 +9,6 @@ namespace g3r::bench {
 
 namespace {
 
-constexpr int kPaperDepth = 10;
-
 template <class Number>
 Number number(const std::string& key, const std::string& text) {
   Number value{};
@@ -45,6 +43,12 @@ g3r::Method parse_equations(const std::string& text) {
   throw InvalidInput("method '" + text + "' is none of green, energy");
 }
 
+Mesher parse_mesher(const std::string& text) {
+  if (text == "field") return Mesher::kField;
+  if (text == "poisson") return Mesher::kPoisson;
+  throw InvalidInput("mesher '" + text + "' is none of field, poisson");
+}
+
 void set_option(Variant& variant, const std::string& key, const std::string& value) {
   if (key == "epsilon") {
     variant.options.epsilon = parse_epsilon(value);
@@ -62,11 +66,13 @@ void set_option(Variant& variant, const std::string& key, const std::string& val
     variant.options.tolerance = number<double>(key, value);
   } else if (key == "accuracy") {
     variant.options.accuracy = number<double>(key, value);
+  } else if (key == "mesher") {
+    variant.mesh.mesher = parse_mesher(value);
   } else if (key == "depth") {
     variant.mesh.depth = number<int>(key, value);
   } else {
     throw InvalidInput("method option '" + key +
-                       "' is none of method, epsilon, degree, harmonics, solver, schedule, tolerance, accuracy, depth");
+                       "' is none of method, epsilon, degree, harmonics, solver, schedule, tolerance, accuracy, mesher, depth");
   }
 }
 
@@ -80,7 +86,6 @@ Variant parse_variant(const std::string& text) {
   std::getline(parts, part, ';');
   if (part == "paper") {
     variant.options.preset = Preset::kPaper;
-    variant.mesh.depth = kPaperDepth;
   } else if (part != "default") {
     throw InvalidInput("method '" + text + "' does not begin with default or paper");
   }

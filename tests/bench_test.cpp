@@ -89,8 +89,8 @@ TEST(BenchInputs, UnknownKindsAreRefused) {
 }
 
 TEST(BenchVariant, PresetAndOptionsAreRead) {
-  const Variant variant =
-      parse_variant("paper;method=energy;epsilon=0.4h;schedule=20 cg;degree=1;harmonics=1,x,y,z;solver=cg;tolerance=1e-3;depth=8");
+  const Variant variant = parse_variant(
+      "paper;method=energy;epsilon=0.4h;schedule=20 cg;degree=1;harmonics=1,x,y,z;solver=cg;tolerance=1e-3;mesher=field;depth=8");
   EXPECT_EQ(variant.options.preset, Preset::kPaper);
   EXPECT_EQ(variant.options.method, g3r::Method::kEnergy);
   EXPECT_EQ(variant.options.epsilon.unit, Epsilon::Unit::kSpacing);
@@ -101,7 +101,7 @@ TEST(BenchVariant, PresetAndOptionsAreRead) {
   EXPECT_EQ(variant.options.solver, Solver::kConjugateGradient);
   EXPECT_EQ(variant.options.tolerance, 1e-3);
   EXPECT_EQ(variant.mesh.depth, 8);
-  EXPECT_EQ(parse_variant("paper").mesh.depth, 10);
+  EXPECT_EQ(variant.mesh.mesher, Mesher::kField);
   EXPECT_EQ(parse_variant("default").mesh.depth, 0);
 }
 
