@@ -80,7 +80,7 @@ def as_points(value: Any, what: str = "points") -> Points:
     itemsize = array.dtype.itemsize
     aligned = array.flags.aligned and array.strides[0] % itemsize == 0
     if array.size and (array.strides[1] != itemsize or not aligned):
-        array = np.ascontiguousarray(array)
+        array = array.copy(order="C")
     return array
 
 

@@ -98,6 +98,7 @@ def show(what: Any, *, normals: Any = None, confidence: Any = None, colors: Any 
             if normals is None and true_normals is None:
                 points = None
     count = 0 if points is None else len(points)
+    triangles = None if faces is None or vertices is None else as_faces(faces, len(vertices))
 
     def rows(value: Any, name: str) -> Any:
         return None if value is None else as_points(value, name)
@@ -105,7 +106,7 @@ def show(what: Any, *, normals: Any = None, confidence: Any = None, colors: Any 
     scene = _g3r.scene(title, rows(points, "points"), rows(normals, "normals"),
                        None if confidence is None or count == 0 else as_values(confidence, count, "confidence"),
                        None if colors is None or count == 0 else as_colors(colors, count), rows(true_normals, "true_normals"),
-                       vertices, None if faces is None else as_faces(faces, len(vertices)), vertex_colors, vertex_confidence, report)
+                       vertices, triangles, vertex_colors, vertex_confidence, report)
     view = View(scene, up == "z", int(max_points), int(height))
     if open or (open is None and not _in_notebook()):
         view.open()
