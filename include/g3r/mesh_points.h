@@ -2,6 +2,7 @@
 #pragma once
 
 #include <g3r/error.h>
+#include <g3r/export.h>
 #include <g3r/mesh.h>
 #include <g3r/points.h>
 
@@ -9,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace g3r {
+namespace G3R_PUBLIC g3r {
 
 /// The colour of the nearest point for every vertex. `colors`: one per point; points that are not finite give nothing.
 /// O((N + V) log N). Throws InvalidInput: sizes that differ, no finite point.

@@ -1,0 +1,30 @@
+# Installs the package into a scratch folder, builds the consumer against it and runs its tests: cmake -DBUILD=... -DSOURCE=... -P run.cmake
+set(prefix "${BUILD}/consumer/prefix")
+set(build "${BUILD}/consumer/build")
+file(REMOVE_RECURSE "${BUILD}/consumer")
+function(run)
+  execute_process(COMMAND ${ARGV} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+foreach(component runtime development)
+  run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix} --component ${component})
+endforeach()
+file(GLOB pc "${prefix}/lib*/pkgconfig" "${prefix}/lib/*/pkgconfig")
+file(GLOB library "${prefix}/lib*/libg3r.so" "${prefix}/lib/*/libg3r.so")
+get_filename_component(library_dir "${library}" DIRECTORY)
+# The prefix is a scratch folder here; --define-prefix takes it from the place of the file.
+set(ENV{PKG_CONFIG_PATH} "${pc}")
+set(ENV{PKG_CONFIG} "pkg-config --define-prefix")
+set(ENV{LD_LIBRARY_PATH} "${library_dir}")
+run(${CMAKE_COMMAND} -S ${SOURCE} -B ${build} -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_BUILD_TYPE=Release
+    -DCMAKE_CXX_COMPILER=${CXX} "-DPKG_CONFIG_ARGN=--define-prefix")
+run(${CMAKE_COMMAND} --build ${build})
+run(${CMAKE_CTEST_COMMAND} --test-dir ${build} --output-on-failure --no-tests=error)
+
+# The shared library shows the public names and no other.
+execute_process(COMMAND nm -D --defined-only -C ${library} OUTPUT_VARIABLE names COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCHALL "[^\n]+\n" names "${names}")
+foreach(name IN LISTS names)
+  if(NOT name MATCHES " [A-Za-z] (g3r::|g3r_|G3R_0|typeinfo (name )?for g3r::|vtable for g3r::)")
+    message(SEND_ERROR "the shared library shows ${name}")
+  endif()
+endforeach()
