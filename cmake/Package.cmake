@@ -28,6 +28,7 @@ configure_package_config_file(cmake/g3r-config.cmake.in g3r-config.cmake INSTALL
 write_basic_package_version_file(g3r-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/g3r-config.cmake" "${PROJECT_BINARY_DIR}/g3r-config-version.cmake" cmake/FindHighway.cmake
         DESTINATION ${config_dir} COMPONENT development)
+file(RELATIVE_PATH G3R_PC_TO_PREFIX "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")  # the installed tree can be moved
 configure_file(cmake/g3r.pc.in g3r.pc @ONLY)
 install(FILES "${PROJECT_BINARY_DIR}/g3r.pc" DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)

@@ -11,12 +11,9 @@ endforeach()
 file(GLOB pc "${prefix}/lib*/pkgconfig" "${prefix}/lib/*/pkgconfig")
 file(GLOB library "${prefix}/lib*/libg3r.so" "${prefix}/lib/*/libg3r.so")
 get_filename_component(library_dir "${library}" DIRECTORY)
-# The prefix is a scratch folder here; --define-prefix takes it from the place of the file.
 set(ENV{PKG_CONFIG_PATH} "${pc}")
-set(ENV{PKG_CONFIG} "pkg-config --define-prefix")
 set(ENV{LD_LIBRARY_PATH} "${library_dir}")
-run(${CMAKE_COMMAND} -S ${SOURCE} -B ${build} -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_BUILD_TYPE=Release
-    -DCMAKE_CXX_COMPILER=${CXX} "-DPKG_CONFIG_ARGN=--define-prefix")
+run(${CMAKE_COMMAND} -S ${SOURCE} -B ${build} -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=${CXX})
 run(${CMAKE_COMMAND} --build ${build})
 run(${CMAKE_CTEST_COMMAND} --test-dir ${build} --output-on-failure --no-tests=error)
 
