@@ -5,8 +5,10 @@
 #include <g3r/mesh_points.h>
 #include <g3r/view.h>
 
+#include <initializer_list>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
@@ -30,20 +32,30 @@ void take(const nb::dict& from, const char* name, T& into) {
   if (from.contains(name)) into = nb::cast<T>(from[name]);
 }
 
-Epsilon::Unit epsilon_unit(const Text& name) {
-  if (name == "input") return Epsilon::Unit::kInput;
-  if (name == "percent") return Epsilon::Unit::kPercent;
-  if (name == "spacing") return Epsilon::Unit::kSpacing;
-  if (name == "normalised") return Epsilon::Unit::kNormalised;
-  return Epsilon::Unit::kAuto;
+// The value of an option that is one of a few words.
+template <class T>
+void take_choice(const nb::dict& from, const char* name, T& into, std::initializer_list<std::pair<const char*, T>> choices) {
+  if (!from.contains(name)) return;
+  const Text word = nb::cast<Text>(from[name]);
+  Text words;
+  for (const auto& [known, value] : choices) {
+    if (word == known) {
+      into = value;
+      return;
+    }
+    words += (words.empty() ? "'" : ", '") + Text(known) + "'";
+  }
+  throw InvalidInput(Text(name) + " must be one of " + words + ", not '" + word + "'");
 }
 
 Options read_options(const nb::dict& from) {
+  using Unit = Epsilon::Unit;
   Options options;
-  Text preset = "default", solver = "auto", unit = "auto";
-  take(from, "preset", preset);
-  take(from, "solver", solver);
-  take(from, "epsilon_unit", unit);
+  take_choice(from, "preset", options.preset, {{"default", Preset::kDefault}, {"paper", Preset::kPaper}});
+  take_choice(from, "method", options.method, {{"auto", Method::kAuto}, {"green", Method::kGreen}, {"energy", Method::kEnergy}});
+  take_choice(from, "solver", options.solver, {{"auto", Solver::kAuto}, {"dense", Solver::kDense}, {"cg", Solver::kConjugateGradient}});
+  take_choice(from, "epsilon_unit", options.epsilon.unit,
+              {{"input", Unit::kInput}, {"percent", Unit::kPercent}, {"spacing", Unit::kSpacing}, {"normalised", Unit::kNormalised}});
   take(from, "epsilon", options.epsilon.value);
   take(from, "degree", options.degree);
   take(from, "harmonics", options.harmonics);
@@ -53,16 +65,13 @@ Options read_options(const nb::dict& from) {
   take(from, "threads", options.threads);
   take(from, "seed", options.seed);
   take(from, "max_memory", options.max_memory);
-  if (preset != "default" && preset != "paper") throw InvalidInput("preset must be 'default' or 'paper', not '" + preset + "'");
-  if (preset == "paper") options.preset = Preset::kPaper;
-  if (solver == "dense") {
-    options.solver = Solver::kDense;
-  } else if (solver == "cg") {
-    options.solver = Solver::kConjugateGradient;
-  } else if (solver != "auto") {
-    throw InvalidInput("solver must be 'auto', 'dense' or 'cg', not '" + solver + "'");
-  }
-  options.epsilon.unit = epsilon_unit(unit);
+  return options;
+}
+
+MeshOptions read_mesh_options(int depth, const nb::dict& from) {
+  MeshOptions options;
+  options.depth = depth;
+  take_choice(from, "mesher", options.mesher, {{"auto", Mesher::kAuto}, {"field", Mesher::kField}, {"poisson", Mesher::kPoisson}});
   return options;
 }
 
@@ -89,10 +98,11 @@ nb::tuple reconstruct_points(const PointsArray& array, const std::optional<Rows<
                              const nb::dict& keywords, const nb::object& progress) {
   const PointsView points = points_view(array);
   const Options options = read_options(keywords);
+  const MeshOptions mesh_options = read_mesh_options(depth, keywords);
   const auto point_colors = copy_rows<std::uint8_t>(colors);
   Reconstruction result;
   run_job(progress, [&](const Monitor& monitor) {
-    result = reconstruct(points, options, MeshOptions{depth}, monitor);
+    result = reconstruct(points, options, mesh_options, monitor);
     Mesh& mesh = result.mesh;
     if (trim > 0) {
       mesh = trim_mesh(mesh, points, trim * result.orientation.stats.spacing);
@@ -107,10 +117,12 @@ nb::tuple reconstruct_points(const PointsArray& array, const std::optional<Rows<
                         give_mesh(std::move(result.mesh)));
 }
 
-nb::tuple mesh_points(const PointsArray& array, const PointsArray& normals, int depth, const nb::object& progress) {
+nb::tuple mesh_points(const PointsArray& array, const PointsArray& normals, int depth, const nb::dict& keywords,
+                      const nb::object& progress) {
+  const MeshOptions options = read_mesh_options(depth, keywords);
   const PointsView points = points_view(array), directions = points_view(normals);
   Mesh mesh;
-  run_job(progress, [&](const Monitor& monitor) { mesh = mesh_oriented(points, directions, MeshOptions{depth}, monitor); });
+  run_job(progress, [&](const Monitor& monitor) { mesh = mesh_oriented(points, directions, options, monitor); });
   return give_mesh(std::move(mesh));
 }
 
@@ -244,7 +256,7 @@ void bind(nb::module_& m) {
   m.def("orient", &orient_points, nb::arg("points"), nb::arg("options"), nb::arg("progress").none());
   m.def("reconstruct", &reconstruct_points, nb::arg("points"), nb::arg("colors").none(), nb::arg("depth"), nb::arg("trim"),
         nb::arg("options"), nb::arg("progress").none());
-  m.def("mesh", &mesh_points, nb::arg("points"), nb::arg("normals"), nb::arg("depth"), nb::arg("progress").none());
+  m.def("mesh", &mesh_points, nb::arg("points"), nb::arg("normals"), nb::arg("depth"), nb::arg("options"), nb::arg("progress").none());
   m.def("field", &make_field, nb::arg("points"), nb::arg("normals"), nb::arg("areas"), nb::arg("spacing"), nb::arg("width"));
   m.def("read_cloud", &read_points, nb::arg("path"), nb::arg("min_opacity"));
   m.def("write_cloud", &write_points, nb::arg("path"), nb::arg("source").none(), nb::arg("positions").none(), nb::arg("normals").none(),

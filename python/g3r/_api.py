@@ -36,7 +36,7 @@ def _epsilon(value: Union[str, float]) -> Dict[str, Any]:
 
 
 def _options(epsilon: Union[str, float], degree: Optional[int], preset: str, threads: int, seed: int, more: Dict[str, Any]) -> Dict[str, Any]:
-    known = {"harmonics", "solver", "schedule", "tolerance", "accuracy", "max_memory"}
+    known = {"method", "mesher", "harmonics", "solver", "schedule", "tolerance", "accuracy", "max_memory"}
     unknown = set(more) - known
     if unknown:
         raise TypeError(f"unknown option {sorted(unknown)[0]!r}; there are also {', '.join(sorted(known))}")
@@ -170,7 +170,8 @@ def run(points: Any, *, colors: Any = None, epsilon: Union[str, float] = "auto",
     colors: (n, 3), carried to the vertices.
     threads: 0 for all cores; the result does not depend on it.
     progress: called as progress(stage, fraction) on this thread; returning False cancels.
-    Further options: harmonics, solver, schedule, tolerance, accuracy, max_memory, as in the C++ Options.
+    mesher (in **more): "field", "poisson" where it was built in, or "auto".
+    Further options: method, harmonics, solver, schedule, tolerance, accuracy, max_memory, as in the C++ Options.
 
     The interpreter lock is released; Ctrl-C works. Raises InputError, UnavailableError, Cancelled, MemoryError.
     """
@@ -186,12 +187,12 @@ def run(points: Any, *, colors: Any = None, epsilon: Union[str, float] = "auto",
     return Result(array, normals, areas, confidence, report, surface)
 
 
-def mesh_oriented(points: Any, normals: Any = None, *, depth: Union[str, int] = "auto",
+def mesh_oriented(points: Any, normals: Any = None, *, depth: Union[str, int] = "auto", mesher: str = "auto",
                   progress: Optional[Progress] = None) -> Tuple[Floats, Indices]:
     """A mesh of points that already have outward normals: V (v, 3) and F (m, 3). `normals` may be left out if `points` has them."""
     if normals is None:
         normals = member(points, "normals", "point_normals", "vertex_normals")
         if normals is None:
             raise InputError("there are no normals; g3r.reconstruct() takes points without them")
-    vertices, faces, _, _ = _g3r.mesh(as_points(points), as_points(normals, "normals"), _depth(depth), progress)
+    vertices, faces, _, _ = _g3r.mesh(as_points(points), as_points(normals, "normals"), _depth(depth), {"mesher": mesher}, progress)
     return vertices, faces

@@ -101,7 +101,7 @@ def test_field_tells_inside_from_outside(result, sphere):
 
 
 @pytest.mark.parametrize("options", [
-    {"epsilon": 0.05}, {"epsilon": "0.5%"}, {"epsilon": "0.8h"}, {"epsilon": "0.03n"}, {"degree": 1}, {"preset": "paper"}, {"solver": "cg"},
+    {"epsilon": 0.05}, {"epsilon": "0.5%"}, {"epsilon": "0.8h"}, {"epsilon": "0.03n"}, {"degree": 1}, {"preset": "paper"}, {"solver": "cg"}, {"method": "energy"},
     {"threads": 1}, {"seed": 7}, {"tolerance": 1e-2}, {"accuracy": 1e-2}, {"harmonics": "1,x,y,z"},
 ])
 def test_every_option_is_taken(sphere, options):
@@ -122,7 +122,7 @@ def test_unusable_points_are_refused(points):
 
 
 @pytest.mark.parametrize("options", [
-    {"epsilon": "big"}, {"epsilon": -1}, {"epsilon": "0%"}, {"epsilon": float("nan")}, {"degree": 99}, {"preset": "best"}, {"solver": "magic"},
+    {"epsilon": "big"}, {"epsilon": -1}, {"epsilon": "0%"}, {"epsilon": float("nan")}, {"degree": 99}, {"preset": "best"}, {"solver": "magic"}, {"mesher": "magic"}, {"method": "magic"},
     {"harmonics": "w"}, {"schedule": "20 xx"}, {"depth": 99}, {"depth": "deep"}, {"depth": 7.5}, {"trim": -1}, {"trim": "much"},
     {"colors": [[1, 2, 3]]},
 ])
