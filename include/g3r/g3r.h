@@ -29,6 +29,13 @@ enum class Preset {
   kPaper     ///< the published method to the letter: 20 steepest-descent + 60 conjugate-gradient steps, no refinement
 };
 
+/// Which equations are solved. All have the true normals as their solution; docs/math.md derives both.
+enum class Method {
+  kAuto,   ///< the preset's: energy by default, green in the paper preset
+  kGreen,  ///< least squares over Green's identity for all harmonics, as published
+  kEnergy  ///< the identities centred at every point: Stokes single layer energy plus winding number 1/2
+};
+
 /// How the linear system is solved.
 enum class Solver {
   kAuto,              ///< dense for small inputs under the paper preset, conjugate gradients otherwise
@@ -60,6 +67,7 @@ struct Monitor {
 /// All parameters of orient(). The defaults work for every input; 0 and "" mean automatic.
 struct Options {
   Preset preset = Preset::kDefault;
+  Method method = Method::kAuto;
   Epsilon epsilon;
   int degree = -1;             ///< highest degree of the harmonic polynomials, 0..8; -1: preset's (2)
   std::string harmonics;       ///< subset instead of a degree: "1,x,y,z", "degree:0-2", "x,y,z,xy"
@@ -122,8 +130,16 @@ struct Orientation {
 /// std::bad_alloc. The result depends neither on the order of the points nor on the number of threads.
 [[nodiscard]] Orientation orient(const PointsView& points, const Options& options = {}, const Monitor& monitor = {});
 
+/// How a surface is made from oriented points.
+enum class Mesher {
+  kAuto,    ///< the field mesher; screened Poisson in the paper preset where it was built in
+  kField,   ///< contours the winding field: closed and manifold by construction
+  kPoisson  ///< screened Poisson reconstruction (Kazhdan and Hoppe 2013); throws Unavailable when built without Open3D
+};
+
 /// Parameters of the mesher.
 struct MeshOptions {
+  Mesher mesher = Mesher::kAuto;
   int depth = 0;  ///< octree depth, 4..12; 0: from the density of the points (10 in the paper preset)
 
   /// Whether surface far from every point is cut away, which leaves an open boundary.
@@ -152,6 +168,7 @@ struct Reconstruction {
 
 /// Meshes points that already have outward normals: N points and N normals (any length but zero).
 /// Points with a non-finite coordinate or a zero normal are left out.
+/// The field mesher takes the areas from the spacing of the points.
 [[nodiscard]] Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const MeshOptions& options = {},
                                  const Monitor& monitor = {});
 

@@ -1,0 +1,116 @@
+// Time, throughput and error of the sums. One JSON object per line on stdout.
+//   g3r_bench_fast_sum [--points N] [--accuracy A] [--epsilon E (in spacings)] [--threads T] [--order P] [--opening O] [--leaf L]
+#include "cloud/canonical_cloud.h"
+#include "cpu/near_field.h"
+#include "cpu/parallel.h"
+#include "solve/harmonics.h"
+#include "sum/fast_sum.h"
+
+#include "shapes.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <string>
+
+namespace {
+
+using namespace g3r;
+
+double seconds_of(const auto& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Median of three runs after one that allocates.
+double median_seconds(const auto& work) {
+  work();
+  std::array<double, 3> t{};
+  for (double& s : t) s = seconds_of(work);
+  std::sort(t.begin(), t.end());
+  return t[1];
+}
+
+// Relative l2 error against double direct sums at every `step`-th point.
+double sampled_error(const std::vector<Vec3>& points, double width, const std::vector<Vec3>& eta, const std::vector<Vec3>& result) {
+  const std::size_t step = std::max<std::size_t>(1, points.size() / 200);
+  std::vector<Vec3> targets;
+  std::vector<Vec3> got;
+  for (std::size_t i = 0; i < points.size(); i += step) {
+    targets.push_back(points[i]);
+    got.push_back(result[i]);
+  }
+  const std::vector<Vec3> truth = direct_sum::winding_gradient(points, width, eta, targets);
+  double error = 0;
+  double size = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      error += (got[i][a] - truth[i][a]) * (got[i][a] - truth[i][a]);
+      size += truth[i][a] * truth[i][a];
+    }
+  }
+  return std::sqrt(error / size);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::size_t n = 500000;
+  double accuracy = 1e-3;
+  double epsilon = 0.4;
+  int threads = 1;
+  int order = -1;
+  double opening = -1;
+  int leaf = -1;
+  for (int i = 1; i + 1 < argc; i += 2) {
+    const std::string flag = argv[i];
+    const double value = std::atof(argv[i + 1]);
+    if (flag == "--points") n = static_cast<std::size_t>(value);
+    if (flag == "--accuracy") accuracy = value;
+    if (flag == "--epsilon") epsilon = value;
+    if (flag == "--threads") threads = static_cast<int>(value);
+    if (flag == "--order") order = static_cast<int>(value);
+    if (flag == "--opening") opening = value;
+    if (flag == "--leaf") leaf = static_cast<int>(value);
+  }
+  const shapes::Surface surface = shapes::torus(n, 0.6, 0.25, 5);
+  parallel::with_threads(threads, [&] {
+    CanonicalCloud cloud;
+    const double sort_seconds = seconds_of([&] { cloud = canonical_cloud(surface.points); });
+    const double area = 4 * 9.8696 * 0.6 * 0.25 * cloud.frame.scale * cloud.frame.scale;
+    const double h = std::sqrt(area / static_cast<double>(n));
+    SumPlan plan = sum_plan(accuracy, n);
+    if (order >= 0) plan.order = order;
+    if (opening >= 0) plan.opening = opening;
+    if (leaf >= 0) plan.leaf_points = static_cast<std::size_t>(leaf);
+    std::unique_ptr<FastSum> sum;
+    const double build_seconds = seconds_of([&] { sum = std::make_unique<FastSum>(cloud.points, cloud.morton, Widths(epsilon * h), plan); });
+    std::vector<Vec3> eta(cloud.size());
+    shapes::Random random(1);
+    for (Vec3& v : eta) v = random.direction();
+    const HarmonicValues u = evaluate_harmonics(harmonics_of_degrees(0, 2), cloud.points);
+    std::vector<double> q;
+    std::vector<Vec3> at;
+    std::vector<Vec3> s;
+    std::vector<double> w;
+    const double forward = median_seconds([&] { q = sum->green(u, eta); });
+    const double adjoint = median_seconds([&] { at = sum->green_adjoint(u, q); });
+    const double stokes = median_seconds([&] { sum->stokes_winding(eta, s, w); });
+    const double w_adjoint = median_seconds([&] { at = sum->winding_adjoint(w); });
+    const double gradient = median_seconds([&] { at = sum->winding_gradient(eta); });
+    const double points = static_cast<double>(cloud.size());
+    nlohmann::json out{{"points", cloud.size()}, {"epsilon_over_h", epsilon}, {"threads", threads}, {"accuracy", accuracy},
+                       {"order", plan.order}, {"opening", plan.opening}, {"leaf", plan.leaf_points}, {"isa", cpu::instruction_set()},
+                       {"seconds", {{"sort", sort_seconds}, {"build", build_seconds}, {"green", forward}, {"green_adjoint", adjoint},
+                                    {"stokes_winding", stokes}, {"winding_adjoint", w_adjoint}, {"gradient", gradient}}},
+                       {"points_per_second", {{"green_pair", points / (forward + adjoint)}, {"energy", points / (stokes + w_adjoint)},
+                                              {"gradient", points / gradient}}},
+                       {"gradient_error", sampled_error(cloud.points, epsilon * h, eta, at)}};
+    std::cout << out.dump() << "\n";
+  });
+}

@@ -1,0 +1,98 @@
+#include "measure.h"
+
+#include <g3r/error.h>
+#include <g3r/metrics.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include "mesh/vector.h"
+
+namespace g3r::bench {
+
+namespace {
+
+constexpr std::size_t kMeshSamples = 200000;
+constexpr std::array<double, 4> kQuantiles = {0.50, 0.90, 0.95, 0.99};
+constexpr double kDegrees = 180 / 3.14159265358979323846;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void score_points(const Orientation& orientation, const Input& input, Row& row) {
+  const std::vector<Vec3> normals(orientation.normals.begin(), orientation.normals.begin() + static_cast<std::ptrdiff_t>(input.surface));
+  const NormalScore score = score_normals(normals, input.normals);
+  row.ae = score.ae;
+  row.pco = score.pco;
+  std::vector<double> angles;
+  std::vector<float> right, wrong;
+  for (std::size_t i = 0; i < input.surface; ++i) {
+    const double cosine = vector::dot(vector::normalised(normals[i]), input.normals[i]);
+    angles.push_back(std::acos(std::clamp(cosine, -1.0, 1.0)) * kDegrees);
+    (cosine > 0 ? right : wrong).push_back(orientation.confidence[i]);
+  }
+  std::sort(angles.begin(), angles.end());
+  for (std::size_t q = 0; q < kQuantiles.size(); ++q) {
+    row.angle_quantiles[q] = angles[static_cast<std::size_t>(kQuantiles[q] * static_cast<double>(angles.size() - 1))];
+  }
+  if (!right.empty() && !wrong.empty()) row.confidence_auc = area_under_curve(std::move(right), std::move(wrong));
+  const auto outliers = orientation.confidence.begin() + static_cast<std::ptrdiff_t>(input.surface);
+  if (outliers != orientation.confidence.end()) {
+    const auto count = static_cast<double>(orientation.confidence.end() - outliers);
+    row.outlier_confidence = std::accumulate(outliers, orientation.confidence.end(), 0.0) / count;
+  }
+}
+
+MeshRow score_reconstruction(const Orientation& orientation, const Input& input, const Mesh& truth, const Method& method,
+                             std::uint64_t seed) {
+  MeshRow row;
+  const auto start = std::chrono::steady_clock::now();
+  const Mesh mesh = mesh_oriented(input.points, orientation.normals, method.mesh);
+  row.seconds = seconds_since(start);
+  row.check = check_mesh(mesh);
+  const MeshScore score = score_mesh(mesh, truth, kMeshSamples, seed);
+  row.chamfer = score.chamfer;
+  row.ae = score.ae;
+  row.hausdorff = score.hausdorff;
+  return row;
+}
+
+}  // namespace
+
+double area_under_curve(std::vector<float> high, std::vector<float> low) {
+  std::sort(high.begin(), high.end());
+  std::sort(low.begin(), low.end());
+  double above = 0;
+  std::size_t below = 0, not_above = 0;  // of low: below the item of high, and below or equal
+  for (const float value : high) {
+    while (below < low.size() && low[below] < value) ++below;
+    while (not_above < low.size() && low[not_above] <= value) ++not_above;
+    above += static_cast<double>(below) + static_cast<double>(not_above - below) / 2;
+  }
+  return above / static_cast<double>(high.size()) / static_cast<double>(low.size());
+}
+
+Row measure(const std::string& model, const Mesh& truth, const Input& input, const InputKind& kind, const Method& method, bool with_mesh,
+            std::uint64_t seed) {
+  Row row;
+  row.model = model;
+  row.input = kind.name;
+  row.method = method.name;
+  row.points = input.points.size();
+  try {
+    const auto start = std::chrono::steady_clock::now();
+    const Orientation orientation = orient(input.points, method.options);
+    row.seconds = seconds_since(start);
+    row.stats = orientation.stats;
+    score_points(orientation, input, row);
+    if (with_mesh) row.mesh = score_reconstruction(orientation, input, truth, method, seed);
+  } catch (const Error& error) {
+    row.error = error.what();
+  }
+  return row;
+}
+
+}  // namespace g3r::bench

@@ -1,0 +1,122 @@
+// g3r_table: orients (and meshes) samples of ground-truth meshes and scores the results. README.md holds the protocol.
+#include <g3r/g3r.h>
+#include <g3r/io.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+
+#include "inputs.h"
+#include "measure.h"
+#include "method.h"
+#include "results.h"
+
+namespace g3r::bench {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::string data;
+  std::vector<std::size_t> points = {5000};
+  std::vector<std::string> inputs = {"clean"};
+  std::vector<std::string> methods = {"paper", "default"};
+  std::vector<std::string> models;  ///< empty: all
+  bool mesh = false;
+  std::string json = "table.json";
+  std::string markdown = "table.md";
+  RunInfo run{"", 1, 0};
+};
+
+Arguments parse_arguments(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app("Scores normals and meshes against ground-truth meshes (protocol: bench/README.md)");
+  app.add_option("--data", arguments.data, "folder of closed, outward oriented triangle meshes")->required()->check(CLI::ExistingDirectory);
+  app.add_option("--points", arguments.points, "numbers of points, comma separated")->delimiter(',')->check(CLI::Range(4, 100000000));
+  app.add_option("--inputs", arguments.inputs, "clean, noise:P, outliers:P, gradient:R, patches:K; comma separated")->delimiter(',');
+  app.add_option("--method", arguments.methods, "default or paper, then ;KEY=VALUE for ablations; may be given several times");
+  app.add_option("--models", arguments.models, "only these models (file names without extension), comma separated")->delimiter(',');
+  app.add_flag("--mesh", arguments.mesh, "also mesh, and score CD, AE_m, HD");
+  app.add_option("--seed", arguments.run.seed, "seed of the samples");
+  app.add_option("--threads", arguments.run.threads, "threads, 0: all cores");
+  app.add_option("--label", arguments.run.label, "text for the head of the results, for example the commit");
+  app.add_option("--json", arguments.json, "file for all results");
+  app.add_option("--markdown", arguments.markdown, "file for the tables");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    std::exit(app.exit(error));
+  }
+  return arguments;
+}
+
+/// Mesh files of the folder, by name.
+std::vector<fs::path> find_models(const Arguments& arguments) {
+  std::vector<fs::path> paths;
+  for (const auto& entry : fs::directory_iterator(arguments.data)) {
+    const std::string extension = entry.path().extension().string();
+    const bool is_mesh = extension == ".ply" || extension == ".obj" || extension == ".off" || extension == ".stl";
+    const bool wanted = arguments.models.empty() ||
+                        std::find(arguments.models.begin(), arguments.models.end(), entry.path().stem().string()) != arguments.models.end();
+    if (entry.is_regular_file() && is_mesh && wanted) paths.push_back(entry.path());
+  }
+  std::sort(paths.begin(), paths.end());
+  if (paths.empty()) throw InvalidInput("no mesh to measure in " + arguments.data);
+  return paths;
+}
+
+void show(const Row& row) {
+  std::fprintf(stderr, "%-20s %-12s %8zu %-24s ", row.model.c_str(), row.input.c_str(), row.points, row.method.c_str());
+  if (!row.error.empty()) {
+    std::fprintf(stderr, "error: %s\n", escape_text(row.error).c_str());
+    return;
+  }
+  std::fprintf(stderr, "AE_p %.3fe-2 PCO %.3f %% %.2f s", 100 * row.ae, 100 * row.pco, row.seconds);
+  if (row.mesh)
+    std::fprintf(stderr, " | CD %.3fe-3 AE_m %.3fe-2 HD %.3fe-2", 1e3 * row.mesh->chamfer, 100 * row.mesh->ae, 100 * row.mesh->hausdorff);
+  std::fprintf(stderr, "\n");
+}
+
+void run(const Arguments& arguments) {
+  std::vector<InputKind> kinds;
+  for (const std::string& text : arguments.inputs) kinds.push_back(parse_input_kind(text));
+  std::vector<Method> methods;
+  for (const std::string& text : arguments.methods) {
+    methods.push_back(parse_method(text));
+    methods.back().options.threads = arguments.run.threads;
+  }
+  std::vector<Row> rows;
+  for (const fs::path& path : find_models(arguments)) {
+    const Mesh truth = read_mesh(path.string());
+    for (const std::size_t count : arguments.points) {
+      for (const InputKind& kind : kinds) {
+        const Input input = make_input(truth, kind, count, arguments.run.seed);
+        for (const Method& method : methods) {
+          rows.push_back(measure(path.stem().string(), truth, input, kind, method, arguments.mesh, arguments.run.seed));
+          show(rows.back());
+        }
+      }
+    }
+  }
+  write_file(arguments.json, to_json(arguments.run, rows));
+  write_file(arguments.markdown, to_markdown(arguments.run, rows));
+  std::cerr << rows.size() << " rows in " << arguments.json << ", tables in " << arguments.markdown << "\n";
+}
+
+}  // namespace
+
+}  // namespace g3r::bench
+
+int main(int argc, char** argv) {
+  const auto arguments = g3r::bench::parse_arguments(argc, argv);
+  try {
+    g3r::bench::run(arguments);
+  } catch (const std::exception& error) {
+    std::cerr << "g3r_table: " << g3r::escape_text(error.what()) << "\n";
+    return 1;
+  }
+  return 0;
+}

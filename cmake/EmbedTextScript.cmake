@@ -1,0 +1,11 @@
+# Run by g3r_embed_text() at build time: OUTPUT, NAMESPACE, INPUTS (separated by |).
+set(code "#include <string_view>\n\nnamespace ${NAMESPACE} {\n")
+string(REPLACE "|" ";" inputs "${INPUTS}")
+foreach(input IN LISTS inputs)
+  get_filename_component(name "${input}" NAME)
+  string(MAKE_C_IDENTIFIER "${name}" name)
+  file(READ "${input}" text)
+  string(APPEND code "extern const std::string_view ${name};\nconst std::string_view ${name} = R\"embedded(${text})embedded\";\n")
+endforeach()
+string(APPEND code "}  // namespace ${NAMESPACE}\n")
+file(WRITE "${OUTPUT}" "${code}")

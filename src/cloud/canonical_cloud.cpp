@@ -1,0 +1,205 @@
+#include "cloud/canonical_cloud.h"
+
+#include "cpu/parallel.h"
+
+#include <g3r/error.h>
+
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace g3r {
+namespace {
+
+constexpr double kBoxSide = 2.0 / 1.1;      // the paper's normalisation
+constexpr int kGridBits = 21;               // 3 x 21 = 63 bits fit one code
+constexpr std::size_t kBlock = 1u << 14;    // points per parallel block; any value gives the same result
+constexpr std::size_t kFewestPoints = 4;    // fewer cannot enclose a volume
+constexpr double kLineThickness = 1e-10;    // second principal spread over the first, below which points count as collinear
+
+bool finite(const Vec3& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }
+
+std::uint64_t spread_bits(std::uint64_t v) {  // 21 bits -> every third bit
+  v &= 0x1fffff;
+  v = (v | v << 32) & 0x1f00000000ffffULL;
+  v = (v | v << 16) & 0x1f0000ff0000ffULL;
+  v = (v | v << 8) & 0x100f00f00f00f00fULL;
+  v = (v | v << 4) & 0x10c30c30c30c30c3ULL;
+  return (v | v << 2) & 0x1249249249249249ULL;
+}
+
+struct Keyed {
+  std::uint64_t code;
+  std::uint32_t index;
+};
+
+// Least-significant-digit radix sort, 8 digits of 8 bits, stable; blocks of fixed size keep it the same for any number of threads.
+void radix_sort(std::vector<Keyed>& items) {
+  constexpr std::size_t kDigits = 256;
+  const std::size_t n = items.size();
+  const std::size_t blocks = (n + kBlock - 1) / kBlock;
+  std::vector<Keyed> other(n);
+  std::vector<std::array<std::uint32_t, kDigits>> offset(blocks);
+  for (int shift = 0; shift < 64; shift += 8) {
+    const auto digit = [shift](const Keyed& item) { return static_cast<std::size_t>(item.code >> shift & 0xff); };
+    parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
+      auto& count = offset[begin / kBlock];
+      count.fill(0);
+      for (std::size_t i = begin; i < end; ++i) ++count[digit(items[i])];
+    });
+    std::uint32_t total = 0;
+    bool one_digit = false;
+    for (std::size_t d = 0; d < kDigits; ++d) {
+      const std::uint32_t before = total;
+      for (auto& count : offset) {
+        const std::uint32_t c = count[d];
+        count[d] = total;
+        total += c;
+      }
+      one_digit = one_digit || total - before == n;
+    }
+    if (one_digit) continue;
+    parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
+      auto& next = offset[begin / kBlock];
+      for (std::size_t i = begin; i < end; ++i) other[next[digit(items[i])]++] = items[i];
+    });
+    items.swap(other);
+  }
+}
+
+struct Bounds {
+  Vec3 low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  Vec3 high{-low[0], -low[1], -low[2]};
+  std::size_t finite_points = 0;
+};
+
+Bounds bounds_of(const PointsView& points) {
+  Bounds b;
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const Vec3 p = points[i];
+    if (!finite(p)) continue;
+    ++b.finite_points;
+    for (std::size_t a = 0; a < 3; ++a) {
+      b.low[a] = std::min(b.low[a], p[a]);
+      b.high[a] = std::max(b.high[a], p[a]);
+    }
+  }
+  return b;
+}
+
+Frame frame_of(const Bounds& b) {
+  Frame frame;
+  double side = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    frame.centre[a] = b.low[a] + (b.high[a] - b.low[a]) / 2;
+    side = std::max(side, b.high[a] - b.low[a]);
+  }
+  if (!std::isfinite(side)) throw InvalidInput("the coordinates span more than a double can hold; scale them down");
+  if (side <= 0) throw InvalidInput("all points are at the same place; at least 4 distinct points are needed");
+  frame.scale = kBoxSide / side;
+  if (!std::isfinite(frame.scale)) throw InvalidInput("the points are closer together than a double can resolve; scale them up");
+  return frame;
+}
+
+void require_not_collinear(const std::vector<Vec3>& points) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Vec3& p : points) mean += Eigen::Map<const Eigen::Vector3d>(p.data());
+  mean /= static_cast<double>(points.size());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Vec3& p : points) {
+    const Eigen::Vector3d d = Eigen::Map<const Eigen::Vector3d>(p.data()) - mean;
+    spread += d * d.transpose();
+  }
+  const Eigen::Vector3d eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread, Eigen::EigenvaluesOnly).eigenvalues();
+  if (eigenvalues[1] <= kLineThickness * kLineThickness * eigenvalues[2]) {
+    throw InvalidInput("all points are collinear (on one line); a surface needs points around a volume");
+  }
+}
+
+}  // namespace
+
+std::uint64_t morton_code(const Vec3& unit) {
+  constexpr double kCells = static_cast<double>(1 << kGridBits);
+  std::uint64_t code = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double cell = std::floor((unit[a] + 1) * (kCells / 2));
+    const auto clamped = static_cast<std::uint64_t>(std::clamp(cell, 0.0, kCells - 1));
+    code |= spread_bits(clamped) << (2 - a);
+  }
+  return code;
+}
+
+MortonOrder morton_order(const std::vector<Vec3>& unit_points) {
+  const std::size_t n = unit_points.size();
+  std::vector<Keyed> items(n);
+  parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) items[i] = {morton_code(unit_points[i]), static_cast<std::uint32_t>(i)};
+  });
+  radix_sort(items);
+  for (std::size_t begin = 0; begin < n;) {  // ties: by coordinates, then (equal points) by index
+    std::size_t end = begin + 1;
+    while (end < n && items[end].code == items[begin].code) ++end;
+    if (end - begin > 1) {
+      std::sort(items.begin() + static_cast<std::ptrdiff_t>(begin), items.begin() + static_cast<std::ptrdiff_t>(end),
+                [&](const Keyed& a, const Keyed& b) {
+                  if (unit_points[a.index] != unit_points[b.index]) return unit_points[a.index] < unit_points[b.index];
+                  return a.index < b.index;
+                });
+    }
+    begin = end;
+  }
+  MortonOrder order;
+  order.index.resize(n);
+  order.code.resize(n);
+  parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      order.index[i] = items[i].index;
+      order.code[i] = items[i].code;
+    }
+  });
+  return order;
+}
+
+CanonicalCloud canonical_cloud(const PointsView& points) {
+  if (points.count >= kNoPoint) throw InvalidInput("more than 4294967294 points; split the cloud");
+  const Bounds bounds = bounds_of(points);
+  if (bounds.finite_points < kFewestPoints) {
+    throw InvalidInput("too few points: " + std::to_string(bounds.finite_points) + " finite, at least 4 distinct points are needed");
+  }
+  CanonicalCloud cloud;
+  cloud.frame = frame_of(bounds);
+  cloud.non_finite = points.count - bounds.finite_points;
+
+  std::vector<Vec3> unit;
+  std::vector<std::uint32_t> input;
+  unit.reserve(bounds.finite_points);
+  input.reserve(bounds.finite_points);
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const Vec3 p = points[i];
+    if (!finite(p)) continue;
+    unit.push_back(cloud.frame.to_unit(p));
+    input.push_back(static_cast<std::uint32_t>(i));
+  }
+  const MortonOrder order = morton_order(unit);
+  cloud.point_of.assign(points.count, kNoPoint);
+  cloud.points.reserve(unit.size());
+  for (std::size_t k = 0; k < unit.size(); ++k) {
+    const Vec3& p = unit[order.index[k]];
+    if (cloud.points.empty() || cloud.points.back() != p) {
+      cloud.points.push_back(p);
+      cloud.morton.push_back(order.code[k]);
+      cloud.multiplicity.push_back(0);
+    }
+    ++cloud.multiplicity.back();
+    cloud.point_of[input[order.index[k]]] = static_cast<std::uint32_t>(cloud.points.size() - 1);
+  }
+  if (cloud.size() < kFewestPoints) {
+    throw InvalidInput("too few distinct points: " + std::to_string(cloud.size()) + " (the rest are duplicates), at least 4 are needed");
+  }
+  require_not_collinear(cloud.points);
+  return cloud;
+}
+
+}  // namespace g3r

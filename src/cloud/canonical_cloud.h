@@ -1,0 +1,52 @@
+// The solver's view of the input: finite, distinct points in the normalised box, in an order that does not depend on the input's.
+#pragma once
+
+#include <g3r/points.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace g3r {
+
+/// World <-> normalised box: unit = (world - centre) * scale. The longest side of the bounding box becomes 2/1.1 (paper, section 4).
+struct Frame {
+  Vec3 centre{0, 0, 0};
+  double scale = 1;
+
+  [[nodiscard]] Vec3 to_unit(const Vec3& p) const {
+    return {(p[0] - centre[0]) * scale, (p[1] - centre[1]) * scale, (p[2] - centre[2]) * scale};
+  }
+  [[nodiscard]] double length_to_unit(double length) const { return length * scale; }
+  [[nodiscard]] double length_to_world(double length) const { return length / scale; }
+};
+
+inline constexpr std::uint32_t kNoPoint = 0xffffffffu;
+
+/// Distinct finite points in Morton order of a 2^21-cell grid over [-1, 1]^3, ties by coordinates: the same for every permutation of the input.
+struct CanonicalCloud {
+  Frame frame;
+  std::vector<Vec3> points;              ///< M unit-box points
+  std::vector<std::uint64_t> morton;     ///< M codes, 63 bits, non-decreasing
+  std::vector<std::uint32_t> point_of;   ///< N: input point -> index into points, kNoPoint if not finite
+  std::vector<std::uint32_t> multiplicity;  ///< M: number of input points at this place
+  std::size_t non_finite = 0;
+
+  [[nodiscard]] std::size_t size() const { return points.size(); }
+};
+
+/// Morton code of a point of [-1, 1]^3 on the 2^21 grid: bits x2 y2 z2 x1 y1 z1 x0 y0 z0, x highest. Coordinates outside are clamped.
+[[nodiscard]] std::uint64_t morton_code(const Vec3& unit);
+
+/// Indices that sort points of [-1, 1]^3 canonically, and their codes in that order. O(N).
+struct MortonOrder {
+  std::vector<std::uint32_t> index;
+  std::vector<std::uint64_t> code;
+};
+[[nodiscard]] MortonOrder morton_order(const std::vector<Vec3>& unit_points);
+
+/// Centres, scales, drops non-finite points, merges exact duplicates and sorts. O(N).
+/// Throws InvalidInput for fewer than 4 distinct finite points, or points that are all on one line.
+[[nodiscard]] CanonicalCloud canonical_cloud(const PointsView& points);
+
+}  // namespace g3r

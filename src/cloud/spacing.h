@@ -1,0 +1,17 @@
+// Local and typical spacing of a point set.
+#pragma once
+
+#include <g3r/points.h>
+
+#include <vector>
+
+namespace g3r {
+
+/// h_i = d_k sqrt(pi / k), d_k the distance of point i to its k-th neighbour, k = 8: the square root of the area per point of a surface
+/// sample (docs/math.md, "Spacing"). Fewer than 9 points: k = N - 1. N values in the units of the points, all > 0 for distinct points. O(N log N).
+[[nodiscard]] std::vector<double> local_spacing(const std::vector<Vec3>& points);
+
+/// The typical spacing: the median of the local ones, which a few far points cannot move.
+[[nodiscard]] double typical_spacing(std::vector<double> local);
+
+}  // namespace g3r

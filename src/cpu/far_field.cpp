@@ -1,0 +1,389 @@
+// The far field's vector kernels. Highway compiles this file once per instruction set.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "cpu/far_field.cpp"
+#include "cpu/far_field.h"
+
+#include "sum/expansions.h"
+
+#include <cstring>
+
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace g3r::cpu::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <class T>
+using Tag = hn::CappedTag<T, kLanes>;
+template <class T>
+using Vec = hn::Vec<Tag<T>>;
+
+// Basis values B_a of one vector of points, in memory: basis[a * kLanes + lane].
+template <class T>
+void RegularHarmonics(Vec<T> x, Vec<T> y, Vec<T> z, int order, T* HWY_RESTRICT basis) {
+  const Tag<T> d;
+  const Vec<T> r2 = hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
+  Vec<T> re_diagonal = hn::Set(d, T{1});
+  Vec<T> im_diagonal = hn::Zero(d);
+  for (int m = 0; m <= order; ++m) {
+    if (m > 0) {  // times -(x + iy) / (2m)
+      const Vec<T> scale = hn::Set(d, static_cast<T>(-0.5 / m));
+      const Vec<T> re = hn::Mul(scale, hn::NegMulAdd(y, im_diagonal, hn::Mul(x, re_diagonal)));
+      im_diagonal = hn::Mul(scale, hn::MulAdd(x, im_diagonal, hn::Mul(y, re_diagonal)));
+      re_diagonal = re;
+    }
+    Vec<T> re = re_diagonal;
+    Vec<T> im = im_diagonal;
+    Vec<T> re_below = hn::Zero(d);
+    Vec<T> im_below = hn::Zero(d);
+    for (int l = m; l <= order; ++l) {
+      hn::Store(re, d, basis + real_index(l, m) * kLanes);
+      if (m > 0) hn::Store(im, d, basis + imaginary_index(l, m) * kLanes);
+      const double divisor = static_cast<double>((l + 1 + m) * (l + 1 - m));
+      const Vec<T> up = hn::Mul(hn::Set(d, static_cast<T>((2.0 * l + 1) / divisor)), z);
+      const Vec<T> down = hn::Mul(hn::Set(d, static_cast<T>(1 / divisor)), r2);
+      const Vec<T> re_next = hn::NegMulAdd(down, re_below, hn::Mul(up, re));
+      const Vec<T> im_next = hn::NegMulAdd(down, im_below, hn::Mul(up, im));
+      re_below = re;
+      im_below = im;
+      re = re_next;
+      im = im_next;
+    }
+  }
+}
+
+// The gradient of B_a as combinations of B of one degree less:
+//   g . grad R_l^m = g_z R_{l-1}^m - (g_x + i g_y)/2 R_{l-1}^{m-1} + (g_x - i g_y)/2 R_{l-1}^{m+1}
+// Calls use(a, d/dx, d/dy, d/dz) for every coefficient a of degree >= 1.
+template <class T, class Use>
+HWY_INLINE void ForEachGradient(const T* HWY_RESTRICT basis, int order, const Use& use) {
+  const Tag<T> d;
+  const Vec<T> half = hn::Set(d, T{0.5});
+  const auto load = [&](int l, int m, bool imaginary) HWY_ATTR {
+    if (m > l || (imaginary && m == 0)) return hn::Zero(d);
+    return hn::Load(d, basis + (imaginary ? imaginary_index(l, m) : real_index(l, m)) * kLanes);
+  };
+  for (int l = 1; l <= order; ++l) {
+    use(real_index(l, 0), load(l - 1, 1, false), load(l - 1, 1, true), load(l - 1, 0, false));
+    for (int m = 1; m <= l; ++m) {
+      const Vec<T> re_up = load(l - 1, m + 1, false);
+      const Vec<T> im_up = load(l - 1, m + 1, true);
+      const Vec<T> re_down = load(l - 1, m - 1, false);
+      const Vec<T> im_down = load(l - 1, m - 1, true);
+      use(real_index(l, m), hn::Mul(half, hn::Sub(re_up, re_down)), hn::Mul(half, hn::Add(im_up, im_down)), load(l - 1, m, false));
+      use(imaginary_index(l, m), hn::Mul(half, hn::Sub(im_up, im_down)), hn::Neg(hn::Mul(half, hn::Add(re_up, re_down))),
+          load(l - 1, m, true));
+    }
+  }
+}
+
+// acc[channel][a] += weight * value, vectors in memory.
+template <class T>
+HWY_INLINE void Accumulate(T* HWY_RESTRICT acc, Vec<T> weight, Vec<T> value) {
+  const Tag<T> d;
+  hn::Store(hn::MulAdd(weight, value, hn::Load(d, acc)), d, acc);
+}
+
+// The record fields of kLanes sources, one field after the other; missing sources are zero.
+template <class T>
+void Transpose(const T* records, std::size_t record_size, std::size_t count, T* HWY_RESTRICT fields) {
+  for (std::size_t f = 0; f < record_size; ++f) {
+    for (std::size_t i = 0; i < kLanes; ++i) fields[f * kLanes + i] = i < count ? records[i * record_size + f] : T{0};
+  }
+}
+
+template <class T>
+void PointsToMultipole(const LeafTask<T>& task) {
+  const Tag<T> d;
+  const std::size_t lanes = hn::Lanes(d);
+  const std::size_t n = coefficient_count(task.order);
+  T* basis = task.workspace;
+  T* acc = basis + n * kLanes;
+  T* fields = acc + task.channels * n * kLanes;
+  const T inverse_half = T{1} / task.half_side;
+  const std::size_t first_field = task.local_widths ? 4 : 3;
+  const auto batch = static_cast<std::size_t>(task.batch);
+  std::memset(acc, 0, task.channels * n * kLanes * sizeof(T));
+  for (std::size_t begin = 0; begin < task.count; begin += kLanes) {
+    Transpose(task.records + begin * task.record_size, task.record_size, HWY_MIN(kLanes, task.count - begin), fields);
+    const T* f = fields + first_field * kLanes;
+    for (std::size_t lane = 0; lane < kLanes; lane += lanes) {
+      const Vec<T> x = hn::Load(d, fields + lane);
+      const Vec<T> y = hn::Load(d, fields + kLanes + lane);
+      const Vec<T> z = hn::Load(d, fields + 2 * kLanes + lane);
+      const Vec<T> unit = hn::Set(d, inverse_half);
+      RegularHarmonics<T>(hn::Mul(x, unit), hn::Mul(y, unit), hn::Mul(z, unit), task.order, basis + lane);
+      const auto field = [&](std::size_t k) HWY_ATTR { return hn::Load(d, f + k * kLanes + lane); };
+      const auto target = [&](std::size_t channel, std::size_t a) HWY_ATTR { return acc + (channel * n + a) * kLanes + lane; };
+      if (task.form == NearForm::kGreenAdjoint) {
+        for (std::size_t a = 0; a < n; ++a) {
+          const Vec<T> b = hn::Load(d, basis + a * kLanes + lane);
+          for (std::size_t k = 0; k < batch; ++k) Accumulate<T>(target(k, a), field(k), b);
+        }
+        continue;
+      }
+      const Vec<T> ex = hn::Mul(unit, field(0));  // dipoles: grad in units of the half side
+      const Vec<T> ey = hn::Mul(unit, field(1));
+      const Vec<T> ez = hn::Mul(unit, field(2));
+      const bool stokes = task.form == NearForm::kStokesWinding;
+      if (task.form == NearForm::kGreen) {
+        for (std::size_t a = 0; a < n; ++a) {
+          const Vec<T> b = hn::Load(d, basis + a * kLanes + lane);
+          for (std::size_t k = 0; k < batch; ++k) Accumulate<T>(target(k, a), field(3 + 2 * k), b);
+        }
+      } else if (stokes) {
+        const Vec<T> along = hn::MulAdd(x, field(0), hn::MulAdd(y, field(1), hn::Mul(z, field(2))));
+        for (std::size_t a = 0; a < n; ++a) {
+          const Vec<T> b = hn::Load(d, basis + a * kLanes + lane);
+          for (std::size_t k = 0; k < 3; ++k) {
+            Accumulate<T>(target(1 + k, a), field(k), b);
+            Accumulate<T>(target(4 + k, a), field(k), b);
+          }
+          Accumulate<T>(target(7, a), along, b);
+        }
+      }
+      ForEachGradient<T>(basis + lane, task.order, [&](std::size_t a, Vec<T> gx, Vec<T> gy, Vec<T> gz) HWY_ATTR {
+        const Vec<T> dipole = hn::Neg(hn::MulAdd(ex, gx, hn::MulAdd(ey, gy, hn::Mul(ez, gz))));
+        if (task.form == NearForm::kGreen) {
+          for (std::size_t k = 0; k < batch; ++k) Accumulate<T>(target(k, a), field(4 + 2 * k), dipole);
+        } else {
+          hn::Store(hn::Add(dipole, hn::Load(d, target(0, a))), d, target(0, a));
+          if (stokes) {
+            Accumulate<T>(target(1, a), x, dipole);
+            Accumulate<T>(target(2, a), y, dipole);
+            Accumulate<T>(target(3, a), z, dipole);
+            if (task.local_widths) Accumulate<T>(target(8, a), hn::Load(d, fields + 3 * kLanes + lane), dipole);
+          }
+        }
+      });
+    }
+  }
+  for (std::size_t c = 0; c < task.channels; ++c) {
+    for (std::size_t a = 0; a < n; ++a) {
+      Vec<T> sum = hn::Load(d, acc + (c * n + a) * kLanes);
+      for (std::size_t lane = lanes; lane < kLanes; lane += lanes) sum = hn::Add(sum, hn::Load(d, acc + (c * n + a) * kLanes + lane));
+      task.multipole[c * task.stride + a] = hn::GetLane(hn::SumOfLanes(d, sum));
+    }
+    for (std::size_t a = n; a < task.stride; ++a) task.multipole[c * task.stride + a] = T{0};
+  }
+}
+
+// sum_a L_a B_a
+template <class T>
+HWY_INLINE Vec<T> Evaluate(const T* local, const T* basis, std::size_t n) {
+  const Tag<T> d;
+  Vec<T> even = hn::Zero(d);
+  Vec<T> odd = hn::Zero(d);
+  std::size_t a = 0;
+  for (; a + 1 < n; a += 2) {
+    even = hn::MulAdd(hn::Set(d, local[a]), hn::Load(d, basis + a * kLanes), even);
+    odd = hn::MulAdd(hn::Set(d, local[a + 1]), hn::Load(d, basis + (a + 1) * kLanes), odd);
+  }
+  if (a < n) even = hn::MulAdd(hn::Set(d, local[a]), hn::Load(d, basis + a * kLanes), even);
+  return hn::Add(even, odd);
+}
+
+template <class T>
+HWY_INLINE void AddTo(double* out, Vec<T> value) {
+  const Tag<T> d;
+  HWY_ALIGN T part[kLanes];
+  hn::Store(value, d, part);
+  for (std::size_t i = 0; i < hn::Lanes(d); ++i) out[i] += static_cast<double>(part[i]);
+}
+
+template <class T>
+struct Gradient {
+  Vec<T> x;
+  Vec<T> y;
+  Vec<T> z;
+};
+
+template <class T>
+HWY_INLINE Gradient<T> EvaluateGradient(const T* local, const T* basis, int order, Vec<T> scale) {
+  const Tag<T> d;
+  Gradient<T> g{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+  ForEachGradient<T>(basis, order, [&](std::size_t a, Vec<T> gx, Vec<T> gy, Vec<T> gz) HWY_ATTR {
+    const Vec<T> l = hn::Set(d, local[a]);
+    g.x = hn::MulAdd(l, gx, g.x);
+    g.y = hn::MulAdd(l, gy, g.y);
+    g.z = hn::MulAdd(l, gz, g.z);
+  });
+  return {hn::Mul(g.x, scale), hn::Mul(g.y, scale), hn::Mul(g.z, scale)};
+}
+
+template <class T>
+void LocalToPoints(const LeafTask<T>& task) {
+  const Tag<T> d;
+  const std::size_t lanes = hn::Lanes(d);
+  const std::size_t n = coefficient_count(task.order);
+  T* basis = task.workspace;
+  const auto batch = static_cast<std::size_t>(task.batch);
+  const T inverse_half = T{1} / task.half_side;
+  const Vec<T> unit = hn::Set(d, inverse_half);
+  const Vec<T> unit2 = hn::Set(d, inverse_half * inverse_half);
+  const auto local = [&](std::size_t channel) { return task.local + channel * task.stride; };
+  for (std::size_t block = 0; block < task.block_count; ++block) {
+    for (std::size_t lane = 0; lane < kLanes; lane += lanes) {
+      const std::size_t at = block * kLanes + lane;
+      const Vec<T> x = hn::Load(d, task.x + at);
+      const Vec<T> y = hn::Load(d, task.y + at);
+      const Vec<T> z = hn::Load(d, task.z + at);
+      RegularHarmonics<T>(hn::Mul(x, unit), hn::Mul(y, unit), hn::Mul(z, unit), task.order, basis);
+      switch (task.form) {
+        case NearForm::kGreen: {
+          double* out = task.out + block * batch * kLanes + lane;
+          for (std::size_t k = 0; k < batch; ++k) AddTo<T>(out + k * kLanes, hn::Mul(unit, Evaluate<T>(local(k), basis, n)));
+          break;
+        }
+        case NearForm::kGreenAdjoint: {
+          double* out = task.out + block * (batch + 3) * kLanes + lane;
+          const T* u = task.u + block * batch * kLanes + lane;
+          for (std::size_t k = 0; k < batch; ++k) AddTo<T>(out + k * kLanes, hn::Mul(unit, Evaluate<T>(local(k), basis, n)));
+          Gradient<T> g{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+          ForEachGradient<T>(basis, task.order, [&](std::size_t a, Vec<T> gx, Vec<T> gy, Vec<T> gz) HWY_ATTR {
+            Vec<T> l = hn::Zero(d);  // sum_k u_k(target) L_k
+            for (std::size_t k = 0; k < batch; ++k) l = hn::MulAdd(hn::Load(d, u + k * kLanes), hn::Set(d, local(k)[a]), l);
+            g.x = hn::MulAdd(l, gx, g.x);
+            g.y = hn::MulAdd(l, gy, g.y);
+            g.z = hn::MulAdd(l, gz, g.z);
+          });
+          AddTo<T>(out + batch * kLanes, hn::Mul(unit2, g.x));
+          AddTo<T>(out + (batch + 1) * kLanes, hn::Mul(unit2, g.y));
+          AddTo<T>(out + (batch + 2) * kLanes, hn::Mul(unit2, g.z));
+          break;
+        }
+        case NearForm::kWindingGradient: {
+          double* out = task.out + block * 3 * kLanes + lane;
+          const Gradient<T> g = EvaluateGradient<T>(local(0), basis, task.order, unit2);
+          AddTo<T>(out, hn::Neg(g.x));
+          AddTo<T>(out + kLanes, hn::Neg(g.y));
+          AddTo<T>(out + 2 * kLanes, hn::Neg(g.z));
+          break;
+        }
+        case NearForm::kStokesWinding: {
+          double* out = task.out + block * 4 * kLanes + lane;
+          const Vec<T> half = hn::Set(d, T{0.5});
+          const Vec<T> w = hn::Mul(unit, Evaluate<T>(local(0), basis, n));
+          const Gradient<T> grad_w = EvaluateGradient<T>(local(0), basis, task.order, unit2);
+          Vec<T> width2 = hn::Set(d, task.uniform_width_squared);
+          Gradient<T> mollified{hn::Mul(width2, grad_w.x), hn::Mul(width2, grad_w.y), hn::Mul(width2, grad_w.z)};
+          if (task.local_widths) {  // the mean of both squared widths
+            width2 = hn::Load(d, task.width_squared + at);
+            const Gradient<T> weighted = EvaluateGradient<T>(local(8), basis, task.order, unit2);
+            mollified.x = hn::Mul(half, hn::MulAdd(width2, grad_w.x, weighted.x));
+            mollified.y = hn::Mul(half, hn::MulAdd(width2, grad_w.y, weighted.y));
+            mollified.z = hn::Mul(half, hn::MulAdd(width2, grad_w.z, weighted.z));
+          }
+          Gradient<T> transposed = EvaluateGradient<T>(local(7), basis, task.order, unit2);
+          const Vec<T> at_point[3] = {x, y, z};
+          for (std::size_t k = 0; k < 3; ++k) {
+            const Gradient<T> p = EvaluateGradient<T>(local(4 + k), basis, task.order, unit2);
+            transposed.x = hn::NegMulAdd(at_point[k], p.x, transposed.x);
+            transposed.y = hn::NegMulAdd(at_point[k], p.y, transposed.y);
+            transposed.z = hn::NegMulAdd(at_point[k], p.z, transposed.z);
+          }
+          const Vec<T> side[3] = {transposed.x, transposed.y, transposed.z};
+          const Vec<T> extra[3] = {mollified.x, mollified.y, mollified.z};
+          for (std::size_t k = 0; k < 3; ++k) {
+            const Vec<T> e = hn::Mul(unit, Evaluate<T>(local(1 + k), basis, n));
+            const Vec<T> p = hn::Mul(unit, Evaluate<T>(local(4 + k), basis, n));
+            const Vec<T> forward = hn::NegMulAdd(at_point[k], w, e);
+            const Vec<T> both = hn::Mul(half, hn::Add(forward, hn::Add(p, side[k])));
+            AddTo<T>(out + k * kLanes, hn::Sub(both, extra[k]));
+          }
+          AddTo<T>(out + 3 * kLanes, w);
+          break;
+        }
+      }
+    }
+  }
+}
+
+constexpr std::size_t kTile = 8;  // columns per pass: 2 x 8 accumulators and their operands fit 32 registers
+
+// Rows [row, row + kVectors vectors) of `count` <= kTile columns.
+template <class T, std::size_t kVectors, std::size_t kCount>
+HWY_INLINE void MatrixTile(const T* HWY_RESTRICT matrix, std::size_t columns, std::size_t stride, std::size_t row, const T* const* in,
+                           T* const* out) {
+  const Tag<T> d;
+  const std::size_t lanes = hn::Lanes(d);
+  Vec<T> acc[kVectors][kCount];
+  for (std::size_t v = 0; v < kVectors; ++v) {
+    for (std::size_t c = 0; c < kCount; ++c) acc[v][c] = hn::Load(d, out[c] + row + v * lanes);
+  }
+  for (std::size_t j = 0; j < columns; ++j) {
+    const T* column = matrix + j * stride + row;
+    Vec<T> m[kVectors];
+    for (std::size_t v = 0; v < kVectors; ++v) m[v] = hn::Load(d, column + v * lanes);
+    for (std::size_t c = 0; c < kCount; ++c) {
+      const Vec<T> value = hn::Set(d, in[c][j]);
+      for (std::size_t v = 0; v < kVectors; ++v) acc[v][c] = hn::MulAdd(m[v], value, acc[v][c]);
+    }
+  }
+  for (std::size_t v = 0; v < kVectors; ++v) {
+    for (std::size_t c = 0; c < kCount; ++c) hn::Store(acc[v][c], d, out[c] + row + v * lanes);
+  }
+}
+
+template <class T, std::size_t kVectors>
+void MatrixRows(const T* matrix, std::size_t columns, std::size_t stride, std::size_t row, const T* const* in, T* const* out,
+                std::size_t count) {
+  std::size_t c = 0;
+  for (; c + kTile <= count; c += kTile) MatrixTile<T, kVectors, kTile>(matrix, columns, stride, row, in + c, out + c);
+  for (; c + 2 <= count; c += 2) MatrixTile<T, kVectors, 2>(matrix, columns, stride, row, in + c, out + c);
+  for (; c < count; ++c) MatrixTile<T, kVectors, 1>(matrix, columns, stride, row, in + c, out + c);
+}
+
+template <class T>
+void ApplyMatrix(const T* matrix, std::size_t columns, std::size_t stride, const T* const* in, T* const* out, std::size_t count) {
+  const std::size_t lanes = hn::Lanes(Tag<T>());
+  std::size_t row = 0;
+  for (; row + 2 * lanes <= stride; row += 2 * lanes) MatrixRows<T, 2>(matrix, columns, stride, row, in, out, count);
+  for (; row < stride; row += lanes) MatrixRows<T, 1>(matrix, columns, stride, row, in, out, count);
+}
+
+void PointsToMultipoleFloat(const LeafTask<float>& task) { PointsToMultipole(task); }
+void PointsToMultipoleDouble(const LeafTask<double>& task) { PointsToMultipole(task); }
+void LocalToPointsFloat(const LeafTask<float>& task) { LocalToPoints(task); }
+void LocalToPointsDouble(const LeafTask<double>& task) { LocalToPoints(task); }
+void ApplyMatrixFloat(const float* matrix, std::size_t columns, std::size_t stride, const float* const* in, float* const* out,
+                      std::size_t count) {
+  ApplyMatrix(matrix, columns, stride, in, out, count);
+}
+void ApplyMatrixDouble(const double* matrix, std::size_t columns, std::size_t stride, const double* const* in, double* const* out,
+                       std::size_t count) {
+  ApplyMatrix(matrix, columns, stride, in, out, count);
+}
+
+}  // namespace g3r::cpu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace g3r::cpu {
+
+HWY_EXPORT(PointsToMultipoleFloat);
+HWY_EXPORT(PointsToMultipoleDouble);
+HWY_EXPORT(LocalToPointsFloat);
+HWY_EXPORT(LocalToPointsDouble);
+HWY_EXPORT(ApplyMatrixFloat);
+HWY_EXPORT(ApplyMatrixDouble);
+
+// basis + accumulators + transposed records (x y z width and at most 3 + 2 x 9 fields)
+std::size_t leaf_workspace(std::size_t coefficients, std::size_t channels) { return (coefficients * (1 + channels) + 32) * kLanes; }
+
+void points_to_multipole(const LeafTask<float>& task) { HWY_DYNAMIC_DISPATCH(PointsToMultipoleFloat)(task); }
+void points_to_multipole(const LeafTask<double>& task) { HWY_DYNAMIC_DISPATCH(PointsToMultipoleDouble)(task); }
+void local_to_points(const LeafTask<float>& task) { HWY_DYNAMIC_DISPATCH(LocalToPointsFloat)(task); }
+void local_to_points(const LeafTask<double>& task) { HWY_DYNAMIC_DISPATCH(LocalToPointsDouble)(task); }
+void apply_matrix(const float* matrix, std::size_t columns, std::size_t stride, const float* const* in, float* const* out,
+                  std::size_t count) {
+  HWY_DYNAMIC_DISPATCH(ApplyMatrixFloat)(matrix, columns, stride, in, out, count);
+}
+void apply_matrix(const double* matrix, std::size_t columns, std::size_t stride, const double* const* in, double* const* out,
+                  std::size_t count) {
+  HWY_DYNAMIC_DISPATCH(ApplyMatrixDouble)(matrix, columns, stride, in, out, count);
+}
+
+}  // namespace g3r::cpu
+#endif

@@ -1,0 +1,63 @@
+// Expansions by SIMD: points to multipoles, multipoles and locals through matrices, locals to points. docs/math.md, "Expansions".
+// The same forms as in cpu/near_field.h; unnormalised kernels (without 1/(4 pi)); T is float or double.
+#pragma once
+
+#include "cpu/near_field.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace g3r::cpu {
+
+/// Expansions a form carries: K for kGreen and kGreenAdjoint, 1 for kWindingGradient. kStokesWinding carries
+///   0: W   1..3: E_a = eta_a + (y-c)_a dipole   4..6: P_a = eta_a   7: Q = (y-c) . eta   8: W of width^2 eta (only with local widths)
+/// so that S = (E-form + its transpose) / 2 is symmetric to rounding although expansions are truncated.
+inline constexpr std::size_t kStokesChannels = 8;
+inline constexpr std::size_t kMaxChannels = 9;
+
+/// Length of one expansion in memory: the coefficients padded to whole vectors.
+constexpr std::size_t padded_count(std::size_t coefficients) { return (coefficients + kLanes - 1) / kLanes * kLanes; }
+
+/// One leaf: its points relative to its centre.
+template <class T>
+struct LeafTask {
+  NearForm form;
+  int batch;                ///< K
+  int order;                ///< of the expansions
+  T half_side;
+  bool local_widths;
+  T uniform_width_squared;
+  std::size_t channels;     ///< expansions per node
+  std::size_t stride;       ///< length of one expansion
+  // points to multipole
+  const T* records;         ///< first source record of the leaf
+  std::size_t record_size;
+  std::size_t count;        ///< points
+  T* multipole;             ///< channels x stride, overwritten
+  // local to points
+  const T* local;           ///< channels x stride
+  const T* x;               ///< target blocks as in NearTask
+  const T* y;
+  const T* z;
+  const T* width_squared;
+  const T* u;
+  std::size_t block_count;
+  double* out;              ///< added to
+  T* workspace;             ///< leaf_workspace() elements
+};
+
+/// Elements of T that a LeafTask's workspace needs.
+std::size_t leaf_workspace(std::size_t coefficients, std::size_t channels);
+
+void points_to_multipole(const LeafTask<float>& task);
+void points_to_multipole(const LeafTask<double>& task);
+void local_to_points(const LeafTask<float>& task);
+void local_to_points(const LeafTask<double>& task);
+
+/// out[c] += matrix in[c] for `count` columns. matrix: `columns` x `stride`, column after column, zero padded; in and out: `stride` each.
+/// Every column's result is the same whatever other columns go with it.
+void apply_matrix(const float* matrix, std::size_t columns, std::size_t stride, const float* const* in, float* const* out, std::size_t count);
+void apply_matrix(const double* matrix, std::size_t columns, std::size_t stride, const double* const* in, double* const* out,
+                  std::size_t count);
+
+}  // namespace g3r::cpu

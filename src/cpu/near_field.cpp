@@ -1,0 +1,358 @@
+// The near field: exact pair sums. Highway compiles this file once per instruction set.
+//
+// Beyond kMollifierReach widths the kernels are plain powers of 1/rho. Within, they are polynomials in
+// w = 4.4 s / (s + 30) - 1 in [-1, 1], s = (rho / e)^2 in [0, 25], fitted by Lawson iteration for the least relative error
+// (float: 6e-8, double: 4e-16 before rounding). The mapping spreads the bell of exp(-s/2), so degree 10 and 20 suffice where a
+// polynomial in s would need 20 and 40. A vector of targets takes the mollified path when any lane is near; the lanes that are not keep the plain value.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "cpu/near_field.cpp"
+#include "cpu/near_field.h"
+
+#include "sum/kernels.h"
+
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+#include <hwy/highway.h>
+
+#ifndef G3R_NEAR_FIELD_ONCE
+#define G3R_NEAR_FIELD_ONCE
+namespace g3r::cpu {
+namespace {
+
+constexpr double kMapPole = 30;    // c of w(s); 20..40 give about the same degree
+constexpr double kMapScale = 4.4;  // 2 (25 + 30) / 25: w = 1 at the reach
+constexpr std::size_t kRunsPerFlush = 8;  // source runs summed in T before they are added in double; bounds the rounding of long sums
+constexpr int kMaxBatch = 9;
+
+template <class T>
+struct Polynomials;
+template <>
+struct Polynomials<float> {
+  static constexpr int kDegree = 10;
+  static constexpr float kSingleLayer[kDegree + 1] = {3.356490651e-01F, -2.109202984e-01F, 1.247985877e-01F, -7.579804802e-02F, 3.640737097e-02F, -1.235096975e-02F,
+      2.213220652e-03F, 1.248106875e-04F, -1.325545821e-04F, 2.168155549e-06F, 6.532988285e-06F};  // NOLINT
+  static constexpr float kDoubleLayer[kDegree + 1] = {3.694301031e-02F, -6.544850826e-02F, 6.874023178e-02F, -5.271739658e-02F, 2.926637687e-02F, -1.089574491e-02F,
+      2.149868879e-03F, 7.662828656e-05F, -1.247450271e-04F, 4.201369121e-06F, 5.953868674e-06F};  // NOLINT
+  static constexpr float kStokeslet[kDegree + 1] = {2.547960387e-02F, -3.462541109e-02F, 2.588339531e-02F, -1.383588128e-02F, 5.266386861e-03F, -1.248453111e-03F,
+      9.028036458e-05F, 3.890562319e-05F, -7.762573976e-06F, -1.459254146e-06F, 4.054928515e-07F};  // NOLINT
+  static constexpr float kGradient[kDegree + 1] = {1.146340609e-02F, -3.082309253e-02F, 4.285684538e-02F, -3.888160955e-02F, 2.400000286e-02F, -9.646856020e-03F,
+      2.059324544e-03F, 3.703744792e-05F, -1.164463099e-04F, 6.002793598e-06F, 5.251592353e-06F};  // NOLINT
+};
+template <>
+struct Polynomials<double> {
+  static constexpr int kDegree = 20;
+  static constexpr double kSingleLayer[kDegree + 1] = {3.35649064840995381e-01, -2.10920299441301584e-01, 1.24798606030001744e-01, -7.57980299823465958e-02,
+      3.64071600920128913e-02, -1.23510578153057764e-02, 2.21409733109741939e-03, 1.25000403179443528e-04,
+      -1.34197281071506608e-04, 1.94342785183221518e-06, 7.96760155631547900e-06, 1.65099359405330193e-07,
+      -4.99354729732212903e-07, -6.75738260584514914e-08, 2.39379223504603358e-08, 8.77109268532052134e-09,
+      -1.10947654638959882e-11, -6.40449248621036633e-10, -1.22753989366953202e-10, 1.99988269593066593e-11,
+      7.18221119167613868e-12};  // NOLINT
+  static constexpr double kDoubleLayer[kDegree + 1] = {3.69430100233552189e-02, -6.54485122365822541e-02, 6.87402578975359752e-02, -5.27173349448215381e-02,
+      2.92660603964725666e-02, -1.08959757107265753e-02, 2.15114284293545753e-03, 7.69090790526038507e-05,
+      -1.26932265324151522e-04, 4.11308713382684336e-06, 7.62595454460928074e-06, 2.93524672955119054e-08,
+      -4.91058605466939326e-07, -5.82482926643325267e-08, 2.48088899452608584e-08, 8.34134476972257150e-09,
+      -1.03925407072462858e-10, -6.35977650134660956e-10, -1.35481791428388193e-10, 2.05980943279992434e-11,
+      1.14208069012877246e-11};  // NOLINT
+  static constexpr double kStokeslet[kDegree + 1] = {2.54796039407053712e-02, -3.46254115426459508e-02, 2.58833912986020757e-02, -1.38358685599396149e-02,
+      5.26642034050530793e-03, -1.24854111471589362e-03, 9.01879349830024204e-05, 3.91407307269996558e-05,
+      -7.66855733764234095e-06, -1.72962244218028187e-06, 3.86318533713755390e-07, 1.19426145222324573e-07,
+      -1.16234505502940625e-08, -8.70011372032029724e-09, -6.00369295454758184e-10, 4.52673798758177653e-10,
+      1.28316565512130242e-10, -3.69535488218254455e-12, -8.85218785627615216e-12, -1.29106027057903922e-12,
+      1.14607116513783156e-13};  // NOLINT
+  static constexpr double kGradient[kDegree + 1] = {1.14634060826498477e-02, -3.08231006939362374e-02, 4.28568665989336045e-02, -3.88814663848843015e-02,
+      2.39996400559778639e-02, -9.64743459597991286e-03, 2.06095490782617734e-03, 3.77683481263534160e-05,
+      -1.19263707221382151e-04, 5.84271030562437042e-06, 7.23963332077668417e-06, -9.00752676713526825e-08,
+      -4.79429369362821732e-07, -4.95460918486161031e-08, 2.54015565366647449e-08, 7.88706423644328355e-09,
+      -2.26060062293423261e-10, -6.31621256451490779e-10, -1.29365343012531471e-10, 2.17787034768432590e-11,
+      1.18181221371714766e-11};  // NOLINT
+};
+
+}  // namespace
+}  // namespace g3r::cpu
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace g3r::cpu::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <class T>
+using Tag = hn::CappedTag<T, kLanes>;
+template <class T>
+using Vec = hn::Vec<Tag<T>>;
+
+template <class T>
+HWY_INLINE Vec<T> Reciprocal(Vec<T> a) {
+  const Tag<T> d;
+  if constexpr (sizeof(T) == 4) {
+    const Vec<T> x = hn::ApproximateReciprocal(a);
+    return hn::Mul(x, hn::NegMulAdd(a, x, hn::Set(d, T{2})));
+  } else {
+    return hn::Div(hn::Set(d, T{1}), a);
+  }
+}
+
+template <class T>
+HWY_INLINE Vec<T> ReciprocalSqrt(Vec<T> a) {
+  const Tag<T> d;
+  if constexpr (sizeof(T) == 4) {  // one Newton step after the estimate
+    const Vec<T> x = hn::ApproximateReciprocalSqrt(a);
+    const Vec<T> half_ax = hn::Mul(hn::Mul(a, hn::Set(d, T{0.5})), x);
+    return hn::Mul(x, hn::NegMulAdd(half_ax, x, hn::Set(d, T{1.5})));
+  } else {
+    return hn::Div(hn::Set(d, T{1}), hn::Sqrt(a));
+  }
+}
+
+template <class T>
+HWY_INLINE Vec<T> Horner(const T* coefficients, Vec<T> w) {
+  const Tag<T> d;
+  constexpr int kDegree = Polynomials<T>::kDegree;
+  Vec<T> sum = hn::Set(d, coefficients[kDegree]);
+  HWY_UNROLL(32)
+  for (int k = kDegree - 1; k >= 0; --k) sum = hn::MulAdd(sum, w, hn::Set(d, coefficients[k]));
+  return sum;
+}
+
+// What a form needs of the kernels, in 1/(4 pi) units: value = Phi or unused, flux = g, third = h or b.
+template <class T>
+struct Kernel {
+  Vec<T> value;
+  Vec<T> flux;
+  Vec<T> third;
+};
+
+enum class Third { kNone, kStokeslet, kGradient };
+
+template <class T, bool kValue, Third kThird>
+HWY_INLINE Kernel<T> PlainKernel(Vec<T> inverse, Vec<T> width_squared) {
+  const Tag<T> d;
+  Kernel<T> k;
+  const Vec<T> inverse2 = hn::Mul(inverse, inverse);
+  k.value = inverse;
+  k.flux = hn::Mul(inverse, inverse2);
+  k.third = k.flux;
+  if constexpr (kThird == Third::kStokeslet) {  // g (1 - 3 e^2 / rho^2); value becomes Phi + e^2 g
+    k.third = hn::Mul(k.flux, hn::NegMulAdd(hn::Mul(hn::Set(d, T{3}), width_squared), inverse2, hn::Set(d, T{1})));
+    k.value = hn::MulAdd(width_squared, k.flux, inverse);
+  }
+  if constexpr (kThird == Third::kGradient) k.third = hn::Mul(hn::Mul(hn::Set(d, T{3}), k.flux), inverse2);
+  return k;
+}
+
+template <class T, bool kValue, Third kThird>
+HWY_INLINE Kernel<T> MollifiedKernel(Vec<T> r2, Vec<T> width_squared) {
+  const Tag<T> d;
+  using P = Polynomials<T>;
+  const Vec<T> inverse_width = ReciprocalSqrt<T>(width_squared);
+  const Vec<T> inverse_width2 = hn::Mul(inverse_width, inverse_width);
+  const Vec<T> s = hn::Mul(r2, inverse_width2);
+  const Vec<T> mapped = hn::Mul(s, Reciprocal<T>(hn::Add(s, hn::Set(d, static_cast<T>(kMapPole)))));
+  const Vec<T> w = hn::MulSub(mapped, hn::Set(d, static_cast<T>(kMapScale)), hn::Set(d, T{1}));
+  const Vec<T> cube = hn::Mul(inverse_width, inverse_width2);
+  Kernel<T> k;
+  k.flux = hn::Mul(cube, Horner<T>(P::kDoubleLayer, w));
+  k.value = k.flux;
+  if constexpr (kValue) k.value = hn::Mul(inverse_width, Horner<T>(P::kSingleLayer, w));
+  k.third = k.flux;
+  if constexpr (kThird == Third::kStokeslet) {
+    k.third = hn::Mul(cube, Horner<T>(P::kStokeslet, w));
+    k.value = hn::MulAdd(width_squared, k.flux, k.value);
+  }
+  if constexpr (kThird == Third::kGradient) k.third = hn::Mul(hn::Mul(cube, inverse_width2), Horner<T>(P::kGradient, w));
+  return k;
+}
+
+// Each form: what it needs, how many channels it sums, and one source's contribution.
+template <class T, int K>
+struct GreenForm {
+  static constexpr bool kValue = true;
+  static constexpr Third kThird = Third::kNone;
+  static constexpr int kChannels = K;
+  static constexpr int kTargetData = 0;
+  static HWY_INLINE void Add(const T* f, Vec<T> dx, Vec<T> dy, Vec<T> dz, const Kernel<T>& k, const Vec<T>* /*u*/, Vec<T>* sum) {
+    const Tag<T> d;
+    const Vec<T> dot = hn::MulAdd(dx, hn::Set(d, f[0]), hn::MulAdd(dy, hn::Set(d, f[1]), hn::Mul(dz, hn::Set(d, f[2]))));
+    const Vec<T> flux = hn::Mul(k.flux, dot);
+    HWY_UNROLL(9)
+    for (int c = 0; c < K; ++c) {
+      sum[c] = hn::MulAdd(k.value, hn::Set(d, f[3 + 2 * c]), sum[c]);
+      sum[c] = hn::MulAdd(flux, hn::Set(d, f[4 + 2 * c]), sum[c]);
+    }
+  }
+};
+
+template <class T, int K>
+struct GreenAdjointForm {
+  static constexpr bool kValue = true;
+  static constexpr Third kThird = Third::kNone;
+  static constexpr int kChannels = K + 3;
+  static constexpr int kTargetData = K;
+  static HWY_INLINE void Add(const T* f, Vec<T> dx, Vec<T> dy, Vec<T> dz, const Kernel<T>& k, const Vec<T>* u, Vec<T>* sum) {
+    const Tag<T> d;
+    Vec<T> charge = hn::Zero(d);
+    HWY_UNROLL(9)
+    for (int c = 0; c < K; ++c) {
+      const Vec<T> q = hn::Set(d, f[c]);
+      charge = hn::MulAdd(u[c], q, charge);
+      sum[c] = hn::MulAdd(k.value, q, sum[c]);
+    }
+    const Vec<T> flux = hn::Mul(k.flux, charge);
+    sum[K] = hn::MulAdd(flux, dx, sum[K]);
+    sum[K + 1] = hn::MulAdd(flux, dy, sum[K + 1]);
+    sum[K + 2] = hn::MulAdd(flux, dz, sum[K + 2]);
+  }
+};
+
+template <class T>
+struct StokesWindingForm {
+  static constexpr bool kValue = true;
+  static constexpr Third kThird = Third::kStokeslet;
+  static constexpr int kChannels = 4;
+  static constexpr int kTargetData = 0;
+  static HWY_INLINE void Add(const T* f, Vec<T> dx, Vec<T> dy, Vec<T> dz, const Kernel<T>& k, const Vec<T>* /*u*/, Vec<T>* sum) {
+    const Tag<T> d;
+    const Vec<T> ex = hn::Set(d, f[0]);
+    const Vec<T> ey = hn::Set(d, f[1]);
+    const Vec<T> ez = hn::Set(d, f[2]);
+    const Vec<T> dot = hn::MulAdd(dx, ex, hn::MulAdd(dy, ey, hn::Mul(dz, ez)));
+    const Vec<T> along = hn::Mul(k.third, dot);
+    sum[0] = hn::MulAdd(along, dx, hn::MulAdd(k.value, ex, sum[0]));
+    sum[1] = hn::MulAdd(along, dy, hn::MulAdd(k.value, ey, sum[1]));
+    sum[2] = hn::MulAdd(along, dz, hn::MulAdd(k.value, ez, sum[2]));
+    sum[3] = hn::MulAdd(k.flux, dot, sum[3]);
+  }
+};
+
+template <class T>
+struct WindingGradientForm {
+  static constexpr bool kValue = false;
+  static constexpr Third kThird = Third::kGradient;
+  static constexpr int kChannels = 3;
+  static constexpr int kTargetData = 0;
+  static HWY_INLINE void Add(const T* f, Vec<T> dx, Vec<T> dy, Vec<T> dz, const Kernel<T>& k, const Vec<T>* /*u*/, Vec<T>* sum) {
+    const Tag<T> d;
+    const Vec<T> ex = hn::Set(d, f[0]);
+    const Vec<T> ey = hn::Set(d, f[1]);
+    const Vec<T> ez = hn::Set(d, f[2]);
+    const Vec<T> dot = hn::MulAdd(dx, ex, hn::MulAdd(dy, ey, hn::Mul(dz, ez)));
+    const Vec<T> along = hn::Mul(k.third, dot);
+    sum[0] = hn::NegMulAdd(along, dx, hn::MulAdd(k.flux, ex, sum[0]));
+    sum[1] = hn::NegMulAdd(along, dy, hn::MulAdd(k.flux, ey, sum[1]));
+    sum[2] = hn::NegMulAdd(along, dz, hn::MulAdd(k.flux, ez, sum[2]));
+  }
+};
+
+// One vector of targets against one run of sources.
+template <class T, class Form, bool kLocalWidths>
+HWY_INLINE void AddRun(const NearTask<T>& task, const SourceRun<T>& run, Vec<T> x, Vec<T> y, Vec<T> z, Vec<T> half_width_squared,
+                       const Vec<T>* u, Vec<T>* sum) {
+  const Tag<T> d;
+  const Vec<T> uniform = hn::Set(d, task.uniform_width_squared);
+  const Vec<T> reach2 = hn::Set(d, static_cast<T>(kMollifierReach * kMollifierReach));
+  const T* record = task.records + run.begin * task.record_size;
+  for (std::uint32_t j = 0; j < run.count; ++j, record += task.record_size) {
+    const Vec<T> dx = hn::Sub(hn::Set(d, record[0]), x);
+    const Vec<T> dy = hn::Sub(hn::Set(d, record[1]), y);
+    const Vec<T> dz = hn::Sub(hn::Set(d, record[2]), z);
+    const Vec<T> r2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
+    Vec<T> width_squared = uniform;
+    if constexpr (kLocalWidths) width_squared = hn::MulAdd(hn::Set(d, T{0.5}), hn::Set(d, record[3]), half_width_squared);
+    Kernel<T> k = PlainKernel<T, Form::kValue, Form::kThird>(ReciprocalSqrt<T>(r2), width_squared);
+    const auto near = hn::Lt(r2, hn::Mul(reach2, width_squared));
+    if (HWY_UNLIKELY(!hn::AllFalse(d, near))) {
+      const Kernel<T> m = MollifiedKernel<T, Form::kValue, Form::kThird>(r2, width_squared);
+      k.flux = hn::IfThenElse(near, m.flux, k.flux);
+      if constexpr (Form::kValue) k.value = hn::IfThenElse(near, m.value, k.value);
+      if constexpr (Form::kThird != Third::kNone) k.third = hn::IfThenElse(near, m.third, k.third);
+    }
+    Form::Add(record + (kLocalWidths ? 4 : 3), dx, dy, dz, k, u, sum);
+  }
+}
+
+template <class T, class Form, bool kLocalWidths>
+void Run(const NearTask<T>& task) {
+  const Tag<T> d;
+  const std::size_t lanes = hn::Lanes(d);
+  constexpr std::size_t kChannels = Form::kChannels;
+  for (std::size_t block = 0; block < task.block_count; ++block) {
+    for (std::size_t lane = 0; lane < kLanes; lane += lanes) {
+      const std::size_t at = block * kLanes + lane;
+      const Vec<T> x = hn::Load(d, task.x + at);
+      const Vec<T> y = hn::Load(d, task.y + at);
+      const Vec<T> z = hn::Load(d, task.z + at);
+      Vec<T> half_width_squared = hn::Zero(d);
+      if constexpr (kLocalWidths) half_width_squared = hn::Mul(hn::Set(d, T{0.5}), hn::Load(d, task.width_squared + at));
+      Vec<T> u[Form::kTargetData + 1];
+      for (int c = 0; c < Form::kTargetData; ++c) {
+        u[c] = hn::Load(d, task.u + (block * Form::kTargetData + static_cast<std::size_t>(c)) * kLanes + lane);
+      }
+      double* out = task.out + block * kChannels * kLanes + lane;
+      for (std::size_t c = 0; c < kChannels; ++c) {
+        for (std::size_t i = 0; i < lanes; ++i) out[c * kLanes + i] = 0;
+      }
+      for (std::size_t first = 0; first < task.run_count; first += kRunsPerFlush) {
+        const std::size_t last = HWY_MIN(first + kRunsPerFlush, task.run_count);
+        Vec<T> sum[kChannels];
+        for (std::size_t c = 0; c < kChannels; ++c) sum[c] = hn::Zero(d);
+        for (std::size_t i = first; i < last; ++i) {
+          const SourceRun<T>& run = task.runs[i];
+          AddRun<T, Form, kLocalWidths>(task, run, hn::Sub(x, hn::Set(d, run.shift[0])), hn::Sub(y, hn::Set(d, run.shift[1])),
+                                        hn::Sub(z, hn::Set(d, run.shift[2])), half_width_squared, u, sum);
+        }
+        for (std::size_t c = 0; c < kChannels; ++c) {
+          HWY_ALIGN T part[kLanes];
+          hn::Store(sum[c], d, part);
+          for (std::size_t i = 0; i < lanes; ++i) out[c * kLanes + i] += static_cast<double>(part[i]);
+        }
+      }
+    }
+  }
+}
+
+template <class T, class Form>
+void RunWidths(const NearTask<T>& task) {
+  if (task.local_widths) {
+    Run<T, Form, true>(task);
+  } else {
+    Run<T, Form, false>(task);
+  }
+}
+
+template <class T, template <class, int> class Form>
+void RunBatch(const NearTask<T>& task) {
+  switch (task.batch) {
+    case 1: return RunWidths<T, Form<T, 1>>(task);
+    case 4: return RunWidths<T, Form<T, 4>>(task);
+    default: return RunWidths<T, Form<T, kMaxBatch>>(task);
+  }
+}
+
+template <class T>
+void RunForm(const NearTask<T>& task) {
+  switch (task.form) {
+    case NearForm::kGreen: return RunBatch<T, GreenForm>(task);
+    case NearForm::kGreenAdjoint: return RunBatch<T, GreenAdjointForm>(task);
+    case NearForm::kStokesWinding: return RunWidths<T, StokesWindingForm<T>>(task);
+    case NearForm::kWindingGradient: return RunWidths<T, WindingGradientForm<T>>(task);
+  }
+}
+
+void NearFieldFloat(const NearTask<float>& task) { RunForm(task); }
+void NearFieldDouble(const NearTask<double>& task) { RunForm(task); }
+const char* InstructionSet() { return hwy::TargetName(HWY_TARGET); }
+
+}  // namespace g3r::cpu::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace g3r::cpu {
+
+HWY_EXPORT(NearFieldFloat);
+HWY_EXPORT(NearFieldDouble);
+HWY_EXPORT(InstructionSet);
+
+void near_field(const NearTask<float>& task) { HWY_DYNAMIC_DISPATCH(NearFieldFloat)(task); }
+void near_field(const NearTask<double>& task) { HWY_DYNAMIC_DISPATCH(NearFieldDouble)(task); }
+const char* instruction_set() { return HWY_DYNAMIC_DISPATCH(InstructionSet)(); }
+
+}  // namespace g3r::cpu
+#endif

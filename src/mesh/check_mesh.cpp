@@ -1,0 +1,106 @@
+// Topology and size of a triangle mesh.
+//
+// The three sides of all triangles are sorted by their end points; equal neighbours are the triangles that meet at one edge.
+// Two union-find passes over them give the components (triangles joined by edges) and the fans (corners joined by edges
+// around their vertex): a vertex with more than one fan is a bow-tie.
+#include <g3r/error.h>
+#include <g3r/mesh.h>
+
+#include <algorithm>
+
+#include "mesh/disjoint_sets.h"
+#include "mesh/sides.h"
+#include "mesh/used_vertices.h"
+#include "mesh/vector.h"
+
+namespace g3r {
+
+namespace {
+
+using vector::cross;
+using vector::dot;
+using vector::subtract;
+
+/// Counts edges and vertices, joins triangles and corners across edges, and fills in the topological fields.
+class Topology {
+ public:
+  explicit Topology(const Mesh& mesh)
+      : mesh_(mesh), triangles_(mesh.triangles.size()), corners_(3 * mesh.triangles.size()), bad_vertex_(mesh.vertices.size(), 0) {
+    for_each_edge(mesh, [&](const Side* sides, std::size_t count) { add_edge(sides, count); });
+  }
+
+  void fill(MeshCheck& check) {
+    std::vector<char> fans(mesh_.vertices.size(), 0);  // 0, 1, or 2 for more
+    for (std::size_t c = 0; c < 3 * mesh_.triangles.size(); ++c) {
+      if (corners_.find(c) == c) fans[vertex_of(mesh_, c)] = static_cast<char>(std::min(2, fans[vertex_of(mesh_, c)] + 1));
+    }
+    for (std::size_t v = 0; v < fans.size(); ++v) {
+      check.vertices += fans[v] > 0 ? 1 : 0;
+      check.nonmanifold_vertices += fans[v] > 1 || bad_vertex_[v] != 0 ? 1 : 0;
+    }
+    check.triangles = mesh_.triangles.size();
+    check.components = triangles_.count();
+    check.boundary_edges = boundary_edges_;
+    check.nonmanifold_edges = nonmanifold_edges_;
+    check.closed = check.triangles > 0 && edges_not_of_two_ == 0;
+    check.manifold = check.nonmanifold_edges == 0 && check.nonmanifold_vertices == 0;
+    if (check.closed && check.manifold) {
+      // Sum over components of (2 - (V - E + F)) / 2.
+      const long euler = static_cast<long>(check.vertices) - static_cast<long>(edges_) + static_cast<long>(check.triangles);
+      check.genus = (2 * static_cast<long>(check.components) - euler) / 2;
+    }
+  }
+
+ private:
+  /// `sides`: the `count` sides between the same two vertices.
+  void add_edge(const Side* sides, std::size_t count) {
+    ++edges_;
+    const bool loop = sides[0].low == sides[0].high;  // a triangle that names a vertex twice
+    std::size_t forward = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (is_forward(mesh_, sides[i])) ++forward;
+      if (i == 0 || loop) continue;
+      triangles_.join(sides[0].corner / 3, sides[i].corner / 3);
+      corners_.join(corner_at(mesh_, sides[0], sides[0].low), corner_at(mesh_, sides[i], sides[0].low));
+      corners_.join(corner_at(mesh_, sides[0], sides[0].high), corner_at(mesh_, sides[i], sides[0].high));
+    }
+    if (loop || count != 2) ++edges_not_of_two_;
+    if (count == 1 && !loop) ++boundary_edges_;
+    if (loop || count > 2 || (count == 2 && forward != 1)) ++nonmanifold_edges_;
+    if (loop || count > 2) bad_vertex_[sides[0].low] = bad_vertex_[sides[0].high] = 1;
+  }
+
+  const Mesh& mesh_;
+  DisjointSets triangles_;
+  DisjointSets corners_;
+  std::vector<char> bad_vertex_;
+  std::size_t edges_ = 0;
+  std::size_t boundary_edges_ = 0;
+  std::size_t nonmanifold_edges_ = 0;
+  std::size_t edges_not_of_two_ = 0;
+};
+
+/// Signed volume and area. Coordinates are taken from the box centre, so that large offsets cost no digits.
+void measure(const Mesh& mesh, const Vec3& centre, MeshCheck& check) {
+  for (const auto& t : mesh.triangles) {
+    const Vec3 a = subtract(mesh.vertices[t[0]], centre);
+    const Vec3 b = subtract(mesh.vertices[t[1]], centre);
+    const Vec3 c = subtract(mesh.vertices[t[2]], centre);
+    const Vec3 n = cross(subtract(b, a), subtract(c, a));
+    check.volume += dot(a, n) / 6;  // div x = 3 integrated over the tetrahedron (centre, a, b, c)
+    check.area += std::sqrt(dot(n, n)) / 2;
+  }
+}
+
+}  // namespace
+
+MeshCheck check_mesh(const Mesh& mesh) {
+  MeshCheck check;
+  const vector::Box box = box_of_used_vertices(mesh);
+  if (mesh.triangles.empty()) return check;
+  Topology(mesh).fill(check);
+  measure(mesh, box.centre(), check);
+  return check;
+}
+
+}  // namespace g3r

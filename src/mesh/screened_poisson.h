@@ -1,0 +1,36 @@
+// Screened Poisson surface reconstruction: oriented points -> triangle mesh.
+//
+// Source: Kazhdan, Hoppe, "Screened Poisson surface reconstruction", ACM Trans. Graph. 32(3), 2013, in the authors' code as shipped with
+// Open3D. This is the only place that knows Open3D. Without it (G3R_WITH_OPEN3D=OFF) screened_poisson() throws Unavailable.
+#pragma once
+
+#include <g3r/mesh.h>
+
+#include <vector>
+
+namespace g3r {
+
+/// Octree depths that screened_poisson() takes. Depth 12 can need tens of gigabytes.
+inline constexpr int kMinPoissonDepth = 4;
+inline constexpr int kMaxPoissonDepth = 12;
+
+/// Octree depth whose cells are about as wide as the points are apart.
+/// `spacing`: square root of area per point, > 0; `box_side`: longest side of the bounding box, same unit. Result in 4..10.
+[[nodiscard]] int automatic_depth(double spacing, double box_side);
+
+/// Whether this build has screened_poisson().
+[[nodiscard]] bool screened_poisson_available();
+
+/// Meshes N points with their N outward normals of any length (the length has no influence). Triangles face the way the normals do, so the
+/// signed volume is positive. The mesh is manifold, and closed unless the surface leaves the cube around the points (an open sheet does).
+/// Every vertex is used by a triangle. Where points are dense the cells of the octree are 1.1 * (longest side of the box) / 2^depth wide.
+///
+/// Coordinates are centred and scaled in double first; vertices come back with single precision relative to the box. Runs on one thread,
+/// because with more the result differs from run to run; the same input gives the same bytes. Concurrent calls wait for each other.
+/// It cannot be cancelled while it runs. docs/design.md has seconds and memory.
+///
+/// Throws InvalidInput: sizes that differ, fewer than 4 points, all points at one place, a coordinate or normal that is not finite,
+/// a zero normal, a depth outside 4..12, or no surface was found.
+[[nodiscard]] Mesh screened_poisson(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, int depth);
+
+}  // namespace g3r

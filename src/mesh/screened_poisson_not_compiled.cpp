@@ -1,0 +1,13 @@
+#include <g3r/error.h>
+
+#include "mesh/screened_poisson.h"
+
+namespace g3r {
+
+bool screened_poisson_available() { return false; }
+
+Mesh screened_poisson(const std::vector<Vec3>&, const std::vector<Vec3>&, int) {
+  throw Unavailable("built without Open3D, so there is no screened Poisson mesher: use the field mesher, or configure with -DG3R_WITH_OPEN3D=ON");
+}
+
+}  // namespace g3r

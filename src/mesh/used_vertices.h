@@ -1,0 +1,14 @@
+// The vertices that triangles use: validation shared by everything that takes a mesh.
+#pragma once
+
+#include <g3r/mesh.h>
+
+#include "mesh/vector.h"
+
+namespace g3r {
+
+/// Box of the vertices that a triangle uses; empty for a mesh without triangles. O(F).
+/// Throws InvalidInput if a triangle names a vertex that does not exist, or one with a non-finite or unusably large coordinate.
+[[nodiscard]] vector::Box box_of_used_vertices(const Mesh& mesh);
+
+}  // namespace g3r

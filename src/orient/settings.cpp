@@ -1,0 +1,110 @@
+#include "orient/settings.h"
+
+#include <g3r/error.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <sstream>
+
+namespace g3r {
+namespace {
+
+// The default: energy form. Widths in spacings h.
+constexpr double kEnergyEpsilon = 0.3;         // smaller converges slower, larger blurs thin walls
+constexpr double kEnergyWindingWeight = 0.1;   // larger converges slower, 0 loses nested shells
+constexpr double kEnergyTolerance = 2.5e-3;    // slats and spokes need this residual; smooth shapes get there in half the steps
+constexpr const char* kEnergySchedule = "60 cg";
+// The default for least squares over the harmonics.
+constexpr double kGreenEpsilon = 0.4;          // converges in 10-15 iterations
+constexpr double kGreenConstantWeight = 2;     // the row u = 1 alone tells inside from outside
+constexpr double kGreenTolerance = 2.5e-3;
+constexpr const char* kGreenSchedule = "20 cg";
+constexpr double kRefinementWidth = 0.55;      // of the winding gradient; narrower is noisy, wider rounds edges
+// The paper preset.
+constexpr double kPaperLeafFactor = 0.8;
+constexpr const char* kPaperSchedule = "20 sd 60 cg";
+constexpr std::size_t kPaperDensePoints = 500; // "small N": seconds, not minutes
+constexpr int kDefaultDegree = 2;
+constexpr int kGridLevels = 21;
+
+double checked_epsilon(const Epsilon& epsilon, const CanonicalCloud& cloud, double spacing) {
+  if (!(epsilon.value > 0) || !std::isfinite(epsilon.value)) throw InvalidInput("epsilon must be a positive number");
+  switch (epsilon.unit) {
+    case Epsilon::Unit::kInput: return cloud.frame.length_to_unit(epsilon.value);
+    case Epsilon::Unit::kPercent: {
+      Vec3 low = cloud.points.front();
+      Vec3 high = low;
+      for (const Vec3& p : cloud.points) {
+        for (std::size_t a = 0; a < 3; ++a) {
+          low[a] = std::min(low[a], p[a]);
+          high[a] = std::max(high[a], p[a]);
+        }
+      }
+      return epsilon.value / 100 * std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
+    }
+    case Epsilon::Unit::kSpacing: return epsilon.value * spacing;
+    default: return epsilon.value;
+  }
+}
+
+void require(bool good, const std::string& message) {
+  if (!good) throw InvalidInput(message);
+}
+
+}  // namespace
+
+// Two points share a leaf of level L when their codes agree in the first 3 L bits; neighbours in Morton order share the most.
+double paper_epsilon(const CanonicalCloud& cloud) {
+  int deepest = 0;
+  for (std::size_t i = 1; i < cloud.size(); ++i) {
+    const int common_bits = std::countl_zero(cloud.morton[i - 1] ^ cloud.morton[i]) - 1;  // the top bit of a code is unused
+    deepest = std::max(deepest, std::min(common_bits / 3 + 1, kGridLevels));
+  }
+  return kPaperLeafFactor * std::ldexp(2.0, -deepest);
+}
+
+Settings choose_settings(const Options& options, const CanonicalCloud& cloud, double spacing) {
+  const bool paper = options.preset == Preset::kPaper;
+  Settings s;
+  s.method = options.method != Method::kAuto ? options.method : paper ? Method::kGreen : Method::kEnergy;
+  const bool harmonics_given = options.degree >= 0 || !options.harmonics.empty();
+  if (harmonics_given && options.method == Method::kAuto) s.method = Method::kGreen;
+  require(!harmonics_given || s.method == Method::kGreen, "degree and harmonics belong to the method green; leave them out with energy");
+  require(options.degree < 0 || options.harmonics.empty(), "give either a degree or a list of harmonics, not both");
+  require(options.degree <= kMaxHarmonicDegree, "degree must be between 0 and " + std::to_string(kMaxHarmonicDegree));
+  require(options.threads >= 0, "threads must be 0 (all cores) or positive");
+  require(options.tolerance == -1 || (options.tolerance >= 0 && options.tolerance < 1), "tolerance must be in [0, 1)");
+  if (s.method == Method::kGreen) {
+    s.harmonics = options.harmonics.empty() ? harmonics_of_degrees(0, options.degree >= 0 ? options.degree : kDefaultDegree)
+                                            : parse_harmonics(options.harmonics);
+  }
+  const bool green = s.method == Method::kGreen;
+  s.constant_weight = paper ? 1 : kGreenConstantWeight;
+  s.winding_weight = kEnergyWindingWeight * spacing;
+  s.epsilon = (green ? kGreenEpsilon : kEnergyEpsilon) * spacing;
+  if (paper) s.epsilon = paper_epsilon(cloud);
+  if (options.epsilon.unit != Epsilon::Unit::kAuto) s.epsilon = checked_epsilon(options.epsilon, cloud, spacing);
+  s.refinement_width = paper ? 0 : kRefinementWidth * spacing;
+
+  require(options.solver != Solver::kDense || green, "the dense solver belongs to the method green");
+  s.dense = options.solver == Solver::kDense ||
+            (options.solver == Solver::kAuto && paper && green && options.schedule.empty() && cloud.size() <= kPaperDensePoints);
+  s.schedule_text = !options.schedule.empty() ? options.schedule : paper ? kPaperSchedule : green ? kGreenSchedule : kEnergySchedule;
+  s.schedule = parse_schedule(s.schedule_text);
+  s.tolerance = options.tolerance >= 0 ? options.tolerance : paper ? 0 : green ? kGreenTolerance : kEnergyTolerance;
+  s.sums = sum_plan(options.accuracy, cloud.size());
+  return s;
+}
+
+std::size_t planned_memory(const Settings& settings, std::size_t given, std::size_t used) {
+  constexpr std::size_t kProgram = 24u << 20;  // code, libraries, thread stacks
+  constexpr std::size_t kPerGiven = 90;        // index, result
+  const std::size_t harmonics = settings.method == Method::kGreen ? settings.harmonics.size() : 0;
+  const std::size_t per_used = 1100 + 48 * harmonics;
+  std::size_t bytes = kProgram + kPerGiven * given + per_used * used;
+  if (settings.dense) bytes += 9 * used * used * sizeof(double);
+  return bytes;
+}
+
+}  // namespace g3r

@@ -1,0 +1,41 @@
+// Options, where given, and the preset's values scaled to the cloud, where not.
+#pragma once
+
+#include "cloud/canonical_cloud.h"
+#include "solve/harmonics.h"
+#include "solve/iterative_solver.h"
+#include "sum/sum_plan.h"
+
+#include <g3r/g3r.h>
+
+#include <string>
+#include <vector>
+
+namespace g3r {
+
+/// Everything orient() needs to know, in normalised units. Values without an option are explained in docs/design.md.
+struct Settings {
+  Method method = Method::kEnergy;
+  bool dense = false;
+  std::vector<Harmonic> harmonics;   ///< green only
+  double constant_weight = 1;        ///< green: weight of the row u = 1
+  double damping = 0;                ///< energy: d
+  double winding_weight = 0;         ///< energy: l
+  double epsilon = 0;
+  double refinement_width = 0;       ///< 0: no refinement
+  std::vector<Steps> schedule;
+  std::string schedule_text;
+  double tolerance = 0;
+  SumPlan sums;
+};
+
+/// Throws InvalidInput for an option out of range, naming it and the range.
+[[nodiscard]] Settings choose_settings(const Options& options, const CanonicalCloud& cloud, double spacing);
+
+/// The paper's mollifier for clean input: 0.8 x the leaf side of an octree with at most one point per leaf, at its deepest level.
+[[nodiscard]] double paper_epsilon(const CanonicalCloud& cloud);
+
+/// Predicted peak memory of orient() in bytes for N points, within 15 % (tests/memory_plan_test).
+[[nodiscard]] std::size_t planned_memory(const Settings& settings, std::size_t given, std::size_t used);
+
+}  // namespace g3r

@@ -1,0 +1,21 @@
+// Points with area vectors in canonical order: what fields and meshers start from.
+#pragma once
+
+#include "cloud/canonical_cloud.h"
+
+#include <g3r/points.h>
+
+#include <vector>
+
+namespace g3r {
+
+struct OrientedCloud {
+  CanonicalCloud cloud;
+  std::vector<Vec3> eta;  ///< M area-weighted normals in normalised units; duplicates are added up
+  double spacing = 0;     ///< typical, normalised units
+};
+
+/// From N points, N unit normals and N areas in squared input units. Throws InvalidInput like canonical_cloud().
+[[nodiscard]] OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& normals, const std::vector<double>& areas);
+
+}  // namespace g3r

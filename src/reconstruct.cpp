@@ -1,0 +1,122 @@
+// From points, or oriented points, to a mesh.
+#include "cloud/spacing.h"
+#include "cpu/parallel.h"
+#include "mesh/field_mesher.h"
+#include "mesh/screened_poisson.h"
+#include "oriented_cloud.h"
+#include "stages.h"
+#include "sum/fast_sum.h"
+
+#include <g3r/g3r.h>
+
+#include <cmath>
+#include <string>
+
+namespace g3r {
+namespace {
+
+constexpr double kFieldWidth = 0.55;     // of the winding field in spacings
+constexpr double kFieldAccuracy = 1e-3;  // of its sums
+constexpr int kPaperDepth = 10;
+
+// The winding field in normalised units as the field mesher sees it.
+class WindingSampler : public FieldSampler {
+ public:
+  WindingSampler(const OrientedCloud& oriented, const std::atomic<bool>* cancel)
+      : oriented_(oriented),
+        cancel_(cancel),
+        sum_(oriented.cloud.points, oriented.cloud.morton, Widths(kFieldWidth * oriented.spacing),
+             sum_plan(kFieldAccuracy, oriented.cloud.size()), cancel) {}
+
+  void sample(const std::vector<Vec3>& queries, std::vector<double>& value, std::vector<Vec3>* gradient) const override {
+    value = sum_.winding_at(oriented_.eta, queries, cancel_);
+    if (gradient == nullptr) return;
+    *gradient = sum_.winding_gradient_at(oriented_.eta, queries, cancel_);
+    for (Vec3& g : *gradient) {
+      for (double& c : g) c = -c;
+    }
+  }
+
+ private:
+  const OrientedCloud& oriented_;
+  const std::atomic<bool>* cancel_;
+  FastSum sum_;
+};
+
+Mesh mesh_with_poisson(const OrientedCloud& oriented, const std::vector<Vec3>& normals, int depth) {
+  const int chosen = depth > 0 ? depth : automatic_depth(oriented.spacing, 2.0 / 1.1);
+  return screened_poisson(oriented.cloud.points, normals, chosen);
+}
+
+// Meshes in normalised units, so that georeferenced coordinates lose nothing, and maps back.
+Mesh make_mesh(const PointsView& points, const std::vector<Vec3>& normals, const std::vector<double>& areas, const MeshOptions& options,
+               const Monitor& monitor) {
+  const OrientedCloud oriented = oriented_cloud(points, normals, areas);
+  std::vector<Vec3> directions(oriented.eta.size());
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const Vec3& e = oriented.eta[i];
+    const double size = std::hypot(e[0], e[1], e[2]);
+    directions[i] = size > 0 ? Vec3{e[0] / size, e[1] / size, e[2] / size} : Vec3{0, 0, 1};
+  }
+  Mesh mesh = options.mesher == Mesher::kPoisson
+                  ? mesh_with_poisson(oriented, directions, options.depth)
+                  : field_mesh(oriented.cloud.points, directions, WindingSampler(oriented, monitor.cancel), options, monitor);
+  if (mesh.triangles.empty()) throw InvalidInput("no surface found: the oriented points do not enclose a volume");
+  const Frame& frame = oriented.cloud.frame;
+  for (Vec3& v : mesh.vertices) {
+    for (std::size_t a = 0; a < 3; ++a) v[a] = v[a] / frame.scale + frame.centre[a];
+  }
+  return mesh;
+}
+
+}  // namespace
+
+Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const MeshOptions& options, const Monitor& monitor) {
+  if (points.count != normals.count) {
+    throw InvalidInput(std::to_string(points.count) + " points but " + std::to_string(normals.count) + " normals");
+  }
+  std::vector<Vec3> kept;
+  std::vector<Vec3> directions;
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const Vec3 p = points[i];
+    const Vec3 n = normals[i];
+    const double size = std::hypot(n[0], n[1], n[2]);
+    if (!std::isfinite(p[0] + p[1] + p[2]) || !std::isfinite(size) || size <= 0) continue;
+    kept.push_back(p);
+    directions.push_back({n[0] / size, n[1] / size, n[2] / size});
+  }
+  const CanonicalCloud cloud = canonical_cloud(kept);
+  const std::vector<double> spacing = local_spacing(cloud.points);
+  std::vector<double> areas(kept.size());
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const std::uint32_t p = cloud.point_of[i];
+    const double h = cloud.frame.length_to_world(spacing[p]);
+    areas[i] = h * h / cloud.multiplicity[p];
+  }
+  return make_mesh(kept, directions, areas, options, monitor);
+}
+
+Reconstruction reconstruct(const PointsView& points, const Options& options, const MeshOptions& mesh_options, const Monitor& monitor) {
+  Reconstruction out;
+  out.orientation = orient(points, options, monitor);
+  MeshOptions chosen = mesh_options;
+  if (chosen.mesher == Mesher::kAuto) {
+    const bool poisson = options.preset == Preset::kPaper && screened_poisson_available();
+    chosen.mesher = poisson ? Mesher::kPoisson : Mesher::kField;
+  }
+  if (options.preset == Preset::kPaper && chosen.depth == 0) chosen.depth = kPaperDepth;
+  Stages stages(monitor);
+  stages.begin("mesh");
+  parallel::with_threads(options.threads, [&] {
+    out.mesh = make_mesh(points, out.orientation.normals, out.orientation.areas, chosen, monitor);
+    out.check = check_mesh(out.mesh);
+  });
+  if (!out.check.closed || !out.check.manifold) {
+    out.orientation.stats.warnings.emplace_back(out.check.closed ? "the mesh is not manifold" : "the mesh is not closed");
+  }
+  out.orientation.stats.depth = chosen.depth;
+  stages.finish(out.orientation.stats);
+  return out;
+}
+
+}  // namespace g3r

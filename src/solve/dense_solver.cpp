@@ -1,0 +1,88 @@
+#include "solve/dense_solver.h"
+
+#include "cpu/parallel.h"
+#include "sum/kernels.h"
+
+#include <g3r/error.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+
+#include <string>
+
+namespace g3r {
+namespace {
+
+constexpr std::size_t kRowPoints = 64;      // points whose rows are assembled together
+constexpr Eigen::Index kTile = 192;         // columns per tile of the normal matrix
+
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+}  // namespace
+
+std::vector<double> assemble_rows(const std::vector<Vec3>& points, double epsilon, const HarmonicValues& u, std::size_t first_point,
+                                  std::size_t last_point) {
+  const std::size_t n = points.size();
+  std::vector<double> rows((last_point - first_point) * u.count * 3 * n);
+  parallel::for_each(last_point - first_point, [&](std::size_t row) {
+    const Vec3& x = points[first_point + row];
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vec3 r{points[i][0] - x[0], points[i][1] - x[1], points[i][2] - x[2]};
+      const KernelValues kernel = mollified_kernels(r[0] * r[0] + r[1] * r[1] + r[2] * r[2], epsilon);
+      for (std::size_t k = 0; k < u.count; ++k) {
+        const Vec3& gradient = u.gradient[i * u.count + k];
+        const double flux = u.value[i * u.count + k] * kernel.double_layer;
+        double* out = rows.data() + ((row * u.count + k) * n + i) * 3;
+        for (std::size_t a = 0; a < 3; ++a) out[a] = kernel.single_layer * gradient[a] + flux * r[a];
+      }
+    }
+  });
+  return rows;
+}
+
+DenseResult solve_dense(const std::vector<Vec3>& points, double epsilon, const std::vector<Harmonic>& harmonics, bool condition_number,
+                        const std::atomic<bool>* cancel) {
+  const std::size_t n = points.size();
+  if (n > kMostDensePoints) {
+    throw InvalidInput("the dense solver takes at most " + std::to_string(kMostDensePoints) + " points, this cloud has " + std::to_string(n) +
+                       "; use the iterative solver (cg)");
+  }
+  const HarmonicValues u = evaluate_harmonics(harmonics, points);
+  const auto size = static_cast<Eigen::Index>(3 * n);
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(size, size);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(size);
+  const Eigen::Index tiles = (size + kTile - 1) / kTile;
+  for (std::size_t first = 0; first < n; first += kRowPoints) {
+    const std::size_t last = std::min(n, first + kRowPoints);
+    const std::vector<double> storage = assemble_rows(points, epsilon, u, first, last);
+    const Eigen::Map<const RowMatrix> rows(storage.data(), static_cast<Eigen::Index>((last - first) * u.count), size);
+    const Eigen::Map<const Eigen::VectorXd> values(u.value.data() + first * u.count, rows.rows());
+    right.noalias() += rows.transpose() * (0.5 * values);
+    parallel::for_each(  // M += rows^T rows, lower triangle, a column tile at a time
+        static_cast<std::size_t>(tiles),
+        [&](std::size_t tile) {
+          const Eigen::Index begin = static_cast<Eigen::Index>(tile) * kTile;
+          const Eigen::Index width = std::min(kTile, size - begin);
+          normal.block(begin, begin, size - begin, width).noalias() += rows.rightCols(size - begin).transpose() * rows.middleCols(begin, width);
+        },
+        cancel);
+  }
+  DenseResult result;
+  if (condition_number) {
+    const Eigen::VectorXd eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(normal, Eigen::EigenvaluesOnly).eigenvalues();
+    result.condition_number = eigenvalues.maxCoeff() / eigenvalues.minCoeff();
+  }
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(normal);
+  if (factor.info() != Eigen::Success) {
+    throw InvalidInput("the normal matrix is singular with these harmonics; add more of them, for example degree:0-2");
+  }
+  const Eigen::VectorXd eta = factor.solve(right);
+  result.eta.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t a = 0; a < 3; ++a) result.eta[i][a] = eta[static_cast<Eigen::Index>(3 * i + a)];
+  }
+  return result;
+}
+
+}  // namespace g3r

@@ -1,0 +1,30 @@
+// The published small-N path: assemble the normal matrix and factor it.
+#pragma once
+
+#include "solve/harmonics.h"
+#include "sum/direct_sum.h"
+
+#include <g3r/points.h>
+
+#include <atomic>
+#include <vector>
+
+namespace g3r {
+
+inline constexpr std::size_t kMostDensePoints = 4000;  ///< 3N x 3N doubles: 1.2 GB
+
+struct DenseResult {
+  std::vector<Vec3> eta;
+  double condition_number = 0;  ///< of the normal matrix; 0 unless asked for
+};
+
+/// Rows of A: for point j and harmonic k the 3N coefficients of eta, N K x 3N row-major, in double from the definitions.
+[[nodiscard]] std::vector<double> assemble_rows(const std::vector<Vec3>& points, double epsilon, const HarmonicValues& u, std::size_t first_point,
+                                                std::size_t last_point);
+
+/// argmin sum_k |A[u_k] eta - u_k/2|^2 by Cholesky of the normal matrix. O(N^3) time, 9 N^2 doubles.
+/// Throws InvalidInput for more than kMostDensePoints points and for a singular matrix (K = 1 is rank deficient), Cancelled.
+[[nodiscard]] DenseResult solve_dense(const std::vector<Vec3>& points, double epsilon, const std::vector<Harmonic>& harmonics,
+                                      bool condition_number, const std::atomic<bool>* cancel = nullptr);
+
+}  // namespace g3r

@@ -1,0 +1,62 @@
+// The clock, progress and cancellation of one run.
+#pragma once
+
+#include <g3r/g3r.h>
+
+#include <sys/resource.h>
+
+#include <chrono>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace g3r {
+
+/// Times consecutive stages and talks to the caller's Monitor. All members throw Cancelled when the caller wants to stop.
+class Stages {
+ public:
+  explicit Stages(const Monitor& monitor) : monitor_(monitor), stage_start_(Clock::now()) {}
+
+  void begin(const std::string& stage) {
+    end_stage();
+    stage_ = stage;
+    progress(0);
+  }
+  void progress(double fraction) {
+    check();
+    if (monitor_.progress && !monitor_.progress(stage_, fraction)) throw Cancelled();
+  }
+  void check() const {
+    if (monitor_.cancel != nullptr && monitor_.cancel->load(std::memory_order_relaxed)) throw Cancelled();
+  }
+  [[nodiscard]] const std::atomic<bool>* cancel() const { return monitor_.cancel; }
+  [[nodiscard]] const Monitor& monitor() const { return monitor_; }
+
+  /// Ends the last stage and writes times and peak memory.
+  void finish(Stats& stats) {
+    progress(1);
+    end_stage();
+    stats.seconds.insert(stats.seconds.end(), seconds_.begin(), seconds_.end());
+    seconds_.clear();
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    stats.peak_memory_bytes = static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void end_stage() {
+    const Clock::time_point now = Clock::now();
+    if (!stage_.empty()) seconds_.emplace_back(stage_, std::chrono::duration<double>(now - stage_start_).count());
+    stage_start_ = now;
+    stage_.clear();
+  }
+
+  const Monitor& monitor_;
+  Clock::time_point stage_start_;
+  std::string stage_;
+  std::vector<std::pair<std::string, double>> seconds_;
+};
+
+}  // namespace g3r

@@ -1,0 +1,58 @@
+// The sums of g3r over one cloud, in linear time with bounded error, or directly. Formulas: docs/math.md; engine: docs/design.md.
+#pragma once
+
+#include "solve/harmonics.h"
+#include "sum/direct_sum.h"
+#include "sum/sum_plan.h"
+
+#include <g3r/points.h>
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace g3r {
+
+/// All sums over a cloud of N points in canonical order (cloud/canonical_cloud.h). Each is linear, and each adjoint is the adjoint of its
+/// forward sum to rounding (1e-6 in float plans, 1e-12 in double plans): same tree, same lists, transposed operators.
+/// Results are the same bytes for any number of threads. Memory is allocated on first use and reused; one caller at a time.
+class FastSum {
+ public:
+  /// `points` lie in [-1, 1]^3 with their Morton codes; `widths` > 0. `cancel` may be null; sums then throw Cancelled soon after it is set.
+  FastSum(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, Widths widths, const SumPlan& plan,
+          const std::atomic<bool>* cancel = nullptr);
+  ~FastSum();
+  FastSum(FastSum&&) noexcept;
+  FastSum& operator=(FastSum&&) noexcept;
+
+  [[nodiscard]] std::size_t size() const;
+  [[nodiscard]] const SumPlan& plan() const;
+
+  /// A[u_k] eta at every point, all k in one sweep: N x K row-major. See direct_sum::green.
+  std::vector<double> green(const HarmonicValues& u, const std::vector<Vec3>& eta);
+  /// sum_k A[u_k]^T q_k; q is N x K row-major. N vectors.
+  std::vector<Vec3> green_adjoint(const HarmonicValues& u, const std::vector<double>& q);
+  /// S_e eta (N vectors, symmetric positive semidefinite to the accuracy) and W eta (N values) in one sweep.
+  void stokes_winding(const std::vector<Vec3>& eta, std::vector<Vec3>& s, std::vector<double>& w);
+  /// W^T q: N vectors.
+  std::vector<Vec3> winding_adjoint(const std::vector<double>& q);
+  /// W eta: N values.
+  std::vector<double> winding(const std::vector<Vec3>& eta);
+  /// -grad w at the points: N vectors, along the outward normals.
+  std::vector<Vec3> winding_gradient(const std::vector<Vec3>& eta);
+
+  /// w and -grad w at other targets of [-1, 1]^3 (uniform width): any order, Q values. Targets outside the cube are summed directly.
+  /// The value at a target depends on that target alone, not on the others of the call.
+  [[nodiscard]] std::vector<double> winding_at(const std::vector<Vec3>& eta, const std::vector<Vec3>& targets,
+                                               const std::atomic<bool>* cancel = nullptr) const;
+  [[nodiscard]] std::vector<Vec3> winding_gradient_at(const std::vector<Vec3>& eta, const std::vector<Vec3>& targets,
+                                                      const std::atomic<bool>* cancel = nullptr) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace g3r

@@ -1,0 +1,384 @@
+// Sources: Greengard and Rokhlin 1997 for the passes; Dehnen 2002 for the traversal.
+#include "sum/sum_engine.h"
+
+#include "cpu/parallel.h"
+#include "sum/expansions.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace g3r {
+namespace {
+
+constexpr std::size_t kLeafBlock = 4;          // leaves per parallel block
+constexpr std::size_t kNodeBlock = 32;         // nodes per parallel block
+constexpr std::size_t kKeptMatrixBytes = 128u << 20;  // M2L matrices kept in memory up to this; beyond, made when needed
+constexpr std::size_t kColumnBatch = 64;       // columns handed to one matrix product
+
+std::size_t expansion_channels(cpu::NearForm form, int batch, bool local_widths) {
+  switch (form) {
+    case cpu::NearForm::kGreen:
+    case cpu::NearForm::kGreenAdjoint: return static_cast<std::size_t>(batch);
+    case cpu::NearForm::kStokesWinding: return cpu::kStokesChannels + (local_widths ? 1 : 0);
+    case cpu::NearForm::kWindingGradient: return 1;
+  }
+  return 0;
+}
+
+// A row-major n x n matrix as padded columns of T; `transposed` swaps rows and columns, `scale` multiplies.
+template <class T>
+void store_columns(const std::vector<double>& matrix, std::size_t n, std::size_t stride, bool transposed, double scale, T* out) {
+  for (std::size_t j = 0; j < n; ++j) {
+    for (std::size_t i = 0; i < n; ++i) out[j * stride + i] = static_cast<T>(scale * (transposed ? matrix[j * n + i] : matrix[i * n + j]));
+    for (std::size_t i = n; i < stride; ++i) out[j * stride + i] = T{0};
+  }
+}
+
+// Stokes expansions about a new centre: v = old centre - new centre. E_a += v_a W, Q += v . P; the rest unchanged.
+template <class T>
+void recentre_stokes(const T* in, std::size_t stride, std::size_t channels, const Vec3& v, T* out) {
+  std::memcpy(out, in, channels * stride * sizeof(T));
+  for (std::size_t a = 0; a < 3; ++a) {
+    const T va = static_cast<T>(v[a]);
+    for (std::size_t i = 0; i < stride; ++i) {
+      out[(1 + a) * stride + i] += va * in[i];
+      out[7 * stride + i] += va * in[(4 + a) * stride + i];
+    }
+  }
+}
+
+Vec3 difference(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+
+std::size_t octant(const OctreeNode& node) {
+  return static_cast<std::size_t>((node.cell[0] & 1) * 4 + (node.cell[1] & 1) * 2 + (node.cell[2] & 1));
+}
+
+// Collects columns that go through one matrix, and applies it in batches.
+template <class T>
+class ColumnBatch {
+ public:
+  ColumnBatch(std::size_t coefficients, std::size_t stride, std::size_t channels, bool stokes)
+      : coefficients_(coefficients), stride_(stride), channels_(channels), stokes_(stokes), moved_(stokes ? (kColumnBatch / channels + 1) * channels * stride : 0) {}
+
+  void add(const T* matrix, const T* in, T* out, const Vec3& old_minus_new) {
+    if (stokes_) {
+      T* to = moved_.data() + in_.size() * stride_;
+      recentre_stokes(in, stride_, channels_, old_minus_new, to);
+      in = to;
+    }
+    for (std::size_t c = 0; c < channels_; ++c) {
+      in_.push_back(in + c * stride_);
+      out_.push_back(out + c * stride_);
+    }
+    if (in_.size() + channels_ > kColumnBatch) flush(matrix);
+  }
+  void flush(const T* matrix) {
+    cpu::apply_matrix(matrix, coefficients_, stride_, in_.data(), out_.data(), in_.size());
+    in_.clear();
+    out_.clear();
+  }
+
+ private:
+  std::size_t coefficients_;
+  std::size_t stride_;
+  std::size_t channels_;
+  bool stokes_;
+  AlignedVector<T> moved_;
+  std::vector<const T*> in_;
+  std::vector<T*> out_;
+};
+
+}  // namespace
+
+template <class T>
+SumEngine<T>::SumEngine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Widths& widths, const SumPlan& plan,
+                        const std::atomic<bool>* cancel)
+    : plan_(plan),
+      local_widths_(!widths.uniform()),
+      cancel_(cancel),
+      sources_(std::make_shared<Sources>()),
+      coefficients_(coefficient_count(plan.order)),
+      stride_(cpu::padded_count(coefficients_)) {
+  Sources& s = *sources_;
+  s.points = points;
+  s.widths = widths.values;
+  s.tree = build_octree(points, morton, s.widths, plan_.leaf_points);
+  s.local.resize(points.size() * 3);
+  parallel::for_blocks(s.tree.leaves.size(), kNodeBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const OctreeNode& leaf = s.tree.nodes[s.tree.leaves[i]];
+      const Vec3 centre = leaf.centre();
+      for (std::size_t p = leaf.begin; p < leaf.end; ++p) {
+        for (std::size_t a = 0; a < 3; ++a) s.local[3 * p + a] = static_cast<T>(points[p][a] - centre[a]);
+      }
+    }
+  });
+  for (std::size_t o = 0; o < 8 && !plan_.direct; ++o) {
+    const Vec3 shift{o & 4 ? 0.5 : -0.5, o & 2 ? 0.5 : -0.5, o & 1 ? 0.5 : -0.5};
+    const std::vector<double> matrix = multipole_translation(shift, plan_.order);
+    s.child_to_parent[o].resize(coefficients_ * stride_);
+    s.parent_to_child[o].resize(coefficients_ * stride_);
+    store_columns(matrix, coefficients_, stride_, false, 1.0, s.child_to_parent[o].data());
+    store_columns(matrix, coefficients_, stride_, true, 0.5, s.parent_to_child[o].data());
+  }
+  target_tree_ = std::shared_ptr<Octree>(sources_, &s.tree);
+  prepare(points, s.widths);
+}
+
+template <class T>
+SumEngine<T>::SumEngine(const SumEngine& other, const std::vector<Vec3>& targets, const std::vector<std::uint64_t>& morton,
+                        const std::atomic<bool>* cancel)
+    : plan_(other.plan_),
+      local_widths_(other.local_widths_),
+      cancel_(cancel),
+      sources_(other.sources_),
+      coefficients_(other.coefficients_),
+      stride_(other.stride_) {
+  target_tree_ = std::make_shared<Octree>(build_query_octree(targets, morton, sources_->tree));
+  prepare(targets, {sources_->widths[0]});
+}
+
+template <class T>
+void SumEngine<T>::prepare(const std::vector<Vec3>& targets, const std::vector<double>& target_widths) {
+  const Octree& tree = *target_tree_;
+  targets_ = std::make_shared<TargetBlocks<T>>();
+  TargetBlocks<T>& blocks = *targets_;
+  blocks.first_block.assign(1, 0);
+  for (const std::uint32_t leaf : tree.leaves) {
+    blocks.first_block.push_back(blocks.first_block.back() + (tree.nodes[leaf].count() + cpu::kLanes - 1) / cpu::kLanes);
+  }
+  const std::size_t lanes = blocks.first_block.back() * cpu::kLanes;
+  blocks.point.resize(lanes);
+  blocks.x.resize(lanes);
+  blocks.y.resize(lanes);
+  blocks.z.resize(lanes);
+  if (local_widths_) blocks.width_squared.resize(lanes);
+  parallel::for_blocks(tree.leaves.size(), kNodeBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const OctreeNode& leaf = tree.nodes[tree.leaves[i]];
+      const Vec3 centre = leaf.centre();
+      const std::size_t first = blocks.first_block[i] * cpu::kLanes;
+      for (std::size_t lane = first; lane < blocks.first_block[i + 1] * cpu::kLanes; ++lane) {
+        const std::size_t p = std::min<std::size_t>(leaf.begin + (lane - first), leaf.end - 1);
+        blocks.point[lane] = static_cast<std::uint32_t>(p);
+        blocks.x[lane] = static_cast<T>(targets[p][0] - centre[0]);
+        blocks.y[lane] = static_cast<T>(targets[p][1] - centre[1]);
+        blocks.z[lane] = static_cast<T>(targets[p][2] - centre[2]);
+        if (local_widths_) blocks.width_squared[lane] = static_cast<T>(target_widths[p] * target_widths[p]);
+      }
+    }
+  });
+  lists_ = build_interaction_lists(tree, sources_->tree, plan_.direct ? 0.0 : plan_.opening);
+  make_matrices();
+}
+
+template <class T>
+void SumEngine<T>::make_matrices() {
+  const std::size_t size = coefficients_ * stride_;
+  if (lists_.offsets.empty() || lists_.offsets.size() * size * sizeof(T) > kKeptMatrixBytes) return;
+  matrices_.resize(lists_.offsets.size() * size);
+  const MultipoleToLocal make(plan_.order);
+  parallel::for_blocks(lists_.offsets.size(), kNodeBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      store_columns(make.matrix(lists_.offsets[i]), coefficients_, stride_, false, 1.0, matrices_.data() + i * size);
+    }
+  });
+}
+
+template <class T>
+AlignedVector<T>& SumEngine<T>::records(std::size_t fields) {
+  const std::size_t size = record_size(fields);
+  const std::size_t n = sources_->points.size();
+  records_.resize(n * size);
+  parallel::for_blocks(n, 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      for (std::size_t a = 0; a < 3; ++a) records_[i * size + a] = sources_->local[3 * i + a];
+      if (local_widths_) records_[i * size + 3] = static_cast<T>(sources_->widths[i] * sources_->widths[i]);
+    }
+  });
+  return records_;
+}
+
+template <class T>
+AlignedVector<T>& SumEngine<T>::target_data(std::size_t channels) {
+  target_data_.resize(targets_->x.size() * channels);
+  return target_data_;
+}
+
+template <class T>
+cpu::LeafTask<T> SumEngine<T>::leaf_task(cpu::NearForm form, int batch, double half_side) const {
+  cpu::LeafTask<T> task{};
+  task.form = form;
+  task.batch = batch;
+  task.order = plan_.order;
+  task.half_side = static_cast<T>(half_side);
+  task.local_widths = local_widths_;
+  task.uniform_width_squared = static_cast<T>(sources_->widths[0] * sources_->widths[0]);
+  task.channels = channels_;
+  task.stride = stride_;
+  return task;
+}
+
+template <class T>
+void SumEngine<T>::upward(cpu::NearForm form, int batch, std::size_t record_size) {
+  const Octree& tree = sources_->tree;
+  multipoles_.resize(tree.nodes.size() * channels_ * stride_);
+  parallel::for_blocks(
+      tree.leaves.size(), kLeafBlock,
+      [&](std::size_t begin, std::size_t end) {
+        AlignedVector<T> workspace(cpu::leaf_workspace(coefficients_, channels_));
+        for (std::size_t i = begin; i < end; ++i) {
+          const OctreeNode& leaf = tree.nodes[tree.leaves[i]];
+          cpu::LeafTask<T> task = leaf_task(form, batch, leaf.half_side());
+          task.records = records_.data() + leaf.begin * record_size;
+          task.record_size = record_size;
+          task.count = leaf.count();
+          task.multipole = multipole(tree.leaves[i]);
+          task.workspace = workspace.data();
+          cpu::points_to_multipole(task);
+        }
+      },
+      cancel_);
+  const bool stokes = form == cpu::NearForm::kStokesWinding;
+  for (std::size_t level = tree.levels(); level-- > 0;) {
+    const std::size_t first = tree.level_begin[level];
+    parallel::for_blocks(tree.level_begin[level + 1] - first, kNodeBlock, [&](std::size_t begin, std::size_t end) {
+      ColumnBatch<T> batch_of(coefficients_, stride_, channels_, stokes);
+      for (std::size_t i = first + begin; i < first + end; ++i) {
+        const OctreeNode& node = tree.nodes[i];
+        if (node.leaf()) continue;
+        std::fill_n(multipole(i), channels_ * stride_, T{0});
+        for (std::uint32_t c = node.first_child; c < node.first_child + node.child_count; ++c) {
+          const T* matrix = sources_->child_to_parent[octant(tree.nodes[c])].data();
+          batch_of.add(matrix, multipole(c), multipole(i), difference(tree.nodes[c].centre(), node.centre()));
+          batch_of.flush(matrix);
+        }
+      }
+    });
+  }
+}
+
+template <class T>
+void SumEngine<T>::across(cpu::NearForm form) {
+  const Octree& tree = *target_tree_;
+  const Octree& source_tree = sources_->tree;
+  locals_.resize(tree.nodes.size() * channels_ * stride_);
+  const std::size_t size = coefficients_ * stride_;
+  const bool stokes = form == cpu::NearForm::kStokesWinding;
+  const MultipoleToLocal make(matrices_.empty() ? plan_.order : 0);
+  parallel::for_each(
+      lists_.chunk_begin.size() - 1,
+      [&](std::size_t chunk) {
+        const std::size_t first = chunk * kTargetChunk;
+        const std::size_t last = std::min(first + kTargetChunk, tree.nodes.size());
+        std::fill(local(first), local(last - 1) + channels_ * stride_, T{0});
+        ColumnBatch<T> batch_of(coefficients_, stride_, channels_, stokes);
+        AlignedVector<T> made(matrices_.empty() ? size : 0);
+        for (std::size_t i = lists_.chunk_begin[chunk]; i < lists_.chunk_begin[chunk + 1];) {
+          const std::uint32_t offset = lists_.far[i].offset;
+          const T* matrix = matrices_.data() + offset * size;
+          if (matrices_.empty()) {
+            store_columns(make.matrix(lists_.offsets[offset]), coefficients_, stride_, false, 1.0, made.data());
+            matrix = made.data();
+          }
+          for (; i < lists_.chunk_begin[chunk + 1] && lists_.far[i].offset == offset; ++i) {
+            const FarPair& pair = lists_.far[i];
+            const Vec3 move = stokes ? difference(source_tree.nodes[pair.source].centre(), tree.nodes[pair.target].centre()) : Vec3{};
+            batch_of.add(matrix, multipole(pair.source), local(pair.target), move);
+          }
+          batch_of.flush(matrix);
+        }
+      },
+      cancel_);
+}
+
+template <class T>
+void SumEngine<T>::downward(cpu::NearForm form) {
+  const Octree& tree = *target_tree_;
+  const bool stokes = form == cpu::NearForm::kStokesWinding;
+  for (std::size_t level = 1; level < tree.levels(); ++level) {
+    const std::size_t first = tree.level_begin[level];
+    parallel::for_blocks(tree.level_begin[level + 1] - first, kNodeBlock, [&](std::size_t begin, std::size_t end) {
+      ColumnBatch<T> batch_of(coefficients_, stride_, channels_, stokes);
+      for (std::size_t i = first + begin; i < first + end; ++i) {
+        const OctreeNode& node = tree.nodes[i];
+        const T* matrix = sources_->parent_to_child[octant(node)].data();
+        batch_of.add(matrix, local(node.parent), local(i), difference(tree.nodes[node.parent].centre(), node.centre()));
+        batch_of.flush(matrix);
+      }
+    });
+  }
+}
+
+template <class T>
+void SumEngine<T>::leaves(cpu::NearForm form, int batch, std::size_t record_size, std::size_t out_channels) {
+  const Octree& tree = *target_tree_;
+  const Octree& source_tree = sources_->tree;
+  const std::size_t data_channels = form == cpu::NearForm::kGreenAdjoint ? static_cast<std::size_t>(batch) : 0;
+  parallel::for_blocks(
+      tree.leaves.size(), kLeafBlock,
+      [&](std::size_t begin, std::size_t end) {
+        AlignedVector<T> workspace(plan_.direct ? 0 : cpu::leaf_workspace(coefficients_, 0));
+        std::vector<cpu::SourceRun<T>> runs;
+        for (std::size_t i = begin; i < end; ++i) {
+          const OctreeNode& leaf = tree.nodes[tree.leaves[i]];
+          const Vec3 centre = leaf.centre();
+          runs.clear();
+          for (std::size_t k = lists_.near_begin[i]; k < lists_.near_begin[i + 1]; ++k) {
+            const OctreeNode& source = source_tree.nodes[source_tree.leaves[lists_.near[k]]];
+            const Vec3 shift = difference(source.centre(), centre);
+            runs.push_back({source.begin, source.count(), {static_cast<T>(shift[0]), static_cast<T>(shift[1]), static_cast<T>(shift[2])}});
+          }
+          const std::size_t first = targets_->first_block[i];
+          const std::size_t lane = first * cpu::kLanes;
+          cpu::NearTask<T> near{};
+          near.form = form;
+          near.batch = batch;
+          near.records = records_.data();
+          near.record_size = record_size;
+          near.runs = runs.data();
+          near.run_count = runs.size();
+          near.x = targets_->x.data() + lane;
+          near.y = targets_->y.data() + lane;
+          near.z = targets_->z.data() + lane;
+          near.width_squared = local_widths_ ? targets_->width_squared.data() + lane : nullptr;
+          near.u = target_data_.data() + lane * data_channels;
+          near.block_count = targets_->first_block[i + 1] - first;
+          near.uniform_width_squared = static_cast<T>(sources_->widths[0] * sources_->widths[0]);
+          near.local_widths = local_widths_;
+          near.out = out_.data() + lane * out_channels;
+          cpu::near_field(near);
+          if (plan_.direct) continue;
+          cpu::LeafTask<T> far = leaf_task(form, batch, leaf.half_side());
+          far.local = local(tree.leaves[i]);
+          far.x = near.x;
+          far.y = near.y;
+          far.z = near.z;
+          far.width_squared = near.width_squared;
+          far.u = near.u;
+          far.block_count = near.block_count;
+          far.out = near.out;
+          far.workspace = workspace.data();
+          cpu::local_to_points(far);
+        }
+      },
+      cancel_);
+}
+
+template <class T>
+const std::vector<double>& SumEngine<T>::run(cpu::NearForm form, int batch, std::size_t fields, std::size_t out_channels) {
+  channels_ = expansion_channels(form, batch, local_widths_);
+  out_.resize(targets_->x.size() * out_channels);
+  if (!plan_.direct) {
+    upward(form, batch, record_size(fields));
+    across(form);
+    downward(form);
+  }
+  leaves(form, batch, record_size(fields), out_channels);
+  return out_;
+}
+
+template class SumEngine<float>;
+template class SumEngine<double>;
+
+}  // namespace g3r

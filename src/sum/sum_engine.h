@@ -1,0 +1,93 @@
+// The engine behind every sum: trees, lists, expansions and near field, which do not know what they carry. Internal to src/sum.
+#pragma once
+
+#include "cpu/aligned_vector.h"
+#include "cpu/far_field.h"
+#include "cpu/near_field.h"
+#include "sum/direct_sum.h"
+#include "sum/sum_plan.h"
+#include "tree/interaction_lists.h"
+#include "tree/octree.h"
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace g3r {
+
+/// The targets of a sum in blocks of cpu::kLanes, leaf by leaf; coordinates relative to the leaf's centre.
+template <class T>
+struct TargetBlocks {
+  std::vector<std::size_t> first_block;  ///< of every leaf, and the total
+  std::vector<std::uint32_t> point;      ///< of every lane; the tail of a leaf repeats its last point
+  AlignedVector<T> x, y, z;
+  AlignedVector<T> width_squared;        ///< only with local widths
+};
+
+/// Sums of one geometry in precision T. Memory is allocated on first use and reused. One caller at a time; parallel inside.
+template <class T>
+class SumEngine {
+ public:
+  /// Points in canonical order with their Morton codes; the sources are also the targets.
+  SumEngine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Widths& widths, const SumPlan& plan,
+            const std::atomic<bool>* cancel);
+  /// Another set of targets for the sources of `other` (uniform width), canonical order.
+  SumEngine(const SumEngine& other, const std::vector<Vec3>& targets, const std::vector<std::uint64_t>& morton, const std::atomic<bool>* cancel);
+
+  [[nodiscard]] bool local_widths() const { return local_widths_; }
+  [[nodiscard]] std::size_t record_size(std::size_t fields) const { return 3 + (local_widths_ ? 1 : 0) + fields; }
+  [[nodiscard]] const TargetBlocks<T>& targets() const { return *targets_; }
+
+  /// N source records with coordinates filled in and `fields` values per source for the caller to fill, from index record_size(0).
+  AlignedVector<T>& records(std::size_t fields);
+  /// Target data: blocks x channels x lanes for the caller to fill.
+  AlignedVector<T>& target_data(std::size_t channels);
+
+  /// Runs a form over records() and target_data(): result is blocks x out_channels x lanes, without 1/(4 pi).
+  const std::vector<double>& run(cpu::NearForm form, int batch, std::size_t fields, std::size_t out_channels);
+
+ private:
+  // What belongs to the sources, shared by engines with other targets.
+  struct Sources {
+    std::vector<Vec3> points;
+    Octree tree;
+    std::vector<double> widths;
+    AlignedVector<T> local;                        // N x 3 relative to the leaf's centre
+    std::array<AlignedVector<T>, 8> child_to_parent;  // M2M by octant, column after column
+    std::array<AlignedVector<T>, 8> parent_to_child;  // L2L by octant
+  };
+
+  void prepare(const std::vector<Vec3>& targets, const std::vector<double>& target_widths);
+  void make_matrices();
+  void upward(cpu::NearForm form, int batch, std::size_t record_size);
+  void across(cpu::NearForm form);
+  void downward(cpu::NearForm form);
+  void leaves(cpu::NearForm form, int batch, std::size_t record_size, std::size_t out_channels);
+  cpu::LeafTask<T> leaf_task(cpu::NearForm form, int batch, double half_side) const;
+  T* multipole(std::size_t node) { return multipoles_.data() + node * channels_ * stride_; }
+  T* local(std::size_t node) { return locals_.data() + node * channels_ * stride_; }
+
+  SumPlan plan_;
+  bool local_widths_;
+  const std::atomic<bool>* cancel_;
+  std::shared_ptr<Sources> sources_;
+  std::shared_ptr<Octree> target_tree_;  // the sources' tree when they are the targets
+  std::shared_ptr<TargetBlocks<T>> targets_;
+  InteractionLists lists_;
+  AlignedVector<T> matrices_;            // M2L, one per offset, column after column; empty when too large to keep
+  std::size_t coefficients_;
+  std::size_t stride_;
+  std::size_t channels_ = 0;             // expansions per node in the current run
+  AlignedVector<T> records_;
+  AlignedVector<T> target_data_;
+  AlignedVector<T> multipoles_;
+  AlignedVector<T> locals_;
+  std::vector<double> out_;
+};
+
+extern template class SumEngine<float>;
+extern template class SumEngine<double>;
+
+}  // namespace g3r

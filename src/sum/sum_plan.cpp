@@ -1,0 +1,53 @@
+#include "sum/sum_plan.h"
+
+#include <g3r/error.h>
+
+#include <array>
+
+namespace g3r {
+namespace {
+
+struct Setting {
+  double accuracy;
+  int order;
+  double opening;
+  std::size_t leaf_points;
+  bool double_precision;
+};
+
+// Cheapest first. The measured error of each row, over all test clouds and all four sums, is below its accuracy.
+constexpr std::array<Setting, 6> kSettings{{{1e-2, 3, 0.6, 48, false},
+                                            {1e-3, 4, 0.5, 64, false},
+                                            {3e-4, 5, 0.5, 64, false},
+                                            {1e-4, 7, 0.5, 96, false},
+                                            {1e-5, 9, 0.5, 128, true},
+                                            {1e-6, 12, 0.5, 128, true}}};
+constexpr double kLoosest = 1e-1;
+constexpr std::size_t kDirectBelow = 2000;       // measured crossover of the direct and the hierarchical sum
+constexpr std::size_t kDirectLeafPoints = 256;   // direct sums: leaves only bound the rounding of local coordinates
+
+}  // namespace
+
+SumPlan sum_plan(double accuracy, std::size_t points) {
+  if (accuracy != 0 && !(accuracy >= kSettings.back().accuracy && accuracy <= kLoosest)) {
+    throw InvalidInput("accuracy must be 0 (direct sums) or between 1e-6 and 1e-1");
+  }
+  const Setting* setting = &kSettings.front();
+  for (const Setting& s : kSettings) {
+    setting = &s;
+    if (s.accuracy <= accuracy) break;
+  }
+  SumPlan plan;
+  plan.double_precision = accuracy != 0 && setting->double_precision;
+  plan.order = setting->order;
+  plan.opening = setting->opening;
+  plan.leaf_points = setting->leaf_points;
+  plan.direct = accuracy == 0 || points < kDirectBelow;
+  if (plan.direct) {
+    plan.opening = 0;
+    plan.leaf_points = kDirectLeafPoints;
+  }
+  return plan;
+}
+
+}  // namespace g3r

@@ -1,0 +1,21 @@
+// How a requested accuracy becomes an expansion order, an opening and a precision; and what memory a sum needs.
+#pragma once
+
+#include <cstddef>
+
+namespace g3r {
+
+/// Parameters of the hierarchical sums. Measured by bench/fast_sum over clouds of every kind; see docs/design.md.
+struct SumPlan {
+  bool direct = false;            ///< every pair point by point
+  bool double_precision = false;
+  int order = 4;                  ///< of the expansions
+  double opening = 0.5;           ///< far when radius_t + radius_s <= opening * distance
+  std::size_t leaf_points = 64;   ///< largest leaf
+};
+
+/// The cheapest plan whose relative l2 error stays below `accuracy` in [1e-6, 1e-1], for N points. accuracy 0, or N below the measured
+/// crossover: direct. Throws InvalidInput outside that range.
+[[nodiscard]] SumPlan sum_plan(double accuracy, std::size_t points);
+
+}  // namespace g3r

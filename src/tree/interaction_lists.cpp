@@ -1,0 +1,222 @@
+// Source: the dual tree traversal of Dehnen 2002 with a symmetric splitting rule.
+#include "tree/interaction_lists.h"
+
+#include "cpu/parallel.h"
+#include "sum/kernels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <unordered_map>
+
+namespace g3r {
+namespace {
+
+constexpr int kMaxLevelDifference = 3;      // bounds the number of distinct offsets
+constexpr std::size_t kTasksWanted = 512;   // target subtrees traversed in parallel; any value gives the same lists
+constexpr std::uint32_t kNotALeaf = 0xffffffffu;
+
+struct NodePair {
+  std::uint32_t target;
+  std::uint32_t source;
+};
+
+// The pairs that one target subtree produced.
+struct Found {
+  std::vector<NodePair> far;
+  std::vector<NodePair> near;
+};
+
+class Traversal {
+ public:
+  Traversal(const Octree& targets, const Octree& sources, double opening) : targets_(targets), sources_(sources), opening_(opening) {
+    for (const Octree* tree : {&targets, &sources}) {
+      std::vector<Vec3>& centres = tree == &targets ? target_centres_ : source_centres_;
+      centres.resize(tree->nodes.size());
+      for (std::size_t i = 0; i < centres.size(); ++i) centres[i] = tree->nodes[i].centre();
+      if (&targets == &sources) source_centres_ = target_centres_;
+    }
+  }
+
+  // Breadth first until the target side has enough subtrees; returns the open pairs grouped by target subtree.
+  std::vector<std::vector<NodePair>> start(Found& found) const {
+    std::vector<std::vector<NodePair>> tasks{{{0, 0}}};
+    for (bool progress = true; progress && tasks.size() < kTasksWanted;) {
+      progress = false;
+      std::vector<std::vector<NodePair>> next;
+      std::unordered_map<std::uint32_t, std::size_t> task_of;
+      for (const auto& task : tasks) {
+        std::vector<NodePair> stack = task;
+        while (!stack.empty()) {
+          const NodePair pair = stack.back();
+          stack.pop_back();
+          std::vector<NodePair> opened;
+          if (!open(pair, found, opened)) continue;
+          progress = true;
+          for (const NodePair& child : opened) {
+            if (child.target == pair.target) {
+              stack.push_back(child);
+              continue;
+            }
+            const auto [where, fresh] = task_of.try_emplace(child.target, next.size());
+            if (fresh) next.emplace_back();
+            next[where->second].push_back(child);
+          }
+        }
+      }
+      tasks.swap(next);
+    }
+    return tasks;
+  }
+
+  void run(std::vector<NodePair> stack, Found& found) const {
+    while (!stack.empty()) {
+      const NodePair pair = stack.back();
+      stack.pop_back();
+      open(pair, found, stack);
+    }
+  }
+
+ private:
+  // Decides a pair, or replaces it by smaller pairs. Returns whether it was replaced.
+  bool open(const NodePair& pair, Found& found, std::vector<NodePair>& out) const {
+    const OctreeNode& t = targets_.nodes[pair.target];
+    const OctreeNode& s = sources_.nodes[pair.source];
+    if (far(pair, t, s)) {
+      found.far.push_back(pair);
+      return false;
+    }
+    if (t.leaf() && s.leaf()) {
+      found.near.push_back(pair);
+      return false;
+    }
+    // The lower level (larger cube) is split, both when equal: a symmetric rule.
+    const bool split_target = !t.leaf() && (s.leaf() || t.level <= s.level);
+    const bool split_source = !s.leaf() && (t.leaf() || s.level <= t.level);
+    const std::uint32_t t_first = split_target ? t.first_child : pair.target;
+    const std::uint32_t t_count = split_target ? t.child_count : 1;
+    const std::uint32_t s_first = split_source ? s.first_child : pair.source;
+    const std::uint32_t s_count = split_source ? s.child_count : 1;
+    for (std::uint32_t i = 0; i < t_count; ++i) {
+      for (std::uint32_t j = 0; j < s_count; ++j) out.push_back({t_first + i, s_first + j});
+    }
+    return true;
+  }
+
+  [[nodiscard]] bool far(const NodePair& pair, const OctreeNode& t, const OctreeNode& s) const {
+    if (opening_ <= 0 || std::abs(t.level - s.level) > kMaxLevelDifference) return false;
+    const Vec3& a = target_centres_[pair.target];
+    const Vec3& b = source_centres_[pair.source];
+    const double dx = a[0] - b[0];
+    const double dy = a[1] - b[1];
+    const double dz = a[2] - b[2];
+    const double squared = dx * dx + dy * dy + dz * dz;
+    const double radii = t.radius + s.radius;
+    if (radii * radii > opening_ * opening_ * squared) return false;
+    const double gap = radii + kMollifierReach * std::max(t.width, s.width);
+    return gap * gap <= squared;
+  }
+
+  const Octree& targets_;
+  const Octree& sources_;
+  double opening_;
+  std::vector<Vec3> target_centres_;
+  std::vector<Vec3> source_centres_;
+};
+
+Offset offset_of(const OctreeNode& t, const OctreeNode& s) {
+  Offset offset;
+  offset.level_difference = s.level - t.level;
+  const int finest = std::max(t.level, s.level);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::int64_t target = static_cast<std::int64_t>(2 * t.cell[a] + 1) << (finest - t.level);
+    const std::int64_t source = static_cast<std::int64_t>(2 * s.cell[a] + 1) << (finest - s.level);
+    offset.displacement[a] = static_cast<std::int32_t>(target - source);
+  }
+  return offset;
+}
+
+struct OffsetHash {
+  std::size_t operator()(const Offset& o) const {
+    std::uint64_t h = static_cast<std::uint32_t>(o.level_difference);
+    for (const std::int32_t d : o.displacement) h = (h ^ static_cast<std::uint32_t>(d)) * 0x9e3779b97f4a7c15ULL;
+    return h ^ h >> 29;
+  }
+};
+
+// Gives every far pair the index of its offset in the sorted list of distinct offsets.
+void index_offsets(const Octree& targets, const Octree& sources, InteractionLists& lists) {
+  const std::size_t chunks = lists.chunk_begin.size() - 1;
+  std::vector<std::unordered_map<Offset, std::uint32_t, OffsetHash>> local(chunks);
+  std::vector<std::vector<Offset>> found(chunks);
+  parallel::for_each(chunks, [&](std::size_t c) {
+    for (std::size_t i = lists.chunk_begin[c]; i < lists.chunk_begin[c + 1]; ++i) {
+      FarPair& pair = lists.far[i];
+      const Offset offset = offset_of(targets.nodes[pair.target], sources.nodes[pair.source]);
+      const auto [where, fresh] = local[c].try_emplace(offset, static_cast<std::uint32_t>(found[c].size()));
+      if (fresh) found[c].push_back(offset);
+      pair.offset = where->second;
+    }
+  });
+  for (const auto& offsets : found) lists.offsets.insert(lists.offsets.end(), offsets.begin(), offsets.end());
+  std::sort(lists.offsets.begin(), lists.offsets.end());
+  lists.offsets.erase(std::unique(lists.offsets.begin(), lists.offsets.end()), lists.offsets.end());
+  parallel::for_each(chunks, [&](std::size_t c) {
+    std::vector<std::uint32_t> global(found[c].size());
+    for (std::size_t k = 0; k < global.size(); ++k) {
+      global[k] = static_cast<std::uint32_t>(std::lower_bound(lists.offsets.begin(), lists.offsets.end(), found[c][k]) - lists.offsets.begin());
+    }
+    const auto begin = lists.far.begin() + static_cast<std::ptrdiff_t>(lists.chunk_begin[c]);
+    const auto end = lists.far.begin() + static_cast<std::ptrdiff_t>(lists.chunk_begin[c + 1]);
+    for (auto pair = begin; pair != end; ++pair) pair->offset = global[pair->offset];
+    std::sort(begin, end, [](const FarPair& a, const FarPair& b) {
+      if (a.offset != b.offset) return a.offset < b.offset;
+      return a.target != b.target ? a.target < b.target : a.source < b.source;
+    });
+  });
+}
+
+}  // namespace
+
+InteractionLists build_interaction_lists(const Octree& targets, const Octree& sources, double opening) {
+  const Traversal traversal(targets, sources, opening);
+  Found top;
+  std::vector<std::vector<NodePair>> tasks = traversal.start(top);
+  std::vector<Found> found(tasks.size() + 1);
+  found.back() = std::move(top);
+  parallel::for_each(tasks.size(), [&](std::size_t i) { traversal.run(std::move(tasks[i]), found[i]); });
+
+  InteractionLists lists;
+  const std::size_t chunks = (targets.nodes.size() + kTargetChunk - 1) / kTargetChunk;
+  lists.chunk_begin.assign(chunks + 1, 0);
+  std::vector<std::uint32_t> target_leaf(targets.nodes.size(), kNotALeaf);
+  std::vector<std::uint32_t> source_leaf(sources.nodes.size(), kNotALeaf);
+  for (std::uint32_t i = 0; i < targets.leaves.size(); ++i) target_leaf[targets.leaves[i]] = i;
+  for (std::uint32_t i = 0; i < sources.leaves.size(); ++i) source_leaf[sources.leaves[i]] = i;
+  lists.near_begin.assign(targets.leaves.size() + 1, 0);
+  for (const Found& part : found) {
+    for (const NodePair& pair : part.far) ++lists.chunk_begin[pair.target / kTargetChunk + 1];
+    for (const NodePair& pair : part.near) ++lists.near_begin[target_leaf[pair.target] + 1];
+  }
+  for (std::size_t c = 0; c < chunks; ++c) lists.chunk_begin[c + 1] += lists.chunk_begin[c];
+  for (std::size_t i = 0; i < targets.leaves.size(); ++i) lists.near_begin[i + 1] += lists.near_begin[i];
+  lists.far.resize(lists.chunk_begin.back());
+  lists.near.resize(lists.near_begin.back());
+  std::vector<std::size_t> next_far(lists.chunk_begin.begin(), lists.chunk_begin.end() - 1);
+  std::vector<std::size_t> next_near(lists.near_begin.begin(), lists.near_begin.end() - 1);
+  for (Found& part : found) {
+    for (const NodePair& pair : part.far) lists.far[next_far[pair.target / kTargetChunk]++] = {0, pair.target, pair.source};
+    for (const NodePair& pair : part.near) lists.near[next_near[target_leaf[pair.target]]++] = source_leaf[pair.source];
+    part = {};
+  }
+  parallel::for_blocks(targets.leaves.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      std::sort(lists.near.begin() + static_cast<std::ptrdiff_t>(lists.near_begin[i]),
+                lists.near.begin() + static_cast<std::ptrdiff_t>(lists.near_begin[i + 1]));
+    }
+  });
+  index_offsets(targets, sources, lists);
+  return lists;
+}
+
+}  // namespace g3r

@@ -1,0 +1,152 @@
+// The benchmark's own parts: what it measures on, how it names methods, what it computes and writes.
+#include <g3r/error.h>
+#include <g3r/metrics.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "../bench/inputs.h"
+#include "../bench/measure.h"
+#include "../bench/method.h"
+#include "../bench/results.h"
+#include "mesh/vector.h"
+#include "mesh_shapes.h"
+
+namespace g3r::bench {
+namespace {
+
+constexpr std::size_t kCount = 20000;
+
+Mesh bar() { return shapes::moved(shapes::square(1, 0, 4), {3, 2, 1}); }
+
+TEST(BenchInputs, CleanIsTheSampleOfTheMesh) {
+  const Input input = make_input(shapes::cube(), parse_input_kind("clean"), 100, 7);
+  EXPECT_EQ(input.points, sample_mesh(shapes::cube(), 100, 7).points);
+  EXPECT_EQ(input.surface, 100u);
+}
+
+TEST(BenchInputs, EveryKindHasTheCountAskedForAndDependsOnTheSeed) {
+  for (const char* text : {"clean", "noise:0.5", "outliers:5", "gradient:10", "patches:5"}) {
+    const InputKind kind = parse_input_kind(text);
+    const Input first = make_input(shapes::sphere(1, 40), kind, 1000, 3);
+    EXPECT_EQ(first.points.size(), 1000u) << text;
+    EXPECT_EQ(first.normals.size(), first.surface) << text;
+    EXPECT_EQ(first.points, make_input(shapes::sphere(1, 40), kind, 1000, 3).points) << text;
+    EXPECT_NE(first.points, make_input(shapes::sphere(1, 40), kind, 1000, 4).points) << text;
+  }
+}
+
+TEST(BenchInputs, NoiseIsInPercentOfTheDiagonal) {
+  const Input clean = make_input(shapes::cube(), parse_input_kind("clean"), kCount, 1);
+  const Input noisy = make_input(shapes::cube(), parse_input_kind("noise:1"), kCount, 1);
+  double sum = 0;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const Vec3 d = vector::subtract(noisy.points[i], clean.points[i]);
+    sum += vector::dot(d, d);
+  }
+  EXPECT_NEAR(std::sqrt(sum / (3 * kCount)), 0.01 * std::sqrt(3.0), 0.02 * 0.01);
+}
+
+TEST(BenchInputs, OutliersComeLastAndFillALargerBox) {
+  const Input input = make_input(shapes::cube(), parse_input_kind("outliers:5"), kCount, 1);
+  EXPECT_EQ(input.surface, kCount - kCount / 20);
+  double largest = 0;
+  for (std::size_t i = input.surface; i < kCount; ++i) largest = std::max(largest, std::fabs(input.points[i][0] - 0.5));
+  EXPECT_GT(largest, 0.58);
+  EXPECT_LE(largest, 0.6);
+}
+
+TEST(BenchInputs, GradientHasTheRatioOfDensitiesAtItsEnds) {
+  const Input input = make_input(bar(), parse_input_kind("gradient:10"), kCount, 1);
+  double low = 0, high = 0;
+  for (const Vec3& p : input.points) {
+    low += p[0] < 2.2 ? 1 : 0;
+    high += p[0] > 3.8 ? 1 : 0;
+  }
+  EXPECT_NEAR(low / high, std::pow(10, 0.9), 0.8);  // tenths of the side, 0.9 sides apart
+}
+
+TEST(BenchInputs, PatchesAreEmpty) {
+  const Input input = make_input(bar(), parse_input_kind("patches:3"), kCount, 1);
+  const Input clean = make_input(bar(), parse_input_kind("clean"), kCount, 1);
+  // Some clean points have no neighbour among the points of the patched input.
+  std::size_t lonely = 0;
+  for (std::size_t i = 0; i < 500; ++i) {
+    const bool near = std::any_of(input.points.begin(), input.points.end(), [&](const Vec3& p) {
+      const Vec3 d = vector::subtract(p, clean.points[i]);
+      return vector::dot(d, d) < 0.07 * 0.07;
+    });
+    lonely += near ? 0 : 1;
+  }
+  EXPECT_GT(lonely, 0u);
+  EXPECT_LT(lonely, 50u);
+}
+
+TEST(BenchInputs, UnknownKindsAreRefused) {
+  for (const char* text : {"", "noise", "noise:", "noise:x", "noise:0", "noise:1%", "holes:3", "clean:1", "outliers:99", "gradient:nan"}) {
+    EXPECT_THROW((void)parse_input_kind(text), InvalidInput) << text;
+  }
+}
+
+TEST(BenchMethod, PresetAndOptionsAreRead) {
+  const Method method = parse_method("paper;epsilon=0.4h;schedule=20 cg;degree=1;harmonics=1,x,y,z;solver=cg;tolerance=1e-3;depth=8");
+  EXPECT_EQ(method.options.preset, Preset::kPaper);
+  EXPECT_EQ(method.options.epsilon.unit, Epsilon::Unit::kSpacing);
+  EXPECT_EQ(method.options.epsilon.value, 0.4);
+  EXPECT_EQ(method.options.schedule, "20 cg");
+  EXPECT_EQ(method.options.degree, 1);
+  EXPECT_EQ(method.options.harmonics, "1,x,y,z");
+  EXPECT_EQ(method.options.solver, Solver::kConjugateGradient);
+  EXPECT_EQ(method.options.tolerance, 1e-3);
+  EXPECT_EQ(method.mesh.depth, 8);
+  EXPECT_EQ(parse_method("paper").mesh.depth, 10);
+  EXPECT_EQ(parse_method("default").mesh.depth, 0);
+}
+
+TEST(BenchMethod, MistakesAreRefused) {
+  for (const char* text : {"", "best", "paper;degree", "paper;degree=x", "paper;colour=1", "default;epsilon=0.4y", "default;solver=lu"}) {
+    EXPECT_THROW((void)parse_method(text), InvalidInput) << text;
+  }
+}
+
+TEST(BenchMeasure, AreaUnderCurveIsTheShareOfOrderedPairs) {
+  EXPECT_EQ(area_under_curve({3, 4}, {1, 2}), 1);
+  EXPECT_EQ(area_under_curve({1, 2}, {3, 4}), 0);
+  EXPECT_EQ(area_under_curve({1, 1}, {1}), 0.5);
+  EXPECT_EQ(area_under_curve({1, 3}, {2}), 0.5);
+}
+
+Row row(const char* model, const char* method, double ae) {
+  Row r;
+  r.model = model;
+  r.input = "clean";
+  r.method = method;
+  r.points = 10;
+  r.ae = ae;
+  r.pco = 1;
+  return r;
+}
+
+TEST(BenchResults, JsonHoldsEveryRow) {
+  std::vector<Row> rows = {row("a", "paper", 0.25), row("b", "paper", 0.5)};
+  rows[1].error = "no";
+  rows[0].mesh.emplace();
+  const auto json = nlohmann::json::parse(to_json({"label", 5, 2}, rows));
+  EXPECT_EQ(json["schema"], 1);
+  EXPECT_EQ(json["seed"], 5);
+  ASSERT_EQ(json["rows"].size(), 2u);
+  EXPECT_EQ(json["rows"][0]["ae_p"], 0.25);
+  EXPECT_EQ(json["rows"][0]["mesh"]["closed"], false);
+  EXPECT_EQ(json["rows"][1]["error"], "no");
+  EXPECT_FALSE(json["rows"][1].contains("ae_p"));
+}
+
+TEST(BenchResults, MarkdownHasMeanMedianAndWorst) {
+  const std::vector<Row> rows = {row("a", "paper", 0.01), row("b", "paper", 0.05), row("c", "paper", 0.03), row("d", "paper", 0.02)};
+  const std::string text = to_markdown({"", 1, 0}, rows);
+  EXPECT_NE(text.find("| paper | 4 | 2.750 | 2.500 | b 5.000, c 3.000, d 2.000 |"), std::string::npos) << text;
+  EXPECT_NE(text.find("| a | 1.000 / 100.000 |"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace g3r::bench
