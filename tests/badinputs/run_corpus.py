@@ -24,7 +24,7 @@ def ply_bad(path, e):
     if not b.startswith(b'ply') or h < 1: return None
     m = re.search(rb'element vertex (\d+)', b[:h])
     if not m or (int(m.group(1)) == 0 and e['n'] != 0): return 'output has no vertices'
-    if '--read' in opt and int(m.group(1)) != e['n']: return 'output has %s points' % m.group(1).decode()
+    if '--read' in opt and e['n'] is not None and int(m.group(1)) != e['n']: return 'output has %s points' % m.group(1).decode()
     if re.search(rb'element (\S+) (\d+)', b[:h]).group(1) != b'vertex': return None  # records of unknown size come first
     if b'binary_little_endian' in b[:h]:
         pr, names = [], []
@@ -42,7 +42,7 @@ def ply_bad(path, e):
             r = st.unpack_from(b, o + i * st.size)
             if not all(math.isfinite(v) for v in r): return 'non-finite value in output'
             low = [min(l, r[k]) for l, k in zip(low, at)]; high = [max(l, r[k]) for l, k in zip(high, at)]
-        if '--read' in opt and n and any(abs(g - w) > e['tol'] for g, w in zip(low + high, e['bbox'][0] + e['bbox'][1])): return 'wrong coordinates'
+        if '--read' in opt and n and e['bbox'] and any(abs(g - w) > e['tol'] for g, w in zip(low + high, e['bbox'][0] + e['bbox'][1])): return 'wrong coordinates'
     return None
 res, tot = [], collections.Counter()
 for e in man['files']:
