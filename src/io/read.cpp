@@ -20,6 +20,10 @@ Cloud read_as(Format format, const Source& source, const ReadOptions& options) {
   switch (format) {
     case Format::kPly:
       return read_ply(source, options);
+    case Format::kPcd:
+      return read_pcd(source);
+    case Format::kNpy:
+      return read_npy(source);
     case Format::kOff:
       return read_off(source);
     case Format::kObj:

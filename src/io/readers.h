@@ -7,6 +7,8 @@
 namespace g3r::io {
 
 Cloud read_ply(const Source& source, const ReadOptions& options);
+Cloud read_pcd(const Source& source);
+Cloud read_npy(const Source& source);
 Cloud read_xyz(const Source& source);
 Cloud read_obj(const Source& source);
 Cloud read_off(const Source& source);

@@ -13,7 +13,7 @@ namespace g3r {
 
 namespace {
 
-constexpr std::array<std::string_view, 6> kPointFormats = {"ply", "xyz", "txt", "csv", "pts", "obj"};
+constexpr std::array<std::string_view, 8> kPointFormats = {"ply", "xyz", "txt", "csv", "pts", "pcd", "npy", "obj"};
 constexpr std::array<std::string_view, 3> kMeshFormats = {"ply", "obj", "stl"};
 
 template <class Formats>
@@ -56,6 +56,10 @@ void write_cloud(const std::string& path, const Cloud& cloud, const std::vector<
   io::OutputFile file(path);
   if (format == "ply") {
     io::write_ply(data, file);
+  } else if (format == "pcd") {
+    io::write_pcd(data, file);
+  } else if (format == "npy") {
+    io::write_npy(data, file);
   } else if (format == "obj") {
     io::write_obj(data, file);
   } else {

@@ -8,6 +8,8 @@ namespace g3r::io {
 
 void write_ply(const PointData& data, OutputFile& file);
 void write_xyz(const PointData& data, char separator, bool counted, OutputFile& file);
+void write_pcd(const PointData& data, OutputFile& file);
+void write_npy(const PointData& data, OutputFile& file);
 void write_obj(const PointData& data, OutputFile& file);
 
 void write_ply_mesh(const Mesh& mesh, bool ascii, OutputFile& file);
