@@ -13,11 +13,11 @@
 namespace g3r {
 namespace {
 
-constexpr double kBoxSide = 2.0 / 1.1;      // the paper's normalisation
-constexpr int kGridBits = 21;               // 3 x 21 = 63 bits fit one code
-constexpr std::size_t kBlock = 1u << 14;    // points per parallel block; any value gives the same result
-constexpr std::size_t kFewestPoints = 4;    // fewer cannot enclose a volume
-constexpr double kLineThickness = 1e-10;    // second principal spread over the first, below which points count as collinear
+constexpr double kBoxSide = 2.0 / 1.1;    // the paper's normalisation
+constexpr int kGridBits = 21;             // 3 x 21 = 63 bits fit one code
+constexpr std::size_t kBlock = 1u << 14;  // points per parallel block; any value gives the same result
+constexpr std::size_t kFewestPoints = 4;  // fewer cannot enclose a volume
+constexpr double kLineThickness = 1e-10;  // spread across the principal axis over all spread, below which points count as collinear
 
 bool finite(const Vec3& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }
 
@@ -112,8 +112,14 @@ void require_not_collinear(const std::vector<Vec3>& points) {
     const Eigen::Vector3d d = Eigen::Map<const Eigen::Vector3d>(p.data()) - mean;
     spread += d * d.transpose();
   }
-  const Eigen::Vector3d eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread, Eigen::EigenvaluesOnly).eigenvalues();
-  if (eigenvalues[1] <= kLineThickness * kLineThickness * eigenvalues[2]) {
+  // Distances to the axis, not the small eigenvalues: those drown in the rounding of the large one.
+  const Eigen::Vector3d axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(2);
+  double across = 0;
+  for (const Vec3& p : points) {
+    const Eigen::Vector3d d = Eigen::Map<const Eigen::Vector3d>(p.data()) - mean;
+    across += (d - axis * axis.dot(d)).squaredNorm();
+  }
+  if (across <= kLineThickness * kLineThickness * spread.trace()) {
     throw InvalidInput("all points are collinear (on one line); a surface needs points around a volume");
   }
 }
