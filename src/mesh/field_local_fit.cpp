@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kMaxNeighbours = 128;
+constexpr std::size_t kMaxNeighbours = 256;
 constexpr std::size_t kSpacingNeighbours = 8;
 constexpr double kSameSheet = 0.85;   // cosine: normals within about 32 degrees belong to one sheet
 constexpr std::size_t kMinSheet = 3;  // points; fewer are noise
@@ -41,11 +41,7 @@ struct Cloud {
 
 using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, std::uint32_t>;
 
-struct Member {
-  Vector3d p, n;
-  double weight = 0;
-  int sheet = -1;
-};
+using Member = FitPoint;
 
 Eigen::Matrix3d frame_of(const Vector3d& n) {
   Eigen::Matrix3d f;
@@ -62,47 +58,6 @@ double misfit(const Sheet& s, const Member& m, double h, double normal_weight) {
   Vector3d g;
   const double d = s.distance(m.p, &g) / h;
   return m.weight * (d * d + normal_weight * (g - m.n).squaredNorm());
-}
-
-// Least squares: sum w [ (z - q(u, v))^2 + lambda h^2 |slope - grad q|^2 ], in units of h.
-Sheet fit_sheet(const std::vector<Member>& members, int which, double h, double normal_weight) {
-  Vector3d mean_p = Vector3d::Zero(), mean_n = Vector3d::Zero();
-  double total = 0;
-  for (const Member& m : members) {
-    if (m.sheet != which) continue;
-    mean_p += m.weight * m.p;
-    mean_n += m.weight * m.n;
-    total += m.weight;
-  }
-  Sheet s;
-  s.origin = mean_p / total;
-  s.frame = frame_of(mean_n.normalized());
-  Eigen::Matrix<double, 6, 6> normal_matrix = Eigen::Matrix<double, 6, 6>::Zero();
-  Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
-  const auto add = [&](const Eigen::Matrix<double, 6, 1>& row, double value, double weight) {
-    normal_matrix.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
-    right += weight * value * row;
-  };
-  for (const Member& m : members) {
-    if (m.sheet != which) continue;
-    const Vector3d q = s.frame * (m.p - s.origin) / h;
-    const Vector3d n = s.frame * m.n;
-    const double u = q[0], v = q[1], up = std::max(n[2], 0.2);
-    Eigen::Matrix<double, 6, 1> row;
-    row << 1, u, v, u * u, u * v, v * v;
-    add(row, q[2], m.weight);
-    row << 0, 1, 0, 2 * u, v, 0;
-    add(row, -n[0] / up, m.weight * normal_weight);
-    row << 0, 0, 1, 0, u, 2 * v;
-    add(row, -n[1] / up, m.weight * normal_weight);
-  }
-  for (int k = 3; k < 6; ++k) normal_matrix(k, k) += kRidge * total;
-  normal_matrix(0, 0) += 1e-12 * total;
-  for (int k = 1; k < 3; ++k) normal_matrix(k, k) += 1e-9 * total;
-  const Eigen::Matrix<double, 6, 1> c = normal_matrix.selfadjointView<Eigen::Lower>().ldlt().solve(right);
-  const std::array<double, 6> unit{h, 1, 1, 1 / h, 1 / h, 1 / h};
-  for (std::size_t k = 0; k < 6; ++k) s.c[k] = c[static_cast<Eigen::Index>(k)] * unit[k];
-  return s;
 }
 
 Joint joint_of(const LocalSurface& s, const std::vector<Member>& members, int a, int b) {
@@ -146,6 +101,46 @@ void prefer_one_sheet(LocalSurface& s, std::vector<Member>& members, double norm
 }
 
 }  // namespace
+
+Sheet fit_sheet(const std::vector<Member>& members, int which, double h, double normal_weight) {
+  Vector3d mean_p = Vector3d::Zero(), mean_n = Vector3d::Zero();
+  double total = 0;
+  for (const Member& m : members) {
+    if (m.sheet != which) continue;
+    mean_p += m.weight * m.p;
+    mean_n += m.weight * m.n;
+    total += m.weight;
+  }
+  Sheet s;
+  s.origin = mean_p / total;
+  s.frame = frame_of(mean_n.normalized());
+  Eigen::Matrix<double, 6, 6> normal_matrix = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
+  const auto add = [&](const Eigen::Matrix<double, 6, 1>& row, double value, double weight) {
+    normal_matrix.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
+    right += weight * value * row;
+  };
+  for (const Member& m : members) {
+    if (m.sheet != which) continue;
+    const Vector3d q = s.frame * (m.p - s.origin) / h;
+    const Vector3d n = s.frame * m.n;
+    const double u = q[0], v = q[1], up = std::max(n[2], 0.2);
+    Eigen::Matrix<double, 6, 1> row;
+    row << 1, u, v, u * u, u * v, v * v;
+    add(row, q[2], m.weight);
+    row << 0, 1, 0, 2 * u, v, 0;
+    add(row, -n[0] / up, m.weight * normal_weight);
+    row << 0, 0, 1, 0, u, 2 * v;
+    add(row, -n[1] / up, m.weight * normal_weight);
+  }
+  for (int k = 3; k < 6; ++k) normal_matrix(k, k) += kRidge * total;
+  normal_matrix(0, 0) += 1e-12 * total;
+  for (int k = 1; k < 3; ++k) normal_matrix(k, k) += 1e-9 * total;
+  const Eigen::Matrix<double, 6, 1> c = normal_matrix.selfadjointView<Eigen::Lower>().ldlt().solve(right);
+  const std::array<double, 6> unit{h, 1, 1, 1 / h, 1 / h, 1 / h};
+  for (std::size_t k = 0; k < 6; ++k) s.c[k] = c[static_cast<Eigen::Index>(k)] * unit[k];
+  return s;
+}
 
 double Sheet::distance(const Vector3d& x, Vector3d* gradient) const {
   const Vector3d q = frame * (x - origin);

@@ -32,6 +32,17 @@ struct Sheet {
   double distance(const Eigen::Vector3d& x, Eigen::Vector3d* gradient = nullptr) const;
 };
 
+/// A point that takes part in a fit.
+struct FitPoint {
+  Eigen::Vector3d p, n;  ///< position, unit normal
+  double weight = 0;
+  int sheet = -1;  ///< number of the sheet it belongs to, < 0: none
+};
+
+/// The sheet that minimises sum weight [ (height misfit)^2 + normal_weight h^2 |slope misfit|^2 ] over the points of sheet `which`,
+/// of which there is at least one. `h`: length unit of the fit.
+[[nodiscard]] Sheet fit_sheet(const std::vector<FitPoint>& points, int which, double h, double normal_weight);
+
 /// How two sheets bound the solid between them.
 enum class Joint : signed char {
   kNone,    ///< they do not meet here
