@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 constexpr std::size_t kSampled = 2000;
 constexpr double kEstimateWidth = 1.8;  // spacings; wide against noise of one spacing
 constexpr double kWidthFloor = 0.8;     // spacings: width of the smoothing at no noise,
-constexpr double kWidthPerNoise = 1.5;  // plus this many standard deviations
+constexpr double kWidthPerNoise = 2.0;  // plus this many standard deviations
 constexpr double kWidthMost = 4.0;      // spacings; wider costs too much and rounds too much
 constexpr double kSameSide = 0.3;       // cosine: points that face elsewhere belong to another part of the surface
 constexpr double kReach = 2.0;          // widths: points beyond weigh less than 14 %
@@ -30,7 +30,7 @@ class Neighbourhood {
     const double h = points_.spacing[i];
     const auto k = static_cast<std::size_t>(std::clamp(M_PI * kReach * kReach * width * width, 12.0, 200.0));
     const Vector3d x = vector(points_.positions[i]);
-    local_.nearest(x, k, index_, squared_);
+    local_.neighbours().nearest(points_.positions[i], k, index_, squared_);
     Vector3d axis = vector(points_.normals[i]);
     const double scale = 1 / (2 * width * width * h * h);
     for (int pass = 0; pass < 2; ++pass) {  // the second time about the mean normal, which is less noisy

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nanoflann.hpp>
 
 #include "cpu/parallel.h"
 
@@ -14,8 +13,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kMaxNeighbours = 256;
-constexpr std::size_t kSpacingNeighbours = 8;
 constexpr double kSameSheet = 0.85;   // cosine: normals within about 32 degrees belong to one sheet
 constexpr std::size_t kMinSheet = 3;  // points; fewer are noise
 constexpr double kRidge = 1e-3;       // on the curvatures, relative to the weight of the data: keeps them bounded where points are few
@@ -28,18 +25,6 @@ constexpr double kFacing = -0.3;     // cosine: sheets that face away from each 
 constexpr double kSplitGain = 0.05;  // several sheets must reduce the squared misfit of one sheet to this share
 
 Vector3d vector(const Vec3& p) { return {p[0], p[1], p[2]}; }
-
-struct Cloud {
-  const std::vector<Vec3>& p;
-  [[nodiscard]] std::size_t kdtree_get_point_count() const { return p.size(); }
-  [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t d) const { return p[i][d]; }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, std::uint32_t>;
 
 using Member = FitPoint;
 
@@ -186,32 +171,16 @@ double LocalSurface::distance(const Vector3d& x, int* active) const {
   return result.f;
 }
 
-struct LocalFit::Index {
-  Cloud cloud;
-  Tree tree;
-  explicit Index(const std::vector<Vec3>& p) : cloud{p}, tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(12)) {
-    tree.buildIndex();
-  }
-};
-
 LocalFit::LocalFit(const OrientedPoints& points, const LocalFitOptions& options)
-    : points_(points), options_(options), index_(std::make_unique<Index>(points.positions)) {
-  options_.neighbours = std::min({options_.neighbours, points.positions.size(), kMaxNeighbours});
-}
-LocalFit::~LocalFit() = default;
-
-void LocalFit::nearest(const Vector3d& x, std::size_t k, std::vector<std::uint32_t>& index, std::vector<double>& squared) const {
-  k = std::min(k, points_.positions.size());
-  index.resize(k);
-  squared.resize(k);
-  index_->tree.knnSearch(x.data(), k, index.data(), squared.data());
+    : points_(points), options_(options), neighbours_(points.positions) {
+  options_.neighbours = std::min(options_.neighbours, points.positions.size());
 }
 
 LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* direction) const {
   thread_local std::vector<std::uint32_t> index;
   thread_local std::vector<double> squared;
   thread_local std::vector<Member> members;
-  nearest(x, options_.neighbours, index, squared);
+  neighbours_.nearest({x[0], x[1], x[2]}, options_.neighbours, index, squared);
   LocalSurface out;
   out.nearest = std::sqrt(squared[0]);
   out.spacing = points_.spacing[index[0]];
@@ -287,7 +256,7 @@ std::vector<double> wall_thickness(const OrientedPoints& points, const LocalFit&
     std::vector<double> squared;
     for (std::size_t i = begin; i < end; ++i) {
       const Vector3d p = vector(points.positions[i]), normal = vector(points.normals[i]);
-      local.nearest(p, kWallNeighbours, index, squared);
+      local.neighbours().nearest(points.positions[i], kWallNeighbours, index, squared);
       for (const std::uint32_t j : index) {
         if (normal.dot(vector(points.normals[j])) > kOpposite) continue;
         out[i] = std::min(out[i], std::abs(normal.dot(vector(points.positions[j]) - p)));
@@ -295,30 +264,6 @@ std::vector<double> wall_thickness(const OrientedPoints& points, const LocalFit&
     }
   });
   return out;
-}
-
-std::vector<double> local_spacing(const std::vector<Vec3>& positions) {
-  const Cloud cloud{positions};
-  Tree tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(12));
-  tree.buildIndex();
-  const std::size_t n = positions.size(), k = std::min(kSpacingNeighbours + 1, n);
-  std::vector<std::uint32_t> index(n * k);
-  std::vector<double> raw(n), smooth(n);
-  parallel::for_blocks(n, 256, [&](std::size_t begin, std::size_t end) {
-    std::vector<double> squared(k);
-    for (std::size_t i = begin; i < end; ++i) {
-      tree.knnSearch(positions[i].data(), k, index.data() + i * k, squared.data());
-      raw[i] = squared[k - 1] * M_PI / static_cast<double>(std::max<std::size_t>(k - 1, 1));
-    }
-  });
-  parallel::for_blocks(n, 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      double sum = 0;
-      for (std::size_t j = 0; j < k; ++j) sum += raw[index[i * k + j]];
-      smooth[i] = std::sqrt(sum / static_cast<double>(k));
-    }
-  });
-  return smooth;
 }
 
 }  // namespace g3r::mesh

@@ -11,7 +11,7 @@
 #include "mesh/field_local_fit.h"
 #include "mesh/field_octree.h"
 #include "mesh/field_placement.h"
-#include "mesh/mesh_parts.h"
+#include "mesh/mesh_finish.h"
 
 namespace g3r {
 namespace {
@@ -50,7 +50,7 @@ double median(std::vector<double> values) {
 
 // Unit normals, the local spacing and, where the positions scatter, points moved onto the surface they scatter about.
 OrientedPoints prepare(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, double& noise, const Monitor& monitor) {
-  OrientedPoints out{points, normals, mesh::local_spacing(points)};
+  OrientedPoints out{points, normals, mesh::smooth_spacing(points)};
   for (Vec3& n : out.normals) {
     const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
     if (!(length > 0)) throw InvalidInput("a normal is zero");
@@ -179,7 +179,7 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
   mesh::PlacedVertices placed = mesh::place_vertices(octree, surface, value, local, monitor.cancel);
   report(monitor, 0.95);
   Mesh mesh = mesh::triangulate(surface, std::move(placed.positions), placed.normals);
-  mesh::remove_components(mesh, options.min_component * spacing * spacing, options.keep_largest);
+  mesh::finish_mesh(mesh, oriented.positions, options);
   report(monitor, 1);
   return mesh;
 }
