@@ -8,6 +8,7 @@
 #pragma once
 
 #include <g3r/error.h>
+#include <g3r/export.h>
 #include <g3r/mesh.h>
 #include <g3r/points.h>
 
@@ -21,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-namespace g3r {
+namespace G3R_PUBLIC g3r {
 
 /// A named set of defaults. Every option that is set explicitly wins over the preset.
 enum class Preset {

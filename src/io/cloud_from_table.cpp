@@ -1,0 +1,134 @@
+#include "io/cloud_from_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+
+namespace g3r::io {
+
+namespace {
+
+constexpr std::size_t kNone = Element::npos;
+
+bool is_number(const Property& property) { return !property.list && property.count == 1; }
+
+std::size_t find_first(const Element& points, std::initializer_list<std::string_view> names) {
+  for (const std::string_view name : names) {
+    const std::size_t found = points.find(name);
+    if (found != kNone && is_number(points.properties[found])) return found;
+  }
+  return kNone;
+}
+
+void find_triple(const Element& points, const std::initializer_list<std::string_view>* names, std::size_t* found) {
+  for (int axis = 0; axis < 3; ++axis) found[axis] = find_first(points, names[axis]);
+  if (found[0] == kNone || found[1] == kNone || found[2] == kNone) std::fill_n(found, 3, kNone);
+}
+
+std::uint8_t to_channel(double value, double scale) {
+  const double level = std::nearbyint(value * scale);
+  return static_cast<std::uint8_t>(level >= 0 ? std::min(level, 255.0) : 0.0);
+}
+
+void require_positions(const Source& source, const Element& points) {
+  for (const char* axis : {"x", "y", "z"}) {
+    const std::size_t found = points.find(axis);
+    if (found == kNone)
+      fail(source, std::string("no property \"") + axis + "\" (field " + axis + "): points need the properties x, y and z");
+    if (!is_number(points.properties[found]))
+      fail(source, std::string("the property \"") + axis + "\" is a list: expected one number (count 1)");
+  }
+}
+
+// What brings a colour channel to 0..255: floats may mean 0..1, 16 bits may be in full use.
+double color_scale(const Element& points, RecordLayout& layout, std::size_t property) {
+  const Type type = points.properties[property].type;
+  if (!is_float(type) && type != Type::kUint16) return 1;
+  double largest = 0;
+  const char* record = points.data.data();
+  for (std::uint64_t i = 0; i < points.count; ++i, record += layout.size()) {
+    layout.seek(record);
+    const double value = load_as_double(type, record + layout.offset(property));
+    if (std::isfinite(value)) largest = std::max(largest, value);
+  }
+  if (type == Type::kUint16) return largest > 255 ? 1.0 / 257 : 1;
+  return largest > 1 ? 1 : 255;
+}
+
+}  // namespace
+
+Roles find_roles(const Element& points) {
+  Roles roles{};
+  const std::initializer_list<std::string_view> position[] = {{"x"}, {"y"}, {"z"}};
+  const std::initializer_list<std::string_view> normal[] = {{"nx", "normal_x"}, {"ny", "normal_y"}, {"nz", "normal_z"}};
+  const std::initializer_list<std::string_view> color[] = {
+      {"red", "r", "diffuse_red"}, {"green", "g", "diffuse_green"}, {"blue", "b", "diffuse_blue"}};
+  find_triple(points, position, roles.position);
+  find_triple(points, normal, roles.normal);
+  find_triple(points, color, roles.color);
+  roles.packed_color = find_first(points, {"rgb", "rgba"});
+  if (roles.packed_color != kNone && size_of(points.properties[roles.packed_color].type) != 4) roles.packed_color = kNone;
+  roles.confidence = find_first(points, {"confidence", "quality", "scalar_confidence", "scalar_quality"});
+  return roles;
+}
+
+void fill_cloud(const Source& source, std::shared_ptr<const Attributes> table, Cloud& cloud) {
+  const Element& points = table->points();
+  require_positions(source, points);
+  const Roles roles = find_roles(points);
+  const auto has = [](const std::size_t* triple) { return triple[0] != kNone; };
+  const auto type = [&](std::size_t property) { return points.properties[property].type; };
+  const auto count = static_cast<std::size_t>(points.count);  // the records are in memory, so it fits
+
+  cloud.positions.reserve(count);
+  if (has(roles.normal)) cloud.normals.reserve(count);
+  const bool colored = has(roles.color) || roles.packed_color != kNone;
+  if (colored) cloud.colors.reserve(count);
+  if (roles.confidence != kNone) cloud.confidence.reserve(count);
+  cloud.scalar = std::all_of(roles.position, roles.position + 3, [&](std::size_t p) { return type(p) == Type::kFloat32; })
+                     ? Scalar::kFloat32
+                     : Scalar::kFloat64;
+
+  RecordLayout layout(points);
+  double scale[3] = {1, 1, 1};
+  if (has(roles.color)) {
+    for (int c = 0; c < 3; ++c) scale[c] = color_scale(points, layout, roles.color[c]);
+    const double least = *std::min_element(scale, scale + 3);  // one channel of 0..255 means that all are
+    std::fill_n(scale, 3, least);
+  }
+  bool any_normal = false;
+  const char* record = points.data.data();
+  for (std::size_t i = 0; i < count; ++i, record += layout.size()) {
+    layout.seek(record);
+    const auto number = [&](std::size_t property) { return load_as_double(type(property), record + layout.offset(property)); };
+    const auto triple = [&](const std::size_t* p) { return Vec3{number(p[0]), number(p[1]), number(p[2])}; };
+    cloud.positions.push_back(triple(roles.position));
+    if (has(roles.normal)) {
+      cloud.normals.push_back(triple(roles.normal));
+      const Vec3& n = cloud.normals.back();
+      any_normal = any_normal || n[0] != 0 || n[1] != 0 || n[2] != 0;
+    }
+    if (has(roles.color)) {
+      cloud.colors.push_back({to_channel(number(roles.color[0]), scale[0]), to_channel(number(roles.color[1]), scale[1]),
+                              to_channel(number(roles.color[2]), scale[2])});
+    } else if (colored) {
+      const auto packed = load<std::uint32_t>(record + layout.offset(roles.packed_color));
+      cloud.colors.push_back(
+          {static_cast<std::uint8_t>(packed >> 16), static_cast<std::uint8_t>(packed >> 8), static_cast<std::uint8_t>(packed)});
+    }
+    if (roles.confidence != kNone) {
+      float value = 0;
+      store_double(Type::kFloat32, number(roles.confidence), reinterpret_cast<char*>(&value));
+      cloud.confidence.push_back(value);
+    }
+  }
+  if (!any_normal && !cloud.normals.empty()) {
+    cloud.normals = {};
+    cloud.warnings.emplace_back("all normals in the file are zero: they are not used");
+  }
+  cloud.property_names.reserve(points.properties.size());
+  for (const Property& property : points.properties) cloud.property_names.push_back(property.name);
+  cloud.attributes = std::move(table);
+}
+
+}  // namespace g3r::io

@@ -1,0 +1,43 @@
+// A file that is written whole or not at all: temporary file in the same folder, checked writes, fsync, rename, fsync of the folder.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace g3r::io {
+
+/// Until commit() the old file, if any, is untouched; without commit() the temporary file is removed. An existing path that is no regular
+/// file (a device, a pipe) and "-" (standard output) are written to directly. A symbolic link is followed, and an existing file's mode
+/// kept. A temporary file left behind by a killed process is found by its unlocked state and reused by the next run.
+class OutputFile {
+ public:
+  /// Throws IoError (kCannotCreate).
+  explicit OutputFile(const std::string& path);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  /// Appends bytes. Throws IoError (kFailed).
+  void write(const void* bytes, std::size_t size);
+  void write(std::string_view text) { write(text.data(), text.size()); }
+  /// Makes the file take its place. Throws IoError (kFailed).
+  void commit();
+
+ private:
+  void create_temporary(unsigned mode, bool keep_mode);
+  bool lock_temporary();
+  void flush();
+  [[noreturn]] void fail(bool creating, int error) const;
+
+  std::string path_;       // for messages
+  std::string target_;     // links resolved
+  std::string temporary_;  // "" when written directly
+  std::string buffer_;
+  int fd_ = -1;
+};
+
+/// Throws what OutputFile(path) would throw; leaves nothing behind.
+void check_creatable(const std::string& path);
+
+}  // namespace g3r::io

@@ -1,0 +1,115 @@
+// From bytes to a cloud or a mesh: recognise the format, call its reader, check what holds for all formats.
+#include "io/readers.h"
+#include "io/recognise.h"
+#include "io/source.h"
+#include "io/text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace g3r {
+
+namespace io {
+
+namespace {
+
+std::string display_name(const std::string& path) { return path == "-" ? "standard input" : path; }
+
+Cloud read_as(Format format, const Source& source, const ReadOptions& options) {
+  switch (format) {
+    case Format::kPly:
+      return read_ply(source, options);
+    case Format::kOff:
+      return read_off(source);
+    case Format::kObj:
+      return read_obj(source);
+    case Format::kStlBinary:
+      return read_stl(source, true);
+    case Format::kStlText:
+      return read_stl(source, false);
+    case Format::kText:
+      return read_xyz(source);
+    default:
+      break;
+  }
+  fail(source, "this format is not read");
+}
+
+// Coordinates in float32 far from the origin have lost their last digits before we see them.
+void warn_about_precision(Cloud& cloud) {
+  if (cloud.scalar != Scalar::kFloat32) return;
+  constexpr double kStepPerExtent = 1e-4;  // steps of the numbers that are visible as steps of the surface
+  for (int axis = 0; axis < 3; ++axis) {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (const Vec3& p : cloud.positions) {
+      const double value = p[static_cast<std::size_t>(axis)];
+      if (!std::isfinite(value)) continue;
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+    const double step = std::max(std::abs(low), std::abs(high)) * static_cast<double>(std::numeric_limits<float>::epsilon());
+    if (high > low && step > kStepPerExtent * (high - low)) {
+      std::string text = "coordinates in float32 are quantised to steps of ";
+      append_number(text, static_cast<float>(step));
+      text += " in an extent of ";
+      append_number(text, static_cast<float>(high - low));
+      cloud.warnings.push_back(text + ": precision is lost; store them as double, or subtract an offset first");
+      return;
+    }
+  }
+}
+
+}  // namespace
+
+}  // namespace io
+
+Cloud read_cloud_bytes(const void* bytes, std::size_t size, const std::string& name, const ReadOptions& options) {
+  io::Source source{{static_cast<const char*>(bytes), size}, io::display_name(name)};
+  const io::Format format = io::recognise(source);
+  source.bytes = io::without_mark(source.bytes);
+  Cloud cloud = io::read_as(format, source, options);
+  io::warn_about_precision(cloud);
+  return cloud;
+}
+
+Mesh read_mesh_bytes(const void* bytes, std::size_t size, const std::string& name) {
+  io::Source source{{static_cast<const char*>(bytes), size}, io::display_name(name)};
+  const io::Format format = io::recognise(source);
+  source.bytes = io::without_mark(source.bytes);
+  Mesh mesh;
+  switch (format) {
+    case io::Format::kPly:
+      mesh = io::read_ply_mesh(source);
+      break;
+    case io::Format::kObj:
+      mesh = io::read_obj_mesh(source);
+      break;
+    case io::Format::kOff:
+      mesh = io::read_off_mesh(source);
+      break;
+    case io::Format::kStlBinary:
+      mesh = io::read_stl_mesh(source, true);
+      break;
+    case io::Format::kStlText:
+      mesh = io::read_stl_mesh(source, false);
+      break;
+    default:
+      io::fail(source, "not a mesh format: expected PLY, OBJ, OFF or STL");
+  }
+  if (mesh.triangles.empty()) io::fail(source, "no faces: expected a mesh with at least one triangle");
+  return mesh;
+}
+
+Cloud read_cloud(const std::string& path, const ReadOptions& options) {
+  const std::string bytes = io::read_bytes(path);
+  return read_cloud_bytes(bytes.data(), bytes.size(), path, options);
+}
+
+Mesh read_mesh(const std::string& path) {
+  const std::string bytes = io::read_bytes(path);
+  return read_mesh_bytes(bytes.data(), bytes.size(), path);
+}
+
+}  // namespace g3r

@@ -1,0 +1,20 @@
+// One reader per format, each in its own file. All take recognised bytes, without a byte order mark for text formats, and throw
+// InvalidInput. None allocates more than the bytes at hand can fill.
+#pragma once
+
+#include "io/source.h"
+
+namespace g3r::io {
+
+Cloud read_ply(const Source& source, const ReadOptions& options);
+Cloud read_xyz(const Source& source);
+Cloud read_obj(const Source& source);
+Cloud read_off(const Source& source);
+Cloud read_stl(const Source& source, bool binary);
+
+Mesh read_ply_mesh(const Source& source);
+Mesh read_obj_mesh(const Source& source);
+Mesh read_off_mesh(const Source& source);
+Mesh read_stl_mesh(const Source& source, bool binary);
+
+}  // namespace g3r::io

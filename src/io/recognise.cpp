@@ -1,0 +1,154 @@
+#include "io/recognise.h"
+
+#include "io/table.h"
+#include "io/text.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+namespace g3r::io {
+
+namespace {
+
+using std::string_view_literals::operator""sv;
+
+struct Signature {
+  std::string_view magic;
+  const char* what;
+};
+
+// Files that people mistake for point clouds, and what to do with them.
+constexpr Signature kStrangers[] = {
+    {"\x1f\x8b"sv, "a gzip-compressed file; unpack it first"},
+    {"PK\x03\x04"sv, "a zip archive (compressed); unpack it first"},
+    {"BZh"sv, "a bzip2-compressed file; unpack it first"},
+    {"\xfd"
+     "7zXZ"sv,
+     "an xz-compressed file; unpack it first"},
+    {"(\xb5/\xfd"sv, "a zstd-compressed file; unpack it first"},
+    {"x\x01"sv, "zlib-compressed data; uncompress it first"},
+    {"x\x5e"sv, "zlib-compressed data; uncompress it first"},
+    {"x\x9c"sv, "zlib-compressed data; uncompress it first"},
+    {"x\xda"sv, "zlib-compressed data; uncompress it first"},
+    {"version https://git-lfs"sv, "a git-lfs pointer, not the file itself; run \"git lfs pull\""},
+    {"<!DOCTYPE"sv, "an HTML page; the download failed"},
+    {"<!doctype"sv, "an HTML page; the download failed"},
+    {"<html"sv, "an HTML page; the download failed"},
+    {"<?xml"sv, "an XML file, which is no point format"},
+    {"%PDF"sv, "a PDF file"},
+    {"\x89HDF"sv, "an HDF5 file"},
+    {"\xff\xfe"sv, "UTF-16 text; save it as UTF-8"},
+    {"\xfe\xff"sv, "UTF-16 text; save it as UTF-8"},
+    {"ASTM-E57"sv, "an E57 file, which g3r does not read; convert it, for example with \"pdal translate in.e57 out.las\" or CloudCompare"},
+};
+
+constexpr std::array<std::string_view, 16> kObjKeywords = {"v", "vn", "vt",     "vp",     "f",    "l",      "p",   "o",
+                                                           "g", "s",  "mtllib", "usemtl", "call", "cstype", "deg", "mg"};
+constexpr std::array<std::string_view, 4> kPcdKeywords = {"VERSION", "FIELDS", "COLUMNS", "SIZE"};
+
+// The first lines that are neither blank nor comments.
+class Beginning {
+ public:
+  explicit Beginning(std::string_view bytes) : lines_(bytes) {}
+  bool next(std::string_view& line) {
+    while (lines_.next_filled(line)) {
+      if (line[0] != '#' && line.substr(0, 2) != "//") return true;
+    }
+    return false;
+  }
+
+ private:
+  Lines lines_;
+};
+
+std::string_view first_word(std::string_view line) {
+  std::string_view word;
+  Tokens(line).next(word);
+  return word;
+}
+
+// "OFF", "COFF", "STCN4nOFF" and the like, alone or with the first count glued to it.
+bool is_off_magic(std::string_view word) {
+  const std::size_t off = word.find("OFF");
+  if (off == std::string_view::npos || off > 6) return false;
+  const std::string_view after = word.substr(off + 3);
+  return word.substr(0, off).find_first_not_of("STCN4n") == std::string_view::npos &&
+         (after.empty() || after == "BINARY" || after.find_first_not_of("0123456789") == std::string_view::npos);
+}
+
+// Whether the line starts with a number, whatever separates it from the next.
+bool starts_with_number(std::string_view line) {
+  const std::size_t end = line.find_first_of(" \t,;");
+  double value = 0;
+  return parse_double(line.substr(0, end), value) || (!line.empty() && line.find_first_of("+-.0123456789") == 0);
+}
+
+std::size_t count_fields(std::string_view line) {
+  std::size_t fields = 0;
+  for (std::size_t at = 0; (at = line.find_first_not_of(" \t,;", at)) != std::string_view::npos; ++fields) {
+    at = std::min(line.find_first_of(" \t,;", at), line.size());
+  }
+  return fields;
+}
+
+std::string magic_of(const std::string& ext) {
+  if (ext == "ply") return "the PLY magic \"ply\"";
+  if (ext == "npy") return "the NPY magic \"\\x93NUMPY\"";
+  if (ext == "las" || ext == "laz") return "the LAS magic \"LASF\"";
+  if (ext == "off") return "the OFF magic \"OFF\"";
+  if (ext == "pcd") return "a PCD header (\"# .PCD\", VERSION, FIELDS)";
+  if (ext == "glb") return "the GLB magic \"glTF\"";
+  if (ext == "stl") return "an STL file (\"solid\", or 84 bytes and 50 bytes for each triangle it declares)";
+  if (ext == "obj") return "OBJ lines (v x y z) with vertices";
+  return "lines of numbers (text), or the magic of PLY, PCD, OFF, OBJ, STL, NPY, LAS or glTF";
+}
+
+}  // namespace
+
+std::string_view without_mark(std::string_view bytes) {
+  if (bytes.substr(0, 3) == "\xef\xbb\xbf") bytes.remove_prefix(3);
+  return bytes;
+}
+
+bool is_binary_stl(std::string_view bytes) {
+  constexpr std::size_t kHeader = 80;
+  constexpr std::uint64_t kTriangle = 50;
+  return bytes.size() >= kHeader + 4 && bytes.size() == kHeader + 4 + kTriangle * load<std::uint32_t>(bytes.data() + kHeader);
+}
+
+Format recognise(const Source& source) {
+  const std::string ext = extension(source.name);
+  const std::string_view bytes = without_mark(source.bytes);
+  if (bytes.empty()) fail(source, "empty file (0 bytes): expected " + magic_of(ext));
+  for (const Signature& stranger : kStrangers) {
+    if (bytes.substr(0, stranger.magic.size()) == stranger.magic) {
+      fail(source, std::string("expected ") + magic_of(ext) + ", found " + stranger.what);
+    }
+  }
+  if (bytes.substr(0, 4) == "ply\n" || bytes.substr(0, 4) == "ply\r" || bytes.substr(0, 4) == "ply ") return Format::kPly;
+  if (bytes.substr(0, 6) == "\x93NUMPY") return Format::kNpy;
+  if (bytes.substr(0, 4) == "LASF") return Format::kLas;
+  if (bytes.substr(0, 4) == "glTF") return Format::kGlb;
+  if (bytes.substr(0, 6) == "# .PCD") return Format::kPcd;
+  if (is_binary_stl(bytes)) return Format::kStlBinary;
+
+  Beginning beginning(bytes);
+  std::string_view line;
+  if (!beginning.next(line)) fail(source, "no points: only blank lines and comments");
+  const std::string_view word = first_word(line);
+  if (std::find(kPcdKeywords.begin(), kPcdKeywords.end(), word) != kPcdKeywords.end()) return Format::kPcd;
+  if (is_off_magic(word)) return Format::kOff;
+  if (word == "solid") return Format::kStlText;
+  if (line[0] == '{') return Format::kGltf;
+  if (std::find(kObjKeywords.begin(), kObjKeywords.end(), word) != kObjKeywords.end()) return Format::kObj;
+  const bool named = count_fields(line) >= 3;  // a header line of a table
+  if (starts_with_number(line) || (named && beginning.next(line) && starts_with_number(line))) {
+    if (line.find('\0') == std::string_view::npos) return Format::kText;
+  }
+  const bool binary = bytes.substr(0, 4096).find('\0') != std::string_view::npos;
+  fail_at_byte(source, 0,
+               "unknown format: expected " + magic_of(ext) + ", found " + (binary ? "binary data " : "") + quote(bytes.substr(0, 80)));
+}
+
+}  // namespace g3r::io

@@ -1,0 +1,137 @@
+#include "io/table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace g3r::io {
+
+namespace {
+
+template <class T>
+void store_integer(double value, char* bytes) {
+  constexpr auto kLow = static_cast<double>(std::numeric_limits<T>::min());
+  constexpr auto kHigh = static_cast<double>(std::numeric_limits<T>::max());  // 2^63 or 2^64 for 64 bits: rounded up
+  T number = 0;
+  const double rounded = std::nearbyint(value);
+  if (rounded >= kHigh) {
+    number = std::numeric_limits<T>::max();
+  } else if (rounded <= kLow) {
+    number = std::numeric_limits<T>::min();
+  } else if (!std::isnan(rounded)) {
+    number = static_cast<T>(rounded);
+  }
+  std::memcpy(bytes, &number, sizeof number);
+}
+
+// A double beyond float's range becomes infinite: the cast alone would be undefined.
+float to_float(double value) {
+  if (std::abs(value) > static_cast<double>(std::numeric_limits<float>::max()) && std::isfinite(value)) {
+    constexpr double kHalfway = 0x1.ffffffp127;  // rounds to infinity from here on
+    if (std::abs(value) >= kHalfway) return std::copysign(std::numeric_limits<float>::infinity(), value > 0 ? 1.0F : -1.0F);
+    return std::copysign(std::numeric_limits<float>::max(), value > 0 ? 1.0F : -1.0F);
+  }
+  return static_cast<float>(value);
+}
+
+}  // namespace
+
+double load_as_double(Type type, const char* bytes) {
+  switch (type) {
+    case Type::kInt8:
+      return load<std::int8_t>(bytes);
+    case Type::kUint8:
+      return load<std::uint8_t>(bytes);
+    case Type::kInt16:
+      return load<std::int16_t>(bytes);
+    case Type::kUint16:
+      return load<std::uint16_t>(bytes);
+    case Type::kInt32:
+      return load<std::int32_t>(bytes);
+    case Type::kUint32:
+      return load<std::uint32_t>(bytes);
+    case Type::kInt64:
+      return static_cast<double>(load<std::int64_t>(bytes));
+    case Type::kUint64:
+      return static_cast<double>(load<std::uint64_t>(bytes));
+    case Type::kFloat32:
+      return load<float>(bytes);
+    case Type::kFloat64:
+      break;
+  }
+  return load<double>(bytes);
+}
+
+void store_double(Type type, double value, char* bytes) {
+  switch (type) {
+    case Type::kInt8:
+      return store_integer<std::int8_t>(value, bytes);
+    case Type::kUint8:
+      return store_integer<std::uint8_t>(value, bytes);
+    case Type::kInt16:
+      return store_integer<std::int16_t>(value, bytes);
+    case Type::kUint16:
+      return store_integer<std::uint16_t>(value, bytes);
+    case Type::kInt32:
+      return store_integer<std::int32_t>(value, bytes);
+    case Type::kUint32:
+      return store_integer<std::uint32_t>(value, bytes);
+    case Type::kInt64:
+      return store_integer<std::int64_t>(value, bytes);
+    case Type::kUint64:
+      return store_integer<std::uint64_t>(value, bytes);
+    case Type::kFloat32: {
+      const float number = to_float(value);
+      std::memcpy(bytes, &number, sizeof number);
+      return;
+    }
+    case Type::kFloat64:
+      std::memcpy(bytes, &value, sizeof value);
+  }
+}
+
+void swap_bytes(Type type, char* bytes) { std::reverse(bytes, bytes + size_of(type)); }
+
+std::size_t Element::stride() const {
+  std::size_t bytes = 0;
+  for (const Property& property : properties) {
+    if (property.list) return 0;
+    bytes += size_of(property.type) * property.count;
+  }
+  return bytes;
+}
+
+std::size_t Element::find(std::string_view property_name) const {
+  for (std::size_t i = 0; i < properties.size(); ++i) {
+    if (properties[i].name == property_name) return i;
+  }
+  return npos;
+}
+
+RecordLayout::RecordLayout(const Element& element)
+    : element_(element),
+      fixed_(std::none_of(element.properties.begin(), element.properties.end(), [](const Property& p) { return p.list; })),
+      offsets_(element.properties.size() + 1) {
+  if (!fixed_) return;
+  for (std::size_t i = 0; i < element.properties.size(); ++i) {
+    offsets_[i + 1] = offsets_[i] + size_of(element.properties[i].type) * element.properties[i].count;
+  }
+}
+
+void RecordLayout::seek(const char* record) {
+  if (fixed_) return;
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < element_.properties.size(); ++i) {
+    const Property& property = element_.properties[i];
+    offsets_[i] = at;
+    if (property.list) {
+      const auto length = static_cast<std::size_t>(load_as_double(property.count_type, record + at));
+      at += size_of(property.count_type) + length * size_of(property.type);
+    } else {
+      at += size_of(property.type) * property.count;
+    }
+  }
+  offsets_.back() = at;
+}
+
+}  // namespace g3r::io

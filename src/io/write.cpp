@@ -1,0 +1,106 @@
+// From a cloud or a mesh to a file: choose the format by the extension, check, write, commit.
+#include "io/source.h"
+#include "io/writers.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <sys/stat.h>
+
+namespace g3r {
+
+namespace {
+
+constexpr std::array<std::string_view, 6> kPointFormats = {"ply", "xyz", "txt", "csv", "pts", "obj"};
+constexpr std::array<std::string_view, 3> kMeshFormats = {"ply", "obj", "stl"};
+
+template <class Formats>
+std::string choose_format(const std::string& path, const Formats& formats, const char* what) {
+  if (path == "-") return "ply";
+  const std::string ext = io::extension(path);
+  if (std::find(formats.begin(), formats.end(), ext) != formats.end()) return ext;
+  std::string known;
+  for (const std::string_view format : formats) known += (known.empty() ? "." : ", .") + std::string(format);
+  throw InvalidInput(escape_text(path) + ": " + (ext.empty() ? "no extension" : "unknown extension \"." + escape_text(ext) + "\"") +
+                     ": expected " + known + " for " + what);
+}
+
+std::string point_format(const std::string& path) { return choose_format(path, kPointFormats, "points"); }
+std::string mesh_format(const std::string& path) { return choose_format(path, kMeshFormats, "a mesh"); }
+
+void check_mesh_data(const Mesh& mesh) {
+  if (mesh.triangles.empty()) throw InvalidInput("write_mesh: the mesh is empty");
+  if (mesh.triangles.size() > std::numeric_limits<std::uint32_t>::max()) throw InvalidInput("write_mesh: more than 2^32 triangles");
+  for (const Vec3& v : mesh.vertices) {
+    if (!std::isfinite(v[0]) || !std::isfinite(v[1]) || !std::isfinite(v[2])) throw InvalidInput("write_mesh: a vertex is not finite");
+  }
+  for (const auto& t : mesh.triangles) {
+    if (*std::max_element(t.begin(), t.end()) >= mesh.vertices.size())
+      throw InvalidInput("write_mesh: a triangle names a vertex that does not exist");
+  }
+  if (!mesh.colors.empty() && mesh.colors.size() != mesh.vertices.size())
+    throw InvalidInput("write_mesh: colours and vertices differ in number");
+  if (!mesh.confidence.empty() && mesh.confidence.size() != mesh.vertices.size()) {
+    throw InvalidInput("write_mesh: confidences and vertices differ in number");
+  }
+}
+
+}  // namespace
+
+void write_cloud(const std::string& path, const Cloud& cloud, const std::vector<Vec3>* normals, const std::vector<float>* confidence,
+                 const WriteOptions& options) {
+  const std::string format = point_format(path);
+  const io::PointData data = io::check_points(cloud, normals, confidence, options);
+  io::OutputFile file(path);
+  if (format == "ply") {
+    io::write_ply(data, file);
+  } else if (format == "obj") {
+    io::write_obj(data, file);
+  } else {
+    io::write_xyz(data, format == "csv" ? ',' : ' ', format == "pts", file);
+  }
+  file.commit();
+}
+
+void write_mesh(const std::string& path, const Mesh& mesh, const WriteOptions& options) {
+  const std::string format = mesh_format(path);
+  check_mesh_data(mesh);
+  io::OutputFile file(path);
+  if (format == "ply") {
+    io::write_ply_mesh(mesh, options.ascii, file);
+  } else if (format == "obj") {
+    io::write_obj_mesh(mesh, file);
+  } else {
+    io::write_stl_mesh(mesh, options.ascii, file);
+  }
+  file.commit();
+}
+
+void check_output(const std::string& path, const std::vector<std::string>& inputs, bool for_mesh) {
+  for_mesh ? mesh_format(path) : point_format(path);
+  if (path == "-") return;
+  struct stat output {};
+  if (::stat(path.c_str(), &output) == 0) {
+    for (const std::string& input : inputs) {
+      struct stat status {};
+      if (input != "-" && ::stat(input.c_str(), &status) == 0 && S_ISREG(status.st_mode) && status.st_dev == output.st_dev &&
+          status.st_ino == output.st_ino) {
+        throw IoError(IoError::Kind::kCannotCreate,
+                      escape_text(path) + ": the output is the input " + escape_text(input) + ": choose another name");
+      }
+    }
+    // A device or a pipe may wait for its other end, or act, when it is opened: that is left to the write.
+    if (!S_ISREG(output.st_mode) && !S_ISDIR(output.st_mode)) return;
+  }
+  io::check_creatable(path);
+}
+
+void write_file(const std::string& path, const std::string& bytes) {
+  io::OutputFile file(path);
+  file.write(bytes);
+  file.commit();
+}
+
+}  // namespace g3r

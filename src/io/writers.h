@@ -1,0 +1,17 @@
+// One writer per format. The data are checked; the file is committed by the caller.
+#pragma once
+
+#include "io/columns.h"
+#include "io/output_file.h"
+
+namespace g3r::io {
+
+void write_ply(const PointData& data, OutputFile& file);
+void write_xyz(const PointData& data, char separator, bool counted, OutputFile& file);
+void write_obj(const PointData& data, OutputFile& file);
+
+void write_ply_mesh(const Mesh& mesh, bool ascii, OutputFile& file);
+void write_obj_mesh(const Mesh& mesh, OutputFile& file);
+void write_stl_mesh(const Mesh& mesh, bool ascii, OutputFile& file);
+
+}  // namespace g3r::io
