@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
-#include <numeric>
 #include <unordered_map>
 
 #include "cpu/parallel.h"
+#include "mesh/disjoint_sets.h"
 
 namespace g3r::mesh {
 namespace {
@@ -275,27 +275,10 @@ Arcs join_arcs(const Octree& octree, const std::vector<ActiveEdge>& edges, const
 
 // ---- sheets: the loops of arcs on the boundary of each leaf ----
 
-class Groups {
- public:
-  explicit Groups(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0U); }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
 // Sheet of every (edge, place), 4 per edge.
 std::vector<std::uint32_t> label_sheets(const std::vector<ActiveEdge>& edges, const std::vector<Arc>& arcs, DualSurface& surface) {
   if (edges.size() > (std::size_t{1} << 30U)) throw std::bad_alloc();
-  Groups groups(edges.size() * 4);
+  DisjointSets groups(edges.size() * 4);
   for (std::uint32_t e = 0; e < edges.size(); ++e) {
     for (std::uint32_t k = 0; k < 4; ++k) {
       if (edges[e].leaf[k] == edges[e].leaf[(k + 1) % 4]) groups.join(4 * e + k, 4 * e + (k + 1) % 4);
@@ -314,7 +297,7 @@ std::vector<std::uint32_t> label_sheets(const std::vector<ActiveEdge>& edges, co
   std::vector<std::uint32_t> sheet(edges.size() * 4);
   std::vector<std::size_t> count;
   for (std::uint32_t i = 0; i < sheet.size(); ++i) {
-    const std::uint32_t root = groups.find(i);
+    const std::size_t root = groups.find(i);
     if (root == i) {
       sheet[i] = static_cast<std::uint32_t>(surface.patch_leaf.size());
       surface.patch_leaf.push_back(edges[i / 4].leaf[i % 4]);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nanoflann.hpp>
 
 #include "cpu/parallel.h"
 
@@ -14,8 +13,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kMaxNeighbours = 128;
-constexpr std::size_t kSpacingNeighbours = 8;
 constexpr double kSameSheet = 0.85;   // cosine: normals within about 32 degrees belong to one sheet
 constexpr std::size_t kMinSheet = 3;  // points; fewer are noise
 constexpr double kRidge = 1e-3;       // on the curvatures, relative to the weight of the data: keeps them bounded where points are few
@@ -29,23 +26,7 @@ constexpr double kSplitGain = 0.05;  // several sheets must reduce the squared m
 
 Vector3d vector(const Vec3& p) { return {p[0], p[1], p[2]}; }
 
-struct Cloud {
-  const std::vector<Vec3>& p;
-  [[nodiscard]] std::size_t kdtree_get_point_count() const { return p.size(); }
-  [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t d) const { return p[i][d]; }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, std::uint32_t>;
-
-struct Member {
-  Vector3d p, n;
-  double weight = 0;
-  int sheet = -1;
-};
+using Member = FitPoint;
 
 Eigen::Matrix3d frame_of(const Vector3d& n) {
   Eigen::Matrix3d f;
@@ -62,47 +43,6 @@ double misfit(const Sheet& s, const Member& m, double h, double normal_weight) {
   Vector3d g;
   const double d = s.distance(m.p, &g) / h;
   return m.weight * (d * d + normal_weight * (g - m.n).squaredNorm());
-}
-
-// Least squares: sum w [ (z - q(u, v))^2 + lambda h^2 |slope - grad q|^2 ], in units of h.
-Sheet fit_sheet(const std::vector<Member>& members, int which, double h, double normal_weight) {
-  Vector3d mean_p = Vector3d::Zero(), mean_n = Vector3d::Zero();
-  double total = 0;
-  for (const Member& m : members) {
-    if (m.sheet != which) continue;
-    mean_p += m.weight * m.p;
-    mean_n += m.weight * m.n;
-    total += m.weight;
-  }
-  Sheet s;
-  s.origin = mean_p / total;
-  s.frame = frame_of(mean_n.normalized());
-  Eigen::Matrix<double, 6, 6> normal_matrix = Eigen::Matrix<double, 6, 6>::Zero();
-  Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
-  const auto add = [&](const Eigen::Matrix<double, 6, 1>& row, double value, double weight) {
-    normal_matrix.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
-    right += weight * value * row;
-  };
-  for (const Member& m : members) {
-    if (m.sheet != which) continue;
-    const Vector3d q = s.frame * (m.p - s.origin) / h;
-    const Vector3d n = s.frame * m.n;
-    const double u = q[0], v = q[1], up = std::max(n[2], 0.2);
-    Eigen::Matrix<double, 6, 1> row;
-    row << 1, u, v, u * u, u * v, v * v;
-    add(row, q[2], m.weight);
-    row << 0, 1, 0, 2 * u, v, 0;
-    add(row, -n[0] / up, m.weight * normal_weight);
-    row << 0, 0, 1, 0, u, 2 * v;
-    add(row, -n[1] / up, m.weight * normal_weight);
-  }
-  for (int k = 3; k < 6; ++k) normal_matrix(k, k) += kRidge * total;
-  normal_matrix(0, 0) += 1e-12 * total;
-  for (int k = 1; k < 3; ++k) normal_matrix(k, k) += 1e-9 * total;
-  const Eigen::Matrix<double, 6, 1> c = normal_matrix.selfadjointView<Eigen::Lower>().ldlt().solve(right);
-  const std::array<double, 6> unit{h, 1, 1, 1 / h, 1 / h, 1 / h};
-  for (std::size_t k = 0; k < 6; ++k) s.c[k] = c[static_cast<Eigen::Index>(k)] * unit[k];
-  return s;
 }
 
 Joint joint_of(const LocalSurface& s, const std::vector<Member>& members, int a, int b) {
@@ -146,6 +86,46 @@ void prefer_one_sheet(LocalSurface& s, std::vector<Member>& members, double norm
 }
 
 }  // namespace
+
+Sheet fit_sheet(const std::vector<Member>& members, int which, double h, double normal_weight) {
+  Vector3d mean_p = Vector3d::Zero(), mean_n = Vector3d::Zero();
+  double total = 0;
+  for (const Member& m : members) {
+    if (m.sheet != which) continue;
+    mean_p += m.weight * m.p;
+    mean_n += m.weight * m.n;
+    total += m.weight;
+  }
+  Sheet s;
+  s.origin = mean_p / total;
+  s.frame = frame_of(mean_n.normalized());
+  Eigen::Matrix<double, 6, 6> normal_matrix = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
+  const auto add = [&](const Eigen::Matrix<double, 6, 1>& row, double value, double weight) {
+    normal_matrix.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
+    right += weight * value * row;
+  };
+  for (const Member& m : members) {
+    if (m.sheet != which) continue;
+    const Vector3d q = s.frame * (m.p - s.origin) / h;
+    const Vector3d n = s.frame * m.n;
+    const double u = q[0], v = q[1], up = std::max(n[2], 0.2);
+    Eigen::Matrix<double, 6, 1> row;
+    row << 1, u, v, u * u, u * v, v * v;
+    add(row, q[2], m.weight);
+    row << 0, 1, 0, 2 * u, v, 0;
+    add(row, -n[0] / up, m.weight * normal_weight);
+    row << 0, 0, 1, 0, u, 2 * v;
+    add(row, -n[1] / up, m.weight * normal_weight);
+  }
+  for (int k = 3; k < 6; ++k) normal_matrix(k, k) += kRidge * total;
+  normal_matrix(0, 0) += 1e-12 * total;
+  for (int k = 1; k < 3; ++k) normal_matrix(k, k) += 1e-9 * total;
+  const Eigen::Matrix<double, 6, 1> c = normal_matrix.selfadjointView<Eigen::Lower>().ldlt().solve(right);
+  const std::array<double, 6> unit{h, 1, 1, 1 / h, 1 / h, 1 / h};
+  for (std::size_t k = 0; k < 6; ++k) s.c[k] = c[static_cast<Eigen::Index>(k)] * unit[k];
+  return s;
+}
 
 double Sheet::distance(const Vector3d& x, Vector3d* gradient) const {
   const Vector3d q = frame * (x - origin);
@@ -191,32 +171,16 @@ double LocalSurface::distance(const Vector3d& x, int* active) const {
   return result.f;
 }
 
-struct LocalFit::Index {
-  Cloud cloud;
-  Tree tree;
-  explicit Index(const std::vector<Vec3>& p) : cloud{p}, tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(12)) {
-    tree.buildIndex();
-  }
-};
-
 LocalFit::LocalFit(const OrientedPoints& points, const LocalFitOptions& options)
-    : points_(points), options_(options), index_(std::make_unique<Index>(points.positions)) {
-  options_.neighbours = std::min({options_.neighbours, points.positions.size(), kMaxNeighbours});
-}
-LocalFit::~LocalFit() = default;
-
-void LocalFit::nearest(const Vector3d& x, std::size_t k, std::vector<std::uint32_t>& index, std::vector<double>& squared) const {
-  k = std::min(k, points_.positions.size());
-  index.resize(k);
-  squared.resize(k);
-  index_->tree.knnSearch(x.data(), k, index.data(), squared.data());
+    : points_(points), options_(options), neighbours_(points.positions) {
+  options_.neighbours = std::min(options_.neighbours, points.positions.size());
 }
 
 LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* direction) const {
   thread_local std::vector<std::uint32_t> index;
   thread_local std::vector<double> squared;
   thread_local std::vector<Member> members;
-  nearest(x, options_.neighbours, index, squared);
+  neighbours_.nearest({x[0], x[1], x[2]}, options_.neighbours, index, squared);
   LocalSurface out;
   out.nearest = std::sqrt(squared[0]);
   out.spacing = points_.spacing[index[0]];
@@ -292,7 +256,7 @@ std::vector<double> wall_thickness(const OrientedPoints& points, const LocalFit&
     std::vector<double> squared;
     for (std::size_t i = begin; i < end; ++i) {
       const Vector3d p = vector(points.positions[i]), normal = vector(points.normals[i]);
-      local.nearest(p, kWallNeighbours, index, squared);
+      local.neighbours().nearest(points.positions[i], kWallNeighbours, index, squared);
       for (const std::uint32_t j : index) {
         if (normal.dot(vector(points.normals[j])) > kOpposite) continue;
         out[i] = std::min(out[i], std::abs(normal.dot(vector(points.positions[j]) - p)));
@@ -300,30 +264,6 @@ std::vector<double> wall_thickness(const OrientedPoints& points, const LocalFit&
     }
   });
   return out;
-}
-
-std::vector<double> local_spacing(const std::vector<Vec3>& positions) {
-  const Cloud cloud{positions};
-  Tree tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(12));
-  tree.buildIndex();
-  const std::size_t n = positions.size(), k = std::min(kSpacingNeighbours + 1, n);
-  std::vector<std::uint32_t> index(n * k);
-  std::vector<double> raw(n), smooth(n);
-  parallel::for_blocks(n, 256, [&](std::size_t begin, std::size_t end) {
-    std::vector<double> squared(k);
-    for (std::size_t i = begin; i < end; ++i) {
-      tree.knnSearch(positions[i].data(), k, index.data() + i * k, squared.data());
-      raw[i] = squared[k - 1] * M_PI / static_cast<double>(std::max<std::size_t>(k - 1, 1));
-    }
-  });
-  parallel::for_blocks(n, 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      double sum = 0;
-      for (std::size_t j = 0; j < k; ++j) sum += raw[index[i * k + j]];
-      smooth[i] = std::sqrt(sum / static_cast<double>(k));
-    }
-  });
-  return smooth;
 }
 
 }  // namespace g3r::mesh

@@ -10,8 +10,9 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
-#include <memory>
 #include <vector>
+
+#include "mesh/neighbours.h"
 
 namespace g3r::mesh {
 
@@ -31,6 +32,17 @@ struct Sheet {
   /// Distance to the sheet to first order, positive outside, and its gradient (about a unit vector; may be null).
   double distance(const Eigen::Vector3d& x, Eigen::Vector3d* gradient = nullptr) const;
 };
+
+/// A point that takes part in a fit.
+struct FitPoint {
+  Eigen::Vector3d p, n;  ///< position, unit normal
+  double weight = 0;
+  int sheet = -1;  ///< number of the sheet it belongs to, < 0: none
+};
+
+/// The sheet that minimises sum weight [ (height misfit)^2 + normal_weight h^2 |slope misfit|^2 ] over the points of sheet `which`,
+/// of which there is at least one. `h`: length unit of the fit.
+[[nodiscard]] Sheet fit_sheet(const std::vector<FitPoint>& points, int which, double h, double normal_weight);
 
 /// How two sheets bound the solid between them.
 enum class Joint : signed char {
@@ -64,28 +76,20 @@ class LocalFit {
  public:
   /// `points` must outlive this. O(N log N).
   LocalFit(const OrientedPoints& points, const LocalFitOptions& options);
-  ~LocalFit();
-  LocalFit(const LocalFit&) = delete;
-  LocalFit& operator=(const LocalFit&) = delete;
 
   /// The surface near `x`; no sheet if no point is within `reach` spacings. If `direction` is not null, points whose normals point
   /// against it are left out. O(log N).
   [[nodiscard]] LocalSurface fit(const Eigen::Vector3d& x, double reach, const Eigen::Vector3d* direction = nullptr) const;
-  /// The k points nearest to x, nearest first, and their squared distances.
-  void nearest(const Eigen::Vector3d& x, std::size_t k, std::vector<std::uint32_t>& index, std::vector<double>& squared) const;
+  [[nodiscard]] const Neighbours& neighbours() const { return neighbours_; }
 
  private:
-  struct Index;
   const OrientedPoints& points_;
   LocalFitOptions options_;
-  std::unique_ptr<Index> index_;
+  Neighbours neighbours_;
 };
 
 /// Distance across the wall or gap at each point: to the nearest of its neighbours that face the other way, measured along the normal.
 /// Infinite where none of the 16 nearest does. O(N log N).
 [[nodiscard]] std::vector<double> wall_thickness(const OrientedPoints& points, const LocalFit& local);
-
-/// h_i = d_8 sqrt(pi / 8) averaged over the neighbours, in input units. O(N log N).
-[[nodiscard]] std::vector<double> local_spacing(const std::vector<Vec3>& positions);
 
 }  // namespace g3r::mesh

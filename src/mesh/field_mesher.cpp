@@ -7,10 +7,11 @@
 #include "cpu/parallel.h"
 #include "g3r/error.h"
 #include "mesh/field_contour.h"
+#include "mesh/field_denoise.h"
 #include "mesh/field_local_fit.h"
 #include "mesh/field_octree.h"
 #include "mesh/field_placement.h"
-#include "mesh/mesh_parts.h"
+#include "mesh/mesh_finish.h"
 
 namespace g3r {
 namespace {
@@ -33,6 +34,7 @@ constexpr double kThin = 1.3;        // walls and gaps get cells of at most thei
 constexpr double kMaxThin = 2.0;     // but not smaller than a normal cell over this
 constexpr double kWallReach = 1.0;   // spacings: between walls the fits are trusted this near to a point
 constexpr double kFieldWall = 0.4;   // the same as kFieldSure between walls, where mollification blurs the field
+constexpr double kNoisy = 0.15;      // spacings: positions that scatter more than this are smoothed first
 constexpr double kFieldSure = 0.2;   // |w - level| from which the field overrules the fitted surface
 
 void report(const Monitor& monitor, double fraction) {
@@ -46,6 +48,24 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+// Unit normals, the local spacing and, where the positions scatter, points moved onto the surface they scatter about.
+OrientedPoints prepare(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, double& noise, const Monitor& monitor) {
+  OrientedPoints out{points, normals, mesh::smooth_spacing(points)};
+  for (Vec3& n : out.normals) {
+    const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    if (!(length > 0)) throw InvalidInput("a normal is zero");
+    for (double& c : n) c /= length;
+  }
+  if (!(median(out.spacing) > 0)) throw InvalidInput("all points are at one place");
+  const LocalFit local(out, LocalFitOptions{});
+  const mesh::Noise found = mesh::estimate_noise(out, local);
+  noise = found.position;
+  report(monitor, 0.05);
+  if (noise > kNoisy) mesh::denoise(out, local, found, monitor.cancel);
+  return out;
+}
+
+// `thickness`: of the walls at each point, empty to disregard it.
 Octree make_octree(const OrientedPoints& points, const std::vector<double>& thickness, const MeshOptions& options, const Monitor& monitor) {
   Vec3 low = points.positions[0], high = low;
   for (const Vec3& p : points.positions) {
@@ -64,7 +84,7 @@ Octree make_octree(const OrientedPoints& points, const std::vector<double>& thic
   std::vector<RefineDisc> requests(points.positions.size());
   for (std::size_t i = 0; i < requests.size(); ++i) {
     double size = points.spacing[i];
-    if (thickness[i] < kThin * kCell * size) size = std::max(thickness[i] / (kThin * kCell), size / kMaxThin);
+    if (!thickness.empty() && thickness[i] < kThin * kCell * size) size = std::max(thickness[i] / (kThin * kCell), size / kMaxThin);
     const int spread = static_cast<int>(std::lround(std::log2(h / size)));
     const int wanted = level + std::clamp(spread, -kMaxSpread, options.depth == 0 ? kMaxSpread : 0);
     requests[i] = {points.positions[i], points.normals[i], kDisc * points.spacing[i], kDiscHalf * points.spacing[i],
@@ -129,22 +149,18 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
   if (points.size() < 4) throw InvalidInput("a mesh needs at least 4 points");
   if (options.depth != 0 && (options.depth < 4 || options.depth > 12)) throw InvalidInput("mesh depth must be 4 to 12");
   report(monitor, 0);
-  OrientedPoints oriented{points, normals, mesh::local_spacing(points)};
-  for (Vec3& n : oriented.normals) {
-    const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-    if (!(length > 0)) throw InvalidInput("a normal is zero");
-    for (double& c : n) c /= length;
-  }
+  double noise = 0;
+  const OrientedPoints oriented = prepare(points, normals, noise, monitor);
   const double spacing = median(oriented.spacing);
-  if (!(spacing > 0)) throw InvalidInput("all points are at one place");
   std::vector<double> at_points;
-  sampler.sample(points, at_points, nullptr);
+  sampler.sample(oriented.positions, at_points, nullptr);
   const double level = median(std::move(at_points));
   const LocalFit local(oriented, LocalFitOptions{});
-  report(monitor, 0.1);
-
-  const Octree octree = make_octree(oriented, mesh::wall_thickness(oriented, local), options, monitor);
   report(monitor, 0.2);
+
+  const Octree octree =
+      make_octree(oriented, noise > kNoisy ? std::vector<double>{} : mesh::wall_thickness(oriented, local), options, monitor);
+  report(monitor, 0.3);
   const Side side(local, sampler, level, spacing);
   std::vector<Vec3> corners(octree.corner_count());
   for (std::size_t c = 0; c < corners.size(); ++c) corners[c] = octree.corner_position(c);
@@ -163,7 +179,7 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
   mesh::PlacedVertices placed = mesh::place_vertices(octree, surface, value, local, monitor.cancel);
   report(monitor, 0.95);
   Mesh mesh = mesh::triangulate(surface, std::move(placed.positions), placed.normals);
-  mesh::remove_components(mesh, options.min_component * spacing * spacing, options.keep_largest);
+  mesh::finish_mesh(mesh, oriented.positions, options);
   report(monitor, 1);
   return mesh;
 }

@@ -6,27 +6,12 @@
 #include <limits>
 #include <numeric>
 
+#include "mesh/disjoint_sets.h"
+
 namespace g3r::mesh {
 namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-
-class Groups {
- public:
-  explicit Groups(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0U); }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 double area_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
   std::array<double, 3> e{}, f{};
@@ -49,7 +34,7 @@ void gather(std::vector<T>& values, const std::vector<std::uint32_t>& from) {
 // Gives every fan of triangles around a vertex its own vertex: corner c of triangle t is number 3 t + c, and corners at one vertex
 // belong together if their triangles share an edge at it.
 void split_fans(Mesh& mesh, std::vector<std::uint32_t>& source) {
-  Groups corners(mesh.triangles.size() * 3);
+  DisjointSets corners(mesh.triangles.size() * 3);
   struct Half {
     std::uint64_t edge;
     std::uint32_t corner;  // of its smaller vertex
@@ -75,7 +60,7 @@ void split_fans(Mesh& mesh, std::vector<std::uint32_t>& source) {
   const std::vector<std::array<std::uint32_t, 3>> old = mesh.triangles;
   source.clear();
   for (std::uint32_t c = 0; c < number.size(); ++c) {
-    const std::uint32_t root = corners.find(c);
+    const std::size_t root = corners.find(c);
     if (number[root] == kNone) {
       number[root] = static_cast<std::uint32_t>(source.size());
       source.push_back(old[c / 3][c % 3]);
@@ -85,6 +70,22 @@ void split_fans(Mesh& mesh, std::vector<std::uint32_t>& source) {
 }
 
 }  // namespace
+
+void drop_unused_vertices(Mesh& mesh) {
+  std::vector<std::uint32_t> number(mesh.vertices.size(), kNone), source;
+  for (auto& t : mesh.triangles) {
+    for (std::uint32_t& v : t) {
+      if (number[v] == kNone) {
+        number[v] = static_cast<std::uint32_t>(source.size());
+        source.push_back(v);
+      }
+      v = number[v];
+    }
+  }
+  gather(mesh.vertices, source);
+  gather(mesh.colors, source);
+  gather(mesh.confidence, source);
+}
 
 void remove_triangles(Mesh& mesh, const std::vector<std::uint8_t>& keep) {
   if (std::all_of(keep.begin(), keep.end(), [](std::uint8_t k) { return k != 0; })) return;
@@ -101,7 +102,7 @@ void remove_triangles(Mesh& mesh, const std::vector<std::uint8_t>& keep) {
 }
 
 void remove_components(Mesh& mesh, double min_area, std::size_t keep_largest) {
-  Groups groups(mesh.vertices.size());
+  DisjointSets groups(mesh.vertices.size());
   for (const auto& t : mesh.triangles) {
     groups.join(t[0], t[1]);
     groups.join(t[0], t[2]);
@@ -109,7 +110,7 @@ void remove_components(Mesh& mesh, double min_area, std::size_t keep_largest) {
   std::vector<double> area(mesh.vertices.size(), 0.0);
   std::vector<std::uint32_t> roots;
   for (const auto& t : mesh.triangles) {
-    const std::uint32_t root = groups.find(t[0]);
+    const auto root = static_cast<std::uint32_t>(groups.find(t[0]));
     if (area[root] == 0) roots.push_back(root);
     area[root] += std::max(area_of(mesh, t), std::numeric_limits<double>::min());
   }

@@ -4,6 +4,8 @@
 #include <g3r/mesh.h>
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 namespace g3r::mesh {
 
@@ -11,6 +13,9 @@ namespace g3r::mesh {
 /// (0: no limit; ties: the one that comes first). The largest component always stays. Vertices that are no longer used go too; order is
 /// kept, so a closed manifold stays one. O(V + F).
 void remove_components(Mesh& mesh, double min_area, std::size_t keep_largest);
+
+/// Removes the vertices that no triangle uses; the others are numbered in order of first use. O(V + F).
+void drop_unused_vertices(Mesh& mesh);
 
 /// Removes triangles (keep[t] == 0) and the vertices that no longer belong to one. Where the rest touches itself at a single vertex,
 /// that vertex is doubled, so that a 2-manifold stays one, with boundary. O(V + F).

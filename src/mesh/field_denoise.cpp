@@ -1,0 +1,125 @@
+#include "mesh/field_denoise.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cpu/parallel.h"
+
+namespace g3r::mesh {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t kSampled = 2000;
+constexpr double kEstimateWidth = 1.8;  // spacings; wide against noise of one spacing
+constexpr double kWidthFloor = 0.8;     // spacings: width of the smoothing at no noise,
+constexpr double kWidthPerNoise = 2.0;  // plus this many standard deviations
+constexpr double kWidthMost = 4.0;      // spacings; wider costs too much and rounds too much
+constexpr double kSameSide = 0.3;       // cosine: points that face elsewhere belong to another part of the surface
+constexpr double kReach = 2.0;          // widths: points beyond weigh less than 14 %
+constexpr double kMostNormalWeight = 4.0;
+
+Vector3d vector(const Vec3& p) { return {p[0], p[1], p[2]}; }
+
+// The points near point i that face the same way, weighed by their distance along the surface.
+class Neighbourhood {
+ public:
+  Neighbourhood(const OrientedPoints& points, const LocalFit& local) : points_(points), local_(local) {}
+
+  const std::vector<FitPoint>& gather(std::size_t i, double width) {
+    const double h = points_.spacing[i];
+    const auto k = static_cast<std::size_t>(std::clamp(M_PI * kReach * kReach * width * width, 12.0, 200.0));
+    const Vector3d x = vector(points_.positions[i]);
+    local_.neighbours().nearest(points_.positions[i], k, index_, squared_);
+    Vector3d axis = vector(points_.normals[i]);
+    const double scale = 1 / (2 * width * width * h * h);
+    for (int pass = 0; pass < 2; ++pass) {  // the second time about the mean normal, which is less noisy
+      Vector3d mean = Vector3d::Zero();
+      members_.clear();
+      for (const std::uint32_t j : index_) {
+        const Vector3d n = vector(points_.normals[j]);
+        if (n.dot(axis) < kSameSide) continue;
+        const Vector3d p = vector(points_.positions[j]);
+        const double along = axis.dot(p - x);
+        const double weight = std::exp(-((p - x).squaredNorm() - along * along) * scale);
+        members_.push_back({p, n, weight, 0});
+        mean += weight * n;
+      }
+      if (mean.norm() > 0) axis = mean.normalized();
+    }
+    if (members_.empty()) members_.push_back({x, vector(points_.normals[i]), 1, 0});
+    return members_;
+  }
+
+ private:
+  const OrientedPoints& points_;
+  const LocalFit& local_;
+  std::vector<std::uint32_t> index_;
+  std::vector<double> squared_;
+  std::vector<FitPoint> members_;
+};
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+Noise estimate_noise(const OrientedPoints& points, const LocalFit& local) {
+  const std::size_t n = points.positions.size(), count = std::min(n, kSampled);
+  std::vector<double> position(count), normal(count);
+  parallel::for_blocks(count, 64, [&](std::size_t begin, std::size_t end) {
+    Neighbourhood near(points, local);
+    for (std::size_t s = begin; s < end; ++s) {
+      const std::size_t i = s * n / count;
+      const double h = points.spacing[i];
+      const std::vector<FitPoint>& members = near.gather(i, kEstimateWidth);
+      const Sheet sheet = fit_sheet(members, 0, h, 0.25);
+      double height = 0, slope = 0, total = 0, squares = 0;
+      for (const FitPoint& m : members) {
+        Vector3d g;
+        const double d = sheet.distance(m.p, &g) / h;
+        height += m.weight * d * d;
+        slope += m.weight * (g - m.n).squaredNorm();
+        total += m.weight;
+        squares += m.weight * m.weight;
+      }
+      // About three of the degrees of freedom go into the height, positions being a third of the data.
+      const double effective = total * total / squares;
+      position[s] = std::sqrt(height / total * effective / std::max(effective - 3, 1.0));
+      normal[s] = std::sqrt(slope / total);
+    }
+  });
+  return {median(position), median(normal)};
+}
+
+void denoise(OrientedPoints& points, const LocalFit& local, const Noise& noise, const std::atomic<bool>* cancel) {
+  const double width = std::min(kWidthFloor + kWidthPerNoise * noise.position, kWidthMost);
+  const double ratio = noise.position / std::max(noise.normal, 1e-3);
+  const double normal_weight = std::clamp(ratio * ratio, 0.25, kMostNormalWeight);
+  std::vector<Vec3> positions(points.positions.size()), normals(points.positions.size());
+  parallel::for_blocks(
+      positions.size(), 64,
+      [&](std::size_t begin, std::size_t end) {
+        Neighbourhood near(points, local);
+        for (std::size_t i = begin; i < end; ++i) {
+          const Sheet sheet = fit_sheet(near.gather(i, width), 0, points.spacing[i], normal_weight);
+          Vector3d x = vector(points.positions[i]), g;
+          for (int step = 0; step < 3; ++step) {
+            const double f = sheet.distance(x, &g);
+            x -= f * g;
+          }
+          (void)sheet.distance(x, &g);
+          const bool sound = x.allFinite() && g.allFinite();
+          positions[i] = sound ? Vec3{x[0], x[1], x[2]} : points.positions[i];
+          normals[i] = sound ? Vec3{g[0], g[1], g[2]} : points.normals[i];
+        }
+      },
+      cancel);
+  points.positions = std::move(positions);
+  points.normals = std::move(normals);
+}
+
+}  // namespace g3r::mesh

@@ -1,0 +1,22 @@
+// Noise of an oriented cloud: how much there is, and points moved onto the smooth surface that it scatters about.
+#pragma once
+
+#include <atomic>
+
+#include "mesh/field_local_fit.h"
+
+namespace g3r::mesh {
+
+struct Noise {
+  double position = 0;  ///< standard deviation along the normal, in spacings; median over the cloud
+  double normal = 0;    ///< root mean square deviation of the normals, in radians; median over the cloud
+};
+
+/// From the misfit of quadratic height fields to about 48 neighbours, at 2,000 points evenly spread over the indices.
+[[nodiscard]] Noise estimate_noise(const OrientedPoints& points, const LocalFit& local);
+
+/// Moves every point along the normal onto a quadratic fit whose width follows the noise, and takes over the normal of the fit.
+/// O(N) fits over up to 200 points. Throws Cancelled.
+void denoise(OrientedPoints& points, const LocalFit& local, const Noise& noise, const std::atomic<bool>* cancel = nullptr);
+
+}  // namespace g3r::mesh

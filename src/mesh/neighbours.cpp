@@ -1,0 +1,71 @@
+#include "mesh/neighbours.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nanoflann.hpp>
+
+#include "cpu/parallel.h"
+
+namespace g3r::mesh {
+namespace {
+
+constexpr std::size_t kLeaf = 12;              // points per leaf of the k-d tree; a matter of speed only
+constexpr std::size_t kSpacingNeighbours = 8;  // as in the definition of the spacing
+
+struct Cloud {
+  const std::vector<Vec3>& p;
+  [[nodiscard]] std::size_t kdtree_get_point_count() const { return p.size(); }
+  [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t d) const { return p[i][d]; }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+
+using KdTree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, std::uint32_t>;
+
+}  // namespace
+
+struct Neighbours::Tree {
+  Cloud cloud;
+  KdTree index;
+  explicit Tree(const std::vector<Vec3>& p) : cloud{p}, index(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(kLeaf)) {
+    index.buildIndex();
+  }
+};
+
+Neighbours::Neighbours(const std::vector<Vec3>& positions) : tree_(std::make_unique<Tree>(positions)) {}
+Neighbours::~Neighbours() = default;
+
+void Neighbours::nearest(const Vec3& x, std::size_t k, std::vector<std::uint32_t>& index, std::vector<double>& squared) const {
+  k = std::min(k, tree_->cloud.p.size());
+  index.resize(k);
+  squared.resize(k);
+  tree_->index.knnSearch(x.data(), k, index.data(), squared.data());
+}
+
+std::vector<double> smooth_spacing(const std::vector<Vec3>& positions) {
+  const Neighbours neighbours(positions);
+  const std::size_t n = positions.size(), k = std::min(kSpacingNeighbours + 1, n);
+  std::vector<std::uint32_t> near(n * k);
+  std::vector<double> raw(n), smooth(n);
+  parallel::for_blocks(n, 256, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> index;
+    std::vector<double> squared;
+    for (std::size_t i = begin; i < end; ++i) {
+      neighbours.nearest(positions[i], k, index, squared);
+      std::copy(index.begin(), index.end(), near.begin() + static_cast<std::ptrdiff_t>(i * k));
+      raw[i] = squared[k - 1] * M_PI / static_cast<double>(std::max<std::size_t>(k - 1, 1));
+    }
+  });
+  parallel::for_blocks(n, 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      double sum = 0;
+      for (std::size_t j = 0; j < k; ++j) sum += raw[near[i * k + j]];
+      smooth[i] = std::sqrt(sum / static_cast<double>(k));
+    }
+  });
+  return smooth;
+}
+
+}  // namespace g3r::mesh

@@ -1,0 +1,15 @@
+// Fewer triangles: quadric edge collapse (Garland, Heckbert, SIGGRAPH 1997) by meshoptimizer. The only mesher file that names it is
+// simplify.cpp.
+#pragma once
+
+#include <g3r/mesh.h>
+
+#include <cstddef>
+
+namespace g3r::mesh {
+
+/// Simplifies to about `faces` triangles; more where fewer would make the mesh non-manifold or open it: whatever closedness and
+/// manifoldness the mesh has, the result has too. Vertices stay where they are. Attributes are kept. O(F log F).
+void simplify(Mesh& mesh, std::size_t faces);
+
+}  // namespace g3r::mesh

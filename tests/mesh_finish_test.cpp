@@ -1,0 +1,131 @@
+// Finishing: trimming, components, simplifying, attributes.
+#include "mesh/mesh_finish.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "field_shapes.h"
+#include "mesh/field_mesher.h"
+#include "mesh/mesh_parts.h"
+#include "mesh/simplify.h"
+#include "mesh_topology.h"
+
+namespace {
+
+using namespace g3r;
+using namespace g3r::testing;
+
+double norm(const Vec3& p) { return std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]); }
+
+// Spheres of radius 1 and 0.3, far apart, and the points they were made from.
+struct TwoSpheres {
+  OrientedSample sample = sphere_sample(2000, 1, 1);
+  Mesh mesh;
+  TwoSpheres() {
+    const OrientedSample small = sphere_sample(180, 0.3, 2);
+    for (std::size_t i = 0; i < small.points.size(); ++i) {
+      sample.points.push_back({small.points[i][0] + 2, small.points[i][1], small.points[i][2]});
+      sample.normals.push_back(small.normals[i]);
+    }
+    const DistanceSampler field([](const Vec3& p) { return std::min(norm(p) - 1, norm({p[0] - 2, p[1], p[2]}) - 0.3); }, 0.1);
+    mesh = field_mesh(sample.points, sample.normals, field);
+  }
+};
+
+TEST(MeshFinish, ComponentsBelowTheAreaAreDropped) {
+  TwoSpheres two;
+  EXPECT_EQ(topology(two.mesh).components, 2U);
+  Mesh one = two.mesh;
+  mesh::remove_components(one, 2.0, 0);  // the small sphere has area 1.13
+  EXPECT_EQ(topology(one).components, 1U);
+  EXPECT_EQ(topology(one).bad_edges, 0U);
+  EXPECT_NEAR(topology(one).volume, 4.0 / 3.0 * M_PI, 0.02);
+}
+
+TEST(MeshFinish, LargestComponentsAreKept) {
+  TwoSpheres two;
+  MeshOptions options;
+  options.keep_largest = 1;
+  mesh::finish_mesh(two.mesh, two.sample.points, options);
+  EXPECT_EQ(topology(two.mesh).components, 1U);
+  EXPECT_GT(topology(two.mesh).volume, 4.0);
+}
+
+TEST(MeshFinish, TrimmingOpensTheMeshWherePointsAreMissing) {
+  TwoSpheres two;
+  std::vector<Vec3> half;
+  for (const Vec3& p : two.sample.points) {
+    if (p[2] > 0) half.push_back(p);
+  }
+  MeshOptions options;
+  options.trim = MeshOptions::Trim::kAuto;
+  EXPECT_GT(mesh::far_share(two.mesh, half, 4), 0.3);
+  mesh::finish_mesh(two.mesh, half, options);
+  const MeshCheck check = check_mesh(two.mesh);
+  EXPECT_FALSE(check.closed);
+  EXPECT_TRUE(check.manifold);
+  EXPECT_GT(check.boundary_edges, 0U);
+  EXPECT_LT(mesh::far_share(two.mesh, half, 4), 0.01);
+}
+
+TEST(MeshFinish, TrimmingClosedDataChangesNothing) {
+  TwoSpheres two;
+  const Mesh before = two.mesh;
+  MeshOptions options;
+  options.trim = MeshOptions::Trim::kAuto;
+  mesh::finish_mesh(two.mesh, two.sample.points, options);
+  EXPECT_EQ(before.triangles, two.mesh.triangles);
+}
+
+TEST(MeshFinish, TrimDistanceMustBePositiveAndLeaveSomething) {
+  TwoSpheres two;
+  MeshOptions options;
+  options.trim = MeshOptions::Trim::kDistance;
+  EXPECT_THROW(mesh::finish_mesh(two.mesh, two.sample.points, options), InvalidInput);
+  options.trim_distance = 1e-9;
+  EXPECT_THROW(mesh::finish_mesh(two.mesh, two.sample.points, options), InvalidInput);
+}
+
+TEST(MeshFinish, TouchingTrianglesAreSeparatedAtTheirCommonVertex) {
+  Mesh fan;  // three triangles around vertex 0; without the middle one the others touch at a point
+  fan.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {-1, 0, 0}};
+  fan.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}};
+  mesh::remove_triangles(fan, {1, 0, 1});
+  EXPECT_EQ(fan.vertices.size(), 6U);
+  EXPECT_TRUE(check_mesh(fan).manifold);
+}
+
+TEST(MeshFinish, SimplifyingKeepsAClosedManifold) {
+  TwoSpheres two;
+  const std::size_t before = two.mesh.triangles.size();
+  mesh::simplify(two.mesh, before / 5);
+  const MeshCheck check = check_mesh(two.mesh);
+  EXPECT_TRUE(check.closed && check.manifold);
+  EXPECT_EQ(check.genus, 0);
+  EXPECT_EQ(check.components, 2U);
+  EXPECT_LE(two.mesh.triangles.size(), before / 4);
+  EXPECT_NEAR(check.volume, 4.0 / 3.0 * M_PI * 1.027, 0.1);
+}
+
+TEST(MeshFinish, ColoursAndConfidenceFollowTheNearestPoints) {
+  TwoSpheres two;
+  std::vector<std::array<std::uint8_t, 3>> colors;
+  std::vector<float> confidence;
+  for (const Vec3& p : two.sample.points) {
+    colors.push_back(p[2] > 0 ? std::array<std::uint8_t, 3>{255, 0, 10} : std::array<std::uint8_t, 3>{0, 255, 10});
+    confidence.push_back(p[2] > 0 ? 1.0F : 0.0F);
+  }
+  mesh::carry_attributes(two.mesh, two.sample.points, colors, confidence);
+  ASSERT_EQ(two.mesh.colors.size(), two.mesh.vertices.size());
+  ASSERT_EQ(two.mesh.confidence.size(), two.mesh.vertices.size());
+  for (std::size_t v = 0; v < two.mesh.vertices.size(); ++v) {
+    EXPECT_EQ(two.mesh.colors[v][2], 10);
+    if (two.mesh.vertices[v][2] > 0.3) EXPECT_FLOAT_EQ(two.mesh.confidence[v], 1.0F);
+    if (two.mesh.vertices[v][2] < -0.3) EXPECT_EQ(two.mesh.colors[v][1], 255);
+  }
+  EXPECT_THROW(mesh::carry_attributes(two.mesh, two.sample.points, {{1, 2, 3}}, {}), InvalidInput);
+}
+
+}  // namespace
