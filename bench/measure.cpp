@@ -4,7 +4,6 @@
 #include <g3r/metrics.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 
@@ -17,10 +16,6 @@ namespace {
 constexpr std::size_t kMeshSamples = 200000;
 constexpr std::array<double, 4> kQuantiles = {0.50, 0.90, 0.95, 0.99};
 constexpr double kDegrees = 180 / 3.14159265358979323846;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 void score_points(const Orientation& orientation, const Input& input, Row& row) {
   const std::vector<Vec3> normals(orientation.normals.begin(), orientation.normals.begin() + static_cast<std::ptrdiff_t>(input.surface));
@@ -46,14 +41,11 @@ void score_points(const Orientation& orientation, const Input& input, Row& row) 
   }
 }
 
-MeshRow score_reconstruction(const Orientation& orientation, const Input& input, const Mesh& truth, const Method& method,
-                             std::uint64_t seed) {
+MeshRow score_reconstruction(const Reconstruction& result, const Mesh& truth, std::uint64_t seed) {
   MeshRow row;
-  const auto start = std::chrono::steady_clock::now();
-  const Mesh mesh = mesh_oriented(input.points, orientation.normals, method.mesh);
-  row.seconds = seconds_since(start);
-  row.check = check_mesh(mesh);
-  const MeshScore score = score_mesh(mesh, truth, kMeshSamples, seed);
+  row.check = result.check;
+  for (const auto& [stage, seconds] : result.orientation.stats.seconds) row.seconds += stage == "mesh" ? seconds : 0;
+  const MeshScore score = score_mesh(result.mesh, truth, kMeshSamples, seed);
   row.chamfer = score.chamfer;
   row.ae = score.ae;
   row.hausdorff = score.hausdorff;
@@ -75,20 +67,29 @@ double area_under_curve(std::vector<float> high, std::vector<float> low) {
   return above / static_cast<double>(high.size()) / static_cast<double>(low.size());
 }
 
-Row measure(const std::string& model, const Mesh& truth, const Input& input, const InputKind& kind, const Method& method, bool with_mesh,
+Row measure(const std::string& model, const Mesh& truth, const Input& input, const InputKind& kind, const Variant& variant, bool with_mesh,
             std::uint64_t seed) {
   Row row;
   row.model = model;
   row.input = kind.name;
-  row.method = method.name;
+  row.method = variant.name;
   row.points = input.points.size();
   try {
-    const auto start = std::chrono::steady_clock::now();
-    const Orientation orientation = orient(input.points, method.options);
-    row.seconds = seconds_since(start);
-    row.stats = orientation.stats;
-    score_points(orientation, input, row);
-    if (with_mesh) row.mesh = score_reconstruction(orientation, input, truth, method, seed);
+    Reconstruction result;
+    if (with_mesh) {
+      try {
+        result = reconstruct(input.points, variant.options, variant.mesh);
+        row.mesh = score_reconstruction(result, truth, seed);
+      } catch (const Error& error) {  // the normals are still worth a row
+        row.mesh_error = error.what();
+        result.orientation = orient(input.points, variant.options);
+      }
+    } else {
+      result.orientation = orient(input.points, variant.options);
+    }
+    row.stats = result.orientation.stats;
+    for (const auto& [stage, seconds] : row.stats.seconds) row.seconds += stage == "mesh" ? 0 : seconds;
+    score_points(result.orientation, input, row);
   } catch (const Error& error) {
     row.error = error.what();
   }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "inputs.h"
-#include "method.h"
+#include "variant.h"
 
 namespace g3r::bench {
 
@@ -24,7 +24,8 @@ struct MeshRow {
 struct Row {
   std::string model, input, method;
   std::size_t points = 0;
-  std::string error;  ///< empty, or why there is no result
+  std::string error;       ///< empty, or why there is no result
+  std::string mesh_error;  ///< empty, or why there is no mesh
 
   double ae = 0;                            ///< AE_p, 0..1
   double pco = 0;                           ///< 0..1
@@ -32,13 +33,13 @@ struct Row {
   double confidence_auc = -1;               ///< chance that a point on the right side has the higher confidence than one on the wrong
                                             ///< side; -1 if all are on one side
   double outlier_confidence = -1;           ///< mean over the outliers; -1 without any
-  double seconds = 0;                       ///< of orient(), wall clock
+  double seconds = 0;                       ///< of orient(): all stages but the mesh, wall clock
   Stats stats;
   std::optional<MeshRow> mesh;
 };
 
-/// Orients the input, scores it, and meshes it if asked to. Errors of g3r become Row::error.
-[[nodiscard]] Row measure(const std::string& model, const Mesh& truth, const Input& input, const InputKind& kind, const Method& method,
+/// Orients the input, scores it, and meshes it if asked to. Errors of g3r become Row::error or mesh_error.
+[[nodiscard]] Row measure(const std::string& model, const Mesh& truth, const Input& input, const InputKind& kind, const Variant& variant,
                           bool with_mesh, std::uint64_t seed);
 
 /// Chance that a random item of `high` is above a random item of `low`, ties counting half: the area under the ROC curve. O(n log n).

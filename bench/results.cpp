@@ -77,6 +77,7 @@ Json row_json(const Row& row) {
   if (row.confidence_auc >= 0) json["confidence_auc"] = row.confidence_auc;
   if (row.outlier_confidence >= 0) json["outlier_confidence"] = row.outlier_confidence;
   json["seconds"] = row.seconds;
+  for (const auto& [stage, seconds] : row.stats.seconds) json["stage_seconds"][stage] = seconds;
   json["spacing"] = row.stats.spacing;
   json["epsilon"] = row.stats.epsilon;
   json["harmonics"] = row.stats.harmonics;
@@ -87,6 +88,7 @@ Json row_json(const Row& row) {
   json["converged"] = row.stats.converged;
   json["peak_memory_bytes"] = row.stats.peak_memory_bytes;
   if (row.mesh) json["mesh"] = mesh_json(*row.mesh);
+  if (!row.mesh_error.empty()) json["mesh_error"] = row.mesh_error;
   return json;
 }
 
@@ -155,6 +157,7 @@ void write_cell(const Row& row, std::ostream& out) {
     out << separator << shown(score, score.value(row));
     separator = " / ";
   }
+  if (!row.mesh_error.empty()) out << " no mesh: " << row.mesh_error;
   if (!row.mesh) return;
   for (const Score& score : mesh_scores()) out << separator << shown(score, score.value(row));
   const MeshCheck& check = row.mesh->check;

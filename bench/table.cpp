@@ -1,4 +1,4 @@
-// g3r_table: orients (and meshes) samples of ground-truth meshes and scores the results. README.md holds the protocol.
+// g3r_bench_table: orients (and meshes) samples of ground-truth meshes and scores the results. README.md holds the protocol.
 #include <g3r/g3r.h>
 #include <g3r/io.h>
 
@@ -10,8 +10,8 @@
 
 #include "inputs.h"
 #include "measure.h"
-#include "method.h"
 #include "results.h"
+#include "variant.h"
 
 namespace g3r::bench {
 
@@ -83,10 +83,10 @@ void show(const Row& row) {
 void run(const Arguments& arguments) {
   std::vector<InputKind> kinds;
   for (const std::string& text : arguments.inputs) kinds.push_back(parse_input_kind(text));
-  std::vector<Method> methods;
+  std::vector<Variant> variants;
   for (const std::string& text : arguments.methods) {
-    methods.push_back(parse_method(text));
-    methods.back().options.threads = arguments.run.threads;
+    variants.push_back(parse_variant(text));
+    variants.back().options.threads = arguments.run.threads;
   }
   std::vector<Row> rows;
   for (const fs::path& path : find_models(arguments)) {
@@ -94,8 +94,8 @@ void run(const Arguments& arguments) {
     for (const std::size_t count : arguments.points) {
       for (const InputKind& kind : kinds) {
         const Input input = make_input(truth, kind, count, arguments.run.seed);
-        for (const Method& method : methods) {
-          rows.push_back(measure(path.stem().string(), truth, input, kind, method, arguments.mesh, arguments.run.seed));
+        for (const Variant& variant : variants) {
+          rows.push_back(measure(path.stem().string(), truth, input, kind, variant, arguments.mesh, arguments.run.seed));
           show(rows.back());
         }
       }
@@ -115,7 +115,7 @@ int main(int argc, char** argv) {
   try {
     g3r::bench::run(arguments);
   } catch (const std::exception& error) {
-    std::cerr << "g3r_table: " << g3r::escape_text(error.what()) << "\n";
+    std::cerr << "g3r_bench_table: " << g3r::escape_text(error.what()) << "\n";
     return 1;
   }
   return 0;

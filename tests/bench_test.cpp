@@ -7,8 +7,8 @@
 
 #include "../bench/inputs.h"
 #include "../bench/measure.h"
-#include "../bench/method.h"
 #include "../bench/results.h"
+#include "../bench/variant.h"
 #include "mesh/vector.h"
 #include "mesh_shapes.h"
 
@@ -88,24 +88,26 @@ TEST(BenchInputs, UnknownKindsAreRefused) {
   }
 }
 
-TEST(BenchMethod, PresetAndOptionsAreRead) {
-  const Method method = parse_method("paper;epsilon=0.4h;schedule=20 cg;degree=1;harmonics=1,x,y,z;solver=cg;tolerance=1e-3;depth=8");
-  EXPECT_EQ(method.options.preset, Preset::kPaper);
-  EXPECT_EQ(method.options.epsilon.unit, Epsilon::Unit::kSpacing);
-  EXPECT_EQ(method.options.epsilon.value, 0.4);
-  EXPECT_EQ(method.options.schedule, "20 cg");
-  EXPECT_EQ(method.options.degree, 1);
-  EXPECT_EQ(method.options.harmonics, "1,x,y,z");
-  EXPECT_EQ(method.options.solver, Solver::kConjugateGradient);
-  EXPECT_EQ(method.options.tolerance, 1e-3);
-  EXPECT_EQ(method.mesh.depth, 8);
-  EXPECT_EQ(parse_method("paper").mesh.depth, 10);
-  EXPECT_EQ(parse_method("default").mesh.depth, 0);
+TEST(BenchVariant, PresetAndOptionsAreRead) {
+  const Variant variant = parse_variant(
+      "paper;method=energy;epsilon=0.4h;schedule=20 cg;degree=1;harmonics=1,x,y,z;solver=cg;tolerance=1e-3;mesher=field;depth=8");
+  EXPECT_EQ(variant.options.preset, Preset::kPaper);
+  EXPECT_EQ(variant.options.method, g3r::Method::kEnergy);
+  EXPECT_EQ(variant.options.epsilon.unit, Epsilon::Unit::kSpacing);
+  EXPECT_EQ(variant.options.epsilon.value, 0.4);
+  EXPECT_EQ(variant.options.schedule, "20 cg");
+  EXPECT_EQ(variant.options.degree, 1);
+  EXPECT_EQ(variant.options.harmonics, "1,x,y,z");
+  EXPECT_EQ(variant.options.solver, Solver::kConjugateGradient);
+  EXPECT_EQ(variant.options.tolerance, 1e-3);
+  EXPECT_EQ(variant.mesh.depth, 8);
+  EXPECT_EQ(variant.mesh.mesher, Mesher::kField);
+  EXPECT_EQ(parse_variant("default").mesh.depth, 0);
 }
 
-TEST(BenchMethod, MistakesAreRefused) {
+TEST(BenchVariant, MistakesAreRefused) {
   for (const char* text : {"", "best", "paper;degree", "paper;degree=x", "paper;colour=1", "default;epsilon=0.4y", "default;solver=lu"}) {
-    EXPECT_THROW((void)parse_method(text), InvalidInput) << text;
+    EXPECT_THROW((void)parse_variant(text), InvalidInput) << text;
   }
 }
 

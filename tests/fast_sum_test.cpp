@@ -140,8 +140,7 @@ TEST(FastSum, ErrorStaysBelowTheAccuracy) {
     for (const Case& c : clouds(n)) {
       if (n < 4 && c.name != "sphere") continue;
       for (const double accuracy : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
-        SumPlan plan = sum_plan(accuracy, 1000000);
-        if (n <= 100) plan.leaf_points = 4;
+        const SumPlan plan = sum_plan(accuracy, n);  // direct below the crossover
         const double error = worst_error(c.points, Widths(0.4 * spacing_of(c.points)), plan);
         if (std::getenv("G3R_VERBOSE") != nullptr) std::printf("%-18s n=%zu tol=%g error=%.2e\n", c.name.c_str(), n, accuracy, error);
         EXPECT_LE(error, accuracy) << c.name << " n=" << n << " accuracy " << accuracy;

@@ -98,6 +98,17 @@ TEST(SplitNonmanifold, TrianglesThatNameAVertexTwiceAreLeftOut) {
   EXPECT_EQ(split_nonmanifold(mesh).triangles, shapes::cube().triangles);
 }
 
+TEST(SplitNonmanifold, PairsThatFaceEachOtherOnTheSameVerticesAreLeftOut) {
+  Mesh mesh = shapes::cube();
+  mesh.triangles.push_back({0, 5, 6});
+  mesh.triangles.push_back({6, 5, 0});
+  mesh.triangles.push_back({4, 5, 7});  // twice there, once inverted: one stays
+  mesh.triangles.push_back({5, 4, 7});
+  const MeshCheck check = check_mesh(split_nonmanifold(mesh));
+  EXPECT_EQ(check.triangles, 12u);
+  EXPECT_TRUE(check.closed && check.manifold);
+}
+
 TEST(SplitNonmanifold, BoundariesStay) {
   const Mesh mesh = shapes::square(1, 0, 3);
   EXPECT_EQ(split_nonmanifold(mesh).triangles, mesh.triangles);

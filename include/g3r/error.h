@@ -2,10 +2,12 @@
 // The library never prints, never exits and never changes global state. Running out of memory is std::bad_alloc.
 #pragma once
 
+#include <g3r/export.h>
+
 #include <stdexcept>
 #include <string>
 
-namespace g3r {
+namespace G3R_PUBLIC g3r {
 
 /// Base of all errors. what() is one line of plain text, safe to print on a terminal.
 class Error : public std::runtime_error {

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <g3r/error.h>
+#include <g3r/export.h>
 #include <g3r/mesh.h>
 #include <g3r/points.h>
 
@@ -21,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-namespace g3r {
+namespace G3R_PUBLIC g3r {
 
 /// A named set of defaults. Every option that is set explicitly wins over the preset.
 enum class Preset {
@@ -142,6 +143,18 @@ enum class Mesher {
 struct MeshOptions {
   Mesher mesher = Mesher::kAuto;
   int depth = 0;  ///< octree depth, 4..12; 0: from the density of the points (10 in the paper preset)
+
+  /// Whether surface far from every point is cut away, which leaves an open boundary.
+  enum class Trim {
+    kOff,      ///< closed
+    kAuto,     ///< farther than 4 local spacings
+    kDistance  ///< farther than trim_distance
+  };
+  Trim trim = Trim::kOff;
+  double trim_distance = 0;       ///< input units, > 0 with Trim::kDistance
+  std::size_t keep_largest = 0;   ///< keep only this many components, largest first; 0: all
+  double min_component = 8;       ///< drop components of less area than this many points stand for, 0: none; the largest always stays
+  std::size_t faces = 0;          ///< simplify to about this many triangles; 0: off
 };
 
 /// A mesh together with the normals it was made from.

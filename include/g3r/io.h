@@ -3,6 +3,7 @@
 #pragma once
 
 #include <g3r/error.h>
+#include <g3r/export.h>
 #include <g3r/mesh.h>
 #include <g3r/points.h>
 
@@ -13,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace g3r {
+namespace G3R_PUBLIC g3r {
 
 /// What a file holds besides the points: every property, list, comment and element, kept so that write_cloud() can return it untouched.
 class Attributes;

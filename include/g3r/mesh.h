@@ -1,6 +1,7 @@
 // Triangle meshes, and what can be said of them.
 #pragma once
 
+#include <g3r/export.h>
 #include <g3r/points.h>
 
 #include <array>
@@ -8,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace g3r {
+namespace G3R_PUBLIC g3r {
 
 /// An indexed triangle mesh. Triangles are counter-clockwise seen from outside.
 struct Mesh {

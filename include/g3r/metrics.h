@@ -1,6 +1,7 @@
 // Scores against a reference, as defined by the paper (docs/math.md): AE_p, PCO for normals; CD, AE_m, HD for meshes.
 #pragma once
 
+#include <g3r/export.h>
 #include <g3r/mesh.h>
 #include <g3r/points.h>
 
@@ -8,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace g3r {
+namespace G3R_PUBLIC g3r {
 
 /// Normals against true normals, both N >= 1, of any length. A zero normal counts as wrong, with error 1/2.
 /// Throws InvalidInput for sizes that differ, a value that is not finite, a true normal that is zero.

@@ -1,12 +1,14 @@
 // Points as g3r takes and returns them: a view of the caller's array (never copied by the caller), and plain triples.
 #pragma once
 
+#include <g3r/export.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-namespace g3r {
+namespace G3R_PUBLIC g3r {
 
 /// A point or vector, in the units of the input.
 using Vec3 = std::array<double, 3>;

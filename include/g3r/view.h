@@ -6,6 +6,7 @@
 #pragma once
 
 #include <g3r/error.h>
+#include <g3r/export.h>
 #include <g3r/mesh.h>
 #include <g3r/points.h>
 
@@ -15,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace g3r {
+namespace G3R_PUBLIC g3r {
 
 /// What there is to see. Everything is optional, but there must be at least one finite point or one triangle.
 /// Vectors that belong to the points are empty or have one entry per point.

@@ -331,6 +331,7 @@ void MatrixRows(const T* matrix, std::size_t columns, std::size_t stride, std::s
                 std::size_t count) {
   std::size_t c = 0;
   for (; c + kTile <= count; c += kTile) MatrixTile<T, kVectors, kTile>(matrix, columns, stride, row, in + c, out + c);
+  for (; c + 4 <= count; c += 4) MatrixTile<T, kVectors, 4>(matrix, columns, stride, row, in + c, out + c);
   for (; c + 2 <= count; c += 2) MatrixTile<T, kVectors, 2>(matrix, columns, stride, row, in + c, out + c);
   for (; c < count; ++c) MatrixTile<T, kVectors, 1>(matrix, columns, stride, row, in + c, out + c);
 }

@@ -1,9 +1,9 @@
 // The near field: exact pair sums. Highway compiles this file once per instruction set.
 //
-// Beyond kMollifierReach widths the kernels are plain powers of 1/rho. Within, they are polynomials in
-// w = 4.4 s / (s + 30) - 1 in [-1, 1], s = (rho / e)^2 in [0, 25], fitted by Lawson iteration for the least relative error
-// (float: 6e-8, double: 4e-16 before rounding). The mapping spreads the bell of exp(-s/2), so degree 10 and 20 suffice where a
-// polynomial in s would need 20 and 40. A vector of targets takes the mollified path when any lane is near; the lanes that are not keep the plain value.
+// Beyond kMollifierReach<T> widths R the kernels are plain powers of 1/rho. Within, they are polynomials in
+// w = 2 (R^2 + 30) / R^2 * s / (s + 30) - 1 in [-1, 1], s = (rho / e)^2 in [0, R^2], fitted by Lawson iteration for the least relative
+// error (float: 6e-8, double: 1e-15 before rounding). The mapping spreads the bell of exp(-s/2), so degree 10 and 24 suffice where a
+// polynomial in s would need twice that. A vector of targets takes the mollified path when any lane is near; the lanes that are not keep the plain value.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cpu/near_field.cpp"
 #include "cpu/near_field.h"
@@ -19,7 +19,10 @@ namespace g3r::cpu {
 namespace {
 
 constexpr double kMapPole = 30;    // c of w(s); 20..40 give about the same degree
-constexpr double kMapScale = 4.4;  // 2 (25 + 30) / 25: w = 1 at the reach
+template <class T>
+constexpr double kReachSquared = kMollifierReach<T>* kMollifierReach<T>;
+template <class T>
+constexpr double kMapScale = 2 * (kReachSquared<T> + kMapPole) / kReachSquared<T>;  // w = 1 at the reach
 constexpr std::size_t kRunsPerFlush = 8;  // source runs summed in T before they are added in double; bounds the rounding of long sums
 constexpr int kMaxBatch = 9;
 
@@ -39,31 +42,35 @@ struct Polynomials<float> {
 };
 template <>
 struct Polynomials<double> {
-  static constexpr int kDegree = 20;
-  static constexpr double kSingleLayer[kDegree + 1] = {3.35649064840995381e-01, -2.10920299441301584e-01, 1.24798606030001744e-01, -7.57980299823465958e-02,
-      3.64071600920128913e-02, -1.23510578153057764e-02, 2.21409733109741939e-03, 1.25000403179443528e-04,
-      -1.34197281071506608e-04, 1.94342785183221518e-06, 7.96760155631547900e-06, 1.65099359405330193e-07,
-      -4.99354729732212903e-07, -6.75738260584514914e-08, 2.39379223504603358e-08, 8.77109268532052134e-09,
-      -1.10947654638959882e-11, -6.40449248621036633e-10, -1.22753989366953202e-10, 1.99988269593066593e-11,
-      7.18221119167613868e-12};  // NOLINT
-  static constexpr double kDoubleLayer[kDegree + 1] = {3.69430100233552189e-02, -6.54485122365822541e-02, 6.87402578975359752e-02, -5.27173349448215381e-02,
-      2.92660603964725666e-02, -1.08959757107265753e-02, 2.15114284293545753e-03, 7.69090790526038507e-05,
-      -1.26932265324151522e-04, 4.11308713382684336e-06, 7.62595454460928074e-06, 2.93524672955119054e-08,
-      -4.91058605466939326e-07, -5.82482926643325267e-08, 2.48088899452608584e-08, 8.34134476972257150e-09,
-      -1.03925407072462858e-10, -6.35977650134660956e-10, -1.35481791428388193e-10, 2.05980943279992434e-11,
-      1.14208069012877246e-11};  // NOLINT
-  static constexpr double kStokeslet[kDegree + 1] = {2.54796039407053712e-02, -3.46254115426459508e-02, 2.58833912986020757e-02, -1.38358685599396149e-02,
-      5.26642034050530793e-03, -1.24854111471589362e-03, 9.01879349830024204e-05, 3.91407307269996558e-05,
-      -7.66855733764234095e-06, -1.72962244218028187e-06, 3.86318533713755390e-07, 1.19426145222324573e-07,
-      -1.16234505502940625e-08, -8.70011372032029724e-09, -6.00369295454758184e-10, 4.52673798758177653e-10,
-      1.28316565512130242e-10, -3.69535488218254455e-12, -8.85218785627615216e-12, -1.29106027057903922e-12,
-      1.14607116513783156e-13};  // NOLINT
-  static constexpr double kGradient[kDegree + 1] = {1.14634060826498477e-02, -3.08231006939362374e-02, 4.28568665989336045e-02, -3.88814663848843015e-02,
-      2.39996400559778639e-02, -9.64743459597991286e-03, 2.06095490782617734e-03, 3.77683481263534160e-05,
-      -1.19263707221382151e-04, 5.84271030562437042e-06, 7.23963332077668417e-06, -9.00752676713526825e-08,
-      -4.79429369362821732e-07, -4.95460918486161031e-08, 2.54015565366647449e-08, 7.88706423644328355e-09,
-      -2.26060062293423261e-10, -6.31621256451490779e-10, -1.29365343012531471e-10, 2.17787034768432590e-11,
-      1.18181221371714766e-11};  // NOLINT
+  static constexpr int kDegree = 24;
+  static constexpr double kSingleLayer[kDegree + 1] = {2.72238911498497105e-01, -1.96628995570388543e-01, 1.22041552220679431e-01, -9.38767211879213276e-02,
+      6.36532975560639841e-02, -3.55124354476142531e-02, 1.33667521248684220e-02, -1.87221549284269438e-03,
+      -1.00447010871894523e-03, 4.33479492326374995e-04, 8.71531243935183509e-05, -6.43831087415920486e-05,
+      -1.52842617681381186e-05, 8.23994650825937019e-06, 3.57644004047402987e-06, -6.19828048109925261e-07,
+      -7.26394739696446179e-07, -9.76273908300941179e-08, 9.14078289285755965e-08, 4.80875567915677717e-08,
+      6.73808728264686125e-10, -8.94533676379756188e-09, -2.86814591679717682e-09, 7.08848637133337684e-10,
+      4.17013371150739815e-10};  // NOLINT
+  static constexpr double kDoubleLayer[kDegree + 1] = {2.01166718020476080e-02, -4.30581442740953085e-02, 5.53298020606874871e-02, -5.70005705158219203e-02,
+      4.74088379271178084e-02, -2.98020127366235635e-02, 1.23890055148868014e-02, -2.04151894739308323e-03,
+      -8.67331441306248212e-04, 4.35830834632103237e-04, 7.19619343207371088e-05, -6.43977927655205748e-05,
+      -1.31880004148318429e-05, 8.52117086637677447e-06, 3.34405364235570986e-06, -6.99147573483444155e-07,
+      -7.11172127133926147e-07, -8.23308928412389936e-08, 9.75936165374723459e-08, 4.85394875779976892e-08,
+      -2.72723543696958550e-09, -9.90776908408788320e-09, -1.68788690034080203e-09, 9.21469765054919531e-10,
+      2.23793630707046198e-10};  // NOLINT
+  static constexpr double kStokeslet[kDegree + 1] = {1.57114895741949818e-02, -2.77761856613164514e-02, 2.67659526632657123e-02, -1.95822323957149901e-02,
+      1.11852221262368698e-02, -4.56992260514550372e-03, 1.00868766793197912e-03, 9.99641456844417445e-05,
+      -1.23252977843750109e-04, 5.19438880044147083e-06, 1.43938911623116771e-05, -5.51493723960467629e-07,
+      -1.94187723378307295e-06, -1.52190991875949153e-07, 2.51121473510972186e-07, 7.40059988413645635e-08,
+      -1.93436612501158679e-08, -1.68810633366780844e-08, -2.42648522998569806e-09, 2.11953706989512661e-09,
+      1.28229726827448888e-09, -4.63661094553928932e-11, -2.51441230517015657e-10, -1.90924654212535143e-11,
+      2.37574674697121477e-11};  // NOLINT
+  static constexpr double kGradient[kDegree + 1] = {4.40518222785261232e-03, -1.52819586127788849e-02, 2.85638493974249529e-02, -3.74183381201090223e-02,
+      3.62236158007392187e-02, -2.52320901312769429e-02, 1.13803178493715879e-02, -2.14148309744039214e-03,
+      -7.44078483866628527e-04, 4.30636489075930282e-04, 5.75681377737844482e-05, -6.38465355455712126e-05,
+      -1.12463705508543696e-05, 8.67414049790631883e-06, 3.09326561140328803e-06, -7.74760016771132008e-07,
+      -6.91919385251266299e-07, -6.33591945183250508e-08, 9.96345696869174391e-08, 4.47540418210992417e-08,
+      -3.42699442045166689e-09, -9.11945890867278143e-09, -1.78370930853171891e-09, 7.99120106011687983e-10,
+      2.78650931919291843e-10};  // NOLINT
 };
 
 }  // namespace
@@ -146,7 +153,7 @@ HWY_INLINE Kernel<T> MollifiedKernel(Vec<T> r2, Vec<T> width_squared) {
   const Vec<T> inverse_width2 = hn::Mul(inverse_width, inverse_width);
   const Vec<T> s = hn::Mul(r2, inverse_width2);
   const Vec<T> mapped = hn::Mul(s, Reciprocal<T>(hn::Add(s, hn::Set(d, static_cast<T>(kMapPole)))));
-  const Vec<T> w = hn::MulSub(mapped, hn::Set(d, static_cast<T>(kMapScale)), hn::Set(d, T{1}));
+  const Vec<T> w = hn::MulSub(mapped, hn::Set(d, static_cast<T>(kMapScale<T>)), hn::Set(d, T{1}));
   const Vec<T> cube = hn::Mul(inverse_width, inverse_width2);
   Kernel<T> k;
   k.flux = hn::Mul(cube, Horner<T>(P::kDoubleLayer, w));
@@ -247,7 +254,7 @@ HWY_INLINE void AddRun(const NearTask<T>& task, const SourceRun<T>& run, Vec<T> 
                        const Vec<T>* u, Vec<T>* sum) {
   const Tag<T> d;
   const Vec<T> uniform = hn::Set(d, task.uniform_width_squared);
-  const Vec<T> reach2 = hn::Set(d, static_cast<T>(kMollifierReach * kMollifierReach));
+  const Vec<T> reach2 = hn::Set(d, static_cast<T>(kReachSquared<T>));
   const T* record = task.records + run.begin * task.record_size;
   for (std::uint32_t j = 0; j < run.count; ++j, record += task.record_size) {
     const Vec<T> dx = hn::Sub(hn::Set(d, record[0]), x);

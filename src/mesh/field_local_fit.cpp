@@ -21,6 +21,12 @@ constexpr std::size_t kMinSheet = 3;  // points; fewer are noise
 constexpr double kRidge = 1e-3;       // on the curvatures, relative to the weight of the data: keeps them bounded where points are few
 constexpr double kJointClear = 0.03;  // spacings: sheets closer than this to each other's points do not form a crease
 
+constexpr double kOpposite = -0.7;  // cosine: points whose normals differ by more than about 135 degrees are on opposite walls
+constexpr std::size_t kWallNeighbours = 16;
+constexpr double kAgree = 0.5;       // spacings: tangent planes this near do not count when asked whether a place has all on one side
+constexpr double kFacing = -0.3;     // cosine: sheets that face away from each other this much are two walls, not one bend
+constexpr double kSplitGain = 0.05;  // several sheets must reduce the squared misfit of one sheet to this share
+
 Vector3d vector(const Vec3& p) { return {p[0], p[1], p[2]}; }
 
 struct Cloud {
@@ -49,6 +55,13 @@ Eigen::Matrix3d frame_of(const Vector3d& n) {
   f.row(1) = n.cross(u);
   f.row(2) = n;
   return f;
+}
+
+// Squared misfit of a member to a sheet, positions and slopes weighed as in the fit, in units of h^2.
+double misfit(const Sheet& s, const Member& m, double h, double normal_weight) {
+  Vector3d g;
+  const double d = s.distance(m.p, &g) / h;
+  return m.weight * (d * d + normal_weight * (g - m.n).squaredNorm());
 }
 
 // Least squares: sum w [ (z - q(u, v))^2 + lambda h^2 |slope - grad q|^2 ], in units of h.
@@ -109,6 +122,27 @@ Joint joint_of(const LocalSurface& s, const std::vector<Member>& members, int a,
   if (a_at_b < -clear && b_at_a < -clear) return Joint::kConvex;
   if (a_at_b > clear && b_at_a > clear) return Joint::kConcave;
   return Joint::kNone;
+}
+
+// Undersampled detail also makes normals differ. Several sheets are kept only if they explain the points far better than one smooth
+// sheet does; sheets that face each other are always kept.
+void prefer_one_sheet(LocalSurface& s, std::vector<Member>& members, double normal_weight) {
+  if (s.walls) return;
+  double split = 0, whole = 0;
+  std::vector<int> sheet;
+  for (Member& m : members) {
+    if (m.sheet >= 0) split += misfit(s.sheet[static_cast<std::size_t>(m.sheet)], m, s.spacing, normal_weight);
+    sheet.push_back(m.sheet);
+    if (m.sheet >= 0) m.sheet = 0;
+  }
+  const Sheet one = fit_sheet(members, 0, s.spacing, normal_weight);
+  for (const Member& m : members) whole += m.sheet == 0 ? misfit(one, m, s.spacing, normal_weight) : 0;
+  if (split > kSplitGain * whole) {
+    s.count = 1;
+    s.sheet[0] = one;
+  } else {
+    for (std::size_t i = 0; i < members.size(); ++i) members[i].sheet = sheet[i];
+  }
 }
 
 }  // namespace
@@ -228,12 +262,43 @@ LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* dire
     ++out.count;
     if (!options_.sharp) break;
   }
-  out.simple = out.count == 1 && std::all_of(members.begin(), members.end(), [](const Member& m) { return m.sheet == 0; });
+  for (int a = 0; a < out.count; ++a) {
+    for (int b = 0; b < a; ++b) {
+      const auto na = out.sheet[static_cast<std::size_t>(a)].frame.row(2), nb = out.sheet[static_cast<std::size_t>(b)].frame.row(2);
+      out.walls = out.walls || na.dot(nb) < kFacing;
+    }
+  }
+  if (out.count > 1 && options_.sharp) prefer_one_sheet(out, members, options_.normal_weight);
+  if (out.count == 1) {
+    const double f = out.sheet[0].distance(x);
+    out.simple = std::all_of(members.begin(), members.end(), [&](const Member& m) {
+      const double plane = m.n.dot(x - m.p);
+      return m.sheet == 0 && ((plane > 0) == (f > 0) || std::abs(plane) < kAgree * h);
+    });
+  }
   if (out.count > 1) out.joint[0] = joint_of(out, members, 0, 1);
   if (out.count > 2) {
     out.joint[1] = joint_of(out, members, 0, 2);
     out.joint[2] = joint_of(out, members, 1, 2);
   }
+  return out;
+}
+
+std::vector<double> wall_thickness(const OrientedPoints& points, const LocalFit& local) {
+  const std::size_t n = points.positions.size();
+  std::vector<double> out(n, std::numeric_limits<double>::infinity());
+  parallel::for_blocks(n, 256, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> index;
+    std::vector<double> squared;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vector3d p = vector(points.positions[i]), normal = vector(points.normals[i]);
+      local.nearest(p, kWallNeighbours, index, squared);
+      for (const std::uint32_t j : index) {
+        if (normal.dot(vector(points.normals[j])) > kOpposite) continue;
+        out[i] = std::min(out[i], std::abs(normal.dot(vector(points.positions[j]) - p)));
+      }
+    }
+  });
   return out;
 }
 

@@ -43,18 +43,19 @@ enum class Joint : signed char {
 struct LocalSurface {
   int count = 0;  ///< number of sheets, 0 if there is no point near; sheet 0 is the nearest
   std::array<Sheet, 3> sheet;
+  bool walls = false;            ///< two of the sheets face away from each other or each other
   std::array<Joint, 3> joint{};  ///< of sheets 0-1, 0-2, 1-2
   double spacing = 0;            ///< local spacing h
   double nearest = 0;            ///< distance from the place to the nearest point
-  bool simple = false;           ///< one sheet, and every point near belongs to it
+  bool simple = false;  ///< one sheet, every point near belongs to it, and it has the place on the same side as their tangent planes
 
   /// Signed distance to the joined sheets, positive outside; which sheet it belongs to (may be null).
   double distance(const Eigen::Vector3d& x, int* active = nullptr) const;
 };
 
 struct LocalFitOptions {
-  std::size_t neighbours = 20;
-  double width = 1.0;           ///< standard deviation of the Gaussian weight, in spacings
+  std::size_t neighbours = 16;
+  double width = 0.7;           ///< standard deviation of the Gaussian weight, in spacings
   double normal_weight = 0.25;  ///< of the normals against the positions, dimensionless
   bool sharp = true;            ///< several sheets; false under noise
 };
@@ -79,6 +80,10 @@ class LocalFit {
   LocalFitOptions options_;
   std::unique_ptr<Index> index_;
 };
+
+/// Distance across the wall or gap at each point: to the nearest of its neighbours that face the other way, measured along the normal.
+/// Infinite where none of the 16 nearest does. O(N log N).
+[[nodiscard]] std::vector<double> wall_thickness(const OrientedPoints& points, const LocalFit& local);
 
 /// h_i = d_8 sqrt(pi / 8) averaged over the neighbours, in input units. O(N log N).
 [[nodiscard]] std::vector<double> local_spacing(const std::vector<Vec3>& positions);

@@ -10,6 +10,7 @@
 #include "mesh/field_local_fit.h"
 #include "mesh/field_octree.h"
 #include "mesh/field_placement.h"
+#include "mesh/mesh_parts.h"
 
 namespace g3r {
 namespace {
@@ -28,7 +29,11 @@ constexpr double kMargin = 1.15;     // side of the octree over the longest side
 constexpr int kBaseLevel = 4;        // coarsest leaves
 constexpr int kMaxSpread = 4;        // levels that locally dense or sparse sampling may add or take away
 constexpr double kLocalReach = 1.8;  // spacings from the nearest point within which the fitted surface gives the side
-constexpr double kFieldSure = 0.35;  // |w - level| from which the field overrules the fitted surface
+constexpr double kThin = 1.3;        // walls and gaps get cells of at most their thickness over this,
+constexpr double kMaxThin = 2.0;     // but not smaller than a normal cell over this
+constexpr double kWallReach = 1.0;   // spacings: between walls the fits are trusted this near to a point
+constexpr double kFieldWall = 0.4;   // the same as kFieldSure between walls, where mollification blurs the field
+constexpr double kFieldSure = 0.2;   // |w - level| from which the field overrules the fitted surface
 
 void report(const Monitor& monitor, double fraction) {
   if (monitor.cancel != nullptr && monitor.cancel->load()) throw Cancelled();
@@ -41,7 +46,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-Octree make_octree(const OrientedPoints& points, const MeshOptions& options, const Monitor& monitor) {
+Octree make_octree(const OrientedPoints& points, const std::vector<double>& thickness, const MeshOptions& options, const Monitor& monitor) {
   Vec3 low = points.positions[0], high = low;
   for (const Vec3& p : points.positions) {
     for (std::size_t a = 0; a < 3; ++a) low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
@@ -58,7 +63,9 @@ Octree make_octree(const OrientedPoints& points, const MeshOptions& options, con
   for (std::size_t a = 0; a < 3; ++a) corner[a] = 0.5 * (low[a] + high[a]) - 0.5 * side;
   std::vector<RefineDisc> requests(points.positions.size());
   for (std::size_t i = 0; i < requests.size(); ++i) {
-    const int spread = static_cast<int>(std::lround(std::log2(h / points.spacing[i])));
+    double size = points.spacing[i];
+    if (thickness[i] < kThin * kCell * size) size = std::max(thickness[i] / (kThin * kCell), size / kMaxThin);
+    const int spread = static_cast<int>(std::lround(std::log2(h / size)));
     const int wanted = level + std::clamp(spread, -kMaxSpread, options.depth == 0 ? kMaxSpread : 0);
     requests[i] = {points.positions[i], points.normals[i], kDisc * points.spacing[i], kDiscHalf * points.spacing[i],
                    std::max(wanted, kBaseLevel)};
@@ -77,6 +84,7 @@ class Side {
     const double unknown = std::numeric_limits<double>::quiet_NaN();
     std::vector<double> value(places.size(), unknown);
     std::vector<std::uint8_t> sure(places.size(), 0);
+    std::vector<double> threshold(places.size(), kFieldSure);
     parallel::for_blocks(
         places.size(), 256,
         [&](std::size_t begin, std::size_t end) {
@@ -86,6 +94,7 @@ class Side {
             if (fit.count == 0) continue;
             value[i] = -fit.distance(x);
             sure[i] = fit.simple ? 1 : 0;
+            if (fit.walls && fit.nearest < kWallReach * fit.spacing) threshold[i] = kFieldWall;
           }
         },
         cancel);
@@ -101,7 +110,7 @@ class Side {
     for (std::size_t k = 0; k < ask.size(); ++k) {
       const double f = field[k] - level_;
       double& v = value[ask[k]];
-      if (std::isnan(v) || (std::abs(f) >= kFieldSure && (v > 0) != (f > 0))) v = f * spacing_;
+      if (std::isnan(v) || (std::abs(f) >= threshold[ask[k]] && (v > 0) != (f > 0))) v = f * spacing_;
     }
     return value;
   }
@@ -134,7 +143,7 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
   const LocalFit local(oriented, LocalFitOptions{});
   report(monitor, 0.1);
 
-  const Octree octree = make_octree(oriented, options, monitor);
+  const Octree octree = make_octree(oriented, mesh::wall_thickness(oriented, local), options, monitor);
   report(monitor, 0.2);
   const Side side(local, sampler, level, spacing);
   std::vector<Vec3> corners(octree.corner_count());
@@ -154,6 +163,7 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
   mesh::PlacedVertices placed = mesh::place_vertices(octree, surface, value, local, monitor.cancel);
   report(monitor, 0.95);
   Mesh mesh = mesh::triangulate(surface, std::move(placed.positions), placed.normals);
+  mesh::remove_components(mesh, options.min_component * spacing * spacing, options.keep_largest);
   report(monitor, 1);
   return mesh;
 }

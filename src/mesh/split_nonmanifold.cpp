@@ -20,6 +20,44 @@ namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
+/// Removes triangles that name a vertex twice, and pairs of triangles on the same vertices that face each other: they bound nothing.
+void remove_folded(Mesh& mesh) {
+  struct Entry {
+    std::array<std::uint32_t, 3> vertices;  // ascending
+    bool even;                              // whether the triangle runs that way round
+    std::size_t triangle;
+  };
+  std::erase_if(mesh.triangles, [](const auto& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+  std::vector<Entry> entries;
+  entries.reserve(mesh.triangles.size());
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    auto t = mesh.triangles[f];
+    std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+    const bool even = t[1] < t[2];
+    if (!even) std::swap(t[1], t[2]);
+    entries.push_back({t, even, f});
+  }
+  parallel::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return a.vertices != b.vertices ? a.vertices < b.vertices : a.triangle < b.triangle;
+  });
+  std::vector<std::size_t> unmatched;  // entries on the same vertices, all of one direction
+  std::vector<char> folded(mesh.triangles.size(), 0);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (!unmatched.empty() && entries[unmatched.back()].vertices != entries[i].vertices) unmatched.clear();
+    if (unmatched.empty() || entries[unmatched.back()].even == entries[i].even) {
+      unmatched.push_back(i);
+    } else {
+      folded[entries[i].triangle] = folded[entries[unmatched.back()].triangle] = 1;
+      unmatched.pop_back();
+    }
+  }
+  std::size_t kept = 0;
+  for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+    if (folded[f] == 0) mesh.triangles[kept++] = mesh.triangles[f];
+  }
+  mesh.triangles.resize(kept);
+}
+
 /// Appends a vertex between two others (or a copy, if they are the same).
 std::uint32_t append_midpoint(Mesh& mesh, std::uint32_t a, std::uint32_t b) {
   mesh.vertices.push_back(vector::scale(vector::add(mesh.vertices[a], mesh.vertices[b]), 0.5));
@@ -153,7 +191,7 @@ void split_vertices(Mesh& mesh) {
 }  // namespace
 
 Mesh split_nonmanifold(Mesh mesh) {
-  std::erase_if(mesh.triangles, [](const auto& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+  remove_folded(mesh);
   split_edges(mesh);
   split_vertices(mesh);
   return mesh;

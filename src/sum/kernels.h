@@ -14,8 +14,10 @@ namespace g3r {
 
 inline constexpr double kInv4Pi = 0.25 * std::numbers::inv_pi;
 
-/// Beyond this many widths the mollified and the plain kernels agree to 6e-7 (erfc(5/sqrt2)), and the fast sums use the plain ones.
-inline constexpr double kMollifierReach = 5;
+/// Beyond this many widths the fast sums in precision T use the plain kernels: the mollified ones differ by erfc(5/sqrt2) = 6e-7 (float)
+/// and erfc(7/sqrt2) = 3e-12 (double).
+template <class T>
+inline constexpr double kMollifierReach = sizeof(T) == 4 ? 5 : 7;
 
 /// Kernel values at one distance.
 struct KernelValues {

@@ -3,8 +3,10 @@
 
 #include "cpu/parallel.h"
 #include "sum/expansions.h"
+#include "sum/kernels.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 namespace g3r {
@@ -53,14 +55,37 @@ std::size_t octant(const OctreeNode& node) {
   return static_cast<std::size_t>((node.cell[0] & 1) * 4 + (node.cell[1] & 1) * 2 + (node.cell[2] & 1));
 }
 
+// Mean distance of a patch's points from the centre of its cube, in half sides; and of the farthest, on which the opening is based.
+constexpr double kMeanRadius = 0.8;
+constexpr double kFarthestRadius = 1.3;
+
+// Distant nodes need fewer terms for the same error: the order that brings q^(order + 1) to what plan.order reaches at the opening, q the
+// ratio of mean radii to distance. Symmetric in target and source, so adjoints stay exact.
+int order_of(const Offset& offset, const SumPlan& plan) {
+  const double distance = std::hypot(offset.displacement[0], offset.displacement[1], offset.displacement[2]);
+  const double half_sides = 1 + std::ldexp(1.0, std::abs(offset.level_difference));
+  const double nearest = kMeanRadius / kFarthestRadius * plan.opening;
+  const double q = std::min(kMeanRadius * half_sides / distance, nearest);
+  const double terms = (plan.order + 1) * std::log(nearest) / std::log(q);
+  return std::clamp(static_cast<int>(std::ceil(terms)) - 1, 1, plan.order);
+}
+
+// A matrix of `columns` columns of `rows` entries each, zero padded to whole vectors; acts on the first coefficients of an expansion.
+template <class T>
+struct PaddedMatrix {
+  const T* data;
+  std::size_t columns;
+  std::size_t rows;
+};
+
 // Collects columns that go through one matrix, and applies it in batches.
 template <class T>
 class ColumnBatch {
  public:
-  ColumnBatch(std::size_t coefficients, std::size_t stride, std::size_t channels, bool stokes)
-      : coefficients_(coefficients), stride_(stride), channels_(channels), stokes_(stokes), moved_(stokes ? (kColumnBatch / channels + 1) * channels * stride : 0) {}
+  ColumnBatch(std::size_t stride, std::size_t channels, bool stokes)
+      : stride_(stride), channels_(channels), stokes_(stokes), moved_(stokes ? (kColumnBatch / channels + 1) * channels * stride : 0) {}
 
-  void add(const T* matrix, const T* in, T* out, const Vec3& old_minus_new) {
+  void add(const PaddedMatrix<T>& matrix, const T* in, T* out, const Vec3& old_minus_new) {
     if (stokes_) {
       T* to = moved_.data() + in_.size() * stride_;
       recentre_stokes(in, stride_, channels_, old_minus_new, to);
@@ -72,14 +97,13 @@ class ColumnBatch {
     }
     if (in_.size() + channels_ > kColumnBatch) flush(matrix);
   }
-  void flush(const T* matrix) {
-    cpu::apply_matrix(matrix, coefficients_, stride_, in_.data(), out_.data(), in_.size());
+  void flush(const PaddedMatrix<T>& matrix) {
+    cpu::apply_matrix(matrix.data, matrix.columns, matrix.rows, in_.data(), out_.data(), in_.size());
     in_.clear();
     out_.clear();
   }
 
  private:
-  std::size_t coefficients_;
   std::size_t stride_;
   std::size_t channels_;
   bool stokes_;
@@ -168,19 +192,29 @@ void SumEngine<T>::prepare(const std::vector<Vec3>& targets, const std::vector<d
       }
     }
   });
-  lists_ = build_interaction_lists(tree, sources_->tree, plan_.direct ? 0.0 : plan_.opening);
+  lists_ = build_interaction_lists(tree, sources_->tree, plan_.direct ? 0.0 : plan_.opening, kMollifierReach<T>);
   make_matrices();
 }
 
 template <class T>
 void SumEngine<T>::make_matrices() {
-  const std::size_t size = coefficients_ * stride_;
-  if (lists_.offsets.empty() || lists_.offsets.size() * size * sizeof(T) > kKeptMatrixBytes) return;
-  matrices_.resize(lists_.offsets.size() * size);
-  const MultipoleToLocal make(plan_.order);
-  parallel::for_blocks(lists_.offsets.size(), kNodeBlock, [&](std::size_t begin, std::size_t end) {
+  const std::size_t offsets = lists_.offsets.size();
+  offset_order_.resize(offsets);
+  matrix_begin_.assign(offsets + 1, 0);
+  for (std::size_t i = 0; i < offsets; ++i) {
+    offset_order_[i] = order_of(lists_.offsets[i], plan_);
+    const std::size_t n = coefficient_count(offset_order_[i]);
+    matrix_begin_[i + 1] = matrix_begin_[i] + n * cpu::padded_count(n);
+  }
+  if (matrix_begin_.back() * sizeof(T) > kKeptMatrixBytes) return;
+  matrices_.resize(matrix_begin_.back());
+  std::vector<MultipoleToLocal> make;
+  for (int order = 0; order <= plan_.order; ++order) make.emplace_back(order);
+  parallel::for_blocks(offsets, kNodeBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      store_columns(make.matrix(lists_.offsets[i]), coefficients_, stride_, false, 1.0, matrices_.data() + i * size);
+      const std::size_t n = coefficient_count(offset_order_[i]);
+      store_columns(make[static_cast<std::size_t>(offset_order_[i])].matrix(lists_.offsets[i]), n, cpu::padded_count(n), false, 1.0,
+                    matrices_.data() + matrix_begin_[i]);
     }
   });
 }
@@ -243,13 +277,13 @@ void SumEngine<T>::upward(cpu::NearForm form, int batch, std::size_t record_size
   for (std::size_t level = tree.levels(); level-- > 0;) {
     const std::size_t first = tree.level_begin[level];
     parallel::for_blocks(tree.level_begin[level + 1] - first, kNodeBlock, [&](std::size_t begin, std::size_t end) {
-      ColumnBatch<T> batch_of(coefficients_, stride_, channels_, stokes);
+      ColumnBatch<T> batch_of(stride_, channels_, stokes);
       for (std::size_t i = first + begin; i < first + end; ++i) {
         const OctreeNode& node = tree.nodes[i];
         if (node.leaf()) continue;
         std::fill_n(multipole(i), channels_ * stride_, T{0});
         for (std::uint32_t c = node.first_child; c < node.first_child + node.child_count; ++c) {
-          const T* matrix = sources_->child_to_parent[octant(tree.nodes[c])].data();
+          const PaddedMatrix<T> matrix{sources_->child_to_parent[octant(tree.nodes[c])].data(), coefficients_, stride_};
           batch_of.add(matrix, multipole(c), multipole(i), difference(tree.nodes[c].centre(), node.centre()));
           batch_of.flush(matrix);
         }
@@ -263,23 +297,22 @@ void SumEngine<T>::across(cpu::NearForm form) {
   const Octree& tree = *target_tree_;
   const Octree& source_tree = sources_->tree;
   locals_.resize(tree.nodes.size() * channels_ * stride_);
-  const std::size_t size = coefficients_ * stride_;
   const bool stokes = form == cpu::NearForm::kStokesWinding;
-  const MultipoleToLocal make(matrices_.empty() ? plan_.order : 0);
+  const bool kept = !matrices_.empty();
   parallel::for_each(
       lists_.chunk_begin.size() - 1,
       [&](std::size_t chunk) {
         const std::size_t first = chunk * kTargetChunk;
         const std::size_t last = std::min(first + kTargetChunk, tree.nodes.size());
         std::fill(local(first), local(last - 1) + channels_ * stride_, T{0});
-        ColumnBatch<T> batch_of(coefficients_, stride_, channels_, stokes);
-        AlignedVector<T> made(matrices_.empty() ? size : 0);
+        ColumnBatch<T> batch_of(stride_, channels_, stokes);
+        AlignedVector<T> made(kept ? 0 : coefficients_ * stride_);
         for (std::size_t i = lists_.chunk_begin[chunk]; i < lists_.chunk_begin[chunk + 1];) {
           const std::uint32_t offset = lists_.far[i].offset;
-          const T* matrix = matrices_.data() + offset * size;
-          if (matrices_.empty()) {
-            store_columns(make.matrix(lists_.offsets[offset]), coefficients_, stride_, false, 1.0, made.data());
-            matrix = made.data();
+          const std::size_t n = coefficient_count(offset_order_[offset]);
+          PaddedMatrix<T> matrix{kept ? matrices_.data() + matrix_begin_[offset] : made.data(), n, cpu::padded_count(n)};
+          if (!kept) {
+            store_columns(MultipoleToLocal(offset_order_[offset]).matrix(lists_.offsets[offset]), n, matrix.rows, false, 1.0, made.data());
           }
           for (; i < lists_.chunk_begin[chunk + 1] && lists_.far[i].offset == offset; ++i) {
             const FarPair& pair = lists_.far[i];
@@ -299,10 +332,10 @@ void SumEngine<T>::downward(cpu::NearForm form) {
   for (std::size_t level = 1; level < tree.levels(); ++level) {
     const std::size_t first = tree.level_begin[level];
     parallel::for_blocks(tree.level_begin[level + 1] - first, kNodeBlock, [&](std::size_t begin, std::size_t end) {
-      ColumnBatch<T> batch_of(coefficients_, stride_, channels_, stokes);
+      ColumnBatch<T> batch_of(stride_, channels_, stokes);
       for (std::size_t i = first + begin; i < first + end; ++i) {
         const OctreeNode& node = tree.nodes[i];
-        const T* matrix = sources_->parent_to_child[octant(node)].data();
+        const PaddedMatrix<T> matrix{sources_->parent_to_child[octant(node)].data(), coefficients_, stride_};
         batch_of.add(matrix, local(node.parent), local(i), difference(tree.nodes[node.parent].centre(), node.centre()));
         batch_of.flush(matrix);
       }

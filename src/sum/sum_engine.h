@@ -76,6 +76,8 @@ class SumEngine {
   std::shared_ptr<Octree> target_tree_;  // the sources' tree when they are the targets
   std::shared_ptr<TargetBlocks<T>> targets_;
   InteractionLists lists_;
+  std::vector<int> offset_order_;        // order at which an offset's M2L is cut off
+  std::vector<std::size_t> matrix_begin_;  // of every offset in matrices_
   AlignedVector<T> matrices_;            // M2L, one per offset, column after column; empty when too large to keep
   std::size_t coefficients_;
   std::size_t stride_;

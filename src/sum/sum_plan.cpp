@@ -16,12 +16,13 @@ struct Setting {
 };
 
 // Cheapest first. The measured error of each row, over all test clouds and all four sums, is below its accuracy.
-constexpr std::array<Setting, 6> kSettings{{{1e-2, 3, 0.6, 48, false},
-                                            {1e-3, 4, 0.5, 64, false},
-                                            {3e-4, 5, 0.5, 64, false},
-                                            {1e-4, 7, 0.5, 96, false},
-                                            {1e-5, 9, 0.5, 128, true},
-                                            {1e-6, 12, 0.5, 128, true}}};
+constexpr std::array<Setting, 7> kSettings{{{1e-2, 5, 0.8, 96, false},
+                                            {3e-3, 5, 0.7, 96, false},
+                                            {1e-3, 7, 0.72, 96, false},
+                                            {3e-4, 8, 0.65, 96, false},
+                                            {1e-4, 10, 0.62, 128, false},
+                                            {1e-5, 13, 0.55, 128, true},
+                                            {1e-6, 17, 0.5, 128, true}}};
 constexpr double kLoosest = 1e-1;
 constexpr std::size_t kDirectBelow = 2000;       // measured crossover of the direct and the hierarchical sum
 constexpr std::size_t kDirectLeafPoints = 256;   // direct sums: leaves only bound the rounding of local coordinates

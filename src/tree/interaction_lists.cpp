@@ -2,7 +2,6 @@
 #include "tree/interaction_lists.h"
 
 #include "cpu/parallel.h"
-#include "sum/kernels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +28,8 @@ struct Found {
 
 class Traversal {
  public:
-  Traversal(const Octree& targets, const Octree& sources, double opening) : targets_(targets), sources_(sources), opening_(opening) {
+  Traversal(const Octree& targets, const Octree& sources, double opening, double reach)
+      : targets_(targets), sources_(sources), opening_(opening), reach_(reach) {
     for (const Octree* tree : {&targets, &sources}) {
       std::vector<Vec3>& centres = tree == &targets ? target_centres_ : source_centres_;
       centres.resize(tree->nodes.size());
@@ -113,13 +113,14 @@ class Traversal {
     const double squared = dx * dx + dy * dy + dz * dz;
     const double radii = t.radius + s.radius;
     if (radii * radii > opening_ * opening_ * squared) return false;
-    const double gap = radii + kMollifierReach * std::max(t.width, s.width);
+    const double gap = radii + reach_ * std::max(t.width, s.width);
     return gap * gap <= squared;
   }
 
   const Octree& targets_;
   const Octree& sources_;
   double opening_;
+  double reach_;
   std::vector<Vec3> target_centres_;
   std::vector<Vec3> source_centres_;
 };
@@ -178,8 +179,8 @@ void index_offsets(const Octree& targets, const Octree& sources, InteractionList
 
 }  // namespace
 
-InteractionLists build_interaction_lists(const Octree& targets, const Octree& sources, double opening) {
-  const Traversal traversal(targets, sources, opening);
+InteractionLists build_interaction_lists(const Octree& targets, const Octree& sources, double opening, double reach) {
+  const Traversal traversal(targets, sources, opening, reach);
   Found top;
   std::vector<std::vector<NodePair>> tasks = traversal.start(top);
   std::vector<Found> found(tasks.size() + 1);

@@ -37,7 +37,8 @@ struct InteractionLists {
 inline constexpr std::size_t kTargetChunk = 512;
 
 /// Dual traversal. A pair of nodes is far if radius_t + radius_s <= opening * distance, the gap between them is at least
-/// kMollifierReach widths, and their levels differ by at most 3. opening in (0, 1); opening = 0: everything is near (direct sum).
-[[nodiscard]] InteractionLists build_interaction_lists(const Octree& targets, const Octree& sources, double opening);
+/// `reach` mollifier widths, and their levels differ by at most 3. opening in (0, 1); opening = 0: everything is near (direct sum).
+[[nodiscard]] InteractionLists build_interaction_lists(const Octree& targets, const Octree& sources, double opening,
+                                                        double reach);
 
 }  // namespace g3r

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 #include <string>
-#include <unordered_set>
 
 namespace g3r::view {
 namespace {
@@ -53,25 +52,27 @@ double estimate_spacing(const std::vector<Vec3>& points, const Box& box) {
   // A cell of a random plane grid section has about 2/3 of the area of a cell face: mean over directions of the cut area.
   constexpr double kAreaPerCell = 2.0 / 3.0;
   constexpr double kPointsPerCell = 4;  // below this, empty cells inside the surface make the count too small
-  constexpr std::uint64_t kFinest = 512;
+  constexpr std::size_t kFinest = 512;  // cells per side; 16 MiB of bits
   const double side = box.longest_side();
   std::uint64_t count = 0;
   for (const Vec3& p : points) count += is_finite(p) ? 1 : 0;
   if (side <= 0 || count == 0) return 0;
 
   double spacing = side / std::sqrt(static_cast<double>(count));
-  for (std::uint64_t cells = 2; cells <= kFinest; cells *= 2) {
-    std::unordered_set<std::uint64_t> occupied;
+  for (std::size_t cells = 2; cells <= kFinest; cells *= 2) {
+    std::vector<bool> occupied(cells * cells * cells, false);
+    std::size_t occupied_count = 0;
     for (const Vec3& p : points) {
       if (!is_finite(p)) continue;
-      std::uint64_t key = 0;
+      std::size_t cell = 0;
       for (std::size_t k = 0; k < 3; ++k) {
         const double u = (p[k] - box.low[k]) / side * static_cast<double>(cells);
-        key = key * kFinest + std::min(static_cast<std::uint64_t>(u), cells - 1);
+        cell = cell * cells + std::min(static_cast<std::size_t>(u), cells - 1);
       }
-      occupied.insert(key);
+      occupied_count += occupied[cell] ? 0 : 1;
+      occupied[cell] = true;
     }
-    const auto hit = static_cast<double>(occupied.size());
+    const auto hit = static_cast<double>(occupied_count);
     if (static_cast<double>(count) < kPointsPerCell * hit) break;
     const double cell = side / static_cast<double>(cells);
     spacing = cell * std::sqrt(kAreaPerCell * hit / static_cast<double>(count));

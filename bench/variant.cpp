@@ -1,4 +1,4 @@
-#include "method.h"
+#include "variant.h"
 
 #include <g3r/error.h>
 
@@ -8,8 +8,6 @@
 namespace g3r::bench {
 
 namespace {
-
-constexpr int kPaperDepth = 10;
 
 template <class Number>
 Number number(const std::string& key, const std::string& text) {
@@ -39,48 +37,64 @@ Solver parse_solver(const std::string& text) {
   throw InvalidInput("solver '" + text + "' is none of auto, dense, cg");
 }
 
-void set_option(Method& method, const std::string& key, const std::string& value) {
+g3r::Method parse_equations(const std::string& text) {
+  if (text == "green") return g3r::Method::kGreen;
+  if (text == "energy") return g3r::Method::kEnergy;
+  throw InvalidInput("method '" + text + "' is none of green, energy");
+}
+
+Mesher parse_mesher(const std::string& text) {
+  if (text == "field") return Mesher::kField;
+  if (text == "poisson") return Mesher::kPoisson;
+  throw InvalidInput("mesher '" + text + "' is none of field, poisson");
+}
+
+void set_option(Variant& variant, const std::string& key, const std::string& value) {
   if (key == "epsilon") {
-    method.options.epsilon = parse_epsilon(value);
+    variant.options.epsilon = parse_epsilon(value);
+  } else if (key == "method") {
+    variant.options.method = parse_equations(value);
   } else if (key == "degree") {
-    method.options.degree = number<int>(key, value);
+    variant.options.degree = number<int>(key, value);
   } else if (key == "harmonics") {
-    method.options.harmonics = value;
+    variant.options.harmonics = value;
   } else if (key == "solver") {
-    method.options.solver = parse_solver(value);
+    variant.options.solver = parse_solver(value);
   } else if (key == "schedule") {
-    method.options.schedule = value;
+    variant.options.schedule = value;
   } else if (key == "tolerance") {
-    method.options.tolerance = number<double>(key, value);
+    variant.options.tolerance = number<double>(key, value);
   } else if (key == "accuracy") {
-    method.options.accuracy = number<double>(key, value);
+    variant.options.accuracy = number<double>(key, value);
+  } else if (key == "mesher") {
+    variant.mesh.mesher = parse_mesher(value);
   } else if (key == "depth") {
-    method.mesh.depth = number<int>(key, value);
+    variant.mesh.depth = number<int>(key, value);
   } else {
-    throw InvalidInput("method option '" + key + "' is none of epsilon, degree, harmonics, solver, schedule, tolerance, accuracy, depth");
+    throw InvalidInput("method option '" + key +
+                       "' is none of method, epsilon, degree, harmonics, solver, schedule, tolerance, accuracy, mesher, depth");
   }
 }
 
 }  // namespace
 
-Method parse_method(const std::string& text) {
-  Method method;
-  method.name = text;
+Variant parse_variant(const std::string& text) {
+  Variant variant;
+  variant.name = text;
   std::istringstream parts(text);
   std::string part;
   std::getline(parts, part, ';');
   if (part == "paper") {
-    method.options.preset = Preset::kPaper;
-    method.mesh.depth = kPaperDepth;
+    variant.options.preset = Preset::kPaper;
   } else if (part != "default") {
     throw InvalidInput("method '" + text + "' does not begin with default or paper");
   }
   while (std::getline(parts, part, ';')) {
     const std::size_t equals = part.find('=');
     if (equals == std::string::npos) throw InvalidInput("method '" + text + "': '" + part + "' is not KEY=VALUE");
-    set_option(method, part.substr(0, equals), part.substr(equals + 1));
+    set_option(variant, part.substr(0, equals), part.substr(equals + 1));
   }
-  return method;
+  return variant;
 }
 
 }  // namespace g3r::bench

@@ -1,0 +1,20 @@
+// A method to be measured: a preset, with single options changed for ablations.
+#pragma once
+
+#include <g3r/g3r.h>
+
+#include <string>
+
+namespace g3r::bench {
+
+struct Variant {
+  std::string name;  ///< as given, for example "paper;epsilon=0.4h;schedule=20 cg"
+  Options options;
+  MeshOptions mesh;
+};
+
+/// PRESET[;KEY=VALUE]... with PRESET default or paper, and KEY one of method (green, energy), epsilon (auto, X, X%, Xh, Xn), degree,
+/// harmonics, solver (auto, dense, cg), schedule, tolerance, accuracy, mesher (field, poisson), depth. Throws InvalidInput.
+[[nodiscard]] Variant parse_variant(const std::string& text);
+
+}  // namespace g3r::bench

@@ -1,0 +1,84 @@
+/* The C interface: for languages that load a shared library. Plain C99; no exception leaves a function, nothing is printed, no state is
+ * shared between threads. Arrays are N x 3 doubles, row-major. See g3r.h for what the functions do. */
+#ifndef G3R_C_H
+#define G3R_C_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(__GNUC__)
+#define G3R_C_API __attribute__((visibility("default")))
+#else
+#define G3R_C_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum g3r_status {
+  G3R_OK = 0,
+  G3R_INVALID_INPUT = 1, /* the data or an option cannot be used */
+  G3R_UNAVAILABLE = 2,   /* this build or this machine cannot serve the request */
+  G3R_CANCELLED = 3,     /* the progress function returned 0 */
+  G3R_OUT_OF_MEMORY = 4,
+  G3R_INTERNAL_ERROR = 5 /* an error in g3r */
+} g3r_status;
+
+/* Called on the calling thread with a stage and a fraction in [0, 1]; returning 0 cancels. */
+typedef int (*g3r_progress)(void* user, const char* stage, double fraction);
+
+typedef enum g3r_unit { G3R_UNIT_AUTO = 0, G3R_UNIT_INPUT = 1, G3R_UNIT_PERCENT = 2, G3R_UNIT_SPACING = 3 } g3r_unit;
+
+/* Fill with g3r_options_init() and change what you need; members are only ever added at the end. */
+typedef struct g3r_options {
+  size_t size; /* of this struct, as the caller was compiled */
+  int paper;   /* not 0: the published method to the letter */
+  double epsilon;
+  g3r_unit epsilon_unit;
+  int degree;  /* of the harmonic polynomials, 0..8; -1: automatic */
+  int depth;   /* octree depth of the mesh, 4..12; 0: automatic */
+  int threads; /* 0: all cores; the result does not depend on it */
+  uint64_t seed;
+  uint64_t max_memory; /* bytes; 0: no limit */
+  g3r_progress progress;
+  void* user; /* handed to progress */
+} g3r_options;
+
+/* A mesh owned by the library until g3r_mesh_free(). Triangles are counter-clockwise seen from outside. */
+typedef struct g3r_mesh {
+  size_t vertex_count;
+  size_t triangle_count;
+  const double* vertices;    /* vertex_count x 3 */
+  const uint32_t* triangles; /* triangle_count x 3 */
+} g3r_mesh;
+
+/* Sets the defaults; `size` is sizeof(g3r_options). */
+G3R_C_API void g3r_options_init(g3r_options* options, size_t size);
+
+/* Outward unit normals of `count` points into `normals` (count x 3). `areas` and `confidence` (count each) may be NULL, as may
+ * `options`. On failure the outputs are left as they were. */
+G3R_C_API g3r_status g3r_orient(const double* points, size_t count, const g3r_options* options, double* normals, double* areas,
+                                float* confidence);
+
+/* The same and a mesh into *mesh, to be freed. `normals`, `areas` and `confidence` may be NULL. */
+G3R_C_API g3r_status g3r_reconstruct(const double* points, size_t count, const g3r_options* options, double* normals, double* areas,
+                                     float* confidence, g3r_mesh** mesh);
+
+/* Frees a mesh; NULL is fine. */
+G3R_C_API void g3r_mesh_free(g3r_mesh* mesh);
+
+/* What a status means, one line. */
+G3R_C_API const char* g3r_status_text(g3r_status status);
+
+/* What the last failed call of this thread complained of, one line; valid until its next call. */
+G3R_C_API const char* g3r_last_error(void);
+
+/* "major.minor.patch" */
+G3R_C_API const char* g3r_version(void);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

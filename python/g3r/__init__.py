@@ -1,0 +1,18 @@
+"""g3r: from an unoriented point cloud to consistent outward normals and a watertight mesh.
+
+    N = g3r.orient(P)                 # (n, 3) unit outward normals, same order
+    V, F = g3r.reconstruct(P)         # mesh
+    r = g3r.run(P)                    # all of it: r.normals, r.confidence, r.areas, r.vertices, r.faces, r.field, r.stats
+    g3r.show(r)                       # look at it
+"""
+
+from ._api import Field, Result, mesh_oriented, orient, reconstruct, run
+from ._errors import Cancelled, Error, FileError, FileMissingError, InputError, UnavailableError
+from ._files import Cloud, read, read_mesh, write
+from ._g3r import __version__
+from ._show import View, show
+
+__all__ = [
+    "Cancelled", "Cloud", "Error", "Field", "FileError", "FileMissingError", "InputError", "Result", "UnavailableError", "View",
+    "__version__", "mesh_oriented", "orient", "read", "read_mesh", "reconstruct", "run", "show", "write",
+]

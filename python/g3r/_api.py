@@ -1,0 +1,198 @@
+"""Normals, meshes and the winding field."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any, Callable, Dict, Optional, Tuple, Union, overload
+
+from . import _g3r
+from ._arrays import Bytes, Floats, Indices, Points, Singles, as_colors, as_points, member
+from ._errors import InputError
+
+Progress = Callable[[str, float], Optional[bool]]
+"""Called as progress(stage, fraction in [0, 1]); returning False cancels, anything else goes on."""
+
+AUTOMATIC_TRIM = 4.0  # point spacings; farther from every point than this, a closed mesh bridges a gap of the scan
+
+_UNITS = {"%": "percent", "h": "spacing", "n": "normalised"}
+
+
+def _epsilon(value: Union[str, float]) -> Dict[str, Any]:
+    if isinstance(value, str):
+        if value == "auto":
+            return {}
+        unit = _UNITS.get(value[-1:], "input")
+        text = value if unit == "input" else value[:-1]
+    else:
+        unit, text = "input", str(value)
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not (number > 0 and math.isfinite(number)):
+        raise InputError(f"epsilon must be 'auto', a number above 0, 'X%', 'Xh' (point spacings) or 'Xn' (normalised), not {value!r}")
+    return {"epsilon": number, "epsilon_unit": unit}
+
+
+def _options(epsilon: Union[str, float], degree: Optional[int], preset: str, threads: int, seed: int, more: Dict[str, Any]) -> Dict[str, Any]:
+    known = {"method", "mesher", "harmonics", "solver", "schedule", "tolerance", "accuracy", "max_memory"}
+    unknown = set(more) - known
+    if unknown:
+        raise TypeError(f"unknown option {sorted(unknown)[0]!r}; there are also {', '.join(sorted(known))}")
+    options = {**_epsilon(epsilon), "preset": preset, "threads": int(threads), "seed": int(seed), **more}
+    if degree is not None:
+        options["degree"] = int(degree)
+    return options
+
+
+def _depth(depth: Union[str, int]) -> int:
+    if depth == "auto":
+        return 0
+    if isinstance(depth, str) or int(depth) != depth:
+        raise InputError(f"depth must be 'auto' or an integer, not {depth!r}")
+    return int(depth)
+
+
+def _trim(trim: Union[None, str, float]) -> float:
+    if trim is None:
+        return 0.0
+    if trim == "auto":
+        return AUTOMATIC_TRIM
+    if isinstance(trim, str) or not (trim > 0 and math.isfinite(trim)):
+        raise InputError(f"trim must be None, 'auto' or a number of point spacings above 0, not {trim!r}")
+    return float(trim)
+
+
+class Field:
+    """The winding field of oriented points: about 1 inside, 0 outside, 1/2 on the surface. Call it with query points."""
+
+    def __init__(self, points: Any, normals: Any, areas: Any, *, spacing: float = 0.0, width: float = 0.0) -> None:
+        """`points`, `normals` (unit, outward): (n, 3); `areas`: (n,) in squared input units. `width` of the smoothing in input units,
+        0: 0.55 spacings."""
+        import numpy as np
+
+        self._field = _g3r.field(as_points(points), np.ascontiguousarray(as_points(normals, "normals"), dtype=np.float64),
+                                 np.ascontiguousarray(areas, dtype=np.float64), float(spacing), float(width))
+
+    def __call__(self, queries: Any) -> Floats:
+        """The field at (q, 3) query points: (q,) values."""
+        return self._field.value(as_points(queries, "queries"))
+
+    def gradient(self, queries: Any) -> Floats:
+        """The gradient at (q, 3) query points, in 1 / input units: (q, 3); near the surface it points inward."""
+        return self._field.gradient(as_points(queries, "queries"))
+
+
+class Result:
+    """What `run` returns.
+
+    normals: (n, 3) float64, unit and outward, in the order of the points; (0, 0, 0) only for points that are not finite.
+    confidence: (n,) float32 in [0, 1]; 1 = sure of the side, 0 = could be inside-out.
+    areas: (n,) float64, squared input units.
+    vertices, faces: (v, 3) float64 and (m, 3) uint32, counter-clockwise seen from outside; None when run with mesh=False.
+    vertex_colors, vertex_confidence: (v, 3) uint8 and (v,) float32, or None.
+    stats: the report as a dict, see docs/report.md.
+    """
+
+    def __init__(self, points: Points, normals: Floats, areas: Floats, confidence: Singles, report: str,
+                 mesh: Optional[Tuple[Floats, Indices, Optional[Bytes], Optional[Singles]]]) -> None:
+        self.points = points
+        self.normals = normals
+        self.areas = areas
+        self.confidence = confidence
+        self.report = report
+        self.stats: Dict[str, Any] = json.loads(report)
+        self.vertices: Optional[Floats] = None
+        self.faces: Optional[Indices] = None
+        self.vertex_colors: Optional[Bytes] = None
+        self.vertex_confidence: Optional[Singles] = None
+        if mesh is not None:
+            self.vertices, self.faces, self.vertex_colors, self.vertex_confidence = mesh
+        self._field: Optional[Field] = None
+
+    @property
+    def field(self) -> Field:
+        """The winding field: r.field(Q), r.field.gradient(Q). Built on first use."""
+        if self._field is None:
+            self._field = Field(self.points, self.normals, self.areas, spacing=self.stats["scales"]["spacing"] or 0.0)
+        return self._field
+
+    def __repr__(self) -> str:
+        mesh = "no mesh" if self.faces is None else f"{len(self.faces)} faces"
+        return f"<g3r.Result: {len(self.normals)} normals, mean confidence {float(self.confidence.mean()):.3f}, {mesh}>"
+
+    def _repr_html_(self) -> str:
+        from ._show import show
+
+        return show(self, open=False)._repr_html_()
+
+
+def orient(points: Any, *, epsilon: Union[str, float] = "auto", degree: Optional[int] = None, preset: str = "default", threads: int = 0,
+           seed: int = 0, progress: Optional[Progress] = None, **more: Any) -> Floats:
+    """Consistent outward normals of an unoriented cloud of a closed surface.
+
+    points: (n, 3) float32 or float64 of any strides, a path, or an object with points (Open3D, trimesh, PyVista, torch, g3r.Cloud).
+    The options are those of `run`. Returns (n, 3) unit normals in the order of the points.
+
+    Raises InputError (fewer than 4 distinct finite points, all on a line, an option out of range), Cancelled, MemoryError.
+    """
+    options = _options(epsilon, degree, preset, threads, seed, more)
+    return _g3r.orient(as_points(points), options, progress)[0]
+
+
+@overload
+def reconstruct(points: Any, *, colors: None = None, **options: Any) -> Tuple[Floats, Indices]: ...
+@overload
+def reconstruct(points: Any, *, colors: Any, **options: Any) -> Tuple[Floats, Indices, Bytes]: ...
+def reconstruct(points: Any, *, colors: Any = None, **options: Any) -> Any:
+    """A watertight mesh of an unoriented cloud: V (v, 3) and F (m, 3); with `colors` (n, 3) also C (v, 3) as bytes.
+
+    Takes and raises what `run` does, and UnavailableError when this build has no mesher.
+    """
+    result = run(points, colors=colors, **options)
+    if colors is None:
+        return result.vertices, result.faces
+    return result.vertices, result.faces, result.vertex_colors
+
+
+def run(points: Any, *, colors: Any = None, epsilon: Union[str, float] = "auto", degree: Optional[int] = None, preset: str = "default",
+        depth: Union[str, int] = "auto", trim: Union[None, str, float] = None, mesh: bool = True, threads: int = 0, seed: int = 0,
+        progress: Optional[Progress] = None, **more: Any) -> Result:
+    """Normals, confidence, areas, mesh, field and report of an unoriented cloud.
+
+    epsilon: width of the mollifier: "auto", a number in input units, "0.5%" of the diagonal, "0.8h" point spacings.
+    degree: highest degree of the harmonic polynomials, 0..8; None: the preset's, 2.
+    preset: "default", or "paper": the published method to the letter.
+    depth: octree depth of the mesh, "auto" or 4..12.
+    trim: None, or for open scans "auto" or a number of point spacings: parts of the mesh farther from every point are cut off.
+    mesh: False leaves the mesh out.
+    colors: (n, 3), carried to the vertices.
+    threads: 0 for all cores; the result does not depend on it.
+    progress: called as progress(stage, fraction) on this thread; returning False cancels.
+    mesher (in **more): "field", "poisson" where it was built in, or "auto".
+    Further options: method, harmonics, solver, schedule, tolerance, accuracy, max_memory, as in the C++ Options.
+
+    The interpreter lock is released; Ctrl-C works. Raises InputError, UnavailableError, Cancelled, MemoryError.
+    """
+    options = _options(epsilon, degree, preset, threads, seed, more)
+    octree_depth, trim_spacings = _depth(depth), _trim(trim)
+    array = as_points(points)
+    if colors is not None:
+        colors = as_colors(colors, len(array))
+    if not mesh:
+        normals, areas, confidence, report = _g3r.orient(array, options, progress)
+        return Result(array, normals, areas, confidence, report, None)
+    normals, areas, confidence, report, surface = _g3r.reconstruct(array, colors, octree_depth, trim_spacings, options, progress)
+    return Result(array, normals, areas, confidence, report, surface)
+
+
+def mesh_oriented(points: Any, normals: Any = None, *, depth: Union[str, int] = "auto", mesher: str = "auto",
+                  progress: Optional[Progress] = None) -> Tuple[Floats, Indices]:
+    """A mesh of points that already have outward normals: V (v, 3) and F (m, 3). `normals` may be left out if `points` has them."""
+    if normals is None:
+        normals = member(points, "normals", "point_normals", "vertex_normals")
+        if normals is None:
+            raise InputError("there are no normals; g3r.reconstruct() takes points without them")
+    vertices, faces, _, _ = _g3r.mesh(as_points(points), as_points(normals, "normals"), _depth(depth), {"mesher": mesher}, progress)
+    return vertices, faces

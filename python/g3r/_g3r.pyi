@@ -1,0 +1,69 @@
+"""The extension module: arrays in, arrays out. Users see the rest of the package."""
+
+from typing import Any, Callable, Dict, List, Optional, Tuple
+
+from ._arrays import Bytes, Floats, Indices, Points, Singles
+
+__version__: str
+
+_Progress = Optional[Callable[[str, float], Optional[bool]]]
+_Mesh = Tuple[Floats, Indices, Optional[Bytes], Optional[Singles]]
+
+class Field:
+    def value(self, arg: Points, /) -> Floats: ...
+    def gradient(self, arg: Points, /) -> Floats: ...
+
+class Scene: ...
+
+class Cloud:
+    @property
+    def points(self) -> Floats: ...
+    @property
+    def normals(self) -> Optional[Floats]: ...
+    @property
+    def colors(self) -> Optional[Bytes]: ...
+    @property
+    def confidence(self) -> Optional[Singles]: ...
+    @property
+    def format(self) -> str: ...
+    @property
+    def property_names(self) -> List[str]: ...
+    @property
+    def warnings(self) -> List[str]: ...
+
+def orient(points: Points, options: Dict[str, Any], progress: _Progress) -> Tuple[Floats, Floats, Singles, str]: ...
+def reconstruct(
+    points: Points, colors: Optional[Bytes], depth: int, trim: float, options: Dict[str, Any], progress: _Progress
+) -> Tuple[Floats, Floats, Singles, str, _Mesh]: ...
+def mesh(points: Points, normals: Points, depth: int, options: Dict[str, Any], progress: _Progress) -> _Mesh: ...
+def field(points: Points, normals: Floats, areas: Floats, spacing: float, width: float) -> Field: ...
+def read_cloud(path: str, min_opacity: float) -> Cloud: ...
+def write_cloud(
+    path: str,
+    source: Optional[Cloud],
+    positions: Optional[Points],
+    normals: Optional[Points],
+    colors: Optional[Bytes],
+    confidence: Optional[Singles],
+    ascii: bool,
+    cloud_compare_names: bool,
+) -> None: ...
+def read_mesh(path: str) -> _Mesh: ...
+def write_mesh(
+    path: str, vertices: Points, faces: Indices, colors: Optional[Bytes], confidence: Optional[Singles], ascii: bool
+) -> None: ...
+def scene(
+    title: str,
+    points: Optional[Points],
+    normals: Optional[Points],
+    confidence: Optional[Singles],
+    colors: Optional[Bytes],
+    true_normals: Optional[Points],
+    vertices: Optional[Points],
+    faces: Optional[Indices],
+    vertex_colors: Optional[Bytes],
+    vertex_confidence: Optional[Singles],
+    report: str,
+) -> Scene: ...
+def view_html(scene: Scene, z_up: bool, max_points: int) -> str: ...
+def view_png(scene: Scene, z_up: bool, tile: int) -> bytes: ...

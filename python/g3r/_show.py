@@ -1,0 +1,113 @@
+"""The page to look at."""
+
+from __future__ import annotations
+
+import html
+import os
+import tempfile
+import webbrowser
+from typing import Any, Optional
+
+from . import _g3r
+from ._api import Result
+from ._arrays import as_colors, as_faces, as_points, as_values, member
+from ._files import Cloud, Path
+
+DEFAULT_HEIGHT = 620  # of the frame in a notebook, pixels
+
+
+class View:
+    """A page that shows a scene: `html` is the document; in a notebook it appears by itself."""
+
+    def __init__(self, scene: _g3r.Scene, z_up: bool, max_points: int, height: int) -> None:
+        self._scene = scene
+        self._z_up = z_up
+        self.html: str = _g3r.view_html(scene, z_up, max_points)
+        self.height = height
+
+    def save(self, path: Path) -> None:
+        """Writes the page, or for a name that ends in .png four views as a picture."""
+        name = os.fsdecode(path)
+        data = self.png() if name.lower().endswith(".png") else self.html.encode()
+        with open(name, "wb") as file:
+            file.write(data)
+
+    def png(self, tile: int = 600) -> bytes:
+        """Four views as a PNG file, each `tile` pixels wide and high."""
+        return _g3r.view_png(self._scene, self._z_up, int(tile))
+
+    def open(self) -> str:
+        """Opens the page in the browser from a temporary file, whose name is returned."""
+        handle, name = tempfile.mkstemp(prefix="g3r_", suffix=".html")
+        with os.fdopen(handle, "w", encoding="utf-8") as file:
+            file.write(self.html)
+        webbrowser.open("file://" + name)
+        return name
+
+    def _repr_html_(self) -> str:
+        return (f'<iframe srcdoc="{html.escape(self.html)}" width="100%" height="{self.height}" '
+                'style="border: 0; border-radius: 8px" sandbox="allow-scripts allow-downloads"></iframe>')
+
+    def __repr__(self) -> str:
+        return f"<g3r.View: {len(self.html) / 1e6:.1f} MB of HTML>"
+
+
+def _in_notebook() -> bool:
+    try:
+        shell = get_ipython()  # type: ignore[name-defined]
+    except NameError:
+        return False
+    return type(shell).__name__ != "TerminalInteractiveShell"
+
+
+def show(what: Any, *, normals: Any = None, confidence: Any = None, colors: Any = None, true_normals: Any = None, faces: Any = None,
+         title: str = "g3r", up: str = "y", max_points: int = 1_500_000, height: int = DEFAULT_HEIGHT, open: Optional[bool] = None) -> View:
+    """A page with the points, their normals and the mesh, to turn and to look into.
+
+    what: a `Result`, a `Cloud`, a path, points, or an object with points; with `faces`, the vertices of a mesh.
+    true_normals: of a reference; adds a map of the errors. up: "y" or "z".
+    open: True opens the browser; None does so outside notebooks. Returns the `View`, which a notebook displays.
+    """
+    if up not in ("y", "z"):
+        raise ValueError(f"up must be 'y' or 'z', not {up!r}")
+    vertices = vertex_colors = vertex_confidence = None
+    report = ""
+    if isinstance(what, Result):
+        report = what.report
+        normals = what.normals if normals is None else normals
+        confidence = what.confidence if confidence is None else confidence
+        vertices, faces = what.vertices, what.faces
+        vertex_colors, vertex_confidence = what.vertex_colors, what.vertex_confidence
+        points: Any = what.points
+    else:
+        if isinstance(what, (str, bytes, os.PathLike)):
+            from ._files import read
+
+            what = read(what)
+        if isinstance(what, Cloud):
+            normals = what.normals if normals is None else normals
+            confidence = what.confidence if confidence is None else confidence
+            colors = what.colors if colors is None else colors
+        elif faces is None:
+            faces = member(what, "triangles", "faces")
+        points = as_points(what)
+        if faces is not None:
+            vertices = points
+            if colors is not None:
+                vertex_colors = as_colors(colors, len(points))
+            if normals is None and true_normals is None:
+                points = None
+    count = 0 if points is None else len(points)
+    triangles = None if faces is None or vertices is None else as_faces(faces, len(vertices))
+
+    def rows(value: Any, name: str) -> Any:
+        return None if value is None else as_points(value, name)
+
+    scene = _g3r.scene(title, rows(points, "points"), rows(normals, "normals"),
+                       None if confidence is None or count == 0 else as_values(confidence, count, "confidence"),
+                       None if colors is None or count == 0 else as_colors(colors, count), rows(true_normals, "true_normals"),
+                       vertices, triangles, vertex_colors, vertex_confidence, report)
+    view = View(scene, up == "z", int(max_points), int(height))
+    if open or (open is None and not _in_notebook()):
+        view.open()
+    return view

@@ -1,0 +1,299 @@
+// The extension module: each function turns arrays into views, calls the library once and gives the result away. What users see is
+// python/g3r/*.py.
+#include <g3r/g3r.h>
+#include <g3r/io.h>
+#include <g3r/mesh_points.h>
+#include <g3r/view.h>
+
+#include <initializer_list>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include "arrays.h"
+#include "job.h"
+
+namespace g3r::python {
+namespace {
+
+using Text = std::string;
+
+// Reads one option from keyword arguments, if it is there.
+template <class T>
+void take(const nb::dict& from, const char* name, T& into) {
+  if (from.contains(name)) into = nb::cast<T>(from[name]);
+}
+
+// The value of an option that is one of a few words.
+template <class T>
+void take_choice(const nb::dict& from, const char* name, T& into, std::initializer_list<std::pair<const char*, T>> choices) {
+  if (!from.contains(name)) return;
+  const Text word = nb::cast<Text>(from[name]);
+  Text words;
+  for (const auto& [known, value] : choices) {
+    if (word == known) {
+      into = value;
+      return;
+    }
+    words += (words.empty() ? "'" : ", '") + Text(known) + "'";
+  }
+  throw InvalidInput(Text(name) + " must be one of " + words + ", not '" + word + "'");
+}
+
+Options read_options(const nb::dict& from) {
+  using Unit = Epsilon::Unit;
+  Options options;
+  take_choice(from, "preset", options.preset, {{"default", Preset::kDefault}, {"paper", Preset::kPaper}});
+  take_choice(from, "method", options.method, {{"auto", Method::kAuto}, {"green", Method::kGreen}, {"energy", Method::kEnergy}});
+  take_choice(from, "solver", options.solver, {{"auto", Solver::kAuto}, {"dense", Solver::kDense}, {"cg", Solver::kConjugateGradient}});
+  take_choice(from, "epsilon_unit", options.epsilon.unit,
+              {{"input", Unit::kInput}, {"percent", Unit::kPercent}, {"spacing", Unit::kSpacing}, {"normalised", Unit::kNormalised}});
+  take(from, "epsilon", options.epsilon.value);
+  take(from, "degree", options.degree);
+  take(from, "harmonics", options.harmonics);
+  take(from, "schedule", options.schedule);
+  take(from, "tolerance", options.tolerance);
+  take(from, "accuracy", options.accuracy);
+  take(from, "threads", options.threads);
+  take(from, "seed", options.seed);
+  take(from, "max_memory", options.max_memory);
+  return options;
+}
+
+MeshOptions read_mesh_options(int depth, const nb::dict& from) {
+  MeshOptions options;
+  options.depth = depth;
+  take_choice(from, "mesher", options.mesher, {{"auto", Mesher::kAuto}, {"field", Mesher::kField}, {"poisson", Mesher::kPoisson}});
+  return options;
+}
+
+nb::tuple give_mesh(Mesh&& mesh) {
+  const nb::object none = nb::none();
+  return nb::make_tuple(give_rows(std::move(mesh.vertices)), give_rows(std::move(mesh.triangles)),
+                        mesh.colors.empty() ? none : nb::cast(give_rows(std::move(mesh.colors))),
+                        mesh.confidence.empty() ? none : nb::cast(give_values(std::move(mesh.confidence))));
+}
+
+// (normals, areas, confidence, report)
+nb::tuple orient_points(const PointsArray& array, const nb::dict& keywords, const nb::object& progress) {
+  const PointsView points = points_view(array);
+  const Options options = read_options(keywords);
+  Orientation result;
+  run_job(progress, [&](const Monitor& monitor) { result = orient(points, options, monitor); });
+  const Text report = report_json(result.stats);
+  return nb::make_tuple(give_rows(std::move(result.normals)), give_values(std::move(result.areas)),
+                        give_values(std::move(result.confidence)), report);
+}
+
+// (normals, areas, confidence, report, mesh); `trim` in point spacings, 0 for none.
+nb::tuple reconstruct_points(const PointsArray& array, const std::optional<Rows<std::uint8_t>>& colors, int depth, double trim,
+                             const nb::dict& keywords, const nb::object& progress) {
+  const PointsView points = points_view(array);
+  const Options options = read_options(keywords);
+  const MeshOptions mesh_options = read_mesh_options(depth, keywords);
+  const auto point_colors = copy_rows<std::uint8_t>(colors);
+  Reconstruction result;
+  run_job(progress, [&](const Monitor& monitor) {
+    result = reconstruct(points, options, mesh_options, monitor);
+    Mesh& mesh = result.mesh;
+    if (trim > 0) {
+      mesh = trim_mesh(mesh, points, trim * result.orientation.stats.spacing);
+      result.check = check_mesh(mesh);
+    }
+    if (!point_colors.empty()) mesh.colors = carry_colors(mesh, points, point_colors);
+    mesh.confidence = carry_confidence(mesh, points, result.orientation.confidence);
+  });
+  Orientation& o = result.orientation;
+  const Text report = report_json(o.stats, &result.check);
+  return nb::make_tuple(give_rows(std::move(o.normals)), give_values(std::move(o.areas)), give_values(std::move(o.confidence)), report,
+                        give_mesh(std::move(result.mesh)));
+}
+
+nb::tuple mesh_points(const PointsArray& array, const PointsArray& normals, int depth, const nb::dict& keywords,
+                      const nb::object& progress) {
+  const MeshOptions options = read_mesh_options(depth, keywords);
+  const PointsView points = points_view(array), directions = points_view(normals);
+  Mesh mesh;
+  run_job(progress, [&](const Monitor& monitor) { mesh = mesh_oriented(points, directions, options, monitor); });
+  return give_mesh(std::move(mesh));
+}
+
+Field make_field(const PointsArray& array, const Rows<double>& normals, const Values<double>& areas, double spacing, double width) {
+  Orientation orientation;
+  orientation.normals = copy_rows<double>(normals);
+  orientation.areas = copy_values<double>(areas);
+  orientation.stats.spacing = spacing;
+  const PointsView points = points_view(array);
+  const nb::gil_scoped_release release;
+  return Field(points, orientation, width);
+}
+
+auto field_value(const Field& field, const PointsArray& queries) {
+  const PointsView view = points_view(queries);
+  std::vector<double> values;
+  run_job(nb::none(), [&](const Monitor& monitor) { values = field.value(view, monitor); });
+  return give_values(std::move(values));
+}
+
+auto field_gradient(const Field& field, const PointsArray& queries) {
+  const PointsView view = points_view(queries);
+  std::vector<Vec3> gradients;
+  run_job(nb::none(), [&](const Monitor& monitor) { gradients = field.gradient(view, monitor); });
+  return give_rows(std::move(gradients));
+}
+
+std::shared_ptr<Cloud> read_points(const Text& path, double min_opacity) {
+  const nb::gil_scoped_release release;
+  return std::make_shared<Cloud>(read_cloud(path, ReadOptions{min_opacity}));
+}
+
+void write_points(const Text& path, const std::shared_ptr<Cloud>& source, const std::optional<PointsArray>& positions,
+                  const std::optional<PointsArray>& normals, const std::optional<Rows<std::uint8_t>>& colors,
+                  const std::optional<Values<float>>& confidence, bool ascii, bool cloud_compare_names) {
+  Cloud fresh;
+  if (!source) {
+    if (!positions) throw InvalidInput("there are no points to write");
+    fresh.positions = copy_points(positions);
+    fresh.colors = copy_rows<std::uint8_t>(colors);
+    fresh.scalar = positions->dtype() == nb::dtype<float>() ? Scalar::kFloat32 : Scalar::kFloat64;
+  }
+  const std::vector<Vec3> directions = copy_points(normals);
+  const std::vector<float> trust = copy_values<float>(confidence);
+  const nb::gil_scoped_release release;
+  write_cloud(path, source ? *source : fresh, directions.empty() ? nullptr : &directions, trust.empty() ? nullptr : &trust,
+              WriteOptions{ascii, cloud_compare_names});
+}
+
+Mesh copy_mesh(const std::optional<PointsArray>& vertices, const std::optional<Rows<std::uint32_t>>& faces,
+               const std::optional<Rows<std::uint8_t>>& colors, const std::optional<Values<float>>& confidence) {
+  return {copy_points(vertices), copy_rows<std::uint32_t>(faces), copy_rows<std::uint8_t>(colors), copy_values<float>(confidence)};
+}
+
+void write_faces(const Text& path, const PointsArray& vertices, const Rows<std::uint32_t>& faces,
+                 const std::optional<Rows<std::uint8_t>>& colors, const std::optional<Values<float>>& confidence, bool ascii) {
+  const Mesh mesh = copy_mesh(vertices, faces, colors, confidence);
+  const nb::gil_scoped_release release;
+  write_mesh(path, mesh, WriteOptions{ascii, false});
+}
+
+nb::tuple read_faces(const Text& path) {
+  Mesh mesh;
+  {
+    const nb::gil_scoped_release release;
+    mesh = read_mesh(path);
+  }
+  return give_mesh(std::move(mesh));
+}
+
+struct PyScene {
+  Scene scene;
+};
+
+PyScene make_scene(const Text& title, const std::optional<PointsArray>& points, const std::optional<PointsArray>& normals,
+                   const std::optional<Values<float>>& confidence, const std::optional<Rows<std::uint8_t>>& colors,
+                   const std::optional<PointsArray>& true_normals, const std::optional<PointsArray>& vertices,
+                   const std::optional<Rows<std::uint32_t>>& faces, const std::optional<Rows<std::uint8_t>>& vertex_colors,
+                   const std::optional<Values<float>>& vertex_confidence, const Text& report) {
+  return {{title, copy_points(points), copy_points(normals), copy_values<float>(confidence), copy_rows<std::uint8_t>(colors),
+           copy_points(true_normals), copy_mesh(vertices, faces, vertex_colors, vertex_confidence), report}};
+}
+
+// An exception class of g3r/_errors.py.
+nb::object error_class(const char* name) { return nb::module_::import_("g3r._errors").attr(name); }
+
+void translate_error(const std::exception_ptr& pointer, void* /*unused*/) {
+  const auto raise = [](const char* name, const char* what) { PyErr_SetString(error_class(name).ptr(), what); };
+  try {
+    std::rethrow_exception(pointer);
+  } catch (const InvalidInput& error) {
+    raise("InputError", error.what());
+  } catch (const IoError& error) {
+    raise(error.kind() == IoError::Kind::kNotFound ? "FileMissingError" : "FileError", error.what());
+  } catch (const Unavailable& error) {
+    raise("UnavailableError", error.what());
+  } catch (const Cancelled& error) {
+    raise("Cancelled", error.what());
+  } catch (const Error& error) {
+    raise("Error", error.what());
+  }
+}
+
+// A (n, 3) view of a member of a cloud, kept alive by it; None if it is empty.
+template <class T>
+nb::object rows_of(const nb::handle& owner, const std::vector<std::array<T, 3>>& rows) {
+  if (rows.empty()) return nb::none();
+  return nb::cast(nb::ndarray<nb::numpy, const T, nb::ndim<2>>(rows.data(), {rows.size(), 3}, owner));
+}
+
+void bind(nb::module_& m) {
+  m.attr("__version__") = Text(version());
+  nb::register_exception_translator(translate_error);
+
+  nb::class_<Field>(m, "Field").def("value", &field_value).def("gradient", &field_gradient);
+  nb::class_<PyScene>(m, "Scene");
+  nb::class_<Cloud>(m, "Cloud")
+      .def_prop_ro("points", [](nb::handle self) { return rows_of(self, nb::cast<const Cloud&>(self).positions); })
+      .def_prop_ro("normals", [](nb::handle self) { return rows_of(self, nb::cast<const Cloud&>(self).normals); })
+      .def_prop_ro("colors", [](nb::handle self) { return rows_of(self, nb::cast<const Cloud&>(self).colors); })
+      .def_prop_ro("confidence",
+                   [](nb::handle self) -> nb::object {
+                     const auto& values = nb::cast<const Cloud&>(self).confidence;
+                     if (values.empty()) return nb::none();
+                     return nb::cast(nb::ndarray<nb::numpy, const float, nb::ndim<1>>(values.data(), {values.size()}, self));
+                   })
+      .def_ro("format", &Cloud::format)
+      .def_ro("property_names", &Cloud::property_names)
+      .def_ro("warnings", &Cloud::warnings);
+
+  m.def("orient", &orient_points, nb::arg("points"), nb::arg("options"), nb::arg("progress").none());
+  m.def("reconstruct", &reconstruct_points, nb::arg("points"), nb::arg("colors").none(), nb::arg("depth"), nb::arg("trim"),
+        nb::arg("options"), nb::arg("progress").none());
+  m.def("mesh", &mesh_points, nb::arg("points"), nb::arg("normals"), nb::arg("depth"), nb::arg("options"), nb::arg("progress").none());
+  m.def("field", &make_field, nb::arg("points"), nb::arg("normals"), nb::arg("areas"), nb::arg("spacing"), nb::arg("width"));
+  m.def("read_cloud", &read_points, nb::arg("path"), nb::arg("min_opacity"));
+  m.def("write_cloud", &write_points, nb::arg("path"), nb::arg("source").none(), nb::arg("positions").none(), nb::arg("normals").none(),
+        nb::arg("colors").none(), nb::arg("confidence").none(), nb::arg("ascii"), nb::arg("cloud_compare_names"));
+  m.def("read_mesh", &read_faces, nb::arg("path"));
+  m.def("write_mesh", &write_faces, nb::arg("path"), nb::arg("vertices"), nb::arg("faces"), nb::arg("colors").none(),
+        nb::arg("confidence").none(), nb::arg("ascii"));
+  m.def("scene", &make_scene, nb::arg("title"), nb::arg("points").none(), nb::arg("normals").none(), nb::arg("confidence").none(),
+        nb::arg("colors").none(), nb::arg("true_normals").none(), nb::arg("vertices").none(), nb::arg("faces").none(),
+        nb::arg("vertex_colors").none(), nb::arg("vertex_confidence").none(), nb::arg("report"));
+  m.def(
+      "view_html",
+      [](const PyScene& scene, bool z_up, std::size_t max_points) {
+        PageOptions options;
+        options.up = z_up ? Up::kZ : Up::kY;
+        options.max_points = max_points;
+        const nb::gil_scoped_release release;
+        return view_html(scene.scene, options);
+      },
+      nb::arg("scene"), nb::arg("z_up"), nb::arg("max_points"));
+  m.def(
+      "view_png",
+      [](const PyScene& scene, bool z_up, int tile) {
+        PictureOptions options;
+        options.up = z_up ? Up::kZ : Up::kY;
+        options.tile = tile;
+        std::vector<std::uint8_t> png;
+        {
+          const nb::gil_scoped_release release;
+          png = view_png(scene.scene, options);
+        }
+        return nb::bytes(png.data(), png.size());
+      },
+      nb::arg("scene"), nb::arg("z_up"), nb::arg("tile"));
+}
+
+}  // namespace
+}  // namespace g3r::python
+
+NB_MODULE(_g3r, m) { g3r::python::bind(m); }

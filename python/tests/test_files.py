@@ -1,0 +1,92 @@
+"""g3r.read, g3r.write, g3r.read_mesh, g3r.Cloud."""
+
+import numpy as np
+import pytest
+from conftest import is_outward
+
+import g3r
+
+TETRAHEDRON = (np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]), np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]))
+
+
+def test_points_come_back(tmp_path, sphere):
+    path = tmp_path / "a.ply"
+    confidence = np.linspace(0, 1, len(sphere), dtype=np.float32)
+    colors = np.full(sphere.shape, 77, np.uint8)
+    g3r.write(path, sphere, normals=sphere, confidence=confidence, colors=colors)
+    cloud = g3r.read(path)
+    np.testing.assert_array_equal(cloud.points, sphere)
+    np.testing.assert_allclose(cloud.normals, sphere, atol=1e-6)
+    np.testing.assert_allclose(cloud.confidence, confidence, atol=1e-6)
+    np.testing.assert_array_equal(cloud.colors, colors)
+    assert len(cloud) == len(sphere) and cloud.format.startswith("ply") and "x" in cloud.property_names and cloud.warnings == []
+    assert str(len(sphere)) in repr(cloud)
+
+
+def test_views_of_a_cloud_are_read_only_and_keep_it_alive(tmp_path, sphere):
+    path = tmp_path / "a.ply"
+    g3r.write(path, sphere)
+    points = g3r.read(path).points
+    np.testing.assert_array_equal(points, sphere)
+    with pytest.raises(ValueError):
+        points[0] = 0
+
+
+def test_other_properties_of_a_file_are_kept(tmp_path, sphere):
+    path, out = tmp_path / "in.ply", tmp_path / "out.ply"
+    lines = ["ply", "format ascii 1.0", "element vertex 5", "property float x", "property float y", "property float z",
+             "property ushort intensity", "end_header"] + [f"{x} {y} {z} {i}" for i, (x, y, z) in enumerate(sphere[:5])]
+    path.write_text("\n".join(lines) + "\n")
+    cloud = g3r.read(path)
+    g3r.write(out, cloud, normals=cloud.points)
+    back = g3r.read(out)
+    assert "intensity" in back.property_names and "nx" in back.property_names
+
+
+def test_the_issue_in_four_lines(tmp_path, sphere):
+    g3r.write(tmp_path / "scan.ply", sphere)
+    cloud = g3r.read(tmp_path / "scan.ply")
+    g3r.write(tmp_path / "out.ply", cloud, normals=g3r.orient(cloud))
+    assert is_outward(g3r.read(tmp_path / "out.ply").normals, sphere)
+
+
+@pytest.mark.parametrize("extension", ["ply", "obj", "off", "stl"])
+def test_meshes_come_back(tmp_path, extension):
+    path = tmp_path / f"a.{extension}"
+    g3r.write(path, TETRAHEDRON)
+    vertices, faces = g3r.read_mesh(path)
+    corners = {tuple(sorted(map(tuple, vertices[f].tolist()))) for f in faces}
+    assert corners == {tuple(sorted(map(tuple, TETRAHEDRON[0][f].tolist()))) for f in TETRAHEDRON[1]}
+
+
+def test_vertices_and_faces_can_be_given_apart(tmp_path):
+    g3r.write(tmp_path / "a.ply", TETRAHEDRON[0], TETRAHEDRON[1], colors=np.full((4, 3), 9), confidence=np.ones(4))
+    assert len(g3r.read_mesh(tmp_path / "a.ply")[1]) == 4
+
+
+def test_a_result_is_written_as_its_mesh(tmp_path, result):
+    g3r.write(tmp_path / "a.ply", result)
+    assert len(g3r.read_mesh(tmp_path / "a.ply")[1]) == len(result.faces)
+
+
+def test_a_result_without_mesh_is_written_as_points(tmp_path, sphere):
+    g3r.write(tmp_path / "a.ply", g3r.run(sphere, mesh=False))
+    cloud = g3r.read(tmp_path / "a.ply")
+    assert is_outward(cloud.normals, sphere) and cloud.confidence is not None
+
+
+def test_errors_name_the_file(tmp_path, sphere):
+    with pytest.raises(g3r.FileMissingError, match="nowhere.ply"):
+        g3r.read(tmp_path / "nowhere.ply")
+    (tmp_path / "bad.ply").write_bytes(b"ply\nformat ascii 1.0\nelement vertex 5\n")
+    with pytest.raises(g3r.InputError, match="bad.ply"):
+        g3r.read(tmp_path / "bad.ply")
+    with pytest.raises(g3r.FileError):
+        g3r.write(tmp_path / "no" / "folder.ply", sphere)
+    with pytest.raises(g3r.InputError):
+        g3r.write(tmp_path / "a.unknown", sphere)
+    with pytest.raises(g3r.InputError):
+        g3r.write(tmp_path / "a.ply", sphere, normals=sphere[:5])
+    with pytest.raises(g3r.InputError, match="without normals"):
+        g3r.write(tmp_path / "a.ply", TETRAHEDRON, normals=TETRAHEDRON[0])
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["bad.ply"], "nothing half written is left"

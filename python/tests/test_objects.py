@@ -1,0 +1,138 @@
+"""Objects of other libraries are understood by what they offer."""
+
+import pathlib
+
+import numpy as np
+import pytest
+
+import g3r
+from g3r._arrays import as_colors, as_faces, as_points, as_values
+
+
+def same(value, sphere):
+    points = as_points(value)
+    assert points.dtype in (np.float32, np.float64)
+    np.testing.assert_allclose(points, sphere, atol=1e-6)
+    return points
+
+
+def test_arrays_are_not_copied(sphere):
+    assert np.shares_memory(as_points(sphere), sphere)
+    view = np.zeros((len(sphere), 6), np.float32)[:, :3]
+    assert np.shares_memory(as_points(view), view)
+
+
+@pytest.mark.parametrize("dtype", [np.float16, np.longdouble, ">f4", ">f8"])
+def test_other_floats_are_converted(sphere, dtype):
+    np.testing.assert_allclose(as_points(sphere.astype(dtype)), sphere, atol=1e-3)
+
+
+def test_integers_are_points():
+    assert as_points([[1, 2, 3], [4, 5, 6]]).dtype == np.float64
+
+
+def test_unaligned_arrays_are_copied(sphere):
+    raw = bytearray(b"x" + sphere.tobytes())
+    unaligned = np.frombuffer(raw, offset=1, count=sphere.size).reshape(sphere.shape)
+    assert as_points(unaligned).flags.aligned
+    same(unaligned, sphere)
+
+
+def test_an_object_with_points(sphere):
+    class Open3DLike:  # open3d.geometry.PointCloud: a vector class behind .points, empty ones for what is missing
+        points = [list(p) for p in sphere]
+        normals = []
+
+    same(Open3DLike(), sphere)
+
+
+def test_a_tensor_cloud(sphere):
+    class Tensor:
+        def __init__(self, data):
+            self.data = data
+
+        def cpu(self):
+            return self
+
+        def numpy(self):
+            return self.data
+
+        def __len__(self):
+            return len(self.data)
+
+        def __array__(self, *args, **kwargs):
+            return self.data
+
+    class TensorCloud:  # open3d.t.geometry.PointCloud
+        point = {"positions": Tensor(sphere)}
+
+    same(TensorCloud(), sphere)
+
+
+def test_dlpack(sphere):
+    class OnlyDlpack:
+        def __dlpack__(self, **kwargs):
+            return sphere.__dlpack__(**kwargs)
+
+        def __dlpack_device__(self):
+            return sphere.__dlpack_device__()
+
+    assert np.shares_memory(same(OnlyDlpack(), sphere), sphere)
+
+
+def test_trimesh(sphere):
+    trimesh = pytest.importorskip("trimesh")
+    same(trimesh.PointCloud(sphere), sphere)
+    box = trimesh.creation.box()
+    same(box, box.vertices)
+
+
+def test_torch(sphere):
+    torch = pytest.importorskip("torch")
+    same(torch.from_numpy(sphere).requires_grad_(), sphere)
+
+
+def test_pyvista(sphere):
+    pyvista = pytest.importorskip("pyvista")
+    same(pyvista.PolyData(sphere), sphere)
+    assert as_faces(pyvista.Sphere().faces, 10**6).shape[1] == 3
+
+
+def test_open3d(sphere):
+    open3d = pytest.importorskip("open3d")
+    same(open3d.geometry.PointCloud(open3d.utility.Vector3dVector(sphere)), sphere)
+    same(open3d.t.geometry.PointCloud(sphere), sphere)
+
+
+def test_pandas(sphere):
+    pandas = pytest.importorskip("pandas")
+    same(pandas.DataFrame(sphere, columns=list("xyz")), sphere)
+
+
+def test_colors():
+    np.testing.assert_array_equal(as_colors([[0, 128, 255]], 1), [[0, 128, 255]])
+    np.testing.assert_array_equal(as_colors([[0.0, 0.5, 1.0, 0.3]], 1), [[0, 128, 255]])
+    for wrong in ([[0, 0, 256]], [[-1, 0, 0]], [[0, 0]], [["r", "g", "b"]], [[0, 0, 0]] * 2):
+        with pytest.raises(g3r.InputError):
+            as_colors(wrong, 1)
+
+
+def test_faces():
+    np.testing.assert_array_equal(as_faces([[0, 1, 2]], 3), [[0, 1, 2]])
+    np.testing.assert_array_equal(as_faces(np.array([3, 0, 1, 2, 3, 2, 1, 0]), 3), [[0, 1, 2], [2, 1, 0]])
+    for wrong in ([[0, 1, 3]], [[-1, 0, 1]], [[0.0, 1.0, 2.0]], [[0, 1]]):
+        with pytest.raises(g3r.InputError):
+            as_faces(wrong, 3)
+
+
+def test_values():
+    assert as_values([1, 0.5], 2, "confidence").dtype == np.float32
+    with pytest.raises(g3r.InputError):
+        as_values([1, 0.5], 3, "confidence")
+
+
+def test_a_path_is_read(tmp_path, sphere):
+    path = pathlib.Path(tmp_path) / "sphere.ply"
+    g3r.write(path, sphere)
+    np.testing.assert_array_equal(as_points(path), sphere)
+    assert g3r.orient(str(path)).shape == sphere.shape

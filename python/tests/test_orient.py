@@ -1,0 +1,211 @@
+"""g3r.orient, g3r.run, g3r.reconstruct, g3r.mesh_oriented, g3r.Field."""
+
+import os
+import signal
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+from conftest import is_outward, sphere_points
+
+import g3r
+
+
+def test_orient_gives_unit_outward_normals_in_order(sphere):
+    normals = g3r.orient(sphere)
+    assert normals.dtype == np.float64 and is_outward(normals, sphere)
+    np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1, rtol=1e-12)
+
+
+def test_result_does_not_depend_on_the_memory_layout(sphere):
+    reference = g3r.orient(sphere)
+    wide = np.zeros((len(sphere), 5))
+    wide[:, 1:4] = sphere
+    for same in (np.asfortranarray(sphere), wide[:, 1:4], sphere[::-1].copy()[::-1], sphere.tolist(), sphere.astype(">f8"),
+                 np.repeat(sphere, 2, axis=0)[::2]):
+        np.testing.assert_array_equal(g3r.orient(same), reference)
+
+
+def test_float32_is_taken_as_it_is(sphere):
+    single = sphere.astype(np.float32)
+    np.testing.assert_array_equal(g3r.orient(single), g3r.orient(single.astype(np.float64)))
+
+
+def test_points_that_are_not_finite_get_zero_normals(sphere):
+    points = sphere.copy()
+    points[7] = np.nan
+    normals = g3r.orient(points)
+    assert (normals[7] == 0).all() and np.isfinite(normals).all()
+
+
+def test_run_gives_everything(result, sphere):
+    assert is_outward(result.normals, sphere)
+    assert result.confidence.shape == (len(sphere),) and result.confidence.min() >= 0 and result.confidence.max() <= 1
+    assert result.areas.sum() == pytest.approx(4 * np.pi, rel=0.2)
+    assert result.vertices.shape[1] == 3 and result.vertices.dtype == np.float64
+    assert result.faces.dtype == np.uint32 and result.faces.max() < len(result.vertices)
+    assert result.vertex_colors.shape == result.vertices.shape and result.vertex_confidence.shape == (len(result.vertices),)
+    assert result.stats["schema"] == "g3r.report" and result.stats["input"]["points"] == len(sphere)
+    assert result.stats["mesh"]["faces"] == len(result.faces)
+    assert "faces" in repr(result)
+
+
+def test_run_without_mesh(sphere):
+    result = g3r.run(sphere, mesh=False)
+    assert result.vertices is None and result.faces is None and result.stats["mesh"] is None
+    assert "no mesh" in repr(result)
+
+
+def test_arrays_outlive_the_result(sphere):
+    normals = g3r.run(sphere, mesh=False).normals
+    copy = normals.copy()
+    sphere_points(5000)  # memory that was freed would be used again
+    np.testing.assert_array_equal(normals, copy)
+    normals[0] = 0  # owned and writable
+
+
+def test_reconstruct_gives_a_mesh_and_colors(sphere):
+    vertices, faces = g3r.reconstruct(sphere)
+    corner = vertices[faces]
+    volume = np.einsum("ij,ij->i", corner[:, 0], np.cross(corner[:, 1], corner[:, 2])).sum() / 6
+    assert volume > 0, "faces are counter-clockwise seen from outside"
+    colors = np.zeros_like(sphere)
+    colors[:, 1] = 1.0  # shares of 1 are bytes after
+    _, _, carried = g3r.reconstruct(sphere, colors=colors)
+    assert carried.dtype == np.uint8 and (carried == [0, 255, 0]).all()
+
+
+def test_mesh_oriented(sphere):
+    vertices, faces = g3r.mesh_oriented(sphere, sphere)
+    assert vertices.shape[1] == faces.shape[1] == 3
+
+    class Oriented:
+        points = sphere
+        normals = sphere
+
+    np.testing.assert_array_equal(g3r.mesh_oriented(Oriented())[0], vertices)
+    with pytest.raises(g3r.InputError, match="no normals"):
+        g3r.mesh_oriented(sphere)
+
+
+def test_field_tells_inside_from_outside(result, sphere):
+    queries = [[0, 0, 0], [0.5, 0, 0], [3, 0, 0], [0, 0, -9]]
+    np.testing.assert_allclose(result.field(queries), [1, 1, 0, 0], atol=0.15)
+    gradient = result.field.gradient([[0, 0, 1.05], [1.05, 0, 0]])
+    assert gradient[0, 2] < 0 and gradient[1, 0] < 0, "the gradient points inward"
+    assert result.field is result.field, "built once"
+    same = g3r.Field(sphere, result.normals, result.areas, spacing=result.stats["scales"]["spacing"])
+    np.testing.assert_array_equal(same(queries), result.field(queries))
+
+
+@pytest.mark.parametrize("options", [
+    {"epsilon": 0.05}, {"epsilon": "0.5%"}, {"epsilon": "0.8h"}, {"epsilon": "0.03n"}, {"degree": 1}, {"preset": "paper"}, {"solver": "cg"}, {"method": "energy"},
+    {"threads": 1}, {"seed": 7}, {"tolerance": 1e-2}, {"accuracy": 1e-2}, {"harmonics": "1,x,y,z"},
+])
+def test_every_option_is_taken(sphere, options):
+    assert is_outward(g3r.orient(sphere, **options), sphere)
+
+
+def test_threads_do_not_change_the_result(sphere):
+    np.testing.assert_array_equal(g3r.orient(sphere, threads=1), g3r.orient(sphere, threads=3))
+
+
+@pytest.mark.parametrize("points", [
+    [[0, 0, 0]], np.zeros((0, 3)), np.zeros((10, 3)), np.zeros((5, 2)), np.zeros(9), [["a", "b", "c"]], np.zeros((4, 3), complex), object(), None,
+    np.full((10, 3), np.nan), np.outer(np.arange(10.0), [1, 1, 1]),
+])
+def test_unusable_points_are_refused(points):
+    with pytest.raises(g3r.InputError):
+        g3r.orient(points)
+
+
+@pytest.mark.parametrize("options", [
+    {"epsilon": "big"}, {"epsilon": -1}, {"epsilon": "0%"}, {"epsilon": float("nan")}, {"degree": 99}, {"preset": "best"}, {"solver": "magic"}, {"mesher": "magic"}, {"method": "magic"},
+    {"harmonics": "w"}, {"schedule": "20 xx"}, {"depth": 99}, {"depth": "deep"}, {"depth": 7.5}, {"trim": -1}, {"trim": "much"},
+    {"colors": [[1, 2, 3]]},
+])
+def test_unusable_options_are_refused(sphere, options):
+    with pytest.raises(g3r.InputError):
+        g3r.run(sphere, **options)
+
+
+def test_unknown_options_are_a_type_error(sphere):
+    with pytest.raises(TypeError, match="unknown option 'epsilom'"):
+        g3r.orient(sphere, epsilom=1)
+
+
+def test_errors_are_also_the_usual_python_errors():
+    assert issubclass(g3r.InputError, ValueError) and issubclass(g3r.FileError, OSError)
+    assert issubclass(g3r.FileMissingError, FileNotFoundError)
+    for name in ("InputError", "FileError", "FileMissingError", "UnavailableError", "Cancelled"):
+        assert issubclass(getattr(g3r, name), g3r.Error)
+
+
+def test_progress_is_called_on_this_thread_with_growing_fractions():
+    seen = []
+    g3r.orient(sphere_points(6000), progress=lambda stage, fraction: seen.append((stage, fraction, threading.get_ident())))
+    assert seen and all(isinstance(stage, str) and 0 <= fraction <= 1 for stage, fraction, _ in seen)
+    assert {ident for _, _, ident in seen} == {threading.get_ident()}
+
+
+def test_returning_false_cancels():
+    with pytest.raises(g3r.Cancelled):
+        g3r.orient(sphere_points(6000), progress=lambda stage, fraction: False)
+
+
+def test_an_exception_in_the_callback_comes_back():
+    def fail(stage, fraction):
+        raise KeyError("mine")
+
+    with pytest.raises(KeyError, match="mine"):
+        g3r.orient(sphere_points(6000), progress=fail)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_ctrl_c_stops_the_work():
+    def interrupt(stage, fraction):
+        os.kill(os.getpid(), signal.SIGINT)
+
+    previous = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            g3r.orient(sphere_points(20000), progress=interrupt)
+    finally:
+        signal.signal(signal.SIGINT, previous)
+
+
+def test_other_threads_run_meanwhile():
+    done = threading.Event()
+    ticks = []
+
+    def tick():
+        while not done.is_set():
+            ticks.append(time.monotonic())
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    begin = time.monotonic()
+    g3r.orient(sphere_points(6000))
+    end = time.monotonic()
+    done.set()
+    thread.join()
+    assert sum(begin < t < end for t in ticks) > 3, "the interpreter lock was held"
+
+
+def test_two_calls_at_once_give_the_same(sphere):
+    reference = g3r.orient(sphere)
+    results = [None, None]
+
+    def work(i):
+        results[i] = g3r.orient(sphere)
+
+    threads = [threading.Thread(target=work, args=(i,)) for i in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for normals in results:
+        np.testing.assert_array_equal(normals, reference)

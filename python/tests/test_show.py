@@ -1,0 +1,68 @@
+"""g3r.show, g3r.View."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+
+import g3r
+
+
+def data_of(view):
+    return json.loads(re.search(r'id="scene-data">(.*?)</script>', view.html, re.S).group(1))
+
+
+def test_a_result_shows_points_normals_mesh_and_report(result, sphere):
+    data = data_of(g3r.show(result, open=False, title="ball & <co>"))
+    assert data["points"]["shown"] == len(sphere) and "normal" in data["points"] and "confidence" in data["points"]
+    assert data["mesh"]["given"] == len(result.faces) and data["report"]["schema"] == "g3r.report"
+    assert data["title"] == "ball & <co>"
+
+
+def test_points_with_a_reference_show_errors(sphere):
+    data = data_of(g3r.show(sphere, normals=sphere, true_normals=-sphere, open=False, up="z"))
+    assert data["truth"]["wrong_side"] == len(sphere) and data["up"] == "z"
+
+
+def test_thinning_is_told(sphere):
+    data = data_of(g3r.show(sphere, max_points=100, open=False))
+    assert (data["points"]["given"], data["points"]["shown"]) == (len(sphere), 100)
+
+
+def test_vertices_with_faces_are_a_mesh():
+    data = data_of(g3r.show([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]], faces=[[0, 1, 2]], colors=[[1, 2, 3]] * 3, open=False))
+    assert data["mesh"]["given"] == 1 and "color" in data["mesh"] and data["points"]["given"] == 0
+
+
+def test_save_writes_a_page_or_a_picture(tmp_path, result):
+    view = g3r.show(result, open=False)
+    view.save(tmp_path / "look.html")
+    view.save(tmp_path / "look.png")
+    assert (tmp_path / "look.html").read_bytes().startswith(b"<!doctype html>")
+    assert (tmp_path / "look.png").read_bytes().startswith(b"\x89PNG")
+    assert view.png(tile=64).startswith(b"\x89PNG")
+
+
+def test_a_notebook_gets_a_frame(result):
+    frame = g3r.show(result, open=False)._repr_html_()
+    assert frame.startswith("<iframe") and "<script" not in frame
+    assert result._repr_html_().startswith("<iframe")
+
+
+def test_scripts_get_a_browser(monkeypatch, result):
+    opened = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    name = g3r.show(result, open=False).open()
+    g3r.show(result)
+    assert opened[0] == "file://" + name and len(opened) == 2
+    assert "MB" in repr(g3r.show(result, open=False))
+
+
+def test_wrong_arguments(sphere):
+    with pytest.raises(ValueError, match="up must be"):
+        g3r.show(sphere, up="x", open=False)
+    with pytest.raises(g3r.InputError):
+        g3r.show(np.zeros((0, 3)), open=False)
+    with pytest.raises(g3r.InputError):
+        g3r.show(sphere, normals=sphere[:3], open=False)

@@ -1,0 +1,152 @@
+// The C interface: pointers into views, exceptions into status codes.
+#include <g3r/g3r.h>
+#include <g3r/g3r_c.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <string>
+
+namespace {
+
+std::string& last_error() {
+  thread_local std::string text;
+  return text;
+}
+
+g3r_status fail(g3r_status status, const char* what) noexcept {
+  try {
+    last_error() = what;
+  } catch (...) {  // no memory for the text: the status alone must do
+    last_error().clear();
+  }
+  return status;
+}
+
+template <class Work>
+g3r_status guarded(const Work& work) noexcept {
+  try {
+    work();
+    return G3R_OK;
+  } catch (const g3r::InvalidInput& error) {
+    return fail(G3R_INVALID_INPUT, error.what());
+  } catch (const g3r::Unavailable& error) {
+    return fail(G3R_UNAVAILABLE, error.what());
+  } catch (const g3r::Cancelled& error) {
+    return fail(G3R_CANCELLED, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(G3R_OUT_OF_MEMORY, "out of memory");
+  } catch (const std::exception& error) {
+    return fail(G3R_INTERNAL_ERROR, error.what());
+  } catch (...) {
+    return fail(G3R_INTERNAL_ERROR, "an unknown error");
+  }
+}
+
+struct Request {
+  g3r::Options options;
+  g3r::MeshOptions mesh_options;
+  g3r::Monitor monitor;
+};
+
+Request read_options(const g3r_options* given) {
+  g3r_options o;
+  g3r_options_init(&o, sizeof o);
+  if (given != nullptr) {
+    if (given->size < sizeof given->size) throw g3r::InvalidInput("the options were not initialised with g3r_options_init()");
+    std::memcpy(&o, given, std::min(given->size, sizeof o));  // an older caller leaves the newer members at their defaults
+  }
+  if (o.epsilon_unit < G3R_UNIT_AUTO || o.epsilon_unit > G3R_UNIT_SPACING) throw g3r::InvalidInput("epsilon_unit is not a g3r_unit");
+  using Unit = g3r::Epsilon::Unit;
+  constexpr Unit kUnits[] = {Unit::kAuto, Unit::kInput, Unit::kPercent, Unit::kSpacing};
+  Request request;
+  request.options.preset = o.paper != 0 ? g3r::Preset::kPaper : g3r::Preset::kDefault;
+  request.options.epsilon = {kUnits[o.epsilon_unit], o.epsilon};
+  request.options.degree = o.degree;
+  request.options.threads = o.threads;
+  request.options.seed = o.seed;
+  request.options.max_memory = o.max_memory;
+  request.mesh_options.depth = o.depth;
+  if (o.progress != nullptr) {
+    request.monitor.progress = [o](std::string_view stage, double fraction) {
+      return o.progress(o.user, std::string(stage).c_str(), fraction) != 0;
+    };
+  }
+  return request;
+}
+
+void give(const g3r::Orientation& from, double* normals, double* areas, float* confidence) {
+  if (normals != nullptr) {
+    for (const g3r::Vec3& n : from.normals) normals = std::copy(n.begin(), n.end(), normals);
+  }
+  if (areas != nullptr) std::copy(from.areas.begin(), from.areas.end(), areas);
+  if (confidence != nullptr) std::copy(from.confidence.begin(), from.confidence.end(), confidence);
+}
+
+// What a g3r_mesh points into; the C struct comes first so that one pointer frees both.
+struct OwnedMesh {
+  g3r_mesh view;
+  g3r::Mesh mesh;
+};
+
+}  // namespace
+
+extern "C" {
+
+void g3r_options_init(g3r_options* options, size_t size) {
+  g3r_options defaults{};
+  defaults.size = size;
+  defaults.degree = -1;
+  std::memcpy(options, &defaults, std::min(size, sizeof defaults));
+}
+
+g3r_status g3r_orient(const double* points, size_t count, const g3r_options* options, double* normals, double* areas, float* confidence) {
+  return guarded([&] {
+    if ((points == nullptr && count > 0) || normals == nullptr) throw g3r::InvalidInput("points and normals must not be NULL");
+    const Request request = read_options(options);
+    give(g3r::orient(g3r::PointsView(points, count), request.options, request.monitor), normals, areas, confidence);
+  });
+}
+
+g3r_status g3r_reconstruct(const double* points, size_t count, const g3r_options* options, double* normals, double* areas,
+                           float* confidence, g3r_mesh** mesh) {
+  return guarded([&] {
+    if ((points == nullptr && count > 0) || mesh == nullptr) throw g3r::InvalidInput("points and mesh must not be NULL");
+    const Request request = read_options(options);
+    g3r::Reconstruction result = g3r::reconstruct(g3r::PointsView(points, count), request.options, request.mesh_options, request.monitor);
+    auto owned = std::make_unique<OwnedMesh>(OwnedMesh{{}, std::move(result.mesh)});
+    owned->view = {owned->mesh.vertices.size(), owned->mesh.triangles.size(),
+                   owned->mesh.vertices.empty() ? nullptr : owned->mesh.vertices[0].data(),
+                   owned->mesh.triangles.empty() ? nullptr : owned->mesh.triangles[0].data()};
+    give(result.orientation, normals, areas, confidence);
+    *mesh = &owned.release()->view;
+  });
+}
+
+void g3r_mesh_free(g3r_mesh* mesh) { delete reinterpret_cast<OwnedMesh*>(mesh); }
+
+const char* g3r_status_text(g3r_status status) {
+  switch (status) {
+    case G3R_OK:
+      return "ok";
+    case G3R_INVALID_INPUT:
+      return "the data or an option cannot be used";
+    case G3R_UNAVAILABLE:
+      return "this build or this machine cannot serve the request";
+    case G3R_CANCELLED:
+      return "cancelled";
+    case G3R_OUT_OF_MEMORY:
+      return "out of memory";
+    case G3R_INTERNAL_ERROR:
+      return "an error in g3r";
+  }
+  return "not a status of g3r";
+}
+
+const char* g3r_last_error(void) { return last_error().c_str(); }
+
+const char* g3r_version(void) { return g3r::version().data(); }
+
+}  // extern "C"

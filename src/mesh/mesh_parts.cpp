@@ -1,0 +1,126 @@
+#include "mesh/mesh_parts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace g3r::mesh {
+namespace {
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+class Groups {
+ public:
+  explicit Groups(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0U); }
+  std::uint32_t find(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = find(a);
+    b = find(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+double area_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
+  std::array<double, 3> e{}, f{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    e[a] = mesh.vertices[t[1]][a] - mesh.vertices[t[0]][a];
+    f[a] = mesh.vertices[t[2]][a] - mesh.vertices[t[0]][a];
+  }
+  return 0.5 * std::hypot(e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]);
+}
+
+template <class T>
+void gather(std::vector<T>& values, const std::vector<std::uint32_t>& from) {
+  if (values.empty()) return;
+  std::vector<T> out;
+  out.reserve(from.size());
+  for (const std::uint32_t i : from) out.push_back(values[i]);
+  values = std::move(out);
+}
+
+// Gives every fan of triangles around a vertex its own vertex: corner c of triangle t is number 3 t + c, and corners at one vertex
+// belong together if their triangles share an edge at it.
+void split_fans(Mesh& mesh, std::vector<std::uint32_t>& source) {
+  Groups corners(mesh.triangles.size() * 3);
+  struct Half {
+    std::uint64_t edge;
+    std::uint32_t corner;  // of its smaller vertex
+    std::uint32_t other;   // of its larger vertex
+  };
+  std::vector<Half> halves;
+  halves.reserve(mesh.triangles.size() * 3);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      std::uint32_t a = 3 * t + k, b = 3 * t + (k + 1) % 3;
+      if (mesh.triangles[a / 3][a % 3] > mesh.triangles[b / 3][b % 3]) std::swap(a, b);
+      halves.push_back({(std::uint64_t{mesh.triangles[a / 3][a % 3]} << 32U) | mesh.triangles[b / 3][b % 3], a, b});
+    }
+  }
+  std::sort(halves.begin(), halves.end(),
+            [](const Half& x, const Half& y) { return x.edge != y.edge ? x.edge < y.edge : x.corner < y.corner; });
+  for (std::size_t i = 1; i < halves.size(); ++i) {
+    if (halves[i].edge != halves[i - 1].edge) continue;
+    corners.join(halves[i].corner, halves[i - 1].corner);
+    corners.join(halves[i].other, halves[i - 1].other);
+  }
+  std::vector<std::uint32_t> number(mesh.triangles.size() * 3, kNone);
+  const std::vector<std::array<std::uint32_t, 3>> old = mesh.triangles;
+  source.clear();
+  for (std::uint32_t c = 0; c < number.size(); ++c) {
+    const std::uint32_t root = corners.find(c);
+    if (number[root] == kNone) {
+      number[root] = static_cast<std::uint32_t>(source.size());
+      source.push_back(old[c / 3][c % 3]);
+    }
+    mesh.triangles[c / 3][c % 3] = number[root];
+  }
+}
+
+}  // namespace
+
+void remove_triangles(Mesh& mesh, const std::vector<std::uint8_t>& keep) {
+  if (std::all_of(keep.begin(), keep.end(), [](std::uint8_t k) { return k != 0; })) return;
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (keep[t] != 0) mesh.triangles[count++] = mesh.triangles[t];
+  }
+  mesh.triangles.resize(count);
+  std::vector<std::uint32_t> source;
+  split_fans(mesh, source);
+  gather(mesh.vertices, source);
+  gather(mesh.colors, source);
+  gather(mesh.confidence, source);
+}
+
+void remove_components(Mesh& mesh, double min_area, std::size_t keep_largest) {
+  Groups groups(mesh.vertices.size());
+  for (const auto& t : mesh.triangles) {
+    groups.join(t[0], t[1]);
+    groups.join(t[0], t[2]);
+  }
+  std::vector<double> area(mesh.vertices.size(), 0.0);
+  std::vector<std::uint32_t> roots;
+  for (const auto& t : mesh.triangles) {
+    const std::uint32_t root = groups.find(t[0]);
+    if (area[root] == 0) roots.push_back(root);
+    area[root] += std::max(area_of(mesh, t), std::numeric_limits<double>::min());
+  }
+  std::stable_sort(roots.begin(), roots.end(), [&](std::uint32_t a, std::uint32_t b) { return area[a] > area[b]; });
+  std::vector<std::uint8_t> stays(mesh.vertices.size(), 0);
+  for (std::size_t r = 0; r < roots.size(); ++r) {
+    stays[roots[r]] = r == 0 || ((keep_largest == 0 || r < keep_largest) && area[roots[r]] >= min_area) ? 1 : 0;
+  }
+  std::vector<std::uint8_t> keep(mesh.triangles.size());
+  for (std::size_t t = 0; t < keep.size(); ++t) keep[t] = stays[groups.find(mesh.triangles[t][0])];
+  remove_triangles(mesh, keep);
+}
+
+}  // namespace g3r::mesh

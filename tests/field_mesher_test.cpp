@@ -1,0 +1,137 @@
+// Field mesher: closed, manifold, accurate, sharp, deterministic, cancellable.
+#include "mesh/field_mesher.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "cpu/parallel.h"
+#include "field_shapes.h"
+#include "mesh_topology.h"
+
+namespace {
+
+using namespace g3r;
+using namespace g3r::testing;
+
+double norm(const Vec3& p) { return std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]); }
+
+double cube_distance(const Vec3& p, double half) { return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}) - half; }
+
+// Root mean square distance of the vertices of a meshed unit sphere of n points.
+double sphere_error(std::size_t n) {
+  const OrientedSample s = sphere_sample(n, 1, 5);
+  const DistanceSampler field([](const Vec3& p) { return norm(p) - 1; }, 1.0 / std::sqrt(static_cast<double>(n)));
+  const Mesh mesh = field_mesh(s.points, s.normals, field);
+  EXPECT_EQ(topology(mesh).components, 1U);
+  EXPECT_EQ(topology(mesh).genus, 0);
+  double sum = 0;
+  for (const Vec3& v : mesh.vertices) sum += (norm(v) - 1) * (norm(v) - 1);
+  return std::sqrt(sum / static_cast<double>(mesh.vertices.size()));
+}
+
+TEST(FieldMesher, SphereConvergesAtThirdOrderInTheSpacing) {
+  const double coarse = sphere_error(1000), fine = sphere_error(16000);
+  const double order = std::log(coarse / fine) / std::log(4.0);  // the spacing falls by 4
+  EXPECT_GT(order, 2.7) << coarse << " -> " << fine;
+  EXPECT_LT(fine, 1e-4);
+}
+
+TEST(FieldMesher, WindingFieldOfTwoNestedSpheresGivesTwoNestedComponents) {
+  OrientedSample s = sphere_sample(4000, 1, 1);
+  const OrientedSample inner = sphere_sample(1000, 0.5, 2, -1);
+  s.points.insert(s.points.end(), inner.points.begin(), inner.points.end());
+  s.normals.insert(s.normals.end(), inner.normals.begin(), inner.normals.end());
+  const double area = 4 * M_PI / 4000;
+  const Mesh mesh = field_mesh(s.points, s.normals, DirectSampler(s, area, 0.55 * std::sqrt(area)));
+  const Topology t = topology(mesh);
+  EXPECT_EQ(t.bad_edges + t.bad_vertices, 0U);
+  EXPECT_EQ(t.components, 2U);
+  EXPECT_EQ(t.genus, 0);
+  EXPECT_NEAR(t.volume, 4.0 / 3.0 * M_PI * (1 - 0.125), 0.02);
+}
+
+TEST(FieldMesher, CubeKeepsItsEdgesAndMostCorners) {
+  const OrientedSample s = cube_sample(6000, 0.5, 3);
+  const double h = std::sqrt(6.0 / 6000);
+  const Mesh mesh = field_mesh(s.points, s.normals, DistanceSampler([](const Vec3& p) { return cube_distance(p, 0.5); }, h));
+  const Topology t = topology(mesh);
+  EXPECT_EQ(t.bad_edges + t.bad_vertices, 0U);
+  EXPECT_EQ(t.genus, 0);
+  EXPECT_NEAR(t.volume, 1, 1e-3);  // rounding all edges at radius h/2 would lose 12 h^2 / 4 (1 - pi/4) = 6e-4
+  double worst = 0;
+  for (const Vec3& v : mesh.vertices) worst = std::max(worst, std::abs(cube_distance(v, 0.5)));
+  EXPECT_LT(worst, 0.3 * h);
+  std::size_t corners = 0;
+  for (int k = 0; k < 8; ++k) {
+    const Vec3 c{(k & 1) != 0 ? 0.5 : -0.5, (k & 2) != 0 ? 0.5 : -0.5, (k & 4) != 0 ? 0.5 : -0.5};
+    double nearest = 1;
+    for (const Vec3& v : mesh.vertices) nearest = std::min(nearest, norm({v[0] - c[0], v[1] - c[1], v[2] - c[2]}));
+    if (nearest < 1e-6) ++corners;
+  }
+  EXPECT_GE(corners, 6U);  // a face may have too few points near a corner
+}
+
+TEST(FieldMesher, SameBytesForAnyNumberOfThreads) {
+  const OrientedSample s = sphere_sample(3000, 1, 9);
+  const DirectSampler field(s, 4 * M_PI / 3000, 0.03);
+  const Mesh one = parallel::with_threads(1, [&] { return field_mesh(s.points, s.normals, field); });
+  const Mesh four = parallel::with_threads(4, [&] { return field_mesh(s.points, s.normals, field); });
+  EXPECT_EQ(one.vertices, four.vertices);
+  EXPECT_EQ(one.triangles, four.triangles);
+}
+
+TEST(FieldMesher, RandomNormalsStillGiveAClosedManifold) {
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    OrientedSample s = sphere_sample(300, 1, seed);
+    s.normals = sphere_sample(300, 1, seed + 1000).normals;
+    const Mesh mesh = field_mesh(s.points, s.normals, DirectSampler(s, 4 * M_PI / 300, 0.06));
+    const Topology t = topology(mesh);
+    EXPECT_EQ(t.bad_edges + t.bad_vertices, 0U) << seed;
+  }
+}
+
+TEST(FieldMesher, ScaleAndShiftOfTheInputMoveTheMeshAlong) {
+  const OrientedSample s = sphere_sample(1000, 1, 4);
+  OrientedSample big = s;
+  for (Vec3& p : big.points) {
+    for (double& c : p) c *= 1024;
+  }
+  const Mesh a = field_mesh(s.points, s.normals, DistanceSampler([](const Vec3& p) { return norm(p) - 1; }, 0.1));
+  const Mesh b = field_mesh(big.points, big.normals, DistanceSampler([](const Vec3& p) { return norm(p) / 1024 - 1; }, 0.1));
+  ASSERT_EQ(a.triangles, b.triangles);
+  for (std::size_t i = 0; i < a.vertices.size(); ++i) EXPECT_NEAR(a.vertices[i][0] * 1024, b.vertices[i][0], 1e-6);
+}
+
+TEST(FieldMesher, FieldWithoutInsideGivesAnEmptyMesh) {
+  OrientedSample s = sphere_sample(200, 1, 4);
+  const Mesh mesh = field_mesh(s.points, s.normals, DistanceSampler([](const Vec3&) { return 10.0; }, 0.1));
+  EXPECT_EQ(topology(mesh).bad_edges, 0U);
+}
+
+TEST(FieldMesher, CancelStops) {
+  const OrientedSample s = sphere_sample(1000, 1, 4);
+  const DistanceSampler field([](const Vec3& p) { return norm(p) - 1; }, 0.1);
+  std::atomic<bool> cancel{true};
+  Monitor monitor;
+  monitor.cancel = &cancel;
+  EXPECT_THROW((void)field_mesh(s.points, s.normals, field, {}, monitor), Cancelled);
+  Monitor refuse;
+  refuse.progress = [](std::string_view, double fraction) { return fraction < 0.5; };
+  EXPECT_THROW((void)field_mesh(s.points, s.normals, field, {}, refuse), Cancelled);
+}
+
+TEST(FieldMesher, BadInputIsRefused) {
+  const OrientedSample s = sphere_sample(100, 1, 4);
+  const DistanceSampler field([](const Vec3& p) { return norm(p) - 1; }, 0.1);
+  EXPECT_THROW((void)field_mesh(s.points, {}, field), InvalidInput);
+  EXPECT_THROW((void)field_mesh({}, {}, field), InvalidInput);
+  EXPECT_THROW((void)field_mesh(std::vector<Vec3>(50, Vec3{1, 2, 3}), std::vector<Vec3>(50, Vec3{0, 0, 1}), field), InvalidInput);
+  EXPECT_THROW((void)field_mesh(s.points, std::vector<Vec3>(100, Vec3{0, 0, 0}), field), InvalidInput);
+  MeshOptions deep;
+  deep.depth = 40;
+  EXPECT_THROW((void)field_mesh(s.points, s.normals, field, deep), InvalidInput);
+}
+
+}  // namespace
