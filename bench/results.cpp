@@ -9,6 +9,8 @@
 #include <sstream>
 #include <utility>
 
+#include "mesh/screened_poisson.h"
+
 namespace g3r::bench {
 
 namespace {
@@ -193,7 +195,12 @@ void write_models(const std::vector<std::string>& methods, const std::vector<con
 }  // namespace
 
 std::string to_json(const RunInfo& run, const std::vector<Row>& rows) {
-  Json json = {{"schema", 1}, {"version", std::string(version())}, {"label", run.label}, {"seed", run.seed}, {"threads", run.threads}};
+  Json json = {{"schema", 1},
+               {"version", std::string(version())},
+               {"label", run.label},
+               {"seed", run.seed},
+               {"threads", run.threads},
+               {"poisson_available", screened_poisson_available()}};
   json["rows"] = Json::array();
   for (const Row& row : rows) json["rows"].push_back(row_json(row));
   return json.dump(1) + "\n";
