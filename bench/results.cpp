@@ -211,7 +211,13 @@ std::string to_markdown(const RunInfo& run, const std::vector<Row>& rows) {
   out << "# Benchmark" << (run.label.empty() ? "" : ": ") << run.label << "\n\nSeed " << run.seed << ", g3r " << version()
       << ". How to read and repeat this: bench/README.md.\n\n";
   std::vector<const Row*> all;
-  for (const Row& row : rows) all.push_back(&row);
+  for (const Row& row : rows) {
+    if (!row.method.empty()) {
+      all.push_back(&row);
+    } else {
+      out << "Not measured: " << row.model << ": " << row.error << "\n\n";
+    }
+  }
   const auto methods = distinct(all, [](const Row& row) { return row.method; });
   for (const auto& cloud : distinct(all, [](const Row& row) { return std::pair(row.input, row.points); })) {
     const auto here = select(all, [&](const Row& row) { return std::pair(row.input, row.points) == cloud; });
