@@ -206,11 +206,11 @@ std::string to_markdown(const RunInfo& run, const std::vector<Row>& rows) {
   std::vector<const Row*> all;
   for (const Row& row : rows) all.push_back(&row);
   const auto methods = distinct(all, [](const Row& row) { return row.method; });
-  for (const auto& [input, points] : distinct(all, [](const Row& row) { return std::pair(row.input, row.points); })) {
-    const auto here = select(all, [&](const Row& row) { return row.input == input && row.points == points; });
+  for (const auto& cloud : distinct(all, [](const Row& row) { return std::pair(row.input, row.points); })) {
+    const auto here = select(all, [&](const Row& row) { return std::pair(row.input, row.points) == cloud; });
     const auto good = select(here, [](const Row& row) { return row.error.empty(); });
     const auto meshed = select(good, [](const Row& row) { return row.mesh.has_value(); });
-    out << "## " << input << ", " << points << " points\n\n";
+    out << "## " << cloud.first << ", " << cloud.second << " points\n\n";
     write_summaries(point_scores(), methods, good, out);
     if (!meshed.empty()) write_summaries(mesh_scores(), methods, meshed, out);
     write_models(methods, here, !meshed.empty(), out);

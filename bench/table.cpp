@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 
 #include "inputs.h"
 #include "measure.h"
@@ -71,7 +70,7 @@ std::vector<fs::path> find_models(const Arguments& arguments) {
 void show(const Row& row) {
   std::fprintf(stderr, "%-20s %-12s %8zu %-24s ", row.model.c_str(), row.input.c_str(), row.points, row.method.c_str());
   if (!row.error.empty()) {
-    std::fprintf(stderr, "error: %s\n", escape_text(row.error).c_str());
+    std::fprintf(stderr, "error: %s\n", row.error.c_str());
     return;
   }
   std::fprintf(stderr, "AE_p %.3fe-2 PCO %.3f %% %.2f s", 100 * row.ae, 100 * row.pco, row.seconds);
@@ -103,7 +102,7 @@ void run(const Arguments& arguments) {
   }
   write_file(arguments.json, to_json(arguments.run, rows));
   write_file(arguments.markdown, to_markdown(arguments.run, rows));
-  std::cerr << rows.size() << " rows in " << arguments.json << ", tables in " << arguments.markdown << "\n";
+  std::fprintf(stderr, "%zu rows in %s, tables in %s\n", rows.size(), arguments.json.c_str(), arguments.markdown.c_str());
 }
 
 }  // namespace
@@ -111,11 +110,10 @@ void run(const Arguments& arguments) {
 }  // namespace g3r::bench
 
 int main(int argc, char** argv) {
-  const auto arguments = g3r::bench::parse_arguments(argc, argv);
   try {
-    g3r::bench::run(arguments);
+    g3r::bench::run(g3r::bench::parse_arguments(argc, argv));
   } catch (const std::exception& error) {
-    std::cerr << "g3r_bench_table: " << g3r::escape_text(error.what()) << "\n";
+    std::fprintf(stderr, "g3r_bench_table: %s\n", error.what());
     return 1;
   }
   return 0;

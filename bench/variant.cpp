@@ -91,7 +91,7 @@ Variant parse_variant(const std::string& text) {
   }
   while (std::getline(parts, part, ';')) {
     const std::size_t equals = part.find('=');
-    if (equals == std::string::npos) throw InvalidInput("method '" + text + "': '" + part + "' is not KEY=VALUE");
+    if (equals == std::string::npos) throw InvalidInput("method option '" + part + "' is not KEY=VALUE");
     set_option(variant, part.substr(0, equals), part.substr(equals + 1));
   }
   return variant;

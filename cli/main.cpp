@@ -1,6 +1,86 @@
-// The g3r program.
-#include <g3r/g3r.h>
+// The g3r program: reads the command line, runs one command, turns errors into exit codes.
+#include <g3r/error.h>
+#include <g3r/io.h>
 
-#include <iostream>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <optional>
+#include <string>
 
-int main() { std::cout << g3r::version() << "\n"; }
+#include "commands.h"
+#include "exit_code.h"
+#include "files.h"
+#include "interrupts.h"
+#include "session.h"
+#include "settings.h"
+
+namespace g3r::cli {
+namespace {
+
+int run(const Settings& settings, Session& session) {
+  switch (settings.command) {
+    case Command::kReconstruct:
+      return run_reconstruct(settings, session);
+    case Command::kOrient:
+      return run_orient(settings, session);
+    case Command::kMesh:
+      return run_mesh(settings, session);
+    case Command::kEval:
+      return run_eval(settings, session);
+    case Command::kSample:
+      return run_sample(settings, session);
+    case Command::kInfo:
+      return run_info(settings, session);
+  }
+  return kBug;
+}
+
+int complain(int code, const std::string& what) {
+  std::fputs(("g3r: " + escape_text(what) + "\n").c_str(), stderr);
+  return code;
+}
+
+int exit_code(IoError::Kind kind) {
+  switch (kind) {
+    case IoError::Kind::kNotFound:
+      return kNoInput;
+    case IoError::Kind::kCannotCreate:
+      return kCannotCreate;
+    case IoError::Kind::kFailed:
+      return kInputOutput;
+  }
+  return kInputOutput;
+}
+
+int run_program(int argc, const char* const* argv, const Interrupts& interrupts) {
+  try {
+    const std::optional<Settings> settings = parse_command_line(argc, argv);
+    if (!settings) return kOk;
+    check_files(*settings);
+    Session session(*settings, interrupts);
+    return run(*settings, session);
+  } catch (const UsageError& error) {
+    return complain(kUsage, std::string(error.what()) + " (see g3r --help)");
+  } catch (const InvalidInput& error) {
+    return complain(kBadData, error.what());
+  } catch (const IoError& error) {
+    return complain(exit_code(error.kind()), error.what());
+  } catch (const Unavailable& error) {
+    return complain(kUnavailable, error.what());
+  } catch (const Cancelled&) {
+    return complain(interrupts.exit_code(), "interrupted, nothing written");
+  } catch (const std::bad_alloc&) {
+    return complain(kOutOfMemory, "out of memory");
+  } catch (const std::exception& error) {
+    return complain(kBug, std::string("an error that should not happen, please report it: ") + error.what());
+  }
+}
+
+}  // namespace
+}  // namespace g3r::cli
+
+int main(int argc, char** argv) {
+  const g3r::cli::Interrupts interrupts;
+  return g3r::cli::run_program(argc, argv, interrupts);
+}

@@ -123,7 +123,8 @@ void judge(const CanonicalCloud& cloud, const std::vector<float>& confidence, St
   stats.confidence_mean = sum / size;
   stats.confidence_below_half = static_cast<double>(unsure) / size;
   if (!stats.converged) stats.warnings.emplace_back("the solver did not reach its tolerance; normals may be less accurate");
-  if (stats.confidence_below_half > kManyUnsure) {
+  stats.consistent = stats.confidence_below_half <= kManyUnsure;
+  if (!stats.consistent) {
     stats.warnings.push_back("orientation not consistent: " + std::to_string(std::lround(100 * stats.confidence_below_half)) +
                              " % of the points could face either way; the cloud may be open, very noisy or too sparse");
   }

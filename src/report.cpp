@@ -82,6 +82,7 @@ std::string report_json(const Stats& stats, const MeshCheck* mesh) {
                       {"condition_number", stats.condition_number > 0 ? number(stats.condition_number) : Json(nullptr)}};
   report["iterations"] = iterations_json(stats);
   report["converged"] = stats.converged;
+  report["consistent"] = stats.consistent;
   report["seconds"] = seconds_json(stats);
   report["planned_memory_bytes"] = stats.planned_memory_bytes;
   report["peak_memory_bytes"] = stats.peak_memory_bytes;

@@ -108,6 +108,7 @@ struct Stats {
   std::vector<Iteration> iterations;
   double tolerance = 0;
   bool converged = false;
+  bool consistent = true;                 ///< false: so many points could face either way that the cloud may have no clear inside
   double condition_number = 0;            ///< 0 unless asked for
   double confidence_mean = 0;
   double confidence_below_half = 0;       ///< share of the points, 0..1

@@ -4,8 +4,6 @@
 
 #include <g3r/error.h>
 
-#include <Eigen/Eigenvalues>
-
 #include <cmath>
 #include <limits>
 #include <string>
@@ -17,7 +15,7 @@ constexpr double kBoxSide = 2.0 / 1.1;      // the paper's normalisation
 constexpr int kGridBits = 21;               // 3 x 21 = 63 bits fit one code
 constexpr std::size_t kBlock = 1u << 14;    // points per parallel block; any value gives the same result
 constexpr std::size_t kFewestPoints = 4;    // fewer cannot enclose a volume
-constexpr double kLineThickness = 1e-10;    // second principal spread over the first, below which points count as collinear
+constexpr double kLineThickness = 1e-12;    // distance from a line over its length, below which points count as collinear: rounding
 
 bool finite(const Vec3& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }
 
@@ -103,19 +101,29 @@ Frame frame_of(const Bounds& b) {
   return frame;
 }
 
+// Distance of all points from the line through their mean and the point farthest from it.
 void require_not_collinear(const std::vector<Vec3>& points) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const Vec3& p : points) mean += Eigen::Map<const Eigen::Vector3d>(p.data());
-  mean /= static_cast<double>(points.size());
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  Vec3 mean{0, 0, 0};
   for (const Vec3& p : points) {
-    const Eigen::Vector3d d = Eigen::Map<const Eigen::Vector3d>(p.data()) - mean;
-    spread += d * d.transpose();
+    for (std::size_t a = 0; a < 3; ++a) mean[a] += p[a] / static_cast<double>(points.size());
   }
-  const Eigen::Vector3d eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread, Eigen::EigenvaluesOnly).eigenvalues();
-  if (eigenvalues[1] <= kLineThickness * kLineThickness * eigenvalues[2]) {
-    throw InvalidInput("all points are collinear (on one line); a surface needs points around a volume");
+  const auto from_mean = [&mean](const Vec3& p) { return Vec3{p[0] - mean[0], p[1] - mean[1], p[2] - mean[2]}; };
+  Vec3 axis{0, 0, 0};
+  double length = 0;
+  for (const Vec3& p : points) {
+    const Vec3 d = from_mean(p);
+    const double distance = std::hypot(d[0], d[1], d[2]);
+    if (distance > length) {
+      length = distance;
+      axis = d;
+    }
   }
+  for (const Vec3& p : points) {
+    const Vec3 d = from_mean(p);
+    const double off_line = std::hypot(d[1] * axis[2] - d[2] * axis[1], d[2] * axis[0] - d[0] * axis[2], d[0] * axis[1] - d[1] * axis[0]) / length;
+    if (off_line > kLineThickness * length) return;
+  }
+  throw InvalidInput("all points are collinear (on one line); a surface needs points around a volume");
 }
 
 }  // namespace

@@ -60,7 +60,8 @@ double color_scale(const Element& points, RecordLayout& layout, std::size_t prop
 Roles find_roles(const Element& points) {
   Roles roles{};
   const std::initializer_list<std::string_view> position[] = {{"x"}, {"y"}, {"z"}};
-  const std::initializer_list<std::string_view> normal[] = {{"nx", "normal_x"}, {"ny", "normal_y"}, {"nz", "normal_z"}};
+  const std::initializer_list<std::string_view> normal[] = {
+      {"nx", "normal_x", "NormalX"}, {"ny", "normal_y", "NormalY"}, {"nz", "normal_z", "NormalZ"}};
   const std::initializer_list<std::string_view> color[] = {
       {"red", "r", "diffuse_red"}, {"green", "g", "diffuse_green"}, {"blue", "b", "diffuse_blue"}};
   find_triple(points, position, roles.position);

@@ -25,7 +25,8 @@ Column make(const char* name, Type type, Column::From from, std::size_t axis = 0
 const char* normal_name(Dialect dialect, std::size_t axis) {
   constexpr const char* kPly[] = {"nx", "ny", "nz"};
   constexpr const char* kPcd[] = {"normal_x", "normal_y", "normal_z"};
-  return dialect == Dialect::kPcd ? kPcd[axis] : kPly[axis];
+  constexpr const char* kLas[] = {"NormalX", "NormalY", "NormalZ"};
+  return (dialect == Dialect::kPcd ? kPcd : dialect == Dialect::kLas ? kLas : kPly)[axis];
 }
 
 bool is_in(const std::size_t* triple, std::size_t property) { return std::find(triple, triple + 3, property) != triple + 3; }

@@ -20,6 +20,16 @@ Cloud read_as(Format format, const Source& source, const ReadOptions& options) {
   switch (format) {
     case Format::kPly:
       return read_ply(source, options);
+    case Format::kPcd:
+      return read_pcd(source);
+    case Format::kNpy:
+      return read_npy(source);
+    case Format::kLas:
+      return read_las(source);
+    case Format::kGlb:
+      return read_glb(source);
+    case Format::kGltf:
+      return read_gltf(source);
     case Format::kOff:
       return read_off(source);
     case Format::kObj:
@@ -29,11 +39,9 @@ Cloud read_as(Format format, const Source& source, const ReadOptions& options) {
     case Format::kStlText:
       return read_stl(source, false);
     case Format::kText:
-      return read_xyz(source);
-    default:
       break;
   }
-  fail(source, "this format is not read");
+  return read_xyz(source);
 }
 
 // Coordinates in float32 far from the origin have lost their last digits before we see them.

@@ -13,8 +13,8 @@ namespace g3r {
 
 namespace {
 
-constexpr std::array<std::string_view, 6> kPointFormats = {"ply", "xyz", "txt", "csv", "pts", "obj"};
-constexpr std::array<std::string_view, 3> kMeshFormats = {"ply", "obj", "stl"};
+constexpr std::array<std::string_view, 9> kPointFormats = {"ply", "xyz", "txt", "csv", "pts", "pcd", "npy", "las", "obj"};
+constexpr std::array<std::string_view, 5> kMeshFormats = {"ply", "obj", "stl", "off", "glb"};
 
 template <class Formats>
 std::string choose_format(const std::string& path, const Formats& formats, const char* what) {
@@ -56,6 +56,12 @@ void write_cloud(const std::string& path, const Cloud& cloud, const std::vector<
   io::OutputFile file(path);
   if (format == "ply") {
     io::write_ply(data, file);
+  } else if (format == "pcd") {
+    io::write_pcd(data, file);
+  } else if (format == "npy") {
+    io::write_npy(data, file);
+  } else if (format == "las") {
+    io::write_las(data, file);
   } else if (format == "obj") {
     io::write_obj(data, file);
   } else {
@@ -72,6 +78,10 @@ void write_mesh(const std::string& path, const Mesh& mesh, const WriteOptions& o
     io::write_ply_mesh(mesh, options.ascii, file);
   } else if (format == "obj") {
     io::write_obj_mesh(mesh, file);
+  } else if (format == "off") {
+    io::write_off_mesh(mesh, file);
+  } else if (format == "glb") {
+    io::write_glb_mesh(mesh, file);
   } else {
     io::write_stl_mesh(mesh, options.ascii, file);
   }

@@ -8,10 +8,15 @@ namespace g3r::io {
 
 void write_ply(const PointData& data, OutputFile& file);
 void write_xyz(const PointData& data, char separator, bool counted, OutputFile& file);
+void write_pcd(const PointData& data, OutputFile& file);
+void write_npy(const PointData& data, OutputFile& file);
+void write_las(const PointData& data, OutputFile& file);
 void write_obj(const PointData& data, OutputFile& file);
 
 void write_ply_mesh(const Mesh& mesh, bool ascii, OutputFile& file);
 void write_obj_mesh(const Mesh& mesh, OutputFile& file);
+void write_off_mesh(const Mesh& mesh, OutputFile& file);
+void write_glb_mesh(const Mesh& mesh, OutputFile& file);
 void write_stl_mesh(const Mesh& mesh, bool ascii, OutputFile& file);
 
 }  // namespace g3r::io

@@ -1,0 +1,73 @@
+// g3r eval RESULT --truth GT: scores as JSON on standard output. Meshes are compared as surfaces, clouds point by point.
+#include <g3r/io.h>
+#include <g3r/metrics.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "commands.h"
+#include "files.h"
+#include "text.h"
+
+namespace g3r::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Positions that went through a float file differ by 1e-7 of the box; points that are further apart than this are other points.
+constexpr double kSamePointShare = 1e-5;
+
+Cloud oriented_cloud(const std::string& path) {
+  Cloud cloud = read_cloud(path);
+  if (cloud.normals.empty()) throw InvalidInput(escape_text(path) + " has neither faces nor normals");
+  return cloud;
+}
+
+void warn_if_moved(const Cloud& result, const Cloud& truth, Console& console) {
+  double scale = 0;
+  for (const Vec3& p : truth.positions) scale = std::max({scale, std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
+  for (std::size_t i = 0; i < truth.positions.size(); ++i) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (std::abs(result.positions[i][a] - truth.positions[i][a]) > kSamePointShare * scale) {
+        console.warn("point " + std::to_string(i) + " is not where the truth has it: are these the same points in the same order?");
+        return;
+      }
+    }
+  }
+}
+
+Json score_points(const Settings& settings, Console& console) {
+  const Cloud result = oriented_cloud(settings.input);
+  const Cloud truth = oriented_cloud(settings.truth);
+  if (result.positions.size() != truth.positions.size()) {
+    throw InvalidInput("the result has " + counted(result.positions.size(), "point") + ", the truth " +
+                       counted(truth.positions.size(), "point"));
+  }
+  warn_if_moved(result, truth, console);
+  const NormalScore score = score_normals(result.normals, truth.normals);
+  return {{"kind", "points"}, {"points", score.points}, {"ae_p", score.ae}, {"pco", score.pco}};
+}
+
+Json score_meshes(const Settings& settings, const Mesh& result, const Mesh& truth) {
+  const MeshScore score = score_mesh(result, truth, settings.sample_count, settings.options.seed);
+  return {{"kind", "mesh"}, {"samples", settings.sample_count}, {"cd", score.chamfer}, {"ae_m", score.ae}, {"hd", score.hausdorff}};
+}
+
+}  // namespace
+
+int run_eval(const Settings& settings, Session& session) {
+  const Json scores = session.stage("evaluate", [&] {
+    const auto result = mesh_if_any(settings.input);
+    const auto truth = mesh_if_any(settings.truth);
+    if (!result && !truth) return score_points(settings, session.console());
+    if (result && truth) return score_meshes(settings, *result, *truth);
+    throw InvalidInput("one of the files is a mesh and the other is not: `g3r sample` makes points with true normals from a mesh");
+  });
+  session.console().clear_bar();
+  write_text("-", scores.dump(2) + "\n");
+  return 0;
+}
+
+}  // namespace g3r::cli

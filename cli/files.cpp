@@ -1,0 +1,82 @@
+#include "files.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+
+#include <unistd.h>
+
+#include "exit_code.h"
+
+namespace g3r::cli {
+namespace {
+
+std::string reason() { return std::error_code(errno, std::generic_category()).message(); }
+
+void check_input(const std::string& path) {
+  if (path.empty() || path == "-") return;
+  // Not by opening it: the writer of a named pipe would see its reader come and go.
+  if (access(path.c_str(), R_OK) != 0) throw IoError(IoError::Kind::kNotFound, "cannot read " + escape_text(path) + ": " + reason());
+}
+
+bool same_file(const std::string& a, const std::string& b) {
+  if (a.empty() || a == "-" || b.empty() || b == "-") return false;
+  std::error_code ignored;
+  return std::filesystem::weakly_canonical(a, ignored) == std::filesystem::weakly_canonical(b, ignored) ||
+         std::filesystem::equivalent(a, b, ignored);
+}
+
+/// The report may have any extension, so check_output() cannot judge it.
+void check_report(const Settings& settings) {
+  const std::string& path = settings.report;
+  if (path.empty() || path == "-") return;
+  const std::string refused = "cannot create " + escape_text(path) + ": ";
+  for (const std::string& other : {settings.input, settings.output}) {
+    if (same_file(path, other)) throw IoError(IoError::Kind::kCannotCreate, refused + "it is also the input or the result");
+  }
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) throw IoError(IoError::Kind::kCannotCreate, refused + "it is a folder");
+  std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  if (folder.empty()) folder = ".";
+  if (access(folder.c_str(), W_OK | X_OK) != 0) throw IoError(IoError::Kind::kCannotCreate, refused + reason());
+}
+
+bool makes_mesh(Command command) { return command == Command::kReconstruct || command == Command::kMesh; }
+
+}  // namespace
+
+void check_files(const Settings& settings) {
+  check_input(settings.input);
+  check_input(settings.truth);
+  if (!settings.output.empty()) {
+    try {
+      check_output(settings.output, {settings.input}, makes_mesh(settings.command));
+    } catch (const InvalidInput& error) {
+      throw UsageError(error.what());
+    }
+  }
+  check_report(settings);
+}
+
+std::optional<Mesh> mesh_if_any(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return std::nullopt;
+  try {
+    return read_mesh(path);
+  } catch (const InvalidInput&) {
+    return std::nullopt;
+  }
+}
+
+void write_text(const std::string& path, const std::string& text) {
+  if (path != "-") {
+    write_file(path, text);
+    return;
+  }
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+    throw IoError(IoError::Kind::kFailed, "cannot write to standard output: " + reason());
+  }
+}
+
+}  // namespace g3r::cli

@@ -1,0 +1,23 @@
+// The checks of files that come before the work, and text output.
+#pragma once
+
+#include <g3r/mesh.h>
+
+#include <optional>
+#include <string>
+
+#include "settings.h"
+
+namespace g3r::cli {
+
+/// Throws what reading and writing would throw for the files of these settings, before any work: an input that cannot be opened
+/// (IoError), an output or report that cannot be created or is one of the inputs (IoError), an unknown extension (UsageError).
+void check_files(const Settings& settings);
+
+/// The mesh in a file, or nothing if it holds no faces. A pipe cannot be read twice and is taken for points. Throws IoError.
+[[nodiscard]] std::optional<Mesh> mesh_if_any(const std::string& path);
+
+/// Writes text to a file, whole or not at all, or to standard output for "-". Throws IoError.
+void write_text(const std::string& path, const std::string& text);
+
+}  // namespace g3r::cli

@@ -1,0 +1,100 @@
+// g3r info FILE: what is in a file, and what g3r would do with it. Text on standard output, or the plan as JSON with --report -.
+#include <g3r/g3r.h>
+#include <g3r/io.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "commands.h"
+#include "files.h"
+#include "text.h"
+
+namespace g3r::cli {
+namespace {
+
+constexpr int kCoordinateDigits = 10;  // a millimetre on the far side of the Earth
+
+std::string line(const char* label, const std::string& text) {
+  std::string padded = std::string("  ") + label;
+  padded.resize(13, ' ');
+  return padded + text + "\n";
+}
+
+std::string bounds_text(const std::vector<Vec3>& points) {
+  std::string text;
+  for (std::size_t a = 0; a < 3; ++a) {
+    double low = INFINITY, high = -INFINITY;
+    for (const Vec3& p : points) {
+      if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) continue;
+      low = std::min(low, p[a]);
+      high = std::max(high, p[a]);
+    }
+    if (low > high) return "no finite point";
+    text += (a == 0 ? "" : ", ") + std::string(1, "xyz"[a]) + " " + short_number(low, kCoordinateDigits) + " to " +
+            short_number(high, kCoordinateDigits);
+  }
+  return text;
+}
+
+std::string file_text(const Settings& settings, const Cloud& cloud) {
+  std::string text = escape_text(settings.input) + "\n";
+  const char* precision = cloud.scalar == Scalar::kFloat64 ? "double" : "single";
+  text += line("format", escape_text(cloud.format) + ", coordinates in " + precision + " precision");
+  text += line("points", with_commas(cloud.positions.size()));
+  std::string names;
+  for (const std::string& name : cloud.property_names) names.append(names.empty() ? "" : " ").append(escape_text(name));
+  if (!names.empty()) text += line("properties", names);
+  text += line("normals", cloud.normals.empty() ? "none" : "in the file");
+  return text + line("bounds", bounds_text(cloud.positions));
+}
+
+std::string mesh_text(const Mesh& mesh) {
+  const MeshCheck check = check_mesh(mesh);
+  std::string text = counted(check.triangles, "triangle") + ", " + (check.closed ? "closed" : "not closed") + ", " +
+                     (check.manifold ? "manifold" : "not manifold") + ", " + counted(check.components, "component");
+  if (check.closed && check.manifold) text += ", genus " + std::to_string(check.genus) + ", volume " + short_number(check.volume);
+  return line("mesh", text + ", area " + short_number(check.area));
+}
+
+std::string plan_text(const Stats& stats) {
+  std::string text;
+  if (stats.dropped_non_finite > 0) text += line("not finite", with_commas(stats.dropped_non_finite) + " would be left out");
+  if (stats.merged_duplicates > 0) text += line("duplicates", with_commas(stats.merged_duplicates) + " would be merged");
+  text += line("spacing", short_number(stats.spacing));
+  text += line("epsilon", short_number(stats.epsilon) +
+                              (stats.spacing > 0 ? " (" + short_number(stats.epsilon / stats.spacing, 2) + " spacings)" : std::string()));
+  if (stats.depth > 0) text += line("depth", std::to_string(stats.depth));
+  text += line("method", escape_text(stats.method) + ", " + stats.solver + ", harmonics " + escape_text(stats.harmonics));
+  return text + line("memory", "about " + bytes(stats.planned_memory_bytes) + " to orient");
+}
+
+}  // namespace
+
+int run_info(const Settings& settings, Session& session) {
+  const Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, settings.read_options); });
+  const std::optional<Mesh> mesh = mesh_if_any(settings.input);
+  std::string text = file_text(settings, cloud);
+  if (mesh) text += mesh_text(*mesh);
+  Stats stats;
+  try {
+    stats = session.stage("plan", [&] { return plan(cloud.positions, settings.options); });
+    text += plan_text(stats);
+  } catch (const InvalidInput& error) {
+    stats.points = cloud.positions.size();
+    stats.warnings.emplace_back(error.what());
+  }
+  stats.warnings.insert(stats.warnings.begin(), cloud.warnings.begin(), cloud.warnings.end());
+  session.complete(stats);
+  for (const std::string& warning : stats.warnings) session.console().warn(warning);
+  session.console().clear_bar();
+  if (settings.report != "-") write_text("-", text);
+  if (!settings.report.empty()) {
+    const MeshCheck check = mesh ? check_mesh(*mesh) : MeshCheck{};
+    write_text(settings.report, report_json(stats, mesh ? &check : nullptr));
+  }
+  return 0;
+}
+
+}  // namespace g3r::cli

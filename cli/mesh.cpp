@@ -1,0 +1,29 @@
+// g3r mesh ORIENTED OUT: points that already have outward normals in, a mesh out.
+#include <g3r/g3r.h>
+#include <g3r/io.h>
+
+#include "commands.h"
+#include "summary.h"
+
+namespace g3r::cli {
+
+int run_mesh(const Settings& settings, Session& session) {
+  const Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, settings.read_options); });
+  if (cloud.normals.empty()) {
+    throw InvalidInput(escape_text(settings.input) + " has no normals: `g3r orient` makes them, `g3r IN OUT` goes all the way");
+  }
+  const Mesh mesh =
+      session.stage("mesh", [&] { return mesh_oriented(cloud.positions, cloud.normals, settings.mesh_options, session.monitor()); });
+  const MeshCheck check = check_mesh(mesh);
+  session.stage("write", [&] { write_mesh(settings.output, mesh, settings.write_options); });
+  Stats stats;
+  stats.points = stats.used = cloud.positions.size();
+  stats.method = settings.mesh_options.mesher == Mesher::kPoisson ? "poisson" : "field";
+  stats.depth = settings.mesh_options.depth;
+  stats.converged = true;
+  stats.warnings = cloud.warnings;
+  if (!check.closed) stats.warnings.emplace_back("the mesh is not closed");
+  return finish(settings, session, stats, &check);
+}
+
+}  // namespace g3r::cli

@@ -1,0 +1,19 @@
+// g3r orient IN OUT: the same points in the same order with all their properties, plus unit normals and confidence.
+#include <g3r/g3r.h>
+#include <g3r/io.h>
+
+#include "commands.h"
+#include "summary.h"
+
+namespace g3r::cli {
+
+int run_orient(const Settings& settings, Session& session) {
+  const Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, settings.read_options); });
+  Orientation result = orient(cloud.positions, settings.options, session.monitor());
+  session.stage("write", [&] { write_cloud(settings.output, cloud, &result.normals, &result.confidence, settings.write_options); });
+  Stats& stats = result.stats;
+  stats.warnings.insert(stats.warnings.begin(), cloud.warnings.begin(), cloud.warnings.end());
+  return finish(settings, session, stats, nullptr);
+}
+
+}  // namespace g3r::cli

@@ -1,0 +1,19 @@
+// g3r IN [OUT]: an unoriented cloud in, a watertight mesh out.
+#include <g3r/g3r.h>
+#include <g3r/io.h>
+
+#include "commands.h"
+#include "summary.h"
+
+namespace g3r::cli {
+
+int run_reconstruct(const Settings& settings, Session& session) {
+  const Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, settings.read_options); });
+  Reconstruction result = reconstruct(cloud.positions, settings.options, settings.mesh_options, session.monitor());
+  session.stage("write", [&] { write_mesh(settings.output, result.mesh, settings.write_options); });
+  Stats& stats = result.orientation.stats;
+  stats.warnings.insert(stats.warnings.begin(), cloud.warnings.begin(), cloud.warnings.end());
+  return finish(settings, session, stats, &result.check);
+}
+
+}  // namespace g3r::cli

@@ -1,0 +1,29 @@
+#include "session.h"
+
+#include <algorithm>
+
+#include <sys/resource.h>
+
+namespace g3r::cli {
+
+Monitor Session::monitor() {
+  Monitor monitor;
+  monitor.cancel = &interrupts_.requested();
+  monitor.progress = [this](std::string_view stage, double fraction) {
+    console_.progress(stage, fraction);
+    return !interrupts_.requested();
+  };
+  return monitor;
+}
+
+void Session::complete(Stats& stats) const {
+  stats.seconds.insert(stats.seconds.end(), seconds_.begin(), seconds_.end());
+  std::erase_if(stats.seconds, [](const auto& entry) { return entry.first == "total"; });
+  stats.seconds.emplace_back("total", std::chrono::duration<double>(Clock::now() - start_).count());
+  rusage usage{};
+  if (getrusage(RUSAGE_SELF, &usage) == 0) {
+    stats.peak_memory_bytes = std::max(stats.peak_memory_bytes, static_cast<std::size_t>(usage.ru_maxrss) * 1024);
+  }
+}
+
+}  // namespace g3r::cli

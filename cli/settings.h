@@ -1,0 +1,40 @@
+// The command line: what can be asked for, and how it is read.
+#pragma once
+
+#include <g3r/g3r.h>
+#include <g3r/io.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "text.h"
+
+namespace g3r::cli {
+
+enum class Command { kReconstruct, kOrient, kMesh, kEval, kSample, kInfo };
+
+/// Everything a command line says, with the defaults for what it does not say.
+struct Settings {
+  Command command = Command::kReconstruct;
+  std::string input;
+  std::string output;
+  std::string truth;  ///< eval
+  Options options;
+  MeshOptions mesh_options;
+  ReadOptions read_options;
+  WriteOptions write_options;
+  std::size_t sample_count = 0;  ///< sample: points to draw; eval: points per mesh
+  Length noise;                  ///< sample
+  std::string report;            ///< file for the JSON report, "-" for standard output, empty for none
+  bool strict = false;
+  bool quiet = false;
+  bool progress = true;
+  int verbosity = 0;
+};
+
+/// Reads the command line. Empty when it asked for help or the version, which is then on standard output. Throws UsageError.
+[[nodiscard]] std::optional<Settings> parse_command_line(int argc, const char* const* argv);
+
+}  // namespace g3r::cli

@@ -1,0 +1,104 @@
+#include "summary.h"
+
+#include <algorithm>
+#include <map>
+
+#include "exit_code.h"
+#include "files.h"
+#include "text.h"
+
+namespace g3r::cli {
+namespace {
+
+// Stages shorter than this share of the whole are not worth a place in the summary.
+constexpr double kSmallestPart = 0.05;
+
+std::string line(const char* label, const std::string& text) {
+  std::string padded = std::string("  ") + label;
+  padded.resize(11, ' ');
+  return padded + text;
+}
+
+std::string input_text(const Settings& settings, const Stats& stats) {
+  std::string text = settings.input == "-" ? "standard input" : escape_text(settings.input);
+  text += ": " + counted(stats.points, "point");
+  if (stats.merged_duplicates > 0) text += ", " + counted(stats.merged_duplicates, "duplicate") + " merged";
+  if (stats.dropped_non_finite > 0) text += ", " + with_commas(stats.dropped_non_finite) + " not finite";
+  return text;
+}
+
+std::string scale_text(const Stats& stats) {
+  std::string text = "spacing " + short_number(stats.spacing) + " in a box of side " + short_number(stats.box_side);
+  if (stats.epsilon > 0 && stats.spacing > 0) {
+    text += ", epsilon " + short_number(stats.epsilon) + " (" + short_number(stats.epsilon / stats.spacing, 2) + " spacings)";
+  }
+  return text;
+}
+
+std::string solve_text(const Stats& stats) {
+  if (stats.iterations.empty()) return stats.solver;
+  const char* end = !stats.converged ? "not converged" : stats.tolerance > 0 ? "converged" : "as scheduled";
+  return counted(stats.iterations.size(), "iteration") + ", residual " + short_number(stats.iterations.back().residual, 2) + ", " + end;
+}
+
+std::string mesh_text(const MeshCheck& check) {
+  std::string text = counted(check.triangles, "triangle") + ", " + (check.closed ? "closed" : "not closed") + ", " +
+                     (check.manifold ? "manifold" : "not manifold") + ", " + counted(check.components, "component");
+  if (check.closed && check.manifold) text += ", genus " + std::to_string(check.genus);
+  return text;
+}
+
+std::string time_text(const Stats& stats) {
+  std::map<std::string, double> seconds;
+  for (const auto& [stage, value] : stats.seconds) seconds[stage] += value;
+  std::string text = duration(seconds["total"]);
+  std::string parts;
+  for (const char* stage : {"read", "build", "solve", "refine", "mesh", "write"}) {
+    const double value = seconds[stage];
+    if (value >= std::max(kSmallestPart * seconds["total"], 0.01))
+      parts += (parts.empty() ? "" : ", ") + std::string(stage) + " " + short_number(value, 2);
+  }
+  if (!parts.empty()) text += " (" + parts + ")";
+  if (stats.threads > 0) text += " on " + counted(static_cast<std::size_t>(stats.threads), "thread");
+  return text + ", at most " + bytes(stats.peak_memory_bytes) + " of memory";
+}
+
+void show_details(Console& console, const Stats& stats) {
+  if (!stats.method.empty()) {
+    console.detail(line("method", escape_text(stats.method) + ", harmonics " + escape_text(stats.harmonics) + ", " + stats.sums + " sums"));
+  }
+  for (std::size_t i = 0; i < stats.iterations.size(); ++i) {
+    const Iteration& step = stats.iterations[i];
+    console.detail(line("", std::to_string(i + 1) + " " + step.kind + "  residual " + short_number(step.residual, 3)));
+  }
+  if (stats.condition_number > 0) console.say(line("condition", short_number(stats.condition_number, 3)));
+}
+
+void show_summary(const Settings& settings, Console& console, const Stats& stats, const MeshCheck* mesh) {
+  console.say(line("input", input_text(settings, stats)));
+  if (stats.spacing > 0) console.say(line("scale", scale_text(stats)));
+  show_details(console, stats);
+  if (!stats.solver.empty()) {
+    console.say(line("solve", solve_text(stats)));
+    console.say(line("normals", "mean confidence " + short_number(stats.confidence_mean, 2) + ", " + percent(stats.confidence_below_half) +
+                                    " of the points below 0.5"));
+  }
+  if (mesh != nullptr) console.say(line("mesh", mesh_text(*mesh)));
+  console.say(line("time", time_text(stats)));
+  if (settings.output != "-") console.say(line("wrote", escape_text(settings.output)));
+}
+
+}  // namespace
+
+int finish(const Settings& settings, Session& session, Stats stats, const MeshCheck* mesh) {
+  session.complete(stats);
+  const bool is_open = mesh != nullptr && !mesh->closed;
+  Console& console = session.console();
+  for (const std::string& warning : stats.warnings) console.warn(warning);
+  show_summary(settings, console, stats, mesh);
+  if (!settings.report.empty()) write_text(settings.report, report_json(stats, mesh));
+  const bool is_doubtful = !stats.converged || !stats.consistent || is_open;
+  return settings.strict && is_doubtful ? kBadData : kOk;
+}
+
+}  // namespace g3r::cli

@@ -1,0 +1,101 @@
+#include "text.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <string_view>
+#include <system_error>
+
+namespace g3r::cli {
+namespace {
+
+/// The number at the start of `text` and what follows it. Plain decimal or exponent notation, finite, no sign but a minus.
+struct NumberAndRest {
+  double number;
+  std::string_view rest;
+};
+
+std::optional<NumberAndRest> leading_number(std::string_view text) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || !std::isfinite(number)) return std::nullopt;
+  return NumberAndRest{number, text.substr(static_cast<std::size_t>(end - text.data()))};
+}
+
+}  // namespace
+
+std::string with_commas(std::size_t count) {
+  std::string digits = std::to_string(count);
+  for (std::size_t end = digits.size(); end > 3; end -= 3) digits.insert(end - 3, 1, ',');
+  return digits;
+}
+
+std::string counted(std::size_t count, const std::string& noun) { return with_commas(count) + " " + noun + (count == 1 ? "" : "s"); }
+
+std::string short_number(double value, int digits) {
+  std::array<char, 64> buffer{};
+  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, digits);
+  return {buffer.data(), result.ptr};
+}
+
+std::string percent(double share) {
+  const double value = 100 * share;
+  if (value > 0 && value < 0.01) return "under 0.01 %";
+  return short_number(value, value >= 99 && value < 100 ? 4 : 3) + " %";
+}
+
+std::string bytes(std::size_t count) {
+  constexpr std::array kUnits = {"bytes", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"};
+  auto value = static_cast<double>(count);
+  std::size_t unit = 0;
+  for (; value >= 1000 && unit + 1 < kUnits.size(); ++unit) value /= 1024;
+  return short_number(value, 3) + " " + kUnits[unit];
+}
+
+std::string duration(double seconds) {
+  if (seconds < 0.01) return "under 0.01 s";
+  if (seconds < 59.5) return short_number(seconds, seconds < 1 ? 2 : 3) + " s";
+  const auto whole = static_cast<std::size_t>(std::llround(seconds));
+  if (whole < 3600) return std::to_string(whole / 60) + " min " + std::to_string(whole % 60) + " s";
+  return std::to_string(whole / 3600) + " h " + std::to_string(whole % 3600 / 60) + " min";
+}
+
+std::optional<std::size_t> parse_bytes(const std::string& text) {
+  const auto parsed = leading_number(text);
+  if (!parsed || parsed->number <= 0) return std::nullopt;
+  double scale = 1;
+  std::string_view rest = parsed->rest;
+  if (!rest.empty() && rest != "B") {
+    constexpr std::string_view kPrefixes = "KMGT";
+    const auto power = kPrefixes.find(static_cast<char>(rest[0] & ~0x20));
+    if (power == std::string_view::npos) return std::nullopt;
+    scale = std::pow(1024.0, static_cast<double>(power + 1));
+    rest.remove_prefix(1);
+    if (!rest.empty() && rest != "B" && rest != "iB") return std::nullopt;
+  }
+  const double value = parsed->number * scale;
+  if (value < 1 || value >= static_cast<double>(std::numeric_limits<std::size_t>::max())) return std::nullopt;
+  return static_cast<std::size_t>(value);
+}
+
+std::optional<Epsilon> parse_epsilon(const std::string& text) {
+  if (text == "auto") return Epsilon{};
+  const auto parsed = leading_number(text);
+  if (!parsed || parsed->number <= 0) return std::nullopt;
+  if (parsed->rest.empty()) return Epsilon{Epsilon::Unit::kInput, parsed->number};
+  if (parsed->rest == "%") return Epsilon{Epsilon::Unit::kPercent, parsed->number};
+  if (parsed->rest == "h") return Epsilon{Epsilon::Unit::kSpacing, parsed->number};
+  if (parsed->rest == "n") return Epsilon{Epsilon::Unit::kNormalised, parsed->number};
+  return std::nullopt;
+}
+
+std::optional<Length> parse_length(const std::string& text) {
+  const auto parsed = leading_number(text);
+  if (!parsed || parsed->number < 0) return std::nullopt;
+  if (parsed->rest.empty()) return Length{parsed->number, false};
+  if (parsed->rest == "%") return Length{parsed->number, true};
+  return std::nullopt;
+}
+
+}  // namespace g3r::cli

@@ -1,0 +1,46 @@
+// Text for people: numbers that read well, and the units that the command line understands.
+#pragma once
+
+#include <g3r/g3r.h>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+namespace g3r::cli {
+
+/// 1234567 -> "1,234,567".
+[[nodiscard]] std::string with_commas(std::size_t count);
+
+/// "1 point", "2,000 points": the plural is the noun with an s.
+[[nodiscard]] std::string counted(std::size_t count, const std::string& noun);
+
+/// Up to `digits` significant digits without trailing zeros, independent of the locale: 0.0123, 5.2e-07.
+[[nodiscard]] std::string short_number(double value, int digits = 4);
+
+/// Share 0..1 -> "0.3 %"; a share that is not zero is never shown as "0 %".
+[[nodiscard]] std::string percent(double share);
+
+/// 1536 -> "1.5 KiB".
+[[nodiscard]] std::string bytes(std::size_t count);
+
+/// 0.42 -> "0.42 s", 75 -> "1 min 15 s", 4000 -> "1 h 7 min".
+[[nodiscard]] std::string duration(double seconds);
+
+/// "8G", "512M", "1.5GiB", "1000": bytes, powers of 1024. Empty if it is not that.
+[[nodiscard]] std::optional<std::size_t> parse_bytes(const std::string& text);
+
+/// "auto", "X" (input units), "X%" (of the bounding box diagonal), "Xh" (spacings), "Xn" (normalised box); X > 0. Empty if it is not that.
+[[nodiscard]] std::optional<Epsilon> parse_epsilon(const std::string& text);
+
+/// A length given absolutely or in percent of something that is only known later.
+struct Length {
+  double value = 0;
+  bool is_percent = false;
+  [[nodiscard]] double in_units(double whole) const { return is_percent ? value / 100 * whole : value; }
+};
+
+/// "X" or "X%", X >= 0. Empty if it is not that.
+[[nodiscard]] std::optional<Length> parse_length(const std::string& text);
+
+}  // namespace g3r::cli

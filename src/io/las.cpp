@@ -1,0 +1,156 @@
+#include "io/las.h"
+
+#include <cmath>
+
+namespace g3r::io {
+
+namespace {
+
+using namespace las;
+
+// Fields after X Y Z, by point format.
+std::vector<LasField> standard_fields(unsigned format) {
+  std::vector<LasField> fields;
+  std::size_t at = 12;
+  const auto add = [&](const char* name, Type type) {
+    fields.push_back({name, type, at});
+    at += size_of(type);
+  };
+  add("intensity", Type::kUint16);
+  if (format < 6) {
+    add("return_flags", Type::kUint8);
+    add("classification", Type::kUint8);
+    add("scan_angle", Type::kInt8);
+    add("user_data", Type::kUint8);
+  } else {
+    add("return_numbers", Type::kUint8);
+    add("return_flags", Type::kUint8);
+    add("classification", Type::kUint8);
+    add("user_data", Type::kUint8);
+    add("scan_angle", Type::kInt16);
+  }
+  add("point_source_id", Type::kUint16);
+  if (format == 1 || format >= 3) add("gps_time", Type::kFloat64);
+  if (format == 2 || format == 3 || format == 5 || format == 7 || format == 8 || format == 10) {
+    add("red", Type::kUint16);
+    add("green", Type::kUint16);
+    add("blue", Type::kUint16);
+  }
+  if (format == 8 || format == 10) add("nir", Type::kUint16);
+  return fields;
+}
+
+constexpr Type kDescribedTypes[] = {Type::kUint8, Type::kInt8,   Type::kUint16, Type::kInt16,   Type::kUint32,
+                                    Type::kInt32, Type::kUint64, Type::kInt64,  Type::kFloat32, Type::kFloat64};
+
+std::string fixed_text(std::string_view bytes) { return std::string(bytes.substr(0, bytes.find('\0'))); }
+
+// Adds the fields that an Extra Bytes record describes.
+void describe_extra_bytes(std::string_view descriptors, LasHeader& header) {
+  std::size_t at = kRecordSize[header.point_format];
+  for (std::size_t d = 0; d + kDescriptor <= descriptors.size(); d += kDescriptor) {
+    const auto type = static_cast<unsigned char>(descriptors[d + 2]);
+    const auto options = static_cast<unsigned char>(descriptors[d + 3]);
+    std::size_t bytes = options;  // type 0: that many bytes without meaning
+    if (type >= 1 && type <= 10) {
+      bytes = size_of(kDescribedTypes[type - 1]);
+    } else if (type != 0 || bytes == 0) {
+      break;  // deprecated arrays: the rest stays undescribed
+    }
+    if (bytes > header.record_bytes - at) break;
+    if (type != 0) header.fields.push_back({fixed_text(descriptors.substr(d + 4, 32)), kDescribedTypes[type - 1], at});
+    at += bytes;
+  }
+  header.undescribed_bytes = header.record_bytes - at;
+}
+
+void read_vlrs(const Source& source, LasHeader& header) {
+  std::size_t at = header.header_size;
+  header.undescribed_bytes = header.record_bytes - kRecordSize[header.point_format];
+  for (std::uint32_t i = 0; i < header.vlr_count; ++i) {
+    if (header.points_at - at < kVlrHeader)
+      fail_at_byte(source, at, "truncated: " + std::to_string(header.vlr_count) + " variable length records do not fit before the points");
+    const auto length = load<std::uint16_t>(source.bytes.data() + at + 20);
+    if (length > header.points_at - at - kVlrHeader)
+      fail_at_byte(source, at, "a variable length record of " + std::to_string(length) + " bytes does not fit before the points");
+    if (fixed_text(source.bytes.substr(at + 2, 16)) == "LASF_Spec" && load<std::uint16_t>(source.bytes.data() + at + 18) == kExtraBytes &&
+        header.extra_vlr == 0) {
+      header.extra_vlr = at;
+      describe_extra_bytes(source.bytes.substr(at + kVlrHeader, length), header);
+    }
+    at += kVlrHeader + length;
+  }
+}
+
+}  // namespace
+
+LasHeader read_las_header(const Source& source) {
+  constexpr std::size_t kLeastHeader = 227;
+  constexpr std::size_t kHeader14 = 375;
+  const char* bytes = source.bytes.data();
+  const std::size_t size = source.bytes.size();
+  if (size < kLeastHeader) fail_at_byte(source, size, "truncated: a LAS header has at least 227 bytes");
+  LasHeader header;
+  header.minor = static_cast<unsigned char>(bytes[kMinor]);
+  if (bytes[kMinor - 1] != 1 || header.minor > 4) {
+    fail_at_byte(source, kMinor - 1,
+                 "expected LAS version 1.0 to 1.4, found " + std::to_string(static_cast<unsigned char>(bytes[kMinor - 1])) + "." +
+                     std::to_string(header.minor));
+  }
+  header.header_size = load<std::uint16_t>(bytes + kHeaderSize);
+  header.points_at = load<std::uint32_t>(bytes + kPointsAt);
+  header.vlr_count = load<std::uint32_t>(bytes + kVlrCount);
+  const auto format = static_cast<unsigned char>(bytes[kPointFormat]);
+  if ((format & 0xC0U) != 0) {
+    fail_at_byte(source, kPointFormat,
+                 "a compressed LAZ file, which g3r does not read; convert it, for example with \"laszip -i in.laz -o out.las\" or \"pdal "
+                 "translate in.laz out.las\"");
+  }
+  if (format > 10) fail_at_byte(source, kPointFormat, "expected point format 0 to 10, found " + std::to_string(format));
+  header.point_format = format;
+  header.record_bytes = load<std::uint16_t>(bytes + kRecordBytes);
+  if (header.header_size < (header.minor == 4 ? kHeader14 : kLeastHeader) || header.header_size > header.points_at ||
+      header.points_at > size) {
+    fail_at_byte(source, kHeaderSize,
+                 "truncated or damaged: header size " + std::to_string(header.header_size) + " and start of points " +
+                     std::to_string(header.points_at) + " do not go with a file of " + std::to_string(size) + " bytes");
+  }
+  if (header.record_bytes < kRecordSize[format]) {
+    fail_at_byte(source, kRecordBytes,
+                 "expected records of at least " + std::to_string(kRecordSize[format]) + " bytes for point format " +
+                     std::to_string(format) + ", found " + std::to_string(header.record_bytes));
+  }
+  header.count = load<std::uint32_t>(bytes + kLegacyCount);
+  if (header.minor == 4) {
+    const auto count = load<std::uint64_t>(bytes + kCount);
+    if (count != 0 && header.count != 0 && count != header.count) {
+      fail_at_byte(source, kCount,
+                   "the header has two counts of points, " + std::to_string(header.count) + " and " + std::to_string(count));
+    }
+    header.count = std::max(count, header.count);
+  }
+  if (header.count > (size - header.points_at) / header.record_bytes) {
+    fail_at_byte(source, header.points_at,
+                 "truncated: " + std::to_string(header.count) + " points of " + std::to_string(header.record_bytes) +
+                     " bytes declared, but only " + std::to_string(size - header.points_at) + " bytes follow (count too large)");
+  }
+  for (std::size_t a = 0; a < 3; ++a) {
+    header.scale[a] = load<double>(bytes + kScale + 8 * a);
+    header.offset[a] = load<double>(bytes + kOffset + 8 * a);
+    if (!std::isfinite(header.scale[a]) || header.scale[a] == 0 || !std::isfinite(header.offset[a])) {
+      fail_at_byte(source, kScale + 8 * a, "the scale or offset of an axis is zero or not finite");
+    }
+  }
+  header.fields = standard_fields(format);
+  read_vlrs(source, header);
+  return header;
+}
+
+unsigned las_type_number(Type type) {
+  for (unsigned i = 0; i < std::size(kDescribedTypes); ++i) {
+    if (kDescribedTypes[i] == type) return i + 1;
+  }
+  return 0;
+}
+
+}  // namespace g3r::io

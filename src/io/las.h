@@ -1,0 +1,52 @@
+// The layout of LAS files. Source: ASPRS, "LAS Specification 1.4 - R15", 2019.
+#pragma once
+
+#include "io/source.h"
+#include "io/table.h"
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace g3r::io {
+
+/// One field of a point record.
+struct LasField {
+  std::string name;
+  Type type;
+  std::size_t offset;  ///< in the record
+};
+
+/// What is needed of a header, checked against the size of the file.
+struct LasHeader {
+  unsigned minor = 0;         ///< version 1.minor
+  unsigned point_format = 0;  ///< 0..10
+  std::size_t header_size = 0;
+  std::size_t points_at = 0;  ///< byte offset of the first record
+  std::size_t record_bytes = 0;
+  std::uint64_t count = 0;
+  std::uint32_t vlr_count = 0;
+  Vec3 scale{1, 1, 1};
+  Vec3 offset{0, 0, 0};
+  std::vector<LasField> fields;       ///< after X Y Z, described extra bytes included
+  std::size_t undescribed_bytes = 0;  ///< extra bytes at the end of a record that no descriptor names
+  std::size_t extra_vlr = 0;          ///< byte offset of the Extra Bytes record's header, 0 if there is none
+};
+
+/// Byte offsets in the public header block.
+namespace las {
+inline constexpr std::size_t kMinor = 25, kHeaderSize = 94, kPointsAt = 96, kVlrCount = 100, kPointFormat = 104, kRecordBytes = 105,
+                             kLegacyCount = 107, kScale = 131, kOffset = 155, kBounds = 179, kWaveform = 227, kEvlrAt = 235,
+                             kEvlrCount = 243, kCount = 247, kVlrHeader = 54, kDescriptor = 192;
+inline constexpr std::array<std::size_t, 11> kRecordSize = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
+inline constexpr unsigned kExtraBytes = 4;  // record id, user id "LASF_Spec"
+}  // namespace las
+
+/// Reads and checks a header. Throws InvalidInput; for LAZ it names a converter.
+LasHeader read_las_header(const Source& source);
+
+/// LAS's number of a type (1..10) in an extra-bytes descriptor.
+unsigned las_type_number(Type type);
+
+}  // namespace g3r::io

@@ -1,0 +1,90 @@
+// LAS 1.0 to 1.4, all point formats: coordinates as X scale + offset in double, every other field and described extra byte as a property.
+#include "io/cloud_from_table.h"
+#include "io/las.h"
+#include "io/readers.h"
+#include "io/text.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace g3r::io {
+
+namespace {
+
+Property make_property(std::string name, Type type) {
+  Property property;
+  property.name = std::move(name);
+  property.type = type;
+  return property;
+}
+
+// Two fields of one name: the later get a number.
+void make_unique(std::vector<Property>& properties) {
+  for (std::size_t i = 0; i < properties.size(); ++i) {
+    const auto end = properties.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto twin = [&](const Property& other) { return other.name == properties[i].name; };
+    for (int number = 2; std::any_of(properties.begin(), end, twin); ++number) (properties[i].name += '_') += std::to_string(number);
+  }
+}
+
+// What follows the points where nothing should, and points outside the bounds that the header gives: signs of a damaged header.
+void check_against_header(const Source& source, const LasHeader& header, Cloud& cloud) {
+  const char* bytes = source.bytes.data();
+  const std::uint64_t end = header.points_at + header.count * header.record_bytes;
+  std::uint64_t next = source.bytes.size();
+  if (header.minor >= 3 && load<std::uint64_t>(bytes + las::kWaveform) >= end)
+    next = std::min(next, load<std::uint64_t>(bytes + las::kWaveform));
+  if (header.minor == 4 && load<std::uint32_t>(bytes + las::kEvlrCount) != 0 && load<std::uint64_t>(bytes + las::kEvlrAt) >= end) {
+    next = std::min(next, load<std::uint64_t>(bytes + las::kEvlrAt));
+  }
+  if (next > end) cloud.warnings.push_back(std::to_string(next - end) + " trailing (extra) bytes after the last point are not used");
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto high = load<double>(bytes + las::kBounds + 16 * a);
+    const auto low = load<double>(bytes + las::kBounds + 16 * a + 8);
+    const double slack = std::abs(header.scale[a]) + 1e-9 * std::max(std::abs(high), std::abs(low));
+    double found[2] = {INFINITY, -INFINITY};
+    for (const Vec3& p : cloud.positions) {
+      found[0] = std::min(found[0], p[a]);
+      found[1] = std::max(found[1], p[a]);
+    }
+    if (!cloud.positions.empty() && !(std::abs(found[0] - low) <= slack && std::abs(found[1] - high) <= slack)) {
+      cloud.warnings.emplace_back("the points do not have the bounds that the header gives: the header may be damaged");
+      return;
+    }
+  }
+}
+
+}  // namespace
+
+Cloud read_las(const Source& source) {
+  const LasHeader header = read_las_header(source);
+  auto table = std::make_shared<Attributes>();
+  table->dialect = Attributes::Dialect::kLas;
+  table->elements.emplace_back();
+  Element& points = table->elements.back();
+  points.name = "vertex";
+  points.count = header.count;
+  points.properties.reserve(3 + header.fields.size());
+  for (const char* axis : {"x", "y", "z"}) points.properties.push_back(make_property(axis, Type::kFloat64));
+  for (const LasField& field : header.fields) points.properties.push_back(make_property(field.name, field.type));
+  make_unique(points.properties);
+  const auto count = static_cast<std::size_t>(header.count);
+  points.data.resize(count * points.stride());
+  char* to = points.data.data();
+  const char* record = source.bytes.data() + header.points_at;
+  for (std::size_t i = 0; i < count; ++i, record += header.record_bytes) {
+    for (std::size_t a = 0; a < 3; ++a, to += sizeof(double)) {
+      const double value = load<std::int32_t>(record + 4 * a) * header.scale[a] + header.offset[a];
+      std::memcpy(to, &value, sizeof value);
+    }
+    for (const LasField& field : header.fields) to = std::copy_n(record + field.offset, size_of(field.type), to);
+  }
+  table->raw = std::string(source.bytes);
+  Cloud cloud;
+  cloud.format = std::string("las 1.") += std::to_string(header.minor) + ", point format " + std::to_string(header.point_format);
+  fill_cloud(source, std::move(table), cloud);
+  check_against_header(source, header, cloud);
+  return cloud;
+}
+
+}  // namespace g3r::io

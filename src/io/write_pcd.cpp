@@ -1,0 +1,82 @@
+// PCD 0.7 out: binary, or ascii. A cloud read from PCD keeps its fields, their types and arrays, WIDTH, HEIGHT and VIEWPOINT; padding is
+// dropped.
+#include "io/text.h"
+#include "io/writers.h"
+
+#include <algorithm>
+
+namespace g3r::io {
+
+namespace {
+
+char type_letter(Type type) {
+  if (is_float(type)) return 'F';
+  return type == Type::kInt8 || type == Type::kInt16 || type == Type::kInt32 || type == Type::kInt64 ? 'I' : 'U';
+}
+
+std::string header_line(const char* keyword, const std::vector<Column>& columns, const auto& value) {
+  std::string line = keyword;
+  for (const Column& column : columns) (line += ' ') += value(column.property);
+  return line += '\n';
+}
+
+std::string header(const PointData& data, const std::vector<Column>& columns) {
+  std::string text = "# .PCD v0.7 - Point Cloud Data file format\n";
+  const bool from_pcd = data.table != nullptr && data.table->dialect == Attributes::Dialect::kPcd;
+  std::string width = "WIDTH " + std::to_string(data.size()) + "\n";
+  std::string height = "HEIGHT 1\n";
+  std::string viewpoint = "VIEWPOINT 0 0 0 1 0 0 0\n";
+  if (from_pcd) {
+    for (const std::string& line : data.table->comments) {
+      std::string& place = line.starts_with("WIDTH")       ? width
+                           : line.starts_with("HEIGHT")    ? height
+                           : line.starts_with("VIEWPOINT") ? viewpoint
+                                                           : text;
+      place = (&place == &text ? text : std::string()) + line + '\n';
+    }
+  }
+  text += "VERSION 0.7\n";
+  text += header_line("FIELDS", columns, [](const Property& p) {
+    std::string name = p.name;
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) <= ' '; }, '_');
+    return name;
+  });
+  text += header_line("SIZE", columns, [](const Property& p) { return std::to_string(size_of(p.type)); });
+  text += header_line("TYPE", columns, [](const Property& p) { return std::string(1, type_letter(p.type)); });
+  text += header_line("COUNT", columns, [](const Property& p) { return std::to_string(p.count); });
+  text += width + height + viewpoint + "POINTS " + std::to_string(data.size()) + '\n';
+  return text + (data.options.ascii ? "DATA ascii\n" : "DATA binary\n");
+}
+
+}  // namespace
+
+void write_pcd(const PointData& data, OutputFile& file) {
+  std::vector<Column> columns = plan_columns(data, Attributes::Dialect::kPcd, false);
+  std::erase_if(columns, [](const Column& column) { return column.property.name.starts_with("_"); });
+  file.write(header(data, columns));
+  Rows rows(data, columns);
+  std::string bytes;
+  std::string line;
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    rows.next();
+    bytes.clear();
+    for (std::size_t c = 0; c < columns.size(); ++c) rows.append_bytes(c, bytes);
+    if (!data.options.ascii) {
+      file.write(bytes);
+      continue;
+    }
+    line.clear();
+    const char* at = bytes.data();
+    for (const Column& column : columns) {
+      for (std::uint32_t k = 0; k < column.property.count; ++k, at += size_of(column.property.type)) {
+        append_as_text(column.property.type, at, line);
+        line += ' ';
+      }
+    }
+    line.back() = '\n';
+    file.write(line);
+  }
+}
+
+}  // namespace g3r::io

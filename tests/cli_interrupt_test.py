@@ -1,0 +1,98 @@
+"""Truths about ending the g3r program early: it stops soon, says so with its exit code, and never leaves a half file.
+
+Run by ctest with G3R_PROGRAM set to the program. For measuring, G3R_KILLS and G3R_INTERRUPTS raise the number of repetitions.
+"""
+
+import os
+import random
+import signal
+import sys
+import threading
+import time
+import unittest
+
+from cli_support import *
+
+# The promise is half a second. A loaded machine and a sanitizer add to it; a program that ignores the signal takes far longer.
+STOPS_WITHIN_SECONDS = 3
+LARGE_COUNT = 150_000
+KILLS = int(os.environ.get("G3R_KILLS", "12"))
+INTERRUPTS = int(os.environ.get("G3R_INTERRUPTS", "1"))
+
+
+class Interrupts(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.large = tempfile.NamedTemporaryFile(suffix=".ply")
+        write_points(cls.large.name, sphere(LARGE_COUNT))
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.large.close()
+
+    def interrupt(self, *arguments, number, stage):
+        """Starts the program, sends the signal when it reports the stage, returns its exit code."""
+        process = self.start(*arguments, "-v", restore_signals=True, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+        guard = threading.Timer(120, process.kill)
+        guard.start()
+        lines = []
+        for line in process.stderr:
+            lines.append(line.decode())
+            if line.startswith(b"g3r: ") and stage in line:
+                break
+        start = time.monotonic()
+        process.send_signal(number)
+        lines.append(process.communicate()[1].decode())
+        guard.cancel()
+        self.times.append(time.monotonic() - start)
+        self.assertLess(self.times[-1], STOPS_WITHIN_SECONDS)
+        self.assertIn("interrupted", lines[-1], "".join(lines))
+        return process.returncode
+
+    def test_ctrl_c_and_sigterm_stop_a_solve(self):
+        self.times = []
+        for number, code in INTERRUPTS * ((signal.SIGINT, INTERRUPTED), (signal.SIGTERM, TERMINATED)):
+            for stage in (b"read", b"solve"):
+                with self.subTest(number=number, stage=stage):
+                    self.assertEqual(self.interrupt("orient", self.large.name, "out.ply", number=number, stage=stage), code)
+                    self.assertEqual(os.listdir(self.folder), [])
+        print("stopped after at most %.3f s in %d runs" % (max(self.times), len(self.times)))
+
+    def test_an_ignored_signal_stays_ignored(self):
+        write_points(self.path("in.ply"), sphere(300))
+        process = self.start("orient", "in.ply", "out.ply", preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_IGN))
+        process.send_signal(signal.SIGINT)
+        process.communicate()
+        self.assertEqual(process.returncode, OK)
+
+
+class Kills(ProgramTest):
+    def test_kill_during_a_write_leaves_the_old_file_or_the_new_one(self):
+        write_cube(self.path("cube.obj"))
+        command = ["sample", "cube.obj", "out.ply", "--count", "200000", "--quiet"]
+        self.expect(OK, *command, "--seed", "2")
+        new = self.bytes_of("out.ply")
+        self.expect(OK, *command, "--seed", "1")
+        old = self.bytes_of("out.ply")
+        pause = random.Random(1)
+        for _ in range(KILLS):
+            before = set(os.listdir(self.folder))
+            process = self.start(*command, "--seed", "2")
+            while process.poll() is None and set(os.listdir(self.folder)) == before:
+                pass  # until the temporary file appears
+            stop = time.monotonic() + pause.uniform(0, 0.02)
+            while process.poll() is None and time.monotonic() < stop:
+                pass
+            process.kill()
+            process.communicate()
+            content = self.bytes_of("out.ply")
+            self.assertTrue(content in (old, new), "%d bytes" % len(content))
+            if content == new:
+                self.expect(OK, *command, "--seed", "1")
+        self.expect(OK, *command, "--seed", "2")
+        self.assertTrue(self.bytes_of("out.ply") == new)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["cube.obj", "out.ply"])
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[1:]])

@@ -1,0 +1,79 @@
+// The dense path: equal to the iterative one at convergence; the spectra behind the paper's Figure 3.
+#include "solve/dense_solver.h"
+
+#include "cloud/canonical_cloud.h"
+#include "shapes.h"
+#include "solve/green_system.h"
+#include "solve/iterative_solver.h"
+
+#include <g3r/error.h>
+
+#include <Eigen/SVD>
+#include <gtest/gtest.h>
+
+namespace g3r {
+namespace {
+
+TEST(DenseSolver, AgreesWithConjugateGradientsAtConvergence) {
+  const CanonicalCloud cloud = canonical_cloud(shapes::torus(250, 0.6, 0.25, 3).points);
+  const double epsilon = 0.03;
+  const std::vector<Harmonic> harmonics = harmonics_of_degrees(0, 2);
+  const DenseResult dense = solve_dense(cloud.points, epsilon, harmonics, true);
+  EXPECT_GT(dense.condition_number, 1);
+  SumPlan plan = sum_plan(0, cloud.size());
+  plan.double_precision = true;
+  FastSum sum(cloud.points, cloud.morton, Widths(epsilon), plan);
+  GreenSystem system(sum, cloud.points, harmonics);
+  const IterativeResult iterative = solve_iteratively(system, {{4000, StepKind::kConjugateGradient}}, 1e-11);
+  EXPECT_TRUE(iterative.converged);
+  double difference = 0;
+  double size = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      difference += std::pow(dense.eta[i][a] - iterative.eta[i][a], 2);
+      size += dense.eta[i][a] * dense.eta[i][a];
+    }
+  }
+  EXPECT_LT(std::sqrt(difference / size), 1e-4);
+}
+
+// Smallest over largest singular value of the stacked rows A[u_k].
+double smallest_singular_ratio(std::size_t n, const std::string& harmonics) {
+  const CanonicalCloud cloud = canonical_cloud(shapes::torus(n, 0.6, 0.25, 3).points);
+  const HarmonicValues u = evaluate_harmonics(parse_harmonics(harmonics), cloud.points);
+  const std::vector<double> rows = assemble_rows(cloud.points, 1.0 / static_cast<double>(n), u, 0, cloud.size());
+  using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Eigen::Map<const RowMatrix> a(rows.data(), static_cast<Eigen::Index>(rows.size() / (3 * cloud.size())),
+                                      static_cast<Eigen::Index>(3 * cloud.size()));
+  const Eigen::VectorXd values = Eigen::BDCSVD<Eigen::MatrixXd>(a).singularValues();
+  if (a.rows() < a.cols()) return 0;  // fewer equations than unknowns
+  return values.minCoeff() / values.maxCoeff();
+}
+
+TEST(Spectrum, OneHarmonicIsRankDeficientThreeAreNot) {
+  for (const std::size_t n : {100UL, 200UL}) {
+    EXPECT_EQ(smallest_singular_ratio(n, "1"), 0);
+    EXPECT_GT(smallest_singular_ratio(n, "x,y,z"), 1e-6);
+    EXPECT_GT(smallest_singular_ratio(n, "1,x,y,z"), 1e-6);
+    EXPECT_GT(smallest_singular_ratio(n, "degree:0-2"), smallest_singular_ratio(n, "x,y,z"));
+  }
+}
+
+TEST(DenseSolver, RefusesSingularAndHugeSystems) {
+  const CanonicalCloud cloud = canonical_cloud(shapes::sphere(60).points);
+  EXPECT_THROW(static_cast<void>(solve_dense(cloud.points, 1e-3, parse_harmonics("1"), false)), InvalidInput);
+  EXPECT_THROW(static_cast<void>(solve_dense(std::vector<Vec3>(kMostDensePoints + 1), 1e-3, parse_harmonics("1"), false)), InvalidInput);
+}
+
+TEST(Schedule, IsParsedOrRefused) {
+  const std::vector<Steps> steps = parse_schedule("20 sd 60 cg");
+  ASSERT_EQ(steps.size(), 2U);
+  EXPECT_EQ(steps[0].count, 20);
+  EXPECT_EQ(steps[1].kind, StepKind::kConjugateGradient);
+  for (const char* bad : {"", "sd", "20", "20 xx", "-1 cg", "20 sd 5", "1e3 cg", "20 sd,60 cg"}) {
+    EXPECT_THROW(static_cast<void>(parse_schedule(bad)), InvalidInput) << bad;
+  }
+}
+
+}  // namespace
+}  // namespace g3r

@@ -1,0 +1,300 @@
+// orient() as a user sees it: right sides on every topology, the same result for every order, place, scale and thread count, clear errors.
+#include <g3r/g3r.h>
+
+#include "shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace g3r {
+namespace {
+
+using shapes::Surface;
+
+Surface interlocked_tori(std::size_t n) {
+  Surface a = shapes::torus(n, 0.5, 0.15, 3, {-0.25, 0, 0});
+  Surface b = shapes::torus(n, 0.5, 0.15, 4);
+  for (auto* v : {&b.points, &b.normals}) {
+    for (Vec3& p : *v) p = {p[0], -p[2], p[1]};
+  }
+  for (Vec3& p : b.points) p[0] += 0.25;
+  return shapes::join(a, b);
+}
+
+void expect_oriented(const char* name, const Surface& s, const Options& options, double share, double error) {
+  const Orientation o = orient(s.points, options);
+  ASSERT_EQ(o.normals.size(), s.points.size());
+  EXPECT_GE(shapes::share_correct(o.normals, s.normals), share) << name;
+  EXPECT_LE(shapes::angle_error(o.normals, s.normals), error) << name;
+  for (const Vec3& n : o.normals) EXPECT_NEAR(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1, 1e-9);
+  double area = 0;
+  double true_area = 0;
+  for (const double a : o.areas) area += a;
+  for (const double a : s.areas) true_area += a;
+  EXPECT_NEAR(area / true_area, 1, 0.25) << name;
+}
+
+TEST(Orient, FindsTheOutsideOfEveryTopology) {
+  for (const Method method : {Method::kEnergy, Method::kGreen}) {
+    Options options;
+    options.method = method;
+    expect_oriented("sphere", shapes::sphere(3000), options, 1, 0.002);
+    expect_oriented("torus", shapes::torus(4000, 0.6, 0.25, 9), options, 1, 0.005);
+    expect_oriented("nested", shapes::join(shapes::sphere(4000, 0.9), shapes::sphere(1500, 0.5), true), options, 1, 0.005);
+    expect_oriented("two components", shapes::join(shapes::sphere(2000, 0.4, {-0.5, 0, 0}), shapes::sphere(2000, 0.4, {0.5, 0.1, 0})), options, 1, 0.005);
+    expect_oriented("interlocked", interlocked_tori(3000), options, 1, 0.01);
+  }
+}
+
+TEST(Orient, PaperPresetOrientsCleanShapes) {
+  Options options;
+  options.preset = Preset::kPaper;
+  const Surface sphere = shapes::sphere(400);
+  const Orientation dense = orient(sphere.points, options);
+  EXPECT_EQ(dense.stats.solver, "dense");
+  EXPECT_GE(shapes::share_correct(dense.normals, sphere.normals), 0.99);
+  const Surface torus = shapes::torus(3000);
+  const Orientation iterative = orient(torus.points, options);
+  EXPECT_EQ(iterative.stats.iterations.size(), 80U);
+  EXPECT_EQ(iterative.stats.iterations[19].kind, "sd");
+  EXPECT_EQ(iterative.stats.iterations[20].kind, "cg");
+  EXPECT_GE(shapes::share_correct(iterative.normals, torus.normals), 0.97);
+}
+
+TEST(Orient, ResidualsOfConjugateGradientsFall) {
+  Options options;
+  options.tolerance = 1e-3;
+  options.schedule = "100 cg";
+  const Orientation o = orient(shapes::torus(3000, 0.6, 0.25, 2).points, options);
+  EXPECT_TRUE(o.stats.converged);
+  EXPECT_LE(o.stats.iterations.back().residual, 1e-3);
+}
+
+TEST(Orient, IsTheSameForEveryOrderOfThePoints) {
+  const Surface s = shapes::torus(3000, 0.6, 0.25, 8);
+  std::vector<Vec3> shuffled = s.points;
+  std::vector<std::size_t> from(shuffled.size());
+  shapes::Random random(2);
+  for (std::size_t i = 0; i < from.size(); ++i) from[i] = i;
+  for (std::size_t i = from.size(); i-- > 1;) std::swap(from[i], from[random.bits() % (i + 1)]);
+  for (std::size_t i = 0; i < from.size(); ++i) shuffled[i] = s.points[from[i]];
+  const Orientation a = orient(s.points);
+  const Orientation b = orient(shuffled);
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    ASSERT_EQ(a.normals[from[i]], b.normals[i]);
+    ASSERT_EQ(a.areas[from[i]], b.areas[i]);
+    ASSERT_EQ(a.confidence[from[i]], b.confidence[i]);
+  }
+}
+
+TEST(Orient, IsTheSameForEveryNumberOfThreads) {
+  const Surface s = shapes::torus(6000, 0.6, 0.25, 8);
+  Options options;
+  options.threads = 1;
+  const Orientation one = orient(s.points, options);
+  for (const int threads : {2, 3, 8}) {
+    options.threads = threads;
+    const Orientation many = orient(s.points, options);
+    EXPECT_EQ(one.normals, many.normals) << threads;
+    EXPECT_EQ(one.areas, many.areas) << threads;
+    EXPECT_EQ(one.confidence, many.confidence) << threads;
+  }
+}
+
+double largest_angle(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const Vec3 d{a[i][0] - b[i][0], a[i][1] - b[i][1], a[i][2] - b[i][2]};
+    largest = std::max(largest, 2 * std::asin(std::min(1.0, std::hypot(d[0], d[1], d[2]) / 2)) * 180 / std::numbers::pi);
+  }
+  return largest;
+}
+
+TEST(Orient, DoesNotDependOnPlaceOrScale) {
+  const Surface s = shapes::torus(4000, 0.6, 0.25, 6);
+  std::vector<Vec3> base = s.points;
+  for (Vec3& p : base) {  // quantised to what double holds at UTM size, so that both clouds are the same shape exactly
+    for (double& c : p) c = std::round(c * 0x1p24) * 0x1p-24;
+  }
+  const Orientation origin = orient(base);
+  std::vector<Vec3> utm = base;
+  for (Vec3& p : utm) {
+    p[0] += 500000;
+    p[1] += 5000000;
+    p[2] += 1000;
+  }
+  EXPECT_LE(largest_angle(orient(utm).normals, origin.normals), 1e-3);
+  for (const double scale : {0x1p-100, 0x1p20, 1e-30, 1e30, 1e6}) {
+    std::vector<Vec3> scaled = base;
+    for (Vec3& p : scaled) {
+      for (double& c : p) c *= scale;
+    }
+    const Orientation o = orient(scaled);
+    EXPECT_LE(largest_angle(o.normals, origin.normals), 1e-3) << scale;
+    EXPECT_NEAR(o.areas[7] / (origin.areas[7] * scale * scale), 1, 1e-4);
+  }
+}
+
+TEST(Orient, RotatesWithTheCloud) {
+  const Surface s = shapes::join(shapes::torus(3000, 0.6, 0.25, 6), shapes::sphere(800, 0.2));
+  const double c = std::cos(0.7);
+  const double sn = std::sin(0.7);
+  const auto rotate = [&](const Vec3& p) { return Vec3{c * p[0] - sn * p[2], p[1], sn * p[0] + c * p[2]}; };
+  Surface turned = s;
+  for (auto* v : {&turned.points, &turned.normals}) {
+    for (Vec3& p : *v) p = rotate(p);
+  }
+  EXPECT_EQ(shapes::share_correct(orient(turned.points).normals, turned.normals), 1);
+}
+
+TEST(Orient, DuplicatesShareANormalAndTheirArea) {
+  Surface s = shapes::sphere(1000);
+  const std::vector<Vec3> once = s.points;
+  const Orientation single = orient(once);
+  s.points.insert(s.points.end(), once.begin(), once.begin() + 300);
+  const Orientation o = orient(s.points);
+  EXPECT_EQ(o.stats.merged_duplicates, 300U);
+  EXPECT_EQ(o.stats.used, 1000U);
+  for (std::size_t i = 0; i < 300; ++i) {
+    EXPECT_EQ(o.normals[i], o.normals[1000 + i]);
+    EXPECT_EQ(o.normals[i], single.normals[i]);
+    EXPECT_DOUBLE_EQ(o.areas[i] + o.areas[1000 + i], single.areas[i]);
+  }
+}
+
+TEST(Orient, NonFinitePointsAreLeftOutAndReported) {
+  Surface s = shapes::sphere(1000);
+  s.points[5][1] = std::numeric_limits<double>::quiet_NaN();
+  s.points[6][2] = std::numeric_limits<double>::infinity();
+  const Orientation o = orient(s.points);
+  EXPECT_EQ(o.stats.dropped_non_finite, 2U);
+  EXPECT_EQ(o.normals[5], (Vec3{0, 0, 0}));
+  EXPECT_EQ(o.confidence[6], 0.0F);
+  EXPECT_FALSE(o.stats.warnings.empty());
+}
+
+TEST(Orient, FloatAndStridedInputGiveTheSameAsDoubles) {
+  const Surface s = shapes::sphere(800);
+  std::vector<float> strided;
+  std::vector<Vec3> rounded;
+  for (const Vec3& p : s.points) {
+    for (const double c : p) strided.push_back(static_cast<float>(c));
+    strided.push_back(-7);
+    rounded.push_back({static_cast<double>(static_cast<float>(p[0])), static_cast<double>(static_cast<float>(p[1])),
+                       static_cast<double>(static_cast<float>(p[2]))});
+  }
+  const Orientation a = orient(PointsView(strided.data(), s.points.size(), Scalar::kFloat32, 16));
+  EXPECT_EQ(a.normals, orient(rounded).normals);
+}
+
+TEST(Orient, ErrorsSayWhatIsWrong) {
+  const auto message = [](const std::vector<Vec3>& points, const Options& options) -> std::string {
+    try {
+      static_cast<void>(orient(points, options));
+    } catch (const InvalidInput& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(message({}, {}).find("too few points"), std::string::npos);
+  EXPECT_NE(message({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {nan, 0, 0}}, {}).find("too few points: 3"), std::string::npos);
+  EXPECT_NE(message(std::vector<Vec3>(50, Vec3{1, 2, 3}), {}).find("same place"), std::string::npos);
+  EXPECT_NE(message({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0}, {0, 1, 0}}, {}).find("distinct"), std::string::npos);
+  EXPECT_NE(message({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}, {5, 5, 5}}, {}).find("collinear"), std::string::npos);
+  const std::vector<Vec3> good = shapes::sphere(100).points;
+  Options options;
+  options.degree = 9;
+  EXPECT_NE(message(good, options).find("degree"), std::string::npos);
+  options = {};
+  options.epsilon = {Epsilon::Unit::kInput, -1};
+  EXPECT_NE(message(good, options).find("epsilon"), std::string::npos);
+  options = {};
+  options.schedule = "ten cg";
+  EXPECT_NE(message(good, options).find("schedule"), std::string::npos);
+  options = {};
+  options.accuracy = 3;
+  EXPECT_NE(message(good, options).find("accuracy"), std::string::npos);
+  options = {};
+  options.solver = Solver::kDense;
+  options.degree = 2;
+  EXPECT_NE(message(shapes::sphere(4100).points, options).find("dense"), std::string::npos);
+  options = {};
+  options.max_memory = 1000;
+  EXPECT_THROW(static_cast<void>(orient(good, options)), Unavailable);
+}
+
+TEST(Orient, StopsWhenAsked) {
+  const std::vector<Vec3> points = shapes::torus(20000, 0.6, 0.25, 1).points;
+  Monitor monitor;
+  int calls = 0;
+  monitor.progress = [&](std::string_view, double) { return ++calls < 5; };
+  EXPECT_THROW(static_cast<void>(orient(points, {}, monitor)), Cancelled);
+  EXPECT_EQ(calls, 5);
+  const std::atomic<bool> stop{true};
+  Monitor stopped;
+  stopped.cancel = &stop;
+  EXPECT_THROW(static_cast<void>(orient(points, {}, stopped)), Cancelled);
+}
+
+TEST(Orient, SmallestCloudsWork) {
+  const std::vector<Vec3> tetrahedron{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
+  const Orientation o = orient(tetrahedron);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vec3& n = o.normals[i];
+    const Vec3& p = tetrahedron[i];
+    EXPECT_GT(n[0] * p[0] + n[1] * p[1] + n[2] * p[2], 0);
+  }
+}
+
+// Noisy points on the wrong side must have lower confidence: area under the ROC curve.
+TEST(Confidence, RanksWrongSidesOnNoisyData) {
+  shapes::Random random(4);
+  Surface s = shapes::join(shapes::torus(6000, 0.6, 0.12, 6), shapes::ellipsoid(4000, 0.4, 0.4, 0.05, {0, 0, 0}));
+  for (Vec3& p : s.points) {
+    for (double& c : p) c += 0.01 * random.gaussian();  // 0.5 % of the diagonal
+  }
+  const Orientation o = orient(s.points);
+  std::vector<std::pair<float, bool>> ranked;
+  for (std::size_t i = 0; i < s.points.size(); ++i) {
+    const double cosine = o.normals[i][0] * s.normals[i][0] + o.normals[i][1] * s.normals[i][1] + o.normals[i][2] * s.normals[i][2];
+    ranked.emplace_back(o.confidence[i], cosine > 0);
+  }
+  std::sort(ranked.begin(), ranked.end());
+  double wrong = 0;
+  double right = 0;
+  double area = 0;
+  for (const auto& [confidence, good] : ranked) {
+    if (good) {
+      area += wrong;
+      ++right;
+    } else {
+      ++wrong;
+    }
+  }
+  ASSERT_GT(wrong, 50);
+  EXPECT_GT(area / (wrong * right), 0.9) << wrong << " of " << wrong + right << " wrong";
+}
+
+TEST(Field, IsOneInsideZeroOutsideWithTheRightGradient) {
+  const Surface s = shapes::sphere(8000, 2, {10, 20, 30});
+  Orientation o;
+  o.normals = s.normals;
+  o.areas = s.areas;
+  const Field field(s.points, o);
+  const std::vector<Vec3> queries{{10, 20, 30}, {10.5, 20, 29}, {13, 20, 30}, {100, 20, 30}, {10, 22, 30}};
+  const std::vector<double> w = field.value(queries);
+  EXPECT_NEAR(w[0], 1, 5e-3);
+  EXPECT_NEAR(w[1], 1, 5e-3);
+  EXPECT_NEAR(w[2], 0, 5e-3);
+  EXPECT_NEAR(w[3], 0, 5e-3);
+  EXPECT_NEAR(w[4], 0.5, 0.1);
+  const std::vector<Vec3> g = field.gradient(queries);
+  EXPECT_LT(g[4][1], -1);  // inward
+  const std::vector<double> alone = field.value(std::vector<Vec3>{queries[1]});
+  EXPECT_EQ(alone[0], w[1]);  // a query's value does not depend on the others
+}
+
+}  // namespace
+}  // namespace g3r
