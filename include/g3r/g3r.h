@@ -174,6 +174,12 @@ struct Reconstruction {
 [[nodiscard]] Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const MeshOptions& options = {},
                                  const Monitor& monitor = {});
 
+/// Gives every vertex the mean colour and confidence of the 4 points nearest to it, weighed by 1 / distance^2, replacing what it had.
+/// N points, and N colours and confidences (either may be empty); points that are not finite take no part. O(V log N).
+/// Throws InvalidInput if the numbers differ.
+void carry_attributes(Mesh& mesh, const PointsView& points, const std::vector<std::array<std::uint8_t, 3>>& colors,
+                      const std::vector<float>& confidence);
+
 /// What orient() would do with this cloud, without solving: counts, box, spacing, epsilon, memory plan.
 [[nodiscard]] Stats plan(const PointsView& points, const Options& options = {});
 
