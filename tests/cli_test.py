@@ -137,6 +137,15 @@ class ExitCodes(ProgramTest):
             with self.subTest(arguments), open("/dev/full", "wb") as full:
                 self.expect(INPUT_OUTPUT, *arguments, stdout=full)
 
+    def test_a_file_size_limit_is_74_and_no_signal(self):
+        self.expect(INPUT_OUTPUT, "orient", "ball.ply", "out.ply", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)))
+        self.assertEqual(os.listdir(self.folder), ["ball.ply"])
+
+    def test_closed_streams_do_not_end_up_in_the_output(self):
+        self.expect(OK, "orient", "ball.ply", "open.ply")
+        self.expect(OK, "orient", "ball.ply", "closed.ply", "-v", preexec_fn=lambda: os.closerange(0, 3))
+        self.assertTrue(self.bytes_of("open.ply") == self.bytes_of("closed.ply"))
+
     def test_a_closed_pipe_is_74_and_no_signal(self):
         reading, writing = os.pipe()
         os.close(reading)
