@@ -8,6 +8,9 @@
 #include <optional>
 #include <string>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include "commands.h"
 #include "exit_code.h"
 #include "files.h"
@@ -55,6 +58,13 @@ int exit_code(IoError::Kind kind) {
   return kInputOutput;
 }
 
+/// Standard streams that the caller has closed become /dev/null: an output file must not get their numbers and be written to by accident.
+void open_missing_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(stream, F_GETFD) < 0) (void)open("/dev/null", O_RDWR);  // takes the lowest free number, which is this one
+  }
+}
+
 int run_program(int argc, const char* const* argv, const Interrupts& interrupts) {
   try {
     const std::optional<Settings> settings = parse_command_line(argc, argv);
@@ -83,6 +93,7 @@ int run_program(int argc, const char* const* argv, const Interrupts& interrupts)
 }  // namespace g3r::cli
 
 int main(int argc, char** argv) {
+  g3r::cli::open_missing_streams();
   const g3r::cli::Interrupts interrupts;
   return g3r::cli::run_program(argc, argv, interrupts);
 }

@@ -82,6 +82,32 @@ void add_mesh_options(CLI::App& app, Settings& s) {
       ->type_name("D");
 }
 
+void add_finish_options(CLI::App& app, Settings& s) {
+  MeshOptions& o = s.mesh_options;
+  app.add_option_function<std::string>(
+         "--trim",
+         [&o](const std::string& text) {
+           const auto distance = parse_length(text);
+           if (text == "off" || text == "auto") {
+             o.trim = text == "off" ? MeshOptions::Trim::kOff : MeshOptions::Trim::kAuto;
+           } else if (distance && !distance->is_percent && distance->value > 0) {
+             o.trim = MeshOptions::Trim::kDistance;
+             o.trim_distance = distance->value;
+           } else {
+             reject("--trim", text, "off, auto or a distance above 0");
+           }
+         },
+         "Cut away surface far from every point: off, auto (4 spacings) or a distance; for open scans")
+      ->type_name("off|auto|X");
+  app.add_flag_callback(
+      "--open", [&o] { o.trim = MeshOptions::Trim::kAuto; }, "The scan is open: the same as --trim auto");
+  app.add_option("--keep-largest", o.keep_largest, "Keep only the N largest components")->type_name("N");
+  app.add_option("--min-component", o.min_component, "Drop components of less area than N points stand for (default 8, 0: keep all)")
+      ->check(range(0.0, 1e15))
+      ->type_name("N");
+  app.add_option("--faces", o.faces, "Simplify to about N triangles")->type_name("N");
+}
+
 void add_method_options(CLI::App& app, Settings& s) {
   Options& o = s.options;
   add_choice(app, "--preset", o.preset, {{"default", Preset::kDefault}, {"paper", Preset::kPaper}},
@@ -134,6 +160,7 @@ void add_reconstruct(CLI::App& app, Settings& s) {
   add_write_options(app, s);
   add_method_options(app, s);
   add_mesh_options(app, s);
+  add_finish_options(app, s);
 }
 
 void add_orient(CLI::App& app, Settings& s) {
@@ -157,6 +184,7 @@ void add_mesh(CLI::App& app, Settings& s) {
   add_read_options(*sub, s);
   add_write_options(*sub, s);
   add_mesh_options(*sub, s);
+  add_finish_options(*sub, s);
 }
 
 void add_eval(CLI::App& app, Settings& s) {
