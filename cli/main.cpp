@@ -35,6 +35,8 @@ int run(const Settings& settings, Session& session) {
       return run_sample(settings, session);
     case Command::kInfo:
       return run_info(settings, session);
+    case Command::kView:
+      return run_view(settings, session);
   }
   return kBug;
 }

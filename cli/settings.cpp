@@ -228,15 +228,43 @@ void add_info(CLI::App& app, Settings& s) {
   add_mesh_options(*sub, s);
 }
 
+const std::map<std::string, Layer> kLayers = {{"points", Layer::kPoints}, {"normals", Layer::kNormals}, {"confidence", Layer::kConfidence},
+                                              {"colors", Layer::kColors}, {"error", Layer::kError},     {"mesh", Layer::kMesh}};
+
+void add_view(CLI::App& app, Settings& s) {
+  CLI::App* sub = app.add_subcommand("view", "A page (.html) or a picture (.png) of a cloud, a mesh, or both");
+  sub->add_option("IN", s.shown, "Cloud, mesh, or one of each")->required()->expected(1, 2)->type_name("");
+  sub->add_option("-o,--out", s.output, "Page .html or picture .png; - for the page on standard output")->required()->type_name("OUT");
+  sub->add_option("--truth", s.truth, "Cloud with true normals in the same order: adds the map of errors")->type_name("GT");
+  sub->add_option("--figures", s.figures, "Report of the run, shown beside the view of a page")->type_name("FILE.json");
+  sub->add_flag_callback(
+      "--z-up", [&s] { s.page.up = s.picture.up = Up::kZ; }, "The z axis points up instead of the y axis");
+  sub->add_option_function<std::vector<std::string>>(
+         "--layers",
+         [&s](const std::vector<std::string>& names) {
+           for (const std::string& name : names) {
+             const auto layer = kLayers.find(name);
+             if (layer == kLayers.end()) reject("--layers", name, "points, normals, confidence, colors, error or mesh");
+             s.picture.layers.push_back(layer->second);
+           }
+         },
+         "Picture: what to draw, one row each: points,normals,confidence,colors,error,mesh")
+      ->delimiter(',')
+      ->type_name("LIST");
+  sub->add_option("--tile", s.picture.tile, "Picture: width and height of one view in pixels, 16 to 4096")
+      ->check(range(16, 4096))
+      ->type_name("PIXELS");
+  sub->add_flag("--dark", s.picture.dark, "Picture: dark background");
+  add_read_options(*sub, s);
+  add_run_options(*sub, s);
+}
+
 /// scan.ply -> scan.mesh.ply
 std::string default_output(const std::string& input) { return std::filesystem::path(input).replace_extension(".mesh.ply").string(); }
 
 Command parsed_command(const CLI::App& app) {
-  const std::map<std::string, Command> commands = {{"orient", Command::kOrient},
-                                                   {"mesh", Command::kMesh},
-                                                   {"eval", Command::kEval},
-                                                   {"sample", Command::kSample},
-                                                   {"info", Command::kInfo}};
+  const std::map<std::string, Command> commands = {{"orient", Command::kOrient}, {"mesh", Command::kMesh}, {"eval", Command::kEval},
+                                                   {"sample", Command::kSample}, {"info", Command::kInfo}, {"view", Command::kView}};
   const auto parsed = app.get_subcommands();
   return parsed.empty() ? Command::kReconstruct : commands.at(parsed.front()->get_name());
 }
@@ -250,6 +278,12 @@ void complete(const CLI::App& app, Settings& s) {
     if (s.output.empty()) s.output = default_output(s.input);
   } else if (app.count("IN") > 0) {
     throw UsageError("expected the command '" + app.get_subcommands().front()->get_name() + "' before its files");
+  }
+  if (s.command == Command::kView) {
+    const std::string extension = std::filesystem::path(s.output).extension().string();
+    if (s.output != "-" && extension != ".html" && extension != ".htm" && extension != ".png") {
+      throw UsageError("unknown extension '" + extension + "' of " + s.output + ": view writes .html or .png");
+    }
   }
   if (s.command == Command::kEval && s.sample_count == 0) s.sample_count = kEvalSamples;
   if (s.output == "-" && s.report == "-") throw UsageError("the result and the report cannot both go to standard output");
@@ -281,6 +315,7 @@ std::optional<Settings> parse_command_line(int argc, const char* const* argv) {
   add_eval(app, settings);
   add_sample(app, settings);
   add_info(app, settings);
+  add_view(app, settings);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {

@@ -2,6 +2,7 @@
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
 #include "mesh/field_mesher.h"
+#include "mesh/mesh_finish.h"
 #include "mesh/screened_poisson.h"
 #include "oriented_cloud.h"
 #include "stages.h"
@@ -17,6 +18,8 @@ namespace {
 
 constexpr double kFieldWidth = 0.55;     // of the winding field in spacings
 constexpr double kFieldAccuracy = 1e-3;  // of its sums
+constexpr double kFarSpacings = 4;       // surface farther than this from every point is a guess;
+constexpr double kFarShare = 0.05;       // more of it is worth a warning
 constexpr int kPaperDepth = 10;
 
 // The winding field in normalised units as the field mesher sees it.
@@ -49,8 +52,9 @@ Mesh mesh_with_poisson(const OrientedCloud& oriented, const std::vector<Vec3>& n
 }
 
 // Meshes in normalised units, so that georeferenced coordinates lose nothing, and maps back.
+// `far_share` (may be null): share of the surface farther than kFarSpacings from every point.
 Mesh make_mesh(const PointsView& points, const std::vector<Vec3>& normals, const std::vector<double>& areas, const MeshOptions& options,
-               const Monitor& monitor) {
+               const Monitor& monitor, double* far_share = nullptr) {
   const OrientedCloud oriented = oriented_cloud(points, normals, areas);
   std::vector<Vec3> directions(oriented.eta.size());
   for (std::size_t i = 0; i < directions.size(); ++i) {
@@ -58,11 +62,19 @@ Mesh make_mesh(const PointsView& points, const std::vector<Vec3>& normals, const
     const double size = std::hypot(e[0], e[1], e[2]);
     directions[i] = size > 0 ? Vec3{e[0] / size, e[1] / size, e[2] / size} : Vec3{0, 0, 1};
   }
-  Mesh mesh = options.mesher == Mesher::kPoisson
-                  ? mesh_with_poisson(oriented, directions, options.depth)
-                  : field_mesh(oriented.cloud.points, directions, WindingSampler(oriented, monitor.cancel), options, monitor);
-  if (mesh.triangles.empty()) throw InvalidInput("no surface found: the oriented points do not enclose a volume");
   const Frame& frame = oriented.cloud.frame;
+  MeshOptions normalised = options;
+  normalised.trim_distance *= frame.scale;
+  Mesh mesh;
+  if (options.mesher == Mesher::kPoisson) {
+    mesh = mesh_with_poisson(oriented, directions, options.depth);
+    normalised.min_component = 0;  // specks of screened Poisson are part of its result
+    mesh::finish_mesh(mesh, oriented.cloud.points, normalised);
+  } else {
+    mesh = field_mesh(oriented.cloud.points, directions, WindingSampler(oriented, monitor.cancel), normalised, monitor);
+  }
+  if (mesh.triangles.empty()) throw InvalidInput("no surface found: the oriented points do not enclose a volume");
+  if (far_share != nullptr) *far_share = mesh::far_share(mesh, oriented.cloud.points, kFarSpacings);
   for (Vec3& v : mesh.vertices) {
     for (std::size_t a = 0; a < 3; ++a) v[a] = v[a] / frame.scale + frame.centre[a];
   }
@@ -107,11 +119,19 @@ Reconstruction reconstruct(const PointsView& points, const Options& options, con
   if (options.preset == Preset::kPaper && chosen.depth == 0) chosen.depth = kPaperDepth;
   Stages stages(monitor);
   stages.begin("mesh");
+  double far = 0;
   parallel::with_threads(options.threads, [&] {
-    out.mesh = make_mesh(points, out.orientation.normals, out.orientation.areas, chosen, monitor);
+    out.mesh = make_mesh(points, out.orientation.normals, out.orientation.areas, chosen, monitor, &far);
     out.check = check_mesh(out.mesh);
+    carry_attributes(out.mesh, points, {}, out.orientation.confidence);
   });
-  if (!out.check.closed || !out.check.manifold) {
+  if (far > kFarShare) {
+    out.orientation.stats.warnings.push_back(
+        std::to_string(std::lround(100 * far)) +
+        " % of the surface is farther than 4 spacings from any point: the cloud looks open; trim the mesh");
+  }
+  const bool trimmed = chosen.trim != MeshOptions::Trim::kOff;
+  if ((!out.check.closed && !trimmed) || !out.check.manifold) {
     out.orientation.stats.warnings.emplace_back(out.check.closed ? "the mesh is not manifold" : "the mesh is not closed");
   }
   out.orientation.stats.depth = chosen.depth;

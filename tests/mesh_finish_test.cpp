@@ -117,7 +117,7 @@ TEST(MeshFinish, ColoursAndConfidenceFollowTheNearestPoints) {
     colors.push_back(p[2] > 0 ? std::array<std::uint8_t, 3>{255, 0, 10} : std::array<std::uint8_t, 3>{0, 255, 10});
     confidence.push_back(p[2] > 0 ? 1.0F : 0.0F);
   }
-  mesh::carry_attributes(two.mesh, two.sample.points, colors, confidence);
+  carry_attributes(two.mesh, two.sample.points, colors, confidence);
   ASSERT_EQ(two.mesh.colors.size(), two.mesh.vertices.size());
   ASSERT_EQ(two.mesh.confidence.size(), two.mesh.vertices.size());
   for (std::size_t v = 0; v < two.mesh.vertices.size(); ++v) {
@@ -125,7 +125,7 @@ TEST(MeshFinish, ColoursAndConfidenceFollowTheNearestPoints) {
     if (two.mesh.vertices[v][2] > 0.3) EXPECT_FLOAT_EQ(two.mesh.confidence[v], 1.0F);
     if (two.mesh.vertices[v][2] < -0.3) EXPECT_EQ(two.mesh.colors[v][1], 255);
   }
-  EXPECT_THROW(mesh::carry_attributes(two.mesh, two.sample.points, {{1, 2, 3}}, {}), InvalidInput);
+  EXPECT_THROW(carry_attributes(two.mesh, two.sample.points, {{1, 2, 3}}, {}), InvalidInput);
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ struct Options {
   Solver solver = Solver::kAuto;
   std::string schedule;        ///< iterations, for example "20 sd 60 cg"
   double tolerance = -1;       ///< stop when the relative residual of the normal equations falls below; 0: never; -1: preset's
-  double accuracy = 1e-3;      ///< relative l2 error allowed in the hierarchical sums, 1e-6..1e-1; 0: direct sums
+  double accuracy = 1e-2;      ///< relative l2 error allowed in the hierarchical sums, 1e-6..1e-1; 0: direct sums. 1e-3 gives the same normals
   bool condition_number = false;  ///< dense solver only: also compute the condition number
   int threads = 0;             ///< 0: all cores. The result does not depend on it
   std::uint64_t seed = 0;      ///< reserved for steps that sample; the present method draws no random number
@@ -173,6 +173,12 @@ struct Reconstruction {
 /// The field mesher takes the areas from the spacing of the points.
 [[nodiscard]] Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const MeshOptions& options = {},
                                  const Monitor& monitor = {});
+
+/// Gives every vertex the mean colour and confidence of the 4 points nearest to it, weighed by 1 / distance^2, replacing what it had.
+/// N points, and N colours and confidences (either may be empty); points that are not finite take no part. O(V log N).
+/// Throws InvalidInput if the numbers differ.
+void carry_attributes(Mesh& mesh, const PointsView& points, const std::vector<std::array<std::uint8_t, 3>>& colors,
+                      const std::vector<float>& confidence);
 
 /// What orient() would do with this cloud, without solving: counts, box, spacing, epsilon, memory plan.
 [[nodiscard]] Stats plan(const PointsView& points, const Options& options = {});

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "cpu/parallel.h"
 #include "g3r/error.h"
@@ -16,7 +15,6 @@ namespace {
 
 constexpr double kFarSpacings = 4;  // surface farther from every point than this is a guess
 constexpr int kEarPasses = 2;       // of removing triangles that hang on by one edge, for a smoother boundary
-constexpr std::size_t kAttributePoints = 4;
 
 // Distance of each place to the nearest point, in units of `unit(nearest point)`.
 template <class Unit>
@@ -103,35 +101,6 @@ void finish_mesh(Mesh& mesh, const std::vector<Vec3>& points, const MeshOptions&
   std::nth_element(spacing.begin(), middle, spacing.end());
   remove_components(mesh, options.min_component * *middle * *middle, options.keep_largest);
   if (options.faces > 0) simplify(mesh, options.faces);
-}
-
-void carry_attributes(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<std::array<std::uint8_t, 3>>& colors,
-                      const std::vector<float>& confidence) {
-  if ((!colors.empty() && colors.size() != points.size()) || (!confidence.empty() && confidence.size() != points.size())) {
-    throw InvalidInput("colours or confidences differ in number from the points");
-  }
-  if (points.empty() || (colors.empty() && confidence.empty())) return;
-  const Neighbours neighbours(points);
-  mesh.colors.resize(colors.empty() ? 0 : mesh.vertices.size());
-  mesh.confidence.resize(confidence.empty() ? 0 : mesh.vertices.size());
-  parallel::for_blocks(mesh.vertices.size(), 256, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> index;
-    std::vector<double> squared;
-    for (std::size_t v = begin; v < end; ++v) {
-      neighbours.nearest(mesh.vertices[v], kAttributePoints, index, squared);
-      const double floor = 1e-6 * squared.back() + std::numeric_limits<double>::min();
-      double total = 0, sure = 0;
-      std::array<double, 3> color{};
-      for (std::size_t k = 0; k < index.size(); ++k) {
-        const double weight = 1 / (squared[k] / floor + 1);
-        total += weight;
-        if (!confidence.empty()) sure += weight * static_cast<double>(confidence[index[k]]);
-        for (std::size_t a = 0; a < 3 && !colors.empty(); ++a) color[a] += weight * colors[index[k]][a];
-      }
-      if (!confidence.empty()) mesh.confidence[v] = static_cast<float>(sure / total);
-      for (std::size_t a = 0; a < 3 && !colors.empty(); ++a) mesh.colors[v][a] = static_cast<std::uint8_t>(std::lround(color[a] / total));
-    }
-  });
 }
 
 }  // namespace g3r::mesh

@@ -1,4 +1,4 @@
-// What is done to a closed mesh before it is handed out: trimming, dropping components, simplifying, carrying attributes over.
+// What is done to a closed mesh before it is handed out: trimming, dropping components, simplifying.
 #pragma once
 
 #include <g3r/g3r.h>
@@ -13,10 +13,5 @@ namespace g3r::mesh {
 /// Trims, drops components and simplifies as the options ask; `trim_distance` is in the units of the mesh. A closed 2-manifold stays
 /// closed unless trimmed, and 2-manifold always. Throws InvalidInput if an option is out of range or nothing would be left.
 void finish_mesh(Mesh& mesh, const std::vector<Vec3>& points, const MeshOptions& options);
-
-/// Gives every vertex the mean colour and confidence of the 4 points nearest to it, weighed by 1 / distance^2. Either may be empty.
-/// N points, and N colours and confidences. O(V log N).
-void carry_attributes(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<std::array<std::uint8_t, 3>>& colors,
-                      const std::vector<float>& confidence);
 
 }  // namespace g3r::mesh

@@ -14,7 +14,8 @@ namespace {
 constexpr double kEnergyEpsilon = 0.3;         // smaller converges slower, larger blurs thin walls
 constexpr double kEnergyWindingWeight = 0.1;   // larger converges slower, 0 loses nested shells
 constexpr double kEnergyTolerance = 2.5e-3;    // slats and spokes need this residual; smooth shapes get there in half the steps
-constexpr const char* kEnergySchedule = "60 cg";
+constexpr const char* kEnergySchedule = "45 cg";
+constexpr Steps kContinued{10, StepKind::kConjugateGradient};  // more gain little once the smooth part of the error is gone
 // The default for least squares over the harmonics.
 constexpr double kGreenEpsilon = 0.4;          // converges in 10-15 iterations
 constexpr double kGreenConstantWeight = 2;     // the row u = 1 alone tells inside from outside
@@ -92,6 +93,8 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
             (options.solver == Solver::kAuto && paper && green && options.schedule.empty() && cloud.size() <= kPaperDensePoints);
   s.schedule_text = !options.schedule.empty() ? options.schedule : paper ? kPaperSchedule : green ? kGreenSchedule : kEnergySchedule;
   s.schedule = parse_schedule(s.schedule_text);
+  s.coarse_to_fine = !paper && !green && options.schedule.empty();
+  s.continued_schedule = {kContinued};
   s.tolerance = options.tolerance >= 0 ? options.tolerance : paper ? 0 : green ? kGreenTolerance : kEnergyTolerance;
   s.sums = sum_plan(options.accuracy, cloud.size());
   return s;
