@@ -65,13 +65,23 @@ void open_missing_streams() {
   }
 }
 
+// Errors of the solve know nothing of files: the user is told which input they are about.
+int complain_of_input(const std::string& input, const std::string& what) {
+  const std::string name = escape_text(input == "-" ? "standard input" : input);
+  return complain(kBadData, what.find(name) == std::string::npos ? name + ": " + what : what);
+}
+
 int run_program(int argc, const char* const* argv, const Interrupts& interrupts) {
   try {
     const std::optional<Settings> settings = parse_command_line(argc, argv);
     if (!settings) return kOk;
     check_files(*settings);
     Session session(*settings, interrupts);
-    return run(*settings, session);
+    try {
+      return run(*settings, session);
+    } catch (const InvalidInput& error) {
+      return complain_of_input(settings->input, error.what());
+    }
   } catch (const UsageError& error) {
     return complain(kUsage, std::string(error.what()) + " (see g3r --help)");
   } catch (const InvalidInput& error) {

@@ -251,8 +251,8 @@ void add_view(CLI::App& app, Settings& s) {
          "Picture: what to draw, one row each: points,normals,confidence,colors,error,mesh")
       ->delimiter(',')
       ->type_name("LIST");
-  sub->add_option("--tile", s.picture.tile, "Picture: width and height of one view in pixels, 16 to 4096")
-      ->check(range(16, 4096))
+  sub->add_option("--tile", s.picture.tile, "Picture: width and height of one view in pixels, 16 to 2048")
+      ->check(range(16, 2048))
       ->type_name("PIXELS");
   sub->add_flag("--dark", s.picture.dark, "Picture: dark background");
   add_read_options(*sub, s);

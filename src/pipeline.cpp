@@ -60,6 +60,7 @@ void describe(const Problem& problem, const PointsView& points, const Options& o
   if (stats.dropped_non_finite > 0) {
     stats.warnings.push_back(std::to_string(stats.dropped_non_finite) + " points with a non-finite coordinate were left out");
   }
+  if (is_flat(cloud)) stats.warnings.emplace_back("the cloud is flat (all points in one plane): which side is outside is a choice");
 }
 
 void require_memory(const Stats& stats, const Options& options) {

@@ -165,7 +165,9 @@ TEST(WriteMesh, EveryFormatGivesTheMeshBack) {
 TEST(WriteMesh, GlbKeepsGeoreferencedPositions) {
   Mesh mesh = samples::tetrahedron();
   for (Vec3& v : mesh.vertices) v = {v[0] + 497233.125, v[1] + 5412345.5, v[2] + 311};
+  mesh.colors = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, {250, 251, 252}};
   const Cloud cloud = read(samples::written(mesh, "a.glb"));
+  EXPECT_TRUE(cloud.warnings.empty());
   ASSERT_EQ(cloud.positions.size(), 4U);
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(cloud.positions[i][a], mesh.vertices[i][a], 1e-6);

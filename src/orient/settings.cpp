@@ -24,6 +24,7 @@ constexpr const char* kGreenSchedule = "20 cg";
 constexpr double kRefinementWidth = 0.55;      // of the winding gradient; narrower is noisy, wider rounds edges
 // The paper preset.
 constexpr double kPaperLeafFactor = 0.8;
+constexpr double kPaperLeastEpsilon = 0.15;    // h; below, 80 iterations are far from converged (random samples have very close pairs)
 constexpr const char* kPaperSchedule = "20 sd 60 cg";
 constexpr std::size_t kPaperDensePoints = 500; // "small N": seconds, not minutes
 constexpr int kDefaultDegree = 2;
@@ -84,7 +85,7 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   s.constant_weight = paper ? 1 : kGreenConstantWeight;
   s.winding_weight = kEnergyWindingWeight * spacing;
   s.epsilon = (green ? kGreenEpsilon : kEnergyEpsilon) * spacing;
-  if (paper) s.epsilon = paper_epsilon(cloud);
+  if (paper) s.epsilon = std::max(paper_epsilon(cloud), kPaperLeastEpsilon * spacing);
   if (options.epsilon.unit != Epsilon::Unit::kAuto) s.epsilon = checked_epsilon(options.epsilon, cloud, spacing);
   s.refinement_width = paper ? 0 : kRefinementWidth * spacing;
 

@@ -228,7 +228,7 @@ Layer best_layer(const Scene& scene) {
 
 std::vector<std::uint8_t> view_png(const Scene& scene, const PictureOptions& options) {
   const Box box = view::check_scene(scene);
-  if (options.tile < 16 || options.tile > 4096) throw InvalidInput("view: the tile must have 16 to 4096 pixels a side");
+  if (options.tile < 16 || options.tile > 2048) throw InvalidInput("view: the tile must have 16 to 2048 pixels a side");
   std::vector<Layer> layers = options.layers;
   if (layers.empty()) layers.push_back(best_layer(scene));
   for (const Layer layer : layers) require_layer(scene, layer);

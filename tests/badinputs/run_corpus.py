@@ -39,10 +39,15 @@ def ply_bad(path, e):
                 pr.append({b'float': 'f', b'float32': 'f', b'double': 'd', b'float64': 'd', b'uchar': 'B', b'uint8': 'B', b'int': 'i', b'uint': 'I', b'short': 'h', b'ushort': 'H', b'char': 'b'}[w[1]])
         st = struct.Struct('<' + ''.join(pr)); o = h + 11; n = int(m.group(1))
         if len(b) < o + n * st.size: return 'output truncated'
-        at = [names.index(c) for c in (b'x', b'y', b'z')]; low, high = [math.inf] * 3, [-math.inf] * 3
+        at = [names.index(c) for c in (b'x', b'y', b'z')]; low, high, strays = [math.inf] * 3, [-math.inf] * 3, 0
         for i in range(n):
             r = st.unpack_from(b, o + i * st.size)
-            if not all(math.isfinite(v) for v in r): return 'non-finite value in output'
+            # orient gives every point back, also those that are not finite; nothing else may be
+            odd = any(not math.isfinite(r[k]) for k in at)
+            if any(not math.isfinite(v) for k, v in enumerate(r) if not (odd and k in at)): return 'non-finite value in output'
+            strays += odd
+            if strays > (e['n_raw'] or 0) - (e['n'] or 0): return 'non-finite coordinates in output'
+            if odd: continue
             low = [min(l, r[k]) for l, k in zip(low, at)]; high = [max(l, r[k]) for l, k in zip(high, at)]
         if '--read' in opt and n and e['bbox'] and any(abs(g - w) > e['tol'] for g, w in zip(low + high, e['bbox'][0] + e['bbox'][1])): return 'wrong coordinates'
     return None
