@@ -140,5 +140,25 @@ TEST(Memory, AnyFailingAllocationIsBadAllocAndLeaksNothing) {
   }
 }
 
+TEST(Memory, AnyFailingAllocationOfAWriterLeavesNoFile) {
+  const Cloud cloud = samples::read(samples::written(samples::helix(500), "a.ply"));
+  for (const char* name : {"a.ply", "a.pcd", "a.npy", "a.las", "a.xyz", "a.obj"}) {
+    const samples::Folder folder;
+    const std::string path = folder.path(name);
+    bool finished = false;
+    for (long n = 0; !finished && n < 100000; ++n) {
+      allocator::until_failure = n;
+      try {
+        write_cloud(path, cloud, nullptr, nullptr);
+        finished = true;
+      } catch (const std::bad_alloc&) {
+      }
+      allocator::until_failure = -1;
+      EXPECT_EQ(folder.files(), finished ? 1U : 0U) << name;
+    }
+    EXPECT_TRUE(finished) << name;
+  }
+}
+
 }  // namespace
 }  // namespace g3r

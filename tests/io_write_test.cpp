@@ -1,6 +1,7 @@
 #include <g3r/io.h>
 #include <gtest/gtest.h>
 
+#include <clocale>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -91,6 +92,49 @@ TEST(Orient, PcdAndLasKeepTheirFieldsAndTakeNormals) {
     EXPECT_EQ(twice.normals, others) << name;
     EXPECT_EQ(twice.property_names, once.property_names) << name;
   }
+}
+
+TEST(Orient, WhatFollowsThePointsOfALasFileIsKeptAndFound) {
+  // Two bytes without a description in every record, and an extended record after the points.
+  const Cloud plain = [] {
+    Cloud cloud;
+    cloud.positions = samples::helix(3).positions;
+    return cloud;
+  }();
+  std::string las = samples::written(plain, "a.las");
+  constexpr std::size_t kHeader = 375;
+  constexpr std::size_t kRecord = 20;
+  ASSERT_EQ(las.size(), kHeader + 3 * kRecord);
+  for (std::size_t i = 3; i > 0; --i) las.insert(kHeader + i * kRecord, "ab");
+  las.replace(105, 2, samples::raw(static_cast<std::uint16_t>(kRecord + 2)));
+  las.replace(235, 8, samples::raw(std::uint64_t{las.size()}));
+  las.replace(243, 4, samples::raw(std::uint32_t{1}));
+  las += "extended";
+  const Cloud cloud = read(las);
+  EXPECT_TRUE(cloud.warnings.empty());
+  const std::vector<Vec3> normals(3, Vec3{0, 0, 1});
+  const Folder folder;
+  write_cloud(folder.path("a.las"), cloud, &normals, nullptr);
+  const std::string bytes = slurp(folder.path("a.las"));
+  const Cloud again = read(bytes);
+  EXPECT_TRUE(again.warnings.empty());
+  EXPECT_EQ(again.positions, cloud.positions);
+  EXPECT_EQ(again.normals, normals);
+  std::uint64_t extended = 0;
+  std::memcpy(&extended, bytes.data() + 235, sizeof extended);
+  EXPECT_EQ(bytes.substr(extended), "extended");
+  EXPECT_EQ(bytes.substr(extended - 14, 2), "ab");  // before three floats
+}
+
+TEST(Write, ALocaleWithDecimalCommasChangesNothing) {
+  const std::string expected = samples::written(samples::helix(5), "a.xyz");
+  const std::string before = std::setlocale(LC_ALL, nullptr);
+  if (std::setlocale(LC_ALL, "de_DE.UTF-8") == nullptr) GTEST_SKIP() << "no German locale on this machine";
+  const std::string german = samples::written(samples::helix(5), "a.xyz");
+  const std::size_t points = read(german).positions.size();
+  std::setlocale(LC_ALL, before.c_str());
+  EXPECT_EQ(german, expected);
+  EXPECT_EQ(points, 5U);
 }
 
 TEST(Write, CoordinatesOfAllFormatsSurvive) {

@@ -15,7 +15,7 @@ cmake --build "$build" --target fuzz
 seeds=$build/seeds
 mkdir -p "$seeds"
 python3 tests/badinputs/badinputs.py "$seeds" > /dev/null
-find "$seeds" -size +8 -delete # blocks of 512 bytes: short inputs run fast
+find "$seeds" -type f -size +8 -delete # blocks of 512 bytes: short inputs run fast
 "$build/fuzz/fuzz_seeds" "$seeds"
 
 fuzz_one() {

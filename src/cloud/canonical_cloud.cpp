@@ -94,10 +94,10 @@ Frame frame_of(const Bounds& b) {
     frame.centre[a] = b.low[a] + (b.high[a] - b.low[a]) / 2;
     side = std::max(side, b.high[a] - b.low[a]);
   }
-  if (!std::isfinite(side)) throw InvalidInput("the coordinates span more than a double can hold; scale them down");
+  if (!std::isfinite(side)) throw InvalidInput("the extent of the coordinates is more than a double can hold; scale them down");
   if (side <= 0) throw InvalidInput("all points are at the same place; at least 4 distinct points are needed");
   frame.scale = kBoxSide / side;
-  if (!std::isfinite(frame.scale)) throw InvalidInput("the points are closer together than a double can resolve; scale them up");
+  if (!std::isfinite(frame.scale)) throw InvalidInput("the extent is too small: the points are closer together than a double can resolve; scale them up");
   return frame;
 }
 

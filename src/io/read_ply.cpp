@@ -68,6 +68,11 @@ class BodyReader {
     warnings.push_back(std::to_string(rest.size()) + " trailing bytes after the last element are not used");
   }
 
+  /// Whether a number was beyond double's range (and is infinite now).
+  [[nodiscard]] bool overflow() const { return overflow_; }
+  /// Whether the last record has no line end.
+  [[nodiscard]] bool last_line_open() const { return last_line_open_; }
+
  private:
   [[nodiscard]] std::size_t position() const { return encoding_ == PlyEncoding::kText ? lines_.offset() : at_; }
 
@@ -205,10 +210,8 @@ class BodyReader {
   std::size_t body_offset_;
   Lines lines_;         // text
   std::size_t at_ = 0;  // binary
-
- public:
-  bool overflow_ = false;        ///< a number was beyond double's range and is infinite
-  bool last_line_open_ = false;  ///< the last record has no line end
+  bool overflow_ = false;
+  bool last_line_open_ = false;
 };
 
 const char* encoding_name(PlyEncoding encoding) {
@@ -223,8 +226,8 @@ std::shared_ptr<Attributes> read_table(const Source& source, Cloud& cloud) {
   BodyReader body(source, header);
   for (Element& element : header.elements) body.read(element);
   body.finish(cloud.warnings);
-  if (body.overflow_) cloud.warnings.emplace_back("a number is out of double's range: it is taken as infinite (not finite)");
-  if (body.last_line_open_) cloud.warnings.emplace_back("the last line has no line end: the file may be cut");
+  if (body.overflow()) cloud.warnings.emplace_back("a number is out of double's range: it is taken as infinite (not finite)");
+  if (body.last_line_open()) cloud.warnings.emplace_back("the last line has no line end: the file may be cut");
   auto table = std::make_shared<Attributes>();
   table->comments = std::move(header.comments);
   table->elements = std::move(header.elements);
