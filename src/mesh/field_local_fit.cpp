@@ -232,8 +232,9 @@ LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* dire
       out.walls = out.walls || na.dot(nb) < kFacing;
     }
   }
+  const bool alike = out.count == 1;
   if (out.count > 1 && options_.sharp) prefer_one_sheet(out, members, options_.normal_weight);
-  if (out.count == 1) {
+  if (alike) {
     const double f = out.sheet[0].distance(x);
     out.simple = std::all_of(members.begin(), members.end(), [&](const Member& m) {
       const double plane = m.n.dot(x - m.p);

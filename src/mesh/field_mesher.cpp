@@ -32,10 +32,9 @@ constexpr int kMaxSpread = 4;        // levels that locally dense or sparse samp
 constexpr double kLocalReach = 1.8;  // spacings from the nearest point within which the fitted surface gives the side
 constexpr double kThin = 1.3;        // walls and gaps get cells of at most their thickness over this,
 constexpr double kMaxThin = 2.0;     // but not smaller than a normal cell over this
-constexpr double kWallReach = 1.0;   // spacings: between walls the fits are trusted this near to a point
-constexpr double kFieldWall = 0.4;   // the same as kFieldSure between walls, where mollification blurs the field
-constexpr double kNoisy = 0.15;      // spacings: positions that scatter more than this are smoothed first
-constexpr double kFieldSure = 0.2;   // |w - level| from which the field overrules the fitted surface
+constexpr double kLeastSpacing = 1e-2;  // of the median; clusters of almost equal points are no denser for the fits than this
+constexpr double kNoisy = 0.15;         // spacings: positions that scatter more than this are smoothed first
+constexpr double kFieldSure = 0.2;      // |w - level| from which the field overrules the fitted surface
 
 void report(const Monitor& monitor, double fraction) {
   if (monitor.cancel != nullptr && monitor.cancel->load()) throw Cancelled();
@@ -56,7 +55,9 @@ OrientedPoints prepare(const std::vector<Vec3>& points, const std::vector<Vec3>&
     if (!(length > 0)) throw InvalidInput("a normal is zero");
     for (double& c : n) c /= length;
   }
-  if (!(median(out.spacing) > 0)) throw InvalidInput("all points are at one place");
+  const double typical = median(out.spacing);
+  if (!(typical > 0)) throw InvalidInput("all points are at one place");
+  for (double& h : out.spacing) h = std::max(h, kLeastSpacing * typical);
   const LocalFit local(out, LocalFitOptions{});
   const mesh::Noise found = mesh::estimate_noise(out, local);
   noise = found.position;
@@ -104,7 +105,6 @@ class Side {
     const double unknown = std::numeric_limits<double>::quiet_NaN();
     std::vector<double> value(places.size(), unknown);
     std::vector<std::uint8_t> sure(places.size(), 0);
-    std::vector<double> threshold(places.size(), kFieldSure);
     parallel::for_blocks(
         places.size(), 256,
         [&](std::size_t begin, std::size_t end) {
@@ -114,7 +114,6 @@ class Side {
             if (fit.count == 0) continue;
             value[i] = -fit.distance(x);
             sure[i] = fit.simple ? 1 : 0;
-            if (fit.walls && fit.nearest < kWallReach * fit.spacing) threshold[i] = kFieldWall;
           }
         },
         cancel);
@@ -130,7 +129,7 @@ class Side {
     for (std::size_t k = 0; k < ask.size(); ++k) {
       const double f = field[k] - level_;
       double& v = value[ask[k]];
-      if (std::isnan(v) || (std::abs(f) >= threshold[ask[k]] && (v > 0) != (f > 0))) v = f * spacing_;
+      if (std::isnan(v) || (std::abs(f) >= kFieldSure && (v > 0) != (f > 0))) v = f * spacing_;
     }
     return value;
   }
