@@ -22,7 +22,7 @@ struct MeshRow {
 
 /// A row of the table. Scores are over the surface points; a row with an error has none.
 struct Row {
-  std::string model, input, method;
+  std::string model, input, method;  ///< no method: the mesh could not be used, see error
   std::size_t points = 0;
   std::string error;       ///< empty, or why there is no result
   std::string mesh_error;  ///< empty, or why there is no mesh

@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -54,9 +55,9 @@ int run(const std::vector<std::string>& arguments) {
   }
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const std::vector<std::uint8_t> png = g3r::view_png(read_scene(inputs[i], points_only), options);
-    std::string path = output;  // out.png, then out.1.png, out.2.png, ...
-    if (i > 0) path.insert(path.rfind('.') == std::string::npos ? path.size() : path.rfind('.'), "." + std::to_string(i));
-    g3r::write_file(path, std::string(png.begin(), png.end()));
+    std::filesystem::path path = output;  // out.png, then out.1.png, out.2.png, ...
+    if (i > 0) path.replace_extension(std::to_string(i) + path.extension().string());
+    g3r::write_file(path.string(), std::string(png.begin(), png.end()));
   }
   return 0;
 }

@@ -9,6 +9,8 @@
 #include <sstream>
 #include <utility>
 
+#include "mesh/screened_poisson.h"
+
 namespace g3r::bench {
 
 namespace {
@@ -193,7 +195,12 @@ void write_models(const std::vector<std::string>& methods, const std::vector<con
 }  // namespace
 
 std::string to_json(const RunInfo& run, const std::vector<Row>& rows) {
-  Json json = {{"schema", 1}, {"version", std::string(version())}, {"label", run.label}, {"seed", run.seed}, {"threads", run.threads}};
+  Json json = {{"schema", 1},
+               {"version", std::string(version())},
+               {"label", run.label},
+               {"seed", run.seed},
+               {"threads", run.threads},
+               {"poisson_available", screened_poisson_available()}};
   json["rows"] = Json::array();
   for (const Row& row : rows) json["rows"].push_back(row_json(row));
   return json.dump(1) + "\n";
@@ -204,7 +211,13 @@ std::string to_markdown(const RunInfo& run, const std::vector<Row>& rows) {
   out << "# Benchmark" << (run.label.empty() ? "" : ": ") << run.label << "\n\nSeed " << run.seed << ", g3r " << version()
       << ". How to read and repeat this: bench/README.md.\n\n";
   std::vector<const Row*> all;
-  for (const Row& row : rows) all.push_back(&row);
+  for (const Row& row : rows) {
+    if (!row.method.empty()) {
+      all.push_back(&row);
+    } else {
+      out << "Not measured: " << row.model << ": " << row.error << "\n\n";
+    }
+  }
   const auto methods = distinct(all, [](const Row& row) { return row.method; });
   for (const auto& cloud : distinct(all, [](const Row& row) { return std::pair(row.input, row.points); })) {
     const auto here = select(all, [&](const Row& row) { return std::pair(row.input, row.points) == cloud; });

@@ -58,13 +58,18 @@ std::vector<fs::path> find_models(const Arguments& arguments) {
   for (const auto& entry : fs::directory_iterator(arguments.data)) {
     const std::string extension = entry.path().extension().string();
     const bool is_mesh = extension == ".ply" || extension == ".obj" || extension == ".off" || extension == ".stl";
-    const bool wanted = arguments.models.empty() ||
-                        std::find(arguments.models.begin(), arguments.models.end(), entry.path().stem().string()) != arguments.models.end();
-    if (entry.is_regular_file() && is_mesh && wanted) paths.push_back(entry.path());
+    if (entry.is_regular_file() && is_mesh) paths.push_back(entry.path());
   }
-  std::sort(paths.begin(), paths.end());
   if (paths.empty()) throw InvalidInput("no mesh to measure in " + arguments.data);
-  return paths;
+  std::sort(paths.begin(), paths.end());
+  if (arguments.models.empty()) return paths;
+  std::vector<fs::path> wanted;
+  for (const std::string& model : arguments.models) {
+    const auto found = std::find_if(paths.begin(), paths.end(), [&](const fs::path& path) { return path.stem() == model; });
+    if (found == paths.end()) throw InvalidInput("no mesh named " + model + " in " + arguments.data);
+    wanted.push_back(*found);
+  }
+  return wanted;
 }
 
 void show(const Row& row) {
@@ -79,6 +84,30 @@ void show(const Row& row) {
   std::fprintf(stderr, "\n");
 }
 
+/// All rows of one model. A mesh that cannot be used gives one row with the error.
+void measure_model(const fs::path& path, const Arguments& arguments, const std::vector<InputKind>& kinds,
+                   const std::vector<Variant>& variants, std::vector<Row>& rows) {
+  const std::string model = path.stem().string();
+  try {
+    const Mesh truth = read_mesh(path.string());
+    for (const std::size_t count : arguments.points) {
+      for (const InputKind& kind : kinds) {
+        const Input input = make_input(truth, kind, count, arguments.run.seed);
+        for (const Variant& variant : variants) {
+          rows.push_back(measure(model, truth, input, kind, variant, arguments.mesh, arguments.run.seed));
+          show(rows.back());
+        }
+      }
+    }
+  } catch (const Error& error) {
+    Row row;
+    row.model = model;
+    row.error = error.what();
+    rows.push_back(row);
+    show(row);
+  }
+}
+
 void run(const Arguments& arguments) {
   std::vector<InputKind> kinds;
   for (const std::string& text : arguments.inputs) kinds.push_back(parse_input_kind(text));
@@ -88,20 +117,15 @@ void run(const Arguments& arguments) {
     variants.back().options.threads = arguments.run.threads;
   }
   std::vector<Row> rows;
+  const auto write = [&] {
+    write_file(arguments.json, to_json(arguments.run, rows));
+    write_file(arguments.markdown, to_markdown(arguments.run, rows));
+  };
+  write();  // learns before the work whether the results can be written
   for (const fs::path& path : find_models(arguments)) {
-    const Mesh truth = read_mesh(path.string());
-    for (const std::size_t count : arguments.points) {
-      for (const InputKind& kind : kinds) {
-        const Input input = make_input(truth, kind, count, arguments.run.seed);
-        for (const Variant& variant : variants) {
-          rows.push_back(measure(path.stem().string(), truth, input, kind, variant, arguments.mesh, arguments.run.seed));
-          show(rows.back());
-        }
-      }
-    }
+    measure_model(path, arguments, kinds, variants, rows);
+    write();  // what is done is kept if the run is stopped
   }
-  write_file(arguments.json, to_json(arguments.run, rows));
-  write_file(arguments.markdown, to_markdown(arguments.run, rows));
   std::fprintf(stderr, "%zu rows in %s, tables in %s\n", rows.size(), arguments.json.c_str(), arguments.markdown.c_str());
 }
 

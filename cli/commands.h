@@ -13,5 +13,6 @@ int run_mesh(const Settings& settings, Session& session);
 int run_eval(const Settings& settings, Session& session);
 int run_sample(const Settings& settings, Session& session);
 int run_info(const Settings& settings, Session& session);
+int run_view(const Settings& settings, Session& session);
 
 }  // namespace g3r::cli

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
+#include <vector>
 
 #include <unistd.h>
 
@@ -27,12 +28,11 @@ bool same_file(const std::string& a, const std::string& b) {
          std::filesystem::equivalent(a, b, ignored);
 }
 
-/// The report may have any extension, so check_output() cannot judge it.
-void check_report(const Settings& settings) {
-  const std::string& path = settings.report;
+/// A report or a page, which check_output() cannot judge by its extension.
+void check_text_output(const std::string& path, const std::vector<std::string>& others) {
   if (path.empty() || path == "-") return;
   const std::string refused = "cannot create " + escape_text(path) + ": ";
-  for (const std::string& other : {settings.input, settings.output}) {
+  for (const std::string& other : others) {
     if (same_file(path, other)) throw IoError(IoError::Kind::kCannotCreate, refused + "it is also the input or the result");
   }
   std::error_code ignored;
@@ -42,11 +42,20 @@ void check_report(const Settings& settings) {
   if (access(folder.c_str(), W_OK | X_OK) != 0) throw IoError(IoError::Kind::kCannotCreate, refused + reason());
 }
 
+void check_view_files(const Settings& settings) {
+  std::vector<std::string> inputs = settings.shown;
+  inputs.push_back(settings.truth);
+  inputs.push_back(settings.figures);
+  for (const std::string& input : inputs) check_input(input);
+  check_text_output(settings.output, inputs);
+}
+
 bool makes_mesh(Command command) { return command == Command::kReconstruct || command == Command::kMesh; }
 
 }  // namespace
 
 void check_files(const Settings& settings) {
+  if (settings.command == Command::kView) return check_view_files(settings);
   check_input(settings.input);
   check_input(settings.truth);
   if (!settings.output.empty()) {
@@ -56,7 +65,7 @@ void check_files(const Settings& settings) {
       throw UsageError(error.what());
     }
   }
-  check_report(settings);
+  check_text_output(settings.report, {settings.input, settings.output});
 }
 
 std::optional<Mesh> mesh_if_any(const std::string& path) {

@@ -38,6 +38,7 @@ sigset_t watched_signals() {
 Interrupts::Interrupts() : exit_code_(kInterrupted) {
   // A closed pipe is an error of the write, not the end of the program: `g3r a.ply b.ply 2>&1 | head` still writes b.ply.
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // likewise a file that grows beyond the limit of the user
   const sigset_t set = watched_signals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   waiter_ = std::thread([this] { wait(); });

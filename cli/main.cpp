@@ -8,6 +8,9 @@
 #include <optional>
 #include <string>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include "commands.h"
 #include "exit_code.h"
 #include "files.h"
@@ -32,6 +35,8 @@ int run(const Settings& settings, Session& session) {
       return run_sample(settings, session);
     case Command::kInfo:
       return run_info(settings, session);
+    case Command::kView:
+      return run_view(settings, session);
   }
   return kBug;
 }
@@ -53,13 +58,30 @@ int exit_code(IoError::Kind kind) {
   return kInputOutput;
 }
 
+/// Standard streams that the caller has closed become /dev/null: an output file must not get their numbers and be written to by accident.
+void open_missing_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(stream, F_GETFD) < 0) (void)open("/dev/null", O_RDWR);  // takes the lowest free number, which is this one
+  }
+}
+
+// Errors of the solve know nothing of files: the user is told which input they are about.
+int complain_of_input(const std::string& input, const std::string& what) {
+  const std::string name = escape_text(input == "-" ? "standard input" : input);
+  return complain(kBadData, what.find(name) == std::string::npos ? name + ": " + what : what);
+}
+
 int run_program(int argc, const char* const* argv, const Interrupts& interrupts) {
   try {
     const std::optional<Settings> settings = parse_command_line(argc, argv);
     if (!settings) return kOk;
     check_files(*settings);
     Session session(*settings, interrupts);
-    return run(*settings, session);
+    try {
+      return run(*settings, session);
+    } catch (const InvalidInput& error) {
+      return complain_of_input(settings->input, error.what());
+    }
   } catch (const UsageError& error) {
     return complain(kUsage, std::string(error.what()) + " (see g3r --help)");
   } catch (const InvalidInput& error) {
@@ -81,6 +103,7 @@ int run_program(int argc, const char* const* argv, const Interrupts& interrupts)
 }  // namespace g3r::cli
 
 int main(int argc, char** argv) {
+  g3r::cli::open_missing_streams();
   const g3r::cli::Interrupts interrupts;
   return g3r::cli::run_program(argc, argv, interrupts);
 }

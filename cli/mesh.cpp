@@ -1,6 +1,7 @@
 // g3r mesh ORIENTED OUT: points that already have outward normals in, a mesh out.
 #include <g3r/g3r.h>
 #include <g3r/io.h>
+#include <g3r/mesh_points.h>
 
 #include "commands.h"
 #include "summary.h"
@@ -12,10 +13,14 @@ int run_mesh(const Settings& settings, Session& session) {
   if (cloud.normals.empty()) {
     throw InvalidInput(escape_text(settings.input) + " has no normals: `g3r orient` makes them, `g3r IN OUT` goes all the way");
   }
-  const Mesh mesh =
+  Mesh mesh =
       session.stage("mesh", [&] { return mesh_oriented(cloud.positions, cloud.normals, settings.mesh_options, session.monitor()); });
   const MeshCheck check = check_mesh(mesh);
-  session.stage("write", [&] { write_mesh(settings.output, mesh, settings.write_options); });
+  session.stage("carry", [&] {
+    if (!cloud.confidence.empty()) mesh.confidence = carry_confidence(mesh, cloud.positions, cloud.confidence);
+    if (!cloud.colors.empty()) mesh.colors = carry_colors(mesh, cloud.positions, cloud.colors);
+  });
+  session.stage("write", [&] { write_mesh(settings.output, mesh, session.cancellable(settings.write_options)); });
   Stats stats;
   stats.points = stats.used = cloud.positions.size();
   stats.method = settings.mesh_options.mesher == Mesher::kPoisson ? "poisson" : "field";

@@ -30,7 +30,8 @@ int run_sample(const Settings& settings, Session& session) {
   Samples samples = session.stage("sample", [&] { return sample_mesh(mesh, settings.sample_count, settings.options.seed, noise); });
   Cloud cloud;
   cloud.positions = std::move(samples.points);
-  session.stage("write", [&] { write_cloud(settings.output, cloud, &samples.normals, nullptr, settings.write_options); });
+  session.stage("write",
+                [&] { write_cloud(settings.output, cloud, &samples.normals, nullptr, session.cancellable(settings.write_options)); });
   session.console().say(counted(cloud.positions.size(), "point") + " with normals" +
                         (settings.output == "-" ? "" : " in " + escape_text(settings.output)));
   return 0;

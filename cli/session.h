@@ -24,6 +24,12 @@ class Session {
   /// Progress and cancellation for a call of the library.
   [[nodiscard]] Monitor monitor();
 
+  /// The options with the way to be cancelled.
+  [[nodiscard]] WriteOptions cancellable(WriteOptions options) const {
+    options.cancel = &interrupts_.requested();
+    return options;
+  }
+
   /// Does `work`, shows `name` meanwhile and remembers the time it took. Throws Cancelled instead if the user has asked to stop.
   template <class Work>
   auto stage(const std::string& name, Work&& work) {

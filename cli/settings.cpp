@@ -82,6 +82,32 @@ void add_mesh_options(CLI::App& app, Settings& s) {
       ->type_name("D");
 }
 
+void add_finish_options(CLI::App& app, Settings& s) {
+  MeshOptions& o = s.mesh_options;
+  app.add_option_function<std::string>(
+         "--trim",
+         [&o](const std::string& text) {
+           const auto distance = parse_length(text);
+           if (text == "off" || text == "auto") {
+             o.trim = text == "off" ? MeshOptions::Trim::kOff : MeshOptions::Trim::kAuto;
+           } else if (distance && !distance->is_percent && distance->value > 0) {
+             o.trim = MeshOptions::Trim::kDistance;
+             o.trim_distance = distance->value;
+           } else {
+             reject("--trim", text, "off, auto or a distance above 0");
+           }
+         },
+         "Cut away surface far from every point: off, auto (4 spacings) or a distance; for open scans")
+      ->type_name("off|auto|X");
+  app.add_flag_callback(
+      "--open", [&o] { o.trim = MeshOptions::Trim::kAuto; }, "The scan is open: the same as --trim auto");
+  app.add_option("--keep-largest", o.keep_largest, "Keep only the N largest components")->type_name("N");
+  app.add_option("--min-component", o.min_component, "Drop components of less area than N points stand for (default 8, 0: keep all)")
+      ->check(range(0.0, 1e15))
+      ->type_name("N");
+  app.add_option("--faces", o.faces, "Simplify to about N triangles")->type_name("N");
+}
+
 void add_method_options(CLI::App& app, Settings& s) {
   Options& o = s.options;
   add_choice(app, "--preset", o.preset, {{"default", Preset::kDefault}, {"paper", Preset::kPaper}},
@@ -134,6 +160,7 @@ void add_reconstruct(CLI::App& app, Settings& s) {
   add_write_options(app, s);
   add_method_options(app, s);
   add_mesh_options(app, s);
+  add_finish_options(app, s);
 }
 
 void add_orient(CLI::App& app, Settings& s) {
@@ -157,6 +184,7 @@ void add_mesh(CLI::App& app, Settings& s) {
   add_read_options(*sub, s);
   add_write_options(*sub, s);
   add_mesh_options(*sub, s);
+  add_finish_options(*sub, s);
 }
 
 void add_eval(CLI::App& app, Settings& s) {
@@ -200,15 +228,43 @@ void add_info(CLI::App& app, Settings& s) {
   add_mesh_options(*sub, s);
 }
 
+const std::map<std::string, Layer> kLayers = {{"points", Layer::kPoints}, {"normals", Layer::kNormals}, {"confidence", Layer::kConfidence},
+                                              {"colors", Layer::kColors}, {"error", Layer::kError},     {"mesh", Layer::kMesh}};
+
+void add_view(CLI::App& app, Settings& s) {
+  CLI::App* sub = app.add_subcommand("view", "A page (.html) or a picture (.png) of a cloud, a mesh, or both");
+  sub->add_option("IN", s.shown, "Cloud, mesh, or one of each")->required()->expected(1, 2)->type_name("");
+  sub->add_option("-o,--out", s.output, "Page .html or picture .png; - for the page on standard output")->required()->type_name("OUT");
+  sub->add_option("--truth", s.truth, "Cloud with true normals in the same order: adds the map of errors")->type_name("GT");
+  sub->add_option("--figures", s.figures, "Report of the run, shown beside the view of a page")->type_name("FILE.json");
+  sub->add_flag_callback(
+      "--z-up", [&s] { s.page.up = s.picture.up = Up::kZ; }, "The z axis points up instead of the y axis");
+  sub->add_option_function<std::vector<std::string>>(
+         "--layers",
+         [&s](const std::vector<std::string>& names) {
+           for (const std::string& name : names) {
+             const auto layer = kLayers.find(name);
+             if (layer == kLayers.end()) reject("--layers", name, "points, normals, confidence, colors, error or mesh");
+             s.picture.layers.push_back(layer->second);
+           }
+         },
+         "Picture: what to draw, one row each: points,normals,confidence,colors,error,mesh")
+      ->delimiter(',')
+      ->type_name("LIST");
+  sub->add_option("--tile", s.picture.tile, "Picture: width and height of one view in pixels, 16 to 2048")
+      ->check(range(16, 2048))
+      ->type_name("PIXELS");
+  sub->add_flag("--dark", s.picture.dark, "Picture: dark background");
+  add_read_options(*sub, s);
+  add_run_options(*sub, s);
+}
+
 /// scan.ply -> scan.mesh.ply
 std::string default_output(const std::string& input) { return std::filesystem::path(input).replace_extension(".mesh.ply").string(); }
 
 Command parsed_command(const CLI::App& app) {
-  const std::map<std::string, Command> commands = {{"orient", Command::kOrient},
-                                                   {"mesh", Command::kMesh},
-                                                   {"eval", Command::kEval},
-                                                   {"sample", Command::kSample},
-                                                   {"info", Command::kInfo}};
+  const std::map<std::string, Command> commands = {{"orient", Command::kOrient}, {"mesh", Command::kMesh}, {"eval", Command::kEval},
+                                                   {"sample", Command::kSample}, {"info", Command::kInfo}, {"view", Command::kView}};
   const auto parsed = app.get_subcommands();
   return parsed.empty() ? Command::kReconstruct : commands.at(parsed.front()->get_name());
 }
@@ -222,6 +278,12 @@ void complete(const CLI::App& app, Settings& s) {
     if (s.output.empty()) s.output = default_output(s.input);
   } else if (app.count("IN") > 0) {
     throw UsageError("expected the command '" + app.get_subcommands().front()->get_name() + "' before its files");
+  }
+  if (s.command == Command::kView) {
+    const std::string extension = std::filesystem::path(s.output).extension().string();
+    if (s.output != "-" && extension != ".html" && extension != ".htm" && extension != ".png") {
+      throw UsageError("unknown extension '" + extension + "' of " + s.output + ": view writes .html or .png");
+    }
   }
   if (s.command == Command::kEval && s.sample_count == 0) s.sample_count = kEvalSamples;
   if (s.output == "-" && s.report == "-") throw UsageError("the result and the report cannot both go to standard output");
@@ -253,6 +315,7 @@ std::optional<Settings> parse_command_line(int argc, const char* const* argv) {
   add_eval(app, settings);
   add_sample(app, settings);
   add_info(app, settings);
+  add_view(app, settings);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {

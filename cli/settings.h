@@ -3,24 +3,30 @@
 
 #include <g3r/g3r.h>
 #include <g3r/io.h>
+#include <g3r/view.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "text.h"
 
 namespace g3r::cli {
 
-enum class Command { kReconstruct, kOrient, kMesh, kEval, kSample, kInfo };
+enum class Command { kReconstruct, kOrient, kMesh, kEval, kSample, kInfo, kView };
 
 /// Everything a command line says, with the defaults for what it does not say.
 struct Settings {
   Command command = Command::kReconstruct;
   std::string input;
   std::string output;
-  std::string truth;  ///< eval
+  std::string truth;               ///< eval, view
+  std::vector<std::string> shown;  ///< view: a cloud, a mesh, or both; the other commands have `input`
+  std::string figures;             ///< view: the JSON report of a run
+  PageOptions page;                ///< view
+  PictureOptions picture;          ///< view
   Options options;
   MeshOptions mesh_options;
   ReadOptions read_options;

@@ -92,7 +92,7 @@ void show_summary(const Settings& settings, Console& console, const Stats& stats
 
 int finish(const Settings& settings, Session& session, Stats stats, const MeshCheck* mesh) {
   session.complete(stats);
-  const bool is_open = mesh != nullptr && !mesh->closed;
+  const bool is_open = mesh != nullptr && !mesh->closed && settings.mesh_options.trim == MeshOptions::Trim::kOff;
   Console& console = session.console();
   for (const std::string& warning : stats.warnings) console.warn(warning);
   show_summary(settings, console, stats, mesh);

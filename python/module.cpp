@@ -2,7 +2,6 @@
 // python/g3r/*.py.
 #include <g3r/g3r.h>
 #include <g3r/io.h>
-#include <g3r/mesh_points.h>
 #include <g3r/view.h>
 
 #include <initializer_list>
@@ -68,10 +67,16 @@ Options read_options(const nb::dict& from) {
   return options;
 }
 
-MeshOptions read_mesh_options(int depth, const nb::dict& from) {
+MeshOptions read_mesh_options(const nb::dict& from) {
+  using Trim = MeshOptions::Trim;
   MeshOptions options;
-  options.depth = depth;
   take_choice(from, "mesher", options.mesher, {{"auto", Mesher::kAuto}, {"field", Mesher::kField}, {"poisson", Mesher::kPoisson}});
+  take_choice(from, "trim", options.trim, {{"off", Trim::kOff}, {"auto", Trim::kAuto}, {"distance", Trim::kDistance}});
+  take(from, "trim_distance", options.trim_distance);
+  take(from, "depth", options.depth);
+  take(from, "keep_largest", options.keep_largest);
+  take(from, "min_component", options.min_component);
+  take(from, "faces", options.faces);
   return options;
 }
 
@@ -93,23 +98,17 @@ nb::tuple orient_points(const PointsArray& array, const nb::dict& keywords, cons
                         give_values(std::move(result.confidence)), report);
 }
 
-// (normals, areas, confidence, report, mesh); `trim` in point spacings, 0 for none.
-nb::tuple reconstruct_points(const PointsArray& array, const std::optional<Rows<std::uint8_t>>& colors, int depth, double trim,
-                             const nb::dict& keywords, const nb::object& progress) {
+// (normals, areas, confidence, report, mesh)
+nb::tuple reconstruct_points(const PointsArray& array, const std::optional<Rows<std::uint8_t>>& colors, const nb::dict& keywords,
+                             const nb::object& progress) {
   const PointsView points = points_view(array);
   const Options options = read_options(keywords);
-  const MeshOptions mesh_options = read_mesh_options(depth, keywords);
+  const MeshOptions mesh_options = read_mesh_options(keywords);
   const auto point_colors = copy_rows<std::uint8_t>(colors);
   Reconstruction result;
   run_job(progress, [&](const Monitor& monitor) {
     result = reconstruct(points, options, mesh_options, monitor);
-    Mesh& mesh = result.mesh;
-    if (trim > 0) {
-      mesh = trim_mesh(mesh, points, trim * result.orientation.stats.spacing);
-      result.check = check_mesh(mesh);
-    }
-    if (!point_colors.empty()) mesh.colors = carry_colors(mesh, points, point_colors);
-    mesh.confidence = carry_confidence(mesh, points, result.orientation.confidence);
+    if (!point_colors.empty()) carry_attributes(result.mesh, points, point_colors, result.orientation.confidence);
   });
   Orientation& o = result.orientation;
   const Text report = report_json(o.stats, &result.check);
@@ -117,9 +116,8 @@ nb::tuple reconstruct_points(const PointsArray& array, const std::optional<Rows<
                         give_mesh(std::move(result.mesh)));
 }
 
-nb::tuple mesh_points(const PointsArray& array, const PointsArray& normals, int depth, const nb::dict& keywords,
-                      const nb::object& progress) {
-  const MeshOptions options = read_mesh_options(depth, keywords);
+nb::tuple mesh_points(const PointsArray& array, const PointsArray& normals, const nb::dict& keywords, const nb::object& progress) {
+  const MeshOptions options = read_mesh_options(keywords);
   const PointsView points = points_view(array), directions = points_view(normals);
   Mesh mesh;
   run_job(progress, [&](const Monitor& monitor) { mesh = mesh_oriented(points, directions, options, monitor); });
@@ -254,9 +252,8 @@ void bind(nb::module_& m) {
       .def_ro("warnings", &Cloud::warnings);
 
   m.def("orient", &orient_points, nb::arg("points"), nb::arg("options"), nb::arg("progress").none());
-  m.def("reconstruct", &reconstruct_points, nb::arg("points"), nb::arg("colors").none(), nb::arg("depth"), nb::arg("trim"),
-        nb::arg("options"), nb::arg("progress").none());
-  m.def("mesh", &mesh_points, nb::arg("points"), nb::arg("normals"), nb::arg("depth"), nb::arg("options"), nb::arg("progress").none());
+  m.def("reconstruct", &reconstruct_points, nb::arg("points"), nb::arg("colors").none(), nb::arg("options"), nb::arg("progress").none());
+  m.def("mesh", &mesh_points, nb::arg("points"), nb::arg("normals"), nb::arg("options"), nb::arg("progress").none());
   m.def("field", &make_field, nb::arg("points"), nb::arg("normals"), nb::arg("areas"), nb::arg("spacing"), nb::arg("width"));
   m.def("read_cloud", &read_points, nb::arg("path"), nb::arg("min_opacity"));
   m.def("write_cloud", &write_points, nb::arg("path"), nb::arg("source").none(), nb::arg("positions").none(), nb::arg("normals").none(),

@@ -2,11 +2,10 @@
 #include "cloud/canonical_cloud.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
+#include "orient/coarse_to_fine.h"
 #include "orient/refine.h"
 #include "orient/settings.h"
 #include "solve/dense_solver.h"
-#include "solve/energy_system.h"
-#include "solve/green_system.h"
 #include "stages.h"
 #include "sum/fast_sum.h"
 
@@ -61,18 +60,13 @@ void describe(const Problem& problem, const PointsView& points, const Options& o
   if (stats.dropped_non_finite > 0) {
     stats.warnings.push_back(std::to_string(stats.dropped_non_finite) + " points with a non-finite coordinate were left out");
   }
+  if (is_flat(cloud)) stats.warnings.emplace_back("the cloud is flat (all points in one plane): which side is outside is a choice");
 }
 
 void require_memory(const Stats& stats, const Options& options) {
   if (options.max_memory == 0 || stats.planned_memory_bytes <= options.max_memory) return;
   throw Unavailable("the plan needs " + std::to_string(stats.planned_memory_bytes >> 20) + " MiB, the limit is " +
                     std::to_string(options.max_memory >> 20) + " MiB; raise the limit or thin the cloud");
-}
-
-std::unique_ptr<LinearSystem> make_system(const Problem& problem, FastSum& sum) {
-  const Settings& s = problem.settings;
-  if (s.method == Method::kGreen) return std::make_unique<GreenSystem>(sum, problem.cloud.points, s.harmonics, s.constant_weight);
-  return std::make_unique<EnergySystem>(sum, s.damping, s.winding_weight);
 }
 
 std::vector<Vec3> solve(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
@@ -83,11 +77,8 @@ std::vector<Vec3> solve(const Problem& problem, const Options& options, Stages& 
     stats.condition_number = dense.condition_number;
     return std::move(dense.eta);
   }
-  FastSum sum(problem.cloud.points, problem.cloud.morton, Widths(s.epsilon), s.sums, stages.cancel());
   stages.begin("solve");
-  const auto system = make_system(problem, sum);
-  IterativeResult result = solve_iteratively(*system, s.schedule, s.tolerance, {},
-                                             [&](int step, int steps, double) { stages.progress(static_cast<double>(step) / steps); });
+  IterativeResult result = solve_coarse_to_fine(problem.cloud.points, problem.cloud.morton, s, stages);
   stats.converged = result.converged || s.tolerance == 0;
   for (std::size_t i = 0; i < result.residuals.size(); ++i) {
     stats.iterations.push_back({result.kinds[i] == StepKind::kSteepestDescent ? "sd" : "cg", result.residuals[i]});

@@ -143,6 +143,15 @@ TEST(BenchResults, JsonHoldsEveryRow) {
   EXPECT_FALSE(json["rows"][1].contains("ae_p"));
 }
 
+TEST(BenchResults, MarkdownNamesUnusableMeshes) {
+  Row broken;
+  broken.model = "flat";
+  broken.error = "no area";
+  const std::string text = to_markdown({"", 1, 0}, {broken, row("a", "paper", 0.01)});
+  EXPECT_NE(text.find("Not measured: flat: no area\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("0 points"), text.find("10 points") + 1) << text;
+}
+
 TEST(BenchResults, MarkdownHasMeanMedianAndWorst) {
   const std::vector<Row> rows = {row("a", "paper", 0.01), row("b", "paper", 0.05), row("c", "paper", 0.03), row("d", "paper", 0.02)};
   const std::string text = to_markdown({"", 1, 0}, rows);

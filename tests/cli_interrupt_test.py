@@ -58,6 +58,18 @@ class Interrupts(ProgramTest):
                     self.assertEqual(os.listdir(self.folder), [])
         print("stopped after at most %.3f s in %d runs" % (max(self.times), len(self.times)))
 
+    def test_an_interrupted_write_leaves_nothing(self):
+        write_cube(self.path("cube.obj"))
+        process = self.start("sample", "cube.obj", "out.ply", "--count", "500000", "-v",
+                             preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+        for line in process.stderr:
+            if line == b"g3r: write\n":
+                process.send_signal(signal.SIGINT)
+        process.communicate()
+        self.assertIn(process.returncode, (OK, INTERRUPTED))
+        left = ["cube.obj"] if process.returncode == INTERRUPTED else ["cube.obj", "out.ply"]
+        self.assertEqual(sorted(os.listdir(self.folder)), left)
+
     def test_an_ignored_signal_stays_ignored(self):
         write_points(self.path("in.ply"), sphere(300))
         process = self.start("orient", "in.ply", "out.ply", preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_IGN))

@@ -137,6 +137,15 @@ class ExitCodes(ProgramTest):
             with self.subTest(arguments), open("/dev/full", "wb") as full:
                 self.expect(INPUT_OUTPUT, *arguments, stdout=full)
 
+    def test_a_file_size_limit_is_74_and_no_signal(self):
+        self.expect(INPUT_OUTPUT, "orient", "ball.ply", "out.ply", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)))
+        self.assertEqual(os.listdir(self.folder), ["ball.ply"])
+
+    def test_closed_streams_do_not_end_up_in_the_output(self):
+        self.expect(OK, "orient", "ball.ply", "open.ply")
+        self.expect(OK, "orient", "ball.ply", "closed.ply", "-v", preexec_fn=lambda: os.closerange(0, 3))
+        self.assertTrue(self.bytes_of("open.ply") == self.bytes_of("closed.ply"))
+
     def test_a_closed_pipe_is_74_and_no_signal(self):
         reading, writing = os.pipe()
         os.close(reading)
@@ -345,6 +354,24 @@ class Points(ProgramTest):
                 mesh = self.json_of("r.json")["mesh"]
                 self.assertTrue(mesh["closed"])
                 self.assertAlmostEqual(mesh["volume"], 4 / 3 * math.pi, delta=0.15)
+
+    def test_colours_and_confidence_reach_the_mesh(self):
+        write_ply(self.path("in.ply"), [("double", "x"), ("double", "y"), ("double", "z"), ("uchar", "red"), ("uchar", "green"), ("uchar", "blue")],
+                  [(*p, 200 if p[2] > 0 else 10, 7, 9) for p in sphere(1000)])
+        self.expect(OK, "in.ply", "out.ply")
+        for vertex in read_ply(self.bytes_of("out.ply"))[1]:
+            self.assertEqual((vertex["green"], vertex["blue"]), (7, 9))
+            self.assertTrue(0 <= vertex["confidence"] <= 1)
+            if abs(vertex["z"]) > 0.2:
+                self.assertEqual(vertex["red"], 200 if vertex["z"] > 0 else 10)
+
+    def test_an_open_scan_can_stay_open(self):
+        write_points(self.path("in.ply"), [p for p in sphere(3000) if p[2] > 0])
+        self.expect(OK, "in.ply", "closed.ply", "--report", "r.json")
+        self.assertTrue(self.json_of("r.json")["mesh"]["closed"])
+        self.expect(OK, "in.ply", "open.ply", "--open", "--report", "r.json")
+        self.assertFalse(self.json_of("r.json")["mesh"]["closed"])
+        self.expect(USAGE, "in.ply", "out.ply", "--trim", "-1")
 
     def test_an_existing_output_is_replaced(self):
         write_points(self.path("in.ply"), sphere(300))

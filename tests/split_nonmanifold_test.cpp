@@ -92,6 +92,25 @@ TEST(SplitNonmanifold, RandomCellsBecomeClosedAndManifold) {
   }
 }
 
+TEST(SplitNonmanifold, RandomTrianglesKeepTheirAreaAndGainNoBoundary) {
+  Random random(6);
+  for (int trial = 0; trial < 300; ++trial) {
+    Mesh mesh;
+    for (int i = 0; i < 7; ++i) mesh.vertices.push_back({random.uniform(), random.uniform(), random.uniform()});
+    std::set<std::set<std::uint32_t>> used;
+    for (int i = 0; i < 25; ++i) {
+      const auto vertex = [&] { return static_cast<std::uint32_t>(random.bits() % 7); };
+      const std::array<std::uint32_t, 3> t = {vertex(), vertex(), vertex()};
+      // Each set of three vertices once, so that no two fold onto each other.
+      if (const std::set<std::uint32_t> set(t.begin(), t.end()); set.size() == 3 && used.insert(set).second) mesh.triangles.push_back(t);
+    }
+    const MeshCheck before = check_mesh(mesh), after = check_mesh(split_nonmanifold(mesh));
+    EXPECT_NEAR(after.area, before.area, kRounding * before.area);
+    EXPECT_EQ(after.boundary_edges, before.boundary_edges);
+    EXPECT_LE(after.nonmanifold_edges, before.nonmanifold_edges);
+  }
+}
+
 TEST(SplitNonmanifold, TrianglesThatNameAVertexTwiceAreLeftOut) {
   Mesh mesh = shapes::cube();
   mesh.triangles.push_back({1, 1, 5});

@@ -7,6 +7,7 @@
 #include <g3r/mesh.h>
 #include <g3r/points.h>
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <iosfwd>
@@ -50,6 +51,7 @@ struct ReadOptions {
 struct WriteOptions {
   bool ascii = false;               ///< text instead of binary where the format has both
   bool cloud_compare_names = false;  ///< name the confidence "scalar_confidence" so that CloudCompare shows it at once
+  const std::atomic<bool>* cancel = nullptr;  ///< when it becomes true the writer leaves nothing behind and throws Cancelled
 };
 
 /// Writes the points with all their properties, and (each may be null) N normals and N confidences, replacing those of the file.

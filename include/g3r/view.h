@@ -59,13 +59,14 @@ enum class Layer {
 /// Parameters of view_png().
 struct PictureOptions {
   Up up = Up::kY;
-  int tile = 600;             ///< width and height of one view in pixels, 16..4096
+  int tile = 600;             ///< width and height of one view in pixels, 16..2048
   std::vector<Layer> layers;  ///< empty: the mesh, else the points with the best that is known about them
   bool dark = false;          ///< dark background
 };
 
 /// A PNG file with four views (three-quarter, front, side, top): 2 x 2 tiles for one layer, else one row of four tiles per layer.
-/// 2 x 2 samples per pixel, ambient occlusion; the same bytes for any number of threads. O(points + triangles + pixels) per tile.
+/// 2 x 2 samples per pixel, ambient occlusion; the same bytes for any number of threads. O(points + triangles + pixels) time per
+/// tile, and 150 bytes per pixel of a tile for each thread.
 /// Throws InvalidInput like view_html(), and if a layer asks for data that the scene lacks.
 [[nodiscard]] std::vector<std::uint8_t> view_png(const Scene& scene, const PictureOptions& options = {});
 

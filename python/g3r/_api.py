@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from typing import Any, Callable, Dict, Optional, Tuple, Union, overload
+from typing import Any, Callable, Dict, Optional, Set, Tuple, Union, overload
 
 from . import _g3r
 from ._arrays import Bytes, Floats, Indices, Points, Singles, as_colors, as_points, member
@@ -12,8 +12,6 @@ from ._errors import InputError
 
 Progress = Callable[[str, float], Optional[bool]]
 """Called as progress(stage, fraction in [0, 1]); returning False cancels, anything else goes on."""
-
-AUTOMATIC_TRIM = 4.0  # point spacings; farther from every point than this, a closed mesh bridges a gap of the scan
 
 _UNITS = {"%": "percent", "h": "spacing", "n": "normalised"}
 
@@ -35,33 +33,40 @@ def _epsilon(value: Union[str, float]) -> Dict[str, Any]:
     return {"epsilon": number, "epsilon_unit": unit}
 
 
-def _options(epsilon: Union[str, float], degree: Optional[int], preset: str, threads: int, seed: int, more: Dict[str, Any]) -> Dict[str, Any]:
-    known = {"method", "mesher", "harmonics", "solver", "schedule", "tolerance", "accuracy", "max_memory"}
+_METHOD_OPTIONS = {"method", "harmonics", "solver", "schedule", "tolerance", "accuracy", "max_memory"}
+_MESH_OPTIONS = {"mesher", "keep_largest", "min_component", "faces"}
+
+
+def _options(epsilon: Union[str, float], degree: Optional[int], preset: str, threads: int, seed: int, known: Set[str],
+             more: Dict[str, Any]) -> Dict[str, Any]:
     unknown = set(more) - known
     if unknown:
         raise TypeError(f"unknown option {sorted(unknown)[0]!r}; there are also {', '.join(sorted(known))}")
+    for name in ("keep_largest", "faces", "max_memory"):
+        if name in more and (int(more[name]) != more[name] or more[name] < 0):
+            raise InputError(f"{name} must be an integer, 0 or more, not {more[name]!r}")
     options = {**_epsilon(epsilon), "preset": preset, "threads": int(threads), "seed": int(seed), **more}
     if degree is not None:
         options["degree"] = int(degree)
     return options
 
 
-def _depth(depth: Union[str, int]) -> int:
+def _depth(depth: Union[str, int]) -> Dict[str, Any]:
     if depth == "auto":
-        return 0
-    if isinstance(depth, str) or int(depth) != depth:
-        raise InputError(f"depth must be 'auto' or an integer, not {depth!r}")
-    return int(depth)
+        return {}
+    if isinstance(depth, str) or int(depth) != depth or not 4 <= depth <= 12:
+        raise InputError(f"depth must be 'auto' or an integer from 4 to 12, not {depth!r}")
+    return {"depth": int(depth)}
 
 
-def _trim(trim: Union[None, str, float]) -> float:
-    if trim is None:
-        return 0.0
+def _trim(trim: Union[None, str, float]) -> Dict[str, Any]:
+    if trim is None or trim == "off":
+        return {}
     if trim == "auto":
-        return AUTOMATIC_TRIM
+        return {"trim": "auto"}
     if isinstance(trim, str) or not (trim > 0 and math.isfinite(trim)):
-        raise InputError(f"trim must be None, 'auto' or a number of point spacings above 0, not {trim!r}")
-    return float(trim)
+        raise InputError(f"trim must be None, 'auto' or a distance above 0 in input units, not {trim!r}")
+    return {"trim": "distance", "trim_distance": float(trim)}
 
 
 class Field:
@@ -137,7 +142,7 @@ def orient(points: Any, *, epsilon: Union[str, float] = "auto", degree: Optional
 
     Raises InputError (fewer than 4 distinct finite points, all on a line, an option out of range), Cancelled, MemoryError.
     """
-    options = _options(epsilon, degree, preset, threads, seed, more)
+    options = _options(epsilon, degree, preset, threads, seed, _METHOD_OPTIONS, more)
     return _g3r.orient(as_points(points), options, progress)[0]
 
 
@@ -165,25 +170,26 @@ def run(points: Any, *, colors: Any = None, epsilon: Union[str, float] = "auto",
     degree: highest degree of the harmonic polynomials, 0..8; None: the preset's, 2.
     preset: "default", or "paper": the published method to the letter.
     depth: octree depth of the mesh, "auto" or 4..12.
-    trim: None, or for open scans "auto" or a number of point spacings: parts of the mesh farther from every point are cut off.
+    trim: None, or for open scans "auto" (4 spacings) or a distance in input units: surface farther from every point is cut away.
     mesh: False leaves the mesh out.
     colors: (n, 3), carried to the vertices.
     threads: 0 for all cores; the result does not depend on it.
     progress: called as progress(stage, fraction) on this thread; returning False cancels.
-    mesher (in **more): "field", "poisson" where it was built in, or "auto".
-    Further options: method, harmonics, solver, schedule, tolerance, accuracy, max_memory, as in the C++ Options.
+    faces: simplify the mesh to about this many triangles. keep_largest: keep only so many components.
+    Further options: mesher, min_component, method, harmonics, solver, schedule, tolerance, accuracy, max_memory, as in C++.
 
     The interpreter lock is released; Ctrl-C works. Raises InputError, UnavailableError, Cancelled, MemoryError.
     """
-    options = _options(epsilon, degree, preset, threads, seed, more)
-    octree_depth, trim_spacings = _depth(depth), _trim(trim)
+    options = _options(epsilon, degree, preset, threads, seed, _METHOD_OPTIONS | _MESH_OPTIONS, more)
+    options.update(_depth(depth))
+    options.update(_trim(trim))
     array = as_points(points)
     if colors is not None:
         colors = as_colors(colors, len(array))
     if not mesh:
         normals, areas, confidence, report = _g3r.orient(array, options, progress)
         return Result(array, normals, areas, confidence, report, None)
-    normals, areas, confidence, report, surface = _g3r.reconstruct(array, colors, octree_depth, trim_spacings, options, progress)
+    normals, areas, confidence, report, surface = _g3r.reconstruct(array, colors, options, progress)
     return Result(array, normals, areas, confidence, report, surface)
 
 
@@ -194,5 +200,5 @@ def mesh_oriented(points: Any, normals: Any = None, *, depth: Union[str, int] = 
         normals = member(points, "normals", "point_normals", "vertex_normals")
         if normals is None:
             raise InputError("there are no normals; g3r.reconstruct() takes points without them")
-    vertices, faces, _, _ = _g3r.mesh(as_points(points), as_points(normals, "normals"), _depth(depth), {"mesher": mesher}, progress)
+    vertices, faces, _, _ = _g3r.mesh(as_points(points), as_points(normals, "normals"), {"mesher": mesher, **_depth(depth)}, progress)
     return vertices, faces

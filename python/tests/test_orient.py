@@ -77,6 +77,12 @@ def test_reconstruct_gives_a_mesh_and_colors(sphere):
     assert carried.dtype == np.uint8 and (carried == [0, 255, 0]).all()
 
 
+def test_mesh_options_are_taken(sphere, result):
+    assert len(g3r.run(sphere, faces=200).faces) < len(result.faces)
+    for options in ({"trim": "auto"}, {"trim": 0.5}, {"keep_largest": 1}, {"min_component": 0}, {"depth": 5}, {"mesher": "field"}):
+        assert len(g3r.run(sphere, **options).faces) > 0
+
+
 def test_mesh_oriented(sphere):
     vertices, faces = g3r.mesh_oriented(sphere, sphere)
     assert vertices.shape[1] == faces.shape[1] == 3
@@ -123,7 +129,7 @@ def test_unusable_points_are_refused(points):
 
 @pytest.mark.parametrize("options", [
     {"epsilon": "big"}, {"epsilon": -1}, {"epsilon": "0%"}, {"epsilon": float("nan")}, {"degree": 99}, {"preset": "best"}, {"solver": "magic"}, {"mesher": "magic"}, {"method": "magic"},
-    {"harmonics": "w"}, {"schedule": "20 xx"}, {"depth": 99}, {"depth": "deep"}, {"depth": 7.5}, {"trim": -1}, {"trim": "much"},
+    {"harmonics": "w"}, {"schedule": "20 xx"}, {"depth": 99}, {"depth": "deep"}, {"depth": 7.5}, {"trim": -1}, {"trim": "much"}, {"faces": -1}, {"faces": 1.5},
     {"colors": [[1, 2, 3]]},
 ])
 def test_unusable_options_are_refused(sphere, options):

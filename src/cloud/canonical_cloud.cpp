@@ -210,4 +210,28 @@ CanonicalCloud canonical_cloud(const PointsView& points) {
   return cloud;
 }
 
+bool is_flat(const CanonicalCloud& cloud) {
+  constexpr double kFlatness = 1e-6;  // thickness over extent; a scan of any solid is far above
+  // The plane through the first point, the point farthest from it, and the point farthest from the line through both.
+  const Vec3& origin = cloud.points.front();
+  const auto to = [&origin](const Vec3& p) { return Vec3{p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]}; };
+  const auto cross = [](const Vec3& a, const Vec3& b) {
+    return Vec3{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  };
+  const auto norm = [](const Vec3& v) { return std::hypot(v[0], v[1], v[2]); };
+  Vec3 axis{0, 0, 0};
+  for (const Vec3& p : cloud.points) {
+    if (const Vec3 d = to(p); norm(d) > norm(axis)) axis = d;
+  }
+  Vec3 normal{0, 0, 0};
+  for (const Vec3& p : cloud.points) {
+    if (const Vec3 n = cross(axis, to(p)); norm(n) > norm(normal)) normal = n;
+  }
+  const double allowed = kFlatness * norm(axis) * norm(normal);
+  return std::all_of(cloud.points.begin(), cloud.points.end(), [&](const Vec3& p) {
+    const Vec3 d = to(p);
+    return std::abs(d[0] * normal[0] + d[1] * normal[1] + d[2] * normal[2]) <= allowed;
+  });
+}
+
 }  // namespace g3r

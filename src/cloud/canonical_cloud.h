@@ -45,6 +45,9 @@ struct MortonOrder {
 };
 [[nodiscard]] MortonOrder morton_order(const std::vector<Vec3>& unit_points);
 
+/// Whether all points lie in one plane, within 1e-6 of their extent: nothing says which side is outside. O(N).
+[[nodiscard]] bool is_flat(const CanonicalCloud& cloud);
+
 /// Centres, scales, drops non-finite points, merges exact duplicates and sorts. O(N).
 /// Throws InvalidInput for fewer than 4 distinct finite points, or points that are all on one line.
 [[nodiscard]] CanonicalCloud canonical_cloud(const PointsView& points);

@@ -41,7 +41,7 @@ std::string temporary_name(const std::string& target, int attempt) {
 
 }  // namespace
 
-OutputFile::OutputFile(const std::string& path) : path_(path), target_(path) {
+OutputFile::OutputFile(const std::string& path, const std::atomic<bool>* cancel) : path_(path), target_(path), cancel_(cancel) {
   buffer_.reserve(kBuffer);
   if (path == "-") {
     path_ = "standard output";
@@ -113,6 +113,7 @@ void OutputFile::write(const void* bytes, std::size_t size) {
 }
 
 void OutputFile::flush() {
+  if (cancel_ != nullptr && *cancel_) throw Cancelled();
   for (std::size_t done = 0; done < buffer_.size();) {
     const ssize_t written = ::write(fd_, buffer_.data() + done, buffer_.size() - done);
     if (written < 0) {

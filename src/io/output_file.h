@@ -1,6 +1,7 @@
 // A file that is written whole or not at all: temporary file in the same folder, checked writes, fsync, rename, fsync of the folder.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -12,8 +13,8 @@ namespace g3r::io {
 /// kept. A temporary file left behind by a killed process is found by its unlocked state and reused by the next run.
 class OutputFile {
  public:
-  /// Throws IoError (kCannotCreate).
-  explicit OutputFile(const std::string& path);
+  /// Throws IoError (kCannotCreate). Once `cancel` (may be null) becomes true, write() and commit() throw Cancelled.
+  explicit OutputFile(const std::string& path, const std::atomic<bool>* cancel = nullptr);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -34,6 +35,7 @@ class OutputFile {
   std::string target_;     // links resolved
   std::string temporary_;  // "" when written directly
   std::string buffer_;
+  const std::atomic<bool>* cancel_;
   int fd_ = -1;
 };
 

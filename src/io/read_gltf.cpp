@@ -1,4 +1,5 @@
 // Vertices of glTF 2.0, binary (GLB) or text with embedded buffers, under the transforms of their nodes. No other file is opened.
+#include "io/json.h"
 #include "io/readers.h"
 #include "io/table.h"
 
@@ -6,40 +7,13 @@
 #include <limits>
 #include <optional>
 
-#include <nlohmann/json.hpp>
-
 namespace g3r::io {
 
 namespace {
 
-using nlohmann::json;
 using Matrix = std::array<double, 16>;  // column major, as glTF has it
 
 constexpr Matrix kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-
-// Counts the values of a JSON text without keeping any, so that its tree can be refused before it is built.
-struct Counter : json::json_sax_t {
-  static constexpr int kDeepest = 64;
-  std::size_t values = 0;
-  int depth = 0;
-  bool count() {
-    ++values;
-    return true;
-  }
-  bool null() override { return count(); }
-  bool boolean(bool) override { return count(); }
-  bool number_integer(number_integer_t) override { return count(); }
-  bool number_unsigned(number_unsigned_t) override { return count(); }
-  bool number_float(number_float_t, const string_t&) override { return count(); }
-  bool string(string_t&) override { return count(); }
-  bool binary(binary_t&) override { return count(); }
-  bool start_object(std::size_t) override { return count() && ++depth <= kDeepest; }
-  bool key(string_t&) override { return count(); }
-  bool end_object() override { return --depth, true; }
-  bool start_array(std::size_t) override { return count() && ++depth <= kDeepest; }
-  bool end_array() override { return --depth, true; }
-  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
-};
 
 std::optional<std::string> decode_base64(std::string_view text) {
   std::string bytes;
@@ -67,13 +41,11 @@ std::optional<std::string> decode_base64(std::string_view text) {
 class GltfReader {
  public:
   GltfReader(const Source& source, std::string_view text, std::optional<std::string_view> binary) : source_(source), binary_(binary) {
-    Counter counter;
-    if (!json::sax_parse(text, &counter)) fail(source, "damaged: the JSON of this glTF file is not well formed (truncated?)");
-    constexpr std::size_t kBytesPerValue = 64;  // of the tree
-    constexpr std::size_t kAllowance = std::size_t{1} << 19;
-    if (counter.values * kBytesPerValue > 6 * source.bytes.size() + kAllowance)
-      fail(source, "the JSON of this glTF file holds too many values for its size");
-    root_ = json::parse(text);
+    // A value takes 96 bytes, twice or thrice that while its array grows: more values than the memory law pays for are refused.
+    constexpr std::size_t kAllowance = 2000;
+    std::optional<Json> root = parse_json(text, source.bytes.size() / 30 + kAllowance);
+    if (!root) fail(source, "damaged: the JSON of this glTF file is not well formed (truncated?), or has too many values for its size");
+    root_ = std::move(*root);
     if (!root_.is_object()) fail(source, "expected a JSON object at the root of a glTF file");
   }
 
@@ -83,10 +55,11 @@ class GltfReader {
     cloud.format = binary_ ? "glb" : "gltf";
     cloud.scalar = Scalar::kFloat64;
     cloud.property_names = {"x", "y", "z"};
-    const json& nodes = list("nodes");
+    const std::vector<Json>& nodes = list("nodes");
     visited_.assign(nodes.size(), false);
     measuring_ = true;
     traverse(cloud);
+    if (total_ == 0) fail(source_, "no points: no mesh in this glTF file has positions");
     cloud.positions.reserve(static_cast<std::size_t>(total_));
     measuring_ = false;
     visited_.assign(nodes.size(), false);
@@ -96,56 +69,52 @@ class GltfReader {
 
  private:
   void traverse(Cloud& cloud) {
-    const json& nodes = list("nodes");
+    const std::vector<Json>& nodes = list("nodes");
     if (nodes.empty()) {
-      for (const json& mesh : list("meshes")) add_mesh(mesh, kIdentity, cloud);
+      for (const Json& mesh : list("meshes")) add_mesh(mesh, kIdentity, cloud);
       return;
     }
-    const json& scenes = list("scenes");
+    const std::vector<Json>& scenes = list("scenes");
     if (scenes.empty()) {
       for (std::size_t i = 0; i < nodes.size(); ++i) {
         if (!visited_[i]) visit(i, kIdentity, 0, cloud);
       }
       return;
     }
-    const json& scene = item(scenes, root_.value("scene", json(0U)), "scene");
-    if (!scene.contains("nodes")) return;
-    if (!scene["nodes"].is_array()) fail(source_, "expected an array of nodes in the scene");
-    for (const json& node : scene["nodes"]) visit(index(node, nodes.size(), "node"), kIdentity, 0, cloud);
+    const Json* chosen = root_.find("scene");
+    const Json& scene = chosen != nullptr ? item(scenes, *chosen, "scene") : scenes[0];
+    const Json* roots = scene.find("nodes");
+    if (roots == nullptr) return;
+    for (const Json& node : roots->items) visit(index(node, nodes.size(), "node"), kIdentity, 0, cloud);
   }
 
   void visit(std::size_t i, const Matrix& parent, int depth, Cloud& cloud) {
     constexpr int kDeepest = 1000;
     if (visited_[i] || depth > kDeepest) fail(source_, "the nodes of this glTF file are no tree");
     visited_[i] = true;
-    const json& node = list("nodes")[i];
-    if (!node.is_object()) fail(source_, "expected an object for a node");
+    const Json& node = list("nodes")[i];
     const Matrix transform = product(parent, local(node));
-    if (node.contains("mesh")) add_mesh(item(list("meshes"), node["mesh"], "mesh"), transform, cloud);
-    if (!node.contains("children")) return;
-    for (const json& child : node["children"]) visit(index(child, visited_.size(), "node"), transform, depth + 1, cloud);
+    if (const Json* mesh = node.find("mesh")) add_mesh(item(list("meshes"), *mesh, "mesh"), transform, cloud);
+    const Json* children = node.find("children");
+    if (children == nullptr) return;
+    for (const Json& child : children->items) visit(index(child, visited_.size(), "node"), transform, depth + 1, cloud);
   }
 
-  void add_mesh(const json& mesh, const Matrix& transform, Cloud& cloud) {
-    if (!mesh.is_object() || !mesh.contains("primitives") || !mesh["primitives"].is_array()) fail(source_, "expected primitives in a mesh");
-    for (const json& primitive : mesh["primitives"]) {
-      if (!primitive.is_object() || !primitive.contains("attributes") || !primitive["attributes"].is_object())
-        fail(source_, "expected attributes in a primitive");
-      const json& attributes = primitive["attributes"];
-      if (attributes.contains("POSITION")) add_positions(item(list("accessors"), attributes["POSITION"], "accessor"), transform, cloud);
+  void add_mesh(const Json& mesh, const Matrix& transform, Cloud& cloud) {
+    for (const Json& primitive : member(mesh, "primitives").items) {
+      const Json* position = member(primitive, "attributes").find("POSITION");
+      if (position != nullptr) add_positions(item(list("accessors"), *position, "accessor"), transform, cloud);
     }
   }
 
-  void add_positions(const json& accessor, const Matrix& m, Cloud& cloud) {
-    constexpr int kFloat = 5126;
-    if (!accessor.is_object() || accessor.value("componentType", json()) != kFloat || accessor.value("type", json()) != "VEC3") {
+  void add_positions(const Json& accessor, const Matrix& m, Cloud& cloud) {
+    constexpr std::uint64_t kFloat = 5126;
+    if (member(accessor, "componentType").whole() != kFloat || member(accessor, "type").text != "VEC3") {
       fail(source_, "expected positions of component type float and type VEC3 (quantised or compressed glTF is not read)");
     }
-    if (accessor.contains("sparse") || !accessor.contains("bufferView"))
-      fail(source_, "positions in a sparse or compressed accessor are not read");
-    const json& view = item(list("bufferViews"), accessor["bufferView"], "buffer view");
-    if (!view.is_object()) fail(source_, "expected an object for a buffer view");
-    const std::string_view buffer = buffers_[index(view.value("buffer", json()), buffers_.size(), "buffer")];
+    if (accessor.find("sparse") != nullptr) fail(source_, "positions in a sparse accessor are not read");
+    const Json& view = item(list("bufferViews"), member(accessor, "bufferView"), "buffer view");
+    const std::string_view buffer = buffers_[index(member(view, "buffer"), buffers_.size(), "buffer")];
     const std::uint64_t view_at = whole(view, "byteOffset", 0);
     const std::uint64_t view_bytes = whole(view, "byteLength", 0);
     const std::uint64_t stride = whole(view, "byteStride", 12);
@@ -178,12 +147,12 @@ class GltfReader {
   }
 
   // glTF demands the bounds of positions; where they do not hold, count or offset may be damaged.
-  void check_bounds(const json& accessor, const double* low, const double* high, Cloud& cloud) const {
+  void check_bounds(const Json& accessor, const double* low, const double* high, Cloud& cloud) const {
     const auto differs = [&](const char* key, const double* found) {
-      const json bounds = accessor.value(key, json());
+      const Json* bounds = accessor.find(key);
+      if (bounds == nullptr || bounds->items.size() != 3) return true;
       for (std::size_t a = 0; a < 3; ++a) {
-        if (!bounds.is_array() || bounds.size() != 3 || !bounds[a].is_number()) return true;
-        if (!(std::abs(bounds[a].get<double>() - found[a]) <= 1e-5 * (std::abs(low[a]) + std::abs(high[a])))) return true;
+        if (!(std::abs(bounds->items[a].number - found[a]) <= 1e-5 * (std::abs(low[a]) + std::abs(high[a])))) return true;
       }
       return false;
     };
@@ -192,18 +161,15 @@ class GltfReader {
     }
   }
 
-  Matrix local(const json& node) {
+  Matrix local(const Json& node) const {
     Matrix m = kIdentity;
-    if (node.contains("matrix")) {
-      numbers(node["matrix"], m.data(), 16);
-      return m;
-    }
+    if (numbers(node, "matrix", m.data(), 16)) return m;
     double t[3] = {0, 0, 0};
     double q[4] = {0, 0, 0, 1};
     double s[3] = {1, 1, 1};
-    if (node.contains("translation")) numbers(node["translation"], t, 3);
-    if (node.contains("rotation")) numbers(node["rotation"], q, 4);
-    if (node.contains("scale")) numbers(node["scale"], s, 3);
+    numbers(node, "translation", t, 3);
+    numbers(node, "rotation", q, 4);
+    numbers(node, "scale", s, 3);
     const double x = q[0], y = q[1], z = q[2], w = q[3];
     return {(1 - 2 * (y * y + z * z)) * s[0],
             2 * (x * y + z * w) * s[0],
@@ -234,18 +200,17 @@ class GltfReader {
   }
 
   void load_buffers() {
-    const json& buffers = list("buffers");
+    const std::vector<Json>& buffers = list("buffers");
     buffers_.reserve(buffers.size());
     decoded_.reserve(buffers.size());
-    for (const json& buffer : buffers) {
-      if (!buffer.is_object()) fail(source_, "expected an object for a buffer");
-      if (!buffer.contains("uri")) {
+    for (const Json& buffer : buffers) {
+      const Json* address = buffer.find("uri");
+      if (address == nullptr) {
         if (!binary_) fail(source_, "a buffer without data");
         buffers_.push_back(*binary_);
         continue;
       }
-      if (!buffer["uri"].is_string()) fail(source_, "expected text for the uri of a buffer");
-      const std::string_view uri = buffer["uri"].get_ref<const std::string&>();
+      const std::string_view uri = address->text;
       const std::size_t comma = uri.find(";base64,");
       if (!uri.starts_with("data:") || comma == std::string_view::npos)
         fail(source_, "the points are in another file, which is not opened: convert to GLB");
@@ -257,39 +222,52 @@ class GltfReader {
   }
 
   // A top-level array, empty if absent.
-  const json& list(const char* key) const {
-    static const json kEmpty = json::array();
-    const auto found = root_.find(key);
-    if (found == root_.end()) return kEmpty;
-    if (!found->is_array()) fail(source_, std::string("expected an array of ") + key);
+  const std::vector<Json>& list(std::string_view key) const {
+    static const std::vector<Json> kEmpty;
+    const Json* found = root_.find(key);
+    if (found == nullptr) return kEmpty;
+    if (!found->is_array()) fail(source_, "expected an array of " + std::string(key));
+    return found->items;
+  }
+
+  const Json& member(const Json& object, std::string_view key) const {
+    const Json* found = object.find(key);
+    if (found == nullptr) fail(source_, "expected the key " + quote(key) + " in this glTF file");
     return *found;
   }
 
-  std::size_t index(const json& value, std::size_t size, const char* what) const {
-    if (!value.is_number_unsigned() || value.get<std::uint64_t>() >= size)
-      fail(source_, std::string("the index of a ") + what + " is out of range");
-    return value.get<std::size_t>();
+  std::size_t index(const Json& value, std::size_t size, const char* what) const {
+    const std::optional<std::uint64_t> whole = value.whole();
+    if (!whole || *whole >= size) fail(source_, std::string("the index of a ") + what + " is out of range");
+    return static_cast<std::size_t>(*whole);
   }
-  const json& item(const json& array, const json& value, const char* what) const { return array[index(value, array.size(), what)]; }
-
-  std::uint64_t whole(const json& object, const char* key, std::uint64_t otherwise) const {
-    const auto found = object.find(key);
-    if (found == object.end()) return otherwise;
-    if (!found->is_number_unsigned()) fail(source_, std::string("expected a whole number for ") + key);
-    return found->get<std::uint64_t>();
+  const Json& item(const std::vector<Json>& array, const Json& value, const char* what) const {
+    return array[index(value, array.size(), what)];
   }
 
-  void numbers(const json& array, double* out, std::size_t count) const {
-    if (!array.is_array() || array.size() != count) fail(source_, "expected " + std::to_string(count) + " numbers in a node's transform");
+  std::uint64_t whole(const Json& object, std::string_view key, std::uint64_t otherwise) const {
+    const Json* found = object.find(key);
+    if (found == nullptr) return otherwise;
+    const std::optional<std::uint64_t> value = found->whole();
+    if (!value) fail(source_, "expected a whole number for " + quote(key));
+    return *value;
+  }
+
+  // Reads an array of numbers into `out`; false if there is none.
+  bool numbers(const Json& object, std::string_view key, double* out, std::size_t count) const {
+    const Json* found = object.find(key);
+    if (found == nullptr) return false;
+    if (found->items.size() != count) fail(source_, "expected " + std::to_string(count) + " numbers in a node's transform");
     for (std::size_t i = 0; i < count; ++i) {
-      if (!array[i].is_number()) fail(source_, "expected a number in a node's transform");
-      out[i] = array[i].get<double>();
+      if (!found->items[i].is_number()) fail(source_, "expected a number in a node's transform");
+      out[i] = found->items[i].number;
     }
+    return true;
   }
 
   const Source& source_;
   std::optional<std::string_view> binary_;
-  json root_;
+  Json root_;
   std::vector<std::string> decoded_;
   std::vector<std::string_view> buffers_;
   std::vector<bool> visited_;

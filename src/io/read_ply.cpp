@@ -232,11 +232,62 @@ std::shared_ptr<Attributes> read_table(const Source& source, Cloud& cloud) {
   return table;
 }
 
+// The lists of corners of the element "face".
+class Faces {
+ public:
+  explicit Faces(const Attributes& table) {
+    const auto face = std::find_if(table.elements.begin(), table.elements.end(), [](const Element& e) { return e.name == "face"; });
+    if (face == table.elements.end()) return;
+    element_ = &*face;
+    indices_ = std::min(face->find("vertex_indices"), face->find("vertex_index"));
+  }
+  [[nodiscard]] bool exist() const { return element_ != nullptr && indices_ != Element::npos; }
+  [[nodiscard]] const Property& list() const { return element_->properties[indices_]; }
+  [[nodiscard]] bool are_integer_lists() const { return exist() && list().list && !is_float(list().type); }
+  // visit(face, number of corners, address of the first)
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    RecordLayout layout(*element_);
+    const char* record = element_->data.data();
+    for (std::uint64_t i = 0; i < element_->count; ++i, record += layout.size()) {
+      layout.seek(record);
+      const char* field = record + layout.offset(indices_);
+      visit(i, static_cast<std::size_t>(load_as_double(list().count_type, field)), field + size_of(list().count_type));
+    }
+  }
+
+ private:
+  const Element* element_ = nullptr;
+  std::size_t indices_ = Element::npos;
+};
+
+// Faces that cannot be are a sign that the counts of the header are wrong, even if points alone are wanted.
+void check_faces(const Attributes& table, std::vector<std::string>& warnings) {
+  const Faces faces(table);
+  if (!faces.are_integer_lists()) return;
+  const auto vertices = static_cast<double>(table.points().count);
+  const Type type = faces.list().type;
+  std::size_t damaged = 0;
+  faces.for_each([&](std::uint64_t, std::size_t corners, const char* corner) {
+    bool sound = corners >= 3;
+    for (std::size_t k = 0; sound && k < corners; ++k) {
+      const double index = load_as_double(type, corner + k * size_of(type));
+      sound = index >= 0 && index < vertices;
+    }
+    damaged += sound ? 0 : 1;
+  });
+  if (damaged != 0) {
+    warnings.push_back(std::to_string(damaged) +
+                       " faces have fewer than three corners or name vertices that do not exist: the file may be damaged");
+  }
+}
+
 }  // namespace
 
 Cloud read_ply(const Source& source, const ReadOptions& options) {
   Cloud cloud;
   std::shared_ptr<Attributes> table = read_table(source, cloud);
+  check_faces(*table, cloud.warnings);
   if (is_splat(table->points())) {
     filter_splats(*table, options.min_opacity, cloud.warnings);
     const std::vector<std::array<std::uint8_t, 3>> colors = splat_colors(table->points());
@@ -253,32 +304,21 @@ Mesh read_ply_mesh(const Source& source) {
   Cloud cloud;
   const std::shared_ptr<Attributes> table = read_table(source, cloud);
   fill_cloud(source, table, cloud);
-  const auto face = std::find_if(table->elements.begin(), table->elements.end(), [](const Element& e) { return e.name == "face"; });
-  const std::size_t indices =
-      face == table->elements.end() ? Element::npos : std::min(face->find("vertex_indices"), face->find("vertex_index"));
-  if (indices == Element::npos) fail(source, "no faces: a mesh needs an element \"face\" with a list \"vertex_indices\"");
-  const Property& list = face->properties[indices];
-  if (!list.list || is_float(list.type)) fail(source, "the property \"vertex_indices\" must be a list of integers");
+  const Faces faces(*table);
+  if (!faces.exist()) fail(source, "no faces: a mesh needs an element \"face\" with a list \"vertex_indices\"");
+  if (!faces.are_integer_lists()) fail(source, "the property \"vertex_indices\" must be a list of integers");
 
   Mesh mesh;
   mesh.vertices = std::move(cloud.positions);
   mesh.colors = std::move(cloud.colors);
   mesh.confidence = std::move(cloud.confidence);
-  RecordLayout layout(*face);
-  const auto for_each_face = [&](const auto& visit) {
-    const char* record = face->data.data();
-    for (std::uint64_t i = 0; i < face->count; ++i, record += layout.size()) {
-      layout.seek(record);
-      const char* field = record + layout.offset(indices);
-      visit(i, static_cast<std::size_t>(load_as_double(list.count_type, field)), field + size_of(list.count_type));
-    }
-  };
   Fans fans(source, mesh);
-  for_each_face([&](std::uint64_t, std::size_t corners, const char*) { fans.count(corners); });
+  faces.for_each([&](std::uint64_t, std::size_t corners, const char*) { fans.count(corners); });
   fans.reserve();
-  for_each_face([&](std::uint64_t i, std::size_t corners, const char* corner) {
+  const Type type = faces.list().type;
+  faces.for_each([&](std::uint64_t i, std::size_t corners, const char* corner) {
     fans.begin(i, "face");
-    for (std::size_t k = 0; k < corners; ++k, corner += size_of(list.type)) fans.corner(load_as_double(list.type, corner));
+    for (std::size_t k = 0; k < corners; ++k, corner += size_of(type)) fans.corner(load_as_double(type, corner));
   });
   return mesh;
 }

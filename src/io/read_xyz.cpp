@@ -88,6 +88,7 @@ struct Shape {
   std::size_t points = 0;
   bool counted = false;  // PTS
   std::vector<std::string> names;
+  bool header_differs = false;  // a header line with another number of columns
   bool overflow = false;
   bool open_end = false;  // the last line has no line end
 };
@@ -129,18 +130,22 @@ void for_each_line(const Source& source, Shape& shape, const Visit& visit) {
 }
 
 // The names of a header line or of a comment such as "//X Y Z", if they are as many as the columns and hold x, y and z.
-std::vector<std::string> find_names(const Source& source, std::size_t columns) {
+std::vector<std::string> find_names(const Source& source, std::size_t columns, bool& header_differs) {
   Lines lines(source.bytes);
   std::string_view line;
   while (lines.next_filled(line)) {
     std::uint64_t count = 0;
     if (parse_integer(line, count)) continue;
     if (!is_comment(line) && !is_header(line)) break;
+    const bool comment = is_comment(line);
     const std::size_t begin = line.find_first_not_of("#/ \t");
     if (begin == std::string_view::npos) continue;
     line.remove_prefix(begin);
     const char separator = separator_of(line);
-    if (count_values(line, separator) != columns) continue;
+    if (count_values(line, separator) != columns) {
+      header_differs = header_differs || !comment;
+      continue;
+    }
     std::vector<std::string> names;
     names.reserve(columns);
     Values values(line, separator);
@@ -173,7 +178,7 @@ Shape measure(const Source& source) {
       fail_at_line(source, number, std::to_string(shape.columns) + " columns on one line: expected one point per line");
     }
   });
-  if (shape.points != 0) shape.names = find_names(source, shape.columns);
+  if (shape.points != 0) shape.names = find_names(source, shape.columns, shape.header_differs);
   return shape;
 }
 
@@ -293,6 +298,7 @@ Cloud read_xyz(const Source& source) {
     parse_points(source, shape, [&](const std::vector<double>& row) { cloud.positions.push_back({row[0], row[1], row[2]}); });
     cloud.property_names = {"x", "y", "z"};
   }
+  if (shape.header_differs) cloud.warnings.emplace_back("the header line has not as many columns as the points: it is not used");
   if (shape.overflow) cloud.warnings.emplace_back("a number is out of double's range: it is taken as infinite (not finite)");
   if (shape.open_end) cloud.warnings.emplace_back("the last line has no line end: the file may be cut");
   return cloud;

@@ -53,7 +53,7 @@ void write_cloud(const std::string& path, const Cloud& cloud, const std::vector<
                  const WriteOptions& options) {
   const std::string format = point_format(path);
   const io::PointData data = io::check_points(cloud, normals, confidence, options);
-  io::OutputFile file(path);
+  io::OutputFile file(path, options.cancel);
   if (format == "ply") {
     io::write_ply(data, file);
   } else if (format == "pcd") {
@@ -73,7 +73,7 @@ void write_cloud(const std::string& path, const Cloud& cloud, const std::vector<
 void write_mesh(const std::string& path, const Mesh& mesh, const WriteOptions& options) {
   const std::string format = mesh_format(path);
   check_mesh_data(mesh);
-  io::OutputFile file(path);
+  io::OutputFile file(path, options.cancel);
   if (format == "ply") {
     io::write_ply_mesh(mesh, options.ascii, file);
   } else if (format == "obj") {

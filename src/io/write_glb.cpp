@@ -6,15 +6,10 @@
 #include <algorithm>
 #include <limits>
 
-#include <nlohmann/json.hpp>
-
 namespace g3r::io {
 
 namespace {
 
-constexpr int kFloat = 5126;
-constexpr int kUnsignedInt = 5125;
-constexpr int kUnsignedByte = 5121;
 constexpr int kArrayBuffer = 34962;
 constexpr int kElementBuffer = 34963;
 
@@ -24,6 +19,27 @@ float to_float(double value) {
   float number = 0;
   store_double(Type::kFloat32, value, reinterpret_cast<char*>(&number));
   return number;
+}
+
+template <class Number>
+void append_array(const std::array<Number, 3>& numbers, std::string& text) {
+  char mark = '[';
+  for (const Number number : numbers) {
+    text += mark;
+    append_number(text, number);
+    mark = ',';
+  }
+  text += ']';
+}
+
+void append_view(std::uint64_t offset, std::uint64_t bytes, int target, std::string& text) {
+  text += R"({"buffer":0,"byteOffset":)";
+  append_number(text, offset);
+  text += R"(,"byteLength":)";
+  append_number(text, bytes);
+  text += R"(,"target":)";
+  append_number(text, static_cast<std::int64_t>(target));
+  text += '}';
 }
 
 }  // namespace
@@ -48,29 +64,35 @@ void write_glb_mesh(const Mesh& mesh, OutputFile& file) {
   const std::uint64_t position_bytes = 12 * std::uint64_t{mesh.vertices.size()};
   const std::uint64_t color_bytes = 4 * std::uint64_t{mesh.colors.size()};
   const std::uint64_t index_bytes = 12 * std::uint64_t{mesh.triangles.size()};
-  using nlohmann::json;
-  json gltf;
-  gltf["asset"] = {{"version", "2.0"}, {"generator", "g3r"}};
-  gltf["scene"] = 0;
-  gltf["scenes"] = json::array({{{"nodes", {0}}}});
-  gltf["nodes"] = json::array({{{"mesh", 0}, {"translation", centre}}});
-  json primitive = {{"attributes", {{"POSITION", 0}}}, {"indices", 1}};
-  gltf["bufferViews"] =
-      json::array({{{"buffer", 0}, {"byteOffset", 0}, {"byteLength", position_bytes}, {"target", kArrayBuffer}},
-                   {{"buffer", 0}, {"byteOffset", position_bytes + color_bytes}, {"byteLength", index_bytes}, {"target", kElementBuffer}}});
-  gltf["accessors"] = json::array(
-      {{{"bufferView", 0}, {"componentType", kFloat}, {"count", mesh.vertices.size()}, {"type", "VEC3"}, {"min", least}, {"max", most}},
-       {{"bufferView", 1}, {"componentType", kUnsignedInt}, {"count", 3 * mesh.triangles.size()}, {"type", "SCALAR"}}});
-  if (!mesh.colors.empty()) {
-    primitive["attributes"]["COLOR_0"] = 2;
-    gltf["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", position_bytes}, {"byteLength", color_bytes}, {"target", kArrayBuffer}});
-    gltf["accessors"].push_back(
-        {{"bufferView", 2}, {"componentType", kUnsignedByte}, {"normalized", true}, {"count", mesh.colors.size()}, {"type", "VEC4"}});
-  }
-  gltf["meshes"] = json::array({{{"primitives", json::array({primitive})}}});
   const std::uint64_t body = position_bytes + color_bytes + index_bytes;
-  gltf["buffers"] = json::array({{{"byteLength", body}}});
-  std::string text = gltf.dump();
+  const bool colored = !mesh.colors.empty();
+  std::string text = R"({"asset":{"version":"2.0","generator":"g3r"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"translation":)";
+  append_array(centre, text);
+  text += R"(}],"meshes":[{"primitives":[{"attributes":{"POSITION":0)";
+  text += colored ? R"(,"COLOR_0":2},"indices":1}]}],)" : R"(},"indices":1}]}],)";
+  text += R"("accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":)";
+  append_number(text, std::uint64_t{mesh.vertices.size()});
+  text += R"(,"min":)";
+  append_array(least, text);
+  text += R"(,"max":)";
+  append_array(most, text);
+  text += R"(},{"bufferView":1,"componentType":5125,"type":"SCALAR","count":)";
+  append_number(text, std::uint64_t{3 * mesh.triangles.size()});
+  if (colored) {
+    text += R"(},{"bufferView":2,"componentType":5121,"normalized":true,"type":"VEC4","count":)";
+    append_number(text, std::uint64_t{mesh.colors.size()});
+  }
+  text += R"(}],"bufferViews":[)";
+  append_view(0, position_bytes, kArrayBuffer, text);
+  text += ',';
+  append_view(position_bytes + color_bytes, index_bytes, kElementBuffer, text);
+  if (colored) {
+    text += ',';
+    append_view(position_bytes, color_bytes, kArrayBuffer, text);
+  }
+  text += R"(],"buffers":[{"byteLength":)";
+  append_number(text, body);
+  text += "}]}";
   text.append((4 - text.size() % 4) % 4, ' ');
   constexpr std::uint64_t kHeaders = 12 + 8 + 8;
   if (body + text.size() + kHeaders > std::numeric_limits<std::uint32_t>::max())
@@ -80,7 +102,7 @@ void write_glb_mesh(const Mesh& mesh, OutputFile& file) {
   append_u32(bytes, 2);
   append_u32(bytes, static_cast<std::uint32_t>(kHeaders + text.size() + body));
   append_u32(bytes, static_cast<std::uint32_t>(text.size()));
-  bytes += "JSON" + text;
+  (bytes += "JSON") += text;
   append_u32(bytes, static_cast<std::uint32_t>(body));
   bytes.append("BIN\0", 4);
   file.write(bytes);

@@ -27,7 +27,8 @@ inline constexpr int kMaxPoissonDepth = 12;
 ///
 /// Coordinates are centred and scaled in double first; vertices come back with single precision relative to the box. Runs on one thread,
 /// because with more the result differs from run to run; the same input gives the same bytes. Concurrent calls wait for each other.
-/// It cannot be cancelled while it runs. docs/design.md has seconds and memory.
+/// It cannot be cancelled while it runs. 50,000 points take about 2.5 s and 130 MB at depth 8, 5 s and 210 MB at depth 10, 15 s at
+/// depth 11.
 ///
 /// Throws InvalidInput: sizes that differ, fewer than 4 points, all points at one place, a coordinate or normal that is not finite,
 /// a zero normal, a depth outside 4..12, or no surface was found.

@@ -14,7 +14,8 @@ namespace {
 constexpr double kEnergyEpsilon = 0.3;         // smaller converges slower, larger blurs thin walls
 constexpr double kEnergyWindingWeight = 0.1;   // larger converges slower, 0 loses nested shells
 constexpr double kEnergyTolerance = 2.5e-3;    // slats and spokes need this residual; smooth shapes get there in half the steps
-constexpr const char* kEnergySchedule = "60 cg";
+constexpr const char* kEnergySchedule = "45 cg";
+constexpr Steps kContinued{10, StepKind::kConjugateGradient};  // more gain little once the smooth part of the error is gone
 // The default for least squares over the harmonics.
 constexpr double kGreenEpsilon = 0.4;          // converges in 10-15 iterations
 constexpr double kGreenConstantWeight = 2;     // the row u = 1 alone tells inside from outside
@@ -23,6 +24,7 @@ constexpr const char* kGreenSchedule = "20 cg";
 constexpr double kRefinementWidth = 0.55;      // of the winding gradient; narrower is noisy, wider rounds edges
 // The paper preset.
 constexpr double kPaperLeafFactor = 0.8;
+constexpr double kPaperLeastEpsilon = 0.15;    // h; below, 80 iterations are far from converged (random samples have very close pairs)
 constexpr const char* kPaperSchedule = "20 sd 60 cg";
 constexpr std::size_t kPaperDensePoints = 500; // "small N": seconds, not minutes
 constexpr int kDefaultDegree = 2;
@@ -83,7 +85,7 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   s.constant_weight = paper ? 1 : kGreenConstantWeight;
   s.winding_weight = kEnergyWindingWeight * spacing;
   s.epsilon = (green ? kGreenEpsilon : kEnergyEpsilon) * spacing;
-  if (paper) s.epsilon = paper_epsilon(cloud);
+  if (paper) s.epsilon = std::max(paper_epsilon(cloud), kPaperLeastEpsilon * spacing);
   if (options.epsilon.unit != Epsilon::Unit::kAuto) s.epsilon = checked_epsilon(options.epsilon, cloud, spacing);
   s.refinement_width = paper ? 0 : kRefinementWidth * spacing;
 
@@ -92,6 +94,8 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
             (options.solver == Solver::kAuto && paper && green && options.schedule.empty() && cloud.size() <= kPaperDensePoints);
   s.schedule_text = !options.schedule.empty() ? options.schedule : paper ? kPaperSchedule : green ? kGreenSchedule : kEnergySchedule;
   s.schedule = parse_schedule(s.schedule_text);
+  s.coarse_to_fine = !paper && !green && options.schedule.empty();
+  s.continued_schedule = {kContinued};
   s.tolerance = options.tolerance >= 0 ? options.tolerance : paper ? 0 : green ? kGreenTolerance : kEnergyTolerance;
   s.sums = sum_plan(options.accuracy, cloud.size());
   return s;

@@ -23,7 +23,9 @@ struct Settings {
   double winding_weight = 0;         ///< energy: l
   double epsilon = 0;
   double refinement_width = 0;       ///< 0: no refinement
-  std::vector<Steps> schedule;
+  bool coarse_to_fine = false;       ///< start from a solution on fewer points
+  std::vector<Steps> schedule;       ///< from eta = 0
+  std::vector<Steps> continued_schedule;  ///< from a coarse solution
   std::string schedule_text;
   double tolerance = 0;
   SumPlan sums;

@@ -24,8 +24,11 @@ constexpr double kHalfAngle = 0.21;       // 24 degrees in all: depth is felt, p
 constexpr double kMargin = 1.08;          // empty border around the object
 constexpr double kDiscPerSpacing = 0.85;  // discs just overlap
 constexpr double kDotPerSpacing = 0.45;   // points without normals stay apart
-constexpr float kHorizon = -0.2F;         // a disc is told to face away below this cosine: at the silhouette, noise alone turns it
-constexpr double kSmoothCosine = 0.8;     // edges sharper than this (37 degrees) stay sharp when shaded
+// Random points leave holes through which the far side would be seen, from its inside: behind every disc lies a larger one.
+constexpr double kFillPerDisc = 2.2;
+constexpr double kFillBehind = 1.5;    // spacings
+constexpr float kHorizon = -0.2F;      // a disc is told to face away below this cosine: at the silhouette, noise alone turns it
+constexpr double kSmoothCosine = 0.8;  // edges sharper than this (37 degrees) stay sharp when shaded
 
 constexpr unsigned kNearGrey = 0x7d838c;
 constexpr unsigned kFarGrey = 0xd5d9df;
@@ -187,6 +190,8 @@ Vector3f disc_color(const Scene& scene, Layer layer, std::size_t i, bool outside
 void draw_points(Canvas& canvas, const Camera& camera, const Scene& scene, Layer layer, double spacing) {
   const bool oriented = !scene.normals.empty() && layer != Layer::kPoints;
   const auto radius = static_cast<float>((oriented ? kDiscPerSpacing : kDotPerSpacing) * spacing * camera.scale);
+  const auto fill_radius = static_cast<float>(kFillPerDisc) * radius;
+  const auto fill_behind = static_cast<float>(kFillBehind * spacing * camera.scale);
   const Vector3f eye(0, 0, static_cast<float>(camera.distance));
   for (std::size_t i = 0; i < scene.points.size(); ++i) {
     if (!view::is_finite(scene.points[i])) continue;
@@ -195,8 +200,10 @@ void draw_points(Canvas& canvas, const Camera& camera, const Scene& scene, Layer
     if (oriented) n = (camera.axes * as_vector(view::unit_or_zero(scene.normals[i]))).cast<float>();
     const bool known = n.squaredNorm() > 0;
     const bool missing = layer == Layer::kNormals && !known;
-    canvas.draw_disc(p, n, radius,
-                     missing ? view::linear_rgb(kUnknown) : disc_color(scene, layer, i, n.dot((eye - p).normalized()) > kHorizon, p.z()));
+    const Vector3f to_eye = (eye - p).normalized();
+    const Vector3f color = missing ? view::linear_rgb(kUnknown) : disc_color(scene, layer, i, n.dot(to_eye) > kHorizon, p.z());
+    canvas.draw_disc(p, n, radius, color);
+    if (known) canvas.draw_disc(p - fill_behind * to_eye, n, fill_radius, color);
   }
 }
 
@@ -221,7 +228,7 @@ Layer best_layer(const Scene& scene) {
 
 std::vector<std::uint8_t> view_png(const Scene& scene, const PictureOptions& options) {
   const Box box = view::check_scene(scene);
-  if (options.tile < 16 || options.tile > 4096) throw InvalidInput("view: the tile must have 16 to 4096 pixels a side");
+  if (options.tile < 16 || options.tile > 2048) throw InvalidInput("view: the tile must have 16 to 2048 pixels a side");
   std::vector<Layer> layers = options.layers;
   if (layers.empty()) layers.push_back(best_layer(scene));
   for (const Layer layer : layers) require_layer(scene, layer);

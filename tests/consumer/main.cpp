@@ -2,7 +2,6 @@
 #include <g3r/eigen.h>
 #include <g3r/g3r.h>
 #include <g3r/io.h>
-#include <g3r/mesh_points.h>
 #include <g3r/metrics.h>
 #include <g3r/view.h>
 

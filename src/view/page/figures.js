@@ -12,7 +12,7 @@ function figure(value) {
 }
 const percent = share => (100 * share).toPrecision(3).replace(/\.?0+$/, '') + ' %';
 const bytes = count => count >= 1e9 ? (count / 1e9).toFixed(2) + ' GB' : (count / 1e6).toFixed(0) + ' MB';
-const time = seconds => seconds >= 100 ? Math.floor(seconds / 60) + ' min ' + Math.round(seconds % 60) + ' s' : figure(seconds) + ' s';
+const time = seconds => seconds < 0.1 ? (1000 * seconds).toPrecision(2) + ' ms' : seconds >= 100 ? Math.floor(seconds / 60) + ' min ' + Math.round(seconds % 60) + ' s' : figure(seconds) + ' s';
 
 function element(tag, text, className) {
   const node = document.createElement(tag);

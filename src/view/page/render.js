@@ -37,7 +37,7 @@ float light(vec3 n) {
 
 const kShaders = {
   point: [kCommon + `
-    uniform float u_size, u_pixels, u_depth_low, u_depth_high;
+    uniform float u_size, u_pixels, u_depth_low, u_depth_high, u_behind;
     uniform int u_mode;   // 0 before, 1 sides, 2 ramp of a_value, 3 a_color
     uniform vec3 u_outside, u_inside, u_unknown, u_near, u_far;
     layout(location = 0) in vec3 a_position;
@@ -48,7 +48,8 @@ const kShaders = {
     flat out vec3 v_normal;
     void main() {
       vec4 p = u_view * vec4(a_position, 1.0);
-      gl_Position = cutAway(a_position) ? vec4(2.0, 2.0, 2.0, 1.0) : u_projection * p;
+      vec4 back = vec4(p.xyz + u_behind * normalize(p.xyz), 1.0);
+      gl_Position = cutAway(a_position) ? vec4(2.0, 2.0, 2.0, 1.0) : u_projection * back;
       gl_PointSize = clamp(2.0 * u_size * u_pixels / max(1e-6, -p.z), 1.5, 256.0);
       vec3 n = u_mode == 0 ? vec3(0.0) : mat3(u_view) * octahedral(a_normal);
       float facing = dot(n, normalize(-p.xyz));
@@ -259,14 +260,20 @@ class Renderer {
     const at = this.use('point', camera, state, mode);
     const surface = mode !== 'before' && scene.points.normal;
     gl.uniform1i(at.u_mode, codes[mode]);
-    gl.uniform1f(at.u_size, (surface ? 0.85 : 0.42) * scene.spacing * state.size);
     gl.uniform1f(at.u_pixels, camera.projection[5] * this.canvas.height / 2);
     gl.uniform1f(at.u_depth_low, camera.distance - scene.radius);
     gl.uniform1f(at.u_depth_high, camera.distance + scene.radius);
     for (const name of ['outside', 'inside', 'unknown', 'near', 'far']) gl.uniform3fv(at['u_' + name], palette[name]);
     gl.bindVertexArray(this.pointArrays[mode === 'error' ? 'error' : 'confidence']);
     gl.enable(gl.SAMPLE_ALPHA_TO_COVERAGE);
-    gl.drawArrays(gl.POINTS, 0, scene.points.count);
+    const draw = (size, behind) => {
+      gl.uniform1f(at.u_size, size * scene.spacing * state.size);
+      gl.uniform1f(at.u_behind, behind * scene.spacing);
+      gl.drawArrays(gl.POINTS, 0, scene.points.count);
+    };
+    draw(surface ? 0.85 : 0.42, 0);
+    // Random points leave holes through which the far side would be seen, from its inside: behind every disc lies a larger one.
+    if (surface && state.size >= 0.7) draw(1.9, 1.5);
     gl.disable(gl.SAMPLE_ALPHA_TO_COVERAGE);
   }
 

@@ -1,0 +1,76 @@
+// g3r view IN... -o OUT: a page (.html) or a picture (.png) of a cloud, a mesh, or both.
+#include <g3r/io.h>
+#include <g3r/view.h>
+
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "commands.h"
+#include "exit_code.h"
+#include "files.h"
+
+namespace g3r::cli {
+namespace {
+
+void add_cloud(const std::string& path, const Settings& settings, Scene& scene) {
+  if (!scene.points.empty()) throw UsageError("view shows one cloud and one mesh; " + path + " is a second cloud");
+  Cloud cloud = read_cloud(path, settings.read_options);
+  scene.points = std::move(cloud.positions);
+  scene.normals = std::move(cloud.normals);
+  scene.confidence = std::move(cloud.confidence);
+  scene.colors = std::move(cloud.colors);
+}
+
+void add_file(const std::string& path, const Settings& settings, Scene& scene) {
+  std::optional<Mesh> mesh = mesh_if_any(path);
+  if (!mesh) return add_cloud(path, settings, scene);
+  if (!scene.mesh.triangles.empty()) throw UsageError("view shows one cloud and one mesh; " + path + " is a second mesh");
+  scene.mesh = std::move(*mesh);
+}
+
+void add_truth(const std::string& path, const Settings& settings, Scene& scene) {
+  Cloud truth = read_cloud(path, settings.read_options);
+  if (truth.normals.empty()) throw InvalidInput(path + ": has no normals to compare with");
+  if (truth.normals.size() != scene.points.size()) {
+    throw InvalidInput(path + ": " + std::to_string(truth.normals.size()) + " points, but the cloud has " +
+                       std::to_string(scene.points.size()));
+  }
+  scene.true_normals = std::move(truth.normals);
+}
+
+std::string read_text(const std::string& path) {
+  std::stringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+Scene read_scene(const Settings& settings) {
+  Scene scene;
+  for (const std::string& path : settings.shown) {
+    scene.title += (scene.title.empty() ? "" : ", ") + std::filesystem::path(path).filename().string();
+    add_file(path, settings, scene);
+  }
+  if (!settings.truth.empty()) add_truth(settings.truth, settings, scene);
+  if (!settings.figures.empty()) scene.report = read_text(settings.figures);
+  return scene;
+}
+
+}  // namespace
+
+int run_view(const Settings& settings, Session& session) {
+  const Scene scene = session.stage("read", [&] { return read_scene(settings); });
+  const std::string bytes = session.stage("draw", [&] {
+    if (std::filesystem::path(settings.output).extension() != ".png") return view_html(scene, settings.page);
+    const std::vector<std::uint8_t> png = view_png(scene, settings.picture);
+    return std::string(png.begin(), png.end());
+  });
+  session.stage("write", [&] { write_text(settings.output, bytes); });
+  session.console().say("wrote " + settings.output);
+  return kOk;
+}
+
+}  // namespace g3r::cli

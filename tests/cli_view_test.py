@@ -1,0 +1,60 @@
+"""Truths about g3r view. Run by ctest with G3R_PROGRAM set to the program."""
+
+import json
+import re
+import struct
+import unittest
+
+from cli_support import *
+
+TETRAHEDRON = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n"
+
+
+class View(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        write_points(self.path("ball.ply"), sphere(300))
+        with open(self.path("solid.off"), "w") as file:
+            file.write(TETRAHEDRON)
+
+    def read(self, name):
+        with open(self.path(name), "rb") as file:
+            return file.read()
+
+    def data(self, page):
+        return json.loads(re.search(rb'id="scene-data">(.*?)</script>', page, re.S).group(1))
+
+    def test_a_cloud_and_a_mesh_make_one_page(self):
+        self.expect(OK, "view", "ball.ply", "solid.off", "-o", "look.html", "--z-up")
+        data = self.data(self.read("look.html"))
+        self.assertEqual((data["points"]["given"], data["mesh"]["given"], data["up"]), (300, 4, "z"))
+        self.assertEqual(data["title"], "ball.ply, solid.off")
+
+    def test_oriented_points_and_the_report_are_shown(self):
+        self.expect(OK, "orient", "ball.ply", "oriented.ply", "--report", "run.json")
+        page = self.expect(OK, "view", "oriented.ply", "--truth", "oriented.ply", "--figures", "run.json", "-o", "-").out
+        data = self.data(page)
+        self.assertIn("normal", data["points"])
+        self.assertIn("confidence", data["points"])
+        self.assertEqual(data["truth"]["wrong_side"], 0)
+        self.assertEqual(data["report"]["input"]["points"], 300)
+
+    def test_a_picture_has_the_size_asked_for(self):
+        self.expect(OK, "view", "solid.off", "-o", "look.png", "--tile", "64", "--dark")
+        self.assertEqual(struct.unpack(">II", self.read("look.png")[16:24]), (128, 128))
+        self.expect(OK, "view", "ball.ply", "solid.off", "-o", "rows.png", "--tile", "32", "--layers", "points,mesh")
+        self.assertEqual(struct.unpack(">II", self.read("rows.png")[16:24]), (128, 64))
+
+    def test_wrong_requests_are_refused_before_any_work(self):
+        self.expect(USAGE, "view", "ball.ply")
+        self.expect(USAGE, "view", "ball.ply", "-o", "look.gif")
+        self.expect(USAGE, "view", "ball.ply", "-o", "look.png", "--layers", "magic")
+        self.expect(USAGE, "view", "ball.ply", "ball.ply", "-o", "look.html")
+        self.expect(NO_INPUT, "view", "nosuch.ply", "-o", "look.html")
+        self.expect(CANNOT_CREATE, "view", "ball.ply", "-o", "no/folder/look.html")
+        self.expect(BAD_DATA, "view", "ball.ply", "-o", "look.png", "--layers", "mesh")
+        self.expect(BAD_DATA, "view", "ball.ply", "--truth", "ball.ply", "-o", "look.html")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,215 @@
+#include <g3r/io.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "io/lzf.h"
+#include "io/text.h"
+#include "io_samples.h"
+
+namespace g3r {
+namespace {
+
+using samples::read;
+
+std::string message_of(const std::string& bytes, const std::string& name = "sample") {
+  try {
+    read(bytes, name);
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Text, NumbersAreReadFromTheFirstToTheLastCharacter) {
+  double v = 0;
+  EXPECT_TRUE(io::parse_double("+1.5e1", v));
+  EXPECT_EQ(v, 15);
+  EXPECT_TRUE(io::parse_double("-.5", v));
+  EXPECT_TRUE(io::parse_double("-nan(ind)", v));
+  EXPECT_TRUE(std::isnan(v));
+  EXPECT_TRUE(io::parse_double("-1.#INF00", v));
+  EXPECT_EQ(v, -std::numeric_limits<double>::infinity());
+  for (const char* bad : {"", "+", "0x10", "1,5", "1.0D3", "1 ", "+-1", "1.#X", "hello"}) EXPECT_FALSE(io::parse_double(bad, v)) << bad;
+}
+
+TEST(Text, NumbersBeyondDoubleAreInfiniteOrZeroAndSaid) {
+  double v = 0;
+  bool overflow = false;
+  EXPECT_TRUE(io::parse_double("-1e999", v, &overflow));
+  EXPECT_EQ(v, -std::numeric_limits<double>::infinity());
+  EXPECT_TRUE(overflow);
+  overflow = false;
+  EXPECT_TRUE(io::parse_double("1e-999", v, &overflow));
+  EXPECT_EQ(v, 0);
+  EXPECT_TRUE(io::parse_double("0." + std::string(400, '0') + "1", v, &overflow));
+  EXPECT_EQ(v, 0);
+  EXPECT_FALSE(overflow);
+}
+
+TEST(Text, AllLineEndsAreLineEnds) {
+  io::Lines lines("a\nb\r\nc\rd");
+  std::string_view line;
+  std::string seen;
+  while (lines.next(line)) seen += std::string(line) + "|";
+  EXPECT_EQ(seen, "a|b|c|d|");
+  EXPECT_EQ(lines.number(), 4U);
+  EXPECT_FALSE(lines.ended());
+}
+
+TEST(Text, ControlCharactersAreEscapedAndLettersAreNot) {
+  EXPECT_EQ(escape_text("a\x1b[2J\n"), "a\\x1b[2J\\x0a");
+  EXPECT_EQ(escape_text("z\xc3\xbcrich"), "z\xc3\xbcrich");
+  EXPECT_EQ(escape_text("\xff"), "\\xff");
+  EXPECT_EQ(escape_text("\xc2\x9b"), "\\xc2\\x9b");           // C1 CSI
+  EXPECT_EQ(escape_text("\xe2\x80\xae"), "\\xe2\\x80\\xae");  // right-to-left override
+}
+
+TEST(Lzf, ExpandsToWhatWasCompressed) {
+  std::string bytes;
+  for (int i = 0; i < 20000; ++i) bytes += static_cast<char>(i * i / 700 % 11);
+  bytes += std::string(1000, 'a');
+  const std::string stream = io::lzf_compress(bytes);
+  EXPECT_LT(stream.size(), bytes.size() / 2);
+  ASSERT_EQ(io::lzf_size(stream), bytes.size());
+  EXPECT_EQ(io::lzf_expand(stream, bytes.size()), bytes);
+  EXPECT_EQ(io::lzf_size(io::lzf_compress("")), 0U);
+  EXPECT_FALSE(io::lzf_size(std::string_view("\xe0\xff\xff", 3)));
+}
+
+TEST(Ply, BigEndianListsAndOtherElementsAreRead) {
+  const Cloud cloud = read(samples::big_endian_ply(5));
+  ASSERT_EQ(cloud.positions.size(), 5U);
+  EXPECT_EQ(cloud.positions[4], (Vec3{4, 8, 0.4}));
+  EXPECT_EQ(cloud.format, "ply binary_big_endian");
+  EXPECT_EQ(cloud.scalar, Scalar::kFloat64);
+  EXPECT_EQ(cloud.property_names, (std::vector<std::string>{"x", "seen", "y", "z"}));
+}
+
+TEST(Ply, FloatColoursMeanZeroToOne) {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nproperty float red\nproperty float "
+      "green\nproperty float blue\nend_header\n";
+  EXPECT_EQ(read(head + "0 0 0 1 0.5 0\n").colors[0], (std::array<std::uint8_t, 3>{255, 128, 0}));
+  EXPECT_EQ(read(head + "0 0 0 255 7 0\n").colors[0], (std::array<std::uint8_t, 3>{255, 7, 0}));
+}
+
+TEST(Ply, NormalsThatAreAllZeroAreNotOffered) {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float "
+      "ny\nproperty float nz\nend_header\n";
+  const Cloud zero = read(head + "1 2 3 0 0 0\n");
+  EXPECT_TRUE(zero.normals.empty());
+  EXPECT_EQ(zero.warnings.size(), 1U);
+  EXPECT_EQ(read(head + "1 2 3 0 0 2\n").normals[0], (Vec3{0, 0, 2}));
+}
+
+TEST(Ply, SplatsBelowTheOpacityAreLeftOut) {
+  std::string file = "ply\nformat binary_little_endian 1.0\nelement vertex 3\n";
+  for (const char* name : {"x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2", "opacity"})
+    file += std::string("property float ") + name + "\n";
+  file += "end_header\n";
+  for (int i = 0; i < 3; ++i) {
+    for (const float v : {static_cast<float>(i), 0.F, 0.F, 0.F, 0.F, 0.F, 100.F, 0.F, -100.F, i == 1 ? -5.F : 5.F}) file += samples::raw(v);
+  }
+  const Cloud cloud = read(file);
+  ASSERT_EQ(cloud.positions.size(), 2U);
+  EXPECT_EQ(cloud.positions[1][0], 2);
+  EXPECT_TRUE(cloud.normals.empty());
+  EXPECT_EQ(cloud.colors[0], (std::array<std::uint8_t, 3>{255, 128, 0}));
+  EXPECT_EQ(read_cloud_bytes(file.data(), file.size(), "splats", {.min_opacity = 0}).positions.size(), 3U);
+}
+
+TEST(Xyz, ColumnsAreToldApartByTheirValues) {
+  const Cloud normals = read("0 0 0 0 0 1\n1 0 0 0 1 0\n");
+  EXPECT_EQ(normals.normals[1], (Vec3{0, 1, 0}));
+  const Cloud colors = read("0 0 0 200 100 0\n1 0 0 7 8 9\n");
+  EXPECT_EQ(colors.colors[1], (std::array<std::uint8_t, 3>{7, 8, 9}));
+  const Cloud all = read("0 0 0 0.5 10 20 30 0 0 1\n");
+  EXPECT_EQ(all.property_names, (std::vector<std::string>{"x", "y", "z", "scalar_4", "red", "green", "blue", "nx", "ny", "nz"}));
+}
+
+TEST(Xyz, AHeaderNamesTheColumns) {
+  const Cloud cloud = read("Intensity;Z;Y;X\n9;3;2;1\n");
+  EXPECT_EQ(cloud.positions[0], (Vec3{1, 2, 3}));
+  EXPECT_EQ(cloud.format, "csv");
+  EXPECT_EQ(read("//X Y Z Nx Ny Nz\n1 2 3 0 0 5\n").normals[0], (Vec3{0, 0, 5}));
+}
+
+TEST(Xyz, TheErrorNamesFileLineAndFind) {
+  const std::string message = message_of("0 0 0\n1 1 1\n0,5 0,25 0,1\n", "a\nb.xyz");
+  EXPECT_EQ(message, "a\\x0ab.xyz: line 3: expected a number, found \"0,5\" (a decimal comma? write numbers with a point)");
+  EXPECT_NE(message_of("3\n0 0 0\n1 1 1\n").find("expected 3 points"), std::string::npos);
+}
+
+TEST(Obj, NormalsPerPointAreKeptAndPerCornerDropped) {
+  const std::string points = "v 1 2 3\nv 4 5 6\nvn 0 0 1\nvn 0 1 0\n";
+  EXPECT_EQ(read(points).normals[1], (Vec3{0, 1, 0}));
+  EXPECT_TRUE(read(points + "f 1//2 2//1 1//2\n").normals.empty());
+}
+
+TEST(Pcd, CompressedIsReadColumnByColumn) {
+  const Cloud cloud = read(samples::compressed_pcd(9));
+  ASSERT_EQ(cloud.positions.size(), 9U);
+  EXPECT_EQ(cloud.positions[5], (Vec3{1, 2, 3}));
+}
+
+TEST(Gltf, NodesMoveTheirPoints) {
+  const Cloud cloud = read(samples::text_gltf());
+  ASSERT_EQ(cloud.positions.size(), 2U);
+  EXPECT_EQ(cloud.positions[1], (Vec3{11, 2, 6}));
+  EXPECT_TRUE(cloud.warnings.empty());
+}
+
+TEST(Stl, EqualCornersAreOneVertex) {
+  EXPECT_EQ(read(samples::written(samples::tetrahedron(), "a.stl")).positions.size(), 4U);
+  EXPECT_EQ(read(samples::written(samples::tetrahedron(), "a.stl", {.ascii = true})).positions.size(), 4U);
+}
+
+TEST(Recognise, StrangersAreNamed) {
+  EXPECT_NE(message_of("").find("empty"), std::string::npos);
+  EXPECT_NE(message_of("\x1f\x8b whatever").find("gzip"), std::string::npos);
+  EXPECT_NE(message_of("ASTM-E57 whatever").find("E57"), std::string::npos);
+  EXPECT_NE(message_of("version https://git-lfs.github.com/spec/v1\n").find("git lfs pull"), std::string::npos);
+  std::string laz = samples::written(samples::helix(5), "a.las");
+  laz[104] = static_cast<char>(laz[104] | 0x80);
+  EXPECT_NE(message_of(laz).find("laszip"), std::string::npos);
+}
+
+TEST(ReadMesh, PolygonsAreFansAndIndicesAreChecked) {
+  const std::string off = "OFF\n5 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n4 0 1 2 3\n3 0 1 4\n";
+  const Mesh mesh = read_mesh_bytes(off.data(), off.size(), "a.off");
+  EXPECT_EQ(mesh.triangles.size(), 3U);
+  EXPECT_EQ(mesh.triangles[1], (std::array<std::uint32_t, 3>{0, 2, 3}));
+  const std::string bad = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n";
+  EXPECT_THROW((void)read_mesh_bytes(bad.data(), bad.size(), "a.obj"), InvalidInput);
+  const std::string relative = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n";
+  EXPECT_EQ(read_mesh_bytes(relative.data(), relative.size(), "a.obj").triangles.size(), 1U);
+}
+
+TEST(Read, MissingFilesAreIoErrors) {
+  try {
+    (void)read_cloud("/nonexistent/cloud.ply");
+    FAIL();
+  } catch (const IoError& error) {
+    EXPECT_EQ(error.kind(), IoError::Kind::kNotFound);
+    EXPECT_STREQ(error.what(), "/nonexistent/cloud.ply: No such file or directory");
+  }
+  EXPECT_THROW((void)read_cloud("/"), IoError);
+}
+
+TEST(Read, AnEndlessStreamOfZerosEndsAtOnce) { EXPECT_THROW((void)read_cloud("/dev/zero"), InvalidInput); }
+
+TEST(Read, QuantisedFloatsAreSaid) {
+  Cloud far = samples::helix(20, Scalar::kFloat32);
+  far.normals.clear();
+  far.colors.clear();
+  for (Vec3& p : far.positions) p[1] += 5e6;
+  const Cloud cloud = read(samples::written(far, "a.ply"));
+  ASSERT_EQ(cloud.warnings.size(), 1U);
+  EXPECT_NE(cloud.warnings[0].find("quantised"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace g3r

@@ -1,0 +1,255 @@
+#include <g3r/io.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include <sys/stat.h>
+
+#include "io_samples.h"
+
+namespace g3r {
+namespace {
+
+using samples::Folder;
+using samples::read;
+using samples::slurp;
+using samples::spill;
+
+template <class Call>
+void expect_io_error(IoError::Kind kind, const Call& call) {
+  try {
+    call();
+    FAIL() << "no error";
+  } catch (const IoError& error) {
+    EXPECT_EQ(error.kind(), kind) << error.what();
+  }
+}
+
+TEST(Orient, PlyKeepsEveryElementPropertyListAndComment) {
+  const Cloud cloud = read(samples::big_endian_ply(7));
+  const std::vector<Vec3> normals(7, Vec3{0, 0, 1});
+  const std::vector<float> confidence(7, 0.25F);
+  for (const bool ascii : {false, true}) {
+    const Folder folder;
+    write_cloud(folder.path("a.ply"), cloud, &normals, &confidence, {.ascii = ascii});
+    const std::string bytes = slurp(folder.path("a.ply"));
+    const std::string header = bytes.substr(0, bytes.find("end_header"));
+    EXPECT_EQ(
+        header.substr(header.find("1.0\n") + 4),
+        "comment by hand\nobj_info kept too\nelement camera 1\nproperty uchar id\nelement vertex 7\nproperty float x\n"
+        "property list uchar short seen\nproperty float y\nproperty double z\nproperty float nx\nproperty float ny\nproperty float nz\n"
+        "property float confidence\n");
+    const Cloud again = read(bytes);
+    EXPECT_EQ(again.positions, cloud.positions);
+    EXPECT_EQ(again.normals, normals);
+    EXPECT_EQ(again.confidence, confidence);
+    if (ascii) {
+      EXPECT_NE(bytes.find("\n2 2 258 259 4 0.2 0 0 1 0.25\n"), std::string::npos) << bytes;
+    }
+  }
+}
+
+TEST(Orient, NormalsInTheFileAreReplacedInTheirPlace) {
+  Cloud cloud = read(samples::written(samples::helix(6), "a.ply"));
+  const std::vector<std::string> names = cloud.property_names;
+  const std::vector<Vec3> normals(6, Vec3{0, 1, 0});
+  const Folder folder;
+  write_cloud(folder.path("a.ply"), cloud, &normals, nullptr);
+  const Cloud again = read_cloud(folder.path("a.ply"));
+  EXPECT_EQ(again.property_names, names);
+  EXPECT_EQ(again.normals, normals);
+}
+
+TEST(Orient, WritingWhatWasReadGivesTheSameBytes) {
+  for (const char* name : {"a.ply", "a.pcd", "a.las", "a.npy", "a.xyz", "a.csv"}) {
+    const std::string bytes = samples::written(samples::helix(30), name);
+    EXPECT_EQ(samples::written(read(bytes), name), bytes) << name;
+  }
+}
+
+TEST(Orient, PcdAndLasKeepTheirFieldsAndTakeNormals) {
+  for (const char* name : {"a.pcd", "a.las"}) {
+    Cloud plain = samples::helix(9);
+    plain.normals.clear();
+    const Cloud cloud = read(samples::written(plain, name));
+    const std::vector<Vec3> normals(9, Vec3{1, 0, 0});
+    const std::vector<float> confidence(9, 0.5F);
+    const Folder folder;
+    write_cloud(folder.path(name), cloud, &normals, &confidence);
+    const Cloud once = read_cloud(folder.path(name));
+    EXPECT_TRUE(once.warnings.empty()) << name;
+    EXPECT_EQ(once.positions, cloud.positions) << name;
+    EXPECT_EQ(once.colors, plain.colors) << name;
+    EXPECT_EQ(once.normals, normals) << name;
+    EXPECT_EQ(once.confidence, confidence) << name;
+    // A second time they are replaced, not added again.
+    const std::vector<Vec3> others(9, Vec3{0, 0, -1});
+    write_cloud(folder.path(name), once, &others, &confidence);
+    const Cloud twice = read_cloud(folder.path(name));
+    EXPECT_EQ(twice.normals, others) << name;
+    EXPECT_EQ(twice.property_names, once.property_names) << name;
+  }
+}
+
+TEST(Write, CoordinatesOfAllFormatsSurvive) {
+  Cloud cloud;
+  for (const Vec3& p : samples::helix(40).positions) cloud.positions.push_back({p[0] + 497233.125, p[1] + 5412345.5, p[2] + 311});
+  for (const char* name : {"a.ply", "a.xyz", "a.txt", "a.csv", "a.pts", "a.pcd", "a.npy", "a.obj", "a.las"}) {
+    const Cloud again = read(samples::written(cloud, name));
+    ASSERT_EQ(again.positions.size(), 40U) << name;
+    EXPECT_EQ(again.scalar, Scalar::kFloat64) << name;
+    for (std::size_t i = 0; i < 40; ++i) {
+      for (std::size_t a = 0; a < 3; ++a)
+        EXPECT_NEAR(again.positions[i][a], cloud.positions[i][a], std::string(name) == "a.las" ? 1e-6 : 0) << name;
+    }
+  }
+}
+
+TEST(Write, NormalsAndColoursOfAllFormatsSurvive) {
+  const Cloud cloud = samples::helix(20);
+  for (const char* name : {"a.ply", "a.xyz", "a.csv", "a.pcd", "a.npy", "a.obj", "a.las"}) {
+    const Cloud again = read(samples::written(cloud, name));
+    ASSERT_EQ(again.normals.size(), 20U) << name;
+    for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(again.normals[7][a], cloud.normals[7][a], 1e-6) << name;
+    if (std::string(name) != "a.npy") {
+      EXPECT_EQ(again.colors, cloud.colors) << name;
+    }
+  }
+}
+
+TEST(Write, EveryPointFormatTakesEveryOther) {
+  for (const samples::Sample& sample : samples::all()) {
+    const Cloud cloud = read(sample.bytes, sample.name);
+    EXPECT_TRUE(cloud.warnings.empty()) << sample.name << ": " << cloud.warnings[0];
+    for (const char* name : {"a.ply", "a.xyz", "a.csv", "a.pts", "a.pcd", "a.npy", "a.obj", "a.las"}) {
+      const Cloud again = read(samples::written(cloud, name));
+      ASSERT_EQ(again.positions.size(), cloud.positions.size()) << sample.name << " to " << name;
+      for (std::size_t a = 0; a < 3; ++a)
+        EXPECT_NEAR(again.positions.back()[a], cloud.positions.back()[a], 1e-8) << sample.name << " to " << name;
+      EXPECT_EQ(again.normals.size(), std::string(name) == "a.pts" || cloud.normals.empty() ? again.normals.size() : cloud.normals.size());
+    }
+  }
+}
+
+TEST(Write, ConfidenceIsNamedForCloudCompareOnRequest) {
+  const Cloud cloud = read(samples::written(samples::helix(4), "a.ply"));
+  const std::vector<float> confidence(4, 1);
+  const Folder folder;
+  write_cloud(folder.path("a.ply"), cloud, nullptr, &confidence, {.cloud_compare_names = true});
+  EXPECT_EQ(read_cloud(folder.path("a.ply")).property_names.back(), "scalar_confidence");
+}
+
+TEST(WriteMesh, EveryFormatGivesTheMeshBack) {
+  Mesh mesh = samples::tetrahedron();
+  for (const char* name : {"a.ply", "a.obj", "a.off", "a.stl"}) {
+    for (const bool ascii : {false, true}) {
+      const std::string bytes = samples::written(mesh, name, {.ascii = ascii});
+      const Mesh again = read_mesh_bytes(bytes.data(), bytes.size(), name);
+      ASSERT_EQ(again.triangles.size(), 4U) << name;
+      EXPECT_EQ(again.vertices.size(), 4U) << name;
+      if (std::string(name) != "a.stl") {
+        EXPECT_EQ(again.triangles, mesh.triangles) << name;
+        EXPECT_EQ(again.vertices, mesh.vertices) << name;
+      }
+    }
+  }
+  mesh.colors = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, {250, 251, 252}};
+  for (const char* name : {"a.ply", "a.obj", "a.off"}) {
+    const std::string bytes = samples::written(mesh, name);
+    EXPECT_EQ(read_mesh_bytes(bytes.data(), bytes.size(), name).colors, mesh.colors) << name;
+  }
+}
+
+TEST(WriteMesh, GlbKeepsGeoreferencedPositions) {
+  Mesh mesh = samples::tetrahedron();
+  for (Vec3& v : mesh.vertices) v = {v[0] + 497233.125, v[1] + 5412345.5, v[2] + 311};
+  mesh.colors = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, {250, 251, 252}};
+  const Cloud cloud = read(samples::written(mesh, "a.glb"));
+  EXPECT_TRUE(cloud.warnings.empty());
+  ASSERT_EQ(cloud.positions.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(cloud.positions[i][a], mesh.vertices[i][a], 1e-6);
+  }
+}
+
+TEST(WriteMesh, EmptyAndDamagedMeshesAreRefused) {
+  const Folder folder;
+  EXPECT_THROW(write_mesh(folder.path("a.ply"), Mesh{}), InvalidInput);
+  Mesh mesh = samples::tetrahedron();
+  mesh.vertices[0][0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(write_mesh(folder.path("a.ply"), mesh), InvalidInput);
+  EXPECT_EQ(folder.files(), 0U);
+}
+
+TEST(Write, WrongSizesAndNormalsThatAreNotFiniteAreRefused) {
+  const Folder folder;
+  const Cloud cloud = samples::helix(4);
+  const std::vector<Vec3> few(3);
+  EXPECT_THROW(write_cloud(folder.path("a.ply"), cloud, &few, nullptr), InvalidInput);
+  const std::vector<Vec3> odd(4, Vec3{0, 0, std::numeric_limits<double>::infinity()});
+  EXPECT_THROW(write_cloud(folder.path("a.ply"), cloud, &odd, nullptr), InvalidInput);
+  EXPECT_THROW(write_cloud(folder.path("a.what"), cloud, nullptr, nullptr), InvalidInput);
+  EXPECT_EQ(folder.files(), 0U);
+}
+
+TEST(Write, ModeAndLinksOfAnExistingFileAreKept) {
+  const Folder folder;
+  spill(folder.path("real.ply"), "old");
+  ::chmod(folder.path("real.ply").c_str(), 0640);
+  std::filesystem::create_symlink("real.ply", folder.path("link.ply"));
+  write_cloud(folder.path("link.ply"), samples::helix(4), nullptr, nullptr);
+  EXPECT_TRUE(std::filesystem::is_symlink(folder.path("link.ply")));
+  struct stat status {};
+  ::stat(folder.path("real.ply").c_str(), &status);
+  EXPECT_EQ(status.st_mode & 0777U, 0640U);
+  EXPECT_EQ(read_cloud(folder.path("real.ply")).positions.size(), 4U);
+  EXPECT_EQ(folder.files(), 2U);
+}
+
+TEST(Write, ATemporaryFileLeftBehindIsRemovedByTheNextWrite) {
+  const Folder folder;
+  spill(folder.path(".a.ply.g3r.tmp"), "left by a killed process");
+  write_cloud(folder.path("a.ply"), samples::helix(4), nullptr, nullptr);
+  EXPECT_EQ(folder.files(), 1U);
+}
+
+TEST(Write, NamesOf255BytesWork) {
+  const Folder folder;
+  const std::string name = std::string(251, 'n') + ".ply";
+  write_cloud(folder.path(name), samples::helix(4), nullptr, nullptr);
+  EXPECT_EQ(read_cloud(folder.path(name)).positions.size(), 4U);
+}
+
+TEST(Write, AFullDeviceIsAnErrorAndStaysADevice) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP();
+  expect_io_error(IoError::Kind::kFailed, [] { write_file("/dev/full", std::string(100, 'x')); });
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+TEST(CheckOutput, RefusesBeforeAnyWork) {
+  const Folder folder;
+  spill(folder.path("in.ply"), "x");
+  std::filesystem::create_hard_link(folder.path("in.ply"), folder.path("hard.ply"));
+  std::filesystem::create_symlink("in.ply", folder.path("soft.ply"));
+  for (const char* name : {"in.ply", "./in.ply", "hard.ply", "soft.ply"}) {
+    expect_io_error(IoError::Kind::kCannotCreate, [&] { check_output(folder.path(name), {folder.path("in.ply")}, false); });
+  }
+  expect_io_error(IoError::Kind::kCannotCreate, [&] { check_output(folder.path("no/such/out.ply"), {}, false); });
+  std::filesystem::create_directory(folder.path("dir.ply"));
+  expect_io_error(IoError::Kind::kCannotCreate, [&] { check_output(folder.path("dir.ply"), {}, false); });
+  EXPECT_THROW(check_output(folder.path("out.what"), {}, false), InvalidInput);
+  EXPECT_THROW(check_output(folder.path("out"), {}, true), InvalidInput);
+  EXPECT_THROW(check_output(folder.path("out.las"), {}, true), InvalidInput);
+  check_output(folder.path("out.glb"), {folder.path("in.ply")}, true);
+  check_output("-", {}, false);
+  EXPECT_EQ(folder.files(), 4U);
+  if (::geteuid() != 0) {
+    ::chmod(folder.path("dir.ply").c_str(), 0555);
+    expect_io_error(IoError::Kind::kCannotCreate, [&] { check_output(folder.path("dir.ply/out.ply"), {}, false); });
+  }
+}
+
+}  // namespace
+}  // namespace g3r
