@@ -32,9 +32,10 @@ constexpr int kMaxSpread = 4;        // levels that locally dense or sparse samp
 constexpr double kLocalReach = 1.8;  // spacings from the nearest point within which the fitted surface gives the side
 constexpr double kThin = 1.3;        // walls and gaps get cells of at most their thickness over this,
 constexpr double kMaxThin = 2.0;     // but not smaller than a normal cell over this
-constexpr double kLeastSpacing = 1e-2;  // of the median; clusters of almost equal points are no denser for the fits than this
-constexpr double kNoisy = 0.15;         // spacings: positions that scatter more than this are smoothed first
-constexpr double kFieldSure = 0.2;      // |w - level| from which the field overrules the fitted surface
+constexpr double kLeastSpacing = 1e-2;       // of the median; clusters of almost equal points are no denser for the fits than this
+constexpr std::size_t kLevelPoints = 10000;  // the median of so many values is good to 1 % of their scatter
+constexpr double kNoisy = 0.15;              // spacings: positions that scatter more than this are smoothed first
+constexpr double kFieldSure = 0.2;           // |w - level| from which the field overrules the fitted surface
 
 void report(const Monitor& monitor, double fraction) {
   if (monitor.cancel != nullptr && monitor.cancel->load()) throw Cancelled();
@@ -64,6 +65,16 @@ OrientedPoints prepare(const std::vector<Vec3>& points, const std::vector<Vec3>&
   report(monitor, 0.05);
   if (noise > kNoisy) mesh::denoise(out, local, found, monitor.cancel);
   return out;
+}
+
+// The median of the field over the points, or evenly many of them.
+double surface_level(const std::vector<Vec3>& points, const FieldSampler& sampler) {
+  const std::size_t count = std::min(points.size(), kLevelPoints);
+  std::vector<Vec3> places;
+  for (std::size_t i = 0; i < count; ++i) places.push_back(points[i * points.size() / count]);
+  std::vector<double> value;
+  sampler.sample(places, value, nullptr);
+  return median(std::move(value));
 }
 
 // `thickness`: of the walls at each point, empty to disregard it.
@@ -151,9 +162,7 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
   double noise = 0;
   const OrientedPoints oriented = prepare(points, normals, noise, monitor);
   const double spacing = median(oriented.spacing);
-  std::vector<double> at_points;
-  sampler.sample(oriented.positions, at_points, nullptr);
-  const double level = median(std::move(at_points));
+  const double level = surface_level(oriented.positions, sampler);
   const LocalFit local(oriented, LocalFitOptions{});
   report(monitor, 0.2);
 
