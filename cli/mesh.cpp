@@ -1,7 +1,6 @@
 // g3r mesh ORIENTED OUT: points that already have outward normals in, a mesh out.
 #include <g3r/g3r.h>
 #include <g3r/io.h>
-#include <g3r/mesh_points.h>
 
 #include "commands.h"
 #include "summary.h"
@@ -17,8 +16,7 @@ int run_mesh(const Settings& settings, Session& session) {
       session.stage("mesh", [&] { return mesh_oriented(cloud.positions, cloud.normals, settings.mesh_options, session.monitor()); });
   const MeshCheck check = check_mesh(mesh);
   session.stage("carry", [&] {
-    if (!cloud.confidence.empty()) mesh.confidence = carry_confidence(mesh, cloud.positions, cloud.confidence);
-    if (!cloud.colors.empty()) mesh.colors = carry_colors(mesh, cloud.positions, cloud.colors);
+    carry_attributes(mesh, cloud.positions, cloud.colors, cloud.confidence);
   });
   session.stage("write", [&] { write_mesh(settings.output, mesh, session.cancellable(settings.write_options)); });
   Stats stats;

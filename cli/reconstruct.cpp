@@ -1,26 +1,15 @@
 // g3r IN [OUT]: an unoriented cloud in, a watertight mesh out.
 #include <g3r/g3r.h>
 #include <g3r/io.h>
-#include <g3r/mesh_points.h>
 
 #include "commands.h"
 #include "summary.h"
 
 namespace g3r::cli {
-namespace {
-
-/// Gives the vertices what the points next to them have.
-void carry_over(Reconstruction& result, const Cloud& cloud) {
-  result.mesh.confidence = carry_confidence(result.mesh, cloud.positions, result.orientation.confidence);
-  if (!cloud.colors.empty()) result.mesh.colors = carry_colors(result.mesh, cloud.positions, cloud.colors);
-}
-
-}  // namespace
-
 int run_reconstruct(const Settings& settings, Session& session) {
   const Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, settings.read_options); });
   Reconstruction result = reconstruct(cloud.positions, settings.options, settings.mesh_options, session.monitor());
-  session.stage("carry", [&] { carry_over(result, cloud); });
+  session.stage("carry", [&] { carry_attributes(result.mesh, cloud.positions, cloud.colors, result.orientation.confidence); });
   session.stage("write", [&] { write_mesh(settings.output, result.mesh, session.cancellable(settings.write_options)); });
   Stats& stats = result.orientation.stats;
   stats.warnings.insert(stats.warnings.begin(), cloud.warnings.begin(), cloud.warnings.end());

@@ -94,12 +94,6 @@ double relative_error(std::vector<double> a, const std::vector<double>& truth) {
 }
 double relative_error(const std::vector<Vec3>& a, const std::vector<Vec3>& truth) { return relative_error(flat(a), flat(truth)); }
 
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
 double spacing_of(const std::vector<Vec3>& points) { return 1.0 / std::sqrt(static_cast<double>(points.size())); }
 
 // Worst relative error of all sums of one plan on one cloud.
