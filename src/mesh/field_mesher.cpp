@@ -121,7 +121,7 @@ class Side {
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) {
             const Eigen::Vector3d x(places[i][0], places[i][1], places[i][2]);
-            const LocalSurface fit = local_.fit(x, kLocalReach);
+            const LocalSurface fit = local_.fit(x, kLocalReach, nullptr, LocalFit::Detail::kSide);
             if (fit.count == 0) continue;
             value[i] = -fit.distance(x);
             sure[i] = fit.simple ? 1 : 0;
