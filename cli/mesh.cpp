@@ -15,9 +15,13 @@ int run_mesh(const Settings& settings, Session& session) {
   Mesh mesh =
       session.stage("mesh", [&] { return mesh_oriented(cloud.positions, cloud.normals, settings.mesh_options, session.monitor()); });
   const MeshCheck check = check_mesh(mesh);
+<<<<<<< HEAD
   session.stage("carry", [&] {
     carry_attributes(mesh, cloud.positions, cloud.colors, cloud.confidence);
   });
+=======
+  session.stage("carry", [&] { carry_attributes(mesh, cloud.positions, cloud.colors, cloud.confidence); });
+>>>>>>> cli
   session.stage("write", [&] { write_mesh(settings.output, mesh, session.cancellable(settings.write_options)); });
   Stats stats;
   stats.points = stats.used = cloud.positions.size();

@@ -6,6 +6,10 @@
 #include "summary.h"
 
 namespace g3r::cli {
+<<<<<<< HEAD
+=======
+
+>>>>>>> cli
 int run_reconstruct(const Settings& settings, Session& session) {
   const Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, settings.read_options); });
   Reconstruction result = reconstruct(cloud.positions, settings.options, settings.mesh_options, session.monitor());

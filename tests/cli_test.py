@@ -7,6 +7,7 @@ import json
 import math
 import os
 import pty
+import random
 import resource
 import shutil
 import subprocess
@@ -161,6 +162,14 @@ class ExitCodes(ProgramTest):
         self.expect(BAD_DATA, *doubtful, "--strict")
         self.assertTrue(os.path.exists(self.path("out.ply")))
         self.expect(OK, "orient", "ball.ply", "out.ply", "--strict")
+
+    def test_a_cloud_without_an_inside_is_told(self):
+        random_ = random.Random(3)
+        write_points(self.path("dust.ply"), [[random_.random() for _ in range(3)] for _ in range(3000)])
+        result = self.expect(OK, "orient", "dust.ply", "out.ply", "--report", "r.json")
+        self.assertIn("warning", result.err)
+        self.assertFalse(self.json_of("r.json")["consistent"])
+        self.expect(BAD_DATA, "orient", "dust.ply", "out.ply", "--strict")
 
 
 class Streams(ProgramTest):

@@ -96,36 +96,43 @@ double relative_error(const std::vector<Vec3>& a, const std::vector<Vec3>& truth
 
 double spacing_of(const std::vector<Vec3>& points) { return 1.0 / std::sqrt(static_cast<double>(points.size())); }
 
+// One cloud's inputs and the true results of every sum.
+struct Truth {
+  const std::vector<Vec3>& points;
+  Widths widths;
+  HarmonicValues u = evaluate_harmonics(harmonics_of_degrees(0, 2), points);
+  std::vector<Vec3> eta = random_vectors(points.size(), 1);
+  std::vector<double> q = random_values(points.size() * u.count, 2);
+  std::vector<double> q1 = random_values(points.size(), 3);
+  std::vector<double> green = direct_sum::green(points, widths, u, eta);
+  std::vector<Vec3> green_adjoint = direct_sum::green_adjoint(points, widths, u, q);
+  std::vector<Vec3> stokes = direct_sum::stokes_single_layer(points, widths, eta);
+  std::vector<double> winding;
+  std::vector<Vec3> winding_adjoint;
+  std::vector<Vec3> gradient;
+
+  Truth(const std::vector<Vec3>& p, Widths w) : points(p), widths(std::move(w)) {
+    const HarmonicValues one = evaluate_harmonics(harmonics_of_degrees(0, 0), points);
+    winding = direct_sum::green(points, widths, one, eta);
+    winding_adjoint = direct_sum::green_adjoint(points, widths, one, q1);
+    for (double& v : winding) v /= one.value[0];
+    for (Vec3& v : winding_adjoint) {
+      for (double& c : v) c /= one.value[0];
+    }
+    if (widths.uniform()) gradient = direct_sum::winding_gradient(points, widths[0], eta, points);
+  }
+};
+
 // Worst relative error of all sums of one plan on one cloud.
-double worst_error(const std::vector<Vec3>& points, const Widths& widths, const SumPlan& plan) {
-  FastSum sum(points, codes(points), widths, plan);
-  const std::vector<Vec3> eta = random_vectors(points.size(), 1);
-  const HarmonicValues u = evaluate_harmonics(harmonics_of_degrees(0, 2), points);
-  const std::vector<double> q = random_values(points.size() * u.count, 2);
-  const std::vector<double> q1 = random_values(points.size(), 3);
+double worst_error(const Truth& truth, const SumPlan& plan) {
+  FastSum sum(truth.points, codes(truth.points), truth.widths, plan);
   std::vector<Vec3> s;
   std::vector<double> w;
-  sum.stokes_winding(eta, s, w);
-  const HarmonicValues one = evaluate_harmonics(harmonics_of_degrees(0, 0), points);
-  std::vector<double> w_true = direct_sum::green(points, widths, one, eta);
-  for (double& v : w_true) v /= one.value[0];
-  std::vector<Vec3> wt_true = direct_sum::green_adjoint(points, widths, one, q1);
-  for (Vec3& v : wt_true) {
-    for (double& c : v) c /= one.value[0];
-  }
-  double worst = 0;
-  const auto check = [&](const char* name, double error) {
-    if (std::getenv("G3R_VERBOSE") != nullptr) std::printf("    %-14s %.2e\n", name, error);
-    worst = std::max(worst, error);
-  };
-  check("green", relative_error(sum.green(u, eta), direct_sum::green(points, widths, u, eta)));
-  check("green adjoint", relative_error(sum.green_adjoint(u, q), direct_sum::green_adjoint(points, widths, u, q)));
-  check("stokes", relative_error(s, direct_sum::stokes_single_layer(points, widths, eta)));
-  check("winding", relative_error(w, w_true));
-  check("winding adj", relative_error(sum.winding_adjoint(q1), wt_true));
-  if (widths.uniform()) {
-    check("gradient", relative_error(sum.winding_gradient(eta), direct_sum::winding_gradient(points, widths[0], eta, points)));
-  }
+  sum.stokes_winding(truth.eta, s, w);
+  double worst = std::max({relative_error(sum.green(truth.u, truth.eta), truth.green),
+                           relative_error(sum.green_adjoint(truth.u, truth.q), truth.green_adjoint), relative_error(s, truth.stokes),
+                           relative_error(w, truth.winding), relative_error(sum.winding_adjoint(truth.q1), truth.winding_adjoint)});
+  if (truth.widths.uniform()) worst = std::max(worst, relative_error(sum.winding_gradient(truth.eta), truth.gradient));
   return worst;
 }
 
@@ -133,14 +140,32 @@ TEST(FastSum, ErrorStaysBelowTheAccuracy) {
   for (const std::size_t n : {1UL, 2UL, 9UL, 100UL, 3000UL}) {
     for (const Case& c : clouds(n)) {
       if (n < 4 && c.name != "sphere") continue;
+      const Truth truth(c.points, Widths(0.4 * spacing_of(c.points)));
       for (const double accuracy : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
-        const SumPlan plan = sum_plan(accuracy, n);  // direct below the crossover
-        const double error = worst_error(c.points, Widths(0.4 * spacing_of(c.points)), plan);
-        if (std::getenv("G3R_VERBOSE") != nullptr) std::printf("%-18s n=%zu tol=%g error=%.2e\n", c.name.c_str(), n, accuracy, error);
-        EXPECT_LE(error, accuracy) << c.name << " n=" << n << " accuracy " << accuracy;
+        const double error = worst_error(truth, sum_plan(accuracy, n));  // direct below the crossover
+        EXPECT_LE(error, accuracy) << c.name << " n=" << n;
       }
     }
   }
+}
+
+TEST(FastSum, PointsMayHaveTheirOwnWidths) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(2500, 0.6, 0.25, 3).points);
+  Random random(5);
+  std::vector<double> widths(points.size());
+  for (double& w : widths) w = random.uniform(0.005, 0.03);
+  EXPECT_LE(worst_error(Truth(points, Widths(widths)), sum_plan(1e-3, 1000000)), 1e-3);
+}
+
+TEST(FastSum, QueriesSeeTheSameFieldAsThePoints) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(4000, 0.6, 0.25, 3).points);
+  const std::vector<Vec3> eta = random_vectors(points.size(), 1);
+  const FastSum sum(points, codes(points), Widths(0.01), sum_plan(1e-3, 1000000));
+  Random random(2);
+  std::vector<Vec3> queries;
+  for (int i = 0; i < 300; ++i) queries.push_back({random.uniform(-1.3, 1.3), random.uniform(-1, 1), random.uniform(-0.5, 0.5)});
+  EXPECT_LE(relative_error(sum.winding_at(eta, queries), direct_sum::winding(points, 0.01, eta, queries)), 1e-3);
+  EXPECT_LE(relative_error(sum.winding_gradient_at(eta, queries), direct_sum::winding_gradient(points, 0.01, eta, queries)), 1e-3);
 }
 
 }  // namespace

@@ -122,8 +122,12 @@ TEST(MeshFinish, ColoursAndConfidenceFollowTheNearestPoints) {
   ASSERT_EQ(two.mesh.confidence.size(), two.mesh.vertices.size());
   for (std::size_t v = 0; v < two.mesh.vertices.size(); ++v) {
     EXPECT_EQ(two.mesh.colors[v][2], 10);
-    if (two.mesh.vertices[v][2] > 0.3) EXPECT_FLOAT_EQ(two.mesh.confidence[v], 1.0F);
-    if (two.mesh.vertices[v][2] < -0.3) EXPECT_EQ(two.mesh.colors[v][1], 255);
+    if (two.mesh.vertices[v][2] > 0.3) {
+      EXPECT_FLOAT_EQ(two.mesh.confidence[v], 1.0F);
+    }
+    if (two.mesh.vertices[v][2] < -0.3) {
+      EXPECT_EQ(two.mesh.colors[v][1], 255);
+    }
   }
   EXPECT_THROW(carry_attributes(two.mesh, two.sample.points, {{1, 2, 3}}, {}), InvalidInput);
 }
