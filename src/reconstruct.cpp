@@ -16,7 +16,7 @@
 namespace g3r {
 namespace {
 
-constexpr double kFieldWidth = 0.55;     // of the winding field in spacings
+constexpr double kFieldWidth = 0.35;     // of the winding field in spacings
 constexpr double kFieldAccuracy = 1e-3;  // of its sums
 constexpr double kFarSpacings = 4;       // surface farther than this from every point is a guess;
 constexpr double kFarShare = 0.05;       // more of it is worth a warning

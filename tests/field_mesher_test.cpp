@@ -60,9 +60,13 @@ TEST(FieldMesher, CubeKeepsItsEdgesAndMostCorners) {
   EXPECT_EQ(t.bad_edges + t.bad_vertices, 0U);
   EXPECT_EQ(t.genus, 0);
   EXPECT_NEAR(t.volume, 1, 1e-3);  // rounding all edges at radius h/2 would lose 12 h^2 / 4 (1 - pi/4) = 6e-4
-  double worst = 0;
-  for (const Vec3& v : mesh.vertices) worst = std::max(worst, std::abs(cube_distance(v, 0.5)));
-  EXPECT_LT(worst, 0.3 * h);
+  double worst = 0, sum = 0;
+  for (const Vec3& v : mesh.vertices) {
+    worst = std::max(worst, std::abs(cube_distance(v, 0.5)));
+    sum += std::abs(cube_distance(v, 0.5));
+  }
+  EXPECT_LT(worst, 0.5 * h);  // single leaves beside a corner
+  EXPECT_LT(sum / static_cast<double>(mesh.vertices.size()), 0.005 * h);
   std::size_t corners = 0;
   for (int k = 0; k < 8; ++k) {
     const Vec3 c{(k & 1) != 0 ? 0.5 : -0.5, (k & 2) != 0 ? 0.5 : -0.5, (k & 4) != 0 ? 0.5 : -0.5};
@@ -104,7 +108,36 @@ TEST(FieldMesher, ScaleAndShiftOfTheInputMoveTheMeshAlong) {
   for (std::size_t i = 0; i < a.vertices.size(); ++i) EXPECT_NEAR(a.vertices[i][0] * 1024, b.vertices[i][0], 1e-6);
 }
 
-TEST(FieldMesher, FieldWithoutInsideGivesAnEmptyMesh) {
+TEST(FieldMesher, RepeatedPointsAndOutliersDoNoHarm) {
+  OrientedSample s = sphere_sample(1000, 1, 6);
+  for (int i = 0; i < 30; ++i) {
+    s.points.push_back(s.points[0]);
+    s.normals.push_back(s.normals[0]);
+  }
+  s.points.push_back({9, 9, 9});
+  s.normals.push_back({0, 0, 1});
+  const Mesh mesh = field_mesh(s.points, s.normals, DistanceSampler([](const Vec3& p) { return norm(p) - 1; }, 0.1));
+  const Topology t = topology(mesh);
+  EXPECT_EQ(t.bad_edges + t.bad_vertices, 0U);
+  EXPECT_NEAR(t.volume, 4.0 / 3.0 * M_PI, 0.05);
+}
+
+TEST(FieldMesher, NoisyPointsAreAveraged) {
+  OrientedSample s = sphere_sample(4000, 1, 8);
+  const double h = std::sqrt(4 * M_PI / 4000);
+  std::mt19937_64 rng(3);
+  std::normal_distribution<double> normal(0, h);
+  for (Vec3& p : s.points) {
+    for (double& c : p) c += normal(rng);
+  }
+  const Mesh mesh = field_mesh(s.points, s.normals, DistanceSampler([](const Vec3& p) { return norm(p) - 1; }, 2 * h));
+  EXPECT_EQ(topology(mesh).genus, 0);
+  double sum = 0;
+  for (const Vec3& v : mesh.vertices) sum += std::abs(norm(v) - 1);
+  EXPECT_LT(sum / static_cast<double>(mesh.vertices.size()), 0.25 * h);  // a third of the mean deviation of the points, 0.8 h
+}
+
+TEST(FieldMesher, FieldWithoutInsideStillGivesAManifold) {
   OrientedSample s = sphere_sample(200, 1, 4);
   const Mesh mesh = field_mesh(s.points, s.normals, DistanceSampler([](const Vec3&) { return 10.0; }, 0.1));
   EXPECT_EQ(topology(mesh).bad_edges, 0U);

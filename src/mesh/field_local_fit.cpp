@@ -21,6 +21,7 @@ constexpr double kJointClear = 0.03;  // spacings: sheets closer than this to ea
 constexpr double kOpposite = -0.7;  // cosine: points whose normals differ by more than about 135 degrees are on opposite walls
 constexpr std::size_t kWallNeighbours = 16;
 constexpr double kAgree = 0.5;       // spacings: tangent planes this near do not count when asked whether a place has all on one side
+constexpr double kClear = 0.2;       // spacings: from tangent planes, beyond which curvature cannot change the side of a place
 constexpr double kFacing = -0.3;     // cosine: sheets that face away from each other this much are two walls, not one bend
 constexpr double kSplitGain = 0.05;  // several sheets must reduce the squared misfit of one sheet to this share
 
@@ -43,6 +44,23 @@ double misfit(const Sheet& s, const Member& m, double h, double normal_weight) {
   Vector3d g;
   const double d = s.distance(m.p, &g) / h;
   return m.weight * (d * d + normal_weight * (g - m.n).squaredNorm());
+}
+
+// Is x well on one side of the tangent planes of all members? Then their mean plane is fit enough to say which.
+bool clear_of(const std::vector<Member>& members, const Vector3d& x, double h, Sheet& plane) {
+  const bool outside = members[0].n.dot(x - members[0].p) > 0;
+  Vector3d mean_p = Vector3d::Zero(), mean_n = Vector3d::Zero();
+  double total = 0;
+  for (const Member& m : members) {
+    const double d = m.n.dot(x - m.p);
+    if ((d > 0) != outside || std::abs(d) < kClear * h) return false;
+    mean_p += m.weight * m.p;
+    mean_n += m.weight * m.n;
+    total += m.weight;
+  }
+  plane.origin = mean_p / total;
+  plane.frame = frame_of(mean_n.normalized());
+  return true;
 }
 
 Joint joint_of(const LocalSurface& s, const std::vector<Member>& members, int a, int b) {
@@ -176,7 +194,7 @@ LocalFit::LocalFit(const OrientedPoints& points, const LocalFitOptions& options)
   options_.neighbours = std::min(options_.neighbours, points.positions.size());
 }
 
-LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* direction) const {
+LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* direction, Detail detail) const {
   thread_local std::vector<std::uint32_t> index;
   thread_local std::vector<double> squared;
   thread_local std::vector<Member> members;
@@ -222,6 +240,11 @@ LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* dire
       }
       continue;
     }
+    if (detail == Detail::kSide && taken == members.size() && clear_of(members, x, h, out.sheet[0])) {
+      out.count = 1;
+      out.simple = true;
+      return out;
+    }
     out.sheet[static_cast<std::size_t>(out.count)] = fit_sheet(members, out.count, h, options_.normal_weight);
     ++out.count;
     if (!options_.sharp) break;
@@ -232,8 +255,9 @@ LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* dire
       out.walls = out.walls || na.dot(nb) < kFacing;
     }
   }
+  const bool alike = out.count == 1;
   if (out.count > 1 && options_.sharp) prefer_one_sheet(out, members, options_.normal_weight);
-  if (out.count == 1) {
+  if (alike) {
     const double f = out.sheet[0].distance(x);
     out.simple = std::all_of(members.begin(), members.end(), [&](const Member& m) {
       const double plane = m.n.dot(x - m.p);

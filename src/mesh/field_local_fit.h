@@ -74,12 +74,18 @@ struct LocalFitOptions {
 
 class LocalFit {
  public:
+  enum class Detail {
+    kSurface,  ///< the fitted surface
+    kSide      ///< a plane is enough where the place is clearly on one side of the surface
+  };
+
   /// `points` must outlive this. O(N log N).
   LocalFit(const OrientedPoints& points, const LocalFitOptions& options);
 
   /// The surface near `x`; no sheet if no point is within `reach` spacings. If `direction` is not null, points whose normals point
   /// against it are left out. O(log N).
-  [[nodiscard]] LocalSurface fit(const Eigen::Vector3d& x, double reach, const Eigen::Vector3d* direction = nullptr) const;
+  [[nodiscard]] LocalSurface fit(const Eigen::Vector3d& x, double reach, const Eigen::Vector3d* direction = nullptr,
+                                 Detail detail = Detail::kSurface) const;
   [[nodiscard]] const Neighbours& neighbours() const { return neighbours_; }
 
  private:

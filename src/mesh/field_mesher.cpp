@@ -32,10 +32,10 @@ constexpr int kMaxSpread = 4;        // levels that locally dense or sparse samp
 constexpr double kLocalReach = 1.8;  // spacings from the nearest point within which the fitted surface gives the side
 constexpr double kThin = 1.3;        // walls and gaps get cells of at most their thickness over this,
 constexpr double kMaxThin = 2.0;     // but not smaller than a normal cell over this
-constexpr double kWallReach = 1.0;   // spacings: between walls the fits are trusted this near to a point
-constexpr double kFieldWall = 0.4;   // the same as kFieldSure between walls, where mollification blurs the field
-constexpr double kNoisy = 0.15;      // spacings: positions that scatter more than this are smoothed first
-constexpr double kFieldSure = 0.2;   // |w - level| from which the field overrules the fitted surface
+constexpr double kLeastSpacing = 1e-2;       // of the median; clusters of almost equal points are no denser for the fits than this
+constexpr std::size_t kLevelPoints = 10000;  // the median of so many values is good to 1 % of their scatter
+constexpr double kNoisy = 0.15;              // spacings: positions that scatter more than this are smoothed first
+constexpr double kFieldSure = 0.2;           // |w - level| from which the field overrules the fitted surface
 
 void report(const Monitor& monitor, double fraction) {
   if (monitor.cancel != nullptr && monitor.cancel->load()) throw Cancelled();
@@ -56,13 +56,25 @@ OrientedPoints prepare(const std::vector<Vec3>& points, const std::vector<Vec3>&
     if (!(length > 0)) throw InvalidInput("a normal is zero");
     for (double& c : n) c /= length;
   }
-  if (!(median(out.spacing) > 0)) throw InvalidInput("all points are at one place");
+  const double typical = median(out.spacing);
+  if (!(typical > 0)) throw InvalidInput("all points are at one place");
+  for (double& h : out.spacing) h = std::max(h, kLeastSpacing * typical);
   const LocalFit local(out, LocalFitOptions{});
   const mesh::Noise found = mesh::estimate_noise(out, local);
   noise = found.position;
   report(monitor, 0.05);
   if (noise > kNoisy) mesh::denoise(out, local, found, monitor.cancel);
   return out;
+}
+
+// The median of the field over the points, or evenly many of them.
+double surface_level(const std::vector<Vec3>& points, const FieldSampler& sampler) {
+  const std::size_t count = std::min(points.size(), kLevelPoints);
+  std::vector<Vec3> places;
+  for (std::size_t i = 0; i < count; ++i) places.push_back(points[i * points.size() / count]);
+  std::vector<double> value;
+  sampler.sample(places, value, nullptr);
+  return median(std::move(value));
 }
 
 // `thickness`: of the walls at each point, empty to disregard it.
@@ -104,17 +116,15 @@ class Side {
     const double unknown = std::numeric_limits<double>::quiet_NaN();
     std::vector<double> value(places.size(), unknown);
     std::vector<std::uint8_t> sure(places.size(), 0);
-    std::vector<double> threshold(places.size(), kFieldSure);
     parallel::for_blocks(
         places.size(), 256,
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) {
             const Eigen::Vector3d x(places[i][0], places[i][1], places[i][2]);
-            const LocalSurface fit = local_.fit(x, kLocalReach);
+            const LocalSurface fit = local_.fit(x, kLocalReach, nullptr, LocalFit::Detail::kSide);
             if (fit.count == 0) continue;
             value[i] = -fit.distance(x);
             sure[i] = fit.simple ? 1 : 0;
-            if (fit.walls && fit.nearest < kWallReach * fit.spacing) threshold[i] = kFieldWall;
           }
         },
         cancel);
@@ -130,7 +140,7 @@ class Side {
     for (std::size_t k = 0; k < ask.size(); ++k) {
       const double f = field[k] - level_;
       double& v = value[ask[k]];
-      if (std::isnan(v) || (std::abs(f) >= threshold[ask[k]] && (v > 0) != (f > 0))) v = f * spacing_;
+      if (std::isnan(v) || (std::abs(f) >= kFieldSure && (v > 0) != (f > 0))) v = f * spacing_;
     }
     return value;
   }
@@ -152,9 +162,7 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
   double noise = 0;
   const OrientedPoints oriented = prepare(points, normals, noise, monitor);
   const double spacing = median(oriented.spacing);
-  std::vector<double> at_points;
-  sampler.sample(oriented.positions, at_points, nullptr);
-  const double level = median(std::move(at_points));
+  const double level = surface_level(oriented.positions, sampler);
   const LocalFit local(oriented, LocalFitOptions{});
   report(monitor, 0.2);
 

@@ -128,9 +128,14 @@ void Octree::number_corners() {
   corners_.resize(leaves);
   parallel::for_blocks(leaves, kBlock, [&](std::size_t first, std::size_t last) {
     for (std::size_t l = first; l < last; ++l) {
-      for (std::uint32_t c = 0; c < 8; ++c) {
-        const auto at = std::lower_bound(corner_keys_.begin(), corner_keys_.end(), key_of(l, c));
-        corners_[l][c] = static_cast<std::uint32_t>(at - corner_keys_.begin());
+      for (std::uint32_t c = 0; c < 8; c += 2) {
+        const auto low = std::lower_bound(corner_keys_.begin(), corner_keys_.end(), key_of(l, c));
+        corners_[l][c] = static_cast<std::uint32_t>(low - corner_keys_.begin());
+        // The corner at the other end of an edge along x comes next, but for those that subdivide the edge.
+        const std::uint64_t wanted = key_of(l, c + 1);
+        std::size_t next = corners_[l][c] + std::size_t{1};
+        while (corner_keys_[next] != wanted) ++next;
+        corners_[l][c + 1] = static_cast<std::uint32_t>(next);
       }
     }
   });

@@ -59,10 +59,11 @@ std::vector<double> smooth_spacing(const std::vector<Vec3>& positions) {
     }
   });
   parallel::for_blocks(n, 256, [&](std::size_t begin, std::size_t end) {
+    std::vector<double> around(k);
     for (std::size_t i = begin; i < end; ++i) {
-      double sum = 0;
-      for (std::size_t j = 0; j < k; ++j) sum += raw[near[i * k + j]];
-      smooth[i] = std::sqrt(sum / static_cast<double>(k));
+      for (std::size_t j = 0; j < k; ++j) around[j] = raw[near[i * k + j]];
+      std::nth_element(around.begin(), around.begin() + static_cast<std::ptrdiff_t>(k / 2), around.end());
+      smooth[i] = std::sqrt(around[k / 2]);
     }
   });
   return smooth;

@@ -26,8 +26,8 @@ class Neighbours {
   std::unique_ptr<Tree> tree_;
 };
 
-/// h_i = d_8 sqrt(pi / 8), squared and averaged over the neighbours, in input units: less ragged than the spacing of single points,
-/// which random sampling scatters. O(N log N).
+/// The median of h_j = d_8 sqrt(pi / 8) over each point and its 8 neighbours, in input units: less ragged than the spacing of single
+/// points, which random sampling scatters, and not led astray by a lone outlier. O(N log N).
 [[nodiscard]] std::vector<double> smooth_spacing(const std::vector<Vec3>& positions);
 
 }  // namespace g3r::mesh
