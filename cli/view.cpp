@@ -65,7 +65,9 @@ int run_view(const Settings& settings, Session& session) {
   const Scene scene = session.stage("read", [&] { return read_scene(settings); });
   const std::string bytes = session.stage("draw", [&] {
     if (std::filesystem::path(settings.output).extension() != ".png") return view_html(scene, settings.page);
-    const std::vector<std::uint8_t> png = view_png(scene, settings.picture);
+    PictureOptions picture = settings.picture;
+    picture.threads = settings.options.threads;
+    const std::vector<std::uint8_t> png = view_png(scene, picture);
     return std::string(png.begin(), png.end());
   });
   session.stage("write", [&] { write_text(settings.output, bytes); });

@@ -124,9 +124,12 @@ TEST(ViewPng, DoesNotDependOnScaleOrPlace) {
   }
 }
 
-TEST(ViewPng, SameBytesTwice) {
+TEST(ViewPng, SameBytesForAnyNumberOfThreads) {
   const Scene scene = testing::torus_points(1000);
-  EXPECT_EQ(view_png(scene, small()), view_png(scene, small()));
+  PictureOptions one = small(), three = small();
+  one.threads = 1;
+  three.threads = 3;
+  EXPECT_EQ(view_png(scene, one), view_png(scene, three));
 }
 
 TEST(ViewPng, NonFinitePointsAndZeroNormalsAreHarmless) {

@@ -62,6 +62,7 @@ struct PictureOptions {
   int tile = 600;             ///< width and height of one view in pixels, 16..2048
   std::vector<Layer> layers;  ///< empty: the mesh, else the points with the best that is known about them
   bool dark = false;          ///< dark background
+  int threads = 0;            ///< 0: all cores
 };
 
 /// A PNG file with four views (three-quarter, front, side, top): 2 x 2 tiles for one layer, else one row of four tiles per layer.

@@ -251,7 +251,7 @@ std::vector<std::uint8_t> view_png(const Scene& scene, const PictureOptions& opt
   const int columns = layers.size() == 1 ? 2 : kViews;
   Image image{columns * options.tile, rows * options.tile, {}};
   image.rgb.resize(3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
-  parallel::for_each(static_cast<std::size_t>(rows * columns), [&](std::size_t tile) {
+  const auto draw_tile = [&](std::size_t tile) {
     const Layer layer = layers[tile / kViews];
     const Camera camera = fit_camera(drawn[layer == Layer::kMesh ? 1 : 0], directions[tile % kViews], centre, radius);
     Canvas canvas(camera, options.tile);
@@ -263,7 +263,8 @@ std::vector<std::uint8_t> view_png(const Scene& scene, const PictureOptions& opt
     const int column = static_cast<int>(tile) % columns;
     const int row = static_cast<int>(tile) / columns;
     canvas.resolve(image, column * options.tile, row * options.tile, options.dark);
-  });
+  };
+  parallel::with_threads(options.threads, [&] { parallel::for_each(static_cast<std::size_t>(rows * columns), draw_tile); });
   return view::encode_png(image);
 }
 

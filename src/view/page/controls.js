@@ -271,8 +271,11 @@ class Viewer {
   bindKeys() {
     window.addEventListener('keydown', event => {
       if (event.ctrlKey || event.metaKey || event.altKey || document.getElementById('help').open) return;
-      const typing = event.target instanceof HTMLInputElement && event.target.type === 'range' && event.key.startsWith('Arrow');
-      if (!typing && this.press(event.key, event.shiftKey)) event.preventDefault();
+      const {target, key} = event;
+      // What a focused control does with these keys comes first.
+      const own = target instanceof HTMLInputElement || target instanceof HTMLButtonElement;
+      if (own && (key === ' ' || key === 'Enter' || (target.type === 'range' && key.startsWith('Arrow')))) return;
+      if (this.press(key, event.shiftKey)) event.preventDefault();
     });
   }
 
@@ -293,6 +296,7 @@ class Viewer {
       '<': () => this.set({cut: Math.max(0, state.cut - 0.02)}), ',': () => this.press('<'),
       '>': () => this.set({cut: Math.min(1, state.cut + 0.02)}), '.': () => this.press('>'),
       f: () => this.reset(0, 0), s: () => this.reset(Math.PI / 2, 0), t: () => this.reset(0, Math.PI / 2), r: () => this.reset(),
+      c: () => this.togglePanel(),
       u: () => this.set({up: state.up === 'y' ? 'z' : 'y'}),
       d: () => this.set({theme: state.theme === 'dark' ? 'light' : 'dark'}),
       '[': () => this.set({size: Math.max(0.2, state.size / 1.15)}), ']': () => this.set({size: Math.min(3, state.size * 1.15)}),
