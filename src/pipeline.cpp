@@ -1,5 +1,6 @@
 // The whole program on one page: one line per step.
 #include "cloud/canonical_cloud.h"
+#include "cloud/noise.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
 #include "orient/coarse_to_fine.h"
@@ -24,6 +25,7 @@ constexpr double kManyUnsure = 0.2;            // share of unsure points above w
 struct Problem {
   CanonicalCloud cloud;
   double spacing = 0;
+  double noise = 0;
   Settings settings;
 };
 
@@ -33,7 +35,8 @@ Problem prepare(const PointsView& points, const Options& options, Stages& stages
   problem.cloud = canonical_cloud(points);
   stages.check();
   problem.spacing = typical_spacing(local_spacing(problem.cloud.points));
-  problem.settings = choose_settings(options, problem.cloud, problem.spacing);
+  problem.noise = options.preset == Preset::kPaper ? 0 : estimate_noise(problem.cloud.points, problem.spacing);
+  problem.settings = choose_settings(options, problem.cloud, problem.spacing, problem.noise);
   return problem;
 }
 
@@ -47,6 +50,7 @@ void describe(const Problem& problem, const PointsView& points, const Options& o
   stats.box_centre = cloud.frame.centre;
   stats.box_side = 2.0 / 1.1 / cloud.frame.scale;
   stats.spacing = cloud.frame.length_to_world(problem.spacing);
+  stats.noise = cloud.frame.length_to_world(problem.noise);
   stats.epsilon = cloud.frame.length_to_world(settings.epsilon);
   stats.preset = options.preset == Preset::kPaper ? "paper" : "default";
   stats.method = settings.method == Method::kGreen ? "green" : "energy";
@@ -129,12 +133,14 @@ Orientation orient_in_arena(const PointsView& points, const Options& options, St
   const std::vector<Vec3> eta = solve(problem, options, stages, out.stats);
   stages.begin("refine");
   std::vector<Vec3> normals = normalised(eta);
-  std::vector<float> confidence;
+  std::vector<double> strength;
   if (problem.settings.refinement_width > 0) {
     FastSum sum(problem.cloud.points, problem.cloud.morton, Widths(problem.settings.refinement_width), problem.settings.sums, stages.cancel());
-    normals = refine_normals(sum, eta).normals;
+    Refinement refined = refine_normals(sum, eta);
+    normals = std::move(refined.normals);
+    strength = std::move(refined.strength);
   }
-  confidence = side_confidence(eta, normals);
+  const std::vector<float> confidence = side_confidence(eta, normals, strength);
   judge(problem.cloud, confidence, out.stats);
   hand_out(problem.cloud, eta, normals, confidence, out);
   stages.finish(out.stats);

@@ -70,6 +70,7 @@ std::string report_json(const Stats& stats, const MeshCheck* mesh) {
   report["scales"] = {{"box_centre", {number(stats.box_centre[0]), number(stats.box_centre[1]), number(stats.box_centre[2])}},
                       {"box_side", number(stats.box_side)},
                       {"spacing", number(stats.spacing)},
+                      {"noise", number(stats.noise)},
                       {"epsilon", number(stats.epsilon)},
                       {"depth", stats.depth}};
   report["method"] = {{"name", stats.method},

@@ -21,7 +21,7 @@ DOCS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "docs", "r
 REPORT_SCHEMA = {
     "schema": str, "schema_version": int, "g3r_version": str,
     "input": {"points": int, "used": int, "dropped_non_finite": int, "merged_duplicates": int},
-    "scales": {"box_centre": list, "box_side": float, "spacing": float, "epsilon": float, "depth": int},
+    "scales": {"box_centre": list, "box_side": float, "spacing": float, "noise": float, "epsilon": float, "depth": int},
     "method": {"name": str, "preset": str, "solver": str, "harmonics": str, "sums": str, "accuracy": float, "tolerance": float,
                "condition_number": None},
     "iterations": list, "converged": bool, "consistent": bool,

@@ -248,6 +248,22 @@ TEST(Orient, SmallestCloudsWork) {
   }
 }
 
+TEST(Noise, IsEstimatedAndNotMistakenForShape) {
+  shapes::Random random(4);
+  const Surface clean = shapes::torus(8000, 0.6, 0.25, 6);
+  const Surface two_sheets = shapes::join(shapes::sphere(6000, 0.5), shapes::sphere(6000, 0.49), true);
+  EXPECT_EQ(plan(clean.points).noise, 0);
+  EXPECT_EQ(plan(two_sheets.points).noise, 0);
+  for (const double sigma : {0.01, 0.02}) {
+    Surface noisy = clean;
+    for (Vec3& p : noisy.points) {
+      for (double& c : p) c += sigma * random.gaussian();
+    }
+    EXPECT_NEAR(plan(noisy.points).noise / sigma, 1, 0.4);
+    EXPECT_GE(shapes::share_correct(orient(noisy.points).normals, noisy.normals), 0.999);
+  }
+}
+
 // Noisy points on the wrong side must have lower confidence: area under the ROC curve.
 TEST(Confidence, RanksWrongSidesOnNoisyData) {
   shapes::Random random(4);

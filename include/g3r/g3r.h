@@ -97,6 +97,7 @@ struct Stats {
   Vec3 box_centre{0, 0, 0};
   double box_side = 0;                    ///< longest side of the bounding box
   double spacing = 0;                     ///< typical distance between neighbours, square root of area per point
+  double noise = 0;                       ///< estimated standard deviation of the points from their surface, 0: clean
   double epsilon = 0;
   int depth = 0;                          ///< octree depth of the mesher, 0 if no mesh was made
   std::string preset;

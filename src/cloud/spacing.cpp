@@ -1,8 +1,7 @@
 #include "cloud/spacing.h"
 
+#include "cloud/point_tree.h"
 #include "cpu/parallel.h"
-
-#include <nanoflann.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -12,26 +11,13 @@ namespace {
 
 constexpr std::size_t kNeighbours = 8;     // enough to average out random sampling, few enough to stay local
 constexpr std::size_t kBlock = 1024;       // points per parallel block
-constexpr std::size_t kLeafPoints = 16;    // of the k-d tree
-
-struct PointSet {
-  const std::vector<Vec3>& points;
-  [[nodiscard]] std::size_t kdtree_get_point_count() const { return points.size(); }
-  [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t axis) const { return points[i][axis]; }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-
-using KdTree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointSet>, PointSet, 3, std::uint32_t>;
 
 }  // namespace
 
 std::vector<double> local_spacing(const std::vector<Vec3>& points) {
   const std::size_t k = std::min(kNeighbours, points.size() - 1);
   const PointSet set{points};
-  const KdTree tree(3, set, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafPoints));
+  const PointTree tree(3, set, nanoflann::KDTreeSingleIndexAdaptorParams(kPointTreeLeaf));
   const double factor = std::sqrt(std::numbers::pi / static_cast<double>(k));
   std::vector<double> spacing(points.size());
   parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {

@@ -6,7 +6,13 @@
 namespace g3r {
 namespace {
 
-constexpr double kFullSize = 0.5;  // share of the median |eta| from which the size no longer lowers the confidence
+constexpr double kFullSize = 0.5;  // share of the median from which a size no longer lowers the confidence
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
 
 double length(const Vec3& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
@@ -38,19 +44,18 @@ Refinement refine_normals(FastSum& sum, const std::vector<Vec3>& eta) {
   return refined;
 }
 
-std::vector<float> side_confidence(const std::vector<Vec3>& eta, const std::vector<Vec3>& normals) {
+std::vector<float> side_confidence(const std::vector<Vec3>& eta, const std::vector<Vec3>& normals, const std::vector<double>& strength) {
   std::vector<double> sizes(eta.size());
   for (std::size_t i = 0; i < eta.size(); ++i) sizes[i] = length(eta[i]);
-  std::vector<double> sorted = sizes;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const double full = kFullSize * *middle;
+  const double full_size = kFullSize * median(sizes);
+  const double full_strength = strength.empty() ? 0 : kFullSize * median(strength);
   std::vector<float> confidence(eta.size(), 0.0F);
   for (std::size_t i = 0; i < eta.size(); ++i) {
     if (!(sizes[i] > 0)) continue;
     const double cosine = (eta[i][0] * normals[i][0] + eta[i][1] * normals[i][1] + eta[i][2] * normals[i][2]) / sizes[i];
-    const double agreement = std::clamp((1 + cosine) / 2, 0.0, 1.0);
-    confidence[i] = static_cast<float>(agreement * std::min(1.0, sizes[i] / full));
+    double c = std::clamp((1 + cosine) / 2, 0.0, 1.0) * std::min(1.0, sizes[i] / full_size);
+    if (full_strength > 0) c *= std::min(1.0, strength[i] / full_strength);
+    confidence[i] = static_cast<float>(c);
   }
   return confidence;
 }

@@ -16,6 +16,11 @@ constexpr double kEnergyWindingWeight = 0.1;   // larger converges slower, 0 los
 constexpr double kEnergyTolerance = 2.5e-3;    // slats and spokes need this residual; smooth shapes get there in half the steps
 constexpr const char* kEnergySchedule = "45 cg";
 constexpr Steps kContinued{10, StepKind::kConjugateGradient};  // more gain little once the smooth part of the error is gone
+// The default on noisy input: the field must not see single points. In standard deviations of the noise, or spacings h where it says so.
+constexpr double kNoisyWidth = 3;              // of epsilon and of the refinement
+constexpr double kNoisyDamping = 0.28;         // 1/h: the self term of a flat patch
+constexpr double kNoisyWindingWeight = 0.03;   // h; W eta = 1/2 is wrong at points off the surface, so it must not weigh much
+constexpr const char* kNoisySchedule = "10 cg";  // semi-convergence: more steps fit the noise
 // The default for least squares over the harmonics.
 constexpr double kGreenEpsilon = 0.4;          // converges in 10-15 iterations
 constexpr double kGreenConstantWeight = 2;     // the row u = 1 alone tells inside from outside
@@ -66,7 +71,7 @@ double paper_epsilon(const CanonicalCloud& cloud) {
   return kPaperLeafFactor * std::ldexp(2.0, -deepest);
 }
 
-Settings choose_settings(const Options& options, const CanonicalCloud& cloud, double spacing) {
+Settings choose_settings(const Options& options, const CanonicalCloud& cloud, double spacing, double noise) {
   const bool paper = options.preset == Preset::kPaper;
   Settings s;
   s.method = options.method != Method::kAuto ? options.method : paper ? Method::kGreen : Method::kEnergy;
@@ -97,6 +102,18 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   s.coarse_to_fine = !paper && !green && options.schedule.empty();
   s.continued_schedule = {kContinued};
   s.tolerance = options.tolerance >= 0 ? options.tolerance : paper ? 0 : green ? kGreenTolerance : kEnergyTolerance;
+  if (!paper && !green && noise > 0) {
+    s.damping = kNoisyDamping / spacing;
+    s.winding_weight = kNoisyWindingWeight * spacing;
+    if (options.epsilon.unit == Epsilon::Unit::kAuto) s.epsilon = std::max(s.epsilon, kNoisyWidth * noise);
+    s.refinement_width = std::max(s.refinement_width, kNoisyWidth * noise);
+    s.coarse_to_fine = false;
+    if (options.schedule.empty()) {
+      s.schedule_text = kNoisySchedule;
+      s.schedule = parse_schedule(kNoisySchedule);
+      if (options.tolerance < 0) s.tolerance = 0;
+    }
+  }
   s.sums = sum_plan(options.accuracy, cloud.size());
   return s;
 }

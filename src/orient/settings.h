@@ -31,8 +31,8 @@ struct Settings {
   SumPlan sums;
 };
 
-/// Throws InvalidInput for an option out of range, naming it and the range.
-[[nodiscard]] Settings choose_settings(const Options& options, const CanonicalCloud& cloud, double spacing);
+/// `noise`: estimate_noise(). Throws InvalidInput for an option out of range, naming it and the range.
+[[nodiscard]] Settings choose_settings(const Options& options, const CanonicalCloud& cloud, double spacing, double noise);
 
 /// The paper's mollifier for clean input: 0.8 x the leaf side of an octree with at most one point per leaf, at its deepest level.
 [[nodiscard]] double paper_epsilon(const CanonicalCloud& cloud);
