@@ -18,8 +18,8 @@
 namespace g3r {
 namespace {
 
-constexpr float kUnsure = 0.5F;                // confidence below which a point counts as unsure
-constexpr double kManyUnsure = 0.2;            // share of unsure points above which the orientation is called inconsistent
+constexpr float kUnsure = 0.5F;      // confidence below which a point counts as unsure
+constexpr double kManyUnsure = 0.2;  // share of unsure points above which the orientation is called inconsistent
 
 // Options and cloud, resolved.
 struct Problem {
@@ -91,8 +91,8 @@ std::vector<Vec3> solve(const Problem& problem, const Options& options, Stages& 
 }
 
 // From the canonical order back to the caller's. A duplicate gets its twin's normal and its share of the area.
-void hand_out(const CanonicalCloud& cloud, const std::vector<Vec3>& eta, const std::vector<Vec3>& normals, const std::vector<float>& confidence,
-              Orientation& out) {
+void hand_out(const CanonicalCloud& cloud, const std::vector<Vec3>& eta, const std::vector<Vec3>& normals,
+              const std::vector<float>& confidence, Orientation& out) {
   const std::size_t n = cloud.point_of.size();
   const double area_scale = 1 / (cloud.frame.scale * cloud.frame.scale);
   out.normals.assign(n, Vec3{0, 0, 0});
@@ -135,7 +135,8 @@ Orientation orient_in_arena(const PointsView& points, const Options& options, St
   std::vector<Vec3> normals = normalised(eta);
   std::vector<double> strength;
   if (problem.settings.refinement_width > 0) {
-    FastSum sum(problem.cloud.points, problem.cloud.morton, Widths(problem.settings.refinement_width), problem.settings.sums, stages.cancel());
+    FastSum sum(problem.cloud.points, problem.cloud.morton, Widths(problem.settings.refinement_width), problem.settings.sums,
+                stages.cancel());
     Refinement refined = refine_normals(sum, eta);
     normals = std::move(refined.normals);
     strength = std::move(refined.strength);

@@ -42,7 +42,8 @@ TEST(Orient, FindsTheOutsideOfEveryTopology) {
     expect_oriented("sphere", shapes::sphere(3000), options, 1, 0.002);
     expect_oriented("torus", shapes::torus(4000, 0.6, 0.25, 9), options, 1, 0.005);
     expect_oriented("nested", shapes::join(shapes::sphere(4000, 0.9), shapes::sphere(1500, 0.5), true), options, 1, 0.005);
-    expect_oriented("two components", shapes::join(shapes::sphere(2000, 0.4, {-0.5, 0, 0}), shapes::sphere(2000, 0.4, {0.5, 0.1, 0})), options, 1, 0.005);
+    expect_oriented("two components", shapes::join(shapes::sphere(2000, 0.4, {-0.5, 0, 0}), shapes::sphere(2000, 0.4, {0.5, 0.1, 0})),
+                    options, 1, 0.005);
     expect_oriented("interlocked", interlocked_tori(3000), options, 1, 0.01);
   }
 }

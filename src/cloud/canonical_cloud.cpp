@@ -11,11 +11,11 @@
 namespace g3r {
 namespace {
 
-constexpr double kBoxSide = 2.0 / 1.1;      // the paper's normalisation
-constexpr int kGridBits = 21;               // 3 x 21 = 63 bits fit one code
-constexpr std::size_t kBlock = 1u << 14;    // points per parallel block; any value gives the same result
-constexpr std::size_t kFewestPoints = 4;    // fewer cannot enclose a volume
-constexpr double kLineThickness = 1e-12;    // distance from a line over its length, below which points count as collinear: rounding
+constexpr double kBoxSide = 2.0 / 1.1;    // the paper's normalisation
+constexpr int kGridBits = 21;             // 3 x 21 = 63 bits fit one code
+constexpr std::size_t kBlock = 1u << 14;  // points per parallel block; any value gives the same result
+constexpr std::size_t kFewestPoints = 4;  // fewer cannot enclose a volume
+constexpr double kLineThickness = 1e-12;  // distance from a line over its length, below which points count as collinear: rounding
 
 bool finite(const Vec3& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }
 
@@ -97,7 +97,8 @@ Frame frame_of(const Bounds& b) {
   if (!std::isfinite(side)) throw InvalidInput("the extent of the coordinates is more than a double can hold; scale them down");
   if (side <= 0) throw InvalidInput("all points are at the same place; at least 4 distinct points are needed");
   frame.scale = kBoxSide / side;
-  if (!std::isfinite(frame.scale)) throw InvalidInput("the extent is too small: the points are closer together than a double can resolve; scale them up");
+  if (!std::isfinite(frame.scale))
+    throw InvalidInput("the extent is too small: the points are closer together than a double can resolve; scale them up");
   return frame;
 }
 
@@ -120,7 +121,8 @@ void require_not_collinear(const std::vector<Vec3>& points) {
   }
   for (const Vec3& p : points) {
     const Vec3 d = from_mean(p);
-    const double off_line = std::hypot(d[1] * axis[2] - d[2] * axis[1], d[2] * axis[0] - d[0] * axis[2], d[0] * axis[1] - d[1] * axis[0]) / length;
+    const double off_line =
+        std::hypot(d[1] * axis[2] - d[2] * axis[1], d[2] * axis[0] - d[0] * axis[2], d[0] * axis[1] - d[1] * axis[0]) / length;
     if (off_line > kLineThickness * length) return;
   }
   throw InvalidInput("all points are collinear (on one line); a surface needs points around a volume");

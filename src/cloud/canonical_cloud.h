@@ -23,12 +23,13 @@ struct Frame {
 
 inline constexpr std::uint32_t kNoPoint = 0xffffffffu;
 
-/// Distinct finite points in Morton order of a 2^21-cell grid over [-1, 1]^3, ties by coordinates: the same for every permutation of the input.
+/// Distinct finite points in Morton order of a 2^21-cell grid over [-1, 1]^3, ties by coordinates: the same for every permutation of the
+/// input.
 struct CanonicalCloud {
   Frame frame;
-  std::vector<Vec3> points;              ///< M unit-box points
-  std::vector<std::uint64_t> morton;     ///< M codes, 63 bits, non-decreasing
-  std::vector<std::uint32_t> point_of;   ///< N: input point -> index into points, kNoPoint if not finite
+  std::vector<Vec3> points;                 ///< M unit-box points
+  std::vector<std::uint64_t> morton;        ///< M codes, 63 bits, non-decreasing
+  std::vector<std::uint32_t> point_of;      ///< N: input point -> index into points, kNoPoint if not finite
   std::vector<std::uint32_t> multiplicity;  ///< M: number of input points at this place
   std::size_t non_finite = 0;
 

@@ -7,12 +7,15 @@
 
 namespace g3r {
 
-/// Standard deviation of the points from their surface, estimated from plane fits to neighbourhoods of 16 and 32 points; 0 for a clean cloud.
+/// Standard deviation of the points from their surface, estimated from plane fits to neighbourhoods of 16 and 32 points; 0 for a clean
+/// cloud.
 ///   - Noise lifts the residual of every neighbourhood; curvature, creases and thin parts only that of some. So the flattest 2 % decide:
 ///     their residual below 0.1 h means clean (measured: clean models stay below 0.03 h, noise of 0.25 % of the diagonal gives 0.23 h).
 ///   - Two sheets close together also lift it everywhere, but their residuals have two peaks: a median kurtosis below 2.2 means sheets
 ///     (measured: sheets 1.0 to 1.8, noise 2.45 to 2.6).
-///   - The size follows from the 32-point residual x h of the flattest 2 %: sigma = 0.95 h x / (1 - x), fitted to known noise of 0.25 to 1 %.
+///   - Wires do too, but their neighbourhoods are long: a median ratio of the principal spreads below 0.35 means wires.
+///   - The size follows from the 32-point residual x h of the flattest 2 %: sigma = 0.95 h x / (1 - x), fitted to known noise of 0.25 to 1
+///   %.
 /// `spacing`: typical_spacing(). Same units as the points. O(N log N); looks at about 2000 points.
 [[nodiscard]] double estimate_noise(const std::vector<Vec3>& points, double spacing);
 

@@ -9,8 +9,8 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kNeighbours = 8;     // enough to average out random sampling, few enough to stay local
-constexpr std::size_t kBlock = 1024;       // points per parallel block
+constexpr std::size_t kNeighbours = 8;  // enough to average out random sampling, few enough to stay local
+constexpr std::size_t kBlock = 1024;    // points per parallel block
 
 }  // namespace
 

@@ -8,7 +8,8 @@
 namespace g3r {
 
 /// h_i = d_k sqrt(pi / k), d_k the distance of point i to its k-th neighbour, k = 8: the square root of the area per point of a surface
-/// sample (docs/math.md, "Spacing"). Fewer than 9 points: k = N - 1. N values in the units of the points, all > 0 for distinct points. O(N log N).
+/// sample (docs/math.md, "Spacing"). Fewer than 9 points: k = N - 1. N values in the units of the points, all > 0 for distinct points. O(N
+/// log N).
 [[nodiscard]] std::vector<double> local_spacing(const std::vector<Vec3>& points);
 
 /// The typical spacing: the median of the local ones, which a few far points cannot move.

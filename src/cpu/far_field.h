@@ -22,28 +22,28 @@ constexpr std::size_t padded_count(std::size_t coefficients) { return (coefficie
 template <class T>
 struct LeafTask {
   NearForm form;
-  int batch;                ///< K
-  int order;                ///< of the expansions
+  int batch;  ///< K
+  int order;  ///< of the expansions
   T half_side;
   bool local_widths;
   T uniform_width_squared;
-  std::size_t channels;     ///< expansions per node
-  std::size_t stride;       ///< length of one expansion
+  std::size_t channels;  ///< expansions per node
+  std::size_t stride;    ///< length of one expansion
   // points to multipole
-  const T* records;         ///< first source record of the leaf
+  const T* records;  ///< first source record of the leaf
   std::size_t record_size;
-  std::size_t count;        ///< points
-  T* multipole;             ///< channels x stride, overwritten
+  std::size_t count;  ///< points
+  T* multipole;       ///< channels x stride, overwritten
   // local to points
-  const T* local;           ///< channels x stride
-  const T* x;               ///< target blocks as in NearTask
+  const T* local;  ///< channels x stride
+  const T* x;      ///< target blocks as in NearTask
   const T* y;
   const T* z;
   const T* width_squared;
   const T* u;
   std::size_t block_count;
-  double* out;              ///< added to
-  T* workspace;             ///< leaf_workspace() elements
+  double* out;   ///< added to
+  T* workspace;  ///< leaf_workspace() elements
 };
 
 /// Elements of T that a LeafTask's workspace needs.
@@ -56,7 +56,8 @@ void local_to_points(const LeafTask<double>& task);
 
 /// out[c] += matrix in[c] for `count` columns. matrix: `columns` x `stride`, column after column, zero padded; in and out: `stride` each.
 /// Every column's result is the same whatever other columns go with it.
-void apply_matrix(const float* matrix, std::size_t columns, std::size_t stride, const float* const* in, float* const* out, std::size_t count);
+void apply_matrix(const float* matrix, std::size_t columns, std::size_t stride, const float* const* in, float* const* out,
+                  std::size_t count);
 void apply_matrix(const double* matrix, std::size_t columns, std::size_t stride, const double* const* in, double* const* out,
                   std::size_t count);
 

@@ -14,10 +14,10 @@ inline constexpr std::size_t kLanes = 16;
 
 /// What is summed; F = floats per source record after x, y, z; C = channels of the result; U = channels of target data.
 enum class NearForm {
-  kGreen,             ///< eta, then (q_k, u_k) for k < K     F = 3 + 2K  C = K      Phi q_k + u_k g (r.eta)
-  kGreenAdjoint,      ///< Q_k for k < K                      F = K       C = K + 3  Phi Q_k, and g r sum_k u_k(target) Q_k; U = K
-  kStokesWinding,     ///< eta                                F = 3       C = 4      S eta (3), W eta
-  kWindingGradient,   ///< eta                                F = 3       C = 3      g eta - b r (r.eta)
+  kGreen,            ///< eta, then (q_k, u_k) for k < K     F = 3 + 2K  C = K      Phi q_k + u_k g (r.eta)
+  kGreenAdjoint,     ///< Q_k for k < K                      F = K       C = K + 3  Phi Q_k, and g r sum_k u_k(target) Q_k; U = K
+  kStokesWinding,    ///< eta                                F = 3       C = 4      S eta (3), W eta
+  kWindingGradient,  ///< eta                                F = 3       C = 3      g eta - b r (r.eta)
 };
 
 /// A run of consecutive sources, and what to subtract from target coordinates so that both are relative to the same centre.
@@ -32,20 +32,20 @@ struct SourceRun {
 template <class T>
 struct NearTask {
   NearForm form;
-  int batch;                    ///< K: 1, 4 or 9; ignored by forms without K
-  const T* records;             ///< source records: x y z [squared width if local_widths] F values
-  std::size_t record_size;      ///< in T
+  int batch;                ///< K: 1, 4 or 9; ignored by forms without K
+  const T* records;         ///< source records: x y z [squared width if local_widths] F values
+  std::size_t record_size;  ///< in T
   const SourceRun<T>* runs;
   std::size_t run_count;
-  const T* x;                   ///< target coordinates, block_count x kLanes
+  const T* x;  ///< target coordinates, block_count x kLanes
   const T* y;
   const T* z;
-  const T* width_squared;       ///< block_count x kLanes, only with local_widths
-  const T* u;                   ///< block_count x U x kLanes
+  const T* width_squared;  ///< block_count x kLanes, only with local_widths
+  const T* u;              ///< block_count x U x kLanes
   std::size_t block_count;
-  T uniform_width_squared;      ///< without local_widths
-  bool local_widths;            ///< pairs use the mean of both squared widths
-  double* out;                  ///< block_count x C x kLanes, overwritten
+  T uniform_width_squared;  ///< without local_widths
+  bool local_widths;        ///< pairs use the mean of both squared widths
+  double* out;              ///< block_count x C x kLanes, overwritten
 };
 
 /// Evaluates a task. Thread safe; the result does not depend on anything but the task.

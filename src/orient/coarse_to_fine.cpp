@@ -11,10 +11,10 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kThinning = 4;               // points per coarse point: twice the spacing
+constexpr std::size_t kThinning = 4;  // points per coarse point: twice the spacing
 constexpr double kSpacingRatio = 2;
-constexpr std::size_t kFewestCoarsePoints = 10000; // a coarser start costs sides on thin parts and saves little
-constexpr double kCoarseShare = 0.2;               // of the progress bar
+constexpr std::size_t kFewestCoarsePoints = 10000;  // a coarser start costs sides on thin parts and saves little
+constexpr double kCoarseShare = 0.2;                // of the progress bar
 
 // Scales the winding gradient to areas: linear up to the median length, constant beyond.
 void scale_to_areas(const std::vector<Vec3>& coarse_eta, std::vector<Vec3>& start) {

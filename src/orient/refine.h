@@ -13,8 +13,8 @@ namespace g3r {
 /// directions; the gradient of their field fixes the directions. One sweep of `sum`, whose width is s.
 /// Where the gradient vanishes the normalised eta stays.
 struct Refinement {
-  std::vector<Vec3> normals;      ///< N unit vectors
-  std::vector<double> strength;   ///< N: |grad w_s|, 1/length
+  std::vector<Vec3> normals;     ///< N unit vectors
+  std::vector<double> strength;  ///< N: |grad w_s|, 1/length
 };
 [[nodiscard]] Refinement refine_normals(FastSum& sum, const std::vector<Vec3>& eta);
 

@@ -11,34 +11,35 @@ namespace g3r {
 namespace {
 
 // The default: energy form. Widths in spacings h.
-constexpr double kEnergyEpsilon = 0.3;         // smaller converges slower, larger blurs thin walls
-constexpr double kEnergyWindingWeight = 0.1;   // larger converges slower, 0 loses nested shells
-constexpr double kEnergyTolerance = 2.5e-3;    // slats and spokes need this residual; smooth shapes get there in half the steps
+constexpr double kEnergyEpsilon = 0.3;        // smaller converges slower, larger blurs thin walls
+constexpr double kEnergyWindingWeight = 0.1;  // larger converges slower, 0 loses nested shells
+constexpr double kEnergyTolerance = 2.5e-3;   // slats and spokes need this residual; smooth shapes get there in half the steps
 constexpr const char* kEnergySchedule = "45 cg";
 constexpr Steps kContinued{10, StepKind::kConjugateGradient};  // more gain little once the smooth part of the error is gone
 // The default on noisy input: the field must not see single points. In standard deviations of the noise, or spacings h where it says so.
-constexpr double kNoisyWidth = 3;              // of epsilon and of the refinement
-constexpr double kNoisyDamping = 0.28;         // 1/h: the self term of a flat patch
-constexpr double kNoisyWindingWeight = 0.03;   // h; W eta = 1/2 is wrong at points off the surface, so it must not weigh much
+constexpr double kNoisyWidth = 3;                // of epsilon and of the refinement
+constexpr double kNoisyDamping = 0.28;           // 1/h: the self term of a flat patch
+constexpr double kNoisyWindingWeight = 0.03;     // h; W eta = 1/2 is wrong at points off the surface, so it must not weigh much
 constexpr const char* kNoisySchedule = "10 cg";  // semi-convergence: more steps fit the noise
 // The default for least squares over the harmonics.
-constexpr double kGreenEpsilon = 0.4;          // converges in 10-15 iterations
-constexpr double kGreenConstantWeight = 2;     // the row u = 1 alone tells inside from outside
+constexpr double kGreenEpsilon = 0.4;       // converges in 10-15 iterations
+constexpr double kGreenConstantWeight = 2;  // the row u = 1 alone tells inside from outside
 constexpr double kGreenTolerance = 2.5e-3;
 constexpr const char* kGreenSchedule = "20 cg";
-constexpr double kRefinementWidth = 0.55;      // of the winding gradient; narrower is noisy, wider rounds edges
+constexpr double kRefinementWidth = 0.55;  // of the winding gradient; narrower is noisy, wider rounds edges
 // The paper preset.
 constexpr double kPaperLeafFactor = 0.8;
-constexpr double kPaperLeastEpsilon = 0.15;    // h; below, 80 iterations are far from converged (random samples have very close pairs)
+constexpr double kPaperLeastEpsilon = 0.15;  // h; below, 80 iterations are far from converged (random samples have very close pairs)
 constexpr const char* kPaperSchedule = "20 sd 60 cg";
-constexpr std::size_t kPaperDensePoints = 500; // "small N": seconds, not minutes
+constexpr std::size_t kPaperDensePoints = 500;  // "small N": seconds, not minutes
 constexpr int kDefaultDegree = 2;
 constexpr int kGridLevels = 21;
 
 double checked_epsilon(const Epsilon& epsilon, const CanonicalCloud& cloud, double spacing) {
   if (!(epsilon.value > 0) || !std::isfinite(epsilon.value)) throw InvalidInput("epsilon must be a positive number");
   switch (epsilon.unit) {
-    case Epsilon::Unit::kInput: return cloud.frame.length_to_unit(epsilon.value);
+    case Epsilon::Unit::kInput:
+      return cloud.frame.length_to_unit(epsilon.value);
     case Epsilon::Unit::kPercent: {
       Vec3 low = cloud.points.front();
       Vec3 high = low;
@@ -50,8 +51,10 @@ double checked_epsilon(const Epsilon& epsilon, const CanonicalCloud& cloud, doub
       }
       return epsilon.value / 100 * std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
     }
-    case Epsilon::Unit::kSpacing: return epsilon.value * spacing;
-    default: return epsilon.value;
+    case Epsilon::Unit::kSpacing:
+      return epsilon.value * spacing;
+    default:
+      return epsilon.value;
   }
 }
 

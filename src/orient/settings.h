@@ -17,14 +17,14 @@ namespace g3r {
 struct Settings {
   Method method = Method::kEnergy;
   bool dense = false;
-  std::vector<Harmonic> harmonics;   ///< green only
-  double constant_weight = 1;        ///< green: weight of the row u = 1
-  double damping = 0;                ///< energy: d
-  double winding_weight = 0;         ///< energy: l
+  std::vector<Harmonic> harmonics;  ///< green only
+  double constant_weight = 1;       ///< green: weight of the row u = 1
+  double damping = 0;               ///< energy: d
+  double winding_weight = 0;        ///< energy: l
   double epsilon = 0;
-  double refinement_width = 0;       ///< 0: no refinement
-  bool coarse_to_fine = false;       ///< start from a solution on fewer points
-  std::vector<Steps> schedule;       ///< from eta = 0
+  double refinement_width = 0;            ///< 0: no refinement
+  bool coarse_to_fine = false;            ///< start from a solution on fewer points
+  std::vector<Steps> schedule;            ///< from eta = 0
   std::vector<Steps> continued_schedule;  ///< from a coarse solution
   std::string schedule_text;
   double tolerance = 0;

@@ -14,8 +14,8 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kRowPoints = 64;      // points whose rows are assembled together
-constexpr Eigen::Index kTile = 192;         // columns per tile of the normal matrix
+constexpr std::size_t kRowPoints = 64;  // points whose rows are assembled together
+constexpr Eigen::Index kTile = 192;     // columns per tile of the normal matrix
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -45,8 +45,8 @@ DenseResult solve_dense(const std::vector<Vec3>& points, double epsilon, const s
                         const std::atomic<bool>* cancel) {
   const std::size_t n = points.size();
   if (n > kMostDensePoints) {
-    throw InvalidInput("the dense solver takes at most " + std::to_string(kMostDensePoints) + " points, this cloud has " + std::to_string(n) +
-                       "; use the iterative solver (cg)");
+    throw InvalidInput("the dense solver takes at most " + std::to_string(kMostDensePoints) + " points, this cloud has " +
+                       std::to_string(n) + "; use the iterative solver (cg)");
   }
   const HarmonicValues u = evaluate_harmonics(harmonics, points);
   const auto size = static_cast<Eigen::Index>(3 * n);
@@ -64,7 +64,8 @@ DenseResult solve_dense(const std::vector<Vec3>& points, double epsilon, const s
         [&](std::size_t tile) {
           const Eigen::Index begin = static_cast<Eigen::Index>(tile) * kTile;
           const Eigen::Index width = std::min(kTile, size - begin);
-          normal.block(begin, begin, size - begin, width).noalias() += rows.rightCols(size - begin).transpose() * rows.middleCols(begin, width);
+          normal.block(begin, begin, size - begin, width).noalias() +=
+              rows.rightCols(size - begin).transpose() * rows.middleCols(begin, width);
         },
         cancel);
   }

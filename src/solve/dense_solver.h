@@ -19,8 +19,8 @@ struct DenseResult {
 };
 
 /// Rows of A: for point j and harmonic k the 3N coefficients of eta, N K x 3N row-major, in double from the definitions.
-[[nodiscard]] std::vector<double> assemble_rows(const std::vector<Vec3>& points, double epsilon, const HarmonicValues& u, std::size_t first_point,
-                                                std::size_t last_point);
+[[nodiscard]] std::vector<double> assemble_rows(const std::vector<Vec3>& points, double epsilon, const HarmonicValues& u,
+                                                std::size_t first_point, std::size_t last_point);
 
 /// argmin sum_k |A[u_k] eta - u_k/2|^2 by Cholesky of the normal matrix. O(N^3) time, 9 N^2 doubles.
 /// Throws InvalidInput for more than kMostDensePoints points and for a singular matrix (K = 1 is rank deficient), Cancelled.

@@ -22,8 +22,6 @@ std::vector<Vec3> EnergySystem::apply(const std::vector<Vec3>& eta) {
   return out;
 }
 
-std::vector<Vec3> EnergySystem::right_side() {
-  return sum_.winding_adjoint(std::vector<double>(sum_.size(), 0.5 * winding_weight_));
-}
+std::vector<Vec3> EnergySystem::right_side() { return sum_.winding_adjoint(std::vector<double>(sum_.size(), 0.5 * winding_weight_)); }
 
 }  // namespace g3r

@@ -30,9 +30,9 @@ inline constexpr int kMaxHarmonicDegree = 8;
 
 /// Values and gradients of a set of harmonics at many points.
 struct HarmonicValues {
-  std::size_t count = 0;          ///< K
-  std::vector<double> value;      ///< N x K, row-major
-  std::vector<Vec3> gradient;     ///< N x K, row-major
+  std::size_t count = 0;       ///< K
+  std::vector<double> value;   ///< N x K, row-major
+  std::vector<Vec3> gradient;  ///< N x K, row-major
 };
 
 /// Evaluates by the recurrences of the solid harmonics in Cartesian coordinates (no division, exact for polynomials to rounding). O(N L^2).

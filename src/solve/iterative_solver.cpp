@@ -10,7 +10,7 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kBlock = 4096;       // points per block of a reduction; fixed, so sums have one order
+constexpr std::size_t kBlock = 4096;  // points per block of a reduction; fixed, so sums have one order
 constexpr int kMostSteps = 100000;
 
 double dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
@@ -74,7 +74,7 @@ IterativeResult solve_iteratively(LinearSystem& system, const std::vector<Steps>
       }
       const std::vector<Vec3> product = system.apply(direction);
       const double curvature = dot(direction, product);
-      if (!(curvature > 0)) return result;  // M is indefinite below the accuracy of its sums: no step can be trusted any more
+      if (!(curvature > 0)) return result;      // M is indefinite below the accuracy of its sums: no step can be trusted any more
       const double step = squared / curvature;  // alpha = r.r / p.Mp
       combine(result.eta, 1, step, direction);
       combine(residual, 1, -step, product);

@@ -24,16 +24,15 @@ struct Steps {
 
 struct IterativeResult {
   std::vector<Vec3> eta;
-  std::vector<StepKind> kinds;     ///< per step done
-  std::vector<double> residuals;   ///< |b - M eta| / |b| after each step, by recurrence
-  bool converged = false;          ///< the tolerance was reached
+  std::vector<StepKind> kinds;    ///< per step done
+  std::vector<double> residuals;  ///< |b - M eta| / |b| after each step, by recurrence
+  bool converged = false;         ///< the tolerance was reached
 };
 
 /// Follows the schedule until the relative residual falls to `tolerance` (0: never stop early).
 /// `start`: eta to begin with, or empty for 0. `after_step(step, steps, residual)` may throw to stop.
 /// Sources: Hestenes and Stiefel 1952. One product with M per step; reductions in fixed order.
 [[nodiscard]] IterativeResult solve_iteratively(LinearSystem& system, const std::vector<Steps>& schedule, double tolerance,
-                                                std::vector<Vec3> start = {},
-                                                const std::function<void(int, int, double)>& after_step = {});
+                                                std::vector<Vec3> start = {}, const std::function<void(int, int, double)>& after_step = {});
 
 }  // namespace g3r

@@ -33,7 +33,8 @@ std::vector<double> green(const std::vector<Vec3>& points, const Widths& widths,
   return out;
 }
 
-std::vector<Vec3> green_adjoint(const std::vector<Vec3>& points, const Widths& widths, const HarmonicValues& u, const std::vector<double>& q) {
+std::vector<Vec3> green_adjoint(const std::vector<Vec3>& points, const Widths& widths, const HarmonicValues& u,
+                                const std::vector<double>& q) {
   const std::size_t n = points.size();
   const std::size_t count = u.count;
   std::vector<Vec3> out(n, Vec3{0, 0, 0});

@@ -129,7 +129,7 @@ std::vector<double> MultipoleToLocal::matrix(const Offset& offset) const {
   const Vec3 d{static_cast<double>(offset.displacement[0]), static_cast<double>(offset.displacement[1]),
                static_cast<double>(offset.displacement[2])};
   const std::vector<double> irregular = irregular_harmonics(d, 2 * order_);
-  const double target = std::ldexp(1.0, std::max(offset.level_difference, 0));   // half sides in units of the smaller one
+  const double target = std::ldexp(1.0, std::max(offset.level_difference, 0));  // half sides in units of the smaller one
   const double source = std::ldexp(1.0, std::max(-offset.level_difference, 0));
   std::vector<double> out(n * n);
   double row_scale = target;

@@ -44,8 +44,8 @@ class MultipoleToLocal {
 
  private:
   struct Entry {
-    std::uint32_t first;    ///< index into the irregular harmonics of degree j + n, order k + q
-    std::uint32_t second;   ///< order |k - q|
+    std::uint32_t first;   ///< index into the irregular harmonics of degree j + n, order k + q
+    std::uint32_t second;  ///< order |k - q|
     double first_factor;
     double second_factor;
   };

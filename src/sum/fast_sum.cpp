@@ -231,7 +231,8 @@ std::vector<Vec3> FastSum::winding_gradient(const std::vector<Vec3>& eta) {
   return out;
 }
 
-std::vector<double> FastSum::winding_at(const std::vector<Vec3>& eta, const std::vector<Vec3>& targets, const std::atomic<bool>* cancel) const {
+std::vector<double> FastSum::winding_at(const std::vector<Vec3>& eta, const std::vector<Vec3>& targets,
+                                        const std::atomic<bool>* cancel) const {
   std::vector<double> out(targets.size());
   impl_->at(
       targets, cancel,

@@ -21,10 +21,10 @@ inline constexpr double kMollifierReach = sizeof(T) == 4 ? 5 : 7;
 
 /// Kernel values at one distance.
 struct KernelValues {
-  double single_layer;    ///< Phi_e
-  double double_layer;    ///< g_e
-  double gradient;        ///< b_e
-  double stokeslet;       ///< h_e
+  double single_layer;  ///< Phi_e
+  double double_layer;  ///< g_e
+  double gradient;      ///< b_e
+  double stokeslet;     ///< h_e
 };
 
 /// All four at squared distance r2 >= 0 for width e > 0; exact limits at 0. Relative error below 1e-12.

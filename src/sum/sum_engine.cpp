@@ -12,17 +12,20 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kLeafBlock = 4;          // leaves per parallel block
-constexpr std::size_t kNodeBlock = 32;         // nodes per parallel block
+constexpr std::size_t kLeafBlock = 4;                 // leaves per parallel block
+constexpr std::size_t kNodeBlock = 32;                // nodes per parallel block
 constexpr std::size_t kKeptMatrixBytes = 128u << 20;  // M2L matrices kept in memory up to this; beyond, made when needed
-constexpr std::size_t kColumnBatch = 64;       // columns handed to one matrix product
+constexpr std::size_t kColumnBatch = 64;              // columns handed to one matrix product
 
 std::size_t expansion_channels(cpu::NearForm form, int batch, bool local_widths) {
   switch (form) {
     case cpu::NearForm::kGreen:
-    case cpu::NearForm::kGreenAdjoint: return static_cast<std::size_t>(batch);
-    case cpu::NearForm::kStokesWinding: return cpu::kStokesChannels + (local_widths ? 1 : 0);
-    case cpu::NearForm::kWindingGradient: return 1;
+    case cpu::NearForm::kGreenAdjoint:
+      return static_cast<std::size_t>(batch);
+    case cpu::NearForm::kStokesWinding:
+      return cpu::kStokesChannels + (local_widths ? 1 : 0);
+    case cpu::NearForm::kWindingGradient:
+      return 1;
   }
   return 0;
 }
@@ -115,8 +118,8 @@ class ColumnBatch {
 }  // namespace
 
 template <class T>
-SumEngine<T>::SumEngine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Widths& widths, const SumPlan& plan,
-                        const std::atomic<bool>* cancel)
+SumEngine<T>::SumEngine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Widths& widths,
+                        const SumPlan& plan, const std::atomic<bool>* cancel)
     : plan_(plan),
       local_widths_(!widths.uniform()),
       cancel_(cancel),

@@ -23,7 +23,7 @@ struct TargetBlocks {
   std::vector<std::size_t> first_block;  ///< of every leaf, and the total
   std::vector<std::uint32_t> point;      ///< of every lane; the tail of a leaf repeats its last point
   AlignedVector<T> x, y, z;
-  AlignedVector<T> width_squared;        ///< only with local widths
+  AlignedVector<T> width_squared;  ///< only with local widths
 };
 
 /// Sums of one geometry in precision T. Memory is allocated on first use and reused. One caller at a time; parallel inside.
@@ -34,7 +34,8 @@ class SumEngine {
   SumEngine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Widths& widths, const SumPlan& plan,
             const std::atomic<bool>* cancel);
   /// Another set of targets for the sources of `other` (uniform width), canonical order.
-  SumEngine(const SumEngine& other, const std::vector<Vec3>& targets, const std::vector<std::uint64_t>& morton, const std::atomic<bool>* cancel);
+  SumEngine(const SumEngine& other, const std::vector<Vec3>& targets, const std::vector<std::uint64_t>& morton,
+            const std::atomic<bool>* cancel);
 
   [[nodiscard]] bool local_widths() const { return local_widths_; }
   [[nodiscard]] std::size_t record_size(std::size_t fields) const { return 3 + (local_widths_ ? 1 : 0) + fields; }
@@ -54,7 +55,7 @@ class SumEngine {
     std::vector<Vec3> points;
     Octree tree;
     std::vector<double> widths;
-    AlignedVector<T> local;                        // N x 3 relative to the leaf's centre
+    AlignedVector<T> local;                           // N x 3 relative to the leaf's centre
     std::array<AlignedVector<T>, 8> child_to_parent;  // M2M by octant, column after column
     std::array<AlignedVector<T>, 8> parent_to_child;  // L2L by octant
   };
@@ -76,12 +77,12 @@ class SumEngine {
   std::shared_ptr<Octree> target_tree_;  // the sources' tree when they are the targets
   std::shared_ptr<TargetBlocks<T>> targets_;
   InteractionLists lists_;
-  std::vector<int> offset_order_;        // order at which an offset's M2L is cut off
+  std::vector<int> offset_order_;          // order at which an offset's M2L is cut off
   std::vector<std::size_t> matrix_begin_;  // of every offset in matrices_
-  AlignedVector<T> matrices_;            // M2L, one per offset, column after column; empty when too large to keep
+  AlignedVector<T> matrices_;              // M2L, one per offset, column after column; empty when too large to keep
   std::size_t coefficients_;
   std::size_t stride_;
-  std::size_t channels_ = 0;             // expansions per node in the current run
+  std::size_t channels_ = 0;  // expansions per node in the current run
   AlignedVector<T> records_;
   AlignedVector<T> target_data_;
   AlignedVector<T> multipoles_;

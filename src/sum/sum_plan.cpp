@@ -24,8 +24,8 @@ constexpr std::array<Setting, 7> kSettings{{{1e-2, 5, 0.8, 96, false},
                                             {1e-5, 13, 0.55, 128, true},
                                             {1e-6, 17, 0.5, 128, true}}};
 constexpr double kLoosest = 1e-1;
-constexpr std::size_t kDirectBelow = 2000;       // measured crossover of the direct and the hierarchical sum
-constexpr std::size_t kDirectLeafPoints = 256;   // direct sums: leaves only bound the rounding of local coordinates
+constexpr std::size_t kDirectBelow = 2000;      // measured crossover of the direct and the hierarchical sum
+constexpr std::size_t kDirectLeafPoints = 256;  // direct sums: leaves only bound the rounding of local coordinates
 
 }  // namespace
 

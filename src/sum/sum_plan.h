@@ -7,11 +7,11 @@ namespace g3r {
 
 /// Parameters of the hierarchical sums. Measured by bench/fast_sum over clouds of every kind; see docs/design.md.
 struct SumPlan {
-  bool direct = false;            ///< every pair point by point
+  bool direct = false;  ///< every pair point by point
   bool double_precision = false;
-  int order = 4;                  ///< of the expansions
-  double opening = 0.5;           ///< far when radius_t + radius_s <= opening * distance
-  std::size_t leaf_points = 64;   ///< largest leaf
+  int order = 4;                 ///< of the expansions
+  double opening = 0.5;          ///< far when radius_t + radius_s <= opening * distance
+  std::size_t leaf_points = 64;  ///< largest leaf
 };
 
 /// The cheapest plan whose relative l2 error stays below `accuracy` in [1e-6, 1e-1], for N points. accuracy 0, or N below the measured

@@ -11,8 +11,8 @@
 namespace g3r {
 namespace {
 
-constexpr int kMaxLevelDifference = 3;      // bounds the number of distinct offsets
-constexpr std::size_t kTasksWanted = 512;   // target subtrees traversed in parallel; any value gives the same lists
+constexpr int kMaxLevelDifference = 3;     // bounds the number of distinct offsets
+constexpr std::size_t kTasksWanted = 512;  // target subtrees traversed in parallel; any value gives the same lists
 constexpr std::uint32_t kNotALeaf = 0xffffffffu;
 
 struct NodePair {
@@ -165,7 +165,8 @@ void index_offsets(const Octree& targets, const Octree& sources, InteractionList
   parallel::for_each(chunks, [&](std::size_t c) {
     std::vector<std::uint32_t> global(found[c].size());
     for (std::size_t k = 0; k < global.size(); ++k) {
-      global[k] = static_cast<std::uint32_t>(std::lower_bound(lists.offsets.begin(), lists.offsets.end(), found[c][k]) - lists.offsets.begin());
+      global[k] =
+          static_cast<std::uint32_t>(std::lower_bound(lists.offsets.begin(), lists.offsets.end(), found[c][k]) - lists.offsets.begin());
     }
     const auto begin = lists.far.begin() + static_cast<std::ptrdiff_t>(lists.chunk_begin[c]);
     const auto end = lists.far.begin() + static_cast<std::ptrdiff_t>(lists.chunk_begin[c + 1]);

@@ -11,7 +11,7 @@ namespace g3r {
 
 /// Position of a source node relative to a target node, shared by all pairs that need the same M2L matrix.
 struct Offset {
-  std::int32_t level_difference = 0;          ///< source level - target level
+  std::int32_t level_difference = 0;                  ///< source level - target level
   std::array<std::int32_t, 3> displacement{0, 0, 0};  ///< target centre - source centre, in half sides of the smaller node
   auto operator<=>(const Offset&) const = default;
 };
@@ -26,11 +26,12 @@ struct FarPair {
 /// Every (target point, source point) pair is in exactly one near list or under exactly one far pair. With the same tree on both sides the
 /// lists are symmetric: (a, b) is there if and only if (b, a) is, which makes the fast sum's adjoint exact.
 struct InteractionLists {
-  std::vector<Offset> offsets;            ///< distinct, sorted
-  std::vector<FarPair> far;               ///< sorted by target chunk, then offset, target, source
-  std::vector<std::size_t> chunk_begin;   ///< far pairs of target chunk c (kTargetChunk consecutive nodes): [chunk_begin[c], chunk_begin[c + 1])
-  std::vector<std::size_t> near_begin;    ///< near sources of the i-th target leaf: [near_begin[i], near_begin[i + 1])
-  std::vector<std::uint32_t> near;        ///< source leaves, as indices into the source tree's `leaves`, ascending
+  std::vector<Offset> offsets;  ///< distinct, sorted
+  std::vector<FarPair> far;     ///< sorted by target chunk, then offset, target, source
+  std::vector<std::size_t>
+      chunk_begin;  ///< far pairs of target chunk c (kTargetChunk consecutive nodes): [chunk_begin[c], chunk_begin[c + 1])
+  std::vector<std::size_t> near_begin;  ///< near sources of the i-th target leaf: [near_begin[i], near_begin[i + 1])
+  std::vector<std::uint32_t> near;      ///< source leaves, as indices into the source tree's `leaves`, ascending
 };
 
 /// Target nodes whose far pairs are done together, so that one M2L matrix serves many of them.
@@ -38,7 +39,6 @@ inline constexpr std::size_t kTargetChunk = 512;
 
 /// Dual traversal. A pair of nodes is far if radius_t + radius_s <= opening * distance, the gap between them is at least
 /// `reach` mollifier widths, and their levels differ by at most 3. opening in (0, 1); opening = 0: everything is near (direct sum).
-[[nodiscard]] InteractionLists build_interaction_lists(const Octree& targets, const Octree& sources, double opening,
-                                                        double reach);
+[[nodiscard]] InteractionLists build_interaction_lists(const Octree& targets, const Octree& sources, double opening, double reach);
 
 }  // namespace g3r

@@ -113,7 +113,8 @@ Octree split_while(std::size_t points, const std::vector<std::uint64_t>& morton,
   for (std::uint32_t i = 0; i < tree.nodes.size(); ++i) {
     if (tree.nodes[i].leaf()) tree.leaves.push_back(i);
   }
-  std::sort(tree.leaves.begin(), tree.leaves.end(), [&](std::uint32_t a, std::uint32_t b) { return tree.nodes[a].begin < tree.nodes[b].begin; });
+  std::sort(tree.leaves.begin(), tree.leaves.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return tree.nodes[a].begin < tree.nodes[b].begin; });
   return tree;
 }
 
