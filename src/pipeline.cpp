@@ -67,6 +67,13 @@ void describe(const Problem& problem, const PointsView& points, const Options& o
   if (is_flat(cloud)) stats.warnings.emplace_back("the cloud is flat (all points in one plane): which side is outside is a choice");
 }
 
+// Beyond this the points fill a volume as much as they sample a surface.
+void warn_of_noise(const Problem& problem, Stats& stats) {
+  constexpr double kStrongNoise = 1.5;  // spacings
+  if (problem.noise <= kStrongNoise * problem.spacing) return;
+  stats.warnings.emplace_back("very noisy: the points scatter by more than 1.5 spacings; detail below that is lost, or there is no surface");
+}
+
 void require_memory(const Stats& stats, const Options& options) {
   if (options.max_memory == 0 || stats.planned_memory_bytes <= options.max_memory) return;
   throw Unavailable("the plan needs " + std::to_string(stats.planned_memory_bytes >> 20) + " MiB, the limit is " +
@@ -83,7 +90,8 @@ std::vector<Vec3> solve(const Problem& problem, const Options& options, Stages& 
   }
   stages.begin("solve");
   IterativeResult result = solve_coarse_to_fine(problem.cloud.points, problem.cloud.morton, s, stages);
-  stats.converged = result.converged || s.tolerance == 0;
+  stats.converged =
+      result.converged || s.tolerance == 0 || (!result.residuals.empty() && result.residuals.back() <= s.accepted_residual);
   for (std::size_t i = 0; i < result.residuals.size(); ++i) {
     stats.iterations.push_back({result.kinds[i] == StepKind::kSteepestDescent ? "sd" : "cg", result.residuals[i]});
   }
@@ -130,6 +138,7 @@ Orientation orient_in_arena(const PointsView& points, const Options& options, St
   const Problem problem = prepare(points, options, stages);
   describe(problem, points, options, out.stats);
   require_memory(out.stats, options);
+  warn_of_noise(problem, out.stats);
   const std::vector<Vec3> eta = solve(problem, options, stages, out.stats);
   stages.begin("refine");
   std::vector<Vec3> normals = normalised(eta);

@@ -14,6 +14,7 @@ namespace {
 constexpr double kEnergyEpsilon = 0.3;        // smaller converges slower, larger blurs thin walls
 constexpr double kEnergyWindingWeight = 0.1;  // larger converges slower, 0 loses nested shells
 constexpr double kEnergyTolerance = 2.5e-3;   // slats and spokes need this residual; smooth shapes get there in half the steps
+constexpr double kAcceptedResidual = 2e-2;     // from here on normals change little; all clean models get below
 constexpr const char* kEnergySchedule = "45 cg";
 constexpr Steps kContinued{10, StepKind::kConjugateGradient};  // more gain little once the smooth part of the error is gone
 // The default on noisy input: the field must not see single points. In standard deviations of the noise, or spacings h where it says so.
@@ -102,6 +103,7 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
             (options.solver == Solver::kAuto && paper && green && options.schedule.empty() && cloud.size() <= kPaperDensePoints);
   s.schedule_text = !options.schedule.empty() ? options.schedule : paper ? kPaperSchedule : green ? kGreenSchedule : kEnergySchedule;
   s.schedule = parse_schedule(s.schedule_text);
+  s.accepted_residual = options.tolerance >= 0 ? options.tolerance : std::max(s.tolerance, kAcceptedResidual);
   s.coarse_to_fine = !paper && !green && options.schedule.empty();
   s.continued_schedule = {kContinued};
   s.tolerance = options.tolerance >= 0 ? options.tolerance : paper ? 0 : green ? kGreenTolerance : kEnergyTolerance;

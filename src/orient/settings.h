@@ -27,7 +27,8 @@ struct Settings {
   std::vector<Steps> schedule;            ///< from eta = 0
   std::vector<Steps> continued_schedule;  ///< from a coarse solution
   std::string schedule_text;
-  double tolerance = 0;
+  double tolerance = 0;              ///< stop at this relative residual
+  double accepted_residual = 0;      ///< at or below this the result counts as converged
   SumPlan sums;
 };
 
