@@ -71,6 +71,7 @@ void describe(const Problem& problem, const PointsView& points, const Options& o
 void warn_of_noise(const Problem& problem, Stats& stats) {
   constexpr double kStrongNoise = 1.5;  // spacings
   if (problem.noise <= kStrongNoise * problem.spacing) return;
+  stats.consistent = false;
   stats.warnings.emplace_back("very noisy: the points scatter by more than 1.5 spacings; detail below that is lost, or there is no surface");
 }
 
@@ -138,7 +139,6 @@ Orientation orient_in_arena(const PointsView& points, const Options& options, St
   const Problem problem = prepare(points, options, stages);
   describe(problem, points, options, out.stats);
   require_memory(out.stats, options);
-  warn_of_noise(problem, out.stats);
   const std::vector<Vec3> eta = solve(problem, options, stages, out.stats);
   stages.begin("refine");
   std::vector<Vec3> normals = normalised(eta);
@@ -152,6 +152,7 @@ Orientation orient_in_arena(const PointsView& points, const Options& options, St
   }
   const std::vector<float> confidence = side_confidence(eta, normals, strength);
   judge(problem.cloud, confidence, out.stats);
+  warn_of_noise(problem, out.stats);
   hand_out(problem.cloud, eta, normals, confidence, out);
   stages.finish(out.stats);
   return out;
