@@ -111,7 +111,7 @@ void add_finish_options(CLI::App& app, Settings& s) {
 void add_method_options(CLI::App& app, Settings& s) {
   Options& o = s.options;
   add_choice(app, "--preset", o.preset, {{"default", Preset::kDefault}, {"paper", Preset::kPaper}},
-             "default, or paper for the published method to the letter");
+             "default, or paper for the published method");
   add_choice(app, "--method", o.method, {{"auto", Method::kAuto}, {"green", Method::kGreen}, {"energy", Method::kEnergy}},
              "Equations to solve: green (as published), energy, or auto for the preset's");
   app.add_option_function<std::string>(

@@ -27,7 +27,7 @@ namespace G3R_PUBLIC g3r {
 /// A named set of defaults. Every option that is set explicitly wins over the preset.
 enum class Preset {
   kDefault,  ///< the best normals we know how to make
-  kPaper     ///< the published method to the letter: 20 steepest-descent + 60 conjugate-gradient steps, no refinement
+  kPaper     ///< the published method: 20 steepest-descent + 60 conjugate-gradient steps, no refinement; epsilon at least 0.15 spacings
 };
 
 /// Which equations are solved. All have the true normals as their solution; docs/math.md derives both.

@@ -33,7 +33,7 @@ typedef enum g3r_unit { G3R_UNIT_AUTO = 0, G3R_UNIT_INPUT = 1, G3R_UNIT_PERCENT 
 /* Fill with g3r_options_init() and change what you need; members are only ever added at the end. */
 typedef struct g3r_options {
   size_t size; /* of this struct, as the caller was compiled */
-  int paper;   /* not 0: the published method to the letter */
+  int paper;   /* not 0: the published method */
   double epsilon;
   g3r_unit epsilon_unit;
   int degree;  /* of the harmonic polynomials, 0..8; -1: automatic */

@@ -38,7 +38,7 @@ struct Settings {
 /// The paper's mollifier for clean input: 0.8 x the leaf side of an octree with at most one point per leaf, at its deepest level.
 [[nodiscard]] double paper_epsilon(const CanonicalCloud& cloud);
 
-/// Predicted peak memory of orient() in bytes for N points, within 15 % (tests/memory_plan_test).
+/// Predicted peak memory of orient() in bytes for N points; a formula, not yet checked against measured peaks.
 [[nodiscard]] std::size_t planned_memory(const Settings& settings, std::size_t given, std::size_t used);
 
 }  // namespace g3r
