@@ -94,6 +94,25 @@ Input with_patches(const Mesh& mesh, std::size_t count, std::uint64_t seed, std:
 
 }  // namespace
 
+std::vector<std::filesystem::path> find_models(const std::string& folder, const std::vector<std::string>& models) {
+  std::vector<std::filesystem::path> paths;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string extension = entry.path().extension().string();
+    const bool is_mesh = extension == ".ply" || extension == ".obj" || extension == ".off" || extension == ".stl";
+    if (entry.is_regular_file() && is_mesh) paths.push_back(entry.path());
+  }
+  if (paths.empty()) throw InvalidInput("no mesh to measure in " + folder);
+  std::sort(paths.begin(), paths.end());
+  if (models.empty()) return paths;
+  std::vector<std::filesystem::path> wanted;
+  for (const std::string& model : models) {
+    const auto found = std::find_if(paths.begin(), paths.end(), [&](const auto& path) { return path.stem() == model; });
+    if (found == paths.end()) throw InvalidInput("no mesh named " + model + " in " + folder);
+    wanted.push_back(*found);
+  }
+  return wanted;
+}
+
 InputKind parse_input_kind(const std::string& text) {
   using Defect = InputKind::Defect;
   if (text == "clean") return {text, Defect::kNone, 0};

@@ -4,10 +4,15 @@
 #include <g3r/mesh.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 namespace g3r::bench {
+
+/// Mesh files of a folder, sorted by name, or only those named in `models` (file names without extension), in that order. Throws
+/// InvalidInput when there is none.
+[[nodiscard]] std::vector<std::filesystem::path> find_models(const std::string& folder, const std::vector<std::string>& models);
 
 /// How a cloud is made from a mesh.
 struct InputKind {

@@ -3,6 +3,8 @@
 #include <g3r/error.h>
 #include <g3r/metrics.h>
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -16,6 +18,24 @@ namespace {
 constexpr std::size_t kMeshSamples = 200000;
 constexpr std::array<double, 4> kQuantiles = {0.50, 0.90, 0.95, 0.99};
 constexpr double kDegrees = 180 / 3.14159265358979323846;
+
+/// Processor time of this process so far.
+double cpu_time() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+/// Stops the clock when the mesh begins, or never.
+Monitor watch_for_mesh(double start, double& cpu_seconds) {
+  Monitor monitor;
+  monitor.progress = [start, &cpu_seconds](std::string_view stage, double) {
+    if (stage != "mesh") cpu_seconds = cpu_time() - start;
+    return true;
+  };
+  return monitor;
+}
 
 void score_points(const Orientation& orientation, const Input& input, Row& row) {
   const std::vector<Vec3> normals(orientation.normals.begin(), orientation.normals.begin() + static_cast<std::ptrdiff_t>(input.surface));
@@ -76,16 +96,18 @@ Row measure(const std::string& model, const Mesh& truth, const Input& input, con
   row.points = input.points.size();
   try {
     Reconstruction result;
+    const double start = cpu_time();
+    const Monitor monitor = watch_for_mesh(start, row.cpu_seconds);
     if (with_mesh) {
       try {
-        result = reconstruct(input.points, variant.options, variant.mesh);
+        result = reconstruct(input.points, variant.options, variant.mesh, monitor);
         row.mesh = score_reconstruction(result, truth, seed);
       } catch (const Error& error) {  // the normals are still worth a row
         row.mesh_error = error.what();
         result.orientation = orient(input.points, variant.options);
       }
     } else {
-      result.orientation = orient(input.points, variant.options);
+      result.orientation = orient(input.points, variant.options, monitor);
     }
     row.stats = result.orientation.stats;
     for (const auto& [stage, seconds] : row.stats.seconds) row.seconds += stage == "mesh" ? 0 : seconds;

@@ -34,6 +34,7 @@ struct Row {
                                             ///< side; -1 if all are on one side
   double outlier_confidence = -1;           ///< mean over the outliers; -1 without any
   double seconds = 0;                       ///< of orient(): all stages but the mesh, wall clock
+  double cpu_seconds = 0;                   ///< of orient(): processor time of all threads
   Stats stats;
   std::optional<MeshRow> mesh;
 };

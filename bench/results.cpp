@@ -36,6 +36,11 @@ const std::vector<Score>& point_scores() {
   return scores;
 }
 
+const std::vector<Score>& cost_scores() {
+  static const std::vector<Score> scores = {{"CPU s", 1, "%.1f", true, [](const Row& r) { return r.cpu_seconds; }}};
+  return scores;
+}
+
 const std::vector<Score>& mesh_scores() {
   static const std::vector<Score> scores = {
       {"CD 1e-3", 1000, "%.3f", true, [](const Row& r) { return r.mesh->chamfer; }},
@@ -79,8 +84,10 @@ Json row_json(const Row& row) {
   if (row.confidence_auc >= 0) json["confidence_auc"] = row.confidence_auc;
   if (row.outlier_confidence >= 0) json["outlier_confidence"] = row.outlier_confidence;
   json["seconds"] = row.seconds;
+  json["cpu_seconds"] = row.cpu_seconds;
   for (const auto& [stage, seconds] : row.stats.seconds) json["stage_seconds"][stage] = seconds;
   json["spacing"] = row.stats.spacing;
+  json["noise"] = row.stats.noise;
   json["epsilon"] = row.stats.epsilon;
   json["harmonics"] = row.stats.harmonics;
   json["solver"] = row.stats.solver;
@@ -225,6 +232,7 @@ std::string to_markdown(const RunInfo& run, const std::vector<Row>& rows) {
     const auto meshed = select(good, [](const Row& row) { return row.mesh.has_value(); });
     out << "## " << cloud.first << ", " << cloud.second << " points\n\n";
     write_summaries(point_scores(), methods, good, out);
+    write_summaries(cost_scores(), methods, good, out);
     if (!meshed.empty()) write_summaries(mesh_scores(), methods, meshed, out);
     write_models(methods, here, !meshed.empty(), out);
   }

@@ -3,7 +3,6 @@
 #include <g3r/io.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -36,7 +35,8 @@ Arguments parse_arguments(int argc, char** argv) {
   app.add_option("--data", arguments.data, "folder of closed, outward oriented triangle meshes")->required()->check(CLI::ExistingDirectory);
   app.add_option("--points", arguments.points, "numbers of points, comma separated")->delimiter(',')->check(CLI::Range(4, 100000000));
   app.add_option("--inputs", arguments.inputs, "clean, noise:P, outliers:P, gradient:R, patches:K; comma separated")->delimiter(',');
-  app.add_option("--method", arguments.methods, "default or paper, then ;KEY=VALUE for ablations; may be given several times");
+  app.add_option("--method", arguments.methods,
+                 "default, paper, wnnc, agr or pgr, then ;KEY=VALUE for ablations; may be given several times");
   app.add_option("--models", arguments.models, "only these models (file names without extension), comma separated")->delimiter(',');
   app.add_flag("--mesh", arguments.mesh, "also mesh, and score CD, AE_m, HD");
   app.add_option("--seed", arguments.run.seed, "seed of the samples");
@@ -52,33 +52,13 @@ Arguments parse_arguments(int argc, char** argv) {
   return arguments;
 }
 
-/// Mesh files of the folder, by name.
-std::vector<fs::path> find_models(const Arguments& arguments) {
-  std::vector<fs::path> paths;
-  for (const auto& entry : fs::directory_iterator(arguments.data)) {
-    const std::string extension = entry.path().extension().string();
-    const bool is_mesh = extension == ".ply" || extension == ".obj" || extension == ".off" || extension == ".stl";
-    if (entry.is_regular_file() && is_mesh) paths.push_back(entry.path());
-  }
-  if (paths.empty()) throw InvalidInput("no mesh to measure in " + arguments.data);
-  std::sort(paths.begin(), paths.end());
-  if (arguments.models.empty()) return paths;
-  std::vector<fs::path> wanted;
-  for (const std::string& model : arguments.models) {
-    const auto found = std::find_if(paths.begin(), paths.end(), [&](const fs::path& path) { return path.stem() == model; });
-    if (found == paths.end()) throw InvalidInput("no mesh named " + model + " in " + arguments.data);
-    wanted.push_back(*found);
-  }
-  return wanted;
-}
-
 void show(const Row& row) {
   std::fprintf(stderr, "%-20s %-12s %8zu %-24s ", row.model.c_str(), row.input.c_str(), row.points, row.method.c_str());
   if (!row.error.empty()) {
     std::fprintf(stderr, "error: %s\n", row.error.c_str());
     return;
   }
-  std::fprintf(stderr, "AE_p %.3fe-2 PCO %.3f %% %.2f s", 100 * row.ae, 100 * row.pco, row.seconds);
+  std::fprintf(stderr, "AE_p %.3fe-2 PCO %.3f %% %.2f CPU s", 100 * row.ae, 100 * row.pco, row.cpu_seconds);
   if (row.mesh)
     std::fprintf(stderr, " | CD %.3fe-3 AE_m %.3fe-2 HD %.3fe-2", 1e3 * row.mesh->chamfer, 100 * row.mesh->ae, 100 * row.mesh->hausdorff);
   std::fprintf(stderr, "\n");
@@ -122,7 +102,7 @@ void run(const Arguments& arguments) {
     write_file(arguments.markdown, to_markdown(arguments.run, rows));
   };
   write();  // learns before the work whether the results can be written
-  for (const fs::path& path : find_models(arguments)) {
+  for (const fs::path& path : find_models(arguments.data, arguments.models)) {
     measure_model(path, arguments, kinds, variants, rows);
     write();  // what is done is kept if the run is stopped
   }

@@ -40,7 +40,10 @@ Solver parse_solver(const std::string& text) {
 g3r::Method parse_equations(const std::string& text) {
   if (text == "green") return g3r::Method::kGreen;
   if (text == "energy") return g3r::Method::kEnergy;
-  throw InvalidInput("method '" + text + "' is none of green, energy");
+  if (text == "wnnc") return g3r::Method::kWnnc;
+  if (text == "agr") return g3r::Method::kAgr;
+  if (text == "pgr") return g3r::Method::kPgr;
+  throw InvalidInput("method '" + text + "' is none of green, energy, wnnc, agr, pgr");
 }
 
 Mesher parse_mesher(const std::string& text) {
@@ -54,6 +57,8 @@ void set_option(Variant& variant, const std::string& key, const std::string& val
     variant.options.epsilon = parse_epsilon(value);
   } else if (key == "method") {
     variant.options.method = parse_equations(value);
+  } else if (key == "widths") {
+    variant.options.wnnc_widths = value;
   } else if (key == "degree") {
     variant.options.degree = number<int>(key, value);
   } else if (key == "harmonics") {
@@ -72,7 +77,7 @@ void set_option(Variant& variant, const std::string& key, const std::string& val
     variant.mesh.depth = number<int>(key, value);
   } else {
     throw InvalidInput("method option '" + key +
-                       "' is none of method, epsilon, degree, harmonics, solver, schedule, tolerance, accuracy, mesher, depth");
+                       "' is none of method, widths, epsilon, degree, harmonics, solver, schedule, tolerance, accuracy, mesher, depth");
   }
 }
 
@@ -86,8 +91,10 @@ Variant parse_variant(const std::string& text) {
   std::getline(parts, part, ';');
   if (part == "paper") {
     variant.options.preset = Preset::kPaper;
+  } else if (part == "wnnc" || part == "agr" || part == "pgr") {
+    variant.options.method = parse_equations(part);
   } else if (part != "default") {
-    throw InvalidInput("method '" + text + "' does not begin with default or paper");
+    throw InvalidInput("method '" + text + "' does not begin with default, paper, wnnc, agr or pgr");
   }
   while (std::getline(parts, part, ';')) {
     const std::size_t equals = part.find('=');

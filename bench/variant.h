@@ -13,8 +13,9 @@ struct Variant {
   MeshOptions mesh;
 };
 
-/// PRESET[;KEY=VALUE]... with PRESET default or paper, and KEY one of method (green, energy), epsilon (auto, X, X%, Xh, Xn), degree,
-/// harmonics, solver (auto, dense, cg), schedule, tolerance, accuracy, mesher (field, poisson), depth. Throws InvalidInput.
+/// NAME[;KEY=VALUE]... with NAME a preset (default, paper) or an earlier method (wnnc, agr, pgr), and KEY one of method (green, energy,
+/// wnnc, agr, pgr), widths (of wnnc), epsilon (auto, X, X%, Xh, Xn), degree, harmonics, solver (auto, dense, cg), schedule, tolerance,
+/// accuracy, mesher (field, poisson), depth. Throws InvalidInput.
 [[nodiscard]] Variant parse_variant(const std::string& text);
 
 }  // namespace g3r::bench

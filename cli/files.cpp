@@ -24,8 +24,10 @@ void check_input(const std::string& path) {
 bool same_file(const std::string& a, const std::string& b) {
   if (a.empty() || a == "-" || b.empty() || b == "-") return false;
   std::error_code ignored;
-  return std::filesystem::weakly_canonical(a, ignored) == std::filesystem::weakly_canonical(b, ignored) ||
-         std::filesystem::equivalent(a, b, ignored);
+  const auto place = [&](const std::string& path) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored);
+  };
+  return place(a) == place(b) || std::filesystem::equivalent(a, b, ignored);
 }
 
 /// A report or a page, which check_output() cannot judge by its extension.
@@ -50,6 +52,21 @@ void check_view_files(const Settings& settings) {
   check_text_output(settings.output, inputs);
 }
 
+/// A result: its extension must be one that is written, and no two files may be the same.
+void check_result(const std::string& path, bool is_mesh, std::vector<std::string>& taken) {
+  try {
+    check_output(path, {taken.front()}, is_mesh);
+  } catch (const InvalidInput& error) {
+    throw UsageError(error.what());
+  }
+  for (const std::string& other : taken) {
+    if (same_file(path, other)) {
+      throw IoError(IoError::Kind::kCannotCreate, "cannot create " + escape_text(path) + ": it is also the input or another result");
+    }
+  }
+  taken.push_back(path);
+}
+
 bool makes_mesh(Command command) { return command == Command::kReconstruct || command == Command::kMesh; }
 
 }  // namespace
@@ -58,14 +75,10 @@ void check_files(const Settings& settings) {
   if (settings.command == Command::kView) return check_view_files(settings);
   check_input(settings.input);
   check_input(settings.truth);
-  if (!settings.output.empty()) {
-    try {
-      check_output(settings.output, {settings.input}, makes_mesh(settings.command));
-    } catch (const InvalidInput& error) {
-      throw UsageError(error.what());
-    }
-  }
-  check_text_output(settings.report, {settings.input, settings.output});
+  std::vector<std::string> taken = {settings.input};
+  for (const std::string& output : settings.outputs()) check_result(output, makes_mesh(settings.command), taken);
+  if (!settings.oriented.empty()) check_result(settings.oriented, false, taken);
+  check_text_output(settings.report, taken);
 }
 
 std::optional<Mesh> mesh_if_any(const std::string& path) {

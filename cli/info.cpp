@@ -50,17 +50,28 @@ std::string file_text(const Settings& settings, const Cloud& cloud) {
   return text + line("bounds", bounds_text(cloud.positions));
 }
 
-std::string mesh_text(const Mesh& mesh) {
-  const MeshCheck check = check_mesh(mesh);
+MeshCheck full_check(const Mesh& mesh) {
+  MeshCheck check = check_mesh(mesh);
+  check.self_intersections = count_self_intersections(mesh);
+  return check;
+}
+
+std::string mesh_text(const MeshCheck& check) {
   std::string text = counted(check.triangles, "triangle") + ", " + (check.closed ? "closed" : "not closed") + ", " +
                      (check.manifold ? "manifold" : "not manifold") + ", " + counted(check.components, "component");
   if (check.closed && check.manifold) text += ", genus " + std::to_string(check.genus) + ", volume " + short_number(check.volume);
-  return line("mesh", text + ", area " + short_number(check.area));
+  text = line("mesh", text + ", area " + short_number(check.area));
+  text += line("crossings", *check.self_intersections == 0 ? "no triangles intersect"
+                                                           : counted(*check.self_intersections, "pair") + " of triangles intersect");
+  return text +
+         line("angles", "smallest " + short_number(check.min_angle) + " degrees, typical smallest " + short_number(check.median_min_angle) +
+                            ", longest side over height at most " + short_number(check.max_aspect));
 }
 
 std::string plan_text(const Stats& stats) {
   std::string text;
   if (stats.dropped_non_finite > 0) text += line("not finite", with_commas(stats.dropped_non_finite) + " would be left out");
+  if (stats.outliers > 0) text += line("outliers", with_commas(stats.outliers) + " would be left out");
   if (stats.merged_duplicates > 0) text += line("duplicates", with_commas(stats.merged_duplicates) + " would be merged");
   text += line("spacing", short_number(stats.spacing));
   text += line("epsilon", short_number(stats.epsilon) +
@@ -76,7 +87,11 @@ int run_info(const Settings& settings, Session& session) {
   const Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, settings.read_options); });
   const std::optional<Mesh> mesh = mesh_if_any(settings.input);
   std::string text = file_text(settings, cloud);
-  if (mesh) text += mesh_text(*mesh);
+  MeshCheck check;
+  if (mesh) {
+    check = session.stage("check", [&] { return full_check(*mesh); });
+    text += mesh_text(check);
+  }
   Stats stats;
   try {
     stats = session.stage("plan", [&] { return plan(cloud.positions, settings.options); });
@@ -90,10 +105,7 @@ int run_info(const Settings& settings, Session& session) {
   for (const std::string& warning : stats.warnings) session.console().warn(warning);
   session.console().clear_bar();
   if (settings.report != "-") write_text("-", text);
-  if (!settings.report.empty()) {
-    const MeshCheck check = mesh ? check_mesh(*mesh) : MeshCheck{};
-    write_text(settings.report, report_json(stats, mesh ? &check : nullptr));
-  }
+  if (!settings.report.empty()) write_text(settings.report, report_json(stats, mesh ? &check : nullptr));
   return 0;
 }
 

@@ -7,6 +7,8 @@
 #include <new>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <system_error>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -71,12 +73,20 @@ int complain_of_input(const std::string& input, const std::string& what) {
   return complain(kBadData, what.find(name) == std::string::npos ? name + ": " + what : what);
 }
 
-int run_program(int argc, const char* const* argv, const Interrupts& interrupts) {
+/// No memory for the stack of another thread. oneTBB reports that as a plain std::runtime_error, with the name of the call that failed.
+bool is_lack_of_threads(const std::exception& error) {
+  return dynamic_cast<const std::system_error*>(&error) != nullptr ||
+         std::string_view(error.what()).find("pthread_create") != std::string_view::npos;
+}
+
+int run_program(int argc, const char* const* argv) {
+  std::optional<Interrupts> interrupts;
   try {
+    interrupts.emplace();
     const std::optional<Settings> settings = parse_command_line(argc, argv);
     if (!settings) return kOk;
     check_files(*settings);
-    Session session(*settings, interrupts);
+    Session session(*settings, *interrupts);
     try {
       return run(*settings, session);
     } catch (const InvalidInput& error) {
@@ -91,10 +101,11 @@ int run_program(int argc, const char* const* argv, const Interrupts& interrupts)
   } catch (const Unavailable& error) {
     return complain(kUnavailable, error.what());
   } catch (const Cancelled&) {
-    return complain(interrupts.exit_code(), "interrupted, nothing written");
+    return complain(interrupts->exit_code(), "interrupted, nothing written");
   } catch (const std::bad_alloc&) {
     return complain(kOutOfMemory, "out of memory");
   } catch (const std::exception& error) {
+    if (is_lack_of_threads(error)) return complain(kOutOfMemory, "out of memory: cannot start another thread (try --threads 1)");
     return complain(kBug, std::string("an error that should not happen, please report it: ") + error.what());
   }
 }
@@ -104,6 +115,5 @@ int run_program(int argc, const char* const* argv, const Interrupts& interrupts)
 
 int main(int argc, char** argv) {
   g3r::cli::open_missing_streams();
-  const g3r::cli::Interrupts interrupts;
-  return g3r::cli::run_program(argc, argv, interrupts);
+  return g3r::cli::run_program(argc, argv);
 }

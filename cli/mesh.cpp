@@ -16,7 +16,9 @@ int run_mesh(const Settings& settings, Session& session) {
       session.stage("mesh", [&] { return mesh_oriented(cloud.positions, cloud.normals, settings.mesh_options, session.monitor()); });
   const MeshCheck check = check_mesh(mesh);
   session.stage("carry", [&] { carry_attributes(mesh, cloud.positions, cloud.colors, cloud.confidence); });
-  session.stage("write", [&] { write_mesh(settings.output, mesh, session.cancellable(settings.write_options)); });
+  session.stage("write", [&] {
+    for (const std::string& output : settings.outputs()) write_mesh(output, mesh, session.cancellable(settings.write_options));
+  });
   Stats stats;
   stats.points = stats.used = cloud.positions.size();
   stats.method = settings.mesh_options.mesher == Mesher::kPoisson ? "poisson" : "field";

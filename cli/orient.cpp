@@ -11,7 +11,9 @@ int run_orient(const Settings& settings, Session& session) {
   const Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, settings.read_options); });
   Orientation result = orient(cloud.positions, settings.options, session.monitor());
   session.stage("write", [&] {
-    write_cloud(settings.output, cloud, &result.normals, &result.confidence, session.cancellable(settings.write_options));
+    for (const std::string& output : settings.outputs()) {
+      write_cloud(output, cloud, &result.normals, &result.confidence, session.cancellable(settings.write_options));
+    }
   });
   Stats& stats = result.stats;
   stats.warnings.insert(stats.warnings.begin(), cloud.warnings.begin(), cloud.warnings.end());

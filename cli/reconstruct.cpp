@@ -11,7 +11,13 @@ int run_reconstruct(const Settings& settings, Session& session) {
   const Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, settings.read_options); });
   Reconstruction result = reconstruct(cloud.positions, settings.options, settings.mesh_options, session.monitor());
   session.stage("carry", [&] { carry_attributes(result.mesh, cloud.positions, cloud.colors, result.orientation.confidence); });
-  session.stage("write", [&] { write_mesh(settings.output, result.mesh, session.cancellable(settings.write_options)); });
+  session.stage("write", [&] {
+    const WriteOptions options = session.cancellable(settings.write_options);
+    for (const std::string& output : settings.outputs()) write_mesh(output, result.mesh, options);
+    if (!settings.oriented.empty()) {
+      write_cloud(settings.oriented, cloud, &result.orientation.normals, &result.orientation.confidence, options);
+    }
+  });
   Stats& stats = result.orientation.stats;
   stats.warnings.insert(stats.warnings.begin(), cloud.warnings.begin(), cloud.warnings.end());
   return finish(settings, session, stats, &result.check);

@@ -1,5 +1,6 @@
 #include "settings.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -74,6 +75,14 @@ void add_write_options(CLI::App& app, Settings& s) {
   app.add_flag("--cloud-compare-names", s.write_options.cloud_compare_names, "Name the confidence so that CloudCompare shows it at once");
 }
 
+void add_also_option(CLI::App& app, Settings& s) {
+  app.add_option("--also", s.also, "Write the result to FILE too, in the format of its extension; may be given again")
+      ->type_name("FILE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false);
+}
+
 void add_mesh_options(CLI::App& app, Settings& s) {
   add_choice(app, "--mesher", s.mesh_options.mesher, {{"auto", Mesher::kAuto}, {"field", Mesher::kField}, {"poisson", Mesher::kPoisson}},
              "field (contours the winding field), poisson (screened Poisson), or auto for the preset's");
@@ -112,8 +121,16 @@ void add_method_options(CLI::App& app, Settings& s) {
   Options& o = s.options;
   add_choice(app, "--preset", o.preset, {{"default", Preset::kDefault}, {"paper", Preset::kPaper}},
              "default, or paper for the published method");
-  add_choice(app, "--method", o.method, {{"auto", Method::kAuto}, {"green", Method::kGreen}, {"energy", Method::kEnergy}},
-             "Equations to solve: green (as published), energy, or auto for the preset's");
+  add_choice(app, "--method", o.method,
+             {{"auto", Method::kAuto},
+              {"green", Method::kGreen},
+              {"energy", Method::kEnergy},
+              {"wnnc", Method::kWnnc},
+              {"agr", Method::kAgr},
+              {"pgr", Method::kPgr}},
+             "Equations to solve: green (as published), energy, auto for the preset's; earlier methods to compare with: wnnc, agr, pgr");
+  app.add_option("--wnnc-widths", o.wnnc_widths, "Method wnnc: density (default), clean, scan, noise-0.25, noise-0.5, noise-1 or sparse")
+      ->type_name("NAME");
   app.add_option_function<std::string>(
          "--epsilon",
          [&o](const std::string& text) {
@@ -158,6 +175,8 @@ void add_reconstruct(CLI::App& app, Settings& s) {
   add_seed_option(app, s);
   add_read_options(app, s);
   add_write_options(app, s);
+  add_also_option(app, s);
+  app.add_option("--oriented", s.oriented, "Write the points with their normals and confidence too")->type_name("FILE");
   add_method_options(app, s);
   add_mesh_options(app, s);
   add_finish_options(app, s);
@@ -172,6 +191,7 @@ void add_orient(CLI::App& app, Settings& s) {
   add_seed_option(*sub, s);
   add_read_options(*sub, s);
   add_write_options(*sub, s);
+  add_also_option(*sub, s);
   add_method_options(*sub, s);
 }
 
@@ -183,6 +203,7 @@ void add_mesh(CLI::App& app, Settings& s) {
   add_report_options(*sub, s);
   add_read_options(*sub, s);
   add_write_options(*sub, s);
+  add_also_option(*sub, s);
   add_mesh_options(*sub, s);
   add_finish_options(*sub, s);
 }
@@ -286,7 +307,10 @@ void complete(const CLI::App& app, Settings& s) {
     }
   }
   if (s.command == Command::kEval && s.sample_count == 0) s.sample_count = kEvalSamples;
-  if (s.output == "-" && s.report == "-") throw UsageError("the result and the report cannot both go to standard output");
+  std::vector<std::string> written = s.outputs();
+  written.push_back(s.oriented);
+  written.push_back(s.report);
+  if (std::count(written.begin(), written.end(), "-") > 1) throw UsageError("only one result can go to standard output");
 }
 
 /// The library knows the grammar of --schedule and --harmonics; the plan of a tetrahedron tells before any file is read.
@@ -302,6 +326,12 @@ void check_options(const Options& options) {
 }
 
 }  // namespace
+
+std::vector<std::string> Settings::outputs() const {
+  std::vector<std::string> all = also;
+  if (!output.empty()) all.insert(all.begin(), output);
+  return all;
+}
 
 std::optional<Settings> parse_command_line(int argc, const char* const* argv) {
   Settings settings;

@@ -22,6 +22,8 @@ struct Settings {
   Command command = Command::kReconstruct;
   std::string input;
   std::string output;
+  std::vector<std::string> also;   ///< further files for the same result
+  std::string oriented;            ///< reconstruct: file for the oriented points, empty for none
   std::string truth;               ///< eval, view
   std::vector<std::string> shown;  ///< view: a cloud, a mesh, or both; the other commands have `input`
   std::string figures;             ///< view: the JSON report of a run
@@ -38,6 +40,9 @@ struct Settings {
   bool quiet = false;
   bool progress = true;
   int verbosity = 0;
+
+  /// OUT and every --also.
+  [[nodiscard]] std::vector<std::string> outputs() const;
 };
 
 /// Reads the command line. Empty when it asked for help or the version, which is then on standard output. Throws UsageError.

@@ -24,6 +24,7 @@ std::string input_text(const Settings& settings, const Stats& stats) {
   text += ": " + counted(stats.points, "point");
   if (stats.merged_duplicates > 0) text += ", " + counted(stats.merged_duplicates, "duplicate") + " merged";
   if (stats.dropped_non_finite > 0) text += ", " + with_commas(stats.dropped_non_finite) + " not finite";
+  if (stats.outliers > 0) text += ", " + counted(stats.outliers, "outlier") + " left out";
   return text;
 }
 
@@ -85,7 +86,11 @@ void show_summary(const Settings& settings, Console& console, const Stats& stats
   }
   if (mesh != nullptr) console.say(line("mesh", mesh_text(*mesh)));
   console.say(line("time", time_text(stats)));
-  if (settings.output != "-") console.say(line("wrote", escape_text(settings.output)));
+  std::vector<std::string> written = settings.outputs();
+  if (!settings.oriented.empty()) written.push_back(settings.oriented);
+  for (const std::string& output : written) {
+    if (output != "-") console.say(line("wrote", escape_text(output)));
+  }
 }
 
 }  // namespace

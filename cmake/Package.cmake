@@ -1,5 +1,6 @@
 # cmake --install, find_package(g3r CONFIG), pkg-config, CPack.
-# Two libraries of one compilation: the archive g3r::g3r, and g3r::g3r_shared, which is the archive with only the public names showing.
+# Two libraries of one compilation: the archive g3r::g3r_static, and g3r::g3r_shared, which is the archive with only the public names
+# showing. g3r::g3r is one of them, see g3r-config.cmake.in.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -13,16 +14,23 @@ set_target_properties(g3r_shared PROPERTIES OUTPUT_NAME g3r VERSION ${PROJECT_VE
                                             LINK_DEPENDS "${PROJECT_SOURCE_DIR}/src/g3r.map")
 add_library(g3r::g3r_shared ALIAS g3r_shared)
 
-install(TARGETS g3r g3r_shared EXPORT g3r-targets
-        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+set_target_properties(g3r PROPERTIES EXPORT_NAME g3r_static)
+install(TARGETS g3r EXPORT g3r-static-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+install(TARGETS g3r_shared EXPORT g3r-shared-targets
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT development)
 install(DIRECTORY include/g3r DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
 if(TARGET g3r_cli)
   install(TARGETS g3r_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
 endif()
 
+set(G3R_ARCHIVE_NEEDS TBB PNG Highway meshoptimizer)
+if(G3R_WITH_OPEN3D)
+  list(APPEND G3R_ARCHIVE_NEEDS Open3D)
+endif()
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/g3r)
-install(EXPORT g3r-targets NAMESPACE g3r:: DESTINATION ${config_dir} COMPONENT development)
+foreach(kind static shared)
+  install(EXPORT g3r-${kind}-targets NAMESPACE g3r:: DESTINATION ${config_dir} COMPONENT development)
+endforeach()
 configure_package_config_file(cmake/g3r-config.cmake.in g3r-config.cmake INSTALL_DESTINATION ${config_dir})
 write_basic_package_version_file(g3r-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/g3r-config.cmake" "${PROJECT_BINARY_DIR}/g3r-config-version.cmake" cmake/FindHighway.cmake

@@ -2,26 +2,20 @@
 // Beside crashes, hangs and sanitizer findings it checks the memory law and that what a reader returns is consistent.
 #include <g3r/io.h>
 
-#include <cstdio>
 #include <initializer_list>
 
-#include "../tests/counting_allocator.h"
 #include "io/recognise.h"
+#include "require.h"
 
 namespace {
 
+using g3r::fuzz::require;
 using g3r::io::Format;
 
 // Beside the file itself. Compressed PCD expands up to 88 times by its nature: there the law is about what the stream really holds.
 constexpr std::size_t kTimesSize = 15;
 constexpr std::size_t kTimesCompressed = 88 * 6;
 constexpr std::size_t kConstant = std::size_t{1} << 20;
-
-void require(bool holds, const char* what) {
-  if (holds) return;
-  std::fprintf(stderr, "violated: %s\n", what);
-  __builtin_trap();
-}
 
 template <class List>
 bool fits(const List& list, std::size_t count) {
@@ -62,11 +56,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return -1;
   }
   const bool compressed = text.find("binary_compressed") != std::string_view::npos;
-  const std::size_t most = (compressed ? kTimesCompressed : kTimesSize) * size + kConstant;
-  g3r::allocator::reset_peak();
-  const std::size_t before = g3r::allocator::live;
+  const g3r::fuzz::MemoryLaw law((compressed ? kTimesCompressed : kTimesSize) * size, kConstant);
   read_points(bytes, size);
   read_faces(bytes, size);
-  require(g3r::allocator::peak - before <= most, "the memory law");
   return 0;
 }

@@ -1,5 +1,6 @@
 // The winding field of an oriented cloud, anywhere in space.
 #include "cloud/canonical_cloud.h"
+#include "cloud/outliers.h"
 #include "cloud/spacing.h"
 #include "oriented_cloud.h"
 #include "sum/fast_sum.h"
@@ -14,6 +15,8 @@ namespace {
 constexpr double kDefaultWidth = 0.55;  // spacings; the width of the refinement
 constexpr double kAccuracy = 1e-3;      // of the sums
 
+constexpr std::size_t kFewestPoints = 4;  // of a surface
+
 }  // namespace
 
 OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& normals, const std::vector<double>& areas) {
@@ -25,6 +28,14 @@ OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& 
     const std::uint32_t p = out.cloud.point_of[i];
     if (p == kNoPoint) continue;
     for (std::size_t a = 0; a < 3; ++a) out.eta[p][a] += scale * areas[i] * normals[i][a];
+  }
+  std::vector<std::uint32_t> without_area;  // outliers
+  for (std::uint32_t p = 0; p < out.eta.size(); ++p) {
+    if (out.eta[p] == Vec3{0, 0, 0}) without_area.push_back(p);
+  }
+  if (out.eta.size() - without_area.size() >= kFewestPoints) {
+    remove_points(out.cloud, without_area);
+    std::erase(out.eta, Vec3{0, 0, 0});
   }
   out.spacing = typical_spacing(local_spacing(out.cloud.points));
   return out;

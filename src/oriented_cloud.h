@@ -11,7 +11,7 @@ namespace g3r {
 
 struct OrientedCloud {
   CanonicalCloud cloud;
-  std::vector<Vec3> eta;  ///< M area-weighted normals in normalised units; duplicates are added up
+  std::vector<Vec3> eta;  ///< M area-weighted normals in normalised units; duplicates are added up, points without area left out
   double spacing = 0;     ///< typical, normalised units
 };
 

@@ -1,12 +1,19 @@
 // The whole program on one page: one line per step.
+#include "baselines/baseline.h"
 #include "cloud/canonical_cloud.h"
+#include "cloud/clusters.h"
 #include "cloud/noise.h"
+#include "cloud/outliers.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
 #include "orient/coarse_to_fine.h"
+#include "orient/polish.h"
 #include "orient/refine.h"
 #include "orient/settings.h"
 #include "solve/dense_solver.h"
+#include "solve/energy_system.h"
+#include "solve/green_system.h"
+#include "solve/iterative_solver.h"
 #include "stages.h"
 #include "sum/fast_sum.h"
 
@@ -14,6 +21,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 namespace g3r {
 namespace {
@@ -24,9 +32,12 @@ constexpr double kManyUnsure = 0.2;  // share of unsure points above which the o
 // Options and cloud, resolved.
 struct Problem {
   CanonicalCloud cloud;
+  std::vector<Vec3> outliers;         // taken out of the cloud; their indices follow those of its points
+  std::vector<double> local_spacing;  // smoothed, per point
   double spacing = 0;
   double noise = 0;
   Settings settings;
+  std::optional<BaselineSettings> baseline;  // with the methods wnnc, agr and pgr
 };
 
 Problem prepare(const PointsView& points, const Options& options, Stages& stages) {
@@ -34,10 +45,40 @@ Problem prepare(const PointsView& points, const Options& options, Stages& stages
   stages.begin("build");
   problem.cloud = canonical_cloud(points);
   stages.check();
-  problem.spacing = typical_spacing(local_spacing(problem.cloud.points));
+  std::vector<double> local = local_spacing(problem.cloud.points);
+  problem.spacing = typical_spacing(local);
+  if (options.preset != Preset::kPaper && !is_baseline(options.method)) {
+    const std::vector<std::uint32_t> outliers = find_outliers(problem.cloud.points, local, problem.spacing);
+    if (!outliers.empty()) {
+      problem.outliers = remove_points(problem.cloud, outliers);
+      local = local_spacing(problem.cloud.points);
+    }
+  }
   problem.noise = options.preset == Preset::kPaper ? 0 : estimate_noise(problem.cloud.points, problem.spacing);
   problem.settings = choose_settings(options, problem.cloud, problem.spacing, problem.noise);
+  const bool clean = problem.noise == 0 && problem.settings.polish_steps > 0;
+  if (clean) problem.local_spacing = smoothed_spacing(problem.cloud.points, local);
+  if (!options.wnnc_widths.empty() && options.method != Method::kWnnc) throw InvalidInput("wnnc_widths belong to the method wnnc");
+  if (is_baseline(options.method)) {
+    const double epsilon = options.epsilon.unit == Epsilon::Unit::kAuto ? 0 : problem.settings.epsilon;
+    problem.baseline = choose_baseline(options, epsilon, problem.spacing, problem.settings.sums);
+  }
   return problem;
+}
+
+const char* name_of(Method method) {
+  switch (method) {
+    case Method::kGreen:
+      return "green";
+    case Method::kWnnc:
+      return "wnnc";
+    case Method::kAgr:
+      return "agr";
+    case Method::kPgr:
+      return "pgr";
+    default:
+      return "energy";
+  }
 }
 
 void describe(const Problem& problem, const PointsView& points, const Options& options, Stats& stats) {
@@ -46,14 +87,15 @@ void describe(const Problem& problem, const PointsView& points, const Options& o
   stats.points = points.count;
   stats.used = cloud.size();
   stats.dropped_non_finite = cloud.non_finite;
-  stats.merged_duplicates = points.count - cloud.non_finite - cloud.size();
+  stats.outliers = problem.outliers.size();
+  stats.merged_duplicates = points.count - cloud.non_finite - cloud.size() - problem.outliers.size();
   stats.box_centre = cloud.frame.centre;
   stats.box_side = 2.0 / 1.1 / cloud.frame.scale;
   stats.spacing = cloud.frame.length_to_world(problem.spacing);
   stats.noise = cloud.frame.length_to_world(problem.noise);
   stats.epsilon = cloud.frame.length_to_world(settings.epsilon);
   stats.preset = options.preset == Preset::kPaper ? "paper" : "default";
-  stats.method = settings.method == Method::kGreen ? "green" : "energy";
+  stats.method = name_of(settings.method);
   stats.solver = settings.dense ? "dense" : "cg";
   stats.harmonics = settings.method == Method::kGreen ? format_harmonics(settings.harmonics) : "1,x,y,z";
   stats.sums = settings.dense || settings.sums.direct ? "direct" : "hierarchical";
@@ -61,6 +103,13 @@ void describe(const Problem& problem, const PointsView& points, const Options& o
   stats.tolerance = settings.tolerance;
   stats.threads = parallel::thread_count(options.threads);
   stats.planned_memory_bytes = planned_memory(settings, points.count, cloud.size());
+  if (problem.baseline) {
+    stats.epsilon = cloud.frame.length_to_world(problem.baseline->epsilon);
+    stats.solver = settings.method == Method::kWnnc ? "wnnc" : "cg";
+    stats.harmonics = std::string(1, '1');
+    stats.tolerance = problem.baseline->tolerance;
+    stats.planned_memory_bytes += baseline_memory(*problem.baseline, problem.spacing, cloud.size());
+  }
   if (stats.dropped_non_finite > 0) {
     stats.warnings.push_back(std::to_string(stats.dropped_non_finite) + " points with a non-finite coordinate were left out");
   }
@@ -72,38 +121,104 @@ void warn_of_noise(const Problem& problem, Stats& stats) {
   constexpr double kStrongNoise = 1.5;  // spacings
   if (problem.noise <= kStrongNoise * problem.spacing) return;
   stats.consistent = false;
-  stats.warnings.emplace_back("very noisy: the points scatter by more than 1.5 spacings; detail below that is lost, or there is no surface");
+  stats.warnings.emplace_back(
+      "very noisy: the points scatter by more than 1.5 spacings; detail below that is lost, or there is no surface");
 }
 
-void require_memory(const Stats& stats, const Options& options) {
-  if (options.max_memory == 0 || stats.planned_memory_bytes <= options.max_memory) return;
-  throw Unavailable("the plan needs " + std::to_string(stats.planned_memory_bytes >> 20) + " MiB, the limit is " +
-                    std::to_string(options.max_memory >> 20) + " MiB; raise the limit or thin the cloud");
+// Area vectors, normals and the strength of the field they come from (empty without a refinement), of every point in canonical order.
+struct Solution {
+  std::vector<Vec3> eta;
+  Refinement refinement;
+};
+
+void record(const Settings& s, const IterativeResult& result, Stats& stats) {
+  stats.converged = result.converged || s.tolerance == 0 || (!result.residuals.empty() && result.residuals.back() <= s.accepted_residual);
+  for (std::size_t i = 0; i < result.residuals.size(); ++i) {
+    stats.iterations.push_back({result.kinds[i] == StepKind::kSteepestDescent ? "sd" : "cg", result.residuals[i]});
+  }
+}
+
+Solution solve_by_baseline(const Problem& problem, Stages& stages, Stats& stats) {
+  stages.begin("solve");
+  BaselineResult result = solve_baseline(problem.cloud, *problem.baseline, stages);
+  stats.converged = result.converged;
+  stats.iterations = std::move(result.iterations);
+  return {std::move(result.eta), {std::move(result.normals), std::move(result.strength)}};
 }
 
 std::vector<Vec3> solve(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
   const Settings& s = problem.settings;
   if (s.dense) {
-    DenseResult dense = solve_dense(problem.cloud.points, s.epsilon, s.harmonics, options.condition_number, stages.cancel());
+    const HarmonicValues u = weighted_harmonics(s.harmonics, problem.cloud.points, s.constant_weight);
+    DenseResult dense = solve_dense(problem.cloud.points, s.epsilon, u, options.condition_number, stages.cancel());
     stats.converged = true;
     stats.condition_number = dense.condition_number;
     return std::move(dense.eta);
   }
   stages.begin("solve");
   IterativeResult result = solve_coarse_to_fine(problem.cloud.points, problem.cloud.morton, s, stages);
-  stats.converged =
-      result.converged || s.tolerance == 0 || (!result.residuals.empty() && result.residuals.back() <= s.accepted_residual);
-  for (std::size_t i = 0; i < result.residuals.size(); ++i) {
-    stats.iterations.push_back({result.kinds[i] == StepKind::kSteepestDescent ? "sd" : "cg", result.residuals[i]});
-  }
+  record(s, result, stats);
   return std::move(result.eta);
+}
+
+Solution solve_on_points(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
+  const Settings& s = problem.settings;
+  Solution solution;
+  solution.eta = solve(problem, options, stages, stats);
+  stages.begin("refine");
+  if (s.refinement_width == 0) {
+    solution.refinement.normals = normalised(solution.eta);
+    return solution;
+  }
+  FastSum sum(problem.cloud.points, problem.cloud.morton, Widths(s.refinement_width), s.sums, stages.cancel());
+  solution.refinement = refine_normals(sum, solution.eta);
+  if (s.polish_steps == 0) return solution;
+  Polished polished = polish(problem.cloud.points, problem.cloud.morton, s, problem.local_spacing, {}, solution.refinement, stages);
+  return {std::move(polished.eta), std::move(polished.refinement)};
+}
+
+// Where the kernels are so wide that they see groups of points: the same equations on one point per group, all of whose area vectors are
+// equal. The refinement is evaluated at every point.
+Solution solve_on_clusters(const Problem& problem, Stages& stages, Stats& stats) {
+  const Settings& s = problem.settings;
+  stages.begin("solve");
+  const Clusters clusters = cluster_points(problem.cloud.points, problem.cloud.morton, s.cluster_side);
+  FastSum sum(clusters.points, clusters.morton, Widths(s.epsilon), s.sums, stages.cancel());
+  EnergySystem system(sum, s.damping, s.winding_weight, clusters.multiplicity);
+  IterativeResult result = solve_iteratively(system, s.schedule, s.tolerance, {},
+                                             [&](int step, int steps, double) { stages.progress(static_cast<double>(step) / steps); });
+  record(s, result, stats);
+  stages.begin("refine");
+  FastSum wide(clusters.points, clusters.morton, Widths(s.refinement_width), s.sums, stages.cancel());
+  const Refinement first = refine_normals(wide, system.to_areas(std::move(result.eta)));
+  const std::vector<Vec3> eta = polish(clusters.points, clusters.morton, s, {}, clusters.multiplicity, first, stages).eta;
+  const FastSum field(clusters.points, clusters.morton, Widths(s.polish_width), s.sums, stages.cancel());
+  Solution solution;
+  solution.eta.resize(problem.cloud.size());
+  for (std::size_t i = 0; i < solution.eta.size(); ++i) {
+    const std::uint32_t c = clusters.cluster_of[i];
+    for (std::size_t a = 0; a < 3; ++a) solution.eta[i][a] = eta[c][a] / clusters.multiplicity[c];
+  }
+  solution.refinement = unit_normals(field.winding_gradient_at(eta, problem.cloud.points, stages.cancel()), solution.eta);
+  return solution;
+}
+
+// Outliers follow the field, have no area and deserve no confidence.
+void add_outliers(const Problem& problem, Stages& stages, Solution& solution, std::vector<float>& confidence) {
+  if (problem.outliers.empty()) return;
+  const Settings& s = problem.settings;
+  const FastSum field(problem.cloud.points, problem.cloud.morton, Widths(s.refinement_width), s.sums, stages.cancel());
+  const std::vector<Vec3> none(problem.outliers.size(), Vec3{0, 0, 0});
+  const std::vector<Vec3> normals = unit_normals(field.winding_gradient_at(solution.eta, problem.outliers, stages.cancel()), none).normals;
+  solution.refinement.normals.insert(solution.refinement.normals.end(), normals.begin(), normals.end());
+  solution.eta.insert(solution.eta.end(), none.begin(), none.end());
+  confidence.insert(confidence.end(), none.size(), 0.0F);
 }
 
 // From the canonical order back to the caller's. A duplicate gets its twin's normal and its share of the area.
 void hand_out(const CanonicalCloud& cloud, const std::vector<Vec3>& eta, const std::vector<Vec3>& normals,
               const std::vector<float>& confidence, Orientation& out) {
   const std::size_t n = cloud.point_of.size();
-  const double area_scale = 1 / (cloud.frame.scale * cloud.frame.scale);
   out.normals.assign(n, Vec3{0, 0, 0});
   out.areas.assign(n, 0);
   out.confidence.assign(n, 0);
@@ -111,7 +226,9 @@ void hand_out(const CanonicalCloud& cloud, const std::vector<Vec3>& eta, const s
     const std::uint32_t p = cloud.point_of[i];
     if (p == kNoPoint) continue;
     out.normals[i] = normals[p];
-    out.areas[i] = area_scale * std::hypot(eta[p][0], eta[p][1], eta[p][2]) / cloud.multiplicity[p];
+    // One length at a time: the square of a scale may leave the range of double where the area 0 does not.
+    const double area = std::hypot(eta[p][0], eta[p][1], eta[p][2]) / cloud.multiplicity[p];
+    out.areas[i] = cloud.frame.length_to_world(cloud.frame.length_to_world(area));
     out.confidence[i] = confidence[p];
   }
 }
@@ -138,22 +255,16 @@ Orientation orient_in_arena(const PointsView& points, const Options& options, St
   Orientation out;
   const Problem problem = prepare(points, options, stages);
   describe(problem, points, options, out.stats);
-  require_memory(out.stats, options);
-  const std::vector<Vec3> eta = solve(problem, options, stages, out.stats);
-  stages.begin("refine");
-  std::vector<Vec3> normals = normalised(eta);
-  std::vector<double> strength;
-  if (problem.settings.refinement_width > 0) {
-    FastSum sum(problem.cloud.points, problem.cloud.morton, Widths(problem.settings.refinement_width), problem.settings.sums,
-                stages.cancel());
-    Refinement refined = refine_normals(sum, eta);
-    normals = std::move(refined.normals);
-    strength = std::move(refined.strength);
-  }
-  const std::vector<float> confidence = side_confidence(eta, normals, strength);
+  require_memory(out.stats.planned_memory_bytes, options);
+  Solution solution = problem.baseline                    ? solve_by_baseline(problem, stages, out.stats)
+                      : problem.settings.cluster_side > 0 ? solve_on_clusters(problem, stages, out.stats)
+                                                          : solve_on_points(problem, options, stages, out.stats);
+  std::vector<Vec3>& normals = solution.refinement.normals;
+  std::vector<float> confidence = side_confidence(solution.eta, normals, solution.refinement.strength);
   judge(problem.cloud, confidence, out.stats);
   warn_of_noise(problem, out.stats);
-  hand_out(problem.cloud, eta, normals, confidence, out);
+  add_outliers(problem, stages, solution, confidence);
+  hand_out(problem.cloud, solution.eta, normals, confidence, out);
   stages.finish(out.stats);
   return out;
 }

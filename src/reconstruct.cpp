@@ -4,12 +4,14 @@
 #include "mesh/field_mesher.h"
 #include "mesh/mesh_finish.h"
 #include "mesh/screened_poisson.h"
+#include "orient/settings.h"
 #include "oriented_cloud.h"
 #include "stages.h"
 #include "sum/fast_sum.h"
 
 #include <g3r/g3r.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -81,6 +83,22 @@ Mesh make_mesh(const PointsView& points, const std::vector<Vec3>& normals, const
   return mesh;
 }
 
+MeshOptions choose(const MeshOptions& given, const Options& options) {
+  MeshOptions chosen = given;
+  if (chosen.mesher == Mesher::kAuto) {
+    const bool poisson = options.preset == Preset::kPaper && screened_poisson_available();
+    chosen.mesher = poisson ? Mesher::kPoisson : Mesher::kField;
+  }
+  if (options.preset == Preset::kPaper && chosen.depth == 0) chosen.depth = kPaperDepth;
+  return chosen;
+}
+
+// Orientation and mesh come one after the other. What Open3D will take is not known.
+std::size_t planned(const Stats& stats, const MeshOptions& chosen) {
+  if (chosen.mesher == Mesher::kPoisson) return stats.planned_memory_bytes;
+  return std::max(stats.planned_memory_bytes, field_mesh_memory(stats.used, stats.spacing, stats.box_side, chosen.depth));
+}
+
 }  // namespace
 
 Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const MeshOptions& options, const Monitor& monitor) {
@@ -109,14 +127,12 @@ Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const Me
 }
 
 Reconstruction reconstruct(const PointsView& points, const Options& options, const MeshOptions& mesh_options, const Monitor& monitor) {
+  if (mesh_options.mesher == Mesher::kPoisson) require_screened_poisson();
+  const MeshOptions chosen = choose(mesh_options, options);
+  if (options.max_memory > 0) require_memory(planned(plan(points, options), chosen), options);
   Reconstruction out;
   out.orientation = orient(points, options, monitor);
-  MeshOptions chosen = mesh_options;
-  if (chosen.mesher == Mesher::kAuto) {
-    const bool poisson = options.preset == Preset::kPaper && screened_poisson_available();
-    chosen.mesher = poisson ? Mesher::kPoisson : Mesher::kField;
-  }
-  if (options.preset == Preset::kPaper && chosen.depth == 0) chosen.depth = kPaperDepth;
+  out.orientation.stats.planned_memory_bytes = planned(out.orientation.stats, chosen);
   Stages stages(monitor);
   stages.begin("mesh");
   double far = 0;

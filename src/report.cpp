@@ -53,7 +53,11 @@ Json mesh_json(const MeshCheck& check) {
           {"nonmanifold_vertices", check.nonmanifold_vertices},
           {"genus", has_genus ? Json(check.genus) : Json(nullptr)},
           {"volume", number(check.volume)},
-          {"area", number(check.area)}};
+          {"area", number(check.area)},
+          {"self_intersections", check.self_intersections ? Json(*check.self_intersections) : Json(nullptr)},
+          {"min_angle", number(check.min_angle)},
+          {"median_min_angle", number(check.median_min_angle)},
+          {"max_aspect", number(check.max_aspect)}};
 }
 
 }  // namespace
@@ -66,6 +70,7 @@ std::string report_json(const Stats& stats, const MeshCheck* mesh) {
   report["input"] = {{"points", stats.points},
                      {"used", stats.used},
                      {"dropped_non_finite", stats.dropped_non_finite},
+                     {"outliers", stats.outliers},
                      {"merged_duplicates", stats.merged_duplicates}};
   report["scales"] = {{"box_centre", {number(stats.box_centre[0]), number(stats.box_centre[1]), number(stats.box_centre[2])}},
                       {"box_side", number(stats.box_side)},

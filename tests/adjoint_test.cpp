@@ -1,5 +1,6 @@
 // Every forward sum and its adjoint satisfy <A eta, q> = <eta, A^T q> to rounding, although both are approximations.
 #include "cloud/canonical_cloud.h"
+#include "sanitized.h"
 #include "shapes.h"
 #include "solve/harmonics.h"
 #include "sum/fast_sum.h"
@@ -28,7 +29,7 @@ class Adjoint : public testing::TestWithParam<std::tuple<double, bool, bool>> {}
 TEST_P(Adjoint, HoldsToRounding) {
   const auto [accuracy, direct, local_widths] = GetParam();
   shapes::Random random(11);
-  const CanonicalCloud cloud = canonical_cloud(shapes::torus(3000, 0.6, 0.25, 2).points);
+  const CanonicalCloud cloud = canonical_cloud(shapes::torus(kSanitized ? 800 : 3000, 0.6, 0.25, 2).points);
   SumPlan plan = sum_plan(accuracy, 1000000);
   plan.leaf_points = 32;
   if (direct) plan = {true, plan.double_precision, plan.order, 0, 256};
@@ -65,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(Plans, Adjoint,
 
 TEST(Linearity, SumsOfVectorsAreSumsOfResults) {
   shapes::Random random(3);
-  const CanonicalCloud cloud = canonical_cloud(shapes::sphere(4000).points);
+  const CanonicalCloud cloud = canonical_cloud(shapes::sphere(kSanitized ? 1000 : 4000).points);
   FastSum sum(cloud.points, cloud.morton, Widths(0.01), sum_plan(1e-5, 1000000));
   std::vector<Vec3> a(cloud.size());
   std::vector<Vec3> b(cloud.size());

@@ -105,6 +105,13 @@ TEST(BenchVariant, PresetAndOptionsAreRead) {
   EXPECT_EQ(parse_variant("default").mesh.depth, 0);
 }
 
+TEST(BenchVariant, EarlierMethodsAreRead) {
+  EXPECT_EQ(parse_variant("wnnc;widths=noise-0.5").options.method, g3r::Method::kWnnc);
+  EXPECT_EQ(parse_variant("wnnc;widths=noise-0.5").options.wnnc_widths, "noise-0.5");
+  EXPECT_EQ(parse_variant("agr").options.method, g3r::Method::kAgr);
+  EXPECT_EQ(parse_variant("pgr;epsilon=0.5h").options.method, g3r::Method::kPgr);
+}
+
 TEST(BenchVariant, MistakesAreRefused) {
   for (const char* text : {"", "best", "paper;degree", "paper;degree=x", "paper;colour=1", "default;epsilon=0.4y", "default;solver=lu"}) {
     EXPECT_THROW((void)parse_variant(text), InvalidInput) << text;

@@ -20,7 +20,7 @@ DOCS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "docs", "r
 
 REPORT_SCHEMA = {
     "schema": str, "schema_version": int, "g3r_version": str,
-    "input": {"points": int, "used": int, "dropped_non_finite": int, "merged_duplicates": int},
+    "input": {"points": int, "used": int, "dropped_non_finite": int, "outliers": int, "merged_duplicates": int},
     "scales": {"box_centre": list, "box_side": float, "spacing": float, "noise": float, "epsilon": float, "depth": int},
     "method": {"name": str, "preset": str, "solver": str, "harmonics": str, "sums": str, "accuracy": float, "tolerance": float,
                "condition_number": None},
@@ -31,7 +31,8 @@ REPORT_SCHEMA = {
     "warnings": list,
 }
 MESH_SCHEMA = {"vertices": int, "faces": int, "components": int, "closed": bool, "manifold": bool, "boundary_edges": int,
-               "nonmanifold_edges": int, "nonmanifold_vertices": int, "genus": None, "volume": float, "area": float}
+               "nonmanifold_edges": int, "nonmanifold_vertices": int, "genus": None, "volume": float, "area": float,
+               "self_intersections": None, "min_angle": float, "median_min_angle": float, "max_aspect": float}
 
 
 class ExitCodes(ProgramTest):
@@ -298,7 +299,7 @@ class Report(ProgramTest):
         write_points(self.path("odd.ply"), points + [(math.nan, 0, 0), (0, math.inf, 0)] + points[:7])
         result = self.expect(OK, "orient", "odd.ply", "out.ply", "--report", "r.json", "--threads", "1")
         report = self.json_of("r.json")
-        self.assertEqual(report["input"], {"points": 309, "used": 300, "dropped_non_finite": 2, "merged_duplicates": 7})
+        self.assertEqual(report["input"], {"points": 309, "used": 300, "dropped_non_finite": 2, "outliers": 0, "merged_duplicates": 7})
         self.assertEqual(report["threads"], 1)
         self.assertAlmostEqual(report["scales"]["box_side"], 2, delta=0.05)
         seconds = dict(report["seconds"])
@@ -382,6 +383,20 @@ class Points(ProgramTest):
         self.assertFalse(self.json_of("r.json")["mesh"]["closed"])
         self.expect(USAGE, "in.ply", "out.ply", "--trim", "-1")
 
+    def test_one_run_writes_several_files(self):
+        write_points(self.path("in.ply"), sphere(500))
+        self.expect(OK, "in.ply", "out.ply", "--also", "out.obj", "--also", "out.stl", "--oriented", "points.xyz")
+        self.expect(OK, "in.ply", "alone.obj")
+        self.expect(OK, "orient", "in.ply", "alone.xyz", "--also", "points.las")
+        self.assertTrue(self.bytes_of("out.obj") == self.bytes_of("alone.obj"))
+        self.assertTrue(self.bytes_of("points.xyz") == self.bytes_of("alone.xyz"))
+        self.assertEqual(sorted(os.listdir(self.folder)),
+                         ["alone.obj", "alone.xyz", "in.ply", "out.obj", "out.ply", "out.stl", "points.las", "points.xyz"])
+        self.expect(CANNOT_CREATE, "in.ply", "new.ply", "--also", "./new.ply")
+        self.expect(CANNOT_CREATE, "in.ply", "new.ply", "--oriented", "in.ply")
+        self.expect(USAGE, "in.ply", "new.ply", "--also", "new.las")
+        self.expect(USAGE, "in.ply", "-", "--also", "-")
+
     def test_an_existing_output_is_replaced(self):
         write_points(self.path("in.ply"), sphere(300))
         with open(self.path("out.ply"), "w") as file:
@@ -428,7 +443,7 @@ class Measuring(ProgramTest):
 
     def test_info_says_what_is_in_a_file(self):
         text = self.expect(OK, "info", "cube.obj").out.decode()
-        for words in ("cube.obj", "8", "12 triangles", "closed", "genus 0", "x 0 to 2"):
+        for words in ("cube.obj", "8", "12 triangles", "closed", "genus 0", "no triangles intersect", "smallest 45 degrees", "x 0 to 2"):
             self.assertIn(words, text)
         write_xyz(self.path("two.xyz"), [(0, 0, 0), (1, 1, 1)])
         result = self.expect(OK, "info", "two.xyz")

@@ -12,25 +12,28 @@ inline std::atomic<std::size_t> live{0};
 inline std::atomic<std::size_t> peak{0};
 inline std::atomic<long> until_failure{-1};  ///< allocations before one fails; negative: never
 
-constexpr std::size_t kHead = 16;  // holds the size, keeps the alignment
+constexpr std::size_t kAlignment = 16;  // of every block that asks for no more
 
-inline void* allocate(std::size_t size) {
+/// A block of `size` bytes behind `alignment` bytes, the last of which hold the size; null if there is no memory, or on request.
+inline void* allocate(std::size_t size, std::size_t alignment = kAlignment) {
   if (until_failure.load() >= 0 && until_failure.fetch_sub(1) == 0) return nullptr;
-  auto* block = static_cast<char*>(std::malloc(size + kHead));
+  const std::size_t whole = (size + 2 * alignment - 1) / alignment * alignment;
+  auto* block = static_cast<char*>(alignment == kAlignment ? std::malloc(whole) : std::aligned_alloc(alignment, whole));
   if (block == nullptr) return nullptr;
-  *reinterpret_cast<std::size_t*>(block) = size;
+  block += alignment;
+  reinterpret_cast<std::size_t*>(block)[-1] = size;
   const std::size_t now = live.fetch_add(size) + size;
   std::size_t most = peak.load();
   while (most < now && !peak.compare_exchange_weak(most, now)) {
   }
-  return block + kHead;
+  return block;
 }
 
-inline void release(void* pointer) {
+// Not inlined: GCC 12 takes the size before the block for an element outside an array.
+[[gnu::noinline]] inline void release(void* pointer, std::size_t alignment = kAlignment) {
   if (pointer == nullptr) return;
-  char* block = static_cast<char*>(pointer) - kHead;
-  live.fetch_sub(*reinterpret_cast<std::size_t*>(block));
-  std::free(block);
+  live.fetch_sub(static_cast<std::size_t*>(pointer)[-1]);
+  std::free(static_cast<char*>(pointer) - alignment);
 }
 
 /// Forgets the peak so far.
@@ -44,6 +47,11 @@ void* operator new(std::size_t size) {
   return pointer;
 }
 void* operator new[](std::size_t size) { return operator new(size); }
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  void* pointer = g3r::allocator::allocate(size, static_cast<std::size_t>(alignment));
+  if (pointer == nullptr) throw std::bad_alloc();
+  return pointer;
+}
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return g3r::allocator::allocate(size); }
 void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return g3r::allocator::allocate(size); }
 void operator delete(void* pointer) noexcept { g3r::allocator::release(pointer); }
@@ -52,3 +60,9 @@ void operator delete(void* pointer, std::size_t) noexcept { g3r::allocator::rele
 void operator delete[](void* pointer, std::size_t) noexcept { g3r::allocator::release(pointer); }
 void operator delete(void* pointer, const std::nothrow_t&) noexcept { g3r::allocator::release(pointer); }
 void operator delete[](void* pointer, const std::nothrow_t&) noexcept { g3r::allocator::release(pointer); }
+void operator delete(void* pointer, std::align_val_t alignment) noexcept {
+  g3r::allocator::release(pointer, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* pointer, std::size_t, std::align_val_t alignment) noexcept {
+  g3r::allocator::release(pointer, static_cast<std::size_t>(alignment));
+}

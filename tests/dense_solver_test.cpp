@@ -8,8 +8,8 @@
 
 #include <g3r/error.h>
 
-#include <Eigen/SVD>
 #include <gtest/gtest.h>
+#include <Eigen/SVD>
 
 namespace g3r {
 namespace {
@@ -18,7 +18,7 @@ TEST(DenseSolver, AgreesWithConjugateGradientsAtConvergence) {
   const CanonicalCloud cloud = canonical_cloud(shapes::torus(250, 0.6, 0.25, 3).points);
   const double epsilon = 0.03;
   const std::vector<Harmonic> harmonics = harmonics_of_degrees(0, 2);
-  const DenseResult dense = solve_dense(cloud.points, epsilon, harmonics, true);
+  const DenseResult dense = solve_dense(cloud.points, epsilon, evaluate_harmonics(harmonics, cloud.points), true);
   EXPECT_GT(dense.condition_number, 1);
   SumPlan plan = sum_plan(0, cloud.size());
   plan.double_precision = true;
@@ -61,8 +61,9 @@ TEST(Spectrum, OneHarmonicIsRankDeficientThreeAreNot) {
 
 TEST(DenseSolver, RefusesSingularAndHugeSystems) {
   const CanonicalCloud cloud = canonical_cloud(shapes::sphere(60).points);
-  EXPECT_THROW(static_cast<void>(solve_dense(cloud.points, 1e-3, parse_harmonics("1"), false)), InvalidInput);
-  EXPECT_THROW(static_cast<void>(solve_dense(std::vector<Vec3>(kMostDensePoints + 1), 1e-3, parse_harmonics("1"), false)), InvalidInput);
+  EXPECT_THROW(static_cast<void>(solve_dense(cloud.points, 1e-3, evaluate_harmonics(parse_harmonics("1"), cloud.points), false)),
+               InvalidInput);
+  EXPECT_THROW(static_cast<void>(solve_dense(std::vector<Vec3>(kMostDensePoints + 1), 1e-3, HarmonicValues{}, false)), InvalidInput);
 }
 
 TEST(Schedule, IsParsedOrRefused) {

@@ -52,6 +52,17 @@ TEST(FieldMesher, WindingFieldOfTwoNestedSpheresGivesTwoNestedComponents) {
   EXPECT_NEAR(t.volume, 4.0 / 3.0 * M_PI * (1 - 0.125), 0.02);
 }
 
+// Most points in one place, so that the median spacing says nothing of the others: the octree must not refine their discs to its scale.
+TEST(FieldMesher, ATightClusterAmongSparsePointsCostsLittle) {
+  OrientedSample s = sphere_sample(300, 1e-5, 4);
+  const OrientedSample wide = sphere_sample(200, 1, 5);
+  s.points.insert(s.points.end(), wide.points.begin(), wide.points.end());
+  s.normals.insert(s.normals.end(), wide.normals.begin(), wide.normals.end());
+  const Mesh mesh = field_mesh(s.points, s.normals, DistanceSampler([](const Vec3& p) { return norm(p) - 1; }, 0.1));
+  EXPECT_EQ(topology(mesh).bad_edges + topology(mesh).bad_vertices, 0U);
+  EXPECT_LT(mesh.triangles.size(), 200000U);
+}
+
 TEST(FieldMesher, CubeKeepsItsEdgesAndMostCorners) {
   const OrientedSample s = cube_sample(6000, 0.5, 3);
   const double h = std::sqrt(6.0 / 6000);

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/lzf.h"
@@ -139,7 +140,8 @@ inline std::vector<Sample> all(std::size_t count = 12) {
   const Mesh mesh = tetrahedron();
   const auto sample = [](std::string name, std::string bytes, std::string_view end_of_header, bool counted) {
     const std::size_t end = end_of_header.empty() ? 0 : bytes.find(end_of_header);
-    return Sample{std::move(name), bytes, end == std::string::npos ? bytes.size() : end + end_of_header.size(), counted};
+    const std::size_t header = end == std::string::npos ? bytes.size() : end + end_of_header.size();
+    return Sample{std::move(name), std::move(bytes), header, counted};
   };
   std::vector<Sample> samples;
   samples.push_back(sample("binary.ply", written(cloud, "a.ply"), "end_header\n", true));

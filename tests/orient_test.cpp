@@ -1,6 +1,7 @@
 // orient() as a user sees it: right sides on every topology, the same result for every order, place, scale and thread count, clear errors.
 #include <g3r/g3r.h>
 
+#include "sanitized.h"
 #include "shapes.h"
 
 #include <gtest/gtest.h>
@@ -65,11 +66,11 @@ TEST(Orient, PaperPresetOrientsCleanShapes) {
 
 TEST(Orient, ResidualsOfConjugateGradientsFall) {
   Options options;
-  options.tolerance = 1e-3;
+  options.tolerance = 2e-3;
   options.schedule = "100 cg";
   const Orientation o = orient(shapes::torus(3000, 0.6, 0.25, 2).points, options);
   EXPECT_TRUE(o.stats.converged);
-  EXPECT_LE(o.stats.iterations.back().residual, 1e-3);
+  EXPECT_LE(o.stats.iterations.back().residual, 2e-3);
 }
 
 TEST(Orient, IsTheSameForEveryOrderOfThePoints) {
@@ -90,7 +91,7 @@ TEST(Orient, IsTheSameForEveryOrderOfThePoints) {
 }
 
 TEST(Orient, IsTheSameForEveryNumberOfThreads) {
-  const Surface s = shapes::torus(6000, 0.6, 0.25, 8);
+  const Surface s = shapes::torus(kSanitized ? 2500 : 6000, 0.6, 0.25, 8);
   Options options;
   options.threads = 1;
   const Orientation one = orient(s.points, options);

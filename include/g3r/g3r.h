@@ -30,11 +30,15 @@ enum class Preset {
   kPaper     ///< the published method: 20 steepest-descent + 60 conjugate-gradient steps, no refinement; epsilon at least 0.15 spacings
 };
 
-/// Which equations are solved. All have the true normals as their solution; docs/math.md derives both.
+/// Which equations are solved. All have the true normals as their solution; docs/math.md derives green and energy. The last three are
+/// earlier methods on the same sums, to compare with: src/baselines says what each does and where it differs from its paper.
 enum class Method {
-  kAuto,   ///< the preset's: energy by default, green in the paper preset
-  kGreen,  ///< least squares over Green's identity for all harmonics, as published
-  kEnergy  ///< the identities centred at every point: Stokes single layer energy plus winding number 1/2
+  kAuto,    ///< the preset's: energy by default, green in the paper preset
+  kGreen,   ///< least squares over Green's identity for all harmonics, as published
+  kEnergy,  ///< the identities centred at every point: Stokes single layer energy plus winding number 1/2
+  kWnnc,    ///< winding number normal consistency (Lin et al. 2024): 40 steps; see Options::wnnc_widths
+  kAgr,     ///< Gauss formula in three stretched frames, damped least squares (after Ma et al. 2024)
+  kPgr      ///< Gauss formula alone, damped least squares (Lin et al. 2022)
 };
 
 /// How the linear system is solved.
@@ -47,11 +51,11 @@ enum class Solver {
 /// Width of the Gaussian mollifier of the Laplace kernel.
 struct Epsilon {
   enum class Unit {
-    kAuto,      ///< chosen from the cloud
-    kInput,     ///< units of the input coordinates
-    kPercent,   ///< percent of the bounding box diagonal
-    kSpacing,   ///< multiples of the point spacing h
-    kNormalised ///< units of the normalised box, whose longest side is 2/1.1 (the paper's units)
+    kAuto,       ///< chosen from the cloud
+    kInput,      ///< units of the input coordinates
+    kPercent,    ///< percent of the bounding box diagonal
+    kSpacing,    ///< multiples of the point spacing h
+    kNormalised  ///< units of the normalised box, whose longest side is 2/1.1 (the paper's units)
   };
   Unit unit = Unit::kAuto;
   double value = 0;  ///< > 0 unless automatic
@@ -70,52 +74,54 @@ struct Options {
   Preset preset = Preset::kDefault;
   Method method = Method::kAuto;
   Epsilon epsilon;
-  int degree = -1;             ///< highest degree of the harmonic polynomials, 0..8; -1: preset's (2)
-  std::string harmonics;       ///< subset instead of a degree: "1,x,y,z", "degree:0-2", "x,y,z,xy"
+  int degree = -1;          ///< highest degree of the harmonic polynomials, 0..8; -1: preset's (2)
+  std::string harmonics;    ///< subset instead of a degree: "1,x,y,z", "degree:0-2", "x,y,z,xy"
+  std::string wnnc_widths;  ///< method wnnc: "density", or the authors' "clean", "scan", "noise-0.25", "noise-0.5", "noise-1", "sparse"
   Solver solver = Solver::kAuto;
-  std::string schedule;        ///< iterations, for example "20 sd 60 cg"
-  double tolerance = -1;       ///< stop when the relative residual of the normal equations falls below; 0: never; -1: preset's
-  double accuracy = 1e-2;      ///< relative l2 error allowed in the hierarchical sums, 1e-6..1e-1; 0: direct sums. 1e-3 gives the same normals
+  std::string schedule;    ///< iterations, for example "20 sd 60 cg"
+  double tolerance = -1;   ///< stop when the relative residual of the normal equations falls below; 0: never; -1: preset's
+  double accuracy = 1e-2;  ///< relative l2 error allowed in the hierarchical sums, 1e-6..1e-1; 0: direct sums. 1e-3 gives the same normals
   bool condition_number = false;  ///< dense solver only: also compute the condition number
-  int threads = 0;             ///< 0: all cores. The result does not depend on it
-  std::uint64_t seed = 0;      ///< reserved for steps that sample; the present method draws no random number
-  std::size_t max_memory = 0;  ///< bytes; refuse before the solve when the plan exceeds it. 0: no limit
+  int threads = 0;                ///< 0: all cores. The result does not depend on it
+  std::uint64_t seed = 0;         ///< reserved for steps that sample; the present method draws no random number
+  std::size_t max_memory = 0;     ///< bytes; refuse before the solve when the plan exceeds it. 0: no limit
 };
 
 /// One step of the iterative solver.
 struct Iteration {
-  std::string kind;     ///< "sd" or "cg"
-  double residual = 0;  ///< |A^T (b - A eta)| / |A^T b| after the step
+  std::string kind;     ///< "sd", "cg" or "wnnc"
+  double residual = 0;  ///< |A^T (b - A eta)| / |A^T b| after the step; wnnc: |1/2 - W eta| / |1/2| before it
 };
 
 /// What was done and how it went; report_json() writes it out. Lengths in input units unless said otherwise.
 struct Stats {
-  std::size_t points = 0;                 ///< given
-  std::size_t used = 0;                   ///< distinct finite points solved for
+  std::size_t points = 0;  ///< given
+  std::size_t used = 0;    ///< distinct finite points solved for
   std::size_t dropped_non_finite = 0;
-  std::size_t merged_duplicates = 0;      ///< points beyond the first at the same place
+  std::size_t outliers = 0;           ///< left out of the solve; their area and confidence are 0
+  std::size_t merged_duplicates = 0;  ///< points beyond the first at the same place
   Vec3 box_centre{0, 0, 0};
-  double box_side = 0;                    ///< longest side of the bounding box
-  double spacing = 0;                     ///< typical distance between neighbours, square root of area per point
-  double noise = 0;                       ///< estimated standard deviation of the points from their surface, 0: clean
+  double box_side = 0;  ///< longest side of the bounding box
+  double spacing = 0;   ///< typical distance between neighbours, square root of area per point
+  double noise = 0;     ///< estimated standard deviation of the points from their surface, 0: clean
   double epsilon = 0;
-  int depth = 0;                          ///< octree depth of the mesher, 0 if no mesh was made
+  int depth = 0;  ///< octree depth of the mesher, 0 if no mesh was made
   std::string preset;
   std::string method;
-  std::string solver;                     ///< "dense" or "cg"
-  std::string harmonics;                  ///< the functions used, for example "degree:0-2"
-  std::string sums;                       ///< "direct" or "hierarchical"
+  std::string solver;     ///< "dense", "cg" or "wnnc"
+  std::string harmonics;  ///< the functions used, for example "degree:0-2"
+  std::string sums;       ///< "direct" or "hierarchical"
   double accuracy = 0;
   std::vector<Iteration> iterations;
   double tolerance = 0;
   bool converged = false;
-  bool consistent = true;                 ///< false: so many points could face either way that the cloud may have no clear inside
-  double condition_number = 0;            ///< 0 unless asked for
+  bool consistent = true;       ///< false: so many points could face either way that the cloud may have no clear inside
+  double condition_number = 0;  ///< 0 unless asked for
   double confidence_mean = 0;
-  double confidence_below_half = 0;       ///< share of the points, 0..1
+  double confidence_below_half = 0;                     ///< share of the points, 0..1
   std::vector<std::pair<std::string, double>> seconds;  ///< per stage, in order
-  std::size_t planned_memory_bytes = 0;
-  std::size_t peak_memory_bytes = 0;      ///< of the whole process
+  std::size_t planned_memory_bytes = 0;                 ///< of reconstruct(): a bound that includes the mesher, but not Open3D's
+  std::size_t peak_memory_bytes = 0;                    ///< of the whole process
   int threads = 0;
   std::vector<std::string> warnings;
 };
@@ -123,7 +129,8 @@ struct Stats {
 /// Normals for every input point, in input order.
 struct Orientation {
   std::vector<Vec3> normals;      ///< N unit outward normals; (0, 0, 0) only for points that are not finite
-  std::vector<double> areas;      ///< N areas in squared input units (a duplicate carries its share); 0 for non-finite points
+  std::vector<double> areas;      ///< N areas in squared input units (a duplicate carries its share); 0 for non-finite points,
+                                  ///< infinite where the square is more than a double holds (extents beyond 1e154)
   std::vector<float> confidence;  ///< N values in [0, 1]: 1 = sure of the side, 0 = could be inside-out. docs/math.md says how
   Stats stats;
 };
@@ -152,10 +159,10 @@ struct MeshOptions {
     kDistance  ///< farther than trim_distance
   };
   Trim trim = Trim::kOff;
-  double trim_distance = 0;       ///< input units, > 0 with Trim::kDistance
-  std::size_t keep_largest = 0;   ///< keep only this many components, largest first; 0: all
-  double min_component = 8;       ///< drop components of less area than this many points stand for, 0: none; the largest always stays
-  std::size_t faces = 0;          ///< simplify to about this many triangles; 0: off
+  double trim_distance = 0;      ///< input units, > 0 with Trim::kDistance
+  std::size_t keep_largest = 0;  ///< keep only this many components, largest first; 0: all
+  double min_component = 8;      ///< drop components of less area than this many points stand for, 0: none; the largest always stays
+  std::size_t faces = 0;         ///< simplify to about this many triangles; 0: off
 };
 
 /// A mesh together with the normals it was made from.

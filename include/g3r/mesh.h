@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace G3R_PUBLIC g3r {
@@ -19,7 +20,7 @@ struct Mesh {
   std::vector<float> confidence;                        ///< empty, or V values in [0, 1]
 };
 
-/// Topology and size of a mesh, see check_mesh().
+/// Topology, size and shape of a mesh, see check_mesh().
 struct MeshCheck {
   std::size_t vertices = 0;  ///< vertices that a triangle uses
   std::size_t triangles = 0;
@@ -32,10 +33,19 @@ struct MeshCheck {
   long genus = 0;                        ///< sum over components of (2 - Euler characteristic) / 2; 0 unless closed and manifold
   double volume = 0;                     ///< signed, by the divergence theorem; positive when oriented outward
   double area = 0;
+  double min_angle = 0;         ///< degrees, the smallest of all triangles; 0 if one has no area
+  double median_min_angle = 0;  ///< degrees, median over the triangles of their smallest angle
+  double max_aspect = 0;  ///< largest ratio of longest side to the height on it, 2/sqrt(3) for equilateral ones; infinite without area
+  std::optional<std::size_t> self_intersections;  ///< count_self_intersections(), where that was asked for; check_mesh() leaves it empty
 };
 
 /// Topology, genus, volume and area of a mesh. O(F log F). A triangle that names a vertex twice has a non-manifold edge.
 /// Throws InvalidInput if a triangle names a vertex that does not exist, or one with a coordinate that is not finite or beyond 1e50.
 [[nodiscard]] MeshCheck check_mesh(const Mesh& mesh);
+
+/// Number of pairs of triangles that have a point in common but no corner (by position). Decided exactly, in the coordinates as they are,
+/// unless the sizes of coordinates differ by more than a factor of 1e90. Triangles whose area rounds to 0 are left out, and so are folds
+/// between triangles that share a corner. 0 for a mesh without triangles. O(F log F + pairs). Throws InvalidInput like check_mesh().
+[[nodiscard]] std::size_t count_self_intersections(const Mesh& mesh);
 
 }  // namespace g3r

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import json
 import math
-from typing import Any, Callable, Dict, Optional, Set, Tuple, Union, overload
+from typing import TYPE_CHECKING, Any, Callable, Dict, Optional, Set, Tuple, Union, overload
 
 from . import _g3r
-from ._arrays import Bytes, Floats, Indices, Points, Singles, as_colors, as_points, member
+from ._arrays import as_colors, as_points, member
 from ._errors import InputError
+
+if TYPE_CHECKING:
+    from ._types import Bytes, Floats, Indices, Points, Singles
 
 Progress = Callable[[str, float], Optional[bool]]
 """Called as progress(stage, fraction in [0, 1]); returning False cancels, anything else goes on."""
@@ -33,7 +36,7 @@ def _epsilon(value: Union[str, float]) -> Dict[str, Any]:
     return {"epsilon": number, "epsilon_unit": unit}
 
 
-_METHOD_OPTIONS = {"method", "harmonics", "solver", "schedule", "tolerance", "accuracy", "max_memory"}
+_METHOD_OPTIONS = {"method", "wnnc_widths", "harmonics", "solver", "schedule", "tolerance", "accuracy", "max_memory"}
 _MESH_OPTIONS = {"mesher", "keep_largest", "min_component", "faces"}
 
 
@@ -176,7 +179,7 @@ def run(points: Any, *, colors: Any = None, epsilon: Union[str, float] = "auto",
     threads: 0 for all cores; the result does not depend on it.
     progress: called as progress(stage, fraction) on this thread; returning False cancels.
     faces: simplify the mesh to about this many triangles. keep_largest: keep only so many components.
-    Further options: mesher, min_component, method, harmonics, solver, schedule, tolerance, accuracy, max_memory, as in C++.
+    Further options: mesher, min_component, method, wnnc_widths, harmonics, solver, schedule, tolerance, accuracy, max_memory, as in C++.
 
     The interpreter lock is released; Ctrl-C works. Raises InputError, UnavailableError, Cancelled, MemoryError.
     """

@@ -1,24 +1,23 @@
-"""Objects of other libraries as NumPy arrays, by what they offer and not by what they are: nothing is imported."""
+"""Objects of other libraries as NumPy arrays, by what they offer and not by what they are: none of those libraries is imported.
+
+NumPy is imported where it is first needed, so that `import g3r` does not wait for it.
+"""
 
 from __future__ import annotations
 
 import os
-from typing import Any
-
-import numpy as np
-import numpy.typing as npt
+from typing import TYPE_CHECKING, Any
 
 from ._errors import InputError
 
-Points = npt.NDArray[Any]
-Floats = npt.NDArray[np.float64]
-Singles = npt.NDArray[np.float32]
-Bytes = npt.NDArray[np.uint8]
-Indices = npt.NDArray[np.uint32]
+if TYPE_CHECKING:
+    from ._types import Bytes, Indices, Points, Singles
 
 
-def _plain(value: Any) -> npt.NDArray[Any]:
+def _plain(value: Any) -> Points:
     """A tensor, a device array, a list: as an array, without a copy where there is one in memory already."""
+    import numpy as np
+
     if hasattr(value, "detach"):  # torch: drop the graph, come to the CPU
         value = value.detach()
     if hasattr(value, "cpu") and callable(value.cpu):
@@ -34,7 +33,7 @@ def _plain(value: Any) -> npt.NDArray[Any]:
 
 
 def _is_array(value: Any) -> bool:
-    return isinstance(value, (np.ndarray, list, tuple)) or hasattr(value, "__array__") or hasattr(value, "__dlpack__")
+    return isinstance(value, (list, tuple)) or hasattr(value, "__array__") or hasattr(value, "__dlpack__")
 
 
 def member(value: Any, *names: str) -> Any:
@@ -54,7 +53,7 @@ def member(value: Any, *names: str) -> Any:
     return None
 
 
-def _rows(value: Any, what: str) -> npt.NDArray[Any]:
+def _rows(value: Any, what: str) -> Points:
     array = _plain(value)
     if array.ndim != 2 or array.shape[1] != 3:
         raise InputError(f"{what} must be an array of shape (n, 3), not {array.shape}")
@@ -63,6 +62,8 @@ def _rows(value: Any, what: str) -> npt.NDArray[Any]:
 
 def as_points(value: Any, what: str = "points") -> Points:
     """(n, 3) float32 or float64 with adjacent coordinates; a view of the caller's memory where that is one already."""
+    import numpy as np
+
     if isinstance(value, (str, bytes, os.PathLike)):
         from ._files import read
 
@@ -86,6 +87,8 @@ def as_points(value: Any, what: str = "points") -> Points:
 
 def as_colors(value: Any, count: int, what: str = "colors") -> Bytes:
     """(n, 3) bytes; numbers with a fraction are shares of 1, a fourth channel is dropped."""
+    import numpy as np
+
     array = _plain(value)
     if array.ndim != 2 or array.shape[1] not in (3, 4) or array.shape[0] != count:
         raise InputError(f"{what} must be an array of shape ({count}, 3), not {array.shape}")
@@ -101,6 +104,8 @@ def as_colors(value: Any, count: int, what: str = "colors") -> Bytes:
 
 def as_values(value: Any, count: int, what: str) -> Singles:
     """(n,) float32."""
+    import numpy as np
+
     array = _plain(value)
     if array.shape != (count,):
         raise InputError(f"{what} must be an array of shape ({count},), not {array.shape}")
@@ -109,6 +114,8 @@ def as_values(value: Any, count: int, what: str) -> Singles:
 
 def as_faces(value: Any, vertices: int) -> Indices:
     """(m, 3) uint32 that name existing vertices. PyVista's padded list (3, a, b, c, 3, ...) is understood."""
+    import numpy as np
+
     array = _plain(value)
     if array.ndim == 1 and array.size % 4 == 0 and np.all(array[::4] == 3):
         array = array.reshape(-1, 4)[:, 1:]

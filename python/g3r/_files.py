@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
-from typing import Any, List, Optional, Tuple, Union
+from typing import TYPE_CHECKING, Any, List, Optional, Tuple, Union
 
 from . import _g3r
 from ._api import Result
-from ._arrays import Bytes, Floats, Indices, Singles, as_colors, as_faces, as_points, as_values, member
+from ._arrays import as_colors, as_faces, as_points, as_values, member
 from ._errors import InputError
+
+if TYPE_CHECKING:
+    from ._types import Bytes, Floats, Indices, Singles
 
 Path = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
 

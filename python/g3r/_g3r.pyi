@@ -2,7 +2,7 @@
 
 from typing import Any, Callable, Dict, List, Optional, Tuple
 
-from ._arrays import Bytes, Floats, Indices, Points, Singles
+from ._types import Bytes, Floats, Indices, Points, Singles
 
 __version__: str
 

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import html
 import os
-import tempfile
-import webbrowser
 from typing import Any, Optional
 
 from . import _g3r
@@ -38,6 +35,9 @@ class View:
 
     def open(self) -> str:
         """Opens the page in the browser from a temporary file, whose name is returned."""
+        import tempfile
+        import webbrowser
+
         handle, name = tempfile.mkstemp(prefix="g3r_", suffix=".html")
         with os.fdopen(handle, "w", encoding="utf-8") as file:
             file.write(self.html)
@@ -45,6 +45,8 @@ class View:
         return name
 
     def _repr_html_(self) -> str:
+        import html
+
         return (f'<iframe srcdoc="{html.escape(self.html)}" width="100%" height="{self.height}" '
                 'style="border: 0; border-radius: 8px" sandbox="allow-scripts allow-downloads"></iframe>')
 
@@ -61,11 +63,11 @@ def _in_notebook() -> bool:
 
 
 def show(what: Any, *, normals: Any = None, confidence: Any = None, colors: Any = None, true_normals: Any = None, faces: Any = None,
-         title: str = "g3r", up: str = "y", max_points: int = 1_500_000, height: int = DEFAULT_HEIGHT, open: Optional[bool] = None) -> View:
+         mesh: Any = None, title: str = "g3r", up: str = "y", max_points: int = 1_500_000, height: int = DEFAULT_HEIGHT, open: Optional[bool] = None) -> View:
     """A page with the points, their normals and the mesh, to turn and to look into.
 
     what: a `Result`, a `Cloud`, a path, points, or an object with points; with `faces`, the vertices of a mesh.
-    true_normals: of a reference; adds a map of the errors. up: "y" or "z".
+    mesh: a pair (V, F) to show with the points. true_normals: of a reference; adds a map of the errors. up: "y" or "z".
     open: True opens the browser; None does so outside notebooks. Returns the `View`, which a notebook displays.
     """
     if up not in ("y", "z"):
@@ -97,6 +99,8 @@ def show(what: Any, *, normals: Any = None, confidence: Any = None, colors: Any 
                 vertex_colors = as_colors(colors, len(points))
             if normals is None and true_normals is None:
                 points = None
+    if mesh is not None:
+        vertices, faces = as_points(mesh[0], "vertices"), mesh[1]
     count = 0 if points is None else len(points)
     triangles = None if faces is None or vertices is None else as_faces(faces, len(vertices))
 

@@ -108,6 +108,7 @@ def test_field_tells_inside_from_outside(result, sphere):
 
 @pytest.mark.parametrize("options", [
     {"epsilon": 0.05}, {"epsilon": "0.5%"}, {"epsilon": "0.8h"}, {"epsilon": "0.03n"}, {"degree": 1}, {"preset": "paper"}, {"solver": "cg"}, {"method": "energy"},
+    {"method": "wnnc", "wnnc_widths": "sparse"}, {"method": "agr"}, {"method": "pgr"},
     {"threads": 1}, {"seed": 7}, {"tolerance": 1e-2}, {"accuracy": 1e-2}, {"harmonics": "1,x,y,z"},
 ])
 def test_every_option_is_taken(sphere, options):

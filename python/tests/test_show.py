@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import g3r
+from g3r.__main__ import main
 
 
 def data_of(view):
@@ -57,6 +58,27 @@ def test_scripts_get_a_browser(monkeypatch, result):
     g3r.show(result)
     assert opened[0] == "file://" + name and len(opened) == 2
     assert "MB" in repr(g3r.show(result, open=False))
+
+
+def test_points_and_a_mesh_are_shown_together(result, sphere):
+    data = data_of(g3r.show(sphere, mesh=(result.vertices, result.faces), open=False))
+    assert data["points"]["given"] == len(sphere) and data["mesh"]["given"] == len(result.faces)
+
+
+def test_the_command_shows_files(tmp_path, monkeypatch, capsys, result, sphere):
+    cloud, mesh = str(tmp_path / "cloud.ply"), str(tmp_path / "mesh.ply")
+    g3r.write(cloud, sphere, normals=sphere)
+    g3r.write(mesh, result)
+    for inputs in ([cloud], [mesh], [mesh, cloud]):
+        assert main(["view", *inputs, "-o", str(tmp_path / "look.html")]) == 0
+        page = (tmp_path / "look.html").read_text()
+        assert ('"mesh":{' in page.replace(" ", "")) == (mesh in inputs)
+    assert main(["view", cloud, "-o", str(tmp_path / "look.png")]) == 0
+    opened = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    assert main(["view", cloud, "--z-up"]) == 0 and len(opened) == 1
+    assert main(["view", cloud, cloud, "-o", "look.html"]) == 1 and main(["view", "nowhere.ply", "-o", "look.html"]) == 1
+    assert "nowhere.ply" in capsys.readouterr().err
 
 
 def test_wrong_arguments(sphere):

@@ -12,11 +12,11 @@ namespace {
 
 constexpr std::size_t kFewNeighbours = 16;
 constexpr std::size_t kManyNeighbours = 32;
-constexpr std::size_t kProbes = 2000;   // neighbourhoods looked at, spread along the canonical order
-constexpr double kFlattest = 0.02;      // share of them that decides
-constexpr double kCleanResidual = 0.1;  // in spacings
-constexpr double kSheetKurtosis = 2.2;
-constexpr double kWireRoundness = 0.35;
+constexpr std::size_t kProbes = 2000;    // neighbourhoods looked at, spread along the canonical order
+constexpr double kFlattest = 0.02;       // share of them that decides
+constexpr double kCleanResidual = 0.1;   // in spacings
+constexpr double kFlatKurtosis = 0.1;    // share of neighbourhoods whose kurtosis decides
+constexpr double kSheetKurtosis = 1.96;  // of that quantile: 2.0 to 2.1 under Gaussian noise, 1.1 to 1.9 between sheets and on wires
 constexpr double kResidualToSigma = 0.95;
 constexpr double kLargestResidual = 0.8;    // beyond, the ball is full of noise and tells no more
 constexpr std::size_t kFewestPoints = 200;  // below, neighbourhoods are a large part of the shape
@@ -24,8 +24,7 @@ constexpr std::size_t kFewestPoints = 200;  // below, neighbourhoods are a large
 // Plane fit to the nearest neighbours of one point.
 struct PlaneFit {
   double residual;  // root mean square distance, corrected for the 3 parameters
-  double kurtosis;
-  double roundness;  // second over first principal spread: near 1 on a surface, small on a wire
+  double kurtosis;  // of the distances: 3 for a Gaussian (less, from few points), 1 for two sheets
 };
 
 PlaneFit fit_plane(const std::vector<Vec3>& points, const PointTree& tree, const Vec3& at, std::size_t neighbours) {
@@ -49,8 +48,7 @@ PlaneFit fit_plane(const std::vector<Vec3>& points, const PointTree& tree, const
     second += t * t;
     fourth += t * t * t * t;
   }
-  return {std::sqrt(std::max(0.0, eigen.eigenvalues()[0]) / (count - 3)), second > 0 ? count * fourth / (second * second) : 0,
-          eigen.eigenvalues()[1] / eigen.eigenvalues()[2]};
+  return {std::sqrt(std::max(0.0, eigen.eigenvalues()[0]) / (count - 3)), second > 0 ? count * fourth / (second * second) : 0};
 }
 
 double quantile(std::vector<double> values, double share) {
@@ -68,19 +66,15 @@ double estimate_noise(const std::vector<Vec3>& points, double spacing) {
   std::vector<double> few;
   std::vector<double> many;
   std::vector<double> kurtosis;
-  std::vector<double> roundness;
   for (std::size_t i = 0; i < points.size(); i += std::max<std::size_t>(1, points.size() / kProbes)) {
-    const PlaneFit fit = fit_plane(points, tree, points[i], kFewNeighbours);
-    few.push_back(fit.residual);
-    kurtosis.push_back(fit.kurtosis);
+    few.push_back(fit_plane(points, tree, points[i], kFewNeighbours).residual);
     const PlaneFit wide = fit_plane(points, tree, points[i], kManyNeighbours);
     many.push_back(wide.residual);
-    roundness.push_back(wide.roundness);
+    kurtosis.push_back(wide.kurtosis);
   }
   const bool clean = quantile(few, kFlattest) < kCleanResidual * spacing;
-  const bool sheets = quantile(kurtosis, 0.5) < kSheetKurtosis;
-  const bool wires = quantile(roundness, 0.5) < kWireRoundness;
-  if (clean || sheets || wires) return 0;
+  const bool sheets = quantile(kurtosis, kFlatKurtosis) < kSheetKurtosis;
+  if (clean || sheets) return 0;
   const double x = std::min(quantile(many, kFlattest) / spacing, kLargestResidual);
   return kResidualToSigma * spacing * x / (1 - x);
 }

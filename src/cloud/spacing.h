@@ -12,6 +12,10 @@ namespace g3r {
 /// log N).
 [[nodiscard]] std::vector<double> local_spacing(const std::vector<Vec3>& points);
 
+/// Local spacings averaged (geometric mean) over each point's 16 nearest, itself included: they follow the density, not the luck of the
+/// sample. O(N log N).
+[[nodiscard]] std::vector<double> smoothed_spacing(const std::vector<Vec3>& points, const std::vector<double>& local);
+
 /// The typical spacing: the median of the local ones, which a few far points cannot move.
 [[nodiscard]] double typical_spacing(std::vector<double> local);
 

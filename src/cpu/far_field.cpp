@@ -337,24 +337,25 @@ void MatrixRows(const T* matrix, std::size_t columns, std::size_t stride, std::s
 }
 
 template <class T>
-void ApplyMatrix(const T* matrix, std::size_t columns, std::size_t stride, const T* const* in, T* const* out, std::size_t count) {
+void ApplyMatrix(const T* matrix, std::size_t columns, std::size_t rows, std::size_t stride, const T* const* in, T* const* out,
+                 std::size_t count) {
   const std::size_t lanes = hn::Lanes(Tag<T>());
   std::size_t row = 0;
-  for (; row + 2 * lanes <= stride; row += 2 * lanes) MatrixRows<T, 2>(matrix, columns, stride, row, in, out, count);
-  for (; row < stride; row += lanes) MatrixRows<T, 1>(matrix, columns, stride, row, in, out, count);
+  for (; row + 2 * lanes <= rows; row += 2 * lanes) MatrixRows<T, 2>(matrix, columns, stride, row, in, out, count);
+  for (; row < rows; row += lanes) MatrixRows<T, 1>(matrix, columns, stride, row, in, out, count);
 }
 
 void PointsToMultipoleFloat(const LeafTask<float>& task) { PointsToMultipole(task); }
 void PointsToMultipoleDouble(const LeafTask<double>& task) { PointsToMultipole(task); }
 void LocalToPointsFloat(const LeafTask<float>& task) { LocalToPoints(task); }
 void LocalToPointsDouble(const LeafTask<double>& task) { LocalToPoints(task); }
-void ApplyMatrixFloat(const float* matrix, std::size_t columns, std::size_t stride, const float* const* in, float* const* out,
-                      std::size_t count) {
-  ApplyMatrix(matrix, columns, stride, in, out, count);
+void ApplyMatrixFloat(const float* matrix, std::size_t columns, std::size_t rows, std::size_t stride, const float* const* in,
+                      float* const* out, std::size_t count) {
+  ApplyMatrix(matrix, columns, rows, stride, in, out, count);
 }
-void ApplyMatrixDouble(const double* matrix, std::size_t columns, std::size_t stride, const double* const* in, double* const* out,
-                       std::size_t count) {
-  ApplyMatrix(matrix, columns, stride, in, out, count);
+void ApplyMatrixDouble(const double* matrix, std::size_t columns, std::size_t rows, std::size_t stride, const double* const* in,
+                       double* const* out, std::size_t count) {
+  ApplyMatrix(matrix, columns, rows, stride, in, out, count);
 }
 
 }  // namespace g3r::cpu::HWY_NAMESPACE
@@ -377,13 +378,13 @@ void points_to_multipole(const LeafTask<float>& task) { HWY_DYNAMIC_DISPATCH(Poi
 void points_to_multipole(const LeafTask<double>& task) { HWY_DYNAMIC_DISPATCH(PointsToMultipoleDouble)(task); }
 void local_to_points(const LeafTask<float>& task) { HWY_DYNAMIC_DISPATCH(LocalToPointsFloat)(task); }
 void local_to_points(const LeafTask<double>& task) { HWY_DYNAMIC_DISPATCH(LocalToPointsDouble)(task); }
-void apply_matrix(const float* matrix, std::size_t columns, std::size_t stride, const float* const* in, float* const* out,
+void apply_matrix(const float* matrix, std::size_t columns, std::size_t rows, std::size_t stride, const float* const* in, float* const* out,
                   std::size_t count) {
-  HWY_DYNAMIC_DISPATCH(ApplyMatrixFloat)(matrix, columns, stride, in, out, count);
+  HWY_DYNAMIC_DISPATCH(ApplyMatrixFloat)(matrix, columns, rows, stride, in, out, count);
 }
-void apply_matrix(const double* matrix, std::size_t columns, std::size_t stride, const double* const* in, double* const* out,
-                  std::size_t count) {
-  HWY_DYNAMIC_DISPATCH(ApplyMatrixDouble)(matrix, columns, stride, in, out, count);
+void apply_matrix(const double* matrix, std::size_t columns, std::size_t rows, std::size_t stride, const double* const* in,
+                  double* const* out, std::size_t count) {
+  HWY_DYNAMIC_DISPATCH(ApplyMatrixDouble)(matrix, columns, rows, stride, in, out, count);
 }
 
 }  // namespace g3r::cpu

@@ -54,11 +54,12 @@ void points_to_multipole(const LeafTask<double>& task);
 void local_to_points(const LeafTask<float>& task);
 void local_to_points(const LeafTask<double>& task);
 
-/// out[c] += matrix in[c] for `count` columns. matrix: `columns` x `stride`, column after column, zero padded; in and out: `stride` each.
+/// out[c] += matrix in[c] for `count` vectors. matrix: `columns` x `stride`, column after column, zero padded, of which the first `rows`
+/// (whole vectors, at most `stride`) of every column are used; in: `columns` each, out: `rows` each.
 /// Every column's result is the same whatever other columns go with it.
-void apply_matrix(const float* matrix, std::size_t columns, std::size_t stride, const float* const* in, float* const* out,
+void apply_matrix(const float* matrix, std::size_t columns, std::size_t rows, std::size_t stride, const float* const* in, float* const* out,
                   std::size_t count);
-void apply_matrix(const double* matrix, std::size_t columns, std::size_t stride, const double* const* in, double* const* out,
-                  std::size_t count);
+void apply_matrix(const double* matrix, std::size_t columns, std::size_t rows, std::size_t stride, const double* const* in,
+                  double* const* out, std::size_t count);
 
 }  // namespace g3r::cpu

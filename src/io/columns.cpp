@@ -11,7 +11,6 @@ namespace g3r::io {
 namespace {
 
 using Dialect = Attributes::Dialect;
-constexpr std::size_t kNone = Element::npos;
 
 Column make(const char* name, Type type, Column::From from, std::size_t axis = 0) {
   Column column;

@@ -1,4 +1,4 @@
-// Topology and size of a triangle mesh.
+// Topology, size and shape of a triangle mesh.
 //
 // The three sides of all triangles are sorted by their end points; equal neighbours are the triangles that meet at one edge.
 // Two union-find passes over them give the components (triangles joined by edges) and the fans (corners joined by edges
@@ -7,6 +7,7 @@
 #include <g3r/mesh.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "mesh/disjoint_sets.h"
 #include "mesh/sides.h"
@@ -20,6 +21,8 @@ namespace {
 using vector::cross;
 using vector::dot;
 using vector::subtract;
+
+constexpr double kDegrees = 180 / 3.14159265358979323846;
 
 /// Counts edges and vertices, joins triangles and corners across edges, and fills in the topological fields.
 class Topology {
@@ -92,6 +95,26 @@ void measure(const Mesh& mesh, const Vec3& centre, MeshCheck& check) {
   }
 }
 
+/// Angles and aspect ratios. The smallest angle lies opposite the shortest side.
+void measure_shape(const Mesh& mesh, MeshCheck& check) {
+  std::vector<double> angles;
+  angles.reserve(mesh.triangles.size());
+  for (const auto& t : mesh.triangles) {
+    const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    std::array<Vec3, 3> side{subtract(c, b), subtract(a, c), subtract(b, a)};
+    std::sort(side.begin(), side.end(), [](const Vec3& s, const Vec3& u) { return dot(s, s) < dot(u, u); });
+    const Vec3 n = cross(side[1], side[2]);
+    const double twice_area = std::sqrt(dot(n, n));
+    angles.push_back(std::atan2(twice_area, std::fabs(dot(side[1], side[2]))) * kDegrees);
+    const double aspect = twice_area > 0 ? dot(side[2], side[2]) / twice_area : HUGE_VAL;
+    check.max_aspect = std::max(check.max_aspect, aspect);
+  }
+  check.min_angle = *std::min_element(angles.begin(), angles.end());
+  const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
+  std::nth_element(angles.begin(), middle, angles.end());
+  check.median_min_angle = *middle;
+}
+
 }  // namespace
 
 MeshCheck check_mesh(const Mesh& mesh) {
@@ -100,6 +123,7 @@ MeshCheck check_mesh(const Mesh& mesh) {
   if (mesh.triangles.empty()) return check;
   Topology(mesh).fill(check);
   measure(mesh, box.centre(), check);
+  measure_shape(mesh, check);
   return check;
 }
 

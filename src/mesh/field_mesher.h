@@ -15,4 +15,8 @@ namespace g3r {
 [[nodiscard]] Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const FieldSampler& sampler,
                               const MeshOptions& options = {}, const Monitor& monitor = {});
 
+/// An upper bound of the memory that field_mesh() and the rest of reconstruct() take for N points of a typical spacing in a box with this
+/// longest side (same units), in bytes; depth 0: automatic. About twice what smooth shapes need, because thin walls are not known ahead.
+[[nodiscard]] std::size_t field_mesh_memory(std::size_t points, double spacing, double longest_side, int depth);
+
 }  // namespace g3r

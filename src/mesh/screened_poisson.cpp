@@ -119,6 +119,7 @@ Mesh to_mesh(const open3d::geometry::TriangleMesh& from, const UnitBox& box) {
 }  // namespace
 
 bool screened_poisson_available() { return true; }
+void require_screened_poisson() {}
 
 Mesh screened_poisson(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, int depth) {
   const UnitBox box = validated_box(points, normals, depth);

@@ -20,6 +20,8 @@ inline constexpr int kMaxPoissonDepth = 12;
 
 /// Whether this build has screened_poisson().
 [[nodiscard]] bool screened_poisson_available();
+/// Throws what screened_poisson() would throw in a build without Open3D: before a long solve, not after it.
+void require_screened_poisson();
 
 /// Meshes N points with their N outward normals of any length (the length has no influence). Triangles face the way the normals do, so the
 /// signed volume is positive. The mesh is manifold, and closed unless the surface leaves the cube around the points (an open sheet does).

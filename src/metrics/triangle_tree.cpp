@@ -20,8 +20,6 @@ using vector::subtract;
 
 // Below this many triangles testing all of them is quicker than descending.
 constexpr std::uint32_t kLeafSize = 4;
-// Deeper than any tree over 2^32 triangles that is halved at every level.
-constexpr std::size_t kMaxDepth = 64;
 
 double squared_distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 ab = subtract(b, a);

@@ -3,6 +3,7 @@
 
 #include <g3r/mesh.h>
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -25,10 +26,40 @@ class TriangleTree {
   /// The triangle nearest to p, and how far it is. p must be finite.
   [[nodiscard]] Closest closest(const Vec3& p) const;
 
+  /// Whether a triangle has an area and so is in the tree.
+  [[nodiscard]] bool contains(std::uint32_t triangle) const { return vector::dot(normals_[triangle], normals_[triangle]) > 0; }
+
+  /// Calls visit(triangle) for every triangle whose box meets `box` (mesh units, closed) and perhaps some whose box nearly does.
+  template <class Visit>
+  void for_each_overlapping(const vector::Box& box, const Visit& visit) const {
+    // Rounding keeps order, so boxes that meet in mesh units meet inside.
+    const vector::Box inside{to_inside(box.low), to_inside(box.high)};
+    std::array<std::uint32_t, kMaxDepth> stack{};
+    std::size_t depth = 1;
+    while (depth > 0) {
+      const std::uint32_t index = stack[--depth];
+      const Node& node = nodes_[index];
+      if (!vector::meet(inside, node.box)) continue;
+      if (node.right != 0) {
+        stack[depth++] = node.right;
+        stack[depth++] = index + 1;
+        continue;
+      }
+      for (std::uint32_t i = node.begin; i < node.end; ++i) {
+        vector::Box own;
+        for (const Vec3& p : {triangles_[i].a, triangles_[i].b, triangles_[i].c}) own.extend(p);
+        if (vector::meet(inside, own)) visit(triangles_[i].index);
+      }
+    }
+  }
+
   /// Unit normal of a triangle that closest() returned.
   [[nodiscard]] Vec3 normal(std::uint32_t triangle) const { return normals_[triangle]; }
 
  private:
+  // Deeper than any tree over 2^32 triangles that is halved at every level.
+  static constexpr std::size_t kMaxDepth = 64;
+
   struct Triangle {
     Vec3 a, b, c;
     std::uint32_t index;

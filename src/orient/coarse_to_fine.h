@@ -13,9 +13,7 @@
 namespace g3r {
 
 /// Solves settings.method on N points in canonical order. With settings.coarse_to_fine and enough points, every 4th point is solved first
-/// (recursively, all lengths doubled), and the start is that solution's winding gradient,
-///   eta_i = k (-grad w_s(x_i)), capped at the median length, k so that the median length is the mean area per point:
-/// linear where it is small, so that thin parts which the coarse points cannot tell apart start near zero and not on the wrong side.
+/// (recursively, all lengths doubled), and the start is that solution's winding gradient as area vectors (gradient_to_areas()).
 /// The smooth part of the error, which conjugate gradients reduce slowest, is gone from the start. Measured: docs/design.md.
 /// The returned residuals are those of the finest level. Throws like solve_iteratively().
 [[nodiscard]] IterativeResult solve_coarse_to_fine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton,

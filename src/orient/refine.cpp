@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace g3r {
 namespace {
@@ -27,9 +28,11 @@ std::vector<Vec3> normalised(const std::vector<Vec3>& eta) {
   return out;
 }
 
-Refinement refine_normals(FastSum& sum, const std::vector<Vec3>& eta) {
+Refinement refine_normals(FastSum& sum, const std::vector<Vec3>& eta) { return unit_normals(sum.winding_gradient(eta), eta); }
+
+Refinement unit_normals(std::vector<Vec3> gradients, const std::vector<Vec3>& eta) {
   Refinement refined;
-  refined.normals = sum.winding_gradient(eta);
+  refined.normals = std::move(gradients);
   refined.strength.resize(eta.size());
   for (std::size_t i = 0; i < eta.size(); ++i) {
     Vec3& n = refined.normals[i];

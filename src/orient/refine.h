@@ -18,6 +18,9 @@ struct Refinement {
 };
 [[nodiscard]] Refinement refine_normals(FastSum& sum, const std::vector<Vec3>& eta);
 
+/// The same from gradients already evaluated.
+[[nodiscard]] Refinement unit_normals(std::vector<Vec3> gradients, const std::vector<Vec3>& eta);
+
 /// Unit vectors along eta; (0, 0, 1) where eta vanishes.
 [[nodiscard]] std::vector<Vec3> normalised(const std::vector<Vec3>& eta);
 

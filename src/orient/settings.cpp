@@ -12,22 +12,33 @@ namespace {
 
 // The default: energy form. Widths in spacings h.
 constexpr double kEnergyEpsilon = 0.3;        // smaller converges slower, larger blurs thin walls
+constexpr double kCoarsestEpsilon = 0.5;      // without a start: converges faster, tells more sides right
 constexpr double kEnergyWindingWeight = 0.1;  // larger converges slower, 0 loses nested shells
 constexpr double kEnergyTolerance = 2.5e-3;   // slats and spokes need this residual; smooth shapes get there in half the steps
-constexpr double kAcceptedResidual = 2e-2;     // from here on normals change little; all clean models get below
+constexpr double kAcceptedResidual = 2e-2;    // from here on normals change little; all clean models get below
 constexpr const char* kEnergySchedule = "45 cg";
 constexpr Steps kContinued{10, StepKind::kConjugateGradient};  // more gain little once the smooth part of the error is gone
 // The default on noisy input: the field must not see single points. In standard deviations of the noise, or spacings h where it says so.
-constexpr double kNoisyWidth = 3;                // of epsilon and of the refinement
-constexpr double kNoisyDamping = 0.28;           // 1/h: the self term of a flat patch
-constexpr double kNoisyWindingWeight = 0.03;     // h; W eta = 1/2 is wrong at points off the surface, so it must not weigh much
-constexpr const char* kNoisySchedule = "10 cg";  // semi-convergence: more steps fit the noise
+constexpr double kNoisyWidth = 3;  // of epsilon and of the refinement
+constexpr double kNoisyPolishEpsilon = 2;
+constexpr double kNoisyPolishWidth = 2;
+constexpr int kNoisyPolishSteps = 8;
+constexpr double kNoisyPolishWindingWeight = 0.01;  // h; 0.03 costs sides
+constexpr double kClusterSide = 0.7;                // epsilon; the kernel at width epsilon cannot tell points of one cluster apart
+constexpr double kWideEpsilon = 1.5;                // h; from here on clusters pay, and an epsilon that is asked for is taken to mean noise
+constexpr double kNoisyDamping = 0.28;              // 1/h: the self term of a flat patch
+constexpr double kNoisyWindingWeight = 0.03;        // h; W eta = 1/2 is wrong at points off the surface, so it must not weigh much
+constexpr const char* kNoisySchedule = "10 cg";     // semi-convergence: more steps fit the noise
 // The default for least squares over the harmonics.
 constexpr double kGreenEpsilon = 0.4;       // converges in 10-15 iterations
 constexpr double kGreenConstantWeight = 2;  // the row u = 1 alone tells inside from outside
 constexpr double kGreenTolerance = 2.5e-3;
 constexpr const char* kGreenSchedule = "20 cg";
 constexpr double kRefinementWidth = 0.55;  // of the winding gradient; narrower is noisy, wider rounds edges
+// The polish: narrower than the solve and the refinement it starts from.
+constexpr double kPolishEpsilon = 0.2;
+constexpr double kPolishWidth = 0.3;
+constexpr int kPolishSteps = 5;  // narrow gaps want more, smooth shapes fewer
 // The paper preset.
 constexpr double kPaperLeafFactor = 0.8;
 constexpr double kPaperLeastEpsilon = 0.15;  // h; below, 80 iterations are far from converged (random samples have very close pairs)
@@ -96,7 +107,13 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   s.epsilon = (green ? kGreenEpsilon : kEnergyEpsilon) * spacing;
   if (paper) s.epsilon = std::max(paper_epsilon(cloud), kPaperLeastEpsilon * spacing);
   if (options.epsilon.unit != Epsilon::Unit::kAuto) s.epsilon = checked_epsilon(options.epsilon, cloud, spacing);
+  s.spacing = spacing;
+  s.coarsest_epsilon = green || options.epsilon.unit != Epsilon::Unit::kAuto ? s.epsilon : kCoarsestEpsilon * spacing;
   s.refinement_width = paper ? 0 : kRefinementWidth * spacing;
+  s.polish_steps = paper ? 0 : kPolishSteps;
+  s.polish_epsilon = std::min(s.epsilon, kPolishEpsilon * spacing);
+  s.polish_width = kPolishWidth * spacing;
+  s.polish_winding_weight = s.winding_weight;
 
   require(options.solver != Solver::kDense || green, "the dense solver belongs to the method green");
   s.dense = options.solver == Solver::kDense ||
@@ -107,12 +124,20 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   s.coarse_to_fine = !paper && !green && options.schedule.empty();
   s.continued_schedule = {kContinued};
   s.tolerance = options.tolerance >= 0 ? options.tolerance : paper ? 0 : green ? kGreenTolerance : kEnergyTolerance;
-  if (!paper && !green && noise > 0) {
+  const bool wide = s.epsilon > kWideEpsilon * spacing;
+  if (!paper && !green && (noise > 0 || wide)) {
+    const double sigma = wide ? s.epsilon / kNoisyWidth : noise;
     s.damping = kNoisyDamping / spacing;
     s.winding_weight = kNoisyWindingWeight * spacing;
-    if (options.epsilon.unit == Epsilon::Unit::kAuto) s.epsilon = std::max(s.epsilon, kNoisyWidth * noise);
-    s.refinement_width = std::max(s.refinement_width, kNoisyWidth * noise);
+    if (options.epsilon.unit == Epsilon::Unit::kAuto) s.epsilon = std::max(s.epsilon, kNoisyWidth * sigma);
+    s.refinement_width = std::max(s.refinement_width, kNoisyWidth * sigma);
+    s.polish_epsilon = std::max(s.polish_epsilon, kNoisyPolishEpsilon * sigma);
+    s.polish_width = std::max(kRefinementWidth * spacing, kNoisyPolishWidth * sigma);
+    s.polish_steps = kNoisyPolishSteps;
+    s.polish_winding_weight = kNoisyPolishWindingWeight * spacing;
+    s.coarsest_epsilon = s.epsilon;
     s.coarse_to_fine = false;
+    if (s.epsilon > kWideEpsilon * spacing) s.cluster_side = kClusterSide * s.epsilon;
     if (options.schedule.empty()) {
       s.schedule_text = kNoisySchedule;
       s.schedule = parse_schedule(kNoisySchedule);
@@ -131,6 +156,12 @@ std::size_t planned_memory(const Settings& settings, std::size_t given, std::siz
   std::size_t bytes = kProgram + kPerGiven * given + per_used * used;
   if (settings.dense) bytes += 9 * used * used * sizeof(double);
   return bytes;
+}
+
+void require_memory(std::size_t planned_bytes, const Options& options) {
+  if (options.max_memory == 0 || planned_bytes <= options.max_memory) return;
+  throw Unavailable("the plan needs " + std::to_string(planned_bytes >> 20) + " MiB, the limit is " +
+                    std::to_string(options.max_memory >> 20) + " MiB; raise the limit or thin the cloud");
 }
 
 }  // namespace g3r

@@ -21,14 +21,21 @@ struct Settings {
   double constant_weight = 1;       ///< green: weight of the row u = 1
   double damping = 0;               ///< energy: d
   double winding_weight = 0;        ///< energy: l
+  double spacing = 0;
   double epsilon = 0;
+  double coarsest_epsilon = 0;            ///< of the first solve, at its own spacing: without a start a wider one does better
   double refinement_width = 0;            ///< 0: no refinement
+  double cluster_side = 0;                ///< energy: solve on clusters of points of this size; 0: on the points
   bool coarse_to_fine = false;            ///< start from a solution on fewer points
+  int polish_steps = 0;                   ///< conjugate gradients of polish(); 0: no polish
+  double polish_epsilon = 0;              ///< of polish()
+  double polish_winding_weight = 0;       ///< of polish()
+  double polish_width = 0;                ///< of the refinement that ends polish()
   std::vector<Steps> schedule;            ///< from eta = 0
   std::vector<Steps> continued_schedule;  ///< from a coarse solution
   std::string schedule_text;
-  double tolerance = 0;              ///< stop at this relative residual
-  double accepted_residual = 0;      ///< at or below this the result counts as converged
+  double tolerance = 0;          ///< stop at this relative residual
+  double accepted_residual = 0;  ///< at or below this the result counts as converged
   SumPlan sums;
 };
 
@@ -40,5 +47,8 @@ struct Settings {
 
 /// Predicted peak memory of orient() in bytes for N points; a formula, not yet checked against measured peaks.
 [[nodiscard]] std::size_t planned_memory(const Settings& settings, std::size_t given, std::size_t used);
+
+/// Throws Unavailable if the plan exceeds options.max_memory.
+void require_memory(std::size_t planned_bytes, const Options& options);
 
 }  // namespace g3r

@@ -41,14 +41,13 @@ std::vector<double> assemble_rows(const std::vector<Vec3>& points, double epsilo
   return rows;
 }
 
-DenseResult solve_dense(const std::vector<Vec3>& points, double epsilon, const std::vector<Harmonic>& harmonics, bool condition_number,
+DenseResult solve_dense(const std::vector<Vec3>& points, double epsilon, const HarmonicValues& u, bool condition_number,
                         const std::atomic<bool>* cancel) {
   const std::size_t n = points.size();
   if (n > kMostDensePoints) {
     throw InvalidInput("the dense solver takes at most " + std::to_string(kMostDensePoints) + " points, this cloud has " +
                        std::to_string(n) + "; use the iterative solver (cg)");
   }
-  const HarmonicValues u = evaluate_harmonics(harmonics, points);
   const auto size = static_cast<Eigen::Index>(3 * n);
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(size, size);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(size);

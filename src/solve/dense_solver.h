@@ -24,7 +24,7 @@ struct DenseResult {
 
 /// argmin sum_k |A[u_k] eta - u_k/2|^2 by Cholesky of the normal matrix. O(N^3) time, 9 N^2 doubles.
 /// Throws InvalidInput for more than kMostDensePoints points and for a singular matrix (K = 1 is rank deficient), Cancelled.
-[[nodiscard]] DenseResult solve_dense(const std::vector<Vec3>& points, double epsilon, const std::vector<Harmonic>& harmonics,
-                                      bool condition_number, const std::atomic<bool>* cancel = nullptr);
+[[nodiscard]] DenseResult solve_dense(const std::vector<Vec3>& points, double epsilon, const HarmonicValues& u, bool condition_number,
+                                      const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace g3r

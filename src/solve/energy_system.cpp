@@ -2,26 +2,59 @@
 
 #include "cpu/parallel.h"
 
+#include <cmath>
+
 namespace g3r {
 namespace {
 
 constexpr std::size_t kBlock = 4096;  // points per parallel block
 
-}  // namespace
-
-std::vector<Vec3> EnergySystem::apply(const std::vector<Vec3>& eta) {
-  std::vector<Vec3> out;
-  std::vector<double> w;
-  sum_.stokes_winding(eta, out, w);
-  const std::vector<Vec3> wt = sum_.winding_adjoint(w);
-  parallel::for_blocks(eta.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+// v_i *= factor(i)
+template <class Factor>
+void scale(std::vector<Vec3>& v, const Factor& factor) {
+  parallel::for_blocks(v.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      for (std::size_t a = 0; a < 3; ++a) out[i][a] += damping_ * eta[i][a] + winding_weight_ * wt[i][a];
+      for (double& c : v[i]) c *= factor(i);
     }
   });
-  return out;
 }
 
-std::vector<Vec3> EnergySystem::right_side() { return sum_.winding_adjoint(std::vector<double>(sum_.size(), 0.5 * winding_weight_)); }
+}  // namespace
+
+EnergySystem::EnergySystem(FastSum& sum, double damping, double winding_weight, const std::vector<double>& multiplicity)
+    : sum_(sum), damping_(damping), winding_weight_(winding_weight), root_(multiplicity) {
+  for (double& m : root_) m = std::sqrt(m);
+}
+
+std::vector<Vec3> EnergySystem::to_areas(std::vector<Vec3> x) const {
+  if (!root_.empty()) scale(x, [&](std::size_t i) { return root_[i]; });
+  return x;
+}
+
+std::vector<Vec3> EnergySystem::from_areas(std::vector<Vec3> eta) const {
+  if (!root_.empty()) scale(eta, [&](std::size_t i) { return 1 / root_[i]; });
+  return eta;
+}
+
+std::vector<Vec3> EnergySystem::apply(const std::vector<Vec3>& x) {
+  std::vector<Vec3> s;
+  std::vector<double> w;
+  sum_.stokes_winding(to_areas(x), s, w);
+  for (std::size_t i = 0; i < root_.size(); ++i) w[i] *= root_[i] * root_[i];
+  const std::vector<Vec3> wt = sum_.winding_adjoint(w);
+  parallel::for_blocks(x.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const double root = root_.empty() ? 1 : root_[i];
+      for (std::size_t a = 0; a < 3; ++a) s[i][a] = root * (s[i][a] + winding_weight_ * wt[i][a]) + damping_ * x[i][a];
+    }
+  });
+  return s;
+}
+
+std::vector<Vec3> EnergySystem::right_side() {
+  std::vector<double> half(sum_.size(), 0.5 * winding_weight_);
+  for (std::size_t i = 0; i < root_.size(); ++i) half[i] *= root_[i] * root_[i];
+  return to_areas(sum_.winding_adjoint(half));
+}
 
 }  // namespace g3r

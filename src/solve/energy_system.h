@@ -11,18 +11,26 @@ namespace g3r {
 /// min_eta 1/2 eta^T (S_e + d I) eta + l/2 |W eta - 1/2|^2, that is M = S_e + d I + l W^T W, b = l/2 W^T 1.
 /// S_e is the Gaussian-regularised Stokes single layer, positive semidefinite for any e; its null space is the normal field of every
 /// component, which W eta = 1/2 pins. Two sweeps per product, and M is not squared.
+/// With multiplicities m_i, point i stands for m_i points that share their area vector: the unknown is x = D^-1 eta, D = diag sqrt(m), and
+/// M = D (S_e + l W^T D^2 W) D + d I, what the system of all points becomes on vectors that are constant on each group.
 class EnergySystem : public LinearSystem {
  public:
   /// `damping` d >= 0, 1/length; `winding_weight` l > 0, length. `sum` must outlive the system.
-  EnergySystem(FastSum& sum, double damping, double winding_weight) : sum_(sum), damping_(damping), winding_weight_(winding_weight) {}
+  /// `multiplicity`: one m_i >= 1 per point, or empty for ones.
+  EnergySystem(FastSum& sum, double damping, double winding_weight, const std::vector<double>& multiplicity = {});
 
-  std::vector<Vec3> apply(const std::vector<Vec3>& eta) override;
+  std::vector<Vec3> apply(const std::vector<Vec3>& x) override;
   std::vector<Vec3> right_side() override;
+
+  /// eta = D x and x = D^-1 eta
+  [[nodiscard]] std::vector<Vec3> to_areas(std::vector<Vec3> x) const;
+  [[nodiscard]] std::vector<Vec3> from_areas(std::vector<Vec3> eta) const;
 
  private:
   FastSum& sum_;
   double damping_;
   double winding_weight_;
+  std::vector<double> root_;  // sqrt(m), or empty
 };
 
 }  // namespace g3r

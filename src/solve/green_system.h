@@ -9,6 +9,10 @@
 
 namespace g3r {
 
+/// Harmonics at the points, the constant one times `constant_weight`.
+[[nodiscard]] HarmonicValues weighted_harmonics(const std::vector<Harmonic>& harmonics, const std::vector<Vec3>& points,
+                                                double constant_weight);
+
 /// M = sum_k w_k^2 A[u_k]^T A[u_k], b = sum_k w_k^2 A[u_k]^T u_k / 2. Two sweeps per product, fused over k.
 class GreenSystem : public LinearSystem {
  public:

@@ -1,4 +1,4 @@
-// Steepest descent and conjugate gradients on M eta = b from eta = 0, without restarts.
+// Steepest descent and conjugate gradients on M eta = b, from eta = 0 or a start, without restarts.
 #pragma once
 
 #include "solve/linear_system.h"

@@ -60,6 +60,7 @@ class SumEngine {
     std::array<AlignedVector<T>, 8> parent_to_child;  // L2L by octant
   };
 
+  void set_order(int order);
   void prepare(const std::vector<Vec3>& targets, const std::vector<double>& target_widths);
   void make_matrices();
   void upward(cpu::NearForm form, int batch, std::size_t record_size);
@@ -80,9 +81,11 @@ class SumEngine {
   std::vector<int> offset_order_;          // order at which an offset's M2L is cut off
   std::vector<std::size_t> matrix_begin_;  // of every offset in matrices_
   AlignedVector<T> matrices_;              // M2L, one per offset, column after column; empty when too large to keep
-  std::size_t coefficients_;
-  std::size_t stride_;
-  std::size_t channels_ = 0;  // expansions per node in the current run
+  // Of the current run:
+  int order_ = 0;
+  std::size_t coefficients_ = 0;
+  std::size_t stride_ = 0;    // of one expansion
+  std::size_t channels_ = 0;  // expansions per node
   AlignedVector<T> records_;
   AlignedVector<T> target_data_;
   AlignedVector<T> multipoles_;

@@ -39,7 +39,7 @@ SumPlan sum_plan(double accuracy, std::size_t points) {
     if (s.accuracy <= accuracy) break;
   }
   SumPlan plan;
-  plan.double_precision = accuracy != 0 && setting->double_precision;
+  plan.double_precision = setting->double_precision;
   plan.order = setting->order;
   plan.opening = setting->opening;
   plan.leaf_points = setting->leaf_points;

@@ -63,7 +63,6 @@ class Canvas {
   int side_;     ///< samples per side
   float focal_;  ///< in samples
   float distance_;
-  float reach_;  ///< of the ambient occlusion, view units
   std::vector<Sample> samples_;
 };
 

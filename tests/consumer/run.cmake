@@ -1,6 +1,6 @@
-# Installs the package into a scratch folder, builds the consumer against it and runs its tests: cmake -DBUILD=... -DSOURCE=... -P run.cmake
+# Installs the package into a scratch folder, builds the consumer against it in every way and runs its tests:
+# cmake -DBUILD=... -DSOURCE=... -P run.cmake
 set(prefix "${BUILD}/consumer/prefix")
-set(build "${BUILD}/consumer/build")
 file(REMOVE_RECURSE "${BUILD}/consumer")
 function(run)
   execute_process(COMMAND ${ARGV} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
@@ -13,9 +13,20 @@ file(GLOB library "${prefix}/lib*/libg3r.so" "${prefix}/lib/*/libg3r.so")
 get_filename_component(library_dir "${library}" DIRECTORY)
 set(ENV{PKG_CONFIG_PATH} "${pc}")
 set(ENV{LD_LIBRARY_PATH} "${library_dir}")
-run(${CMAKE_COMMAND} -S ${SOURCE} -B ${build} -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=${CXX})
-run(${CMAKE_COMMAND} --build ${build})
-run(${CMAKE_CTEST_COMMAND} --test-dir ${build} --output-on-failure --no-tests=error)
+
+# With the archive; and with the shared library, which must do without the libraries that the archive needs.
+set(static_options -DEXPECTED=STATIC)
+set(shared_options -DEXPECTED=SHARED -DBUILD_SHARED_LIBS=ON)
+set(no_archive_options -DEXPECTED=SHARED -DCMAKE_DISABLE_FIND_PACKAGE_PNG=ON)
+foreach(kind static shared no_archive)
+  set(build "${BUILD}/consumer/${kind}")
+  run(${CMAKE_COMMAND} -S ${SOURCE} -B ${build} -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_BUILD_TYPE=Release
+      -DCMAKE_CXX_COMPILER=${CXX} ${${kind}_options})
+endforeach()
+foreach(kind static shared)
+  run(${CMAKE_COMMAND} --build ${BUILD}/consumer/${kind})
+  run(${CMAKE_CTEST_COMMAND} --test-dir ${BUILD}/consumer/${kind} --output-on-failure --no-tests=error)
+endforeach()
 
 # The shared library shows the public names and no other.
 execute_process(COMMAND nm -D --defined-only -C ${library} OUTPUT_VARIABLE names COMMAND_ERROR_IS_FATAL ANY)

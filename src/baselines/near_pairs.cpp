@@ -1,0 +1,42 @@
+#include "baselines/near_pairs.h"
+
+#include "cloud/point_tree.h"
+#include "cpu/parallel.h"
+
+#include <algorithm>
+
+namespace g3r {
+namespace {
+
+constexpr std::size_t kBlock = 1024;  // points per parallel block
+
+}  // namespace
+
+NearPairs near_pairs(const std::vector<Vec3>& points, double radius, const std::atomic<bool>* cancel) {
+  const PointSet set{points};
+  const PointTree tree(3, set, nanoflann::KDTreeSingleIndexAdaptorParams(kPointTreeLeaf));
+  const std::size_t n = points.size();
+  std::vector<std::vector<std::uint32_t>> found((n + kBlock - 1) / kBlock);
+  NearPairs pairs;
+  pairs.first.assign(n + 1, 0);
+  parallel::for_blocks(
+      n, kBlock,
+      [&](std::size_t begin, std::size_t end) {
+        std::vector<std::uint32_t>& here = found[begin / kBlock];
+        std::vector<std::pair<std::uint32_t, double>> matches;
+        for (std::size_t i = begin; i < end; ++i) {
+          tree.radiusSearch(points[i].data(), radius * radius, matches, nanoflann::SearchParams(0, 0, false));
+          for (const auto& match : matches) here.push_back(match.first);
+          pairs.first[i + 1] = matches.size();
+        }
+      },
+      cancel);
+  for (std::size_t i = 0; i < n; ++i) pairs.first[i + 1] += pairs.first[i];
+  pairs.other.resize(pairs.first[n]);
+  parallel::for_each(found.size(), [&](std::size_t block) {
+    std::copy(found[block].begin(), found[block].end(), pairs.other.begin() + static_cast<std::ptrdiff_t>(pairs.first[block * kBlock]));
+  });
+  return pairs;
+}
+
+}  // namespace g3r

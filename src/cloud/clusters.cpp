@@ -1,0 +1,38 @@
+#include "cloud/clusters.h"
+
+#include "cloud/canonical_cloud.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace g3r {
+namespace {
+
+constexpr int kLevels = 21;  // bits per axis of a Morton code
+
+}  // namespace
+
+// The points of a cell follow each other, and centroids lie in their cells: both sorts agree.
+Clusters cluster_points(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, double side) {
+  const int level = std::clamp(static_cast<int>(std::ceil(std::log2(2 / side))), 0, kLevels);
+  const int shift = 3 * (kLevels - level);
+  Clusters clusters;
+  clusters.cluster_of.resize(points.size());
+  for (std::size_t begin = 0; begin < points.size();) {
+    Vec3 sum{0, 0, 0};
+    std::size_t end = begin;
+    for (; end < points.size() && morton[end] >> shift == morton[begin] >> shift; ++end) {
+      for (std::size_t a = 0; a < 3; ++a) sum[a] += points[end][a];
+      clusters.cluster_of[end] = static_cast<std::uint32_t>(clusters.points.size());
+    }
+    const auto count = static_cast<double>(end - begin);
+    const Vec3 centroid{sum[0] / count, sum[1] / count, sum[2] / count};
+    clusters.points.push_back(centroid);
+    clusters.morton.push_back(morton_code(centroid));
+    clusters.multiplicity.push_back(count);
+    begin = end;
+  }
+  return clusters;
+}
+
+}  // namespace g3r

@@ -1,0 +1,23 @@
+// Points that a wide kernel cannot tell apart, taken together.
+#pragma once
+
+#include <g3r/points.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace g3r {
+
+/// A partition of N points into the cells of a grid: M centroids in canonical order and what they stand for.
+struct Clusters {
+  std::vector<Vec3> points;               ///< M centroids
+  std::vector<std::uint64_t> morton;      ///< M codes of the centroids
+  std::vector<double> multiplicity;       ///< M: points in the cell
+  std::vector<std::uint32_t> cluster_of;  ///< N: point -> cluster
+};
+
+/// Cells of the Morton grid with a side of at most `side` and more than side / 2. `points` and `morton` in canonical order. O(N).
+[[nodiscard]] Clusters cluster_points(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, double side);
+
+}  // namespace g3r

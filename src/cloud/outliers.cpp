@@ -1,0 +1,91 @@
+#include "cloud/outliers.h"
+
+#include "cloud/point_tree.h"
+#include "cpu/parallel.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <array>
+#include <cmath>
+
+namespace g3r {
+namespace {
+
+constexpr std::size_t kFewNeighbours = 8;
+constexpr std::size_t kManyNeighbours = 16;
+constexpr double kAlone = 2;              // local spacing against the neighbours'
+constexpr double kSparse = 2;               // local spacing against the typical one
+constexpr double kVolumetric = 0.07;        // share of the smallest principal spread; 1/3 in a ball
+constexpr std::size_t kFewestPoints = 100;  // below, sparse parts are a matter of chance
+constexpr std::size_t kBlock = 256;         // points per parallel block
+constexpr double kMostOutliers = 1.0 / 3;
+
+bool fills_space(const std::vector<Vec3>& points, const std::array<std::uint32_t, kManyNeighbours + 1>& index, std::size_t count) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (std::size_t k = 0; k < count; ++k) mean += Eigen::Map<const Eigen::Vector3d>(points[index[k]].data()) / static_cast<double>(count);
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (std::size_t k = 0; k < count; ++k) {
+    const Eigen::Vector3d d = Eigen::Map<const Eigen::Vector3d>(points[index[k]].data()) - mean;
+    spread += d * d.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(spread, Eigen::EigenvaluesOnly);
+  return eigen.eigenvalues()[0] > kVolumetric * spread.trace();
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> find_outliers(const std::vector<Vec3>& points, const std::vector<double>& local, double typical) {
+  if (points.size() < kFewestPoints) return {};
+  const PointSet set{points};
+  const PointTree tree(3, set, nanoflann::KDTreeSingleIndexAdaptorParams(kPointTreeLeaf));
+  std::vector<char> outlier(points.size(), 0);
+  parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    std::array<std::uint32_t, kManyNeighbours + 1> index{};
+    std::array<double, kManyNeighbours + 1> squared{};
+    for (std::size_t i = begin; i < end; ++i) {
+      if (local[i] <= 1.5 * typical) continue;  // most points; both rules ask for more
+      const std::size_t found = tree.knnSearch(points[i].data(), kManyNeighbours + 1, index.data(), squared.data());
+      double neighbours = 0;  // mean logarithm
+      for (std::size_t k = 1; k <= kFewNeighbours; ++k) neighbours += std::log(local[index[k]]) / kFewNeighbours;
+      const bool alone = std::log(local[i]) - neighbours > std::log(kAlone);
+      outlier[i] = alone || (local[i] > kSparse * typical && fills_space(points, index, found)) ? 1 : 0;
+    }
+  });
+  std::vector<std::uint32_t> indices;
+  for (std::uint32_t i = 0; i < outlier.size(); ++i) {
+    if (outlier[i] != 0) indices.push_back(i);
+  }
+  if (static_cast<double>(indices.size()) > kMostOutliers * static_cast<double>(points.size())) indices.clear();
+  return indices;
+}
+
+std::vector<Vec3> remove_points(CanonicalCloud& cloud, const std::vector<std::uint32_t>& indices) {
+  if (indices.empty()) return {};
+  const std::size_t staying = cloud.size() - indices.size();
+  std::vector<Vec3> removed;
+  std::vector<std::uint32_t> removed_multiplicity;
+  std::vector<std::uint32_t> renumbered(cloud.size());
+  std::size_t to = 0;
+  for (std::uint32_t i = 0; i < renumbered.size(); ++i) {
+    if (removed.size() < indices.size() && indices[removed.size()] == i) {
+      renumbered[i] = static_cast<std::uint32_t>(staying + removed.size());
+      removed.push_back(cloud.points[i]);
+      removed_multiplicity.push_back(cloud.multiplicity[i]);
+      continue;
+    }
+    renumbered[i] = static_cast<std::uint32_t>(to);
+    cloud.points[to] = cloud.points[i];
+    cloud.morton[to] = cloud.morton[i];
+    cloud.multiplicity[to++] = cloud.multiplicity[i];
+  }
+  cloud.points.resize(staying);
+  cloud.morton.resize(staying);
+  cloud.multiplicity.resize(staying);
+  cloud.multiplicity.insert(cloud.multiplicity.end(), removed_multiplicity.begin(), removed_multiplicity.end());
+  for (std::uint32_t& p : cloud.point_of) {
+    if (p != kNoPoint) p = renumbered[p];
+  }
+  return removed;
+}
+
+}  // namespace g3r

@@ -1,0 +1,102 @@
+// Pairs of triangles that meet: candidates from a tree of boxes, each decided by exact signs.
+#include <g3r/mesh.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "cpu/parallel.h"
+#include "mesh/exact_orientation.h"
+#include "mesh/used_vertices.h"
+#include "metrics/triangle_tree.h"
+
+namespace g3r {
+namespace {
+
+using Corners = std::array<Vec3, 3>;
+
+constexpr std::size_t kBlock = 1024;
+
+// Segments p q and a b in the plane seen along `axis`; closed.
+bool segments_meet(std::size_t axis, const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
+  const int pa = orientation_along(axis, p, q, a), pb = orientation_along(axis, p, q, b);
+  const int ap = orientation_along(axis, a, b, p), aq = orientation_along(axis, a, b, q);
+  if (pa * pb > 0 || ap * aq > 0) return false;
+  if (pa != 0 || pb != 0 || ap != 0 || aq != 0) return true;
+  for (const std::size_t k : {(axis + 1) % 3, (axis + 2) % 3}) {
+    if (std::max(p[k], q[k]) < std::min(a[k], b[k]) || std::max(a[k], b[k]) < std::min(p[k], q[k])) return false;
+  }
+  return true;
+}
+
+// A segment in the plane of a triangle.
+bool coplanar_meet(const Vec3& p, const Vec3& q, const Corners& t) {
+  std::size_t axis = 0;
+  while (axis < 3 && orientation_along(axis, t[0], t[1], t[2]) == 0) ++axis;
+  if (axis == 3) return false;  // no area
+  std::array<int, 3> side{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (segments_meet(axis, p, q, t[k], t[(k + 1) % 3])) return true;
+    side[k] = orientation_along(axis, t[k], t[(k + 1) % 3], p);
+  }
+  return side[0] == side[1] && side[1] == side[2];
+}
+
+bool segment_meets_triangle(const Vec3& p, const Vec3& q, const Corners& t) {
+  const int sp = orientation(t[0], t[1], t[2], p), sq = orientation(t[0], t[1], t[2], q);
+  if (sp * sq > 0) return false;
+  if (sp == 0 && sq == 0) return coplanar_meet(p, q, t);
+  const int ab = orientation(p, q, t[0], t[1]), bc = orientation(p, q, t[1], t[2]), ca = orientation(p, q, t[2], t[0]);
+  return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
+}
+
+// Two triangles have a point in common if and only if an edge of one meets the other.
+bool meet(const Corners& s, const Corners& t) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (segment_meets_triangle(s[k], s[(k + 1) % 3], t) || segment_meets_triangle(t[k], t[(k + 1) % 3], s)) return true;
+  }
+  return false;
+}
+
+bool share_a_corner(const Corners& s, const Corners& t) {
+  return std::any_of(s.begin(), s.end(), [&](const Vec3& p) { return std::find(t.begin(), t.end(), p) != t.end(); });
+}
+
+}  // namespace
+
+std::size_t count_self_intersections(const Mesh& mesh) {
+  const vector::Box box = box_of_used_vertices(mesh);
+  if (mesh.triangles.empty() || !(box.longest_side() > 0)) return 0;
+  // By a power of two, which is exact, to about 1.
+  double largest = 0;
+  for (std::size_t k = 0; k < 3; ++k) largest = std::max({largest, std::fabs(box.low[k]), std::fabs(box.high[k])});
+  const int exponent = -std::ilogb(largest);
+  Mesh scaled = mesh;
+  for (Vec3& v : scaled.vertices) {
+    for (double& c : v) c = std::ldexp(c, exponent);
+  }
+  const auto corners = [&](std::size_t f) {
+    const auto& t = scaled.triangles[f];
+    return Corners{scaled.vertices[t[0]], scaled.vertices[t[1]], scaled.vertices[t[2]]};
+  };
+  const TriangleTree tree(scaled);
+  std::atomic<std::size_t> count{0};
+  parallel::for_blocks(mesh.triangles.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    std::size_t found = 0;
+    for (std::size_t f = begin; f < end; ++f) {
+      const Corners mine = corners(f);
+      vector::Box around;
+      for (const Vec3& p : mine) around.extend(p);
+      if (!tree.contains(static_cast<std::uint32_t>(f))) continue;
+      tree.for_each_overlapping(around, [&](std::uint32_t other) {
+        if (other <= f) return;
+        const Corners theirs = corners(other);
+        if (!share_a_corner(mine, theirs) && meet(mine, theirs)) ++found;
+      });
+    }
+    count += found;
+  });
+  return count;
+}
+
+}  // namespace g3r

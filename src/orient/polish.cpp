@@ -1,0 +1,73 @@
+#include "orient/polish.h"
+
+#include "solve/energy_system.h"
+#include "solve/iterative_solver.h"
+#include "sum/fast_sum.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace g3r {
+namespace {
+
+constexpr double kMostArea = 3;  // of the areas handed in, and its inverse the least
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// `width` at the typical spacing, in proportion to the local one.
+Widths widths_of(double width, const Settings& settings, const std::vector<double>& spacing) {
+  if (spacing.empty()) return Widths(width);
+  std::vector<double> widths(spacing.size());
+  for (std::size_t i = 0; i < widths.size(); ++i) widths[i] = width / settings.spacing * spacing[i];
+  return Widths(std::move(widths));
+}
+
+std::vector<double> areas_of(const Settings& settings, const std::vector<double>& spacing, const std::vector<double>& multiplicity) {
+  if (spacing.empty() && multiplicity.empty()) return {settings.spacing * settings.spacing};
+  std::vector<double> areas(std::max(spacing.size(), multiplicity.size()));
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    const double h = spacing.empty() ? settings.spacing : spacing[i];
+    areas[i] = h * h * (multiplicity.empty() ? 1 : multiplicity[i]);
+  }
+  return areas;
+}
+
+}  // namespace
+
+void gradient_to_areas(FastSum& sum, const std::vector<double>& areas, std::vector<Vec3>& gradient) {
+  std::vector<double> lengths(gradient.size());
+  for (std::size_t i = 0; i < gradient.size(); ++i) lengths[i] = std::hypot(gradient[i][0], gradient[i][1], gradient[i][2]);
+  const double middle = median(lengths);
+  for (std::size_t i = 0; i < gradient.size(); ++i) {
+    const double scale = lengths[i] > 0 ? areas[areas.size() == 1 ? 0 : i] / std::max(lengths[i], middle) : 0;
+    for (double& c : gradient[i]) c *= scale;
+  }
+  const double winding = median(sum.winding(gradient));
+  const double factor = winding > 0 ? std::clamp(0.5 / winding, 1 / kMostArea, kMostArea) : 1;
+  for (Vec3& v : gradient) {
+    for (double& c : v) c *= factor;
+  }
+}
+
+Polished polish(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
+                const std::vector<double>& spacing, const std::vector<double>& multiplicity, const Refinement& refined, Stages& stages) {
+  FastSum sum(points, morton, widths_of(settings.polish_epsilon, settings, spacing), settings.sums, stages.cancel());
+  EnergySystem system(sum, settings.damping, settings.polish_winding_weight, multiplicity);
+  std::vector<Vec3> start = refined.normals;
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    for (double& c : start[i]) c *= refined.strength[i];
+  }
+  gradient_to_areas(sum, areas_of(settings, spacing, multiplicity), start);
+  const std::vector<Steps> schedule{{settings.polish_steps, StepKind::kConjugateGradient}};
+  Polished polished;
+  polished.eta = system.to_areas(solve_iteratively(system, schedule, 0, system.from_areas(std::move(start))).eta);
+  FastSum narrow(points, morton, widths_of(settings.polish_width, settings, spacing), settings.sums, stages.cancel());
+  polished.refinement = refine_normals(narrow, polished.eta);
+  return polished;
+}
+
+}  // namespace g3r

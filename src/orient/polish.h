@@ -1,0 +1,35 @@
+// A better start makes a better solve: from the refined normals, a few steps of conjugate gradients, and a narrower refinement.
+#pragma once
+
+#include "orient/refine.h"
+#include "orient/settings.h"
+#include "stages.h"
+
+#include <g3r/points.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace g3r {
+
+/// Area vectors from a winding gradient: directions kept, lengths linear up to the median and constant beyond, so that thin parts whose
+/// sides the gradient cannot tell apart start near zero and not on the wrong side; times `areas`, what one point stands for (one for
+/// each, or one for all). One factor makes the median of W eta 1/2, what it is on the true surface; it is bounded to [1/3, 3], because an
+/// open sheet has no inside. One sweep of `sum`.
+void gradient_to_areas(FastSum& sum, const std::vector<double>& areas, std::vector<Vec3>& gradient);
+
+struct Polished {
+  std::vector<Vec3> eta;
+  Refinement refinement;
+};
+
+/// settings.polish_steps of conjugate gradients on the energy form at settings.polish_epsilon, started from `refined`, and the refinement
+/// at settings.polish_width. The start has the right areas, which the first solve does not (its eta are 0.6 to 1.3 of them), so a few
+/// steps suffice. Once: a second round rounds edges. Measured: docs/study.md.
+/// `spacing`: smoothed_spacing(); both widths follow it, in proportion to settings.spacing. Or empty: the same widths everywhere; then
+/// `multiplicity` says how many points each one stands for (empty: ones).
+[[nodiscard]] Polished polish(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
+                              const std::vector<double>& spacing, const std::vector<double>& multiplicity, const Refinement& refined,
+                              Stages& stages);
+
+}  // namespace g3r

@@ -1,0 +1,70 @@
+"""Truths about the g3r program when memory is short: it refuses what it plans to be too much before the solve, and when the system gives no
+more it says so. It never ends with a signal and never leaves a file.
+
+Run by ctest with G3R_PROGRAM set to the program.
+"""
+
+import json
+import re
+import resource
+import sys
+import unittest
+
+from cli_support import *
+
+LOADER_FAILED = 127  # not even the program's own code fits
+COUNT = 3000
+
+
+class Memory(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        write_points(self.path("ball.ply"), sphere(COUNT))
+        self.plan = json.loads(self.expect(OK, "info", "ball.ply", "--report", "-").out)["planned_memory_bytes"]
+
+    def test_a_plan_beyond_the_limit_is_refused_before_the_solve(self):
+        self.expect(OK, "ball.ply", "mesh.ply", "--report", "r.json")
+        mesh_plan = self.json_of("r.json")["planned_memory_bytes"]
+        for plan, arguments in (self.plan, ["orient", "ball.ply", "out.ply"]), (mesh_plan, ["ball.ply", "out.ply"]):
+            result = self.expect(UNAVAILABLE, *arguments, "-v", "--max-memory", str(plan - 1))
+            self.assertEqual(int(re.search(r"plan needs (\d+) MiB", result.err).group(1)), plan >> 20)
+            self.assertNotIn("g3r: solve", result.err)
+            self.assertFalse(os.path.exists(self.path("out.ply")))
+            self.expect(OK, *arguments, "--max-memory", str(plan))
+            os.remove(self.path("out.ply"))
+
+    @unittest.skipIf(is_sanitized(), "a sanitizer needs the addresses")
+    def test_the_plan_bounds_what_a_mesh_takes(self):
+        write_points(self.path("few.ply"), sphere(12))
+        for arguments in (["ball.ply"], ["ball.ply", "--depth", "7"], ["few.ply", "--depth", "8"]):
+            with self.subTest(arguments=arguments):
+                self.expect(OK, *arguments, "mesh.ply", "--report", "r.json")
+                report = self.json_of("r.json")
+                self.assertLess(report["peak_memory_bytes"], report["planned_memory_bytes"])
+
+    @unittest.skipIf(is_sanitized(), "a sanitizer needs the addresses")
+    def test_a_limit_of_the_system_is_success_or_out_of_memory(self):
+        codes = []
+        for percent in [*range(50, 111, 5), 1000]:
+            limit = self.plan * percent // 100
+            for arguments in (["orient", "ball.ply", "out.ply", "--threads", "1"], ["orient", "ball.ply", "out.ply", "--threads", "3"],
+                              ["ball.ply", "out.ply", "--threads", "2"]):
+                with self.subTest(percent=percent, arguments=arguments):
+                    result = self.run_g3r(*arguments, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+                    if result.code == LOADER_FAILED:
+                        continue
+                    self.assertIn(result.code, (OK, OUT_OF_MEMORY), result.err)
+                    codes.append(result.code)
+                    left = ["ball.ply"]
+                    if result.code == OK:
+                        left.append("out.ply")
+                    else:
+                        self.assertIn("g3r: out of memory", result.err)
+                    self.assertEqual(sorted(os.listdir(self.folder)), left)
+                    if result.code == OK:
+                        os.remove(self.path("out.ply"))
+        self.assertEqual(set(codes), {OK, OUT_OF_MEMORY})
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[1:]])

@@ -1,0 +1,72 @@
+// Clusters: a partition, and the clustered system is the full one on vectors that are constant on each cluster.
+#include "cloud/clusters.h"
+
+#include "cloud/canonical_cloud.h"
+#include "shapes.h"
+#include "solve/energy_system.h"
+#include "sum/fast_sum.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace g3r {
+namespace {
+
+TEST(Clusters, PartitionThePoints) {
+  const CanonicalCloud cloud = canonical_cloud(shapes::torus(3000, 0.6, 0.25, 1).points);
+  const double side = 0.15;
+  const Clusters clusters = cluster_points(cloud.points, cloud.morton, side);
+  double total = 0;
+  for (const double m : clusters.multiplicity) total += m;
+  EXPECT_EQ(total, 3000);
+  EXPECT_LT(clusters.points.size(), 1500U);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    for (std::size_t a = 0; a < 3; ++a) EXPECT_LE(std::abs(cloud.points[i][a] - clusters.points[clusters.cluster_of[i]][a]), side);
+  }
+  for (std::size_t c = 1; c < clusters.morton.size(); ++c) EXPECT_LT(clusters.morton[c - 1], clusters.morton[c]);
+}
+
+// Coincident pairs: the restriction is exact.
+TEST(Clusters, SystemIsTheFullOneOnConstantVectors) {
+  const CanonicalCloud cloud = canonical_cloud(shapes::torus(600, 0.6, 0.25, 1).points);
+  const std::vector<double> twos(cloud.size(), 2.0);
+  std::vector<Vec3> doubled;
+  std::vector<std::uint64_t> morton;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    doubled.insert(doubled.end(), 2, cloud.points[i]);
+    morton.insert(morton.end(), 2, cloud.morton[i]);
+  }
+  const double width = 0.1;
+  const double damping = 0.7;
+  const double weight = 0.3;
+  FastSum one_sum(cloud.points, cloud.morton, Widths(width), sum_plan(0, cloud.size()));
+  FastSum all_sum(doubled, morton, Widths(width), sum_plan(0, doubled.size()));
+  EnergySystem clustered(one_sum, damping, weight, twos);
+  EnergySystem full(all_sum, damping, weight);
+  shapes::Random random(2);
+  std::vector<Vec3> eta(cloud.size());  // of a cluster: both its points together
+  std::vector<Vec3> halves;
+  for (Vec3& v : eta) {
+    v = random.direction();
+    halves.insert(halves.end(), 2, Vec3{v[0] / 2, v[1] / 2, v[2] / 2});
+  }
+  const std::vector<Vec3> a = clustered.apply(clustered.from_areas(eta));
+  const std::vector<Vec3> b = full.apply(halves);
+  const std::vector<Vec3> ra = clustered.right_side();
+  const std::vector<Vec3> rb = full.right_side();
+  double error = 0;
+  double size = 0;
+  for (std::size_t i = 0; i < eta.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {  // D^T of the full product: both rows, over sqrt(2)
+      error += std::pow(a[i][k] - (b[2 * i][k] + b[2 * i + 1][k]) / std::sqrt(2.0), 2);
+      error += std::pow(ra[i][k] - (rb[2 * i][k] + rb[2 * i + 1][k]) / std::sqrt(2.0), 2);
+      size += a[i][k] * a[i][k] + ra[i][k] * ra[i][k];
+    }
+  }
+  constexpr double kRounding = 1e-12;  // direct sums in double
+  EXPECT_LE(std::sqrt(error / size), kRounding);
+}
+
+}  // namespace
+}  // namespace g3r

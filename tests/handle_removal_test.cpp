@@ -1,0 +1,84 @@
+// Handles go where another reading of the signs has none; nothing is split for it.
+#include "mesh/handle_removal.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "mesh_topology.h"
+
+namespace {
+
+using namespace g3r;
+using namespace g3r::mesh;
+using g3r::testing::topology;
+using g3r::testing::Topology;
+using Marks = std::vector<std::uint8_t>;
+
+const Octree& grid() {
+  static const Octree octree({-1, -1, -1}, 2, {}, 4);
+  return octree;
+}
+
+Marks mark(const std::function<bool(const Vec3&)>& inside) {
+  Marks out(grid().corner_count());
+  for (std::size_t c = 0; c < out.size(); ++c) out[c] = inside(grid().corner_position(c)) && !grid().on_boundary(c) ? 1 : 0;
+  return out;
+}
+
+Marks no_centres(const std::vector<Vec3>& centres) { return Marks(centres.size(), 0); }
+
+Topology topology_after(Marks inside, const Marks& proposal) {
+  DualSurface surface = contour(grid(), inside, no_centres);
+  remove_handles(grid(), proposal, no_centres, inside, surface);
+  std::vector<Vec3> positions;
+  for (std::size_t p = 0; p < surface.patch_count() + surface.midpoints.size(); ++p) positions.push_back({0, 0, static_cast<double>(p)});
+  return topology(triangulate(surface, std::move(positions), {}));
+}
+
+bool ball(const Vec3& p) { return std::hypot(p[0], p[1], p[2]) < 0.7; }
+bool ring(const Vec3& p) { return std::hypot(std::hypot(p[0], p[1]) - 0.6, p[2]) < 0.2; }
+bool on_axis(const Vec3& p) { return std::hypot(p[0], p[1]) < 0.06; }
+
+TEST(HandleRemoval, ATunnelOfDoubtfulCornersIsFilled) {
+  const Marks drilled = mark([](const Vec3& p) { return ball(p) && !on_axis(p); });
+  EXPECT_EQ(topology_after(drilled, drilled).genus, 1);
+  EXPECT_EQ(topology_after(drilled, mark(ball)).genus, 0);
+}
+
+TEST(HandleRemoval, ABridgeOfDoubtfulCornersIsCut) {
+  const auto bridged =
+      mark([](const Vec3& p) { return ring(p) || (std::abs(p[1]) < 0.06 && std::abs(p[2]) < 0.06 && std::abs(p[0]) < 0.6); });
+  EXPECT_EQ(topology_after(bridged, bridged).genus, 2);
+  const Topology cut = topology_after(bridged, mark(ring));
+  EXPECT_EQ(cut.genus, 1);
+  EXPECT_EQ(cut.components, 1U);
+}
+
+TEST(HandleRemoval, CutsThatSplitAPartAreNotMade) {
+  const Marks whole = mark(ring);
+  const Marks cut_twice = mark([](const Vec3& p) { return ring(p) && std::abs(p[0]) > 0.06; });
+  const Topology kept = topology_after(whole, cut_twice);
+  EXPECT_EQ(kept.genus, 1);
+  EXPECT_EQ(kept.components, 1U);
+}
+
+TEST(HandleRemoval, ALargeHandleStaysWhateverIsProposed) {
+  EXPECT_EQ(topology_after(mark(ring), mark([](const Vec3& p) { return std::hypot(p[0], p[1]) < 0.8 && std::abs(p[2]) < 0.2; })).genus, 1);
+}
+
+TEST(HandleRemoval, SpecksAreNeitherGainNorLoss) {
+  const Marks drilled = mark([](const Vec3& p) { return ball(p) && !on_axis(p); });
+  Marks specks = drilled;  // the tunnel stays, a bubble in its wall is added
+  for (std::size_t c = 0; c < specks.size(); ++c) {
+    const Vec3 p = grid().corner_position(c);
+    if (p == Vec3{0.375, 0, 0}) specks[c] = 0;
+  }
+  ASSERT_NE(specks, drilled);
+  const Topology t = topology_after(drilled, specks);
+  EXPECT_EQ(t.genus, 1);
+  EXPECT_EQ(t.components, 1U);
+}
+
+}  // namespace

@@ -1,0 +1,116 @@
+// Pairs of triangles that intersect, and the exact signs behind them.
+#include <g3r/mesh.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "mesh/exact_orientation.h"
+#include "mesh_shapes.h"
+
+namespace g3r {
+namespace {
+
+// Small integers, scaled and moved: the determinant of the integers themselves is exact.
+TEST(ExactOrientation, AgreesWithIntegers) {
+  std::mt19937_64 rng(1);
+  std::uniform_int_distribution<long> coordinate(-8, 8);
+  int zeros = 0;
+  for (int i = 0; i < 20000; ++i) {
+    std::array<std::array<long, 3>, 4> k{};
+    std::array<Vec3, 4> p{};
+    for (std::size_t j = 0; j < 4; ++j) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        k[j][a] = coordinate(rng);
+        p[j][a] = std::ldexp(static_cast<double>(k[j][a]) + 0x1p30, -20);  // a common offset that rounding must not spoil
+      }
+    }
+    const auto d = [&](std::size_t j, std::size_t a) { return k[j][a] - k[0][a]; };
+    const long det = d(3, 0) * (d(1, 1) * d(2, 2) - d(1, 2) * d(2, 1)) + d(3, 1) * (d(1, 2) * d(2, 0) - d(1, 0) * d(2, 2)) +
+                     d(3, 2) * (d(1, 0) * d(2, 1) - d(1, 1) * d(2, 0));
+    EXPECT_EQ(orientation(p[0], p[1], p[2], p[3]), det > 0 ? 1 : det < 0 ? -1 : 0);
+    zeros += det == 0 ? 1 : 0;
+  }
+  EXPECT_GT(zeros, 10);
+}
+
+TEST(ExactOrientation, SeesTheLastBit) {
+  const Vec3 a{0.1, 0.1, 0.1}, b{0.7, 0.7, 0.7}, c{0.3, 0.9, 0.3};
+  const double z = 1.0 / 3;  // a, b, c lie in the plane x = z
+  EXPECT_EQ(orientation(a, b, c, {z, 5, z}), 0);
+  const int above = orientation(a, b, c, {z, 5, std::nextafter(z, 1)}), below = orientation(a, b, c, {z, 5, std::nextafter(z, 0)});
+  EXPECT_EQ(above * below, -1);
+  EXPECT_EQ(orientation_along(1, a, b, {z, 5, z}), 0);
+  EXPECT_EQ(orientation_along(1, a, b, {z, 5, std::nextafter(z, 1)}) * orientation_along(1, a, b, {z, 5, std::nextafter(z, 0)}), -1);
+}
+
+TEST(SelfIntersections, CleanShapesHaveNone) {
+  EXPECT_EQ(count_self_intersections({}), 0U);
+  EXPECT_EQ(count_self_intersections(shapes::tetrahedron()), 0U);
+  EXPECT_EQ(count_self_intersections(shapes::cube()), 0U);
+  EXPECT_EQ(count_self_intersections(shapes::sphere(1, 64)), 0U);
+  EXPECT_EQ(count_self_intersections(shapes::torus(1, 0.4, 60, 40)), 0U);
+  EXPECT_EQ(count_self_intersections(shapes::moved(shapes::sphere(1, 32), {1e6, -1e6, 1e6})), 0U);
+  EXPECT_EQ(count_self_intersections(shapes::moved(shapes::sphere(1, 32), {0, 0, 0}, 1e-40)), 0U);
+}
+
+// Faces x + y + z = 1 and the three of the other tetrahedron around its tip: the tip pierces one face, so three pairs meet.
+TEST(SelfIntersections, ATipThroughAFaceMeetsItWithThreeTriangles) {
+  const Mesh pierced = shapes::united(shapes::tetrahedron(), shapes::moved(shapes::inverted(shapes::tetrahedron()), {0.3, 0.3, 0.3}));
+  EXPECT_EQ(count_self_intersections(pierced), 3U);
+  EXPECT_EQ(count_self_intersections(shapes::united(shapes::tetrahedron(), shapes::moved(shapes::tetrahedron(), {0.4, 0.4, 0.4}))), 0U);
+}
+
+TEST(SelfIntersections, TouchingCountsAMissByOneBitDoesNot) {
+  const auto tip = [](double z) {  // its lowest vertex at height z over the middle of a triangle in z = 0
+    Mesh m;
+    m.vertices = {{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {0.7, 0.9, z}, {1, 1, 2}, {0.5, 1, 2}};
+    m.triangles = {{0, 1, 2}, {3, 4, 5}};
+    return m;
+  };
+  EXPECT_EQ(count_self_intersections(tip(0)), 1U);
+  EXPECT_EQ(count_self_intersections(tip(0x1p-300)), 0U);
+  EXPECT_EQ(count_self_intersections(tip(-0x1p-60)), 1U);
+}
+
+TEST(SelfIntersections, CoplanarTrianglesThatOverlapMeet) {
+  Mesh m;
+  m.vertices = {{0, 0, 1}, {4, 0, 1}, {0, 4, 1}, {1, 1, 1}, {1.5, 1, 1}, {1, 1.5, 1}, {3, 3, 1}, {4, 3, 1}, {3, 4, 1}};
+  m.triangles = {{0, 1, 2}, {3, 4, 5}, {6, 7, 8}};  // the second inside the first, the third beside it
+  EXPECT_EQ(count_self_intersections(m), 1U);
+}
+
+// A strip of three quads, the last of which comes back through the first.
+TEST(SelfIntersections, AFoldedStripIsFound) {
+  Mesh m;
+  const std::array<std::array<double, 2>, 4> profile = {{{0, 0}, {2, 0}, {2, 1}, {1, -1}}};
+  for (const auto& [x, z] : profile) {
+    m.vertices.push_back({x, 0, z});
+    m.vertices.push_back({x, 1, z});
+  }
+  for (std::uint32_t i = 0; i < 6; i += 2) {
+    m.triangles.push_back({i, i + 2, i + 3});
+    m.triangles.push_back({i, i + 3, i + 1});
+  }
+  EXPECT_GE(count_self_intersections(m), 2U);
+  m.vertices[6][2] = m.vertices[7][2] = 0.5;  // folded over, but not through
+  EXPECT_EQ(count_self_intersections(m), 0U);
+}
+
+TEST(MeshShape, AnglesAndAspectOfKnownTriangles) {
+  const MeshCheck cube = check_mesh(shapes::cube());
+  EXPECT_NEAR(cube.min_angle, 45, 1e-12);
+  EXPECT_NEAR(cube.median_min_angle, 45, 1e-12);
+  EXPECT_NEAR(cube.max_aspect, 2, 1e-12);
+  Mesh sliver;
+  sliver.vertices = {{0, 0, 0}, {1, 0, 0}, {0.5, 1e-3, 0}};
+  sliver.triangles = {{0, 1, 2}};
+  EXPECT_NEAR(check_mesh(sliver).max_aspect, 1000, 1e-6);
+  EXPECT_NEAR(check_mesh(sliver).min_angle, std::atan(2e-3) * 180 / shapes::kPi, 1e-9);
+  sliver.vertices[2][1] = 0;
+  EXPECT_EQ(check_mesh(sliver).min_angle, 0);
+  EXPECT_TRUE(std::isinf(check_mesh(sliver).max_aspect));
+}
+
+}  // namespace
+}  // namespace g3r

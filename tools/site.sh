@@ -1,0 +1,19 @@
+#!/bin/bash
+# Builds the documentation site into build/site and checks it. mkdocs-material comes from PyPI the first time; after that no network is
+# used, and the pages never use any.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+. tools/prepare.sh
+
+environment=build/site-environment
+if [ ! -x $environment/bin/mkdocs ]; then
+  python3 -m venv --clear $environment
+  $environment/bin/pip install --quiet --disable-pip-version-check 'mkdocs>=1.6,<2' 'mkdocs-material>=9.5,<10'
+fi
+[ -x "${G3R_PROGRAM:-build/release/cli/g3r}" ] || build release g3r_cli
+NO_MKDOCS_2_WARNING=1 $environment/bin/mkdocs build --strict --quiet
+if grep -rlE '<(script|link|img|iframe)[^>]+(src|href)="?(https?:)?//' --include=*.html build/site; then
+  echo "these pages load something from the network" >&2
+  exit 1
+fi
+echo "build/site/index.html"
