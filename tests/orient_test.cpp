@@ -240,6 +240,20 @@ TEST(Orient, StopsWhenAsked) {
   EXPECT_THROW(static_cast<void>(orient(points, {}, stopped)), Cancelled);
 }
 
+// Distances that no float, and whose squares no double, can hold.
+TEST(Orient, PointsOfEveryMagnitudeGiveNumbers) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 60; ++i) {
+    const double size = std::pow(10.0, 5 * (i % 20) - 80) * (i % 7 - 3);
+    points.push_back({size, i < 20 ? size * size * 1e-60 : i % 3, i < 40 ? 0 : -size});
+  }
+  const Orientation o = orient(points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_TRUE(std::isfinite(o.areas[i]) && o.areas[i] >= 0) << i;
+    EXPECT_NEAR(std::hypot(o.normals[i][0], o.normals[i][1], o.normals[i][2]), 1, 1e-6) << i;
+  }
+}
+
 TEST(Orient, SmallestCloudsWork) {
   const std::vector<Vec3> tetrahedron{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
   const Orientation o = orient(tetrahedron);

@@ -26,7 +26,7 @@ std::vector<double> local_spacing(const std::vector<Vec3>& points) {
     std::array<double, kNeighbours + 1> squared{};
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t found = tree.knnSearch(points[i].data(), k + 1, index.data(), squared.data());
-      spacing[i] = factor * std::sqrt(squared[found - 1]);
+      spacing[i] = std::max(kLeastSpacing, factor * std::sqrt(squared[found - 1]));
     }
   });
   return spacing;

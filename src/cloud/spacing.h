@@ -7,9 +7,13 @@
 
 namespace g3r {
 
+/// Of the unit frame, whose box has side 2 / 1.1. A surface sampled so finely has 1e12 points; the sums take 1 / width to the fifth power,
+/// which leaves the range of float not far below.
+inline constexpr double kLeastSpacing = 1e-6;
+
 /// h_i = d_k sqrt(pi / k), d_k the distance of point i to its k-th neighbour, k = 8: the square root of the area per point of a surface
 /// sample (docs/math.md, "Spacing"). Fewer than 9 points: k = N - 1. N values in the units of the points, all > 0 for distinct points. O(N
-/// log N).
+/// log N). Points in the unit frame: none is below kLeastSpacing.
 [[nodiscard]] std::vector<double> local_spacing(const std::vector<Vec3>& points);
 
 /// Local spacings averaged (geometric mean) over each point's 16 nearest, itself included: they follow the density, not the luck of the

@@ -74,8 +74,9 @@ IterativeResult solve_iteratively(LinearSystem& system, const std::vector<Steps>
       }
       const std::vector<Vec3> product = system.apply(direction);
       const double curvature = dot(direction, product);
-      if (!(curvature > 0)) return result;      // M is indefinite below the accuracy of its sums: no step can be trusted any more
       const double step = squared / curvature;  // alpha = r.r / p.Mp
+      // M is indefinite below the accuracy of its sums, or out of the range of numbers: no step can be trusted any more.
+      if (!(curvature > 0) || !(step > 0) || !std::isfinite(step)) return result;
       combine(result.eta, 1, step, direction);
       combine(residual, 1, -step, product);
       const double next = dot(residual, residual);
