@@ -18,17 +18,18 @@ constexpr double kEnergyTolerance = 2.5e-3;   // slats and spokes need this resi
 constexpr double kAcceptedResidual = 2e-2;    // from here on normals change little; all clean models get below
 constexpr const char* kEnergySchedule = "45 cg";
 constexpr Steps kContinued{10, StepKind::kConjugateGradient};  // more gain little once the smooth part of the error is gone
-// The default on noisy input: the field must not see single points. In standard deviations of the noise, or spacings h where it says so.
-constexpr double kNoisyWidth = 3;  // of epsilon and of the refinement
-constexpr double kNoisyPolishEpsilon = 2;
-constexpr double kNoisyPolishWidth = 2;
-constexpr int kNoisyPolishSteps = 8;
-constexpr double kNoisyPolishWindingWeight = 0.01;  // h; 0.03 costs sides
-constexpr double kClusterSide = 0.7;                // epsilon; the kernel at width epsilon cannot tell points of one cluster apart
-constexpr double kWideEpsilon = 1.5;                // h; from here on clusters pay, and an epsilon that is asked for is taken to mean noise
-constexpr double kNoisyDamping = 0.28;              // 1/h: the self term of a flat patch
-constexpr double kNoisyWindingWeight = 0.03;        // h; W eta = 1/2 is wrong at points off the surface, so it must not weigh much
-constexpr const char* kNoisySchedule = "10 cg";     // semi-convergence: more steps fit the noise
+// The default on noisy input: the field must not see single points. Noise sigma turns the normal of an area s^2 of points h apart by about
+// sigma h / s^2, so widths for one accuracy are in proportion to sqrt(sigma h).
+constexpr double kNoisyWidth = 3.9;  // sqrt(sigma h), of epsilon and of the refinement
+constexpr double kNoisyPolishEpsilon = 1.8;
+constexpr double kNoisyPolishWidth = 2.25;
+constexpr int kNoisyPolishSteps = 9;
+constexpr double kNoisyPolishWindingWeight = 0.007;  // h; more costs sides, less costs narrow gaps
+constexpr double kClusterSide = 0.9;                 // epsilon; the kernel at width epsilon cannot tell points of one cluster apart
+constexpr double kWideEpsilon = 1.5;             // h; from here on clusters pay, and an epsilon that is asked for is taken to mean noise
+constexpr double kNoisyDamping = 0.28;           // 1/h: the self term of a flat patch
+constexpr double kNoisyWindingWeight = 0.03;     // h; W eta = 1/2 is wrong at points off the surface, so it must not weigh much
+constexpr const char* kNoisySchedule = "10 cg";  // semi-convergence: more steps fit the noise
 // The default for least squares over the harmonics.
 constexpr double kGreenEpsilon = 0.4;       // converges in 10-15 iterations
 constexpr double kGreenConstantWeight = 2;  // the row u = 1 alone tells inside from outside
@@ -126,13 +127,13 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   s.tolerance = options.tolerance >= 0 ? options.tolerance : paper ? 0 : green ? kGreenTolerance : kEnergyTolerance;
   const bool wide = s.epsilon > kWideEpsilon * spacing;
   if (!paper && !green && (noise > 0 || wide)) {
-    const double sigma = wide ? s.epsilon / kNoisyWidth : noise;
+    const double size = wide ? s.epsilon / kNoisyWidth : std::sqrt(noise * spacing);
     s.damping = kNoisyDamping / spacing;
     s.winding_weight = kNoisyWindingWeight * spacing;
-    if (options.epsilon.unit == Epsilon::Unit::kAuto) s.epsilon = std::max(s.epsilon, kNoisyWidth * sigma);
-    s.refinement_width = std::max(s.refinement_width, kNoisyWidth * sigma);
-    s.polish_epsilon = std::max(s.polish_epsilon, kNoisyPolishEpsilon * sigma);
-    s.polish_width = std::max(kRefinementWidth * spacing, kNoisyPolishWidth * sigma);
+    if (options.epsilon.unit == Epsilon::Unit::kAuto) s.epsilon = std::max(s.epsilon, kNoisyWidth * size);
+    s.refinement_width = std::max(s.refinement_width, kNoisyWidth * size);
+    s.polish_epsilon = std::max(s.polish_epsilon, kNoisyPolishEpsilon * size);
+    s.polish_width = std::max(kRefinementWidth * spacing, kNoisyPolishWidth * size);
     s.polish_steps = kNoisyPolishSteps;
     s.polish_winding_weight = kNoisyPolishWindingWeight * spacing;
     s.coarsest_epsilon = s.epsilon;
