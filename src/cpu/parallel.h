@@ -15,7 +15,24 @@
 #include <tbb/parallel_sort.h>
 #include <tbb/task_arena.h>
 
+#ifdef __SANITIZE_THREAD__
+#include <sanitizer/tsan_interface.h>
+#endif
+
 namespace g3r::parallel {
+
+/// Tell ThreadSanitizer, which cannot see into the threading library, that what a thread did before signal(at) is visible to the one that
+/// has called wait(at) since.
+inline void signal([[maybe_unused]] const void* at) {
+#ifdef __SANITIZE_THREAD__
+  __tsan_release(const_cast<void*>(at));
+#endif
+}
+inline void wait([[maybe_unused]] const void* at) {
+#ifdef __SANITIZE_THREAD__
+  __tsan_acquire(const_cast<void*>(at));
+#endif
+}
 
 /// Number of threads a request for `threads` gets: 0 asks for all cores.
 inline int thread_count(int threads) { return threads > 0 ? threads : tbb::info::default_concurrency(); }
@@ -30,12 +47,18 @@ auto with_threads(int threads, Work&& work) {
 /// body(i) for i in [0, count), each call independent of the others. `cancel` (may be null) stops the loop with Cancelled.
 template <class Body>
 void for_each(std::size_t count, const Body& body, const std::atomic<bool>* cancel = nullptr) {
+  const char begun = 0;
+  const char done = 0;
+  signal(&begun);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1), [&](const tbb::blocked_range<std::size_t>& range) {
+    wait(&begun);
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       if (cancel != nullptr && cancel->load(std::memory_order_relaxed)) throw Cancelled();
       body(i);
     }
+    signal(&done);
   });
+  wait(&done);
 }
 
 /// body(begin, end) over [0, count) cut into blocks of `block` items.

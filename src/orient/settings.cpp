@@ -20,9 +20,9 @@ constexpr const char* kEnergySchedule = "45 cg";
 constexpr Steps kContinued{10, StepKind::kConjugateGradient};  // more gain little once the smooth part of the error is gone
 // The default on noisy input: the field must not see single points. Noise sigma turns the normal of an area s^2 of points h apart by about
 // sigma h / s^2, so widths for one accuracy are in proportion to sqrt(sigma h).
-constexpr double kNoisyWidth = 3.9;  // sqrt(sigma h), of epsilon and of the refinement
-constexpr double kNoisyPolishEpsilon = 1.8;
-constexpr double kNoisyPolishWidth = 2.25;
+constexpr double kNoisyWidth = 3;            // sigma, of epsilon and of the refinement
+constexpr double kNoisyPolishEpsilon = 1.8;  // sqrt(sigma h)
+constexpr double kNoisyPolishWidth = 2.25;   // sqrt(sigma h)
 constexpr int kNoisyPolishSteps = 9;
 constexpr double kNoisyPolishWindingWeight = 0.007;  // h; more costs sides, less costs narrow gaps
 constexpr double kClusterSide = 0.9;                 // epsilon; the kernel at width epsilon cannot tell points of one cluster apart
@@ -127,11 +127,12 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   s.tolerance = options.tolerance >= 0 ? options.tolerance : paper ? 0 : green ? kGreenTolerance : kEnergyTolerance;
   const bool wide = s.epsilon > kWideEpsilon * spacing;
   if (!paper && !green && (noise > 0 || wide)) {
-    const double size = wide ? s.epsilon / kNoisyWidth : std::sqrt(noise * spacing);
+    const double sigma = wide ? s.epsilon / kNoisyWidth : noise;
+    const double size = std::sqrt(sigma * spacing);
     s.damping = kNoisyDamping / spacing;
     s.winding_weight = kNoisyWindingWeight * spacing;
-    if (options.epsilon.unit == Epsilon::Unit::kAuto) s.epsilon = std::max(s.epsilon, kNoisyWidth * size);
-    s.refinement_width = std::max(s.refinement_width, kNoisyWidth * size);
+    if (options.epsilon.unit == Epsilon::Unit::kAuto) s.epsilon = std::max(s.epsilon, kNoisyWidth * sigma);
+    s.refinement_width = std::max(s.refinement_width, kNoisyWidth * sigma);
     s.polish_epsilon = std::max(s.polish_epsilon, kNoisyPolishEpsilon * size);
     s.polish_width = std::max(kRefinementWidth * spacing, kNoisyPolishWidth * size);
     s.polish_steps = kNoisyPolishSteps;
