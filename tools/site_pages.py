@@ -75,7 +75,7 @@ def help_texts():
             raise PluginError(f"the site needs the program: {error}") from None
 
     text = help_of()
-    commands = re.findall(r"^  (\w+) ", text[text.upper().index("\nSUBCOMMANDS:"):], re.M)
+    commands = re.findall(r"^  ([a-z]+) ", text[text.index("\nCommands:"):], re.M)
     sections = [("g3r", text)] + [(f"g3r {command}", help_of(command)) for command in commands]
     return "\n".join(f"## {title}\n\n```text\n{text}\n```\n" for title, text in sections)
 
