@@ -22,16 +22,19 @@ find "$seeds/read" -type f -size +8 -delete # blocks of 512 bytes: short inputs 
 fuzz_one() {
   local corpus=$corpora/$1 from=$seeds/$1
   [ -d "$from" ] || from=$seeds/read
-  local start=("$corpus" "$from")
-  if [ -n "${FUZZ_SEED:-}" ]; then # folders are read in any order, so the seeds are named; an empty folder takes what is learnt
+  local start=("$corpus" "$from") run=()
+  if [ -n "${FUZZ_SEED:-}" ]; then
+    # Folders are read in any order, so the seeds are named; an empty folder takes what is learnt. What is learnt from comparisons holds
+    # addresses, which differ from run to run.
+    run=(setarch --addr-no-randomize)
     rm -rf "$corpus.repeatable"
     mkdir -p "$corpus.repeatable"
     find "$from" -type f | LC_ALL=C sort | paste -sd, > "$corpus.seeds"
-    start=(-seed="$FUZZ_SEED" -reload=0 -seed_inputs=@"$corpus.seeds" "$corpus.repeatable")
+    start=(-seed="$FUZZ_SEED" -reload=0 -use_cmp=0 -seed_inputs=@"$corpus.seeds" "$corpus.repeatable")
   else
     mkdir -p "$corpus"
   fi
-  "$programs/fuzz_$1" -max_total_time="$seconds" -timeout=30 -rss_limit_mb=2048 -max_len=4096 -print_final_stats=1 \
+  "${run[@]}" "$programs/fuzz_$1" -max_total_time="$seconds" -timeout=30 -rss_limit_mb=2048 -max_len=4096 -print_final_stats=1 \
     -artifact_prefix="$corpus." "${start[@]}" > "$corpus.log" 2>&1
 }
 
