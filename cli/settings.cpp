@@ -319,10 +319,14 @@ void add_view(CLI::App& app, Settings& s) {
              s.picture.layers.push_back(layer->second);
            }
          },
-         "Picture: rows to draw, of points,normals,confidence,colors,error,mesh")
+         "Picture: a row each, of points,normals,confidence,colors,error,mesh")
       ->delimiter(',')
       ->type_name("LIST");
   sub->add_option("--tile", s.picture.tile, "Picture: side of one view, 16 to 2048")->check(range(16, 2048))->type_name("PIXELS");
+  sub->add_option("--views", s.picture.views,
+                  "Picture: the first N of three-quarter, front, side and top; with one the layers stand side by side")
+      ->check(range(1, 4))
+      ->type_name("N");
   sub->add_flag("--dark", s.picture.dark, "Picture: dark background");
   add_read_options(*sub, s);
   add_run_options(*sub, s);
