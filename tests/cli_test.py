@@ -165,7 +165,8 @@ class ExitCodes(ProgramTest):
         self.assertEqual(os.listdir(self.path("readonly")), [])
 
     def test_a_full_device_is_74(self):
-        for arguments in (["orient", "ball.ply", "-"], ["info", "ball.ply"], ["orient", "ball.ply", "out.ply", "--report", "-"]):
+        for arguments in (["orient", "ball.ply", "-"], ["info", "ball.ply"], ["orient", "ball.ply", "out.ply", "--report", "-"],
+                          ["--help"], ["orient", "--help"], ["--version"]):
             with self.subTest(arguments), open("/dev/full", "wb") as full:
                 self.expect(INPUT_OUTPUT, *arguments, stdout=full)
 
