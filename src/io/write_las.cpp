@@ -19,7 +19,7 @@ using namespace las;
 constexpr const char* kNormalNames[] = {"NormalX", "NormalY", "NormalZ"};
 constexpr std::size_t kNameBytes = 32;  // of an extra-bytes descriptor
 
-// Fields of points, under the names that LAS, PDAL and laspy have for them: extra bytes of the same name make readers stumble.
+// Fields of points, under the names that LAS and its readers have for them: extra bytes of the same name make readers stumble.
 constexpr const char* kFieldNames[] = {"x",
                                        "y",
                                        "z",
