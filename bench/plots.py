@@ -101,7 +101,8 @@ def read_rows(paths, score, excluded):
     rows = []
     for path in paths:
         with open(path, encoding="utf-8") as file:
-            rows += [row for row in json.load(file)["rows"] if "ae_p" in row and row["model"] not in excluded]
+            table = json.load(file)
+        rows += [{**row, "label": table.get("label", "")} for row in table["rows"] if "ae_p" in row and row["model"] not in excluded]
     for row in rows:
         row["value"] = max(SMALLEST, 100 * row["ae_p"] if score == "ae_p" else 100 * (1 - row["pco"]))
     return rows
@@ -139,12 +140,18 @@ def varied(method, key):
     return None if value is None else (";".join(rest), value)
 
 
-def joined_table(rows):
+def joined_table(rows, kind, points):
     """Markdown: a row per model and the means, a column per method: AE_p in 1e-2 / PCO in %."""
+    if not rows:
+        sys.exit("no rows of this input and this number of points")
     methods = list(dict.fromkeys(row["method"] for row in rows))
     cells = {(row["model"], row["method"]): row for row in rows}  # a later file wins
     models = sorted({row["model"] for row in rows})
-    out = ["| model | " + " | ".join(methods) + " |", "|---" * (len(methods) + 1) + "|"]
+    labels = ", ".join(dict.fromkeys(f"{row['method']} on {row['label']}" for row in cells.values() if row["label"]))
+    size = f", {points:,} points" if points else ""
+    out = [f"# {kind.capitalize()}{size}: {', '.join(methods)}", "",
+           "AE_p in 1e-2 / PCO in %." + (f" Measured: {labels}." if labels else ""), "",
+           "| model | " + " | ".join(methods) + " |", "|---" * (len(methods) + 1) + "|"]
     for model in models:
         found = [cells.get((model, method)) for method in methods]
         out.append(f"| {model} | " + " | ".join(f"{100 * r['ae_p']:.3f} / {100 * r['pco']:.3f}" if r else "-" for r in found) + " |")
@@ -175,7 +182,7 @@ def draw(arguments):
     if arguments.kind in ("cdf", "noise", "vary", "table") and arguments.points:
         rows = [row for row in rows if row["points"] == arguments.points]
     if arguments.kind == "table":
-        return joined_table(rows)
+        return joined_table(rows, arguments.input, arguments.points)
     if arguments.kind == "cdf":
         series = {}
         for row in rows:

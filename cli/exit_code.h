@@ -21,9 +21,10 @@ enum ExitCode : int {
 
 /// The list above for --help.
 inline constexpr const char* kExitCodeHelp =
-    "Exit codes: 0 done, 64 wrong command line, 65 bad data (with --strict also a doubtful result), 66 no input,\n"
-    "69 not possible with this build or within --max-memory, 70 a bug in g3r, 71 out of memory, 73 cannot create\n"
-    "the output, 74 input/output error, 130 interrupted, 143 terminated.\n";
+    "Exit codes: 0 done, 64 wrong command line, 65 bad data (with --strict also a\n"
+    "doubtful result), 66 no input, 69 not possible with this build or within\n"
+    "--max-memory, 70 a bug in g3r, 71 out of memory, 73 cannot create the output,\n"
+    "74 input/output error, 130 interrupted, 143 terminated.\n";
 
 /// The command line asks for something that cannot be; ends the program with kUsage.
 class UsageError : public std::runtime_error {

@@ -1,5 +1,6 @@
 #include "files.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
@@ -19,6 +20,13 @@ void check_input(const std::string& path) {
   if (path.empty() || path == "-") return;
   // Not by opening it: the writer of a named pipe would see its reader come and go.
   if (access(path.c_str(), R_OK) != 0) throw IoError(IoError::Kind::kNotFound, "cannot read " + escape_text(path) + ": " + reason());
+}
+
+/// `g3r oriend scan.ply` asks for a file named oriend.
+void check_not_a_command(const std::string& input) {
+  if (std::all_of(input.begin(), input.end(), [](char c) { return c >= 'a' && c <= 'z'; }) && access(input.c_str(), F_OK) != 0) {
+    throw UsageError("there is no file and no command named " + input);
+  }
 }
 
 bool same_file(const std::string& a, const std::string& b) {
@@ -41,7 +49,9 @@ void check_text_output(const std::string& path, const std::vector<std::string>& 
   if (std::filesystem::is_directory(path, ignored)) throw IoError(IoError::Kind::kCannotCreate, refused + "it is a folder");
   std::filesystem::path folder = std::filesystem::path(path).parent_path();
   if (folder.empty()) folder = ".";
-  if (access(folder.c_str(), W_OK | X_OK) != 0) throw IoError(IoError::Kind::kCannotCreate, refused + reason());
+  if (access(folder.c_str(), W_OK | X_OK) != 0) {
+    throw IoError(IoError::Kind::kCannotCreate, refused + (errno == ENOENT ? "there is no such folder" : reason()));
+  }
 }
 
 void check_view_files(const Settings& settings) {
@@ -73,6 +83,7 @@ bool makes_mesh(Command command) { return command == Command::kReconstruct || co
 
 void check_files(const Settings& settings) {
   if (settings.command == Command::kView) return check_view_files(settings);
+  if (settings.command == Command::kReconstruct) check_not_a_command(settings.input);
   check_input(settings.input);
   check_input(settings.truth);
   std::vector<std::string> taken = {settings.input};

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <iostream>
 #include <new>
 #include <optional>
 #include <string>
@@ -84,7 +85,10 @@ int run_program(int argc, const char* const* argv) {
   try {
     interrupts.emplace();
     const std::optional<Settings> settings = parse_command_line(argc, argv);
-    if (!settings) return kOk;
+    if (!settings) {  // help or version
+      if (!std::cout.flush()) throw IoError(IoError::Kind::kFailed, "cannot write to standard output");
+      return kOk;
+    }
     check_files(*settings);
     Session session(*settings, *interrupts);
     try {

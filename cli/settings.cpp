@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <iostream>
 #include <map>
+#include <memory>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "exit_code.h"
+#include "help.h"
 
 namespace g3r::cli {
 namespace {
@@ -24,6 +26,28 @@ template <class T>
 CLI::Validator range(T low, T high) {
   return CLI::Range(low, high).description("");
 }
+
+// Headings of --help.
+constexpr const char* kResultGroup = "Results";
+constexpr const char* kMeshGroup = "Mesh";
+constexpr const char* kRunGroup = "Running";
+constexpr const char* kInputGroup = "Input";
+constexpr const char* kMethodGroup = "Method (none of these has to be set; docs/parameters.md)";
+constexpr const char* kPageGroup = "Page and picture";
+constexpr const char* kCommandGroup = "Commands";
+
+constexpr const char* kIntroduction = R"(g3r: from an unoriented point cloud to outward normals and a watertight mesh
+
+  g3r scan.ply                       makes the mesh scan.mesh.ply
+  g3r orient scan.ply oriented.ply   keeps the points and adds their normals
+  g3r view oriented.ply scan.mesh.ply -o look.html   shows both in a browser
+)";
+
+constexpr const char* kFormatHelp = R"(Reads PLY, XYZ/TXT/CSV/PTS, OBJ, OFF, PCD, NPY, LAS, STL, glTF/GLB; the content
+tells which. Writes meshes as .ply .obj .stl .off .glb, points as .ply .xyz .txt
+.csv .pts .pcd .npy .las .obj; the extension tells which.
+
+)";
 
 [[noreturn]] void reject(const std::string& option, const std::string& text, const std::string& expected) {
   throw UsageError(option + ": expected " + expected + ", found '" + text + "'");
@@ -48,35 +72,47 @@ void add_choice(CLI::App& app, const std::string& name, T& target, const std::ma
 }
 
 void add_run_options(CLI::App& app, Settings& s) {
-  app.add_option("--threads", s.options.threads, "Threads, 0 for all cores; the result is the same for any number")
+  app.option_defaults()->group(kRunGroup);
+  app.add_option("--threads", s.options.threads, "Threads, 0 (the default) for all cores; the result is the same for any number")
       ->check(range(0, kMaxThreads))
       ->type_name("N");
-  app.add_flag("--quiet,-q", s.quiet, "Only errors on standard error");
+  app.add_flag("-q,--quiet", s.quiet, "Say nothing but errors");
   app.add_flag_callback(
       "--no-progress", [&s] { s.progress = false; }, "No progress bar");
-  app.add_flag("-v,--verbose", s.verbosity, "More detail on standard error");
+  app.add_flag("-v,--verbose", s.verbosity, "Say more");
 }
 
 void add_report_options(CLI::App& app, Settings& s) {
-  app.add_option("--report", s.report, "Write a JSON report (docs/report.md), - for standard output")->type_name("FILE");
-  app.add_flag("--strict", s.strict, "Exit with 65 when the result is doubtful: not converged, inconsistent, not closed");
+  app.option_defaults()->group(kResultGroup);
+  app.add_option("--report", s.report, "Write what was done as JSON (docs/report.md); - for standard output")->type_name("FILE");
+  app.add_flag("--strict", s.strict, "Exit with 65 when the result is doubtful: not converged, inconsistent, or a mesh that is not closed");
 }
 
-void add_seed_option(CLI::App& app, Settings& s) { app.add_option("--seed", s.options.seed, "Seed of random steps")->type_name("S"); }
+void add_seed_option(CLI::App& app, Settings& s) {
+  app.add_option("--seed", s.options.seed, "Seed of random steps")->type_name("S")->group(kRunGroup);
+}
 
 void add_read_options(CLI::App& app, Settings& s) {
-  app.add_option("--min-opacity", s.read_options.min_opacity, "Gaussian splats: leave out splats below this opacity")
+  app.option_defaults()->group(kInputGroup);
+  app.add_option("--min-opacity", s.read_options.min_opacity, "Gaussian splats: leave out those below this opacity, 0 to 1 (default 0.1)")
       ->check(range(0.0, 1.0))
       ->type_name("X");
 }
 
 void add_write_options(CLI::App& app, Settings& s) {
-  app.add_flag("--ascii", s.write_options.ascii, "Text instead of binary where the format has both");
-  app.add_flag("--cloud-compare-names", s.write_options.cloud_compare_names, "Name the confidence so that CloudCompare shows it at once");
+  app.option_defaults()->group(kResultGroup);
+  app.add_flag("--ascii", s.write_options.ascii, "Text instead of binary where the format has both (PLY, PCD, STL)");
+}
+
+void add_confidence_options(CLI::App& app, Settings& s) {
+  app.option_defaults()->group(kResultGroup);
+  app.add_flag("--cloud-compare-names", s.write_options.cloud_compare_names,
+               "Points: name the confidence so that CloudCompare shows it at once");
 }
 
 void add_also_option(CLI::App& app, Settings& s) {
-  app.add_option("--also", s.also, "Write the result to FILE too, in the format of its extension; may be given again")
+  app.option_defaults()->group(kResultGroup);
+  app.add_option("--also", s.also, "Write the result to FILE too, in the format of its extension; may be repeated")
       ->type_name("FILE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
@@ -84,14 +120,16 @@ void add_also_option(CLI::App& app, Settings& s) {
 }
 
 void add_mesh_options(CLI::App& app, Settings& s) {
+  app.option_defaults()->group(kMeshGroup);
   add_choice(app, "--mesher", s.mesh_options.mesher, {{"auto", Mesher::kAuto}, {"field", Mesher::kField}, {"poisson", Mesher::kPoisson}},
-             "field (contours the winding field), poisson (screened Poisson), or auto for the preset's");
-  app.add_option("--depth", s.mesh_options.depth, "Octree depth of the mesher, 4 to 12 (default: from the density)")
+             "field: contours the winding field; poisson: screened Poisson, in builds with Open3D; auto: the preset's");
+  app.add_option("--depth", s.mesh_options.depth, "Octree depth of the mesher, 4 to 12 (default: from the density of the points)")
       ->check(range(kMinDepth, kMaxDepth))
       ->type_name("D");
 }
 
 void add_finish_options(CLI::App& app, Settings& s) {
+  app.option_defaults()->group(kMeshGroup);
   MeshOptions& o = s.mesh_options;
   app.add_option_function<std::string>(
          "--trim",
@@ -106,21 +144,22 @@ void add_finish_options(CLI::App& app, Settings& s) {
              reject("--trim", text, "off, auto or a distance above 0");
            }
          },
-         "Cut away surface far from every point: off, auto (4 spacings) or a distance; for open scans")
+         "Cut away surface that is farther than X (input units) from every point; auto: 4 spacings; off is the default")
       ->type_name("off|auto|X");
   app.add_flag_callback(
-      "--open", [&o] { o.trim = MeshOptions::Trim::kAuto; }, "The scan is open: the same as --trim auto");
-  app.add_option("--keep-largest", o.keep_largest, "Keep only the N largest components")->type_name("N");
-  app.add_option("--min-component", o.min_component, "Drop components of less area than N points stand for (default 8, 0: keep all)")
+      "--open", [&o] { o.trim = MeshOptions::Trim::kAuto; }, "For open scans: the same as --trim auto");
+  app.add_option("--keep-largest", o.keep_largest, "Keep only the N largest components (default: all)")->type_name("N");
+  app.add_option("--min-component", o.min_component, "Drop components of less area than N points stand for (default 8; 0 keeps all)")
       ->check(range(0.0, 1e15))
       ->type_name("N");
   app.add_option("--faces", o.faces, "Simplify to about N triangles")->type_name("N");
 }
 
 void add_method_options(CLI::App& app, Settings& s) {
+  app.option_defaults()->group(kMethodGroup);
   Options& o = s.options;
   add_choice(app, "--preset", o.preset, {{"default", Preset::kDefault}, {"paper", Preset::kPaper}},
-             "default, or paper for the published method");
+             "default, or paper: the published method");
   add_choice(app, "--method", o.method,
              {{"auto", Method::kAuto},
               {"green", Method::kGreen},
@@ -128,8 +167,8 @@ void add_method_options(CLI::App& app, Settings& s) {
               {"wnnc", Method::kWnnc},
               {"agr", Method::kAgr},
               {"pgr", Method::kPgr}},
-             "Equations to solve: green (as published), energy, auto for the preset's; earlier methods to compare with: wnnc, agr, pgr");
-  app.add_option("--wnnc-widths", o.wnnc_widths, "Method wnnc: density (default), clean, scan, noise-0.25, noise-0.5, noise-1 or sparse")
+             "Equations to solve: energy, green (as published), auto: the preset's; wnnc, agr, pgr: earlier methods, to compare with");
+  app.add_option("--wnnc-widths", o.wnnc_widths, "Of wnnc: density (default), clean, scan, noise-0.25, noise-0.5, noise-1 or sparse")
       ->type_name("NAME");
   app.add_option_function<std::string>(
          "--epsilon",
@@ -138,24 +177,25 @@ void add_method_options(CLI::App& app, Settings& s) {
            if (!epsilon) reject("--epsilon", text, "auto, X, X%, Xh or Xn with X > 0");
            o.epsilon = *epsilon;
          },
-         "Width of the mollifier: auto, X (input units), X% (of the box diagonal), Xh (spacings) or Xn (the paper's unit box)")
+         "Width of the smoothing: X input units, X% of the box diagonal, Xh point spacings, Xn in the paper's unit box")
       ->type_name("auto|X[%|h|n]");
-  auto* degree = app.add_option("--degree", o.degree, "Highest degree of the harmonic polynomials, 0 to 8")
-                     ->check(range(0, kMaxDegree))
-                     ->type_name("L");
-  app.add_option("--harmonics", o.harmonics, "Subset of the harmonic polynomials: \"1,x,y,z\", \"degree:0-2\"")
+  CLI::Option* degree = app.add_option("--degree", o.degree, "Of green: highest degree of the harmonic polynomials, 0 to 8")
+                            ->check(range(0, kMaxDegree))
+                            ->type_name("L");
+  app.add_option("--harmonics", o.harmonics, "Of green, instead of --degree: \"1,x,y,z\" or \"degree:0-2\"")
       ->excludes(degree)
       ->type_name("LIST");
   add_choice(app, "--solver", o.solver, {{"auto", Solver::kAuto}, {"dense", Solver::kDense}, {"cg", Solver::kConjugateGradient}},
-             "auto, dense or cg");
-  app.add_option("--schedule", o.schedule, "Iterations, for example \"20 sd 60 cg\"")->type_name("LIST");
-  app.add_option("--tolerance", o.tolerance, "Stop when the relative residual falls below T; 0: never")
+             "auto, dense (O(N^2) memory) or cg");
+  app.add_option("--schedule", o.schedule, "Iterations, for example \"20 sd 60 cg\": steepest descent, conjugate gradients")
+      ->type_name("LIST");
+  app.add_option("--tolerance", o.tolerance, "Stop when the relative residual falls below T; 0: run all iterations")
       ->check(range(0.0, 1.0))
       ->type_name("T");
-  app.add_option("--accuracy", o.accuracy, "Relative error of the hierarchical sums, 1e-6 to 0.1; 0 for direct sums")
+  app.add_option("--accuracy", o.accuracy, "Relative error of the sums, 1e-6 to 0.1; 0: direct sums, O(N^2) time")
       ->check(range(0.0, 0.1))
       ->type_name("A");
-  app.add_flag("--condition-number", o.condition_number, "Dense solver: also compute the condition number");
+  app.add_flag("--condition-number", o.condition_number, "With --solver dense: report the condition number");
   app.add_option_function<std::string>(
          "--max-memory",
          [&o](const std::string& text) {
@@ -163,54 +203,63 @@ void add_method_options(CLI::App& app, Settings& s) {
            if (!limit) reject("--max-memory", text, "a size such as 8G or 512M");
            o.max_memory = *limit;
          },
-         "Refuse before the solve if the plan needs more, for example 8G")
-      ->type_name("SIZE");
+         "Refuse before the solve if it would need more, for example 8G")
+      ->type_name("SIZE")
+      ->group(kRunGroup);
 }
 
 void add_reconstruct(CLI::App& app, Settings& s) {
   app.add_option("IN", s.input, "Point cloud; - for standard input")->type_name("");
-  app.add_option("OUT", s.output, "Mesh (default: IN with .mesh.ply for its extension); - for standard output")->type_name("");
-  add_run_options(app, s);
-  add_report_options(app, s);
-  add_seed_option(app, s);
-  add_read_options(app, s);
-  add_write_options(app, s);
+  app.add_option("OUT", s.output, "Mesh; scan.mesh.ply for scan.ply if left out; - for standard output")->type_name("");
   add_also_option(app, s);
   app.add_option("--oriented", s.oriented, "Write the points with their normals and confidence too")->type_name("FILE");
-  add_method_options(app, s);
-  add_mesh_options(app, s);
+  add_write_options(app, s);
+  add_confidence_options(app, s);
+  add_report_options(app, s);
   add_finish_options(app, s);
+  add_mesh_options(app, s);
+  add_run_options(app, s);
+  add_seed_option(app, s);
+  add_read_options(app, s);
+  add_method_options(app, s);
+}
+
+CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& help) {
+  CLI::App* command = app.add_subcommand(name, help);
+  command->group(kCommandGroup)->footer("Formats and exit codes: g3r --help\n");
+  command->option_defaults()->group("Options");  // not the parent's latest
+  return command;
 }
 
 void add_orient(CLI::App& app, Settings& s) {
-  CLI::App* sub = app.add_subcommand("orient", "Same points, same order, all properties kept, plus unit normals and confidence");
+  CLI::App* sub = add_command(app, "orient", "Same points, same order, all properties kept, plus unit normals and confidence");
   sub->add_option("IN", s.input, "Point cloud; - for standard input")->required()->type_name("");
   sub->add_option("OUT", s.output, "Oriented cloud; - for standard output")->required()->type_name("");
-  add_run_options(*sub, s);
+  add_also_option(*sub, s);
+  add_write_options(*sub, s);
+  add_confidence_options(*sub, s);
   add_report_options(*sub, s);
+  add_run_options(*sub, s);
   add_seed_option(*sub, s);
   add_read_options(*sub, s);
-  add_write_options(*sub, s);
-  add_also_option(*sub, s);
   add_method_options(*sub, s);
 }
 
 void add_mesh(CLI::App& app, Settings& s) {
-  CLI::App* sub = app.add_subcommand("mesh", "Points that have outward normals -> mesh");
+  CLI::App* sub = add_command(app, "mesh", "Points that have outward normals -> mesh");
   sub->add_option("ORIENTED", s.input, "Point cloud with normals; - for standard input")->required()->type_name("");
   sub->add_option("OUT", s.output, "Mesh; - for standard output")->required()->type_name("");
-  add_run_options(*sub, s);
-  add_report_options(*sub, s);
-  add_read_options(*sub, s);
-  add_write_options(*sub, s);
   add_also_option(*sub, s);
-  add_mesh_options(*sub, s);
+  add_write_options(*sub, s);
+  add_report_options(*sub, s);
   add_finish_options(*sub, s);
+  add_mesh_options(*sub, s);
+  add_run_options(*sub, s);
+  add_read_options(*sub, s);
 }
 
 void add_eval(CLI::App& app, Settings& s) {
-  CLI::App* sub =
-      app.add_subcommand("eval", "Scores against the truth as JSON: AE_p, PCO for points with normals; CD, AE_m, HD for meshes");
+  CLI::App* sub = add_command(app, "eval", "Scores against the truth, as JSON: AE_p, PCO of normals; CD, AE_m, HD of meshes");
   sub->add_option("RESULT", s.input, "Oriented cloud or mesh")->required()->type_name("");
   sub->add_option("--truth", s.truth, "Cloud with true normals in the same order, or true mesh")->required()->type_name("GT");
   sub->add_option("--samples", s.sample_count, "Points sampled on each mesh (default 200000)")
@@ -221,7 +270,7 @@ void add_eval(CLI::App& app, Settings& s) {
 }
 
 void add_sample(CLI::App& app, Settings& s) {
-  CLI::App* sub = app.add_subcommand("sample", "Points on a mesh, uniform by area, with true normals");
+  CLI::App* sub = add_command(app, "sample", "Points on a mesh, uniform by area, with true normals");
   sub->add_option("MESH", s.input, "Mesh")->required()->type_name("");
   sub->add_option("OUT", s.output, "Point cloud; - for standard output")->required()->type_name("");
   sub->add_option("--count", s.sample_count, "Points to draw")->required()->check(range(std::size_t{1}, kMaxSamples))->type_name("N");
@@ -240,10 +289,10 @@ void add_sample(CLI::App& app, Settings& s) {
 }
 
 void add_info(CLI::App& app, Settings& s) {
-  CLI::App* sub = app.add_subcommand("info", "What is in a file, and what g3r would do with it");
+  CLI::App* sub = add_command(app, "info", "What is in a file, what g3r would do with it, and the memory that would take");
   sub->add_option("FILE", s.input, "Point cloud or mesh")->required()->type_name("");
   add_run_options(*sub, s);
-  sub->add_option("--report", s.report, "Write the plan as a JSON report, - for standard output instead of the text")->type_name("FILE");
+  sub->add_option("--report", s.report, "Write the plan as JSON; - for standard output, instead of the text")->type_name("FILE");
   add_read_options(*sub, s);
   add_method_options(*sub, s);
   add_mesh_options(*sub, s);
@@ -253,11 +302,12 @@ const std::map<std::string, Layer> kLayers = {{"points", Layer::kPoints}, {"norm
                                               {"colors", Layer::kColors}, {"error", Layer::kError},     {"mesh", Layer::kMesh}};
 
 void add_view(CLI::App& app, Settings& s) {
-  CLI::App* sub = app.add_subcommand("view", "A page (.html) or a picture (.png) of a cloud, a mesh, or both");
+  CLI::App* sub = add_command(app, "view", "A page (.html) or a picture (.png) of a cloud, a mesh, or both");
   sub->add_option("IN", s.shown, "Cloud, mesh, or one of each")->required()->expected(1, 2)->type_name("");
   sub->add_option("-o,--out", s.output, "Page .html or picture .png; - for the page on standard output")->required()->type_name("OUT");
+  sub->option_defaults()->group(kPageGroup);
   sub->add_option("--truth", s.truth, "Cloud with true normals in the same order: adds the map of errors")->type_name("GT");
-  sub->add_option("--figures", s.figures, "Report of the run, shown beside the view of a page")->type_name("FILE.json");
+  sub->add_option("--figures", s.figures, "Page: report of the run, to show beside the view")->type_name("FILE.json");
   sub->add_flag_callback(
       "--z-up", [&s] { s.page.up = s.picture.up = Up::kZ; }, "The z axis points up instead of the y axis");
   sub->add_option_function<std::vector<std::string>>(
@@ -269,12 +319,14 @@ void add_view(CLI::App& app, Settings& s) {
              s.picture.layers.push_back(layer->second);
            }
          },
-         "Picture: what to draw, one row each: points,normals,confidence,colors,error,mesh")
+         "Picture: a row each, of points,normals,confidence,colors,error,mesh")
       ->delimiter(',')
       ->type_name("LIST");
-  sub->add_option("--tile", s.picture.tile, "Picture: width and height of one view in pixels, 16 to 2048")
-      ->check(range(16, 2048))
-      ->type_name("PIXELS");
+  sub->add_option("--tile", s.picture.tile, "Picture: side of one view, 16 to 2048")->check(range(16, 2048))->type_name("PIXELS");
+  sub->add_option("--views", s.picture.views,
+                  "Picture: the first N of three-quarter, front, side and top; with one the layers stand side by side")
+      ->check(range(1, 4))
+      ->type_name("N");
   sub->add_flag("--dark", s.picture.dark, "Picture: dark background");
   add_read_options(*sub, s);
   add_run_options(*sub, s);
@@ -288,6 +340,17 @@ Command parsed_command(const CLI::App& app) {
                                                    {"sample", Command::kSample}, {"info", Command::kInfo}, {"view", Command::kView}};
   const auto parsed = app.get_subcommands();
   return parsed.empty() ? Command::kReconstruct : commands.at(parsed.front()->get_name());
+}
+
+/// The first argument that nothing takes, and what could have been meant.
+std::string about_extras(const CLI::App& app) {
+  const std::string first = app.remaining(true).front();
+  if (first.size() > 1 && first.front() == '-') return "unknown option " + first;
+  const auto parsed = app.get_subcommands();
+  if (!parsed.empty()) return "one file too many for g3r " + parsed.front()->get_name() + ": " + first;
+  std::string names;
+  for (const CLI::App* command : app.get_subcommands({})) names += (names.empty() ? "" : ", ") + command->get_name();
+  return "one file too many: " + first + "; expected IN and OUT, or one of the commands " + names + " first";
 }
 
 /// What CLI11 cannot check: rules over several arguments.
@@ -335,9 +398,11 @@ std::vector<std::string> Settings::outputs() const {
 
 std::optional<Settings> parse_command_line(int argc, const char* const* argv) {
   Settings settings;
-  CLI::App app("g3r: consistent outward normals and a watertight mesh from an unoriented point cloud", "g3r");
-  app.set_version_flag("--version", "g3r " + std::string(version()));
-  app.footer(kExitCodeHelp);
+  CLI::App app(kIntroduction, "g3r");
+  app.formatter(std::make_shared<HelpFormatter>());
+  app.set_version_flag("--version", "g3r " + std::string(version()), "Print the version and exit");
+  app.set_help_flag("-h,--help", "Print this text and exit");
+  app.footer(std::string(kFormatHelp) + kExitCodeHelp);
   app.require_subcommand(0, 1);
   add_reconstruct(app, settings);
   add_orient(app, settings);
@@ -351,6 +416,8 @@ std::optional<Settings> parse_command_line(int argc, const char* const* argv) {
   } catch (const CLI::Success& request) {
     app.exit(request, std::cout, std::cout);
     return std::nullopt;
+  } catch (const CLI::ExtrasError&) {
+    throw UsageError(about_extras(app));
   } catch (const CLI::ParseError& error) {
     throw UsageError(error.what());
   }

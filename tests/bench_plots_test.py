@@ -52,10 +52,12 @@ class Plots(unittest.TestCase):
             tables = []
             for i, some in enumerate((rows[:1], rows[1:])):
                 tables.append(pathlib.Path(folder, f"{i}.json"))
-                tables[-1].write_text(json.dumps({"rows": some}), encoding="utf-8")
+                tables[-1].write_text(json.dumps({"label": f"commit{i}", "rows": some}), encoding="utf-8")
             out = pathlib.Path(folder, "t.md")
             subprocess.run([sys.executable, "-B", PLOTS, "table", *tables, "-o", out, "--points", "100"], check=True)
             text = out.read_text(encoding="utf-8")
+        self.assertTrue(text.startswith("# Clean, 100 points: default, wnnc\n"))
+        self.assertIn("default on commit0, wnnc on commit1.", text)
         self.assertIn("| a | 1.000 / 99.000 | 3.000 / 97.000 |\n| b | - | 50.000 / 50.000 |", text)
         self.assertIn("mean of the 1 that all have** | **1.000 / 99.000** | **3.000 / 97.000** |", text)
 

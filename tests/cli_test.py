@@ -53,6 +53,36 @@ class ExitCodes(ProgramTest):
         for code in (64, 65, 66, 69, 70, 71, 73, 74, 130, 143):
             self.assertIn(str(code), text)
 
+    def test_help_fits_a_terminal(self):
+        for command in ([], ["orient"], ["mesh"], ["eval"], ["sample"], ["info"], ["view"]):
+            with self.subTest(command):
+                text = self.expect(OK, *command, "--help").out.decode()
+                self.assertLessEqual(max(map(len, text.splitlines())), 80)
+                self.assertNotIn("\n\n\n", text)
+        self.assertIn("Usage: g3r view IN... --out OUT [options]\n", self.expect(OK, "view", "--help").out.decode())
+        self.assertIn("Usage: g3r [IN] [OUT] [options]\n", self.expect(OK, "--help").out.decode())
+
+    def test_common_mistakes_are_named(self):
+        os.mkdir(self.path("folder"))
+        for name, text in (("empty.ply", ""), ("flat.xyz", "0 1\n" * 9), ("nan.xyz", "nan nan nan\n" * 9), ("three.xyz", "0 0 0\n1 0 0\n0 1 0\n"),
+                           ("none.obj", "f 1 2 3\n"), ("comma.csv", "0,5;1,5;2,5\n" * 9)):
+            with open(self.path(name), "w", encoding="ascii") as file:
+                file.write(text)
+        for code, arguments, words in (
+                (NO_INPUT, ["no.ply"], "cannot read no.ply: No such file"), (NO_INPUT, ["folder"], "folder: a folder, not a file"),
+                (BAD_DATA, ["empty.ply"], "empty.ply: empty file"), (BAD_DATA, ["none.obj"], "none.obj: no points"),
+                (BAD_DATA, ["flat.xyz"], "flat.xyz: line 1: expected at least three columns (x y z), found 2"),
+                (BAD_DATA, ["nan.xyz"], "nan.xyz: too few points: 0 of 9 are finite"), (BAD_DATA, ["three.xyz"], "too few points: 3 of 3"),
+                (BAD_DATA, ["comma.csv"], "a decimal comma?"), (CANNOT_CREATE, ["ball.ply", "no/a.ply"], "no/a.ply: cannot create: there is no such folder"),
+                (USAGE, ["ball.ply", "--epsilon", "wide"], "--epsilon: expected auto, X, X%, Xh or Xn with X > 0, found 'wide'"),
+                (USAGE, ["ball.ply", "a.docx"], 'unknown extension ".docx": expected .ply, .obj'),
+                (USAGE, ["ball.ply", "a.xyz"], "a.xyz: .xyz is for points"), (USAGE, ["orient", "ball.ply", "a.stl"], "a.stl: .stl is for meshes"),
+                (USAGE, ["oriend", "ball.ply"], "no file and no command named oriend"), (USAGE, ["ball.ply", "--opne"], "unknown option --opne"),
+                (USAGE, ["ball.ply", "a.ply", "b.ply"], "one file too many: b.ply"),
+                (BAD_DATA, ["mesh", "ball.ply", "a.ply"], "ball.ply has no normals")):
+            with self.subTest(arguments):
+                self.assertIn(words, self.expect(code, *arguments).err)
+
     def test_wrong_command_lines_are_64(self):
         for arguments in (
                 [], ["--bogus", "ball.ply"], ["ball.ply", "a.ply", "b.ply"], ["orient", "ball.ply"], ["eval", "ball.ply"],
@@ -135,7 +165,8 @@ class ExitCodes(ProgramTest):
         self.assertEqual(os.listdir(self.path("readonly")), [])
 
     def test_a_full_device_is_74(self):
-        for arguments in (["orient", "ball.ply", "-"], ["info", "ball.ply"], ["orient", "ball.ply", "out.ply", "--report", "-"]):
+        for arguments in (["orient", "ball.ply", "-"], ["info", "ball.ply"], ["orient", "ball.ply", "out.ply", "--report", "-"],
+                          ["--help"], ["orient", "--help"], ["--version"]):
             with self.subTest(arguments), open("/dev/full", "wb") as full:
                 self.expect(INPUT_OUTPUT, *arguments, stdout=full)
 

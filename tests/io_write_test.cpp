@@ -3,6 +3,7 @@
 
 #include <clocale>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <limits>
 
@@ -127,14 +128,23 @@ TEST(Orient, WhatFollowsThePointsOfALasFileIsKeptAndFound) {
 }
 
 TEST(Write, ALocaleWithDecimalCommasChangesNothing) {
-  const std::string expected = samples::written(samples::helix(5), "a.xyz");
+  const Folder folder;  // Debian has locales as sources only
+  (void)std::system(("localedef -i de_DE -f UTF-8 " + folder.path("de_DE.UTF-8") + " 2> /dev/null").c_str());
+  setenv("LOCPATH", folder.path("").c_str(), 1);
   const std::string before = std::setlocale(LC_ALL, nullptr);
-  if (std::setlocale(LC_ALL, "de_DE.UTF-8") == nullptr) GTEST_SKIP() << "no German locale on this machine";
-  const std::string german = samples::written(samples::helix(5), "a.xyz");
-  const std::size_t points = read(german).positions.size();
+  const bool is_there = std::setlocale(LC_ALL, "de_DE.UTF-8") != nullptr;
+  unsetenv("LOCPATH");
+  if (!is_there) GTEST_SKIP() << "no German locale on this machine (package locales)";
+  ASSERT_STREQ(std::localeconv()->decimal_point, ",");
+  for (const char* name : {"a.xyz", "a.csv", "a.pts", "a.ply", "a.pcd", "a.obj"}) {
+    const std::string german = samples::written(samples::helix(5), name, {.ascii = true});
+    const std::vector<Vec3> points = read(german).positions;
+    std::setlocale(LC_ALL, before.c_str());
+    EXPECT_EQ(german, samples::written(samples::helix(5), name, {.ascii = true})) << name;
+    EXPECT_EQ(points, samples::helix(5).positions) << name;
+    std::setlocale(LC_ALL, "de_DE.UTF-8");
+  }
   std::setlocale(LC_ALL, before.c_str());
-  EXPECT_EQ(german, expected);
-  EXPECT_EQ(points, 5U);
 }
 
 TEST(Write, CoordinatesOfAllFormatsSurvive) {
@@ -174,6 +184,19 @@ TEST(Write, EveryPointFormatTakesEveryOther) {
         EXPECT_NEAR(again.positions.back()[a], cloud.positions.back()[a], 1e-8) << sample.name << " to " << name;
       EXPECT_EQ(again.normals.size(), std::string(name) == "a.pts" || cloud.normals.empty() ? again.normals.size() : cloud.normals.size());
     }
+  }
+}
+
+TEST(Write, ExtraBytesOfLasHaveNamesOfTheirOwn) {
+  const std::string long_name(40, 'n');
+  const Cloud cloud = read("x y z intensity " + long_name + "1 " + long_name + "2 GPS_time\n0 0 0 5 6 7 8\n1 0 0 9 10 11 12\n", "a.txt");
+  const std::string bytes = samples::written(cloud, "a.las");
+  for (const std::string& name :
+       {std::string("intensity_2"), long_name.substr(0, 32), long_name.substr(0, 30) + "_2", std::string("GPS_time_2")}) {
+    const std::size_t at = bytes.find(name);
+    ASSERT_NE(at, std::string::npos) << name;
+    EXPECT_EQ(bytes.find(name, at + 1), std::string::npos) << name;
+    EXPECT_EQ(bytes[at - 2], 10) << "not an extra-bytes descriptor of type double: " << name;
   }
 }
 

@@ -70,6 +70,24 @@ TEST(ViewPng, OneLayerIsTwoByTwoTilesSeveralAreRowsOfFour) {
   EXPECT_EQ(two.height, 360);
 }
 
+TEST(ViewPng, FewerViewsAreTheFirstOnesAndOneStandsSideBySide) {
+  const Scene scene = testing::torus_points(2000);
+  PictureOptions options = small({Layer::kPoints, Layer::kNormals, Layer::kConfidence});
+  const Decoded four = decode(view_png(scene, options));
+  options.views = 2;
+  const Decoded two = decode(view_png(scene, options));
+  EXPECT_EQ(two.width, 240);
+  EXPECT_EQ(two.height, 360);
+  options.views = 1;
+  const Decoded one = decode(view_png(scene, options));
+  EXPECT_EQ(one.width, 360);
+  EXPECT_EQ(one.height, 120);
+  for (int x = 0; x < 120; ++x) {
+    EXPECT_EQ(two.at(x, 180)[2], four.at(x, 180)[2]);
+    EXPECT_EQ(one.at(120 + x, 60)[2], four.at(x, 180)[2]);
+  }
+}
+
 TEST(ViewPng, OutwardNormalsAreBlueInAllViewsInwardOnesRed) {
   Scene scene = testing::torus_points(4000);
   const auto bytes = view_png(scene, small({Layer::kNormals}));
@@ -162,6 +180,9 @@ TEST(ViewPng, BrokenScenesAreRefused) {
   PictureOptions huge;
   huge.tile = 5000;
   EXPECT_THROW((void)view_png(testing::torus_points(10), huge), InvalidInput);
+  PictureOptions none;
+  none.views = 0;
+  EXPECT_THROW((void)view_png(testing::torus_points(10), none), InvalidInput);
 }
 
 TEST(ViewScene, SpacingIsTheRootOfTheAreaPerPoint) {

@@ -2,6 +2,8 @@
 # tools/fuzz.sh SECONDS [TARGET...]: fuzzes every reader, the command line and the whole pipeline (or the named ones) for so many seconds
 # each, one process per core at a time, under ASan and UBSan (preset sanitize). Seeds: the short files of tests/badinputs and one small file
 # of every format. Findings and what was learnt stay in build/fuzz/corpus. Exit status: 0 if there was no finding.
+# FUZZ_SEED=N in the environment makes a run that can be repeated: the same inputs in the same order, as far as the time allows, whatever
+# earlier runs have learnt. Without it every run is another one.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . tools/prepare.sh
@@ -20,9 +22,21 @@ find "$seeds/read" -type f -size +8 -delete # blocks of 512 bytes: short inputs 
 fuzz_one() {
   local corpus=$corpora/$1 from=$seeds/$1
   [ -d "$from" ] || from=$seeds/read
-  mkdir -p "$corpus"
-  "$programs/fuzz_$1" -max_total_time="$seconds" -timeout=30 -rss_limit_mb=2048 -max_len=4096 -print_final_stats=1 \
-    -artifact_prefix="$corpus." "$corpus" "$from" > "$corpus.log" 2>&1
+  local start=("$corpus" "$from") run=()
+  if [ -n "${FUZZ_SEED:-}" ]; then
+    # Folders are read in any order, so the seeds are named; an empty folder takes what is learnt. What is learnt from comparisons holds
+    # addresses, which differ from run to run.
+    run=(setarch --addr-no-randomize)
+    "${run[@]}" true 2> /dev/null || run=() # some containers forbid it
+    rm -rf "$corpus.repeatable"
+    mkdir -p "$corpus.repeatable"
+    find "$from" -type f | LC_ALL=C sort | paste -sd, > "$corpus.seeds"
+    start=(-seed="$FUZZ_SEED" -reload=0 -use_cmp=0 -seed_inputs=@"$corpus.seeds" "$corpus.repeatable")
+  else
+    mkdir -p "$corpus"
+  fi
+  "${run[@]}" "$programs/fuzz_$1" -max_total_time="$seconds" -timeout=30 -rss_limit_mb=2048 -max_len=4096 -print_final_stats=1 \
+    -artifact_prefix="$corpus." "${start[@]}" > "$corpus.log" 2>&1
 }
 
 status=0

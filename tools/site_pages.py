@@ -1,7 +1,7 @@
 """Hooks of mkdocs: what the program, the sources and other files say already is taken from them, so that nothing is said twice.
 
 In a page, <!-- help --> becomes the text of `g3r --help`, <!-- python --> the docstrings, <!-- headers --> the public headers and
-<!-- results --> the list of measured tables. The program is $G3R_PROGRAM, or the one of the release build.
+<!-- results --> the measured tables. The program is $G3R_PROGRAM, or the one of the release build.
 """
 
 import ast
@@ -31,7 +31,7 @@ def on_files(files, config):
 def on_page_markdown(markdown, page, **_):
     copied = {page: source for source, page in COPIES.items()}
     source = copied.get(page.file.src_uri, "docs/" + page.file.src_uri)
-    makers = {"help": help_texts, "python": python_api, "headers": header_texts, "results": result_list}
+    makers = {"help": help_texts, "python": python_api, "headers": header_texts, "results": result_tables}
     return relink(MARK.sub(lambda mark: makers[mark.group(1)](), markdown), source, page.file.src_uri)
 
 
@@ -54,11 +54,12 @@ def relink(markdown, source, page):
     return LINK.sub(target, markdown)
 
 
-def result_list():
-    """Tables that were measured: docs/results/*.md."""
-    found = sorted((ROOT / "docs" / "results").glob("*.md"))
-    lines = [f"- [{path.read_text().splitlines()[0].lstrip('# ')}](results/{path.name})" for path in found]
-    return "\n".join(lines) or "No table has been published yet."
+def result_tables():
+    """Tables that were measured, as bench/plots.py joins them: docs/results/*.md."""
+    found = [path for path in sorted((ROOT / "docs" / "results").glob("*.md")) if path.name != "README.md"]
+    if not found:
+        raise PluginError("docs/results has no table")
+    return "\n".join("##" + path.read_text() for path in found)
 
 
 # --- the command line
@@ -74,7 +75,7 @@ def help_texts():
             raise PluginError(f"the site needs the program: {error}") from None
 
     text = help_of()
-    commands = re.findall(r"^  (\w+) ", text[text.upper().index("\nSUBCOMMANDS:"):], re.M)
+    commands = re.findall(r"^  ([a-z]+) ", text[text.index("\nCommands:"):], re.M)
     sections = [("g3r", text)] + [(f"g3r {command}", help_of(command)) for command in commands]
     return "\n".join(f"## {title}\n\n```text\n{text}\n```\n" for title, text in sections)
 

@@ -63,9 +63,10 @@ struct PictureOptions {
   std::vector<Layer> layers;  ///< empty: the mesh, else the points with the best that is known about them
   bool dark = false;          ///< dark background
   int threads = 0;            ///< 0: all cores
+  int views = 4;              ///< 1..4: the first so many of three-quarter, front, side, top
 };
 
-/// A PNG file with four views (three-quarter, front, side, top): 2 x 2 tiles for one layer, else one row of four tiles per layer.
+/// A PNG file: 2 x 2 tiles for four views of one layer, else a row of views per layer; with one view the layers stand side by side.
 /// 2 x 2 samples per pixel, ambient occlusion; the same bytes for any number of threads. O(points + triangles + pixels) time per
 /// tile, and 150 bytes per pixel of a tile for each thread.
 /// Throws InvalidInput like view_html(), and if a layer asks for data that the scene lacks.

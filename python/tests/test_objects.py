@@ -87,6 +87,44 @@ def test_trimesh(sphere):
     same(box, box.vertices)
 
 
+class TorchLike:
+    """torch.Tensor: no array of a tensor with a gradient or on another device before detach() and cpu()."""
+
+    def __init__(self, data, requires_grad, device):
+        self.data, self.requires_grad, self.device = data, requires_grad, device
+        self.shape, self.dtype = data.shape, "torch.float32"
+
+    def __len__(self):
+        return len(self.data)
+
+    def detach(self):
+        return TorchLike(self.data, False, self.device)
+
+    def cpu(self):
+        return TorchLike(self.data, self.requires_grad, "cpu")
+
+    def numpy(self):
+        if self.requires_grad:
+            raise RuntimeError("Can't call numpy() on Tensor that requires grad.")
+        if self.device != "cpu":
+            raise TypeError("can't convert cuda:0 device type tensor to numpy.")
+        return self.data
+
+    def __array__(self, dtype=None, copy=None):
+        return self.numpy()
+
+    def __dlpack__(self, **kwargs):
+        if self.requires_grad:
+            raise BufferError("Can't export tensors that require gradient")
+        return self.data.__dlpack__(**kwargs)
+
+
+@pytest.mark.parametrize("requires_grad", [False, True])
+@pytest.mark.parametrize("device", ["cpu", "cuda:0"])
+def test_an_object_like_a_torch_tensor(sphere, requires_grad, device):
+    assert np.shares_memory(same(TorchLike(sphere, requires_grad, device), sphere), sphere)
+
+
 def test_torch(sphere):
     torch = pytest.importorskip("torch")
     same(torch.from_numpy(sphere).requires_grad_(), sphere)

@@ -176,7 +176,8 @@ CanonicalCloud canonical_cloud(const PointsView& points) {
   if (points.count >= kNoPoint) throw InvalidInput("more than 4294967294 points; split the cloud");
   const Bounds bounds = bounds_of(points);
   if (bounds.finite_points < kFewestPoints) {
-    throw InvalidInput("too few points: " + std::to_string(bounds.finite_points) + " finite, at least 4 distinct points are needed");
+    throw InvalidInput("too few points: " + std::to_string(bounds.finite_points) + " of " + std::to_string(points.count) +
+                       " are finite, at least 4 distinct points are needed");
   }
   CanonicalCloud cloud;
   cloud.frame = frame_of(bounds);

@@ -149,8 +149,9 @@ void OutputFile::commit() {
 }
 
 void OutputFile::fail(bool creating, int error) const {
+  const std::string reason = creating && error == ENOENT ? "there is no such folder" : std::generic_category().message(error);
   throw IoError(creating ? IoError::Kind::kCannotCreate : IoError::Kind::kFailed,
-                escape_text(path_) + ": cannot " + (creating ? "create" : "write") + ": " + std::generic_category().message(error));
+                escape_text(path_) + ": cannot " + (creating ? "create" : "write") + ": " + reason);
 }
 
 void check_creatable(const std::string& path) { OutputFile probe(path); }

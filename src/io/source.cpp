@@ -111,7 +111,7 @@ std::string read_bytes(const std::string& path) {
   if (file.get() < 0) fail_io(IoError::Kind::kNotFound, path, errno);
   struct stat status {};
   if (::fstat(file.get(), &status) != 0) fail_io(IoError::Kind::kFailed, path, errno);
-  if (S_ISDIR(status.st_mode)) fail_io(IoError::Kind::kNotFound, path, EISDIR);
+  if (S_ISDIR(status.st_mode)) throw IoError(IoError::Kind::kNotFound, escape_text(path) + ": a folder, not a file");
 
   std::string bytes;
   if (S_ISREG(status.st_mode)) {

@@ -17,18 +17,24 @@ constexpr std::array<std::string_view, 9> kPointFormats = {"ply", "xyz", "txt", 
 constexpr std::array<std::string_view, 5> kMeshFormats = {"ply", "obj", "stl", "off", "glb"};
 
 template <class Formats>
-std::string choose_format(const std::string& path, const Formats& formats, const char* what) {
-  if (path == "-") return "ply";
-  const std::string ext = io::extension(path);
-  if (std::find(formats.begin(), formats.end(), ext) != formats.end()) return ext;
-  std::string known;
-  for (const std::string_view format : formats) known += (known.empty() ? "." : ", .") + std::string(format);
-  throw InvalidInput(escape_text(path) + ": " + (ext.empty() ? "no extension" : "unknown extension \"." + escape_text(ext) + "\"") +
-                     ": expected " + known + " for " + what);
+bool has(const Formats& formats, const std::string& ext) {
+  return std::find(formats.begin(), formats.end(), ext) != formats.end();
 }
 
-std::string point_format(const std::string& path) { return choose_format(path, kPointFormats, "points"); }
-std::string mesh_format(const std::string& path) { return choose_format(path, kMeshFormats, "a mesh"); }
+template <class Formats, class Others>
+std::string choose_format(const std::string& path, const char* what, const Formats& formats, const char* other, const Others& others) {
+  if (path == "-") return "ply";
+  const std::string ext = io::extension(path);
+  if (has(formats, ext)) return ext;
+  std::string known;
+  for (const std::string_view format : formats) known += (known.empty() ? "." : ", .") + std::string(format);
+  std::string trouble = "no extension";
+  if (!ext.empty()) trouble = has(others, ext) ? "." + ext + " is for " + other : "unknown extension \"." + escape_text(ext) + "\"";
+  throw InvalidInput(escape_text(path) + ": " + trouble + ": expected " + known + " for " + what);
+}
+
+std::string point_format(const std::string& path) { return choose_format(path, "points", kPointFormats, "meshes", kMeshFormats); }
+std::string mesh_format(const std::string& path) { return choose_format(path, "a mesh", kMeshFormats, "points", kPointFormats); }
 
 void check_mesh_data(const Mesh& mesh) {
   if (mesh.triangles.empty()) throw InvalidInput("write_mesh: the mesh is empty");

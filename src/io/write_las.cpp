@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 namespace g3r::io {
 
@@ -16,6 +17,37 @@ namespace {
 using namespace las;
 
 constexpr const char* kNormalNames[] = {"NormalX", "NormalY", "NormalZ"};
+constexpr std::size_t kNameBytes = 32;  // of an extra-bytes descriptor
+
+// Fields of points, under the names that LAS and its readers have for them: extra bytes of the same name make readers stumble.
+constexpr const char* kFieldNames[] = {"x",
+                                       "y",
+                                       "z",
+                                       "intensity",
+                                       "return_number",
+                                       "return_numbers",
+                                       "number_of_returns",
+                                       "return_flags",
+                                       "bit_fields",
+                                       "scan_direction_flag",
+                                       "edge_of_flight_line",
+                                       "classification",
+                                       "raw_classification",
+                                       "classification_flags",
+                                       "synthetic",
+                                       "key_point",
+                                       "withheld",
+                                       "overlap",
+                                       "scanner_channel",
+                                       "scan_angle",
+                                       "scan_angle_rank",
+                                       "user_data",
+                                       "point_source_id",
+                                       "gps_time",
+                                       "red",
+                                       "green",
+                                       "blue",
+                                       "nir"};
 
 template <class T>
 void put(std::string& bytes, std::size_t at, T value) {
@@ -27,7 +59,7 @@ std::string descriptor(const std::string& name, unsigned type, std::size_t optio
   std::string bytes(kDescriptor, '\0');
   bytes[2] = static_cast<char>(type);
   bytes[3] = static_cast<char>(options);
-  bytes.replace(4, std::min<std::size_t>(name.size(), 32), name, 0, 32);
+  bytes.replace(4, std::min(name.size(), kNameBytes), name, 0, kNameBytes);
   return bytes;
 }
 
@@ -195,6 +227,27 @@ std::string new_header(const PointData& data, bool colored, const std::string& d
   return text;
 }
 
+std::string lower(std::string text) {
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
+
+// Names for extra bytes that are neither those of fields nor twice the same, where needed with a number at the end.
+std::vector<std::string> extra_names(const std::vector<Column>& columns) {
+  std::set<std::string> taken(std::begin(kFieldNames), std::end(kFieldNames));
+  std::vector<std::string> names;
+  for (const Column& column : columns) {
+    std::string name = column.property.name.substr(0, kNameBytes);
+    for (int number = 2; !taken.insert(lower(name)).second; ++number) {
+      const std::string digits = std::to_string(number);
+      name = column.property.name.substr(0, kNameBytes - 1 - digits.size());
+      (name += '_') += digits;
+    }
+    names.push_back(name);
+  }
+  return names;
+}
+
 void write_new(const PointData& data, OutputFile& file) {
   if (data.size() > std::numeric_limits<std::uint32_t>::max())
     throw InvalidInput("write_cloud: more than 2^32 - 1 points do not fit in LAS point format 0");
@@ -205,9 +258,11 @@ void write_new(const PointData& data, OutputFile& file) {
   });
   std::size_t record_bytes = kRecordSize[colored ? 2 : 0];
   std::string descriptors;
-  for (const Column& column : columns) {
-    descriptors += descriptor(column.property.name, las_type_number(column.property.type), 0);
-    record_bytes += size_of(column.property.type);
+  const std::vector<std::string> names = extra_names(columns);
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    const Type type = columns[c].property.type;
+    descriptors += descriptor(names[c], las_type_number(type), 0);
+    record_bytes += size_of(type);
   }
   if (descriptors.size() > std::numeric_limits<std::uint16_t>::max())
     throw InvalidInput("write_cloud: LAS holds at most 341 extra properties");

@@ -19,7 +19,7 @@ using view::Canvas;
 using view::Corner;
 using view::Image;
 
-constexpr int kViews = 4;
+constexpr int kViews = 4;                 // at most
 constexpr double kHalfAngle = 0.21;       // 24 degrees in all: depth is felt, proportions stay true
 constexpr double kMargin = 1.08;          // empty border around the object
 constexpr double kDiscPerSpacing = 0.85;  // discs just overlap
@@ -229,6 +229,7 @@ Layer best_layer(const Scene& scene) {
 std::vector<std::uint8_t> view_png(const Scene& scene, const PictureOptions& options) {
   const Box box = view::check_scene(scene);
   if (options.tile < 16 || options.tile > 2048) throw InvalidInput("view: the tile must have 16 to 2048 pixels a side");
+  if (options.views < 1 || options.views > kViews) throw InvalidInput("view: there are 1 to 4 views");
   std::vector<Layer> layers = options.layers;
   if (layers.empty()) layers.push_back(best_layer(scene));
   for (const Layer layer : layers) require_layer(scene, layer);
@@ -247,13 +248,15 @@ std::vector<std::uint8_t> view_png(const Scene& scene, const PictureOptions& opt
     if (drawn[mesh ? 1 : 0].empty()) drawn[mesh ? 1 : 0] = drawn_points(scene, mesh);
   }
 
-  const int rows = layers.size() == 1 ? 2 : static_cast<int>(layers.size());
-  const int columns = layers.size() == 1 ? 2 : kViews;
+  const auto views = static_cast<std::size_t>(options.views);
+  const int tiles = static_cast<int>(layers.size() * views);
+  const int columns = views == 1 ? tiles : tiles == kViews ? 2 : options.views;
+  const int rows = tiles / columns;
   Image image{columns * options.tile, rows * options.tile, {}};
   image.rgb.resize(3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
   const auto draw_tile = [&](std::size_t tile) {
-    const Layer layer = layers[tile / kViews];
-    const Camera camera = fit_camera(drawn[layer == Layer::kMesh ? 1 : 0], directions[tile % kViews], centre, radius);
+    const Layer layer = layers[tile / views];
+    const Camera camera = fit_camera(drawn[layer == Layer::kMesh ? 1 : 0], directions[tile % views], centre, radius);
     Canvas canvas(camera, options.tile);
     if (layer == Layer::kMesh) {
       draw_mesh(canvas, camera, scene.mesh, normals);
@@ -264,7 +267,7 @@ std::vector<std::uint8_t> view_png(const Scene& scene, const PictureOptions& opt
     const int row = static_cast<int>(tile) / columns;
     canvas.resolve(image, column * options.tile, row * options.tile, options.dark);
   };
-  parallel::with_threads(options.threads, [&] { parallel::for_each(static_cast<std::size_t>(rows * columns), draw_tile); });
+  parallel::with_threads(options.threads, [&] { parallel::for_each(static_cast<std::size_t>(tiles), draw_tile); });
   return view::encode_png(image);
 }
 
