@@ -40,6 +40,8 @@ constexpr double kLeastSpacing = 1e-2;       // of the median; clusters of almos
 constexpr std::size_t kLevelPoints = 10000;  // the median of so many values is good to 1 % of their scatter
 constexpr double kNoisy = 0.15;              // spacings: positions that scatter more than this are smoothed first
 constexpr double kFieldSure = 0.2;           // |w - level| from which the field overrules the fitted surface
+constexpr double kBeyond = 0.05;             // of the longest side: so far from the box of the points
+constexpr double kBeyondSpacings = 2;        // (and so many spacings) all is outside; fast sums end there, single ones are slow
 
 constexpr double kFitSay = 2 * kFieldSure;  // in opinions the field counts 2 (w - level), the fitted surface at most this,
 constexpr double kFitFar = 0.3;             // and that from so many spacings away
@@ -92,22 +94,32 @@ double surface_level(const std::vector<Vec3>& points, const FieldSampler& sample
   return median(std::move(value));
 }
 
+struct Box {
+  Vec3 low, high;
+  [[nodiscard]] double longest() const { return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]}); }
+  [[nodiscard]] double centre(std::size_t a) const { return 0.5 * (low[a] + high[a]); }
+};
+
+Box box_of(const std::vector<Vec3>& points) {
+  Box box{points[0], points[0]};
+  for (const Vec3& p : points) {
+    for (std::size_t a = 0; a < 3; ++a) box.low[a] = std::min(box.low[a], p[a]), box.high[a] = std::max(box.high[a], p[a]);
+  }
+  return box;
+}
+
 // `thickness`: of the walls at each point, empty to disregard it.
 Octree make_octree(const OrientedPoints& points, const std::vector<double>& thickness, const MeshOptions& options, const Monitor& monitor) {
-  Vec3 low = points.positions[0], high = low;
-  for (const Vec3& p : points.positions) {
-    for (std::size_t a = 0; a < 3; ++a) low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
-  }
-  const double longest = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+  const Box box = box_of(points.positions);
   const double h = median(points.spacing);
-  double side = longest * kMargin + 8 * h;
+  double side = box.longest() * kMargin + 8 * h;
   int level = options.depth;
   if (level == 0) {
     level = std::clamp(static_cast<int>(std::ceil(std::log2(side / (kCell * h)))), kBaseLevel, mesh::kMaxOctreeLevel - kMaxSpread);
     side = std::max(side, kCell * h * std::exp2(level));
   }
   Vec3 corner{};
-  for (std::size_t a = 0; a < 3; ++a) corner[a] = 0.5 * (low[a] + high[a]) - 0.5 * side;
+  for (std::size_t a = 0; a < 3; ++a) corner[a] = box.centre(a) - 0.5 * side;
   std::vector<RefineDisc> requests(points.positions.size());
   for (std::size_t i = 0; i < requests.size(); ++i) {
     double size = points.spacing[i];
@@ -124,8 +136,13 @@ Octree make_octree(const OrientedPoints& points, const std::vector<double>& thic
 // unless the field is sure of the contrary; elsewhere it is the field, scaled to a length.
 class Side {
  public:
-  Side(const LocalFit& local, const FieldSampler& sampler, double level, double spacing)
-      : local_(local), sampler_(sampler), level_(level), spacing_(spacing) {}
+  Side(const LocalFit& local, const FieldSampler& sampler, double level, double spacing, const Box& box)
+      : local_(local),
+        sampler_(sampler),
+        level_(level),
+        spacing_(spacing),
+        box_(box),
+        reach_(0.5 * box.longest() + std::max(kBeyond * box.longest(), kBeyondSpacings * spacing)) {}
 
   // `opinions` (may be null): filled in for all places.
   std::vector<double> operator()(const std::vector<Vec3>& places, const std::atomic<bool>* cancel, Opinions* opinions = nullptr) const {
@@ -160,6 +177,11 @@ class Side {
     std::vector<Vec3> queries;
     for (std::size_t i = 0; i < places.size(); ++i) {
       if (sure[i] != 0) continue;
+      if (std::isnan(value[i]) && is_beyond(places[i])) {
+        value[i] = -spacing_;
+        if (opinions != nullptr) opinions->side[i] = -1;
+        continue;
+      }
       ask.push_back(i);
       queries.push_back(places[i]);
     }
@@ -176,9 +198,18 @@ class Side {
     }
   }
 
+  [[nodiscard]] bool is_beyond(const Vec3& x) const {
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (std::abs(x[a] - box_.centre(a)) > reach_) return true;
+    }
+    return false;
+  }
+
   const LocalFit& local_;
   const FieldSampler& sampler_;
   double level_, spacing_;
+  Box box_;
+  double reach_;  // half the side of the cube that everything inside is in
 };
 
 // Open corners by their opinions, the others as they are.
@@ -224,7 +255,7 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
   const Octree octree =
       make_octree(oriented, noise > kNoisy ? std::vector<double>{} : mesh::wall_thickness(oriented, local), options, monitor);
   report(monitor, 0.3);
-  const Side side(local, sampler, level, spacing);
+  const Side side(local, sampler, level, spacing, box_of(oriented.positions));
   std::vector<Vec3> corners(octree.corner_count());
   for (std::size_t c = 0; c < corners.size(); ++c) corners[c] = octree.corner_position(c);
   Opinions opinions;
