@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "cpu/parallel.h"
 #include "g3r/error.h"
@@ -46,6 +47,13 @@ constexpr double kBeyondSpacings = 2;        // (and so many spacings) all is ou
 constexpr double kFitSay = 2 * kFieldSure;  // in opinions the field counts 2 (w - level), the fitted surface at most this,
 constexpr double kFitFar = 0.3;             // and that from so many spacings away
 constexpr double kFlipped = 0.1;            // spacings: distance from the surface of corners that were flipped to remove a handle
+
+constexpr double kBaseBytes = 20 << 20;  // code, libraries, thread stacks;
+constexpr double kBytesPerPoint = 700;   // with those of the winding field;
+constexpr double kBytesPerLeaf = 360;    // measured, docs/meshing.md: 300 to 390
+constexpr double kLeavesPerPoint = 10;   // measured: 7.2 to 10.4 without thin walls
+constexpr double kThickness = 0.75;      // of the refined layer, in cells of the automatic depth,
+constexpr double kLayers = 2;            // and cells around it whatever their size
 
 // A way to read the opinions: after some sweeps of smoothing, at some level.
 struct Reading {
@@ -94,6 +102,11 @@ double surface_level(const std::vector<Vec3>& points, const FieldSampler& sample
   return median(std::move(value));
 }
 
+std::size_t memory_for(std::size_t points, double leaves) {
+  const double bytes = kBaseBytes + kBytesPerPoint * static_cast<double>(points) + kBytesPerLeaf * leaves;
+  return static_cast<std::size_t>(std::min(bytes, 0x1p62));
+}
+
 struct Box {
   Vec3 low, high;
   [[nodiscard]] double longest() const { return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]}); }
@@ -130,6 +143,13 @@ Octree make_octree(const OrientedPoints& points, const std::vector<double>& thic
     requests[i] = {points.positions[i], points.normals[i], kDisc * reach, kDiscHalf * reach, std::max(wanted, kBaseLevel)};
   }
   return Octree(corner, side, requests, std::min(kBaseLevel, level), monitor.cancel);
+}
+
+void require_memory_for(std::size_t points, const Octree& octree, std::size_t max_memory) {
+  const std::size_t needed = memory_for(points, static_cast<double>(octree.leaf_count()));
+  if (max_memory == 0 || needed <= max_memory) return;
+  throw Unavailable("the mesh needs " + std::to_string(needed >> 20U) + " MiB, the limit is " + std::to_string(max_memory >> 20U) +
+                    " MiB; raise the limit, lower the depth or thin the cloud");
 }
 
 // Which side of the surface places are on: a positive value inside. Near the points it is minus the distance to the fitted surface,
@@ -226,21 +246,16 @@ std::vector<std::uint8_t> read_signs(const Octree& octree, const Opinions& opini
 }  // namespace
 
 std::size_t field_mesh_memory(std::size_t points, double spacing, double longest_side, int depth) {
-  constexpr double kBase = 24 << 20;   // bytes: code, libraries, thread stacks
-  constexpr double kPerPoint = 7300;   // measured: 2.5 to 4 KB on smooth shapes, up to 6.9 KB on shapes that are all thin walls and gaps
-  constexpr double kThickness = 0.75;  // of the refined layer, in cells of the automatic depth,
-  constexpr double kLayers = 2;        // and cells around it whatever their size
-  double leaves = 1;                   // relative to the automatic depth
+  double leaves = kLeavesPerPoint;
   if (depth > 0 && longest_side > 0) {
     const double finer = kCell * spacing * std::exp2(depth) / (kMargin * longest_side + 8 * spacing);
-    leaves = std::max(1.0, finer * finer * (kThickness * finer + kLayers) / (kThickness + kLayers));
+    leaves *= std::max(1.0, finer * finer * (kThickness * finer + kLayers) / (kThickness + kLayers));
   }
-  const double bytes = kBase + kPerPoint * static_cast<double>(points) * leaves;
-  return static_cast<std::size_t>(std::min(bytes, 0x1p62));
+  return memory_for(points, leaves * static_cast<double>(points));
 }
 
 Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const FieldSampler& sampler, const MeshOptions& options,
-                const Monitor& monitor) {
+                const Monitor& monitor, std::size_t max_memory) {
   if (points.size() != normals.size()) throw InvalidInput("points and normals differ in number");
   if (points.size() < 4) throw InvalidInput("a mesh needs at least 4 points");
   if (options.depth != 0 && (options.depth < 4 || options.depth > 12)) throw InvalidInput("mesh depth must be 4 to 12");
@@ -254,6 +269,7 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
 
   const Octree octree =
       make_octree(oriented, noise > kNoisy ? std::vector<double>{} : mesh::wall_thickness(oriented, local), options, monitor);
+  require_memory_for(points.size(), octree, max_memory);
   report(monitor, 0.3);
   const Side side(local, sampler, level, spacing, box_of(oriented.positions));
   std::vector<Vec3> corners(octree.corner_count());
