@@ -48,10 +48,10 @@ constexpr double kFitSay = 2 * kFieldSure;  // in opinions the field counts 2 (w
 constexpr double kFitFar = 0.3;             // and that from so many spacings away
 constexpr double kFlipped = 0.1;            // spacings: distance from the surface of corners that were flipped to remove a handle
 
-constexpr double kBaseBytes = 20 << 20;  // code, libraries, thread stacks;
-constexpr double kBytesPerPoint = 700;   // with those of the winding field;
-constexpr double kBytesPerLeaf = 360;    // measured, docs/meshing.md: 300 to 390
-constexpr double kLeavesPerPoint = 10;   // measured: 7.2 to 10.4 without thin walls
+constexpr double kBaseBytes = 16 << 20;  // code, libraries, thread stacks;
+constexpr double kBytesPerPoint = 500;   // with those of the winding field;
+constexpr double kBytesPerLeaf = 320;    // measured, docs/meshing.md
+constexpr double kLeavesPerPoint = 9.5;  // measured: 7.2 to 10.4 without thin walls
 constexpr double kThickness = 0.75;      // of the refined layer, in cells of the automatic depth,
 constexpr double kLayers = 2;            // and cells around it whatever their size
 
