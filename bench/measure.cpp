@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numeric>
 
@@ -61,15 +62,33 @@ void score_points(const Orientation& orientation, const Input& input, Row& row) 
   }
 }
 
-MeshRow score_reconstruction(const Reconstruction& result, const Mesh& truth, std::uint64_t seed) {
+MeshRow score_reconstruction(const Mesh& mesh, const Mesh& truth, std::uint64_t seed) {
   MeshRow row;
-  row.check = result.check;
-  for (const auto& [stage, seconds] : result.orientation.stats.seconds) row.seconds += stage == "mesh" ? seconds : 0;
-  const MeshScore score = score_mesh(result.mesh, truth, kMeshSamples, seed);
+  row.check = check_mesh(mesh);
+  row.check.self_intersections = count_self_intersections(mesh);
+  const MeshScore score = score_mesh(mesh, truth, kMeshSamples, seed);
   row.chamfer = score.chamfer;
   row.ae = score.ae;
   row.hausdorff = score.hausdorff;
   return row;
+}
+
+/// The mesher alone. Outliers have no true normal and are not given to it.
+void mesh_true_normals(const Mesh& truth, const Input& input, const Variant& variant, std::uint64_t seed, Row& row) {
+  const std::vector<Vec3> points(input.points.begin(), input.points.begin() + static_cast<std::ptrdiff_t>(input.surface));
+  const double start = cpu_time();
+  const auto clock = std::chrono::steady_clock::now();
+  try {
+    const Mesh mesh = mesh_oriented(points, input.normals, variant.mesh);
+    const double cpu = cpu_time() - start;
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
+    row.mesh = score_reconstruction(mesh, truth, seed);
+    row.mesh->seconds = seconds;
+    row.mesh->cpu_seconds = cpu;
+  } catch (const Error& error) {
+    row.mesh_error = error.what();
+  }
+  row.pco = 1;
 }
 
 }  // namespace
@@ -95,13 +114,21 @@ Row measure(const std::string& model, const Mesh& truth, const Input& input, con
   row.method = variant.name;
   row.points = input.points.size();
   try {
+    if (variant.true_normals) {
+      if (!with_mesh) throw InvalidInput("the method true measures the mesher: give --mesh");
+      mesh_true_normals(truth, input, variant, seed, row);
+      return row;
+    }
     Reconstruction result;
     const double start = cpu_time();
     const Monitor monitor = watch_for_mesh(start, row.cpu_seconds);
     if (with_mesh) {
       try {
         result = reconstruct(input.points, variant.options, variant.mesh, monitor);
-        row.mesh = score_reconstruction(result, truth, seed);
+        const double cpu = cpu_time() - start - row.cpu_seconds;
+        row.mesh = score_reconstruction(result.mesh, truth, seed);
+        row.mesh->cpu_seconds = cpu;
+        for (const auto& [stage, seconds] : result.orientation.stats.seconds) row.mesh->seconds += stage == "mesh" ? seconds : 0;
       } catch (const Error& error) {  // the normals are still worth a row
         row.mesh_error = error.what();
         result.orientation = orient(input.points, variant.options);

@@ -17,7 +17,8 @@ namespace g3r::bench {
 struct MeshRow {
   double chamfer = 0, ae = 0, hausdorff = 0;  ///< CD, AE_m, HD of score_mesh()
   MeshCheck check;
-  double seconds = 0;
+  double seconds = 0;      ///< wall clock
+  double cpu_seconds = 0;  ///< processor time of all threads
 };
 
 /// A row of the table. Scores are over the surface points; a row with an error has none.

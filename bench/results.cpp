@@ -46,6 +46,7 @@ const std::vector<Score>& mesh_scores() {
       {"CD 1e-3", 1000, "%.3f", true, [](const Row& r) { return r.mesh->chamfer; }},
       {"AE_m 1e-2", 100, "%.3f", true, [](const Row& r) { return r.mesh->ae; }},
       {"HD 1e-2", 100, "%.3f", true, [](const Row& r) { return r.mesh->hausdorff; }},
+      {"mesher CPU s", 1, "%.1f", true, [](const Row& r) { return r.mesh->cpu_seconds; }},
   };
   return scores;
 }
@@ -68,7 +69,9 @@ Json mesh_json(const MeshRow& mesh) {
           {"genus", mesh.check.genus},
           {"volume", mesh.check.volume},
           {"area", mesh.check.area},
-          {"seconds", mesh.seconds}};
+          {"self_intersections", mesh.check.self_intersections.value_or(0)},
+          {"seconds", mesh.seconds},
+          {"cpu_seconds", mesh.cpu_seconds}};
 }
 
 Json row_json(const Row& row) {
@@ -171,12 +174,13 @@ void write_cell(const Row& row, std::ostream& out) {
   for (const Score& score : mesh_scores()) out << separator << shown(score, score.value(row));
   const MeshCheck& check = row.mesh->check;
   out << (check.boundary_edges == 0 ? "" : " open") << (check.manifold ? "" : " non-manifold") << " g" << check.genus << " c"
-      << check.components;
+      << check.components << " x" << check.self_intersections.value_or(0);
 }
 
 void write_models(const std::vector<std::string>& methods, const std::vector<const Row*>& rows, bool with_mesh, std::ostream& out) {
   out << "Per model: AE_p 1e-2 / PCO %";
-  if (with_mesh) out << " / CD 1e-3 / AE_m 1e-2 / HD 1e-2, g = genus, c = components";
+  if (with_mesh)
+    out << " / CD 1e-3 / AE_m 1e-2 / HD 1e-2 / CPU s of the mesher, g = genus, c = components, x = pairs of triangles that intersect";
   out << "\n\n| model |";
   for (const std::string& method : methods) out << ' ' << method << " |";
   out << "\n|---|";

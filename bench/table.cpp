@@ -36,7 +36,7 @@ Arguments parse_arguments(int argc, char** argv) {
   app.add_option("--points", arguments.points, "numbers of points, comma separated")->delimiter(',')->check(CLI::Range(4, 100000000));
   app.add_option("--inputs", arguments.inputs, "clean, noise:P, outliers:P, gradient:R, patches:K; comma separated")->delimiter(',');
   app.add_option("--method", arguments.methods,
-                 "default, paper, wnnc, agr or pgr, then ;KEY=VALUE for ablations; may be given several times");
+                 "default, paper, wnnc, agr, pgr or true (normals), then ;KEY=VALUE for ablations; may be given several times");
   app.add_option("--models", arguments.models, "only these models (file names without extension), comma separated")->delimiter(',');
   app.add_flag("--mesh", arguments.mesh, "also mesh, and score CD, AE_m, HD");
   app.add_option("--seed", arguments.run.seed, "seed of the samples");

@@ -93,8 +93,10 @@ Variant parse_variant(const std::string& text) {
     variant.options.preset = Preset::kPaper;
   } else if (part == "wnnc" || part == "agr" || part == "pgr") {
     variant.options.method = parse_equations(part);
+  } else if (part == "true") {
+    variant.true_normals = true;
   } else if (part != "default") {
-    throw InvalidInput("method '" + text + "' does not begin with default, paper, wnnc, agr or pgr");
+    throw InvalidInput("method '" + text + "' does not begin with default, paper, wnnc, agr, pgr or true");
   }
   while (std::getline(parts, part, ';')) {
     const std::size_t equals = part.find('=');

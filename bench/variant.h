@@ -8,14 +8,15 @@
 namespace g3r::bench {
 
 struct Variant {
-  std::string name;  ///< as given, for example "paper;epsilon=0.4h;schedule=20 cg"
+  std::string name;           ///< as given, for example "paper;epsilon=0.4h;schedule=20 cg"
+  bool true_normals = false;  ///< nothing is oriented: only the mesher is measured, from the normals of the truth
   Options options;
   MeshOptions mesh;
 };
 
-/// NAME[;KEY=VALUE]... with NAME a preset (default, paper) or an earlier method (wnnc, agr, pgr), and KEY one of method (green, energy,
-/// wnnc, agr, pgr), widths (of wnnc), epsilon (auto, X, X%, Xh, Xn), degree, harmonics, solver (auto, dense, cg), schedule, tolerance,
-/// accuracy, mesher (field, poisson), depth. Throws InvalidInput.
+/// NAME[;KEY=VALUE]... with NAME a preset (default, paper), an earlier method (wnnc, agr, pgr) or `true`, and KEY one of method (green,
+/// energy, wnnc, agr, pgr), widths (of wnnc), epsilon (auto, X, X%, Xh, Xn), degree, harmonics, solver (auto, dense, cg), schedule,
+/// tolerance, accuracy, mesher (field, poisson), depth. Throws InvalidInput.
 [[nodiscard]] Variant parse_variant(const std::string& text);
 
 }  // namespace g3r::bench

@@ -78,7 +78,8 @@ std::string plan_text(const Stats& stats) {
                               (stats.spacing > 0 ? " (" + short_number(stats.epsilon / stats.spacing, 2) + " spacings)" : std::string()));
   if (stats.depth > 0) text += line("depth", std::to_string(stats.depth));
   text += line("method", escape_text(stats.method) + ", " + stats.solver + ", harmonics " + escape_text(stats.harmonics));
-  return text + line("memory", "about " + bytes(stats.planned_memory_bytes) + " to orient");
+  return text +
+         line("memory", "about " + bytes(stats.planned_memory_bytes) + " to orient and mesh, more if walls are thinner than the spacing");
 }
 
 }  // namespace
@@ -94,7 +95,7 @@ int run_info(const Settings& settings, Session& session) {
   }
   Stats stats;
   try {
-    stats = session.stage("plan", [&] { return plan(cloud.positions, settings.options); });
+    stats = session.stage("plan", [&] { return plan(cloud.positions, settings.options, settings.mesh_options); });
     text += plan_text(stats);
   } catch (const InvalidInput& error) {
     stats.points = cloud.positions.size();

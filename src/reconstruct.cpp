@@ -56,7 +56,7 @@ Mesh mesh_with_poisson(const OrientedCloud& oriented, const std::vector<Vec3>& n
 // Meshes in normalised units, so that georeferenced coordinates lose nothing, and maps back.
 // `far_share` (may be null): share of the surface farther than kFarSpacings from every point.
 Mesh make_mesh(const PointsView& points, const std::vector<Vec3>& normals, const std::vector<double>& areas, const MeshOptions& options,
-               const Monitor& monitor, double* far_share = nullptr) {
+               const Monitor& monitor, std::size_t max_memory = 0, double* far_share = nullptr) {
   const OrientedCloud oriented = oriented_cloud(points, normals, areas);
   std::vector<Vec3> directions(oriented.eta.size());
   for (std::size_t i = 0; i < directions.size(); ++i) {
@@ -73,7 +73,7 @@ Mesh make_mesh(const PointsView& points, const std::vector<Vec3>& normals, const
     normalised.min_component = 0;  // specks of screened Poisson are part of its result
     mesh::finish_mesh(mesh, oriented.cloud.points, normalised);
   } else {
-    mesh = field_mesh(oriented.cloud.points, directions, WindingSampler(oriented, monitor.cancel), normalised, monitor);
+    mesh = field_mesh(oriented.cloud.points, directions, WindingSampler(oriented, monitor.cancel), normalised, monitor, max_memory);
   }
   if (mesh.triangles.empty()) throw InvalidInput("no surface found: the oriented points do not enclose a volume");
   if (far_share != nullptr) *far_share = mesh::far_share(mesh, oriented.cloud.points, kFarSpacings);
@@ -89,7 +89,7 @@ MeshOptions choose(const MeshOptions& given, const Options& options) {
     const bool poisson = options.preset == Preset::kPaper && screened_poisson_available();
     chosen.mesher = poisson ? Mesher::kPoisson : Mesher::kField;
   }
-  if (options.preset == Preset::kPaper && chosen.depth == 0) chosen.depth = kPaperDepth;
+  if (options.preset == Preset::kPaper && chosen.mesher == Mesher::kPoisson && chosen.depth == 0) chosen.depth = kPaperDepth;
   return chosen;
 }
 
@@ -100,6 +100,14 @@ std::size_t planned(const Stats& stats, const MeshOptions& chosen) {
 }
 
 }  // namespace
+
+Stats plan(const PointsView& points, const Options& options, const MeshOptions& mesh_options) {
+  const MeshOptions chosen = choose(mesh_options, options);
+  Stats stats = plan(points, options);
+  stats.depth = chosen.depth;
+  stats.planned_memory_bytes = planned(stats, chosen);
+  return stats;
+}
 
 Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const MeshOptions& options, const Monitor& monitor) {
   if (points.count != normals.count) {
@@ -129,7 +137,7 @@ Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const Me
 Reconstruction reconstruct(const PointsView& points, const Options& options, const MeshOptions& mesh_options, const Monitor& monitor) {
   if (mesh_options.mesher == Mesher::kPoisson) require_screened_poisson();
   const MeshOptions chosen = choose(mesh_options, options);
-  if (options.max_memory > 0) require_memory(planned(plan(points, options), chosen), options);
+  if (options.max_memory > 0) require_memory(plan(points, options, mesh_options).planned_memory_bytes, options);
   Reconstruction out;
   out.orientation = orient(points, options, monitor);
   out.orientation.stats.planned_memory_bytes = planned(out.orientation.stats, chosen);
@@ -137,7 +145,7 @@ Reconstruction reconstruct(const PointsView& points, const Options& options, con
   stages.begin("mesh");
   double far = 0;
   parallel::with_threads(options.threads, [&] {
-    out.mesh = make_mesh(points, out.orientation.normals, out.orientation.areas, chosen, monitor, &far);
+    out.mesh = make_mesh(points, out.orientation.normals, out.orientation.areas, chosen, monitor, options.max_memory, &far);
     out.check = check_mesh(out.mesh);
     carry_attributes(out.mesh, points, {}, out.orientation.confidence);
   });

@@ -112,6 +112,21 @@ TEST(BenchVariant, EarlierMethodsAreRead) {
   EXPECT_EQ(parse_variant("pgr;epsilon=0.5h").options.method, g3r::Method::kPgr);
 }
 
+TEST(BenchMeasure, TrueNormalsGoStraightToTheMesher) {
+  const Variant variant = parse_variant("true;mesher=field");
+  EXPECT_TRUE(variant.true_normals);
+  const Mesh truth = shapes::sphere(1, 40);
+  const InputKind kind = parse_input_kind("clean");
+  const Input input = make_input(truth, kind, 1000, 1);
+  const Row row = measure("sphere", truth, input, kind, variant, true, 1);
+  ASSERT_TRUE(row.mesh.has_value()) << row.error << row.mesh_error;
+  EXPECT_TRUE(row.mesh->check.closed);
+  EXPECT_EQ(row.mesh->check.genus, 0);
+  EXPECT_EQ(row.mesh->check.self_intersections, 0u);
+  EXPECT_LT(row.mesh->chamfer, 0.02);
+  EXPECT_FALSE(measure("sphere", truth, input, kind, variant, false, 1).error.empty());
+}
+
 TEST(BenchVariant, MistakesAreRefused) {
   for (const char* text : {"", "best", "paper;degree", "paper;degree=x", "paper;colour=1", "default;epsilon=0.4y", "default;solver=lu"}) {
     EXPECT_THROW((void)parse_variant(text), InvalidInput) << text;

@@ -20,11 +20,16 @@ class Memory(ProgramTest):
     def setUp(self):
         super().setUp()
         write_points(self.path("ball.ply"), sphere(COUNT))
-        self.plan = json.loads(self.expect(OK, "info", "ball.ply", "--report", "-").out)["planned_memory_bytes"]
+        self.expect(OK, "orient", "ball.ply", "oriented.ply", "--report", "r.json")
+        self.plan = self.json_of("r.json")["planned_memory_bytes"]
+        os.remove(self.path("oriented.ply"))
+        os.remove(self.path("r.json"))
 
     def test_a_plan_beyond_the_limit_is_refused_before_the_solve(self):
         self.expect(OK, "ball.ply", "mesh.ply", "--report", "r.json")
         mesh_plan = self.json_of("r.json")["planned_memory_bytes"]
+        info_plan = json.loads(self.expect(OK, "info", "ball.ply", "--report", "-").out)["planned_memory_bytes"]
+        self.assertEqual(info_plan, mesh_plan)
         for plan, arguments in (self.plan, ["orient", "ball.ply", "out.ply"]), (mesh_plan, ["ball.ply", "out.ply"]):
             result = self.expect(UNAVAILABLE, *arguments, "-v", "--max-memory", str(plan - 1))
             self.assertEqual(int(re.search(r"plan needs (\d+) MiB", result.err).group(1)), plan >> 20)
@@ -32,6 +37,15 @@ class Memory(ProgramTest):
             self.assertFalse(os.path.exists(self.path("out.ply")))
             self.expect(OK, *arguments, "--max-memory", str(plan))
             os.remove(self.path("out.ply"))
+
+    def test_a_mesh_that_turns_out_larger_than_its_plan_is_refused(self):
+        n = 40  # two sheets, half a spacing apart
+        sheet = [(i / n, j / n, z) for i in range(n) for j in range(n) for z in (0, 0.5 / n)]
+        write_points(self.path("sheets.ply"), sheet)
+        plan = json.loads(self.expect(OK, "info", "sheets.ply", "--report", "-").out)["planned_memory_bytes"]
+        result = self.expect(UNAVAILABLE, "sheets.ply", "out.ply", "--max-memory", str(plan))
+        self.assertIn("the mesh needs", result.err)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["ball.ply", "sheets.ply"])
 
     @unittest.skipIf(is_sanitized(), "a sanitizer needs the addresses")
     def test_the_plan_bounds_what_a_mesh_takes(self):

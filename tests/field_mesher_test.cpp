@@ -166,6 +166,24 @@ TEST(FieldMesher, CancelStops) {
   EXPECT_THROW((void)field_mesh(s.points, s.normals, field, {}, refuse), Cancelled);
 }
 
+TEST(FieldMesher, TheOctreeIsHeldAgainstTheMemoryLimit) {
+  const OrientedSample s = sphere_sample(1000, 1, 4);
+  const DistanceSampler field([](const Vec3& p) { return norm(p) - 1; }, 0.1);
+  EXPECT_FALSE(field_mesh(s.points, s.normals, field, {}, {}, std::size_t{64} << 20).triangles.empty());
+  EXPECT_THROW((void)field_mesh(s.points, s.normals, field, {}, {}, std::size_t{17} << 20), Unavailable);
+}
+
+TEST(FieldMesher, WhatIsFarFromThePointsIsNotAskedOfTheField) {
+  const OrientedSample s = sphere_sample(3000, 1, 4);
+  const DistanceSampler field(
+      [](const Vec3& p) {
+        EXPECT_LT(std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}), 1.12);
+        return norm(p) - 1;
+      },
+      0.1);
+  EXPECT_FALSE(field_mesh(s.points, s.normals, field).triangles.empty());
+}
+
 TEST(FieldMesher, BadInputIsRefused) {
   const OrientedSample s = sphere_sample(100, 1, 4);
   const DistanceSampler field([](const Vec3& p) { return norm(p) - 1; }, 0.1);

@@ -227,6 +227,26 @@ TEST(Orient, ErrorsSayWhatIsWrong) {
   EXPECT_THROW(static_cast<void>(orient(good, options)), Unavailable);
 }
 
+TEST(Plan, HasTheMeshInIt) {
+  const std::vector<Vec3> points = shapes::torus(5000, 0.6, 0.25, 1).points;
+  const std::size_t orient_only = plan(points).planned_memory_bytes;
+  MeshOptions mesh;
+  const std::size_t automatic = plan(points, {}, mesh).planned_memory_bytes;
+  EXPECT_GT(automatic, orient_only);
+  mesh.depth = 10;
+  EXPECT_GT(plan(points, {}, mesh).planned_memory_bytes, 4 * automatic);
+}
+
+TEST(Plan, ThePaperPresetGivesTheFieldMesherNoDepth) {
+  const std::vector<Vec3> points = shapes::sphere(9).points;
+  Options paper;
+  paper.preset = Preset::kPaper;
+  MeshOptions field;
+  field.mesher = Mesher::kField;
+  EXPECT_EQ(plan(points, paper, field).depth, 0);
+  EXPECT_LT(plan(points, paper, field).planned_memory_bytes, std::size_t{64} << 20);
+}
+
 TEST(Orient, StopsWhenAsked) {
   const std::vector<Vec3> points = shapes::torus(20000, 0.6, 0.25, 1).points;
   Monitor monitor;

@@ -84,7 +84,8 @@ struct Options {
   bool condition_number = false;  ///< dense solver only: also compute the condition number
   int threads = 0;                ///< 0: all cores. The result does not depend on it
   std::uint64_t seed = 0;         ///< reserved for steps that sample; the present method draws no random number
-  std::size_t max_memory = 0;     ///< bytes; refuse before the solve when the plan exceeds it. 0: no limit
+  std::size_t max_memory =
+      0;  ///< bytes; refuse before the solve when the plan exceeds it, or before the mesh when that turns out to. 0: no limit
 };
 
 /// One step of the iterative solver.
@@ -120,7 +121,7 @@ struct Stats {
   double confidence_mean = 0;
   double confidence_below_half = 0;                     ///< share of the points, 0..1
   std::vector<std::pair<std::string, double>> seconds;  ///< per stage, in order
-  std::size_t planned_memory_bytes = 0;                 ///< of reconstruct(): a bound that includes the mesher, but not Open3D's
+  std::size_t planned_memory_bytes = 0;                 ///< of reconstruct(): with the field mesher; shapes of thin walls take more
   std::size_t peak_memory_bytes = 0;                    ///< of the whole process
   int threads = 0;
   std::vector<std::string> warnings;
@@ -150,7 +151,7 @@ enum class Mesher {
 /// Parameters of the mesher.
 struct MeshOptions {
   Mesher mesher = Mesher::kAuto;
-  int depth = 0;  ///< octree depth, 4..12; 0: from the density of the points (10 in the paper preset)
+  int depth = 0;  ///< octree depth, 4..12; 0: from the density of the points (10 for screened Poisson in the paper preset)
 
   /// Whether surface far from every point is cut away, which leaves an open boundary.
   enum class Trim {
@@ -190,6 +191,9 @@ void carry_attributes(Mesh& mesh, const PointsView& points, const std::vector<st
 
 /// What orient() would do with this cloud, without solving: counts, box, spacing, epsilon, memory plan.
 [[nodiscard]] Stats plan(const PointsView& points, const Options& options = {});
+
+/// What reconstruct() would do with this cloud: the same, with the mesher's memory in the plan.
+[[nodiscard]] Stats plan(const PointsView& points, const Options& options, const MeshOptions& mesh_options);
 
 /// The report as JSON, schema version 1 (docs/report.md). `mesh` may be null.
 [[nodiscard]] std::string report_json(const Stats& stats, const MeshCheck* mesh = nullptr);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "cpu/parallel.h"
 #include "g3r/error.h"
@@ -40,10 +41,19 @@ constexpr double kLeastSpacing = 1e-2;       // of the median; clusters of almos
 constexpr std::size_t kLevelPoints = 10000;  // the median of so many values is good to 1 % of their scatter
 constexpr double kNoisy = 0.15;              // spacings: positions that scatter more than this are smoothed first
 constexpr double kFieldSure = 0.2;           // |w - level| from which the field overrules the fitted surface
+constexpr double kBeyond = 0.05;             // of the longest side: so far from the box of the points
+constexpr double kBeyondSpacings = 2;        // (and so many spacings) all is outside; fast sums end there, single ones are slow
 
 constexpr double kFitSay = 2 * kFieldSure;  // in opinions the field counts 2 (w - level), the fitted surface at most this,
 constexpr double kFitFar = 0.3;             // and that from so many spacings away
 constexpr double kFlipped = 0.1;            // spacings: distance from the surface of corners that were flipped to remove a handle
+
+constexpr double kBaseBytes = 16 << 20;  // code, libraries, thread stacks;
+constexpr double kBytesPerPoint = 500;   // with those of the winding field;
+constexpr double kBytesPerLeaf = 320;    // measured, docs/meshing.md
+constexpr double kLeavesPerPoint = 9.5;  // measured: 7.2 to 10.4 without thin walls
+constexpr double kThickness = 0.75;      // of the refined layer, in cells of the automatic depth,
+constexpr double kLayers = 2;            // and cells around it whatever their size
 
 // A way to read the opinions: after some sweeps of smoothing, at some level.
 struct Reading {
@@ -92,22 +102,37 @@ double surface_level(const std::vector<Vec3>& points, const FieldSampler& sample
   return median(std::move(value));
 }
 
+std::size_t memory_for(std::size_t points, double leaves) {
+  const double bytes = kBaseBytes + kBytesPerPoint * static_cast<double>(points) + kBytesPerLeaf * leaves;
+  return static_cast<std::size_t>(std::min(bytes, 0x1p62));
+}
+
+struct Box {
+  Vec3 low, high;
+  [[nodiscard]] double longest() const { return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]}); }
+  [[nodiscard]] double centre(std::size_t a) const { return 0.5 * (low[a] + high[a]); }
+};
+
+Box box_of(const std::vector<Vec3>& points) {
+  Box box{points[0], points[0]};
+  for (const Vec3& p : points) {
+    for (std::size_t a = 0; a < 3; ++a) box.low[a] = std::min(box.low[a], p[a]), box.high[a] = std::max(box.high[a], p[a]);
+  }
+  return box;
+}
+
 // `thickness`: of the walls at each point, empty to disregard it.
 Octree make_octree(const OrientedPoints& points, const std::vector<double>& thickness, const MeshOptions& options, const Monitor& monitor) {
-  Vec3 low = points.positions[0], high = low;
-  for (const Vec3& p : points.positions) {
-    for (std::size_t a = 0; a < 3; ++a) low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
-  }
-  const double longest = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+  const Box box = box_of(points.positions);
   const double h = median(points.spacing);
-  double side = longest * kMargin + 8 * h;
+  double side = box.longest() * kMargin + 8 * h;
   int level = options.depth;
   if (level == 0) {
     level = std::clamp(static_cast<int>(std::ceil(std::log2(side / (kCell * h)))), kBaseLevel, mesh::kMaxOctreeLevel - kMaxSpread);
     side = std::max(side, kCell * h * std::exp2(level));
   }
   Vec3 corner{};
-  for (std::size_t a = 0; a < 3; ++a) corner[a] = 0.5 * (low[a] + high[a]) - 0.5 * side;
+  for (std::size_t a = 0; a < 3; ++a) corner[a] = box.centre(a) - 0.5 * side;
   std::vector<RefineDisc> requests(points.positions.size());
   for (std::size_t i = 0; i < requests.size(); ++i) {
     double size = points.spacing[i];
@@ -120,12 +145,24 @@ Octree make_octree(const OrientedPoints& points, const std::vector<double>& thic
   return Octree(corner, side, requests, std::min(kBaseLevel, level), monitor.cancel);
 }
 
+void require_memory_for(std::size_t points, const Octree& octree, std::size_t max_memory) {
+  const std::size_t needed = memory_for(points, static_cast<double>(octree.leaf_count()));
+  if (max_memory == 0 || needed <= max_memory) return;
+  throw Unavailable("the mesh needs " + std::to_string(needed >> 20U) + " MiB, the limit is " + std::to_string(max_memory >> 20U) +
+                    " MiB; raise the limit, lower the depth or thin the cloud");
+}
+
 // Which side of the surface places are on: a positive value inside. Near the points it is minus the distance to the fitted surface,
 // unless the field is sure of the contrary; elsewhere it is the field, scaled to a length.
 class Side {
  public:
-  Side(const LocalFit& local, const FieldSampler& sampler, double level, double spacing)
-      : local_(local), sampler_(sampler), level_(level), spacing_(spacing) {}
+  Side(const LocalFit& local, const FieldSampler& sampler, double level, double spacing, const Box& box)
+      : local_(local),
+        sampler_(sampler),
+        level_(level),
+        spacing_(spacing),
+        box_(box),
+        reach_(0.5 * box.longest() + std::max(kBeyond * box.longest(), kBeyondSpacings * spacing)) {}
 
   // `opinions` (may be null): filled in for all places.
   std::vector<double> operator()(const std::vector<Vec3>& places, const std::atomic<bool>* cancel, Opinions* opinions = nullptr) const {
@@ -160,6 +197,11 @@ class Side {
     std::vector<Vec3> queries;
     for (std::size_t i = 0; i < places.size(); ++i) {
       if (sure[i] != 0) continue;
+      if (std::isnan(value[i]) && is_beyond(places[i])) {
+        value[i] = -spacing_;
+        if (opinions != nullptr) opinions->side[i] = -1;
+        continue;
+      }
       ask.push_back(i);
       queries.push_back(places[i]);
     }
@@ -176,9 +218,18 @@ class Side {
     }
   }
 
+  [[nodiscard]] bool is_beyond(const Vec3& x) const {
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (std::abs(x[a] - box_.centre(a)) > reach_) return true;
+    }
+    return false;
+  }
+
   const LocalFit& local_;
   const FieldSampler& sampler_;
   double level_, spacing_;
+  Box box_;
+  double reach_;  // half the side of the cube that everything inside is in
 };
 
 // Open corners by their opinions, the others as they are.
@@ -195,21 +246,16 @@ std::vector<std::uint8_t> read_signs(const Octree& octree, const Opinions& opini
 }  // namespace
 
 std::size_t field_mesh_memory(std::size_t points, double spacing, double longest_side, int depth) {
-  constexpr double kBase = 24 << 20;   // bytes: code, libraries, thread stacks
-  constexpr double kPerPoint = 7300;   // measured: 2.5 to 4 KB on smooth shapes, up to 6.9 KB on shapes that are all thin walls and gaps
-  constexpr double kThickness = 0.75;  // of the refined layer, in cells of the automatic depth,
-  constexpr double kLayers = 2;        // and cells around it whatever their size
-  double leaves = 1;                   // relative to the automatic depth
+  double leaves = kLeavesPerPoint;
   if (depth > 0 && longest_side > 0) {
     const double finer = kCell * spacing * std::exp2(depth) / (kMargin * longest_side + 8 * spacing);
-    leaves = std::max(1.0, finer * finer * (kThickness * finer + kLayers) / (kThickness + kLayers));
+    leaves *= std::max(1.0, finer * finer * (kThickness * finer + kLayers) / (kThickness + kLayers));
   }
-  const double bytes = kBase + kPerPoint * static_cast<double>(points) * leaves;
-  return static_cast<std::size_t>(std::min(bytes, 0x1p62));
+  return memory_for(points, leaves * static_cast<double>(points));
 }
 
 Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const FieldSampler& sampler, const MeshOptions& options,
-                const Monitor& monitor) {
+                const Monitor& monitor, std::size_t max_memory) {
   if (points.size() != normals.size()) throw InvalidInput("points and normals differ in number");
   if (points.size() < 4) throw InvalidInput("a mesh needs at least 4 points");
   if (options.depth != 0 && (options.depth < 4 || options.depth > 12)) throw InvalidInput("mesh depth must be 4 to 12");
@@ -223,8 +269,9 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
 
   const Octree octree =
       make_octree(oriented, noise > kNoisy ? std::vector<double>{} : mesh::wall_thickness(oriented, local), options, monitor);
+  require_memory_for(points.size(), octree, max_memory);
   report(monitor, 0.3);
-  const Side side(local, sampler, level, spacing);
+  const Side side(local, sampler, level, spacing, box_of(oriented.positions));
   std::vector<Vec3> corners(octree.corner_count());
   for (std::size_t c = 0; c < corners.size(); ++c) corners[c] = octree.corner_position(c);
   Opinions opinions;
