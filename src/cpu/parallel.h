@@ -21,16 +21,17 @@
 
 namespace g3r::parallel {
 
-/// Tell ThreadSanitizer, which cannot see into the threading library, that what a thread did before signal(at) is visible to the one that
-/// has called wait(at) since.
-inline void signal([[maybe_unused]] const void* at) {
+/// Tell ThreadSanitizer, which cannot see into the threading library, that what threads did before signal() is visible to one that has
+/// called wait() since. One address serves all loops: a loop body can be told before it has read anything.
+inline const char handed_over = 0;
+inline void signal() {
 #ifdef __SANITIZE_THREAD__
-  __tsan_release(const_cast<void*>(at));
+  __tsan_release(const_cast<char*>(&handed_over));
 #endif
 }
-inline void wait([[maybe_unused]] const void* at) {
+inline void wait() {
 #ifdef __SANITIZE_THREAD__
-  __tsan_acquire(const_cast<void*>(at));
+  __tsan_acquire(const_cast<char*>(&handed_over));
 #endif
 }
 
@@ -47,18 +48,16 @@ auto with_threads(int threads, Work&& work) {
 /// body(i) for i in [0, count), each call independent of the others. `cancel` (may be null) stops the loop with Cancelled.
 template <class Body>
 void for_each(std::size_t count, const Body& body, const std::atomic<bool>* cancel = nullptr) {
-  const char begun = 0;
-  const char done = 0;
-  signal(&begun);
+  signal();
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1), [&](const tbb::blocked_range<std::size_t>& range) {
-    wait(&begun);
+    wait();
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       if (cancel != nullptr && cancel->load(std::memory_order_relaxed)) throw Cancelled();
       body(i);
     }
-    signal(&done);
+    signal();
   });
-  wait(&done);
+  wait();
 }
 
 /// body(begin, end) over [0, count) cut into blocks of `block` items.
