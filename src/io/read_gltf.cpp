@@ -223,9 +223,9 @@ class GltfReader {
 
   // A top-level array, empty if absent.
   const std::vector<Json>& list(std::string_view key) const {
-    static const std::vector<Json> kEmpty;
+    static const std::vector<Json> nothing;
     const Json* found = root_.find(key);
-    if (found == nullptr) return kEmpty;
+    if (found == nullptr) return nothing;
     if (!found->is_array()) fail(source_, "expected an array of " + std::string(key));
     return found->items;
   }

@@ -6,6 +6,7 @@
 #include "io/text.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -232,35 +233,31 @@ bool are_colors(const Element& points, std::size_t column) {
   return true;
 }
 
+void name_triple(Element& points, std::size_t first, const std::array<const char*, 3>& names) {
+  for (std::size_t c = 0; c < 3; ++c) points.properties[first + c].name = names[c];
+}
+
 // Names for columns without names: triples that look like normals or colours, "scalar_4" and so on else.
 void guess_names(Element& points) {
-  const char* kFirst[] = {"x", "y", "z"};
-  for (std::size_t c = 0; c < 3; ++c) points.properties[c].name = kFirst[c];
+  name_triple(points, 0, {"x", "y", "z"});
   const std::size_t columns = points.properties.size();
   bool normals = false;
   bool colors = false;
   for (std::size_t c = 3; c < columns;) {
     const bool triple = c + 3 <= columns;
-    if (triple && !normals && are_normals(points, c)) {
-      normals = true;
-    } else if (triple && !colors && are_colors(points, c)) {
+    const bool unit = triple && !normals && are_normals(points, c);
+    if (triple && !unit && !colors && are_colors(points, c)) {
+      name_triple(points, c, {"red", "green", "blue"});
       colors = true;
-      points.properties[c].name = "red";
-      points.properties[c + 1].name = "green";
-      points.properties[c + 2].name = "blue";
       c += 3;
-      continue;
-    } else if (columns == 6) {  // x y z and a triple that is no colour: normals of any length
+    } else if (unit || columns == 6) {  // x y z and a triple that is no colour: normals of any length
+      name_triple(points, c, {"nx", "ny", "nz"});
       normals = true;
+      c += 3;
     } else {
       points.properties[c].name = "scalar_" + std::to_string(c + 1);
       ++c;
-      continue;
     }
-    points.properties[c].name = "nx";
-    points.properties[c + 1].name = "ny";
-    points.properties[c + 2].name = "nz";
-    c += 3;
   }
 }
 

@@ -167,7 +167,6 @@ float Canvas::occlusion(int x, int y) const {
 }
 
 std::vector<float> Canvas::occlusion_map() const {
-  const auto index = [this](int x, int y) { return static_cast<std::size_t>(y * side_ + x); };
   std::vector<float> raw(samples_.size(), 0);
   for (int y = 0; y < side_; ++y) {
     for (int x = 0; x < side_; ++x) {
@@ -208,7 +207,7 @@ void Canvas::resolve(Image& image, int left, int top, bool dark) const {
           const int sx = x * kSupersampling + u;
           const int sy = y * kSupersampling + v;
           const Sample& sample = at(sx, sy);
-          sum += sample.nearness > 0 ? lit(sample.color, sample.normal, blocked[static_cast<std::size_t>(sy * side_ + sx)]) : behind;
+          sum += sample.nearness > 0 ? lit(sample.color, sample.normal, blocked[index(sx, sy)]) : behind;
         }
       }
       sum /= kSupersampling * kSupersampling;

@@ -57,8 +57,11 @@ class Canvas {
   [[nodiscard]] Eigen::Vector3f position(int x, int y, float nearness) const;
   [[nodiscard]] float occlusion(int x, int y) const;
   [[nodiscard]] std::vector<float> occlusion_map() const;
-  [[nodiscard]] const Sample& at(int x, int y) const { return samples_[static_cast<std::size_t>(y * side_ + x)]; }
-  Sample& at(int x, int y) { return samples_[static_cast<std::size_t>(y * side_ + x)]; }
+  [[nodiscard]] std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(side_) + static_cast<std::size_t>(x);
+  }
+  [[nodiscard]] const Sample& at(int x, int y) const { return samples_[index(x, y)]; }
+  Sample& at(int x, int y) { return samples_[index(x, y)]; }
 
   int side_;     ///< samples per side
   float focal_;  ///< in samples
