@@ -138,16 +138,36 @@ TEST(Orient, DoesNotDependOnPlaceOrScale) {
   }
 }
 
-TEST(Orient, RotatesWithTheCloud) {
-  const Surface s = shapes::join(shapes::torus(3000, 0.6, 0.25, 6), shapes::sphere(800, 0.2));
-  const double c = std::cos(0.7);
-  const double sn = std::sin(0.7);
-  const auto rotate = [&](const Vec3& p) { return Vec3{c * p[0] - sn * p[2], p[1], sn * p[0] + c * p[2]}; };
-  Surface turned = s;
-  for (auto* v : {&turned.points, &turned.normals}) {
-    for (Vec3& p : *v) p = rotate(p);
+// A rotation by a unit quaternion (w, x, y, z).
+Vec3 rotated(const std::array<double, 4>& q, const Vec3& p) {
+  const auto [w, x, y, z] = q;
+  return {(1 - 2 * (y * y + z * z)) * p[0] + 2 * (x * y - w * z) * p[1] + 2 * (x * z + w * y) * p[2],
+          2 * (x * y + w * z) * p[0] + (1 - 2 * (x * x + z * z)) * p[1] + 2 * (y * z - w * x) * p[2],
+          2 * (x * z - w * y) * p[0] + 2 * (y * z + w * x) * p[1] + (1 - 2 * (x * x + y * y)) * p[2]};
+}
+
+TEST(Orient, MovesWithTheCloud) {
+  const Surface s = shapes::join(shapes::torus(1400, 0.6, 0.25, 6), shapes::sphere(300, 0.2));
+  shapes::Random random(11);
+  const int motions = kSanitized ? 3 : 25;
+  for (int m = 0; m < motions; ++m) {
+    std::array<double, 4> q{};
+    double size = 0;
+    do {  // uniform in the ball: its direction is a uniform rotation
+      for (double& c : q) c = random.uniform(-1, 1);
+      size = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    } while (size > 1 || size < 0.1);
+    for (double& c : q) c /= size;
+    const double scale = std::pow(10.0, random.uniform(-6, 6));
+    const Vec3 shift{random.uniform() * scale, random.uniform() * scale, random.uniform() * scale};
+    Surface moved = s;
+    for (Vec3& p : moved.points) {
+      p = rotated(q, p);
+      for (std::size_t a = 0; a < 3; ++a) p[a] = scale * p[a] + shift[a];
+    }
+    for (Vec3& n : moved.normals) n = rotated(q, n);
+    EXPECT_EQ(shapes::share_correct(orient(moved.points).normals, moved.normals), 1) << m;
   }
-  EXPECT_EQ(shapes::share_correct(orient(turned.points).normals, turned.normals), 1);
 }
 
 TEST(Orient, DuplicatesShareANormalAndTheirArea) {
