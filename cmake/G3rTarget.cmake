@@ -12,3 +12,17 @@ function(g3r_target_defaults target)
     target_link_options(${target} PUBLIC -fsanitize=${G3R_SANITIZE})
   endif()
 endfunction()
+
+# g3r_laszip_defaults(TARGET): settings for sources of LASzip, which are not ours: no warnings, and no UBSan, which stops at its unaligned
+# loads and shifts.
+function(g3r_laszip_defaults target)
+  target_compile_features(${target} PRIVATE cxx_std_17)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
+                                             CXX_CLANG_TIDY "")
+  target_include_directories(${target} PRIVATE "${G3R_LASZIP_SOURCE}/src" "${G3R_LASZIP_SOURCE}/include/laszip")
+  target_compile_definitions(${target} PRIVATE UNORDERED HAVE_UNORDERED_MAP=1)
+  target_compile_options(${target} PRIVATE -w)
+  if(G3R_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${G3R_SANITIZE} -fno-sanitize=undefined -fno-omit-frame-pointer)
+  endif()
+endfunction()

@@ -1,5 +1,7 @@
 #include "io/las.h"
 
+#include "io/laz.h"
+
 #include <cmath>
 
 namespace g3r::io {
@@ -73,11 +75,13 @@ void read_vlrs(const Source& source, LasHeader& header) {
     const auto length = load<std::uint16_t>(source.bytes.data() + at + 20);
     if (length > header.points_at - at - kVlrHeader)
       fail_at_byte(source, at, "a variable length record of " + std::to_string(length) + " bytes does not fit before the points");
-    if (fixed_text(source.bytes.substr(at + 2, 16)) == "LASF_Spec" && load<std::uint16_t>(source.bytes.data() + at + 18) == kExtraBytes &&
-        header.extra_vlr == 0) {
+    const std::string user = fixed_text(source.bytes.substr(at + 2, 16));
+    const unsigned record = load<std::uint16_t>(source.bytes.data() + at + 18);
+    if (user == "LASF_Spec" && record == kExtraBytes && header.extra_vlr == 0) {
       header.extra_vlr = at;
       describe_extra_bytes(source.bytes.substr(at + kVlrHeader, length), header);
     }
+    if (user == "laszip encoded" && record == kCompression && header.laszip_vlr == 0) header.laszip_vlr = at;
     at += kVlrHeader + length;
   }
 }
@@ -100,11 +104,11 @@ LasHeader read_las_header(const Source& source) {
   header.header_size = load<std::uint16_t>(bytes + kHeaderSize);
   header.points_at = load<std::uint32_t>(bytes + kPointsAt);
   header.vlr_count = load<std::uint32_t>(bytes + kVlrCount);
-  const auto format = static_cast<unsigned char>(bytes[kPointFormat]);
+  unsigned format = static_cast<unsigned char>(bytes[kPointFormat]);
   if ((format & 0xC0U) != 0) {
-    fail_at_byte(source, kPointFormat,
-                 "a compressed LAZ file, which g3r does not read; convert it, for example with \"laszip -i in.laz -o out.las\" or \"pdal "
-                 "translate in.laz out.las\"");
+    require_laz(source);
+    header.compressed = true;
+    format &= 0x7FU;
   }
   if (format > 10) fail_at_byte(source, kPointFormat, "expected point format 0 to 10, found " + std::to_string(format));
   header.point_format = format;
@@ -129,7 +133,7 @@ LasHeader read_las_header(const Source& source) {
     }
     header.count = std::max(count, header.count);
   }
-  if (header.count > (size - header.points_at) / header.record_bytes) {
+  if (!header.compressed && header.count > (size - header.points_at) / header.record_bytes) {
     fail_at_byte(source, header.points_at,
                  "truncated: " + std::to_string(header.count) + " points of " + std::to_string(header.record_bytes) +
                      " bytes declared, but only " + std::to_string(size - header.points_at) + " bytes follow (count too large)");

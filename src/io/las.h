@@ -22,6 +22,7 @@ struct LasField {
 struct LasHeader {
   unsigned minor = 0;         ///< version 1.minor
   unsigned point_format = 0;  ///< 0..10
+  bool compressed = false;    ///< LAZ: what follows points_at are not records
   std::size_t header_size = 0;
   std::size_t points_at = 0;  ///< byte offset of the first record
   std::size_t record_bytes = 0;
@@ -32,6 +33,7 @@ struct LasHeader {
   std::vector<LasField> fields;       ///< after X Y Z, described extra bytes included
   std::size_t undescribed_bytes = 0;  ///< extra bytes at the end of a record that no descriptor names
   std::size_t extra_vlr = 0;          ///< byte offset of the Extra Bytes record's header, 0 if there is none
+  std::size_t laszip_vlr = 0;         ///< the same of the record that says how a LAZ file is compressed
 };
 
 /// Byte offsets in the public header block.
@@ -40,10 +42,11 @@ inline constexpr std::size_t kMinor = 25, kHeaderSize = 94, kPointsAt = 96, kVlr
                              kLegacyCount = 107, kScale = 131, kOffset = 155, kBounds = 179, kWaveform = 227, kEvlrAt = 235,
                              kEvlrCount = 243, kCount = 247, kVlrHeader = 54, kDescriptor = 192;
 inline constexpr std::array<std::size_t, 11> kRecordSize = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
-inline constexpr unsigned kExtraBytes = 4;  // record id, user id "LASF_Spec"
+inline constexpr unsigned kExtraBytes = 4;       // record id, user id "LASF_Spec"
+inline constexpr unsigned kCompression = 22204;  // record id, user id "laszip encoded"
 }  // namespace las
 
-/// Reads and checks a header. Throws InvalidInput; for LAZ it names a converter.
+/// Reads and checks a header. Throws InvalidInput; for LAZ, where it cannot be read, with the name of a converter.
 LasHeader read_las_header(const Source& source);
 
 /// LAS's number of a type (1..10) in an extra-bytes descriptor.

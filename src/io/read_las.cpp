@@ -1,6 +1,8 @@
-// LAS 1.0 to 1.4, all point formats: coordinates as X scale + offset in double, every other field and described extra byte as a property.
+// LAS 1.0 to 1.4, all point formats (LAZ through unpack_laz()): coordinates as X scale + offset in double, every other field and described
+// extra byte as a property.
 #include "io/cloud_from_table.h"
 #include "io/las.h"
+#include "io/laz.h"
 #include "io/readers.h"
 #include "io/text.h"
 
@@ -58,6 +60,12 @@ void check_against_header(const Source& source, const LasHeader& header, Cloud& 
 
 Cloud read_las(const Source& source) {
   const LasHeader header = read_las_header(source);
+  if (header.compressed) {
+    const std::string unpacked = unpack_laz(source, header);
+    Cloud cloud = read_las({unpacked, source.name});
+    cloud.format.replace(0, 3, "laz");
+    return cloud;
+  }
   auto table = std::make_shared<Attributes>();
   table->dialect = Attributes::Dialect::kLas;
   table->elements.emplace_back();

@@ -1,0 +1,17 @@
+// LAZ, which is LAS with compressed points. Only laz.cpp knows LASzip; without it (no G3R_LASZIP_SOURCE) both functions throw.
+#pragma once
+
+#include "io/las.h"
+
+#include <string>
+
+namespace g3r::io {
+
+/// Throws InvalidInput, with the name of a converter, if LAZ files cannot be read.
+void require_laz(const Source& source);
+
+/// The LAS file that a LAZ file stands for: the same header, variable length records and records of points, byte for byte, and what follows
+/// the points. `header` is that of `source`. Throws InvalidInput. Takes up to 256 times the size of the file.
+std::string unpack_laz(const Source& source, const LasHeader& header);
+
+}  // namespace g3r::io
