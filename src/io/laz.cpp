@@ -19,8 +19,8 @@ namespace {
 
 using namespace las;
 
-// A file of equal points can be made as small as one likes. Lidar packs to a tenth; what unpacks to more than this many times the size of
-// its file is refused. Larger: more memory for hostile files.
+// What unpacks to more than this many times the size of its file is refused. Lidar packs to a tenth or so, equal points to a
+// two-thousandth. Larger: more memory for hostile files; smaller: regular grids are refused.
 constexpr std::uint64_t kMostRatio = 256;
 constexpr std::uint32_t kAnyChunks = 0xFFFFFFFF;  // as the size of chunks: the table gives that of each
 constexpr std::size_t kPoint14 = 30;              // bytes of a record of format 6 or later before its other items
@@ -277,12 +277,18 @@ void require_laz(const Source&) {}
 
 std::string unpack_laz(const Source& source, const LasHeader& header) {
   const Codec codec = read_codec(source, header);
-  if (header.count == 0) return plain_header(source, header, source.bytes.size());
+  if (header.count == 0) {
+    constexpr std::size_t kEmptyTable = 16;  // its place, version and number of chunks
+    if (find_rest(source, header, header.points_at) - header.points_at >= kEmptyTable + header.record_bytes)
+      fail_at_byte(source, kLegacyCount, "the header has no points (count 0), but compressed points follow it");
+    return plain_header(source, header, source.bytes.size());
+  }
   if (header.count > kMostRatio * source.bytes.size() / header.record_bytes) {
-    fail_at_byte(source, kLegacyCount,
-                 std::to_string(header.count) + " points of " + std::to_string(header.record_bytes) + " bytes in a file of " +
-                     std::to_string(source.bytes.size()) +
-                     " bytes, more than 256 times its size: the count is damaged or the file hostile");
+    fail_at_byte(
+        source, kLegacyCount,
+        std::to_string(header.count) + " points of " + std::to_string(header.record_bytes) + " bytes in a file of " +
+            std::to_string(source.bytes.size()) +
+            " bytes, more than 256 times its size: the count is damaged, or the points are all alike; then convert the file to LAS");
   }
   const std::size_t table = find_table(source, header);
   try {
