@@ -1,6 +1,6 @@
 #!/bin/bash
 # tools/laszip.sh DIR: fetches the sources of LASzip (Apache License 2.0) into DIR, for a build that reads LAZ:
-#   tools/laszip.sh build/laszip && cmake --preset release -DG3R_LASZIP_SOURCE=$PWD/build/laszip
+#   tools/laszip.sh build/laszip && cmake --preset release -DG3R_LASZIP_SOURCE=build/laszip
 # Debian 12 has no LASzip; they come from the source distribution of the package laszip on PyPI, of which only they are kept.
 set -euo pipefail
 folder=${1:?usage: tools/laszip.sh DIR}
