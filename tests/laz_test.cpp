@@ -16,6 +16,7 @@
 #include "sanitized.h"
 
 // LASzip's encoder keeps its list of chunks of different sizes for ever.
+// NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming): the sanitizer's name
 extern "C" const char* __lsan_default_suppressions() { return "leak:LASwritePoint::add_chunk_to_table\n"; }
 
 namespace g3r {
@@ -126,7 +127,8 @@ std::string compressed(const std::string& las, std::uint32_t chunk = 50000, unsi
   U8* how_bytes = nullptr;
   I32 how_size = 0;
   EXPECT_TRUE(how.pack(how_bytes, how_size));
-  const std::string record = vlr("laszip encoded", io::las::kCompression, std::string(reinterpret_cast<char*>(how_bytes), how_size));
+  const std::string record =
+      vlr("laszip encoded", io::las::kCompression, std::string(reinterpret_cast<char*>(how_bytes), static_cast<std::size_t>(how_size)));
 
   ByteStreamOutArrayLE stream;
   std::string laz = las.substr(0, header.points_at) + record;
@@ -178,7 +180,7 @@ TEST(Laz, EveryPointFormatUnpacksToTheBytesOfTheLasFile) {
       for (const std::uint32_t chunk : {50000U, 100U, 7U, kAnyChunks}) {
         EXPECT_TRUE(unpacked(compressed(las, chunk)) == las) << "format " << format << ", extra " << extra << ", chunks of " << chunk;
       }
-      for (const std::size_t count : {0, 1, 2}) {
+      for (const std::size_t count : {0U, 1U, 2U}) {
         const std::string small = las_file(format, count, extra);
         EXPECT_TRUE(unpacked(compressed(small)) == small) << "format " << format << ", " << count << " points";
       }
