@@ -11,8 +11,7 @@ namespace g3r::io {
 void require_laz(const Source& source);
 
 /// The LAS file that a LAZ file stands for: the same header, variable length records and records of points, byte for byte, and what follows
-/// the points. `header` is that of `source`. Throws InvalidInput, also if that
-/// would be more than 256 times the size of the file.
+/// the points. `header` is that of `source`. Throws InvalidInput, also if that would be more than 256 times the size of the file.
 std::string unpack_laz(const Source& source, const LasHeader& header);
 
 }  // namespace g3r::io
