@@ -35,7 +35,8 @@ fuzz_one() {
   else
     mkdir -p "$corpus"
   fi
-  "${run[@]}" "$programs/fuzz_$1" -max_total_time="$seconds" -timeout=30 -rss_limit_mb=2048 -max_len=4096 -print_final_stats=1 \
+  "${run[@]}" "$programs/fuzz_$1" -max_total_time="$seconds" -timeout=120 -report_slow_units=120 \
+    -rss_limit_mb=2048 -max_len=4096 -print_final_stats=1 \
     -artifact_prefix="$corpus." "${start[@]}" > "$corpus.log" 2>&1
 }
 
