@@ -2,9 +2,11 @@
 
 #include "cloud/point_tree.h"
 #include "cpu/parallel.h"
+#include "median.h"
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace g3r {
 namespace {
@@ -51,10 +53,6 @@ std::vector<double> smoothed_spacing(const std::vector<Vec3>& points, const std:
   return spacing;
 }
 
-double typical_spacing(std::vector<double> local) {
-  const auto middle = local.begin() + static_cast<std::ptrdiff_t>(local.size() / 2);
-  std::nth_element(local.begin(), middle, local.end());
-  return *middle;
-}
+double typical_spacing(std::vector<double> local) { return median(std::move(local)); }
 
 }  // namespace g3r

@@ -8,6 +8,7 @@
 
 #include "cpu/parallel.h"
 #include "g3r/error.h"
+#include "median.h"
 #include "mesh/field_contour.h"
 #include "mesh/field_denoise.h"
 #include "mesh/field_local_fit.h"
@@ -65,12 +66,6 @@ constexpr std::array<Reading, 5> kReadings{{{2, 0}, {1, 0.2}, {1, -0.2}, {1, 0.5
 void report(const Monitor& monitor, double fraction) {
   if (monitor.cancel != nullptr && monitor.cancel->load()) throw Cancelled();
   if (monitor.progress && !monitor.progress("mesh", fraction)) throw Cancelled();
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // Unit normals, the local spacing and, where the positions scatter, points moved onto the surface they scatter about.

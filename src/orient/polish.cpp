@@ -1,5 +1,6 @@
 #include "orient/polish.h"
 
+#include "median.h"
 #include "solve/energy_system.h"
 #include "solve/iterative_solver.h"
 #include "sum/fast_sum.h"
@@ -11,12 +12,6 @@ namespace g3r {
 namespace {
 
 constexpr double kMostArea = 3;  // of the areas handed in, and its inverse the least
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // `width` at the typical spacing, in proportion to the local one.
 Widths widths_of(double width, const Settings& settings, const std::vector<double>& spacing) {

@@ -1,5 +1,7 @@
 #include "orient/refine.h"
 
+#include "median.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -8,12 +10,6 @@ namespace g3r {
 namespace {
 
 constexpr double kFullSize = 0.5;  // share of the median from which a size no longer lowers the confidence
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double length(const Vec3& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
