@@ -97,14 +97,10 @@ double m2l_operations_per_second(double seconds) {
   AlignedVector<float> matrix(kOrder7 * kOrder7, 0.01F);
   AlignedVector<float> in(kOrder7 * kColumns, 1.0F);
   AlignedVector<float> out(kOrder7 * kColumns, 0.0F);
-  std::vector<const float*> from;
-  std::vector<float*> to;
-  for (std::size_t c = 0; c < kColumns; ++c) {
-    from.push_back(in.data() + c * kOrder7);
-    to.push_back(out.data() + c * kOrder7);
-  }
+  std::vector<cpu::Translation<float>> moves;
+  for (std::size_t c = 0; c < kColumns; ++c) moves.push_back({in.data() + c * kOrder7, out.data() + c * kOrder7, {}});
   return rate(seconds, [&] {
-    cpu::apply_matrix(matrix.data(), kOrder7, kOrder7, kOrder7, from.data(), to.data(), kColumns);
+    cpu::translate({matrix.data(), kOrder7, kOrder7, kOrder7}, moves.data(), kColumns, 1, kOrder7, false);
     return 2.0 * kOrder7 * kOrder7 * kColumns;
   });
 }

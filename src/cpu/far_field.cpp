@@ -5,7 +5,9 @@
 
 #include "sum/expansions.h"
 
+#include <array>
 #include <cstring>
+#include <type_traits>
 
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
@@ -300,62 +302,131 @@ void LocalToPoints(const LeafTask<T>& task) {
   }
 }
 
-constexpr std::size_t kTile = 8;  // columns per pass: 2 x 8 accumulators and their operands fit 32 registers
+constexpr std::size_t kTile = 8;  // expansions per pass: 2 x 8 accumulators and their operands fit 32 registers
 
-// Rows [row, row + kVectors vectors) of `count` <= kTile columns.
+// Rows [row, row + kVectors vectors) of the matrix times kCount expansions.
 template <class T, std::size_t kVectors, std::size_t kCount>
-HWY_INLINE void MatrixTile(const T* HWY_RESTRICT matrix, std::size_t columns, std::size_t stride, std::size_t row, const T* const* in,
-                           T* const* out) {
+HWY_INLINE void MultiplyTile(const TranslationMatrix<T>& matrix, std::size_t row, const T* const* from, Vec<T> (&sum)[kVectors][kCount]) {
   const Tag<T> d;
   const std::size_t lanes = hn::Lanes(d);
-  Vec<T> acc[kVectors][kCount];
   for (std::size_t v = 0; v < kVectors; ++v) {
-    for (std::size_t c = 0; c < kCount; ++c) acc[v][c] = hn::Load(d, out[c] + row + v * lanes);
+    for (std::size_t c = 0; c < kCount; ++c) sum[v][c] = hn::Zero(d);
   }
-  for (std::size_t j = 0; j < columns; ++j) {
-    const T* column = matrix + j * stride + row;
+  const T* column = matrix.data + row;
+  for (std::size_t j = 0; j < matrix.columns; ++j, column += matrix.stride) {
     Vec<T> m[kVectors];
     for (std::size_t v = 0; v < kVectors; ++v) m[v] = hn::Load(d, column + v * lanes);
     for (std::size_t c = 0; c < kCount; ++c) {
-      const Vec<T> value = hn::Set(d, in[c][j]);
-      for (std::size_t v = 0; v < kVectors; ++v) acc[v][c] = hn::MulAdd(m[v], value, acc[v][c]);
+      const Vec<T> value = hn::Set(d, from[c][j]);
+      for (std::size_t v = 0; v < kVectors; ++v) sum[v][c] = hn::MulAdd(m[v], value, sum[v][c]);
     }
   }
+}
+
+template <class T, std::size_t kVectors, std::size_t kCount>
+HWY_INLINE void TranslateTile(const TranslationMatrix<T>& matrix, std::size_t row, const T* const* from, T* const* to) {
+  const Tag<T> d;
+  const std::size_t lanes = hn::Lanes(d);
+  Vec<T> sum[kVectors][kCount];
+  MultiplyTile<T, kVectors, kCount>(matrix, row, from, sum);
+  for (std::size_t c = 0; c < kCount; ++c) {
+    for (std::size_t v = 0; v < kVectors; ++v) {
+      T* at = to[c] + row + v * lanes;
+      hn::Store(hn::Add(sum[v][c], hn::Load(d, at)), d, at);
+    }
+  }
+}
+
+// The matrix does not mix expansions, so moments are moved after it, where that is a few operations per vector.
+template <class T, std::size_t kVectors, std::size_t kCount>
+HWY_INLINE void TranslateStokesTile(const TranslationMatrix<T>& matrix, std::size_t row, const T* const* from, T* const* to,
+                                    const std::array<T, 3>& move) {
+  const Tag<T> d;
+  const std::size_t lanes = hn::Lanes(d);
+  Vec<T> sum[kVectors][kCount];
+  MultiplyTile<T, kVectors, kCount>(matrix, row, from, sum);
   for (std::size_t v = 0; v < kVectors; ++v) {
-    for (std::size_t c = 0; c < kCount; ++c) hn::Store(acc[v][c], d, out[c] + row + v * lanes);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const Vec<T> shift = hn::Set(d, move[a]);
+      sum[v][1 + a] = hn::MulAdd(shift, sum[v][0], sum[v][1 + a]);
+      sum[v][7] = hn::MulAdd(shift, sum[v][4 + a], sum[v][7]);
+    }
+    for (std::size_t c = 0; c < kCount; ++c) {
+      T* at = to[c] + row + v * lanes;
+      hn::Store(hn::Add(sum[v][c], hn::Load(d, at)), d, at);
+    }
   }
 }
 
 template <class T, std::size_t kVectors>
-void MatrixRows(const T* matrix, std::size_t columns, std::size_t stride, std::size_t row, const T* const* in, T* const* out,
-                std::size_t count) {
+HWY_INLINE void TranslateRows(const TranslationMatrix<T>& matrix, std::size_t row, const T* const* from, T* const* to, std::size_t count) {
   std::size_t c = 0;
-  for (; c + kTile <= count; c += kTile) MatrixTile<T, kVectors, kTile>(matrix, columns, stride, row, in + c, out + c);
-  for (; c + 4 <= count; c += 4) MatrixTile<T, kVectors, 4>(matrix, columns, stride, row, in + c, out + c);
-  for (; c + 2 <= count; c += 2) MatrixTile<T, kVectors, 2>(matrix, columns, stride, row, in + c, out + c);
-  for (; c < count; ++c) MatrixTile<T, kVectors, 1>(matrix, columns, stride, row, in + c, out + c);
+  for (; c + kTile <= count; c += kTile) TranslateTile<T, kVectors, kTile>(matrix, row, from + c, to + c);
+  for (; c + 4 <= count; c += 4) TranslateTile<T, kVectors, 4>(matrix, row, from + c, to + c);
+  for (; c + 2 <= count; c += 2) TranslateTile<T, kVectors, 2>(matrix, row, from + c, to + c);
+  for (; c < count; ++c) TranslateTile<T, kVectors, 1>(matrix, row, from + c, to + c);
+}
+
+// Calls use(vectors (as a type), first row) for all rows.
+template <class T, class Use>
+HWY_INLINE void ForRows(std::size_t rows, const Use& use) {
+  const std::size_t lanes = hn::Lanes(Tag<T>());
+  std::size_t row = 0;
+  for (; row + 2 * lanes <= rows; row += 2 * lanes) use(std::integral_constant<std::size_t, 2>(), row);
+  for (; row < rows; row += lanes) use(std::integral_constant<std::size_t, 1>(), row);
 }
 
 template <class T>
-void ApplyMatrix(const T* matrix, std::size_t columns, std::size_t rows, std::size_t stride, const T* const* in, T* const* out,
-                 std::size_t count) {
-  const std::size_t lanes = hn::Lanes(Tag<T>());
-  std::size_t row = 0;
-  for (; row + 2 * lanes <= rows; row += 2 * lanes) MatrixRows<T, 2>(matrix, columns, stride, row, in, out, count);
-  for (; row < rows; row += lanes) MatrixRows<T, 1>(matrix, columns, stride, row, in, out, count);
+void TranslateStokes(const TranslationMatrix<T>& matrix, const Translation<T>* translations, std::size_t count, std::size_t channels,
+                     std::size_t distance) {
+  const T* from[kMaxChannels];
+  T* to[kMaxChannels];
+  for (std::size_t i = 0; i < count; ++i) {
+    const Translation<T>& t = translations[i];
+    for (std::size_t c = 0; c < channels; ++c) {
+      from[c] = t.from + c * distance;
+      to[c] = t.to + c * distance;
+    }
+    ForRows<T>(matrix.rows, [&](auto vectors, std::size_t row) HWY_ATTR {
+      if (channels == kStokesChannels) {
+        TranslateStokesTile<T, vectors, kStokesChannels>(matrix, row, from, to, t.move);
+      } else {
+        TranslateStokesTile<T, vectors, kStokesChannels + 1>(matrix, row, from, to, t.move);
+      }
+    });
+  }
+}
+
+template <class T>
+void Translate(const TranslationMatrix<T>& matrix, const Translation<T>* translations, std::size_t count, std::size_t channels,
+               std::size_t distance, bool stokes) {
+  if (stokes) return TranslateStokes(matrix, translations, count, channels, distance);
+  constexpr std::size_t kBatch = 64;  // expansions; all channels of a translation, whatever their number
+  const T* from[kBatch];
+  T* to[kBatch];
+  for (std::size_t i = 0; i < count;) {
+    std::size_t size = 0;
+    for (; i < count && size + channels <= kBatch; ++i) {
+      for (std::size_t c = 0; c < channels; ++c, ++size) {
+        from[size] = translations[i].from + c * distance;
+        to[size] = translations[i].to + c * distance;
+      }
+    }
+    ForRows<T>(matrix.rows, [&](auto vectors, std::size_t row) HWY_ATTR { TranslateRows<T, vectors>(matrix, row, from, to, size); });
+  }
 }
 
 void PointsToMultipoleFloat(const LeafTask<float>& task) { PointsToMultipole(task); }
 void PointsToMultipoleDouble(const LeafTask<double>& task) { PointsToMultipole(task); }
 void LocalToPointsFloat(const LeafTask<float>& task) { LocalToPoints(task); }
 void LocalToPointsDouble(const LeafTask<double>& task) { LocalToPoints(task); }
-void ApplyMatrixFloat(const float* matrix, std::size_t columns, std::size_t rows, std::size_t stride, const float* const* in,
-                      float* const* out, std::size_t count) {
-  ApplyMatrix(matrix, columns, rows, stride, in, out, count);
+void TranslateFloat(const TranslationMatrix<float>& matrix, const Translation<float>* translations, std::size_t count, std::size_t channels,
+                    std::size_t distance, bool stokes) {
+  Translate(matrix, translations, count, channels, distance, stokes);
 }
-void ApplyMatrixDouble(const double* matrix, std::size_t columns, std::size_t rows, std::size_t stride, const double* const* in,
-                       double* const* out, std::size_t count) {
-  ApplyMatrix(matrix, columns, rows, stride, in, out, count);
+void TranslateDouble(const TranslationMatrix<double>& matrix, const Translation<double>* translations, std::size_t count,
+                     std::size_t channels, std::size_t distance, bool stokes) {
+  Translate(matrix, translations, count, channels, distance, stokes);
 }
 
 }  // namespace g3r::cpu::HWY_NAMESPACE
@@ -368,8 +439,8 @@ HWY_EXPORT(PointsToMultipoleFloat);
 HWY_EXPORT(PointsToMultipoleDouble);
 HWY_EXPORT(LocalToPointsFloat);
 HWY_EXPORT(LocalToPointsDouble);
-HWY_EXPORT(ApplyMatrixFloat);
-HWY_EXPORT(ApplyMatrixDouble);
+HWY_EXPORT(TranslateFloat);
+HWY_EXPORT(TranslateDouble);
 
 // basis + accumulators + transposed records (x y z width and at most 3 + 2 x 9 fields)
 std::size_t leaf_workspace(std::size_t coefficients, std::size_t channels) { return (coefficients * (1 + channels) + 32) * kLanes; }
@@ -378,13 +449,13 @@ void points_to_multipole(const LeafTask<float>& task) { HWY_DYNAMIC_DISPATCH(Poi
 void points_to_multipole(const LeafTask<double>& task) { HWY_DYNAMIC_DISPATCH(PointsToMultipoleDouble)(task); }
 void local_to_points(const LeafTask<float>& task) { HWY_DYNAMIC_DISPATCH(LocalToPointsFloat)(task); }
 void local_to_points(const LeafTask<double>& task) { HWY_DYNAMIC_DISPATCH(LocalToPointsDouble)(task); }
-void apply_matrix(const float* matrix, std::size_t columns, std::size_t rows, std::size_t stride, const float* const* in, float* const* out,
-                  std::size_t count) {
-  HWY_DYNAMIC_DISPATCH(ApplyMatrixFloat)(matrix, columns, rows, stride, in, out, count);
+void translate(const TranslationMatrix<float>& matrix, const Translation<float>* translations, std::size_t count, std::size_t channels,
+               std::size_t distance, bool stokes) {
+  HWY_DYNAMIC_DISPATCH(TranslateFloat)(matrix, translations, count, channels, distance, stokes);
 }
-void apply_matrix(const double* matrix, std::size_t columns, std::size_t rows, std::size_t stride, const double* const* in,
-                  double* const* out, std::size_t count) {
-  HWY_DYNAMIC_DISPATCH(ApplyMatrixDouble)(matrix, columns, rows, stride, in, out, count);
+void translate(const TranslationMatrix<double>& matrix, const Translation<double>* translations, std::size_t count, std::size_t channels,
+               std::size_t distance, bool stokes) {
+  HWY_DYNAMIC_DISPATCH(TranslateDouble)(matrix, translations, count, channels, distance, stokes);
 }
 
 }  // namespace g3r::cpu

@@ -4,6 +4,7 @@
 
 #include "cpu/near_field.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -54,12 +55,29 @@ void points_to_multipole(const LeafTask<double>& task);
 void local_to_points(const LeafTask<float>& task);
 void local_to_points(const LeafTask<double>& task);
 
-/// out[c] += matrix in[c] for `count` vectors. matrix: `columns` x `stride`, column after column, zero padded, of which the first `rows`
-/// (whole vectors, at most `stride`) of every column are used; in: `columns` each, out: `rows` each.
-/// Every column's result is the same whatever other columns go with it.
-void apply_matrix(const float* matrix, std::size_t columns, std::size_t rows, std::size_t stride, const float* const* in, float* const* out,
-                  std::size_t count);
-void apply_matrix(const double* matrix, std::size_t columns, std::size_t rows, std::size_t stride, const double* const* in,
-                  double* const* out, std::size_t count);
+/// A square matrix acting on the first coefficients of expansions, column after column, every column zero padded to `stride`.
+template <class T>
+struct TranslationMatrix {
+  const T* data;
+  std::size_t columns;
+  std::size_t rows;  ///< that are used, whole vectors, at most `stride`
+  std::size_t stride;
+};
+
+/// The expansions of one node moved to another: `channels` expansions one after the other.
+template <class T>
+struct Translation {
+  const T* from;
+  T* to;
+  std::array<T, 3> move;  ///< old centre - new centre; of kStokesWinding only
+};
+
+/// to += matrix from, for every expansion of `count` translations. Those of kStokesWinding (`stokes`) also move their moments:
+/// E_a += move_a W, Q += move . P. `distance`: from one expansion of a node to its next.
+/// Every result is the same whatever other translations go with it.
+void translate(const TranslationMatrix<float>& matrix, const Translation<float>* translations, std::size_t count, std::size_t channels,
+               std::size_t distance, bool stokes);
+void translate(const TranslationMatrix<double>& matrix, const Translation<double>* translations, std::size_t count, std::size_t channels,
+               std::size_t distance, bool stokes);
 
 }  // namespace g3r::cpu

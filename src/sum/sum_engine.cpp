@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 namespace g3r {
 namespace {
@@ -15,7 +14,6 @@ namespace {
 constexpr std::size_t kLeafBlock = 4;                 // leaves per parallel block
 constexpr std::size_t kNodeBlock = 32;                // nodes per parallel block
 constexpr std::size_t kKeptMatrixBytes = 128u << 20;  // M2L matrices kept in memory up to this; beyond, made when needed
-constexpr std::size_t kColumnBatch = 64;              // columns handed to one matrix product
 
 std::size_t expansion_channels(cpu::NearForm form, int batch, bool local_widths) {
   switch (form) {
@@ -36,19 +34,6 @@ void store_columns(const std::vector<double>& matrix, std::size_t n, std::size_t
   for (std::size_t j = 0; j < n; ++j) {
     for (std::size_t i = 0; i < n; ++i) out[j * stride + i] = static_cast<T>(scale * (transposed ? matrix[j * n + i] : matrix[i * n + j]));
     for (std::size_t i = n; i < stride; ++i) out[j * stride + i] = T{0};
-  }
-}
-
-// Stokes expansions about a new centre: v = old centre - new centre. E_a += v_a W, Q += v . P; the rest unchanged.
-template <class T>
-void recentre_stokes(const T* in, std::size_t stride, std::size_t channels, const Vec3& v, T* out) {
-  std::memcpy(out, in, channels * stride * sizeof(T));
-  for (std::size_t a = 0; a < 3; ++a) {
-    const T va = static_cast<T>(v[a]);
-    for (std::size_t i = 0; i < stride; ++i) {
-      out[(1 + a) * stride + i] += va * in[i];
-      out[7 * stride + i] += va * in[(4 + a) * stride + i];
-    }
   }
 }
 
@@ -83,49 +68,11 @@ int order_for(cpu::NearForm form, int batch, int order) {
   return green && batch > 1 ? std::min(order, std::max(kLeast, order - 1)) : order;
 }
 
-// A matrix of `columns` columns of `stride` entries each, zero padded to whole vectors, of which the first `rows` matter; acts on the first
-// coefficients of an expansion.
 template <class T>
-struct PaddedMatrix {
-  const T* data;
-  std::size_t columns;
-  std::size_t rows;
-  std::size_t stride;
-};
-
-// Collects columns that go through one matrix, and applies it in batches.
-template <class T>
-class ColumnBatch {
- public:
-  ColumnBatch(std::size_t stride, std::size_t channels, bool stokes)
-      : stride_(stride), channels_(channels), stokes_(stokes), moved_(stokes ? (kColumnBatch / channels + 1) * channels * stride : 0) {}
-
-  void add(const PaddedMatrix<T>& matrix, const T* in, T* out, const Vec3& old_minus_new) {
-    if (stokes_) {
-      T* to = moved_.data() + in_.size() * stride_;
-      recentre_stokes(in, stride_, channels_, old_minus_new, to);
-      in = to;
-    }
-    for (std::size_t c = 0; c < channels_; ++c) {
-      in_.push_back(in + c * stride_);
-      out_.push_back(out + c * stride_);
-    }
-    if (in_.size() + channels_ > kColumnBatch) flush(matrix);
-  }
-  void flush(const PaddedMatrix<T>& matrix) {
-    cpu::apply_matrix(matrix.data, matrix.columns, matrix.rows, matrix.stride, in_.data(), out_.data(), in_.size());
-    in_.clear();
-    out_.clear();
-  }
-
- private:
-  std::size_t stride_;
-  std::size_t channels_;
-  bool stokes_;
-  AlignedVector<T> moved_;
-  std::vector<const T*> in_;
-  std::vector<T*> out_;
-};
+cpu::Translation<T> translation(const T* from, T* to, const OctreeNode& old_node, const OctreeNode& new_node) {
+  const Vec3 move = difference(old_node.centre(), new_node.centre());
+  return {from, to, {static_cast<T>(move[0]), static_cast<T>(move[1]), static_cast<T>(move[2])}};
+}
 
 }  // namespace
 
@@ -292,15 +239,15 @@ void SumEngine<T>::upward(cpu::NearForm form, int batch, std::size_t record_size
   for (std::size_t level = tree.levels(); level-- > 0;) {
     const std::size_t first = tree.level_begin[level];
     parallel::for_blocks(tree.level_begin[level + 1] - first, kNodeBlock, [&](std::size_t begin, std::size_t end) {
-      ColumnBatch<T> batch_of(stride_, channels_, stokes);
       for (std::size_t i = first + begin; i < first + end; ++i) {
         const OctreeNode& node = tree.nodes[i];
         if (node.leaf()) continue;
         std::fill_n(multipole(i), channels_ * stride_, T{0});
         for (std::uint32_t c = node.first_child; c < node.first_child + node.child_count; ++c) {
-          const PaddedMatrix<T> matrix{sources_->child_to_parent[octant(tree.nodes[c])].data(), coefficients_, stride_, full_stride};
-          batch_of.add(matrix, multipole(c), multipole(i), difference(tree.nodes[c].centre(), node.centre()));
-          batch_of.flush(matrix);
+          const cpu::TranslationMatrix<T> matrix{sources_->child_to_parent[octant(tree.nodes[c])].data(), coefficients_, stride_,
+                                                 full_stride};
+          const cpu::Translation<T> move = translation<T>(multipole(c), multipole(i), tree.nodes[c], node);
+          cpu::translate(matrix, &move, 1, channels_, stride_, stokes);
         }
       }
     });
@@ -320,25 +267,26 @@ void SumEngine<T>::across(cpu::NearForm form) {
         const std::size_t first = chunk * kTargetChunk;
         const std::size_t last = std::min(first + kTargetChunk, tree.nodes.size());
         std::fill(local(first), local(last - 1) + channels_ * stride_, T{0});
-        ColumnBatch<T> batch_of(stride_, channels_, stokes);
+        std::vector<cpu::Translation<T>> moves;
         const std::size_t full = coefficient_count(plan_.order);
         AlignedVector<T> made(kept ? 0 : full * cpu::padded_count(full));
         for (std::size_t i = lists_.chunk_begin[chunk]; i < lists_.chunk_begin[chunk + 1];) {
           const std::uint32_t offset = lists_.far[i].offset;
           const std::size_t n = coefficient_count(offset_order_[offset]);
           const std::size_t used = std::min(n, coefficients_);
-          const PaddedMatrix<T> matrix{kept ? matrices_.data() + matrix_begin_[offset] : made.data(), used, cpu::padded_count(used),
-                                       cpu::padded_count(n)};
+          const cpu::TranslationMatrix<T> matrix{kept ? matrices_.data() + matrix_begin_[offset] : made.data(), used,
+                                                 cpu::padded_count(used), cpu::padded_count(n)};
           if (!kept) {
             store_columns(MultipoleToLocal(offset_order_[offset]).matrix(lists_.offsets[offset]), n, matrix.stride, false, 1.0,
                           made.data());
           }
+          moves.clear();
           for (; i < lists_.chunk_begin[chunk + 1] && lists_.far[i].offset == offset; ++i) {
             const FarPair& pair = lists_.far[i];
-            const Vec3 move = stokes ? difference(source_tree.nodes[pair.source].centre(), tree.nodes[pair.target].centre()) : Vec3{};
-            batch_of.add(matrix, multipole(pair.source), local(pair.target), move);
+            moves.push_back(
+                translation<T>(multipole(pair.source), local(pair.target), source_tree.nodes[pair.source], tree.nodes[pair.target]));
           }
-          batch_of.flush(matrix);
+          cpu::translate(matrix, moves.data(), moves.size(), channels_, stride_, stokes);
         }
       },
       cancel_);
@@ -352,12 +300,11 @@ void SumEngine<T>::downward(cpu::NearForm form) {
   for (std::size_t level = 1; level < tree.levels(); ++level) {
     const std::size_t first = tree.level_begin[level];
     parallel::for_blocks(tree.level_begin[level + 1] - first, kNodeBlock, [&](std::size_t begin, std::size_t end) {
-      ColumnBatch<T> batch_of(stride_, channels_, stokes);
       for (std::size_t i = first + begin; i < first + end; ++i) {
         const OctreeNode& node = tree.nodes[i];
-        const PaddedMatrix<T> matrix{sources_->parent_to_child[octant(node)].data(), coefficients_, stride_, full_stride};
-        batch_of.add(matrix, local(node.parent), local(i), difference(tree.nodes[node.parent].centre(), node.centre()));
-        batch_of.flush(matrix);
+        const cpu::TranslationMatrix<T> matrix{sources_->parent_to_child[octant(node)].data(), coefficients_, stride_, full_stride};
+        const cpu::Translation<T> move = translation<T>(local(node.parent), local(i), tree.nodes[node.parent], node);
+        cpu::translate(matrix, &move, 1, channels_, stride_, stokes);
       }
     });
   }

@@ -82,17 +82,6 @@ void measure(const std::vector<Vec3>& points, const std::vector<double>& widths,
   }
 }
 
-}  // namespace
-
-double OctreeNode::half_side() const { return std::ldexp(1.0, -level); }
-
-Vec3 OctreeNode::centre() const {
-  const double half = half_side();
-  return {(2 * cell[0] + 1) * half - 1, (2 * cell[1] + 1) * half - 1, (2 * cell[2] + 1) * half - 1};
-}
-
-namespace {
-
 // Splits level by level every node that `wanted(node)` names; children start as `split` makes them.
 template <class Wanted>
 Octree split_while(std::size_t points, const std::vector<std::uint64_t>& morton, const Wanted& wanted) {

@@ -23,8 +23,13 @@ struct OctreeNode {
 
   [[nodiscard]] bool leaf() const { return child_count == 0; }
   [[nodiscard]] std::uint32_t count() const { return end - begin; }
-  [[nodiscard]] double half_side() const;  ///< 2^-level
-  [[nodiscard]] Vec3 centre() const;       ///< exact
+  /// 2^-level
+  [[nodiscard]] double half_side() const { return 1.0 / static_cast<double>(1U << static_cast<unsigned>(level)); }
+  /// Exact.
+  [[nodiscard]] Vec3 centre() const {
+    const double half = half_side();
+    return {(2 * cell[0] + 1) * half - 1, (2 * cell[1] + 1) * half - 1, (2 * cell[2] + 1) * half - 1};
+  }
 };
 
 /// Octree over points in canonical order (cloud/canonical_cloud.h). Leaves hold at most `leaf_points`, except at the deepest level (21),
