@@ -99,7 +99,7 @@ void describe(const Problem& problem, const PointsView& points, const Options& o
   stats.solver = settings.dense ? "dense" : "cg";
   stats.harmonics = settings.method == Method::kGreen ? format_harmonics(settings.harmonics) : "1,x,y,z";
   stats.sums = settings.dense || settings.sums.direct ? "direct" : "hierarchical";
-  stats.accuracy = settings.sums.direct ? 0 : options.accuracy;
+  stats.accuracy = settings.sums.direct ? 0 : settings.accuracy;
   stats.tolerance = settings.tolerance;
   stats.threads = parallel::thread_count(options.threads);
   stats.planned_memory_bytes = planned_memory(settings, points.count, cloud.size());
@@ -183,7 +183,7 @@ Solution solve_on_clusters(const Problem& problem, Stages& stages, Stats& stats)
   const Settings& s = problem.settings;
   stages.begin("solve");
   const Clusters clusters = cluster_points(problem.cloud.points, problem.cloud.morton, s.cluster_side);
-  FastSum sum(clusters.points, clusters.morton, Widths(s.epsilon), s.sums, stages.cancel());
+  FastSum sum(clusters.points, clusters.morton, Widths(s.epsilon), s.first_sums, stages.cancel());
   EnergySystem system(sum, s.damping, s.winding_weight, clusters.multiplicity);
   IterativeResult result = solve_iteratively(system, s.schedule, s.tolerance, {},
                                              [&](int step, int steps, double) { stages.progress(static_cast<double>(step) / steps); });

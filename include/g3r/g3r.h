@@ -78,9 +78,10 @@ struct Options {
   std::string harmonics;    ///< subset instead of a degree: "1,x,y,z", "degree:0-2", "x,y,z,xy"
   std::string wnnc_widths;  ///< method wnnc: "density", or the authors' "clean", "scan", "noise-0.25", "noise-0.5", "noise-1", "sparse"
   Solver solver = Solver::kAuto;
-  std::string schedule;    ///< iterations, for example "20 sd 60 cg"
-  double tolerance = -1;   ///< stop when the relative residual of the normal equations falls below; 0: never; -1: preset's
-  double accuracy = 1e-2;  ///< relative l2 error allowed in the hierarchical sums, 1e-6..1e-1; 0: direct sums. 1e-3 gives the same normals
+  std::string schedule;   ///< iterations, for example "20 sd 60 cg"
+  double tolerance = -1;  ///< stop when the relative residual of the normal equations falls below; 0: never; -1: preset's
+  double accuracy =
+      -1;  ///< relative l2 error allowed in the hierarchical sums, 1e-6..1e-1; 0: direct; -1: 1e-2, or 2e-2 where that is enough
   bool condition_number = false;  ///< dense solver only: also compute the condition number
   int threads = 0;                ///< 0: all cores. The result does not depend on it
   std::uint64_t seed = 0;         ///< reserved for steps that sample; the present method draws no random number

@@ -47,7 +47,8 @@ IterativeResult solve_coarse_to_fine(const std::vector<Vec3>& points, const std:
                                      Stages& stages) {
   std::vector<Vec3> start = coarse_gradient(points, morton, settings, stages);
   const bool coarsest = start.empty();
-  FastSum sum(points, morton, Widths(coarsest ? settings.coarsest_epsilon : settings.epsilon), settings.sums, stages.cancel());
+  FastSum sum(points, morton, Widths(coarsest ? settings.coarsest_epsilon : settings.epsilon),
+              coarsest ? settings.first_sums : settings.sums, stages.cancel());
   if (!coarsest) gradient_to_areas(sum, {settings.spacing * settings.spacing}, start);
   std::unique_ptr<LinearSystem> system;
   if (settings.method == Method::kGreen) {

@@ -36,7 +36,9 @@ struct Settings {
   std::string schedule_text;
   double tolerance = 0;          ///< stop at this relative residual
   double accepted_residual = 0;  ///< at or below this the result counts as converged
-  SumPlan sums;
+  double accuracy = 0;           ///< of the sums
+  SumPlan first_sums;            ///< of the solve from eta = 0
+  SumPlan sums;                  ///< of everything after it
 };
 
 /// `noise`: estimate_noise(). Throws InvalidInput for an option out of range, naming it and the range.

@@ -69,9 +69,8 @@ int order_for(cpu::NearForm form, int batch, int order) {
 }
 
 template <class T>
-cpu::Translation<T> translation(const T* from, T* to, const OctreeNode& old_node, const OctreeNode& new_node) {
-  const Vec3 move = difference(old_node.centre(), new_node.centre());
-  return {from, to, {static_cast<T>(move[0]), static_cast<T>(move[1]), static_cast<T>(move[2])}};
+std::array<T, 3> moved(const Vec3& v) {
+  return {static_cast<T>(v[0]), static_cast<T>(v[1]), static_cast<T>(v[2])};
 }
 
 }  // namespace
@@ -246,8 +245,9 @@ void SumEngine<T>::upward(cpu::NearForm form, int batch, std::size_t record_size
         for (std::uint32_t c = node.first_child; c < node.first_child + node.child_count; ++c) {
           const cpu::TranslationMatrix<T> matrix{sources_->child_to_parent[octant(tree.nodes[c])].data(), coefficients_, stride_,
                                                  full_stride};
-          const cpu::Translation<T> move = translation<T>(multipole(c), multipole(i), tree.nodes[c], node);
-          cpu::translate(matrix, &move, 1, channels_, stride_, stokes);
+          const Vec3 move = difference(tree.nodes[c].centre(), node.centre());
+          const cpu::Translation<T> up{multipole(c), multipole(i), moved<T>(move)};
+          cpu::translate(matrix, &up, 1, channels_, stride_, stokes);
         }
       }
     });
@@ -257,7 +257,6 @@ void SumEngine<T>::upward(cpu::NearForm form, int batch, std::size_t record_size
 template <class T>
 void SumEngine<T>::across(cpu::NearForm form) {
   const Octree& tree = *target_tree_;
-  const Octree& source_tree = sources_->tree;
   locals_.resize(tree.nodes.size() * channels_ * stride_);
   const bool stokes = form == cpu::NearForm::kStokesWinding;
   const bool kept = !matrices_.empty();
@@ -280,11 +279,13 @@ void SumEngine<T>::across(cpu::NearForm form) {
             store_columns(MultipoleToLocal(offset_order_[offset]).matrix(lists_.offsets[offset]), n, matrix.stride, false, 1.0,
                           made.data());
           }
+          const Offset& displaced = lists_.offsets[offset];
+          std::size_t level = 0;  // of the target; a group's targets ascend, and nodes are numbered level by level
           moves.clear();
           for (; i < lists_.chunk_begin[chunk + 1] && lists_.far[i].offset == offset; ++i) {
             const FarPair& pair = lists_.far[i];
-            moves.push_back(
-                translation<T>(multipole(pair.source), local(pair.target), source_tree.nodes[pair.source], tree.nodes[pair.target]));
+            while (pair.target >= tree.level_begin[level + 1]) ++level;
+            moves.push_back({multipole(pair.source), local(pair.target), moved<T>(displaced.to_source(level))});
           }
           cpu::translate(matrix, moves.data(), moves.size(), channels_, stride_, stokes);
         }
@@ -303,8 +304,9 @@ void SumEngine<T>::downward(cpu::NearForm form) {
       for (std::size_t i = first + begin; i < first + end; ++i) {
         const OctreeNode& node = tree.nodes[i];
         const cpu::TranslationMatrix<T> matrix{sources_->parent_to_child[octant(node)].data(), coefficients_, stride_, full_stride};
-        const cpu::Translation<T> move = translation<T>(local(node.parent), local(i), tree.nodes[node.parent], node);
-        cpu::translate(matrix, &move, 1, channels_, stride_, stokes);
+        const Vec3 move = difference(tree.nodes[node.parent].centre(), node.centre());
+        const cpu::Translation<T> down{local(node.parent), local(i), moved<T>(move)};
+        cpu::translate(matrix, &down, 1, channels_, stride_, stokes);
       }
     });
   }

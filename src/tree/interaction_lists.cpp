@@ -4,6 +4,7 @@
 #include "cpu/parallel.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <unordered_map>
@@ -137,43 +138,74 @@ Offset offset_of(const OctreeNode& t, const OctreeNode& s) {
   return offset;
 }
 
-struct OffsetHash {
-  std::size_t operator()(const Offset& o) const {
-    std::uint64_t h = static_cast<std::uint32_t>(o.level_difference);
-    for (const std::int32_t d : o.displacement) h = (h ^ static_cast<std::uint32_t>(d)) * 0x9e3779b97f4a7c15ULL;
-    return h ^ h >> 29;
+// Numbers distinct offsets in order of appearance. Open addressing: one probe and one comparison for most of millions of pairs.
+class OffsetNumbers {
+ public:
+  std::uint32_t number(const Offset& offset) {
+    if (2 * offsets_.size() >= slots_.size()) grow();
+    std::uint32_t& slot = find(offset);
+    if (slot == kFree) {
+      slot = static_cast<std::uint32_t>(offsets_.size());
+      offsets_.push_back(offset);
+    }
+    return slot;
   }
+  [[nodiscard]] const std::vector<Offset>& offsets() const { return offsets_; }
+
+ private:
+  static constexpr std::uint32_t kFree = 0xffffffffu;
+  static constexpr std::size_t kFirstSlots = 1024;
+
+  std::uint32_t& find(const Offset& o) {
+    std::uint64_t hash = static_cast<std::uint32_t>(o.level_difference);
+    for (const std::int32_t d : o.displacement) hash = (hash ^ static_cast<std::uint32_t>(d)) * 0x9e3779b97f4a7c15ULL;
+    std::size_t at = (hash ^ hash >> 29) & (slots_.size() - 1);
+    while (slots_[at] != kFree && offsets_[slots_[at]] != o) at = (at + 1) & (slots_.size() - 1);
+    return slots_[at];
+  }
+  void grow() {
+    slots_.assign(slots_.empty() ? kFirstSlots : 2 * slots_.size(), kFree);
+    for (std::uint32_t i = 0; i < offsets_.size(); ++i) find(offsets_[i]) = i;
+  }
+
+  std::vector<Offset> offsets_;
+  std::vector<std::uint32_t> slots_;  // a power of two of them
 };
 
 // Gives every far pair the index of its offset in the sorted list of distinct offsets.
 void index_offsets(const Octree& targets, const Octree& sources, InteractionLists& lists) {
   const std::size_t chunks = lists.chunk_begin.size() - 1;
-  std::vector<std::unordered_map<Offset, std::uint32_t, OffsetHash>> local(chunks);
-  std::vector<std::vector<Offset>> found(chunks);
+  std::vector<OffsetNumbers> found(chunks);
   parallel::for_each(chunks, [&](std::size_t c) {
     for (std::size_t i = lists.chunk_begin[c]; i < lists.chunk_begin[c + 1]; ++i) {
       FarPair& pair = lists.far[i];
-      const Offset offset = offset_of(targets.nodes[pair.target], sources.nodes[pair.source]);
-      const auto [where, fresh] = local[c].try_emplace(offset, static_cast<std::uint32_t>(found[c].size()));
-      if (fresh) found[c].push_back(offset);
-      pair.offset = where->second;
+      pair.offset = found[c].number(offset_of(targets.nodes[pair.target], sources.nodes[pair.source]));
     }
   });
-  for (const auto& offsets : found) lists.offsets.insert(lists.offsets.end(), offsets.begin(), offsets.end());
+  for (const OffsetNumbers& part : found) lists.offsets.insert(lists.offsets.end(), part.offsets().begin(), part.offsets().end());
   std::sort(lists.offsets.begin(), lists.offsets.end());
   lists.offsets.erase(std::unique(lists.offsets.begin(), lists.offsets.end()), lists.offsets.end());
   parallel::for_each(chunks, [&](std::size_t c) {
-    std::vector<std::uint32_t> global(found[c].size());
+    const std::vector<Offset>& local = found[c].offsets();
+    std::vector<std::uint32_t> global(local.size());
     for (std::size_t k = 0; k < global.size(); ++k) {
       global[k] =
-          static_cast<std::uint32_t>(std::lower_bound(lists.offsets.begin(), lists.offsets.end(), found[c][k]) - lists.offsets.begin());
+          static_cast<std::uint32_t>(std::lower_bound(lists.offsets.begin(), lists.offsets.end(), local[k]) - lists.offsets.begin());
     }
+    // Offset, target within the chunk and source as one number: sorted several times faster than three.
+    constexpr unsigned kSourceBits = 32;
+    constexpr unsigned kTargetBits = std::bit_width(kTargetChunk - 1);
     const auto begin = lists.far.begin() + static_cast<std::ptrdiff_t>(lists.chunk_begin[c]);
     const auto end = lists.far.begin() + static_cast<std::ptrdiff_t>(lists.chunk_begin[c + 1]);
-    for (auto pair = begin; pair != end; ++pair) pair->offset = global[pair->offset];
-    std::sort(begin, end, [](const FarPair& a, const FarPair& b) {
-      if (a.offset != b.offset) return a.offset < b.offset;
-      return a.target != b.target ? a.target < b.target : a.source < b.source;
+    std::vector<std::uint64_t> keys(static_cast<std::size_t>(end - begin));
+    std::transform(begin, end, keys.begin(), [&](const FarPair& pair) {
+      return (std::uint64_t{global[pair.offset]} << kTargetBits | pair.target % kTargetChunk) << kSourceBits | pair.source;
+    });
+    std::sort(keys.begin(), keys.end());
+    std::transform(keys.begin(), keys.end(), begin, [&](std::uint64_t key) {
+      const std::uint64_t target = key >> kSourceBits;
+      return FarPair{static_cast<std::uint32_t>(target >> kTargetBits),
+                     static_cast<std::uint32_t>(c * kTargetChunk + target % kTargetChunk), static_cast<std::uint32_t>(key)};
     });
   });
 }

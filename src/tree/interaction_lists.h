@@ -3,6 +3,7 @@
 
 #include "tree/octree.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -14,6 +15,13 @@ struct Offset {
   std::int32_t level_difference = 0;                  ///< source level - target level
   std::array<std::int32_t, 3> displacement{0, 0, 0};  ///< target centre - source centre, in half sides of the smaller node
   auto operator<=>(const Offset&) const = default;
+
+  /// Source centre - target centre for a target of `level`. Exact.
+  [[nodiscard]] Vec3 to_source(std::size_t level) const {
+    const std::size_t smaller = level + static_cast<std::size_t>(std::max(level_difference, 0));
+    const double half_side = 1.0 / static_cast<double>(std::uint64_t{1} << smaller);
+    return {-displacement[0] * half_side, -displacement[1] * half_side, -displacement[2] * half_side};
+  }
 };
 
 /// A far pair: target's local expansion += M2L(offset) source's multipole expansion.
