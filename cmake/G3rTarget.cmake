@@ -26,3 +26,18 @@ function(g3r_laszip_defaults target)
     target_compile_options(${target} PRIVATE -fsanitize=${G3R_SANITIZE} -fno-sanitize=undefined -fno-omit-frame-pointer)
   endif()
 endfunction()
+
+# g3r_e57_defaults(TARGET): the same for sources of libE57Format. It expects a header that its own build makes.
+function(g3r_e57_defaults target)
+  file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/e57/E57Export.h" CONTENT "#define E57_DLL\n")
+  target_compile_features(${target} PRIVATE cxx_std_17)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
+                                             CXX_CLANG_TIDY "")
+  target_include_directories(${target} PRIVATE "${G3R_E57_SOURCE}/include" "${G3R_E57_SOURCE}/src" "${G3R_E57_SOURCE}/extern/CRCpp/inc"
+                                               "${PROJECT_BINARY_DIR}/e57")
+  target_compile_definitions(${target} PRIVATE E57_VALIDATION_LEVEL=1 CRCPP_USE_CPP11 CRCPP_BRANCHLESS REVISION_ID="libE57Format")
+  target_compile_options(${target} PRIVATE -w)
+  if(G3R_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${G3R_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  endif()
+endfunction()

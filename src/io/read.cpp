@@ -26,6 +26,8 @@ Cloud read_as(Format format, const Source& source, const ReadOptions& options) {
       return read_npy(source);
     case Format::kLas:
       return read_las(source);
+    case Format::kE57:
+      return read_e57(source);
     case Format::kGlb:
       return read_glb(source);
     case Format::kGltf:

@@ -40,7 +40,6 @@ constexpr Signature kStrangers[] = {
     {"\x89HDF"sv, "an HDF5 file"},
     {"\xff\xfe"sv, "UTF-16 text; save it as UTF-8"},
     {"\xfe\xff"sv, "UTF-16 text; save it as UTF-8"},
-    {"ASTM-E57"sv, "an E57 file, which g3r does not read; convert it, for example with \"pdal translate in.e57 out.las\" or CloudCompare"},
 };
 
 constexpr std::array<std::string_view, 16> kObjKeywords = {"v", "vn", "vt",     "vp",     "f",    "l",      "p",   "o",
@@ -96,12 +95,13 @@ std::string magic_of(const std::string& ext) {
   if (ext == "ply") return "the PLY magic \"ply\"";
   if (ext == "npy") return "the NPY magic \"\\x93NUMPY\"";
   if (ext == "las" || ext == "laz") return "the LAS magic \"LASF\"";
+  if (ext == "e57") return "the E57 magic \"ASTM-E57\"";
   if (ext == "off") return "the OFF magic \"OFF\"";
   if (ext == "pcd") return "a PCD header (\"# .PCD\", VERSION, FIELDS)";
   if (ext == "glb") return "the GLB magic \"glTF\"";
   if (ext == "stl") return "an STL file (\"solid\", or 84 bytes and 50 bytes for each triangle it declares)";
   if (ext == "obj") return "OBJ lines (v x y z) with vertices";
-  return "lines of numbers (text), or the magic of PLY, PCD, OFF, OBJ, STL, NPY, LAS or glTF";
+  return "lines of numbers (text), or the magic of PLY, PCD, OFF, OBJ, STL, NPY, LAS, E57 or glTF";
 }
 
 }  // namespace
@@ -129,6 +129,7 @@ Format recognise(const Source& source) {
   if (bytes.substr(0, 4) == "ply\n" || bytes.substr(0, 4) == "ply\r" || bytes.substr(0, 4) == "ply ") return Format::kPly;
   if (bytes.substr(0, 6) == "\x93NUMPY") return Format::kNpy;
   if (bytes.substr(0, 4) == "LASF") return Format::kLas;
+  if (bytes.substr(0, 8) == "ASTM-E57") return Format::kE57;
   if (bytes.substr(0, 4) == "glTF") return Format::kGlb;
   if (bytes.substr(0, 6) == "# .PCD") return Format::kPcd;
   if (is_binary_stl(bytes)) return Format::kStlBinary;

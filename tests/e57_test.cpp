@@ -1,0 +1,236 @@
+// E57: files written here by libE57Format.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "counting_allocator.h"
+#include "e57_samples.h"
+#include "io/table.h"
+#include "sanitized.h"
+
+// The messages of Xerces-C++ about damaged XML, which libE57Format does not free.
+// NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming): the sanitizer's name
+extern "C" const char* __lsan_default_suppressions() { return "leak:libxerces-c\n"; }
+
+namespace g3r {
+namespace {
+
+using samples::e57_file;
+using samples::e57_scan;
+using samples::E57Field;
+using samples::E57Scan;
+
+constexpr double kHalf = 0.70710678118654752440;  // sqrt(1/2)
+
+std::string message_of(const std::string& bytes) {
+  try {
+    samples::read(bytes);
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+  return "";
+}
+
+double value(const Cloud& cloud, const std::string& property, std::size_t point) {
+  const io::Element& points = cloud.attributes->points();
+  const io::RecordLayout layout(points);
+  const std::size_t found = points.find(property);
+  return io::load_as_double(points.properties[found].type, points.data.data() + point * points.stride() + layout.offset(found));
+}
+
+TEST(E57, EveryKindOfNumberIsReadAsItWasWritten) {
+  for (const auto kind : {E57Field::kDouble, E57Field::kFloat, E57Field::kScaled}) {
+    const std::size_t count = 5000;  // more than a block, and more than a packet
+    const E57Scan scan = e57_scan(count, kind);
+    const Cloud cloud = samples::read(e57_file({scan}));
+    EXPECT_EQ(cloud.format, "e57");
+    EXPECT_EQ(cloud.scalar, Scalar::kFloat64);
+    EXPECT_TRUE(cloud.warnings.empty());
+    ASSERT_EQ(cloud.positions.size(), count);
+    ASSERT_EQ(cloud.colors.size(), count);
+    const double most = kind == E57Field::kScaled ? 0.51 * samples::kE57Scale : 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        EXPECT_LE(std::abs(cloud.positions[i][a] - scan.fields[a].values[i]), most);
+        EXPECT_EQ(cloud.colors[i][a], scan.fields[3 + a].values[i]);
+      }
+      EXPECT_EQ(value(cloud, "intensity", i), scan.fields[6].values[i]);
+      EXPECT_EQ(value(cloud, "rowIndex", i), 7);
+    }
+  }
+}
+
+TEST(E57, ScansAreMergedEachInItsPose) {
+  E57Scan turned = e57_scan(300, E57Field::kDouble);
+  turned.rotation = {kHalf, 0, 0, kHalf};  // by 90 degrees about z: x -> y, y -> -x
+  turned.translation = {5e5, 5.4e6, 100};
+  const E57Scan plain = e57_scan(200, E57Field::kFloat);
+  turned.fields.pop_back();
+  turned.fields.push_back({"nor:normalX", E57Field::kDouble, std::vector<double>(300, 1)});
+  turned.fields.push_back({"nor:normalY", E57Field::kDouble, std::vector<double>(300, 0)});
+  turned.fields.push_back({"nor:normalZ", E57Field::kDouble, std::vector<double>(300, 0)});
+  const Cloud cloud = samples::read(e57_file({turned, plain}));
+  ASSERT_EQ(cloud.positions.size(), 500);
+  constexpr double kRounding = 2e-9;  // of coordinates of millions
+  for (std::size_t i = 0; i < 300; ++i) {
+    EXPECT_NEAR(cloud.positions[i][0], 5e5 - turned.fields[1].values[i], kRounding);
+    EXPECT_NEAR(cloud.positions[i][1], 5.4e6 + turned.fields[0].values[i], kRounding);
+    EXPECT_NEAR(cloud.positions[i][2], 100 + turned.fields[2].values[i], kRounding);
+    EXPECT_NEAR(cloud.normals[i][0], 0, 1e-15);
+    EXPECT_NEAR(cloud.normals[i][1], 1, 1e-15);
+  }
+  for (std::size_t i = 0; i < 200; ++i) {
+    for (std::size_t a = 0; a < 3; ++a) EXPECT_EQ(cloud.positions[300 + i][a], plain.fields[a].values[i]);
+    EXPECT_EQ(cloud.normals[300 + i], (Vec3{0, 0, 0}));  // which that scan does not have
+  }
+}
+
+TEST(E57, EveryAllocationMayFail) {
+  const std::string bytes = e57_file({e57_scan(40, E57Field::kScaled)});
+  samples::read(bytes);  // starts Xerces-C++
+  bool reached = true;
+  for (long n = 0; reached; ++n) {
+    allocator::until_failure = n;
+    try {
+      EXPECT_EQ(samples::read(bytes).positions.size(), 40) << n;  // Xerces-C++ can do without some
+    } catch (const std::bad_alloc&) {
+    }
+    reached = allocator::until_failure.exchange(-1) < 0;
+  }
+}
+
+TEST(E57, SphericalCoordinatesBecomeCartesian) {
+  E57Scan scan;
+  scan.fields = {{"sphericalRange", E57Field::kDouble, {2, 2, 4}},
+                 {"sphericalAzimuth", E57Field::kDouble, {0, std::acos(0.0), 0.5}},
+                 {"sphericalElevation", E57Field::kDouble, {0, 0, std::acos(0.0)}}};
+  const Cloud cloud = samples::read(e57_file({scan}));
+  const std::vector<Vec3> expected = {{2, 0, 0}, {0, 2, 0}, {0, 0, 4}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(cloud.positions[i][a], expected[i][a], 1e-15);
+  }
+}
+
+TEST(E57, InvalidPointsAreLeftOutAndCounted) {
+  E57Scan scan = e57_scan(100, E57Field::kDouble);
+  for (const std::size_t i : {0U, 50U, 99U}) scan.fields.back().values[i] = i == 50 ? 1 : 2;
+  const Cloud cloud = samples::read(e57_file({scan}));
+  ASSERT_EQ(cloud.positions.size(), 97);
+  EXPECT_EQ(cloud.positions[0][2], scan.fields[2].values[1]);
+  ASSERT_EQ(cloud.warnings.size(), 1);
+  EXPECT_NE(cloud.warnings[0].find("3 points"), std::string::npos);
+}
+
+TEST(E57, ColoursOf16BitsAreKept) {
+  E57Scan scan = e57_scan(256, E57Field::kDouble);
+  for (std::size_t c = 3; c < 6; ++c) {
+    scan.fields[c].high = 65535;
+    for (double& v : scan.fields[c].values) v = v * 257 - (v > 0 ? 1 : 0);
+  }
+  const Cloud cloud = samples::read(e57_file({scan, e57_scan(2, E57Field::kFloat)}));
+  for (std::size_t i = 0; i < 256; ++i) EXPECT_EQ(value(cloud, "red", i), scan.fields[3].values[i]);
+  EXPECT_EQ(value(cloud, "blue", 256), 65535);  // 255 of 255 in the other scan
+}
+
+TEST(E57, IsWrittenAsOtherFormats) {
+  const Cloud cloud = samples::read(e57_file({e57_scan(50, E57Field::kDouble)}));
+  for (const char* name : {"a.ply", "a.pcd", "a.las", "a.xyz"}) {
+    const Cloud back = samples::read(samples::written(cloud, name));
+    EXPECT_EQ(back.positions.size(), cloud.positions.size());
+    EXPECT_EQ(back.colors, cloud.colors) << name;
+  }
+}
+
+TEST(E57, EmptyScansAreSkipped) {
+  const Cloud cloud = samples::read(e57_file({e57_scan(0, E57Field::kDouble), e57_scan(3, E57Field::kDouble)}));
+  EXPECT_EQ(cloud.positions.size(), 3);
+  EXPECT_NE(message_of(e57_file({e57_scan(0, E57Field::kDouble)})).find("no points"), std::string::npos);
+}
+
+TEST(E57, CutAnywhereIsAnError) {
+  const std::string bytes = e57_file({e57_scan(60, E57Field::kScaled)});
+  for (std::size_t size = 0; size < bytes.size(); ++size) EXPECT_THROW(samples::read(bytes.substr(0, size)), InvalidInput) << size;
+}
+
+TEST(E57, AnyBitChangedIsAnError) {
+  const std::string bytes = e57_file({e57_scan(60, E57Field::kFloat)});
+  for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
+    std::string damaged = bytes;
+    damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << bit % 8));
+    EXPECT_THROW(samples::read(damaged), InvalidInput) << bit;
+  }
+}
+
+// Memory beside the points: libE57Format's packets of one scan, and Xerces-C++.
+constexpr std::size_t kLibraries = std::size_t{8} << 20;
+
+TEST(E57, MemoryIsThatOfTheFile) {
+  for (const auto kind : {E57Field::kDouble, E57Field::kFloat, E57Field::kScaled}) {
+    const std::string bytes = e57_file({e57_scan(20000, kind), e57_scan(20000, kind)});
+    allocator::reset_peak();
+    const std::size_t before = allocator::live;
+    samples::read(bytes);
+    EXPECT_LE(allocator::peak - before, 15 * bytes.size() + kLibraries);
+  }
+}
+
+// With checksums as if it had been written so: an error, or a cloud that is no larger than the file allows.
+void expect_harmless(std::string bytes, const std::string& what) {
+  bytes = samples::with_checksums(samples::without_checksums(bytes));
+  allocator::reset_peak();
+  const std::size_t before = allocator::live;
+  try {
+    samples::read(bytes);
+  } catch (const InvalidInput&) {
+  }
+  EXPECT_LE(allocator::peak - before, 64 * 4 * bytes.size() + kLibraries) << what;
+  constexpr std::size_t kMessages = 2048;  // which libE57Format does not free
+  EXPECT_LE(allocator::live, before + kMessages) << what;
+}
+
+TEST(E57, DamageUnderGoodChecksumsIsHarmless) {
+  constexpr std::size_t kStep = kSanitized ? 31 : 3;
+  const std::string bytes = e57_file({e57_scan(40, E57Field::kScaled), e57_scan(20, E57Field::kFloat)});
+  for (std::size_t at = 0; at < bytes.size(); at += kStep) {
+    for (const char byte : {'\0', '\xFF', '9', '<', static_cast<char>(bytes[at] ^ 1)}) {
+      std::string damaged = bytes;
+      damaged[at] = byte;
+      expect_harmless(damaged, "byte " + std::to_string(at));
+    }
+  }
+  for (std::size_t size = 0; size < bytes.size(); size += kStep) expect_harmless(bytes.substr(0, size), "size " + std::to_string(size));
+}
+
+std::string replaced(std::string bytes, const std::string& from, const std::string& to) {
+  const std::size_t at = bytes.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  bytes.replace(at, from.size(), to);
+  return samples::with_checksums(samples::without_checksums(bytes));
+}
+
+TEST(E57, WhatCannotBeReadIsSaid) {
+  const std::string bytes = e57_file({e57_scan(60, E57Field::kDouble)});
+  EXPECT_NE(message_of(bytes.substr(0, 1024)).find("truncated"), std::string::npos);
+  std::string damaged = bytes;
+  damaged[100] = static_cast<char>(~damaged[100]);
+  EXPECT_NE(message_of(damaged).find("checksum"), std::string::npos);
+  EXPECT_NE(message_of(replaced(bytes, "recordCount=\"60\"", "recordCount=\"61\"")).find("declared"), std::string::npos);
+  EXPECT_NE(message_of(replaced(bytes, "recordCount=\"60\"", "recordCount=\"-1\"")).find("negative"), std::string::npos);
+  EXPECT_NE(message_of(replaced(bytes, "cartesianX", "cartesianQ")).find("cartesianX"), std::string::npos);
+}
+
+// Fields whose values are all equal take no bytes: here eight points take one byte, and three doubles each in memory.
+TEST(E57, PointsWithoutBytesBehindThemAreRefused) {
+  const auto line = [](std::size_t count) {
+    E57Scan scan;
+    scan.fields.push_back({"cartesianX", E57Field::kInteger, std::vector<double>(count, 1), 0, 1});
+    scan.fields.push_back({"cartesianY", E57Field::kInteger, std::vector<double>(count, 5), 5, 5});
+    scan.fields.push_back({"cartesianZ", E57Field::kInteger, std::vector<double>(count, 6), 6, 6});
+    return e57_file({scan});
+  };
+  EXPECT_EQ(samples::read(line(2000)).positions.back(), (Vec3{1, 5, 6}));
+  EXPECT_NE(message_of(line(100000)).find("times its size"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace g3r
