@@ -12,22 +12,38 @@ namespace {
 using g3r::fuzz::require;
 using g3r::io::Format;
 
-// Beside the file itself. Compressed PCD expands up to 88 times by its nature: there the law is about what the stream really holds.
-constexpr std::size_t kTimesSize = 15;
-constexpr std::size_t kTimesCompressed = 88 * 6;
-constexpr std::size_t kConstant = std::size_t{1} << 20;
+// What reading may take beside the file itself: so many times its size and so many bytes; and how many points for a byte.
+struct Limits {
+  std::size_t times = 15;
+  std::size_t constant = std::size_t{1} << 20;
+  std::size_t points = 1;
+};
+
+bool is_laz(std::string_view bytes) {
+  constexpr std::size_t kPointFormat = 104;
+  return bytes.substr(0, 4) == "LASF" && bytes.size() > kPointFormat && (bytes[kPointFormat] & 0xC0) != 0;
+}
+
+// Compressed files expand by their nature; how far, their readers say (src/io). LASzip and libE57Format take memory of their own.
+Limits limits_of(std::string_view bytes, Format format) {
+  constexpr std::size_t kLibrary = std::size_t{16} << 20;
+  if (is_laz(bytes)) return {256 * 5, kLibrary, 13};
+  if (format == Format::kE57) return {64 * 5, kLibrary, 3};
+  if (bytes.find("binary_compressed") != std::string_view::npos) return {88 * 6};
+  return {};
+}
 
 template <class List>
 bool fits(const List& list, std::size_t count) {
   return list.empty() || list.size() == count;
 }
 
-void read_points(const char* bytes, std::size_t size) {
+void read_points(const char* bytes, std::size_t size, std::size_t most_points) {
   try {
     const g3r::Cloud cloud = g3r::read_cloud_bytes(bytes, size, "input");
     const std::size_t count = cloud.positions.size();
     require(fits(cloud.normals, count) && fits(cloud.colors, count) && fits(cloud.confidence, count), "one entry per point");
-    require(count <= size, "no more points than bytes");
+    require(count <= most_points * size, "no more points than bytes hold");
   } catch (const g3r::InvalidInput&) {
   }
 }
@@ -47,17 +63,21 @@ void read_faces(const char* bytes, std::size_t size) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const char* bytes = reinterpret_cast<const char*>(data);
   const std::string_view text(bytes, size);
+  Format found{};
   try {
-    const Format found = g3r::io::recognise({text, "input"});
-    bool ours = false;
-    for (const Format format : {G3R_FUZZ_FORMATS}) ours = ours || format == found;
-    if (!ours) return -1;
+    found = g3r::io::recognise({text, "input"});
   } catch (const g3r::InvalidInput&) {
     return -1;
   }
-  const bool compressed = text.find("binary_compressed") != std::string_view::npos;
-  const g3r::fuzz::MemoryLaw law((compressed ? kTimesCompressed : kTimesSize) * size, kConstant);
-  read_points(bytes, size);
+  bool ours = false;
+  for (const Format format : {G3R_FUZZ_FORMATS}) ours = ours || format == found;
+#ifdef G3R_FUZZ_LAZ
+  ours = ours && is_laz(text);
+#endif
+  if (!ours) return -1;
+  const Limits limits = limits_of(text, found);
+  const g3r::fuzz::MemoryLaw law(limits.times * size, limits.constant);
+  read_points(bytes, size, limits.points);
   read_faces(bytes, size);
   return 0;
 }

@@ -1,5 +1,5 @@
 // seeds FOLDER: what the fuzzers start from. Adds one small file of every format to FOLDER/read, which may hold files already, and makes
-// FOLDER/pipeline from all of them, and FOLDER/command_line.
+// FOLDER/pipeline from all of them, and FOLDER/command_line; in builds that read them FOLDER/laz and FOLDER/e57.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -8,6 +8,12 @@
 
 #include "io_samples.h"
 #include "pipeline_fuzz.h"
+#ifdef G3R_FUZZ_LAZ
+#include "laz_samples.h"
+#endif
+#ifdef G3R_FUZZ_E57
+#include "e57_samples.h"
+#endif
 
 namespace {
 
@@ -83,6 +89,37 @@ void spill_command_lines(const std::string& folder) {
   for (std::size_t i = 0; i < lines.size(); ++i) spill(folder + "/line" + std::to_string(i), lines[i]);
 }
 
+#ifdef G3R_FUZZ_LAZ
+void spill_laz(const std::string& folder) {
+  std::filesystem::create_directories(folder);
+  for (const unsigned format : {0U, 1U, 3U, 4U, 6U, 7U, 10U}) {
+    for (const std::uint32_t chunk : {50000U, 3U}) {
+      const std::string las = g3r::samples::las_file(format, 5, chunk == 3);
+      spill(folder + "/" + std::to_string(format) + "_" + std::to_string(chunk), g3r::samples::compressed(las, chunk));
+    }
+  }
+}
+#endif
+
+#ifdef G3R_FUZZ_E57
+void spill_e57(const std::string& folder) {
+  using g3r::samples::E57Field;
+  std::filesystem::create_directories(folder);
+  const auto write = [&](const char* name, const std::vector<g3r::samples::E57Scan>& scans) {
+    spill(folder + "/" + name, g3r::samples::e57_file(scans));
+  };
+  write("double", {g3r::samples::e57_scan(4, E57Field::kDouble)});
+  write("float", {g3r::samples::e57_scan(4, E57Field::kFloat)});
+  write("scaled", {g3r::samples::e57_scan(4, E57Field::kScaled)});
+  write("spherical", {{{{"sphericalRange", E57Field::kScaled, {1, 2, 3}, -2000000, 2000000},
+                        {"sphericalAzimuth", E57Field::kFloat, {1, 2, 3}},
+                        {"sphericalElevation", E57Field::kFloat, {1, 0, -1}}},
+                       {1, 0, 0, 0},
+                       {5e5, 5.4e6, 100}}});
+  write("two", {g3r::samples::e57_scan(2, E57Field::kFloat), g3r::samples::e57_scan(0, E57Field::kFloat)});
+}
+#endif
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -92,5 +129,11 @@ int main(int argc, char** argv) {
   for (const g3r::samples::Sample& sample : g3r::samples::all(4)) spill(folder + "/read/" + sample.name, sample.bytes);
   spill_pipeline(folder + "/read", folder + "/pipeline");
   spill_command_lines(folder + "/command_line");
+#ifdef G3R_FUZZ_LAZ
+  spill_laz(folder + "/laz");
+#endif
+#ifdef G3R_FUZZ_E57
+  spill_e57(folder + "/e57");
+#endif
   return 0;
 }

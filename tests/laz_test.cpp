@@ -1,18 +1,12 @@
 // LAZ against LAS: files compressed here with LASzip's encoder.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
 #include <random>
-
-#include <bytestreamout_array.hpp>
-#include <laswritepoint.hpp>
-#include <laszip.hpp>
 
 #include "counting_allocator.h"
 #include "io/laz.h"
 #include "io/table.h"
-#include "io_samples.h"
+#include "laz_samples.h"
 #include "sanitized.h"
 
 // LASzip's encoder keeps its list of chunks of different sizes for ever.
@@ -22,142 +16,10 @@ extern "C" const char* __lsan_default_suppressions() { return "leak:LASwritePoin
 namespace g3r {
 namespace {
 
-using io::las::kRecordSize;
-using samples::raw;
-
-constexpr std::uint32_t kAnyChunks = 0xFFFFFFFF;
-
-template <class T>
-void put(std::string& bytes, std::size_t at, T value) {
-  std::memcpy(bytes.data() + at, &value, sizeof value);
-}
-
-std::string vlr(const std::string& user, unsigned record, const std::string& data) {
-  std::string bytes(io::las::kVlrHeader, '\0');
-  bytes.replace(2, user.size(), user);
-  put(bytes, 18, static_cast<std::uint16_t>(record));
-  put(bytes, 20, static_cast<std::uint16_t>(data.size()));
-  return bytes + data;
-}
-
-std::string described(const std::string& name, char type) {
-  std::string bytes(io::las::kDescriptor, '\0');
-  bytes[2] = type;
-  bytes.replace(4, name.size(), name);
-  return bytes;
-}
-
-// LAS 1.4 with every field in use: coordinates and time walk, the other bytes stay or take any value. With `extra`: an extra u8 and u16.
-std::string las_file(unsigned format, std::size_t count, bool extra = false, const std::string& after_points = "") {
-  constexpr std::size_t kHeader = 375;
-  std::string las(kHeader, '\0');
-  las.replace(0, 4, "LASF");
-  las[24] = 1;
-  las[io::las::kMinor] = 4;
-  put(las, io::las::kHeaderSize, static_cast<std::uint16_t>(kHeader));
-  las[io::las::kPointFormat] = static_cast<char>(format);
-  const std::size_t record_bytes = kRecordSize[format] + (extra ? 3 : 0);
-  put(las, io::las::kRecordBytes, static_cast<std::uint16_t>(record_bytes));
-  if (format < 6) put(las, io::las::kLegacyCount, static_cast<std::uint32_t>(count));
-  put(las, io::las::kCount, std::uint64_t{count});
-  las += vlr("somebody", 7, "kept");
-  if (extra) las += vlr("LASF_Spec", io::las::kExtraBytes, described("echo", 1) + described("range", 3));
-  put(las, io::las::kVlrCount, std::uint32_t{extra ? 2U : 1U});
-  put(las, io::las::kPointsAt, static_cast<std::uint32_t>(las.size()));
-  std::mt19937 random(format);
-  const auto below = [&](std::uint32_t n) { return static_cast<std::int32_t>(random() % n); };
-  std::string record(record_bytes, '\0');
-  std::array<std::int32_t, 3> at{500000, -5400000, 2000000000};
-  std::array<std::int32_t, 3> low{}, high{};
-  double time = 1e8;
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t b = 12; b < record_bytes; ++b) {
-      if (below(8) == 0) record[b] = static_cast<char>(below(256));
-    }
-    for (std::size_t a = 0; a < 3; ++a) {
-      at[a] += below(2001) - 1000;
-      put(record, 4 * a, at[a]);
-      low[a] = i == 0 ? at[a] : std::min(low[a], at[a]);
-      high[a] = i == 0 ? at[a] : std::max(high[a], at[a]);
-    }
-    time += 1e-4 * below(3);
-    if (format >= 6) put(record, 22, time);
-    if (format == 1 || (format >= 3 && format < 6)) put(record, 20, time);
-    las += record;
-  }
-  for (std::size_t a = 0; a < 3; ++a) {
-    put(las, io::las::kScale + 8 * a, 0.001);
-    put(las, io::las::kOffset + 8 * a, 1000.0);
-    put(las, io::las::kBounds + 16 * a, high[a] * 0.001 + 1000.0);
-    put(las, io::las::kBounds + 16 * a + 8, low[a] * 0.001 + 1000.0);
-  }
-  if (!after_points.empty()) {
-    put(las, io::las::kEvlrAt, std::uint64_t{las.size()});
-    put(las, io::las::kEvlrCount, std::uint32_t{1});
-  }
-  return las + after_points;
-}
-
-// The layout in which LASzip takes the first item of point formats 6 to 10.
-std::array<unsigned char, 128> point14(const char* record) {
-  std::array<unsigned char, 128> item{};
-  const auto* from = reinterpret_cast<const unsigned char*>(record);
-  std::copy_n(from, 14, item.begin());
-  item[14] = from[15] & 0xC0;
-  item[15] = static_cast<unsigned char>((from[16] < 32 ? from[16] : 0) | from[15] << 5);
-  item[17] = from[17];
-  std::copy_n(from + 20, 2, item.begin() + 18);
-  std::copy_n(from + 18, 2, item.begin() + 20);
-  item[22] = static_cast<unsigned char>(1 | (from[15] >> 4 & 3) << 2 | from[15] << 4);
-  item[23] = from[16];
-  item[24] = from[14];
-  std::copy_n(from + 22, 8, item.begin() + 32);
-  return item;
-}
-
-// LASzip's compression of a LAS file. Chunks of `chunk` points, or with kAnyChunks of 5, 6, 7, ... points.
-std::string compressed(const std::string& las, std::uint32_t chunk = 50000, unsigned version = 0) {
-  const io::LasHeader header = io::read_las_header({las, "sample"});
-  const bool layered = header.point_format >= 6;
-  LASzip how;
-  EXPECT_TRUE(how.setup(static_cast<U8>(header.point_format), static_cast<U16>(header.record_bytes),
-                        layered ? LASZIP_COMPRESSOR_LAYERED_CHUNKED : LASZIP_COMPRESSOR_CHUNKED));
-  how.set_chunk_size(chunk);
-  how.request_version(static_cast<U16>(version != 0 ? version : layered ? 3 : 2));
-  U8* how_bytes = nullptr;
-  I32 how_size = 0;
-  EXPECT_TRUE(how.pack(how_bytes, how_size));
-  const std::string record =
-      vlr("laszip encoded", io::las::kCompression, std::string(reinterpret_cast<char*>(how_bytes), static_cast<std::size_t>(how_size)));
-
-  ByteStreamOutArrayLE stream;
-  std::string laz = las.substr(0, header.points_at) + record;
-  laz[io::las::kPointFormat] = static_cast<char>(header.point_format | 0x80U);
-  put(laz, io::las::kVlrCount, header.vlr_count + 1);
-  put(laz, io::las::kPointsAt, static_cast<std::uint32_t>(laz.size()));
-  stream.putBytes(reinterpret_cast<const U8*>(laz.data()), static_cast<U32>(laz.size()));
-  LASwritePoint writer;
-  EXPECT_TRUE(writer.setup(how.num_items, how.items, &how));
-  EXPECT_TRUE(writer.init(&stream));
-  std::size_t chunk_end = 5;
-  for (std::size_t i = 0, length = 5; i < header.count; ++i) {
-    const char* point = las.data() + header.points_at + i * header.record_bytes;
-    const std::array<unsigned char, 128> first = layered ? point14(point) : std::array<unsigned char, 128>{};
-    std::vector<const U8*> items;
-    for (std::size_t k = 0; k < how.num_items; point += how.items[k++].size) items.push_back(reinterpret_cast<const U8*>(point));
-    if (layered) items[0] = first.data();
-    EXPECT_TRUE(writer.write(items.data()));
-    if (chunk == kAnyChunks && i + 1 == chunk_end) {
-      EXPECT_TRUE(writer.chunk());
-      chunk_end += ++length;
-    }
-  }
-  EXPECT_TRUE(writer.done());
-  const std::string rest = las.substr(header.points_at + header.count * header.record_bytes);
-  laz.assign(reinterpret_cast<const char*>(stream.getData()), static_cast<std::size_t>(stream.getSize()));
-  if (!rest.empty()) put(laz, io::las::kEvlrAt, std::uint64_t{laz.size()});
-  return laz + rest;
-}
+using samples::compressed;
+using samples::kAnyChunks;
+using samples::las_file;
+using samples::put;
 
 std::string unpacked(const std::string& laz) {
   const io::Source source{laz, "sample"};

@@ -9,9 +9,14 @@ cd "$(dirname "$0")/.."
 . tools/prepare.sh
 seconds=${1:?usage: tools/fuzz.sh SECONDS [TARGET...]}
 shift
-[ $# -gt 0 ] || set -- ply pcd npy las off obj stl gltf xyz command_line pipeline
 build sanitize fuzz
 programs=build/sanitize/fuzz
+if [ $# -eq 0 ]; then
+  set -- ply pcd npy las off obj stl gltf xyz command_line pipeline
+  for reader in laz e57; do # where build/sanitize is configured to read them
+    [ ! -e "$programs/fuzz_$reader" ] || set -- "$@" $reader
+  done
+fi
 seeds=build/fuzz/seeds
 corpora=build/fuzz/corpus
 mkdir -p "$seeds/read" "$corpora"
@@ -35,8 +40,10 @@ fuzz_one() {
   else
     mkdir -p "$corpus"
   fi
+  local length=4096
+  [ "$1" != e57 ] || length=8192 # the shortest have 3 pages of 1024
   "${run[@]}" "$programs/fuzz_$1" -max_total_time="$seconds" -timeout=120 -report_slow_units=120 \
-    -rss_limit_mb=2048 -max_len=4096 -print_final_stats=1 \
+    -rss_limit_mb=2048 -max_len="$length" -print_final_stats=1 \
     -artifact_prefix="$corpus." "${start[@]}" > "$corpus.log" 2>&1
 }
 
