@@ -27,8 +27,8 @@ function(g3r_laszip_defaults target)
   endif()
 endfunction()
 
-# g3r_e57_defaults(TARGET): the same for sources of libE57Format. It expects a header that its own build makes.
-function(g3r_e57_defaults target)
+# g3r_libe57_defaults(TARGET): the same for sources of libE57Format. It expects a header that its own build makes.
+function(g3r_libe57_defaults target)
   file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/e57/E57Export.h" CONTENT "#define E57_DLL\n")
   target_compile_features(${target} PRIVATE cxx_std_17)
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON

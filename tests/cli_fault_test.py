@@ -4,6 +4,7 @@ what happened, and nothing is left behind. Every call of every kind is made to f
 Run by ctest with G3R_PROGRAM set to the program and G3R_FAULT_SHIM to the library that makes calls fail.
 """
 
+import collections
 import errno
 import os
 import sys
@@ -29,6 +30,12 @@ class Faults(ProgramTest):
         self.marks = tempfile.mkdtemp()
         self.addCleanup(shutil.rmtree, self.marks)
 
+    hits = collections.Counter()
+
+    @classmethod
+    def tearDownClass(cls):
+        print("calls that failed:", *("%d %s," % (cls.hits[kind], kind) for kind in sorted(cls.hits)), file=sys.stderr)
+
     def runs_with_fault(self, call, what):
         """Runs the command with the 1st, 2nd, ... call failing, until a run has no such call left; yields each run that was hit."""
         mark = os.path.join(self.marks, "mark")
@@ -43,6 +50,7 @@ class Faults(ProgramTest):
                 self.assertGreater(at, 1, "the program makes no such call")
                 return
             os.remove(mark)
+            self.hits["killed" if what == "kill" else "short or interrupted" if what in (errno.EINTR, "short") else "with an error"] += 1
             content = self.bytes_of("out.ply")
             self.assertTrue(content in (self.old, self.new), "%s %d: %d bytes" % (call, at, len(content)))
             yield at, result, content

@@ -88,6 +88,7 @@ TEST(Faults, EveryFailingCallIsAnIoErrorAndTheOldFileIsIntact) {
   const std::string whole = big_bytes();
   const int calls = count_calls();
   ASSERT_GE(calls, 6);  // several writes, fsync, rename, fsync of the folder
+  RecordProperty("calls", calls);
   for (const int error : {ENOSPC, EIO, EDQUOT, EFBIG}) {
     for (const Fault fault : {Fault::kError, Fault::kShortThenError}) {
       for (int n = 0; n < calls; ++n) {

@@ -41,9 +41,10 @@ bool is_prefix(const std::vector<Vec3>& part, const std::vector<Vec3>& whole) {
 }
 
 TEST(Truncation, GivesAnErrorAWarningOrTheSamePoints) {
+  int cuts = 0;
   for (const samples::Sample& sample : samples::all()) {
     const std::vector<Vec3> whole = read_exactly(sample.bytes, sample.name).cloud.positions;
-    for (std::size_t length = 0; length < sample.bytes.size(); ++length) {
+    for (std::size_t length = 0; length < sample.bytes.size(); ++length, ++cuts) {
       const Outcome cut = read_exactly(std::string_view(sample.bytes).substr(0, length), sample.name);
       if (cut.refused || cut.cloud.positions == whole || !cut.cloud.warnings.empty()) continue;
       // A format that does not say how many points follow cannot tell a file cut between two lines from a shorter one.
@@ -51,14 +52,16 @@ TEST(Truncation, GivesAnErrorAWarningOrTheSamePoints) {
       EXPECT_TRUE(between_lines && is_prefix(cut.cloud.positions, whole)) << sample.name << " cut at " << length;
     }
   }
+  RecordProperty("cuts", cuts);
 }
 
 TEST(BitFlip, InAHeaderNeverChangesTheCountSilently) {
+  int bits = 0;
   for (const samples::Sample& sample : samples::all()) {
     const std::size_t count = read_exactly(sample.bytes, sample.name).cloud.positions.size();
     std::string bytes = sample.bytes;
     for (std::size_t at = 0; at < sample.header; ++at) {
-      for (unsigned bit = 0; bit < 8; ++bit) {
+      for (unsigned bit = 0; bit < 8; ++bit, ++bits) {
         bytes[at] = static_cast<char>(static_cast<unsigned char>(sample.bytes[at]) ^ 1U << bit);
         const Outcome flipped = read_exactly(bytes, sample.name);
         EXPECT_TRUE(flipped.refused || flipped.cloud.positions.size() == count || !flipped.cloud.warnings.empty())
@@ -67,14 +70,17 @@ TEST(BitFlip, InAHeaderNeverChangesTheCountSilently) {
       bytes[at] = sample.bytes[at];
     }
   }
+  RecordProperty("bits", bits);
 }
 
 TEST(BitFlip, AnywhereGivesAnErrorOrACloud) {
+  int changes = 0;
   for (const samples::Sample& sample : samples::all(5)) {
     std::string bytes = sample.bytes;
     for (std::size_t at = 0; at < bytes.size(); ++at) {
       for (const unsigned mask : {0x01U, 0x80U, 0xFFU}) {
         bytes[at] = static_cast<char>(static_cast<unsigned char>(sample.bytes[at]) ^ mask);
+        ++changes;
         read_exactly(bytes, sample.name);
         try {
           (void)read_mesh_bytes(bytes.data(), bytes.size(), sample.name);
@@ -84,6 +90,7 @@ TEST(BitFlip, AnywhereGivesAnErrorOrACloud) {
       bytes[at] = sample.bytes[at];
     }
   }
+  RecordProperty("changes", changes);
 }
 
 TEST(Memory, LargerFilesKeepTheLawToo) {
@@ -121,6 +128,7 @@ TEST(Memory, FilesThatExpandMostKeepTheLaw) {
 }
 
 TEST(Memory, AnyFailingAllocationIsBadAllocAndLeaksNothing) {
+  int failures = 0;
   for (const samples::Sample& sample : samples::all(500)) {
     (void)read_exactly(sample.bytes, sample.name);  // what is allocated once for the whole program
     const std::size_t before = allocator::live;
@@ -131,6 +139,7 @@ TEST(Memory, AnyFailingAllocationIsBadAllocAndLeaksNothing) {
         (void)read_cloud_bytes(sample.bytes.data(), sample.bytes.size(), "cloud");
         finished = true;
       } catch (const std::bad_alloc&) {
+        ++failures;
       }
       finished = finished && allocator::until_failure >= 0;
       allocator::until_failure = -1;
@@ -138,10 +147,12 @@ TEST(Memory, AnyFailingAllocationIsBadAllocAndLeaksNothing) {
     EXPECT_TRUE(finished) << sample.name;
     EXPECT_EQ(allocator::live, before) << sample.name;
   }
+  RecordProperty("failures", failures);
 }
 
 TEST(Memory, AnyFailingAllocationOfAWriterLeavesNoFile) {
   const Cloud cloud = samples::read(samples::written(samples::helix(500), "a.ply"));
+  int failures = 0;
   for (const char* name : {"a.ply", "a.pcd", "a.npy", "a.las", "a.xyz", "a.obj"}) {
     const samples::Folder folder;
     const std::string path = folder.path(name);
@@ -152,12 +163,14 @@ TEST(Memory, AnyFailingAllocationOfAWriterLeavesNoFile) {
         write_cloud(path, cloud, nullptr, nullptr);
         finished = true;
       } catch (const std::bad_alloc&) {
+        ++failures;
       }
       allocator::until_failure = -1;
       EXPECT_EQ(folder.files(), finished ? 1U : 0U) << name;
     }
     EXPECT_TRUE(finished) << name;
   }
+  RecordProperty("failures", failures);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ if [ -e "$folder/src/CompressedVectorReaderImpl.cpp" ]; then exit 0; fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 python3 -m venv "$work/environment"
-pip=("$work/environment/bin/pip" --quiet --disable-pip-version-check)
+pip=("$work/environment/bin/pip" --quiet --disable-pip-version-check --retries 1)
 "${pip[@]}" install setuptools wheel pybind11 # pip asks the package's build system for its name before it hands it over
 "${pip[@]}" download --no-deps --no-build-isolation --no-binary :all: --dest "$work" "pye57==$version"
 echo "$sum  $work/pye57-$version.tar.gz" | sha256sum --check --quiet

@@ -11,7 +11,7 @@ if [ -e "$folder/src/lasreadpoint.cpp" ]; then exit 0; fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 python3 -m venv "$work/environment"
-pip=("$work/environment/bin/pip" --quiet --disable-pip-version-check)
+pip=("$work/environment/bin/pip" --quiet --disable-pip-version-check --retries 1)
 "${pip[@]}" install scikit-build-core pybind11 # pip asks the package's build system for its name before it hands it over
 "${pip[@]}" download --no-deps --no-build-isolation --no-binary :all: --dest "$work" "laszip==$version"
 echo "$sum  $work/laszip-$version.tar.gz" | sha256sum --check --quiet
