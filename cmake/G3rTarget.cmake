@@ -27,7 +27,8 @@ function(g3r_laszip_defaults target)
   endif()
 endfunction()
 
-# g3r_libe57_defaults(TARGET): the same for sources of libE57Format. It expects a header that its own build makes.
+# g3r_libe57_defaults(TARGET): the same for sources of libE57Format, but that only the width of its widest integers overflows (rightly). It
+# expects a header that its own build makes.
 function(g3r_libe57_defaults target)
   file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/e57/E57Export.h" CONTENT "#define E57_DLL\n")
   target_compile_features(${target} PRIVATE cxx_std_17)
@@ -38,6 +39,7 @@ function(g3r_libe57_defaults target)
   target_compile_definitions(${target} PRIVATE E57_VALIDATION_LEVEL=1 CRCPP_USE_CPP11 CRCPP_BRANCHLESS REVISION_ID="libE57Format")
   target_compile_options(${target} PRIVATE -w)
   if(G3R_SANITIZE)
-    target_compile_options(${target} PRIVATE -fsanitize=${G3R_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+    target_compile_options(${target} PRIVATE -fsanitize=${G3R_SANITIZE} -fno-sanitize=signed-integer-overflow
+                                             -fno-omit-frame-pointer -fno-sanitize-recover=all)
   endif()
 endfunction()
