@@ -221,6 +221,46 @@ TEST(E57, WhatCannotBeReadIsSaid) {
   EXPECT_NE(message_of(replaced(bytes, "cartesianX", "cartesianQ")).find("cartesianX"), std::string::npos);
 }
 
+// A file without points whose XML is this.
+std::string xml_file(const std::string& inside, const std::string& declaration = R"(<?xml version="1.0" encoding="UTF-8"?>)") {
+  const std::string xml =
+      declaration + R"(<e57Root type="Structure" xmlns="http://www.astm.org/COMMIT/E57/2010-e57-v1.0">)" + inside + "</e57Root>";
+  constexpr std::uint64_t kHeader = 48;
+  std::string logical = "ASTM-E57" + samples::raw(std::uint32_t{1}) + samples::raw(std::uint32_t{0}) + samples::raw(std::uint64_t{0});
+  logical += samples::raw(kHeader) + samples::raw(std::uint64_t{xml.size()}) + samples::raw(std::uint64_t{samples::kE57Page});
+  return samples::with_checksums(logical + xml);
+}
+
+std::string repeated(const std::string& text, std::size_t times) {
+  std::string all;
+  for (std::size_t i = 0; i < times; ++i) all += text;
+  return all;
+}
+
+TEST(E57, XmlThatWouldFetchOrTakeLongIsRefused) {
+  EXPECT_NE(message_of(xml_file("")).find("no scans"), std::string::npos);
+  const auto refused = [](const std::string& bytes, const std::string& why) {
+    const std::string message = message_of(bytes);
+    EXPECT_NE(message.find(why), std::string::npos) << message;
+  };
+  refused(xml_file("", R"(<?xml version="1.0"?><!DOCTYPE a [<!ENTITY b SYSTEM "/etc/passwd">]>)"), "document type");
+  refused(xml_file(R"(<a type="Float" xmlns:x="http://www.w3.org/2001/XMLSchema-instance" x:schemaLocation="a file:///a"/>)"), "schema");
+  refused(xml_file("", R"(<?xml version="1.0" encoding="UTF-16"?>)"), "encoding");
+  refused(xml_file("", " "), "<?xml");
+  refused(xml_file(std::string(1, '\0')), "zero byte");
+  refused(xml_file(R"(<a type="Compressed&#86;ector" fileOffset="48" recordCount="1"/>)"), "entities");
+  refused(xml_file(R"(<a type="CompressedVector" fileOffset="48" recordCount="1"/>)"), "prototype");
+  refused(xml_file(R"(<a type="Vector">)" + repeated(R"(<s type="Structure"/>)", 2) + "</a>"), "one type");
+  refused(xml_file(repeated(R"(<a type="Structure">)", 40) + repeated("</a>", 40)), "nested");
+  refused(xml_file(R"(<a type="Structure">)" + repeated(R"(<b type="Float"/>)", 300) + "</a>"), "children");
+  refused(xml_file(R"(<a type="Float" )" + repeated(R"(b="" )", 70) + "/>"), "attributes");
+  refused(xml_file("</a></a>"), "end tag");
+  refused(xml_file("<!-- "), "truncated");
+  refused(xml_file("<a"), "damaged");
+  refused(xml_file(R"(<a type="Float)"), "truncated");
+  refused(xml_file("<a/>"), "damaged");
+}
+
 // Fields whose values are all equal take no bytes: here eight points take one byte, and three doubles each in memory.
 TEST(E57, PointsWithoutBytesBehindThemAreRefused) {
   const auto line = [](std::size_t count) {

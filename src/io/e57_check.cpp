@@ -23,10 +23,14 @@ constexpr std::size_t kPageSize = 40;
 constexpr std::size_t kSectionHeader = 32;
 constexpr std::size_t kDataHeader = 6;  // of a packet of data
 
-// libE57Format walks the tree of elements recursively, and looks at all children of one when it gets another.
+// libE57Format walks the tree of elements recursively, looks at all children of a structure when it gets another, and compares every new
+// child of a vector of one type with all others, trees and all.
 constexpr std::size_t kMostDepth = 32;
-constexpr std::size_t kMostChildren = 4096;
+constexpr std::size_t kMostMembers = 256;    // of a structure
+constexpr std::size_t kMostEqual = 512;      // numbers or texts in a vector of one type
+constexpr std::size_t kMostChildren = 4096;  // of anything else
 constexpr std::size_t kMostElements = 200'000;
+constexpr std::size_t kMostAttributes = 64;  // of an element: they take fifty times their bytes
 
 // CRC-32C (Castagnoli), reflected.
 std::array<std::uint32_t, 256> crc_table() {
@@ -117,15 +121,15 @@ class XmlCheck {
         i = open(i + 1);
       }
     }
-    if (vectors_of_one_type_ && without_codecs_) refuse("a compressed vector without codecs");
   }
 
  private:
   struct Open {
     bool compressed_vector;
-    bool prototype = false;
-    bool codecs = false;
+    bool of_one_type;
+    std::size_t most_children;
     std::size_t children = 0;
+    bool prototype = false;
   };
 
   void check_encoding() {
@@ -147,12 +151,14 @@ class XmlCheck {
     const std::string_view name = xml_.substr(i, name_end - i);
     std::string_view type;
     std::string_view hetero;
+    std::size_t attributes = 0;
     i = name_end;
     while (i < xml_.size() && xml_[i] != '>' && xml_[i] != '/') {
       if (std::string_view(" \t\r\n").find(xml_[i]) != std::string_view::npos) {
         ++i;
         continue;
       }
+      if (++attributes > kMostAttributes) refuse("an element with more than " + std::to_string(kMostAttributes) + " attributes");
       const std::size_t begin = i;
       i = std::min(xml_.find_first_of("=>", i), xml_.size());
       const std::string_view attribute = xml_.substr(begin, xml_.find_first_of(" \t\r\n=>", begin) - begin);
@@ -169,12 +175,17 @@ class XmlCheck {
     if (++elements_ > kMostElements) refuse("more than " + std::to_string(kMostElements) + " elements");
     if (!open_.empty()) {
       Open& parent = open_.back();
-      if (++parent.children > kMostChildren) refuse("an element with more than " + std::to_string(kMostChildren) + " children");
+      const bool tree = type == "Structure" || type == "Vector" || type == "CompressedVector";
+      if (++parent.children > parent.most_children)
+        refuse("an element with more than " + std::to_string(parent.most_children) + " children");
+      if (parent.of_one_type && tree && parent.children > 1) refuse("structures in a vector of one type");
       parent.prototype = parent.prototype || name == "prototype";
-      parent.codecs = parent.codecs || name == "codecs";
     }
-    vectors_of_one_type_ = vectors_of_one_type_ || (type == "Vector" && hetero != "1");
-    open_.push_back({type == "CompressedVector"});
+    const bool of_one_type = type == "Vector" && hetero != "1";
+    open_.push_back({type == "CompressedVector", of_one_type,
+                     type == "Structure" ? kMostMembers
+                     : of_one_type       ? kMostEqual
+                                         : kMostChildren});
     if (open_.size() > kMostDepth) refuse("elements nested deeper than " + std::to_string(kMostDepth));
     if (i < xml_.size() && xml_[i] == '/') close();
     return past(">", i);
@@ -182,9 +193,7 @@ class XmlCheck {
 
   void close() {
     if (open_.empty()) refuse("an end tag without a begin");
-    const Open& element = open_.back();
-    if (element.compressed_vector && !element.prototype) refuse("a compressed vector without a prototype");
-    without_codecs_ = without_codecs_ || (element.compressed_vector && !element.codecs);
+    if (open_.back().compressed_vector && !open_.back().prototype) refuse("a compressed vector without a prototype");
     open_.pop_back();
   }
 
@@ -204,8 +213,6 @@ class XmlCheck {
   std::size_t at_;
   std::vector<Open> open_;
   std::size_t elements_ = 0;
-  bool vectors_of_one_type_ = false;  // whose elements libE57Format compares
-  bool without_codecs_ = false;       // which it cannot compare
 };
 
 }  // namespace
