@@ -45,9 +45,9 @@ std::array<std::uint32_t, 256> crc_table() {
 }
 
 std::uint32_t crc_of(std::string_view bytes) {
-  static const std::array<std::uint32_t, 256> kTable = crc_table();
+  static const std::array<std::uint32_t, 256> table = crc_table();
   std::uint32_t crc = 0xFFFFFFFF;
-  for (const char byte : bytes) crc = crc >> 8 ^ kTable[(crc ^ static_cast<unsigned char>(byte)) & 0xFF];
+  for (const char byte : bytes) crc = crc >> 8 ^ table[(crc ^ static_cast<unsigned char>(byte)) & 0xFF];
   return ~crc;
 }
 
