@@ -17,6 +17,7 @@
 #include "mesh/handle_removal.h"
 #include "mesh/mesh_finish.h"
 #include "mesh/side_smoothing.h"
+#include "mesh/untangle.h"
 
 namespace g3r {
 namespace {
@@ -293,6 +294,7 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
   mesh::PlacedVertices placed = mesh::place_vertices(octree, surface, value, local, monitor.cancel);
   report(monitor, 0.95);
   Mesh mesh = mesh::triangulate(surface, std::move(placed.positions), placed.normals);
+  mesh::untangle(mesh, monitor.cancel);
   mesh::finish_mesh(mesh, oriented.positions, options);
   report(monitor, 1);
   return mesh;

@@ -1,9 +1,9 @@
-// Pairs of triangles that meet: candidates from a tree of boxes, each decided by exact signs.
-#include <g3r/mesh.h>
+// Candidates from a tree of boxes, each decided by exact signs.
+#include "mesh/self_intersections.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
+#include <limits>
 
 #include "cpu/parallel.h"
 #include "mesh/exact_orientation.h"
@@ -58,15 +58,43 @@ bool meet(const Corners& s, const Corners& t) {
   return false;
 }
 
+// Whether a plane across `axis` has s on one side and t on the other, by more than rounding can have moved them.
+bool separates(const Vec3& axis, const Corners& s, const Corners& t) {
+  constexpr double kRounding = 1e-14;  // of the products; some 20 times what they can lose
+  double s_most = 0, t_least = std::numeric_limits<double>::infinity(), size = 0;
+  const auto along = [&](const Vec3& p) {
+    const Vec3 d = vector::subtract(p, s[0]);
+    size = std::max(size, std::fabs(axis[0] * d[0]) + std::fabs(axis[1] * d[1]) + std::fabs(axis[2] * d[2]));
+    return vector::dot(axis, d);
+  };
+  for (std::size_t k = 0; k < 3; ++k) {
+    s_most = std::max(s_most, along(s[k]));
+    t_least = std::min(t_least, along(t[k]));
+  }
+  return t_least - s_most > kRounding * size;
+}
+
+// Finds most pairs that do not meet, without exact arithmetic: planes parallel to s or through its edges. False where in doubt.
+bool surely_apart(const Corners& s, const Corners& t) {
+  const Vec3 normal = vector::cross(vector::subtract(s[1], s[0]), vector::subtract(s[2], s[0]));
+  if (separates(normal, s, t) || separates(vector::scale(normal, -1), s, t)) return true;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (separates(vector::cross(vector::subtract(s[(k + 1) % 3], s[k]), normal), s, t)) return true;
+  }
+  return false;
+}
+
 bool share_a_corner(const Corners& s, const Corners& t) {
   return std::any_of(s.begin(), s.end(), [&](const Vec3& p) { return std::find(t.begin(), t.end(), p) != t.end(); });
 }
 
 }  // namespace
 
-std::size_t count_self_intersections(const Mesh& mesh) {
+namespace mesh {
+
+std::vector<TrianglePair> self_intersections(const Mesh& mesh) {
   const vector::Box box = box_of_used_vertices(mesh);
-  if (mesh.triangles.empty() || !(box.longest_side() > 0)) return 0;
+  if (mesh.triangles.empty() || !(box.longest_side() > 0)) return {};
   // By a power of two, which is exact, to about 1.
   double largest = 0;
   for (std::size_t k = 0; k < 3; ++k) largest = std::max({largest, std::fabs(box.low[k]), std::fabs(box.high[k])});
@@ -80,9 +108,9 @@ std::size_t count_self_intersections(const Mesh& mesh) {
     return Corners{scaled.vertices[t[0]], scaled.vertices[t[1]], scaled.vertices[t[2]]};
   };
   const TriangleTree tree(scaled);
-  std::atomic<std::size_t> count{0};
+  std::vector<std::vector<TrianglePair>> found((mesh.triangles.size() + kBlock - 1) / kBlock);
   parallel::for_blocks(mesh.triangles.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-    std::size_t found = 0;
+    std::vector<TrianglePair>& pairs = found[begin / kBlock];
     for (std::size_t f = begin; f < end; ++f) {
       const Corners mine = corners(f);
       vector::Box around;
@@ -91,12 +119,19 @@ std::size_t count_self_intersections(const Mesh& mesh) {
       tree.for_each_overlapping(around, [&](std::uint32_t other) {
         if (other <= f) return;
         const Corners theirs = corners(other);
-        if (!share_a_corner(mine, theirs) && meet(mine, theirs)) ++found;
+        if (surely_apart(mine, theirs) || surely_apart(theirs, mine) || share_a_corner(mine, theirs)) return;
+        if (meet(mine, theirs)) pairs.push_back({static_cast<std::uint32_t>(f), other});
       });
     }
-    count += found;
+    std::sort(pairs.begin(), pairs.end());
   });
-  return count;
+  std::vector<TrianglePair> all;
+  for (const std::vector<TrianglePair>& pairs : found) all.insert(all.end(), pairs.begin(), pairs.end());
+  return all;
 }
+
+}  // namespace mesh
+
+std::size_t count_self_intersections(const Mesh& mesh) { return mesh::self_intersections(mesh).size(); }
 
 }  // namespace g3r

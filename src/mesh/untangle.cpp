@@ -1,0 +1,114 @@
+#include "mesh/untangle.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "g3r/error.h"
+#include "mesh/self_intersections.h"
+#include "mesh/vector.h"
+
+namespace g3r::mesh {
+namespace {
+
+constexpr int kRounds = 12;
+constexpr int kWider = 4;      // after so many rounds the neighbours of a crossing triangle move too
+constexpr double kStep = 0.5;  // of the way to the mean of the neighbours
+constexpr int kRings = 3;      // of triangles around the crossing ones in which moved vertices may meet something
+constexpr std::uint32_t kOutside = std::numeric_limits<std::uint32_t>::max();
+
+// Marks the corners of all triangles that have a marked corner.
+void grow(const Mesh& mesh, std::vector<std::uint8_t>& marked) {
+  std::vector<std::uint8_t> next = marked;
+  for (const auto& t : mesh.triangles) {
+    if (marked[t[0]] == 0 && marked[t[1]] == 0 && marked[t[2]] == 0) continue;
+    for (const std::uint32_t v : t) next[v] = 1;
+  }
+  marked = std::move(next);
+}
+
+// The triangles whose corners are all marked, as a mesh of their own.
+struct Part {
+  Mesh mesh;
+  std::vector<std::uint32_t> vertex;  // of the whole mesh, for each of the part's
+};
+
+Part part_of(const Mesh& mesh, const std::vector<std::uint8_t>& marked) {
+  Part part;
+  std::vector<std::uint32_t> number(mesh.vertices.size(), kOutside);
+  for (const auto& t : mesh.triangles) {
+    if (marked[t[0]] == 0 || marked[t[1]] == 0 || marked[t[2]] == 0) continue;
+    auto& added = part.mesh.triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::uint32_t& n = number[t[k]];
+      if (n == kOutside) {
+        n = static_cast<std::uint32_t>(part.vertex.size());
+        part.vertex.push_back(t[k]);
+        part.mesh.vertices.push_back(mesh.vertices[t[k]]);
+      }
+      added[k] = n;
+    }
+  }
+  return part;
+}
+
+// Marks number(v) for the corners v of all triangles of the pairs.
+template <class Number>
+void mark_corners(const Mesh& mesh, const std::vector<TrianglePair>& pairs, const Number& number, std::vector<std::uint8_t>& marked) {
+  for (const TrianglePair& pair : pairs) {
+    for (const std::uint32_t f : pair) {
+      for (const std::uint32_t v : mesh.triangles[f]) marked[number(v)] = 1;
+    }
+  }
+}
+
+// `move`: by vertex of the whole mesh.
+void smooth(Part& part, const std::vector<std::uint8_t>& move) {
+  std::vector<Vec3>& at = part.mesh.vertices;
+  std::vector<Vec3> sum(at.size(), Vec3{0, 0, 0});
+  std::vector<double> count(at.size(), 0);
+  for (const auto& t : part.mesh.triangles) {  // every neighbour twice, once for each triangle at the edge
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (const std::size_t other : {(k + 1) % 3, (k + 2) % 3}) sum[t[k]] = vector::add(sum[t[k]], at[t[other]]);
+      count[t[k]] += 2;
+    }
+  }
+  for (std::size_t v = 0; v < at.size(); ++v) {
+    if (move[part.vertex[v]] == 0) continue;
+    at[v] = vector::add(vector::scale(at[v], 1 - kStep), vector::scale(sum[v], kStep / count[v]));
+  }
+}
+
+}  // namespace
+
+std::size_t untangle(Mesh& mesh, const std::atomic<bool>* cancel) {
+  std::vector<TrianglePair> pairs = self_intersections(mesh);
+  std::vector<std::uint8_t> crossing(mesh.vertices.size(), 0);
+  mark_corners(
+      mesh, pairs, [](std::uint32_t v) { return v; }, crossing);
+  std::size_t fewest = pairs.size();
+  std::vector<Vec3> best = mesh.vertices;
+  for (int round = 0; round < kRounds && !pairs.empty(); ++round) {
+    if (cancel != nullptr && cancel->load()) throw Cancelled();
+    std::vector<std::uint8_t> move = crossing;
+    if (round >= kWider) grow(mesh, move);
+    std::vector<std::uint8_t> near = move;
+    for (int ring = 0; ring < kRings; ++ring) grow(mesh, near);
+    Part part = part_of(mesh, near);
+    smooth(part, move);
+    for (std::size_t i = 0; i < part.vertex.size(); ++i) mesh.vertices[part.vertex[i]] = part.mesh.vertices[i];
+    pairs = self_intersections(part.mesh);
+    std::fill(crossing.begin(), crossing.end(), 0);
+    mark_corners(
+        part.mesh, pairs, [&](std::uint32_t v) { return part.vertex[v]; }, crossing);
+    if (pairs.size() >= fewest) continue;
+    fewest = pairs.size();
+    best = mesh.vertices;
+  }
+  mesh.vertices = std::move(best);
+  return fewest;
+}
+
+}  // namespace g3r::mesh

@@ -1,0 +1,55 @@
+// Triangles that cross are pulled apart, and nothing else moves.
+#include "mesh/untangle.h"
+
+#include <g3r/mesh.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "mesh_shapes.h"
+
+namespace g3r {
+namespace {
+
+TEST(Untangle, LeavesCleanMeshesAlone) {
+  const Mesh before = shapes::torus(1, 0.4, 60, 40);
+  Mesh mesh = before;
+  EXPECT_EQ(mesh::untangle(mesh), 0U);
+  EXPECT_EQ(mesh.vertices, before.vertices);
+}
+
+// Vertices pushed past their neighbours, as placement beyond a crease does.
+TEST(Untangle, UnfoldsWhatCrossesAndKeepsTheRest) {
+  const Mesh clean = shapes::torus(1, 0.4, 120, 80);
+  Mesh mesh = clean;
+  std::mt19937_64 rng(3);
+  std::vector<std::uint32_t> pushed;
+  for (int i = 0; i < 60; ++i) {
+    const std::array<std::uint32_t, 3>& t = mesh.triangles[rng() % mesh.triangles.size()];
+    const Vec3 from = clean.vertices[t[0]], to = clean.vertices[t[1]];
+    for (std::size_t a = 0; a < 3; ++a) mesh.vertices[t[0]][a] = from[a] + 2.5 * (to[a] - from[a]) + (a == 2 ? 0.01 : 0);
+    pushed.push_back(t[0]);
+  }
+  ASSERT_GT(count_self_intersections(mesh), 60U);
+  const Mesh tangled = mesh;
+  EXPECT_EQ(mesh::untangle(mesh), 0U);
+  EXPECT_EQ(count_self_intersections(mesh), 0U);
+  EXPECT_EQ(mesh.triangles, clean.triangles);
+  std::size_t moved = 0;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) moved += mesh.vertices[v] != tangled.vertices[v] ? 1 : 0;
+  EXPECT_GE(moved, pushed.size() / 2);
+  EXPECT_LT(moved, mesh.vertices.size() / 4);
+}
+
+// Two spheres through each other cannot be pulled apart; the mesh must come out no worse, and whole.
+TEST(Untangle, DoesNotMakeItWorse) {
+  Mesh mesh = shapes::united(shapes::sphere(1, 24), shapes::moved(shapes::sphere(1, 24), {0.9, 0.05, 0.02}));
+  const std::size_t before = count_self_intersections(mesh);
+  const auto triangles = mesh.triangles;
+  EXPECT_LE(mesh::untangle(mesh), before);
+  EXPECT_EQ(mesh.triangles, triangles);
+  EXPECT_LE(count_self_intersections(mesh), before);
+}
+
+}  // namespace
+}  // namespace g3r
