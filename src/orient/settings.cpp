@@ -100,7 +100,6 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   require(options.degree < 0 || options.harmonics.empty(), "give either a degree or a list of harmonics, not both");
   require(options.degree <= kMaxHarmonicDegree, "degree must be between 0 and " + std::to_string(kMaxHarmonicDegree));
   require(options.threads >= 0, "threads must be 0 (all cores) or positive");
-  require(options.accuracy == -1 || options.accuracy >= 0, "accuracy must be 0 (direct sums) or between 1e-6 and 1e-1");
   require(options.tolerance == -1 || (options.tolerance >= 0 && options.tolerance < 1), "tolerance must be in [0, 1)");
   if (s.method == Method::kGreen) {
     s.harmonics = options.harmonics.empty() ? harmonics_of_degrees(0, options.degree >= 0 ? options.degree : kDefaultDegree)
@@ -150,9 +149,9 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
       if (options.tolerance < 0) s.tolerance = 0;
     }
   }
-  s.accuracy = options.accuracy >= 0 ? options.accuracy : kAccuracy;
+  s.accuracy = options.accuracy != -1 ? options.accuracy : kAccuracy;
   s.first_sums = sum_plan(s.accuracy, cloud.size());
-  const bool continued = options.accuracy < 0 && s.method == Method::kEnergy;
+  const bool continued = options.accuracy == -1 && s.method == Method::kEnergy;
   s.sums = sum_plan(continued ? kContinuedAccuracy : s.accuracy, cloud.size());
   return s;
 }
