@@ -141,9 +141,9 @@ TEST(FastSum, ErrorStaysBelowTheAccuracy) {
   for (const std::size_t n : {1UL, 2UL, 9UL, 100UL, 3000UL}) {
     for (const Case& c : clouds(n)) {
       if (n < 4 && c.name != "sphere") continue;
+      if (kSanitized && n > 1000 && c.name != "needle") continue;  // the direct sums take minutes
       const Truth truth(c.points, Widths(0.4 * spacing_of(c.points)));
       for (const double accuracy : {2e-2, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
-        if (kSanitized && accuracy < 1e-2 && accuracy > 1e-6) continue;
         const double error = worst_error(truth, sum_plan(accuracy, n));  // direct below the crossover
         EXPECT_LE(error, accuracy) << c.name << " n=" << n;
       }
@@ -154,7 +154,7 @@ TEST(FastSum, ErrorStaysBelowTheAccuracy) {
 // Errors of random densities grow with the number of points, most on these two.
 TEST(FastSum, ErrorStaysBelowTheAccuracyForManyPoints) {
   if (kSanitized) GTEST_SKIP() << "the direct sums take minutes";
-  constexpr std::size_t kMany = 8000;
+  constexpr std::size_t kMany = 6000;
   for (const Case& c : clouds(kMany)) {
     if (c.name != "needle" && c.name != "plane") continue;
     const Truth truth(c.points, Widths(0.4 * spacing_of(c.points)));
