@@ -40,7 +40,11 @@ TEST(Text, NumbersBeyondDoubleAreInfiniteOrZeroAndSaid) {
   EXPECT_TRUE(io::parse_double("-1e999", v, &overflow));
   EXPECT_EQ(v, -std::numeric_limits<double>::infinity());
   EXPECT_TRUE(overflow);
+  EXPECT_TRUE(io::parse_double("1.e" + std::to_string(std::numeric_limits<long>::max()), v, &overflow));
+  EXPECT_EQ(v, std::numeric_limits<double>::infinity());
   overflow = false;
+  EXPECT_TRUE(io::parse_double("0.01e" + std::to_string(std::numeric_limits<long>::min()), v, &overflow));
+  EXPECT_EQ(v, 0);
   EXPECT_TRUE(io::parse_double("1e-999", v, &overflow));
   EXPECT_EQ(v, 0);
   EXPECT_TRUE(io::parse_double("0." + std::string(400, '0') + "1", v, &overflow));

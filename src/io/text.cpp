@@ -25,7 +25,7 @@ bool is_too_large(std::string_view token) {
   const std::size_t first = mantissa.find_first_of("123456789");
   if (first == std::string_view::npos) return false;
   const auto magnitude = first < point ? static_cast<long>(point - first) : -static_cast<long>(first - point);
-  return magnitude + exponent > 0;
+  return exponent > -magnitude;  // their sum may be no long
 }
 
 // What Microsoft's printf writes for NaN and infinity.
