@@ -193,19 +193,20 @@ void index_offsets(const Octree& targets, const Octree& sources, InteractionList
           static_cast<std::uint32_t>(std::lower_bound(lists.offsets.begin(), lists.offsets.end(), local[k]) - lists.offsets.begin());
     }
     // Offset, target within the chunk and source as one number: sorted several times faster than three.
-    constexpr unsigned kSourceBits = 32;
+    const auto source_bits = static_cast<unsigned>(std::bit_width(sources.nodes.size()));  // leaves 2^31 offsets for 2^24 nodes
     constexpr unsigned kTargetBits = std::bit_width(kTargetChunk - 1);
     const auto begin = lists.far.begin() + static_cast<std::ptrdiff_t>(lists.chunk_begin[c]);
     const auto end = lists.far.begin() + static_cast<std::ptrdiff_t>(lists.chunk_begin[c + 1]);
     std::vector<std::uint64_t> keys(static_cast<std::size_t>(end - begin));
     std::transform(begin, end, keys.begin(), [&](const FarPair& pair) {
-      return (std::uint64_t{global[pair.offset]} << kTargetBits | pair.target % kTargetChunk) << kSourceBits | pair.source;
+      return (std::uint64_t{global[pair.offset]} << kTargetBits | pair.target % kTargetChunk) << source_bits | pair.source;
     });
     std::sort(keys.begin(), keys.end());
     std::transform(keys.begin(), keys.end(), begin, [&](std::uint64_t key) {
-      const std::uint64_t target = key >> kSourceBits;
+      const std::uint64_t target = key >> source_bits;
       return FarPair{static_cast<std::uint32_t>(target >> kTargetBits),
-                     static_cast<std::uint32_t>(c * kTargetChunk + target % kTargetChunk), static_cast<std::uint32_t>(key)};
+                     static_cast<std::uint32_t>(c * kTargetChunk + target % kTargetChunk),
+                     static_cast<std::uint32_t>(key & ((std::uint64_t{1} << source_bits) - 1))};
     });
   });
 }
