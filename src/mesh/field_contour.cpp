@@ -11,6 +11,7 @@
 namespace g3r::mesh {
 namespace {
 
+constexpr std::size_t kLeafBlock = 4096;
 constexpr std::size_t kMinTasks = 256;  // the traversal is cut into at least this many independent tasks where the tree allows it
 
 // Order of the four quadrants around an edge along axis d, counter-clockwise seen from +d: bit 0 = upper along d+1, bit 1 = along d+2.
@@ -23,7 +24,7 @@ struct ActiveEdge {
   bool inside_low = false;
 };
 
-// ---- traversal: every minimal edge of the octree exactly once (Ju et al. 2002, cell, face and edge procedures) ----
+// ---- traversal: minimal edges of the octree, each exactly once (Ju et al. 2002, cell, face and edge procedures) ----
 
 enum class Kind : std::uint8_t { kCell, kFace, kEdge };
 
@@ -33,13 +34,33 @@ struct Task {
   std::array<std::uint32_t, 4> node{};  // cell: 1; face: lower, upper; edge: quadrant bit 0 = upper along axis+1, bit 1 = along axis+2
 };
 
+// Marks the nodes above the leaves for which marked(leaf) is not 0.
+template <class Marked>
+std::vector<std::uint8_t> mark_nodes(const Octree& octree, const Marked& marked) {
+  const std::vector<OctreeNode>& nodes = octree.nodes();
+  std::vector<std::uint8_t> out(nodes.size(), 0);
+  for (std::size_t i = nodes.size(); i-- > 0;) {  // children come after their parents
+    if (nodes[i].first_child < 0) {
+      out[i] = marked(static_cast<std::size_t>(nodes[i].leaf)) ? 1 : 0;
+    } else {
+      for (std::size_t c = 0; c < 8; ++c) out[i] |= out[static_cast<std::size_t>(nodes[i].first_child) + c];
+    }
+  }
+  return out;
+}
+
+// The minimal edges of which some leaf around them is marked.
 class Traversal {
  public:
-  Traversal(const Octree& octree, const std::vector<std::uint8_t>& inside) : octree_(octree), inside_(inside) {}
+  Traversal(const Octree& octree, std::vector<std::uint8_t> marked) : octree_(octree), marked_(std::move(marked)) {}
 
   // One step: the tasks below `task`, or the edge it ends at.
   template <class OnTask, class OnEdge>
   void expand(const Task& task, const OnTask& on_task, const OnEdge& on_edge) const {
+    constexpr std::array<std::size_t, 3> kNodes{1, 2, 4};
+    std::uint8_t some = 0;
+    for (std::size_t k = 0; k < kNodes[static_cast<std::size_t>(task.kind)]; ++k) some |= marked_[task.node[k]];
+    if (some == 0) return;
     switch (task.kind) {
       case Kind::kCell:
         return expand_cell(task, on_task);
@@ -50,9 +71,10 @@ class Traversal {
     }
   }
 
-  void run(const Task& task, std::vector<ActiveEdge>& out) const {
+  template <class OnEdge>
+  void run(const Task& task, const OnEdge& on_edge) const {
     expand(
-        task, [&](const Task& next) { run(next, out); }, [&](const ActiveEdge& e) { out.push_back(e); });
+        task, [&](const Task& next) { run(next, on_edge); }, on_edge);
   }
 
  private:
@@ -126,32 +148,37 @@ class Traversal {
     ActiveEdge edge;
     edge.low = corners[bits_of(smallest)];
     edge.high = corners[bits_of(smallest) | (1U << d)];
-    if (inside_[edge.low] == inside_[edge.high]) return;
     edge.axis = task.axis;
-    edge.inside_low = inside_[edge.low] != 0;
     for (std::size_t k = 0; k < 4; ++k) edge.leaf[k] = static_cast<std::uint32_t>(octree_.nodes()[task.node[kCycle[k]]].leaf);
     on_edge(edge);
   }
 
   const Octree& octree_;
-  const std::vector<std::uint8_t>& inside_;
+  std::vector<std::uint8_t> marked_;
 };
 
-std::vector<ActiveEdge> active_edges(const Octree& octree, const std::vector<std::uint8_t>& inside, const std::atomic<bool>* cancel) {
-  const Traversal traversal(octree, inside);
+// The crossings with a marked leaf around them.
+std::vector<ActiveEdge> active_edges(const Octree& octree, const std::vector<std::uint8_t>& inside, std::vector<std::uint8_t> marked,
+                                     const std::atomic<bool>* cancel) {
+  const Traversal traversal(octree, std::move(marked));
+  const auto take = [&](ActiveEdge e, std::vector<ActiveEdge>& out) {
+    if (inside[e.low] == inside[e.high]) return;
+    e.inside_low = inside[e.low] != 0;
+    out.push_back(e);
+  };
   std::vector<ActiveEdge> edges;
   std::vector<Task> tasks{Task{}};
   for (int round = 0; round < 12 && !tasks.empty() && tasks.size() < kMinTasks; ++round) {
     std::vector<Task> next;
     for (const Task& task : tasks) {
       traversal.expand(
-          task, [&](const Task& t) { next.push_back(t); }, [&](const ActiveEdge& e) { edges.push_back(e); });
+          task, [&](const Task& t) { next.push_back(t); }, [&](const ActiveEdge& e) { take(e, edges); });
     }
     tasks = std::move(next);
   }
   std::vector<std::vector<ActiveEdge>> found(tasks.size());
   parallel::for_each(
-      tasks.size(), [&](std::size_t t) { traversal.run(tasks[t], found[t]); }, cancel);
+      tasks.size(), [&](std::size_t t) { traversal.run(tasks[t], [&](const ActiveEdge& e) { take(e, found[t]); }); }, cancel);
   for (const auto& part : found) edges.insert(edges.end(), part.begin(), part.end());
   return edges;
 }
@@ -170,16 +197,27 @@ struct Arc {
   FaceRecord a, b;
 };
 
-std::vector<FaceRecord> face_records(const std::vector<ActiveEdge>& edges) {
-  std::vector<FaceRecord> records;
-  records.reserve(edges.size() * 4);
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    for (std::uint8_t k = 0; k < 4; ++k) {
-      const std::uint64_t a = edges[e].leaf[k], b = edges[e].leaf[(k + 1U) % 4U];
-      if (a != b) records.push_back({(std::min(a, b) << 32U) | std::max(a, b), static_cast<std::uint32_t>(e), k});
+// In ascending order.
+std::vector<FaceRecord> face_records(const Octree& octree, const std::vector<ActiveEdge>& edges) {
+  const auto for_each_record = [&](const auto& use) {
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+      for (std::uint8_t k = 0; k < 4; ++k) {
+        const std::uint64_t a = edges[e].leaf[k], b = edges[e].leaf[(k + 1U) % 4U];
+        if (a != b) use(FaceRecord{(std::min(a, b) << 32U) | std::max(a, b), static_cast<std::uint32_t>(e), k});
+      }
     }
-  }
-  parallel::sort(records.begin(), records.end(), std::less<>());
+  };
+  // By the first leaf of the face, then each leaf's few.
+  std::vector<std::size_t> begin(octree.leaf_count() + 2, 0);
+  for_each_record([&](const FaceRecord& r) { ++begin[(r.face >> 32U) + 2]; });
+  for (std::size_t l = 2; l < begin.size(); ++l) begin[l] += begin[l - 1];
+  std::vector<FaceRecord> records(begin.back());
+  for_each_record([&](const FaceRecord& r) { records[begin[(r.face >> 32U) + 1]++] = r; });
+  parallel::for_blocks(octree.leaf_count(), kLeafBlock, [&](std::size_t first, std::size_t last) {
+    for (std::size_t l = first; l < last; ++l) {
+      std::sort(records.begin() + static_cast<std::ptrdiff_t>(begin[l]), records.begin() + static_cast<std::ptrdiff_t>(begin[l + 1]));
+    }
+  });
   return records;
 }
 
@@ -248,7 +286,7 @@ struct Arcs {
 };
 
 Arcs join_arcs(const Octree& octree, const std::vector<ActiveEdge>& edges, const InsideTest& centre_inside) {
-  const std::vector<FaceRecord> records = face_records(edges);
+  const std::vector<FaceRecord> records = face_records(octree, edges);
   Arcs out;
   out.arcs.reserve(records.size() / 2);
   std::vector<AmbiguousFace> ambiguous;
@@ -390,7 +428,11 @@ void make_polygons(const Octree& octree, const std::vector<ActiveEdge>& edges, c
 DualSurface contour(const Octree& octree, const std::vector<std::uint8_t>& inside, const InsideTest& centre_inside,
                     const std::atomic<bool>* cancel) {
   DualSurface surface;
-  const std::vector<ActiveEdge> edges = active_edges(octree, inside, cancel);
+  const auto mixed = [&](std::size_t leaf) {
+    const auto& c = octree.corners(leaf);
+    return std::any_of(c.begin(), c.end(), [&](std::uint32_t k) { return inside[k] != inside[c[0]]; });
+  };
+  const std::vector<ActiveEdge> edges = active_edges(octree, inside, mark_nodes(octree, mixed), cancel);
   const Arcs arcs = join_arcs(octree, edges, centre_inside);
   const std::vector<std::uint32_t> sheet = label_sheets(edges, arcs.arcs, surface);
   const auto middle = split_double_edges(arcs, sheet, surface);

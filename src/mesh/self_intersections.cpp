@@ -84,7 +84,11 @@ bool surely_apart(const Corners& s, const Corners& t) {
   return false;
 }
 
-bool share_a_corner(const Corners& s, const Corners& t) {
+bool share_a_corner(const std::array<std::uint32_t, 3>& s, const std::array<std::uint32_t, 3>& t) {
+  return std::any_of(s.begin(), s.end(), [&](std::uint32_t v) { return v == t[0] || v == t[1] || v == t[2]; });
+}
+
+bool touch_at_a_corner(const Corners& s, const Corners& t) {
   return std::any_of(s.begin(), s.end(), [&](const Vec3& p) { return std::find(t.begin(), t.end(), p) != t.end(); });
 }
 
@@ -117,9 +121,9 @@ std::vector<TrianglePair> self_intersections(const Mesh& mesh) {
       for (const Vec3& p : mine) around.extend(p);
       if (!tree.contains(static_cast<std::uint32_t>(f))) continue;
       tree.for_each_overlapping(around, [&](std::uint32_t other) {
-        if (other <= f) return;
+        if (other <= f || share_a_corner(mesh.triangles[f], mesh.triangles[other])) return;
         const Corners theirs = corners(other);
-        if (surely_apart(mine, theirs) || surely_apart(theirs, mine) || share_a_corner(mine, theirs)) return;
+        if (surely_apart(mine, theirs) || surely_apart(theirs, mine) || touch_at_a_corner(mine, theirs)) return;
         if (meet(mine, theirs)) pairs.push_back({static_cast<std::uint32_t>(f), other});
       });
     }
