@@ -24,6 +24,12 @@ class DisjointSets {
     parent_[std::max(i, j)] = std::min(i, j);
     --count_;
   }
+  /// A further element, in a set of its own.
+  std::size_t add() {
+    parent_.push_back(parent_.size());
+    ++count_;
+    return parent_.size() - 1;
+  }
   /// Number of sets.
   [[nodiscard]] std::size_t count() const { return count_; }
 

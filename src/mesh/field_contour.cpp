@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <new>
 #include <unordered_map>
 
@@ -11,15 +12,15 @@
 namespace g3r::mesh {
 namespace {
 
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t kLeafBlock = 4096;
 constexpr std::size_t kMinTasks = 256;  // the traversal is cut into at least this many independent tasks where the tree allows it
 
 // Order of the four quadrants around an edge along axis d, counter-clockwise seen from +d: bit 0 = upper along d+1, bit 1 = along d+2.
+// MinimalEdge::leaf is in this order.
 constexpr std::array<std::uint32_t, 4> kCycle{0, 1, 3, 2};
 
-struct ActiveEdge {
-  std::uint32_t low = 0, high = 0;      // corners
-  std::array<std::uint32_t, 4> leaf{};  // in the order of kCycle; a leaf twice as large may fill two adjacent places
+struct ActiveEdge : MinimalEdge {
   std::uint8_t axis = 0;
   bool inside_low = false;
 };
@@ -157,14 +158,13 @@ class Traversal {
   std::vector<std::uint8_t> marked_;
 };
 
-// The crossings with a marked leaf around them.
-std::vector<ActiveEdge> active_edges(const Octree& octree, const std::vector<std::uint8_t>& inside, std::vector<std::uint8_t> marked,
-                                     const std::atomic<bool>* cancel) {
+// The minimal edges with a marked leaf around them for which choose(edge), which may change the edge.
+template <class Choose>
+std::vector<ActiveEdge> find_edges(const Octree& octree, std::vector<std::uint8_t> marked, const Choose& choose,
+                                   const std::atomic<bool>* cancel) {
   const Traversal traversal(octree, std::move(marked));
   const auto take = [&](ActiveEdge e, std::vector<ActiveEdge>& out) {
-    if (inside[e.low] == inside[e.high]) return;
-    e.inside_low = inside[e.low] != 0;
-    out.push_back(e);
+    if (choose(e)) out.push_back(e);
   };
   std::vector<ActiveEdge> edges;
   std::vector<Task> tasks{Task{}};
@@ -181,6 +181,15 @@ std::vector<ActiveEdge> active_edges(const Octree& octree, const std::vector<std
       tasks.size(), [&](std::size_t t) { traversal.run(tasks[t], [&](const ActiveEdge& e) { take(e, found[t]); }); }, cancel);
   for (const auto& part : found) edges.insert(edges.end(), part.begin(), part.end());
   return edges;
+}
+
+std::vector<ActiveEdge> crossing_edges(const Octree& octree, const std::vector<std::uint8_t>& inside, std::vector<std::uint8_t> marked,
+                                       const std::atomic<bool>* cancel) {
+  const auto crosses = [&](ActiveEdge& e) {
+    e.inside_low = inside[e.low] != 0;
+    return inside[e.low] != inside[e.high];
+  };
+  return find_edges(octree, std::move(marked), crosses, cancel);
 }
 
 // ---- arcs: on every octree face the crossings of its rim are joined in pairs ----
@@ -285,7 +294,9 @@ struct Arcs {
   std::size_t first_multiple = 0;
 };
 
-Arcs join_arcs(const Octree& octree, const std::vector<ActiveEdge>& edges, const InsideTest& centre_inside) {
+// `complete(leaf)`: whether `edges` has all crossings on the boundary of the leaf; faces between two that are not complete have no arcs.
+template <class Complete>
+Arcs join_arcs(const Octree& octree, const std::vector<ActiveEdge>& edges, const Complete& complete, const InsideTest& centre_inside) {
   const std::vector<FaceRecord> records = face_records(octree, edges);
   Arcs out;
   out.arcs.reserve(records.size() / 2);
@@ -293,6 +304,10 @@ Arcs join_arcs(const Octree& octree, const std::vector<ActiveEdge>& edges, const
   for (std::size_t i = 0; i < records.size();) {
     std::size_t j = i;
     while (j < records.size() && records[j].face == records[i].face) ++j;
+    if (!complete(records[i].face >> 32U) && !complete(records[i].face & 0xffffffffU)) {
+      i = j;
+      continue;
+    }
     if (j - i == 2) {
       out.arcs.push_back({records[i], records[i + 1]});
     } else {
@@ -313,8 +328,10 @@ Arcs join_arcs(const Octree& octree, const std::vector<ActiveEdge>& edges, const
 
 // ---- sheets: the loops of arcs on the boundary of each leaf ----
 
-// Sheet of every (edge, place), 4 per edge.
-std::vector<std::uint32_t> label_sheets(const std::vector<ActiveEdge>& edges, const std::vector<Arc>& arcs, DualSurface& surface) {
+// Sheet of every (edge, place), 4 per edge; kNone in leaves that are not complete.
+template <class Complete>
+std::vector<std::uint32_t> label_sheets(const std::vector<ActiveEdge>& edges, const std::vector<Arc>& arcs, const Complete& complete,
+                                        DualSurface& surface) {
   if (edges.size() > (std::size_t{1} << 30U)) throw std::bad_alloc();
   DisjointSets groups(edges.size() * 4);
   for (std::uint32_t e = 0; e < edges.size(); ++e) {
@@ -332,9 +349,10 @@ std::vector<std::uint32_t> label_sheets(const std::vector<ActiveEdge>& edges, co
       groups.join(place_of(arc.a.edge, leaf), place_of(arc.b.edge, leaf));
     }
   }
-  std::vector<std::uint32_t> sheet(edges.size() * 4);
+  std::vector<std::uint32_t> sheet(edges.size() * 4, kNone);
   std::vector<std::size_t> count;
   for (std::uint32_t i = 0; i < sheet.size(); ++i) {
+    if (!complete(edges[i / 4].leaf[i % 4])) continue;
     const std::size_t root = groups.find(i);
     if (root == i) {
       sheet[i] = static_cast<std::uint32_t>(surface.patch_leaf.size());
@@ -353,7 +371,8 @@ std::vector<std::uint32_t> label_sheets(const std::vector<ActiveEdge>& edges, co
   std::vector<std::size_t> fill(surface.patch_begin.begin(), surface.patch_begin.end() - 1);
   for (std::uint32_t e = 0; e < edges.size(); ++e) {
     for (std::uint32_t k = 0; k < 4; ++k) {
-      if (edges[e].leaf[k] != edges[e].leaf[(k + 3) % 4]) surface.patch_crossings[fill[sheet[4 * e + k]]++] = e;
+      if (sheet[4 * e + k] != kNone && edges[e].leaf[k] != edges[e].leaf[(k + 3) % 4])
+        surface.patch_crossings[fill[sheet[4 * e + k]]++] = e;
     }
   }
   return sheet;
@@ -397,11 +416,9 @@ void make_polygons(const Octree& octree, const std::vector<ActiveEdge>& edges, c
                    const std::unordered_map<std::uint64_t, std::uint32_t>& middle, DualSurface& surface) {
   surface.polygon_begin.assign(1, 0);
   surface.polygon_vertices.reserve(edges.size() * 4);
-  surface.crossings.reserve(edges.size());
   surface.safe_diagonals.reserve(edges.size());
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const ActiveEdge& e = edges[i];
-    surface.crossings.push_back(e.inside_low ? Crossing{e.low, e.high} : Crossing{e.high, e.low});
     const auto first = static_cast<std::ptrdiff_t>(surface.polygon_vertices.size());
     std::vector<std::uint32_t>& polygon = surface.polygon_vertices;
     for (std::size_t k = 0; k < 4; ++k) {
@@ -423,21 +440,50 @@ void make_polygons(const Octree& octree, const std::vector<ActiveEdge>& edges, c
   }
 }
 
+// Crossings and sheets of the leaves for which complete(leaf); returns the sheet of every (edge, place).
+template <class Complete>
+std::vector<std::uint32_t> add_sheets(const std::vector<ActiveEdge>& edges, const std::vector<Arc>& arcs, const Complete& complete,
+                                      DualSurface& surface) {
+  surface.crossings.reserve(edges.size());
+  for (const ActiveEdge& e : edges) surface.crossings.push_back(e.inside_low ? Crossing{e.low, e.high} : Crossing{e.high, e.low});
+  return label_sheets(edges, arcs, complete, surface);
+}
+
 }  // namespace
 
 DualSurface contour(const Octree& octree, const std::vector<std::uint8_t>& inside, const InsideTest& centre_inside,
                     const std::atomic<bool>* cancel) {
-  DualSurface surface;
   const auto mixed = [&](std::size_t leaf) {
     const auto& c = octree.corners(leaf);
     return std::any_of(c.begin(), c.end(), [&](std::uint32_t k) { return inside[k] != inside[c[0]]; });
   };
-  const std::vector<ActiveEdge> edges = active_edges(octree, inside, mark_nodes(octree, mixed), cancel);
-  const Arcs arcs = join_arcs(octree, edges, centre_inside);
-  const std::vector<std::uint32_t> sheet = label_sheets(edges, arcs.arcs, surface);
+  const auto all = [](std::size_t) { return true; };
+  const std::vector<ActiveEdge> edges = crossing_edges(octree, inside, mark_nodes(octree, mixed), cancel);
+  const Arcs arcs = join_arcs(octree, edges, all, centre_inside);
+  DualSurface surface;
+  const std::vector<std::uint32_t> sheet = add_sheets(edges, arcs.arcs, all, surface);
   const auto middle = split_double_edges(arcs, sheet, surface);
   make_polygons(octree, edges, sheet, middle, surface);
   return surface;
+}
+
+DualSurface sheets_in(const Octree& octree, const std::vector<std::uint8_t>& leaves, const std::vector<std::uint8_t>& inside,
+                      const InsideTest& centre_inside, const std::atomic<bool>* cancel) {
+  const auto marked = [&](std::size_t leaf) { return leaves[leaf] != 0; };
+  const std::vector<ActiveEdge> edges = crossing_edges(octree, inside, mark_nodes(octree, marked), cancel);
+  DualSurface surface;
+  add_sheets(edges, join_arcs(octree, edges, marked, centre_inside).arcs, marked, surface);
+  return surface;
+}
+
+std::vector<MinimalEdge> edges_at(const Octree& octree, const std::vector<std::uint8_t>& corners, const std::atomic<bool>* cancel) {
+  const auto has_one = [&](std::size_t leaf) {
+    const auto& c = octree.corners(leaf);
+    return std::any_of(c.begin(), c.end(), [&](std::uint32_t k) { return corners[k] != 0; });
+  };
+  const auto ends_at_one = [&](const ActiveEdge& e) { return corners[e.low] != 0 || corners[e.high] != 0; };
+  const std::vector<ActiveEdge> edges = find_edges(octree, mark_nodes(octree, has_one), ends_at_one, cancel);
+  return {edges.begin(), edges.end()};
 }
 
 }  // namespace g3r::mesh

@@ -57,9 +57,9 @@ constexpr double kLeavesPerPoint = 9.5;  // measured: 7.2 to 10.4 without thin w
 constexpr double kThickness = 0.75;      // of the refined layer, in cells of the automatic depth,
 constexpr double kLayers = 2;            // and cells around it whatever their size
 
-// A way to read the opinions: after some sweeps of smoothing, at some level.
+// A way to read the opinions: after one or two averagings, at some level.
 struct Reading {
-  int sweeps;
+  int averagings;
   double level;
 };
 constexpr std::array<Reading, 5> kReadings{{{2, 0}, {1, 0.2}, {1, -0.2}, {1, 0.5}, {1, -0.5}}};
@@ -228,13 +228,12 @@ class Side {
   double reach_;  // half the side of the cube that everything inside is in
 };
 
-// Open corners by their opinions, the others as they are.
-std::vector<std::uint8_t> read_signs(const Octree& octree, const Opinions& opinions, const Reading& reading,
-                                     const std::vector<std::uint8_t>& inside, const std::atomic<bool>* cancel) {
-  const std::vector<double> side = mesh::smooth_sides(octree, opinions, reading.sweeps, cancel);
+// Open corners by their averaged opinions, the others as they are.
+std::vector<std::uint8_t> read_signs(const Octree& octree, const Opinions& opinions, const std::vector<double>& side, double level,
+                                     const std::vector<std::uint8_t>& inside) {
   std::vector<std::uint8_t> out = inside;
   for (std::size_t c = 0; c < out.size(); ++c) {
-    if (opinions.open[c] != 0) out[c] = side[c] > reading.level && !octree.on_boundary(c) ? 1 : 0;
+    if (opinions.open[c] != 0) out[c] = side[c] > level && !octree.on_boundary(c) ? 1 : 0;
   }
   return out;
 }
@@ -282,10 +281,12 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
     return in;
   };
   mesh::DualSurface surface = mesh::contour(octree, inside, centre_inside, monitor.cancel);
+  const std::vector<double> once = mesh::smooth_sides(octree, opinions, opinions.side, monitor.cancel);
+  const std::vector<double> twice = mesh::smooth_sides(octree, opinions, once, monitor.cancel);
   for (const Reading& reading : kReadings) {
     if (mesh::count_handles(surface) == 0) break;
-    mesh::remove_handles(octree, read_signs(octree, opinions, reading, inside, monitor.cancel), centre_inside, inside, surface,
-                         monitor.cancel);
+    const std::vector<std::uint8_t> signs = read_signs(octree, opinions, reading.averagings == 2 ? twice : once, reading.level, inside);
+    mesh::remove_handles(octree, signs, centre_inside, inside, surface, monitor.cancel);
   }
   for (std::size_t c = 0; c < inside.size(); ++c) {
     if ((value[c] > 0) != (inside[c] != 0) && !octree.on_boundary(c)) value[c] = (inside[c] != 0 ? kFlipped : -kFlipped) * spacing;

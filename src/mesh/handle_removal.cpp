@@ -12,37 +12,38 @@ constexpr long kMostPerHandle = 60;  // corners: more are a change of shape, not
 constexpr int kRounds = 4;           // groups change what others do; what has not settled by then is left as it is
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-// Groups of corners that share leaves.
+// Groups of corners, those at edges around one leaf together.
 struct Groups {
-  std::vector<std::uint32_t> of_corner, of_leaf;  // group or kNone
+  std::vector<std::uint32_t> of_corner, of_leaf;  // group or kNone; of leaves whose sheets depend on the corners of a group
+  std::vector<std::uint8_t> leaves;               // whether a leaf has a group
   std::vector<long> size;                         // corners of each
 };
 
-Groups group_corners(const Octree& octree, const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
+Groups group_corners(const Octree& octree, const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b,
+                     const std::atomic<bool>* cancel) {
+  std::vector<std::uint8_t> differs(a.size());
+  for (std::size_t c = 0; c < differs.size(); ++c) differs[c] = a[c] != b[c] ? 1 : 0;
   Groups g;
   g.of_corner.assign(a.size(), kNone);
   g.of_leaf.assign(octree.leaf_count(), kNone);
+  g.leaves.assign(octree.leaf_count(), 0);
   DisjointSets sets(a.size());
-  const auto differs = [&](std::uint32_t c) { return a[c] != b[c]; };
-  for (std::size_t leaf = 0; leaf < octree.leaf_count(); ++leaf) {
-    std::uint32_t first = kNone;
-    for (const std::uint32_t c : octree.corners(leaf)) {
-      if (!differs(c)) continue;
-      if (first == kNone) first = c;
-      sets.join(first, c);
+  for (const MinimalEdge& e : edges_at(octree, differs, cancel)) {
+    const std::uint32_t end = differs[e.low] != 0 ? e.low : e.high;
+    if (differs[e.high] != 0) sets.join(end, e.high);
+    for (const std::uint32_t leaf : e.leaf) {
+      std::uint32_t& first = g.of_leaf[leaf];
+      if (first == kNone) first = end;
+      sets.join(first, end);
+      g.leaves[leaf] = 1;
     }
-    g.of_leaf[leaf] = first;
   }
-  std::vector<std::uint32_t> number(a.size(), kNone);
   for (std::uint32_t c = 0; c < a.size(); ++c) {
-    if (!differs(c)) continue;
-    std::uint32_t& n = number[sets.find(c)];
-    if (n == kNone) {
-      n = static_cast<std::uint32_t>(g.size.size());
-      g.size.push_back(0);
-    }
-    g.of_corner[c] = n;
-    ++g.size[n];
+    if (differs[c] == 0) continue;
+    const std::size_t first = sets.find(c);  // the smallest, so its group has a number
+    if (first == c) g.size.push_back(0);
+    g.of_corner[c] = first == c ? static_cast<std::uint32_t>(g.size.size() - 1) : g.of_corner[first];
+    ++g.size[g.of_corner[c]];
   }
   for (std::uint32_t& leaf : g.of_leaf) {
     if (leaf != kNone) leaf = g.of_corner[leaf];
@@ -63,29 +64,60 @@ void add_characteristic(const DualSurface& s, const Groups& groups, long sign, s
   }
 }
 
-// Of the sheets 0, 1, ... and, after them, the crossings.
-DisjointSets components(const DualSurface& s) {
-  DisjointSets sets(s.patch_count() + s.crossings.size());
+// Joins the crossings around each of the sheets for which use(leaf). `number(k)`: of crossing k among the sets.
+template <class Use, class Number>
+void join_crossings(const DualSurface& s, const Use& use, const Number& number, DisjointSets& sets) {
   for (std::size_t p = 0; p < s.patch_count(); ++p) {
-    for (std::size_t k = s.patch_begin[p]; k < s.patch_begin[p + 1]; ++k) sets.join(p, s.patch_count() + s.patch_crossings[k]);
+    if (!use(s.patch_leaf[p])) continue;
+    const std::size_t first = number(s.patch_crossings[s.patch_begin[p]]);
+    for (std::size_t k = s.patch_begin[p] + 1; k < s.patch_begin[p + 1]; ++k) sets.join(first, number(s.patch_crossings[k]));
   }
-  return sets;
 }
 
-// How many components of the surface pass through the leaves of each group.
-std::vector<std::size_t> components_near(const DualSurface& s, const Groups& groups) {
-  DisjointSets sets = components(s);
-  std::vector<std::pair<std::uint32_t, std::size_t>> seen;
-  for (std::size_t p = 0; p < s.patch_count(); ++p) {
-    const std::uint32_t g = groups.of_leaf[s.patch_leaf[p]];
-    if (g != kNone) seen.emplace_back(g, sets.find(p));
+// How many components of the surface pass through the leaves of each group, once the sheets there are those of another surface.
+class Components {
+ public:
+  Components(const DualSurface& surface, const Groups& groups) : groups_(groups), outside_(surface.crossings.size()) {
+    join_crossings(
+        surface, [&](std::uint32_t leaf) { return groups.leaves[leaf] == 0; }, [](std::uint32_t k) { return k; }, outside_);
+    for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+      if (groups.leaves[surface.patch_leaf[p]] == 0) continue;
+      for (std::size_t k = surface.patch_begin[p]; k < surface.patch_begin[p + 1]; ++k) {
+        const std::uint32_t number = surface.patch_crossings[k];
+        known_.emplace_back(key(surface.crossings[number]), number);
+      }
+    }
+    std::sort(known_.begin(), known_.end());
   }
-  std::sort(seen.begin(), seen.end());
-  seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
-  std::vector<std::size_t> count(groups.size.size(), 0);
-  for (const auto& [g, component] : seen) ++count[g];
-  return count;
-}
+
+  // `inner`: all sheets of the leaves with a group. Crossings away from the corners of the groups are those of the surface.
+  [[nodiscard]] std::vector<std::size_t> near(const DualSurface& inner) const {
+    DisjointSets sets = outside_;
+    std::vector<std::size_t> number(inner.crossings.size());
+    for (std::size_t k = 0; k < number.size(); ++k) {
+      const Crossing& c = inner.crossings[k];
+      const auto found = std::lower_bound(known_.begin(), known_.end(), std::pair{key(c), std::uint32_t{0}});
+      number[k] = found != known_.end() && found->first == key(c) ? found->second : sets.add();
+    }
+    join_crossings(
+        inner, [](std::uint32_t) { return true; }, [&](std::uint32_t k) { return number[k]; }, sets);
+    std::vector<std::pair<std::uint32_t, std::size_t>> seen;
+    for (std::size_t p = 0; p < inner.patch_count(); ++p)
+      seen.emplace_back(groups_.of_leaf[inner.patch_leaf[p]], sets.find(number[inner.patch_crossings[inner.patch_begin[p]]]));
+    std::sort(seen.begin(), seen.end());
+    seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
+    std::vector<std::size_t> count(groups_.size.size(), 0);
+    for (const auto& [g, component] : seen) ++count[g];
+    return count;
+  }
+
+ private:
+  static std::uint64_t key(const Crossing& c) { return std::uint64_t{c.inside} << 32U | c.outside; }
+
+  const Groups& groups_;
+  DisjointSets outside_;                                        // crossings of the surface
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> known_;  // those of leaves with a group, by their corners
+};
 
 }  // namespace
 
@@ -93,22 +125,27 @@ long count_handles(const DualSurface& surface) {
   // Vertices - edges + faces; every arc is on the rims of two sheets.
   const auto vertices = static_cast<long>(surface.patch_count()), faces = static_cast<long>(surface.crossings.size());
   const long euler = vertices - static_cast<long>(surface.patch_crossings.size()) / 2 + faces;
-  return static_cast<long>(components(surface).count()) - euler / 2;
+  DisjointSets components(surface.crossings.size());
+  join_crossings(
+      surface, [](std::uint32_t) { return true; }, [](std::uint32_t k) { return k; }, components);
+  return static_cast<long>(components.count()) - euler / 2;
 }
 
 void remove_handles(const Octree& octree, const std::vector<std::uint8_t>& proposal, const InsideTest& centre_inside,
                     std::vector<std::uint8_t>& inside, DualSurface& surface, const std::atomic<bool>* cancel) {
-  const Groups groups = group_corners(octree, inside, proposal);
+  const Groups groups = group_corners(octree, inside, proposal, cancel);
   if (groups.size.empty()) return;
+  const DualSurface here = sheets_in(octree, groups.leaves, inside, centre_inside, cancel);
+  const Components components(surface, groups);
   std::vector<long> gain(groups.size.size(), 0);  // twice the change of the Euler characteristic: 4 for a handle less or a component more
-  add_characteristic(surface, groups, -1, gain);
-  const std::vector<std::size_t> before = components_near(surface, groups);
+  add_characteristic(here, groups, -1, gain);
+  const std::vector<std::size_t> before = components.near(here);
   std::vector<std::uint8_t> take(groups.size.size(), 1);
   std::vector<std::uint8_t> next = proposal;
   for (int round = 0; round < kRounds; ++round) {
-    DualSurface result = contour(octree, next, centre_inside, cancel);
+    const DualSurface result = sheets_in(octree, groups.leaves, next, centre_inside, cancel);
     if (round == 0) add_characteristic(result, groups, 1, gain);
-    const std::vector<std::size_t> after = components_near(result, groups);
+    const std::vector<std::size_t> after = components.near(result);
     bool settled = true;
     for (std::size_t g = 0; g < take.size(); ++g) {
       if (take[g] == 0) continue;
@@ -118,7 +155,7 @@ void remove_handles(const Octree& octree, const std::vector<std::uint8_t>& propo
     }
     if (settled) {
       inside = std::move(next);
-      surface = std::move(result);
+      surface = contour(octree, inside, centre_inside, cancel);
       return;
     }
     if (std::find(take.begin(), take.end(), 1) == take.end()) return;

@@ -16,9 +16,10 @@ namespace g3r::mesh {
 /// Handles of all components together. O(sheets + crossings).
 [[nodiscard]] long count_handles(const DualSurface& surface);
 
-/// `inside` and `proposal` mark every corner of the octree. Where they differ, corners that share a leaf form a group. A group takes the
-/// proposal if `surface` = contour(octree, inside) loses handles by it and the group has few corners for each; parts split off or added
-/// do not count as handles lost. Updates `inside` and `surface`. The same result for any number of threads. Costs two or three contours.
+/// `inside` and `proposal` mark every corner of the octree. Where they differ, corners at edges around one leaf form a group. A group takes
+/// the proposal if `surface` = contour(octree, inside) loses handles by it and the group has few corners for each; parts split off or added
+/// do not count as handles lost. Updates `inside` and `surface`. The same result for any number of threads. Costs a contour if something
+/// changes, else O(nodes + crossings).
 /// Throws Cancelled.
 void remove_handles(const Octree& octree, const std::vector<std::uint8_t>& proposal, const InsideTest& centre_inside,
                     std::vector<std::uint8_t>& inside, DualSurface& surface, const std::atomic<bool>* cancel = nullptr);

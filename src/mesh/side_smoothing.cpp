@@ -52,10 +52,10 @@ double along(const std::array<float, 3>& n, std::uint32_t place, std::uint32_t o
 
 }  // namespace
 
-std::vector<double> smooth_sides(const Octree& octree, const Opinions& opinions, int sweeps, const std::atomic<bool>* cancel) {
+std::vector<double> smooth_sides(const Octree& octree, const Opinions& opinions, const std::vector<double>& side,
+                                 const std::atomic<bool>* cancel) {
   const std::vector<Around> open = open_corners(octree, opinions.open);
-  std::vector<double> side = opinions.side;
-  std::vector<double> next(open.size());
+  std::vector<double> next = side;
   const auto average = [&](const Around& a) {
     double sum = 0, total = 0;
     for (std::size_t i = 0; i < a.count; ++i) {
@@ -69,16 +69,13 @@ std::vector<double> smooth_sides(const Octree& octree, const Opinions& opinions,
     const double own = opinions.side[a.corner];
     return total > 0 ? (kOwn * own + sum / total) / (kOwn + 1) : own;
   };
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
-    parallel::for_blocks(
-        open.size(), kBlock,
-        [&](std::size_t begin, std::size_t end) {
-          for (std::size_t k = begin; k < end; ++k) next[k] = average(open[k]);
-        },
-        cancel);
-    for (std::size_t k = 0; k < open.size(); ++k) side[open[k].corner] = next[k];
-  }
-  return side;
+  parallel::for_blocks(
+      open.size(), kBlock,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) next[open[k].corner] = average(open[k]);
+      },
+      cancel);
+  return next;
 }
 
 }  // namespace g3r::mesh
