@@ -9,6 +9,7 @@
 #include "field_shapes.h"
 #include "mesh/field_mesher.h"
 #include "mesh/mesh_parts.h"
+#include "mesh/neighbours.h"
 #include "mesh/simplify.h"
 #include "mesh_topology.h"
 
@@ -48,7 +49,7 @@ TEST(MeshFinish, LargestComponentsAreKept) {
   TwoSpheres two;
   MeshOptions options;
   options.keep_largest = 1;
-  mesh::finish_mesh(two.mesh, two.sample.points, options);
+  mesh::finish_mesh(two.mesh, two.sample.points, mesh::smooth_spacing(two.sample.points), options);
   EXPECT_EQ(topology(two.mesh).components, 1U);
   EXPECT_GT(topology(two.mesh).volume, 4.0);
 }
@@ -62,7 +63,7 @@ TEST(MeshFinish, TrimmingOpensTheMeshWherePointsAreMissing) {
   MeshOptions options;
   options.trim = MeshOptions::Trim::kAuto;
   EXPECT_GT(mesh::far_share(two.mesh, half, 4), 0.3);
-  mesh::finish_mesh(two.mesh, half, options);
+  mesh::finish_mesh(two.mesh, half, mesh::smooth_spacing(half), options);
   const MeshCheck check = check_mesh(two.mesh);
   EXPECT_FALSE(check.closed);
   EXPECT_TRUE(check.manifold);
@@ -75,7 +76,7 @@ TEST(MeshFinish, TrimmingClosedDataChangesNothing) {
   const Mesh before = two.mesh;
   MeshOptions options;
   options.trim = MeshOptions::Trim::kAuto;
-  mesh::finish_mesh(two.mesh, two.sample.points, options);
+  mesh::finish_mesh(two.mesh, two.sample.points, mesh::smooth_spacing(two.sample.points), options);
   EXPECT_EQ(before.triangles, two.mesh.triangles);
 }
 
@@ -83,9 +84,9 @@ TEST(MeshFinish, TrimDistanceMustBePositiveAndLeaveSomething) {
   TwoSpheres two;
   MeshOptions options;
   options.trim = MeshOptions::Trim::kDistance;
-  EXPECT_THROW(mesh::finish_mesh(two.mesh, two.sample.points, options), InvalidInput);
+  EXPECT_THROW(mesh::finish_mesh(two.mesh, two.sample.points, mesh::smooth_spacing(two.sample.points), options), InvalidInput);
   options.trim_distance = 1e-9;
-  EXPECT_THROW(mesh::finish_mesh(two.mesh, two.sample.points, options), InvalidInput);
+  EXPECT_THROW(mesh::finish_mesh(two.mesh, two.sample.points, mesh::smooth_spacing(two.sample.points), options), InvalidInput);
 }
 
 TEST(MeshFinish, TouchingTrianglesAreSeparatedAtTheirCommonVertex) {

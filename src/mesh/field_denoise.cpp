@@ -24,13 +24,13 @@ Vector3d vector(const Vec3& p) { return {p[0], p[1], p[2]}; }
 // The points near point i that face the same way, weighed by their distance along the surface.
 class Neighbourhood {
  public:
-  Neighbourhood(const OrientedPoints& points, const LocalFit& local) : points_(points), local_(local) {}
+  Neighbourhood(const OrientedPoints& points, const Neighbours& neighbours) : points_(points), neighbours_(neighbours) {}
 
   const std::vector<FitPoint>& gather(std::size_t i, double width) {
     const double h = points_.spacing[i];
     const auto k = static_cast<std::size_t>(std::clamp(M_PI * kReach * kReach * width * width, 12.0, 200.0));
     const Vector3d x = vector(points_.positions[i]);
-    local_.neighbours().nearest(points_.positions[i], k, index_, squared_);
+    neighbours_.nearest(points_.positions[i], k, index_, squared_);
     Vector3d axis = vector(points_.normals[i]);
     const double scale = 1 / (2 * width * width * h * h);
     for (int pass = 0; pass < 2; ++pass) {  // the second time about the mean normal, which is less noisy
@@ -53,7 +53,7 @@ class Neighbourhood {
 
  private:
   const OrientedPoints& points_;
-  const LocalFit& local_;
+  const Neighbours& neighbours_;
   std::vector<std::uint32_t> index_;
   std::vector<double> squared_;
   std::vector<FitPoint> members_;
@@ -67,11 +67,11 @@ double median(std::vector<double>& values) {
 
 }  // namespace
 
-Noise estimate_noise(const OrientedPoints& points, const LocalFit& local) {
+Noise estimate_noise(const OrientedPoints& points, const Neighbours& neighbours) {
   const std::size_t n = points.positions.size(), count = std::min(n, kSampled);
   std::vector<double> position(count), normal(count);
   parallel::for_blocks(count, 64, [&](std::size_t begin, std::size_t end) {
-    Neighbourhood near(points, local);
+    Neighbourhood near(points, neighbours);
     for (std::size_t s = begin; s < end; ++s) {
       const std::size_t i = s * n / count;
       const double h = points.spacing[i];
@@ -95,7 +95,7 @@ Noise estimate_noise(const OrientedPoints& points, const LocalFit& local) {
   return {median(position), median(normal)};
 }
 
-void denoise(OrientedPoints& points, const LocalFit& local, const Noise& noise, const std::atomic<bool>* cancel) {
+void denoise(OrientedPoints& points, const Neighbours& neighbours, const Noise& noise, const std::atomic<bool>* cancel) {
   const double width = std::min(kWidthFloor + kWidthPerNoise * noise.position, kWidthMost);
   const double ratio = noise.position / std::max(noise.normal, 1e-3);
   const double normal_weight = std::clamp(ratio * ratio, 0.25, kMostNormalWeight);
@@ -103,7 +103,7 @@ void denoise(OrientedPoints& points, const LocalFit& local, const Noise& noise, 
   parallel::for_blocks(
       positions.size(), 64,
       [&](std::size_t begin, std::size_t end) {
-        Neighbourhood near(points, local);
+        Neighbourhood near(points, neighbours);
         for (std::size_t i = begin; i < end; ++i) {
           const Sheet sheet = fit_sheet(near.gather(i, width), 0, points.spacing[i], normal_weight);
           Vector3d x = vector(points.positions[i]), g;

@@ -12,11 +12,12 @@ struct Noise {
   double normal = 0;    ///< root mean square deviation of the normals, in radians; median over the cloud
 };
 
-/// From the misfit of quadratic height fields to about 48 neighbours, at 2,000 points evenly spread over the indices.
-[[nodiscard]] Noise estimate_noise(const OrientedPoints& points, const LocalFit& local);
+/// `neighbours`: of the positions. From the misfit of quadratic height fields to about 48 neighbours, at 2,000 points evenly spread over
+/// the indices.
+[[nodiscard]] Noise estimate_noise(const OrientedPoints& points, const Neighbours& neighbours);
 
 /// Moves every point along the normal onto a quadratic fit whose width follows the noise, and takes over the normal of the fit.
-/// O(N) fits over up to 200 points. Throws Cancelled.
-void denoise(OrientedPoints& points, const LocalFit& local, const Noise& noise, const std::atomic<bool>* cancel = nullptr);
+/// `neighbours`: of a copy of the positions. O(N) fits over up to 200 points. Throws Cancelled.
+void denoise(OrientedPoints& points, const Neighbours& neighbours, const Noise& noise, const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace g3r::mesh

@@ -1,6 +1,5 @@
 #include "mesh/field_local_fit.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -18,8 +17,8 @@ constexpr std::size_t kMinSheet = 3;  // points; fewer are noise
 constexpr double kRidge = 1e-3;       // on the curvatures, relative to the weight of the data: keeps them bounded where points are few
 constexpr double kJointClear = 0.03;  // spacings: sheets closer than this to each other's points do not form a crease
 
-constexpr double kOpposite = -0.7;  // cosine: points whose normals differ by more than about 135 degrees are on opposite walls
-constexpr std::size_t kWallNeighbours = 16;
+constexpr double kAgainst = -0.2;    // cosine between a normal and the wanted direction from which they are against each other
+constexpr double kOpposite = -0.7;   // cosine: points whose normals differ by more than about 135 degrees are on opposite walls
 constexpr double kAgree = 0.5;       // spacings: tangent planes this near do not count when asked whether a place has all on one side
 constexpr double kClear = 0.2;       // spacings: from tangent planes, beyond which curvature cannot change the side of a place
 constexpr double kFacing = -0.3;     // cosine: sheets that face away from each other this much are two walls, not one bend
@@ -37,6 +36,32 @@ Eigen::Matrix3d frame_of(const Vector3d& n) {
   f.row(1) = n.cross(u);
   f.row(2) = n;
   return f;
+}
+
+// About exp(-t) for t >= 0, and 0 from 16 on.
+double bell(double t) {
+  const double a = std::max(1 - t / 16, 0.0), a2 = a * a, a4 = a2 * a2, a8 = a4 * a4;
+  return a8 * a8;
+}
+
+// Symmetric positive definite, the rows of the lower half one after the other.
+using Lower6 = std::array<double, 21>;
+
+// Replaces b by the solution x of A x = b, by A = L D L^T.
+void solve(Lower6 a, std::array<double, 6>& b) {
+  const auto at = [&](std::size_t i, std::size_t j) -> double& { return a[i * (i + 1) / 2 + j]; };
+  for (std::size_t j = 0; j < 6; ++j) {
+    for (std::size_t i = j + 1; i < 6; ++i) {
+      const double factor = at(i, j) / at(j, j);
+      for (std::size_t k = j + 1; k <= i; ++k) at(i, k) -= factor * at(k, j);
+      b[i] -= factor * b[j];
+    }
+    for (std::size_t i = j + 1; i < 6; ++i) at(i, j) /= at(j, j);
+  }
+  for (std::size_t j = 6; j-- > 0;) {
+    b[j] /= at(j, j);
+    for (std::size_t i = j + 1; i < 6; ++i) b[j] -= at(i, j) * b[i];
+  }
 }
 
 // Squared misfit of a member to a sheet, positions and slopes weighed as in the fit, in units of h^2.
@@ -117,31 +142,53 @@ Sheet fit_sheet(const std::vector<Member>& members, int which, double h, double 
   Sheet s;
   s.origin = mean_p / total;
   s.frame = frame_of(mean_n.normalized());
-  Eigen::Matrix<double, 6, 6> normal_matrix = Eigen::Matrix<double, 6, 6>::Zero();
-  Eigen::Matrix<double, 6, 1> right = Eigen::Matrix<double, 6, 1>::Zero();
-  const auto add = [&](const Eigen::Matrix<double, 6, 1>& row, double value, double weight) {
-    normal_matrix.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
-    right += weight * value * row;
-  };
+  // The normal equations from the moments sum w u^a v^b, which all their entries are sums of.
+  double m00 = 0, m10 = 0, m01 = 0, m20 = 0, m11 = 0, m02 = 0, m30 = 0, m21 = 0, m12 = 0, m03 = 0, m40 = 0, m31 = 0, m22 = 0, m13 = 0,
+         m04 = 0;
+  std::array<double, 6> right{};
   for (const Member& m : members) {
     if (m.sheet != which) continue;
     const Vector3d q = s.frame * (m.p - s.origin) / h;
     const Vector3d n = s.frame * m.n;
-    const double u = q[0], v = q[1], up = std::max(n[2], 0.2);
-    Eigen::Matrix<double, 6, 1> row;
-    row << 1, u, v, u * u, u * v, v * v;
-    add(row, q[2], m.weight);
-    row << 0, 1, 0, 2 * u, v, 0;
-    add(row, -n[0] / up, m.weight * normal_weight);
-    row << 0, 0, 1, 0, u, 2 * v;
-    add(row, -n[1] / up, m.weight * normal_weight);
+    const double u = q[0], v = q[1], up = 1 / std::max(n[2], 0.2);
+    const double w = m.weight, wu = w * u, wv = w * v, wuu = wu * u, wuv = wu * v, wvv = wv * v;
+    m00 += w, m10 += wu, m01 += wv, m20 += wuu, m11 += wuv, m02 += wvv;
+    m30 += wuu * u, m21 += wuu * v, m12 += wvv * u, m03 += wvv * v;
+    m40 += wuu * u * u, m31 += wuu * u * v, m22 += wuu * v * v, m13 += wvv * u * v, m04 += wvv * v * v;
+    const double z = q[2], su = -n[0] * up * normal_weight, sv = -n[1] * up * normal_weight;  // height, slopes
+    right[0] += w * z;
+    right[1] += wu * z + w * su;
+    right[2] += wv * z + w * sv;
+    right[3] += wuu * z + 2 * wu * su;
+    right[4] += wuv * z + wv * su + wu * sv;
+    right[5] += wvv * z + 2 * wv * sv;
   }
-  for (int k = 3; k < 6; ++k) normal_matrix(k, k) += kRidge * total;
-  normal_matrix(0, 0) += 1e-12 * total;
-  for (int k = 1; k < 3; ++k) normal_matrix(k, k) += 1e-9 * total;
-  const Eigen::Matrix<double, 6, 1> c = normal_matrix.selfadjointView<Eigen::Lower>().ldlt().solve(right);
+  // Heights have the row (1, u, v, u^2, uv, v^2), slopes along u (0, 1, 0, 2u, v, 0) and along v (0, 0, 1, 0, u, 2v).
+  const double k = normal_weight;
+  const Lower6 lower{m00 * (1 + 1e-12),
+                     m10,
+                     m20 + (k + 1e-9) * m00,
+                     m01,
+                     m11,
+                     m02 + (k + 1e-9) * m00,
+                     m20,
+                     m30 + 2 * k * m10,
+                     m21,
+                     m40 + 4 * k * m20 + kRidge * m00,
+                     m11,
+                     m21 + k * m01,
+                     m12 + k * m10,
+                     m31 + 2 * k * m11,
+                     m22 + k * (m20 + m02) + kRidge * m00,
+                     m02,
+                     m12,
+                     m03 + 2 * k * m01,
+                     m22,
+                     m13 + 2 * k * m11,
+                     m04 + 4 * k * m02 + kRidge * m00};
+  solve(lower, right);
   const std::array<double, 6> unit{h, 1, 1, 1 / h, 1 / h, 1 / h};
-  for (std::size_t k = 0; k < 6; ++k) s.c[k] = c[static_cast<Eigen::Index>(k)] * unit[k];
+  for (std::size_t i = 0; i < 6; ++i) s.c[i] = right[i] * unit[i];
   return s;
 }
 
@@ -189,32 +236,33 @@ double LocalSurface::distance(const Vector3d& x, int* active) const {
   return result.f;
 }
 
-LocalFit::LocalFit(const OrientedPoints& points, const LocalFitOptions& options)
-    : points_(points), options_(options), neighbours_(points.positions) {
-  options_.neighbours = std::min(options_.neighbours, points.positions.size());
-}
+LocalFit::LocalFit(const OrientedPoints& points, const std::vector<std::uint32_t>& near, const LocalFitOptions& options)
+    : points_(points), near_(near), count_(near_.size() / points.positions.size()), options_(options), neighbours_(points.positions) {}
 
 LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* direction, Detail detail) const {
-  thread_local std::vector<std::uint32_t> index;
-  thread_local std::vector<double> squared;
   thread_local std::vector<Member> members;
-  neighbours_.nearest({x[0], x[1], x[2]}, options_.neighbours, index, squared);
+  double squared = 0;
+  const std::uint32_t nearest = neighbours_.nearest({x[0], x[1], x[2]}, squared);
   LocalSurface out;
-  out.nearest = std::sqrt(squared[0]);
-  out.spacing = points_.spacing[index[0]];
+  out.nearest = std::sqrt(squared);
+  out.spacing = points_.spacing[nearest];
   const double h = out.spacing;
   if (out.nearest > reach * h) return out;
-  const double scale = 1 / (2 * options_.width * options_.width * h * h);
   members.clear();
-  double first = -1;
-  for (std::size_t i = 0; i < index.size(); ++i) {
-    const Vector3d n = vector(points_.normals[index[i]]);
-    if (direction != nullptr && n.dot(*direction) < -0.2) continue;
-    if (first < 0) first = squared[i];
-    const double exponent = (squared[i] - first) * scale;
-    if (exponent > 20) break;
-    members.push_back({vector(points_.positions[index[i]]), n, std::exp(-exponent), -1});
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < count_; ++k) {
+    const std::uint32_t i = near_[nearest * count_ + k];
+    const Vector3d n = vector(points_.normals[i]);
+    if (direction != nullptr && n.dot(*direction) < kAgainst) continue;
+    const Vector3d p = vector(points_.positions[i]);
+    members.push_back({p, n, (p - x).squaredNorm(), -1});
+    least = std::min(least, members.back().weight);
   }
+  const double scale = 1 / (2 * options_.width * options_.width * h * h);
+  std::erase_if(members, [&](Member& m) {
+    m.weight = bell((m.weight - least) * scale);
+    return !(m.weight > 0);
+  });
   // Deal the points out: the nearest one left seeds a sheet, which takes those with similar normals.
   for (int s = 0; s < 3 && out.count < 3; ++s) {
     const auto seed = std::find_if(members.begin(), members.end(), [](const Member& m) { return m.sheet == -1; });
@@ -272,18 +320,16 @@ LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* dire
   return out;
 }
 
-std::vector<double> wall_thickness(const OrientedPoints& points, const LocalFit& local) {
-  const std::size_t n = points.positions.size();
+std::vector<double> wall_thickness(const OrientedPoints& points, const std::vector<std::uint32_t>& near) {
+  const std::size_t n = points.positions.size(), k = near.size() / n;
   std::vector<double> out(n, std::numeric_limits<double>::infinity());
   parallel::for_blocks(n, 256, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> index;
-    std::vector<double> squared;
     for (std::size_t i = begin; i < end; ++i) {
       const Vector3d p = vector(points.positions[i]), normal = vector(points.normals[i]);
-      local.neighbours().nearest(points.positions[i], kWallNeighbours, index, squared);
-      for (const std::uint32_t j : index) {
-        if (normal.dot(vector(points.normals[j])) > kOpposite) continue;
-        out[i] = std::min(out[i], std::abs(normal.dot(vector(points.positions[j]) - p)));
+      for (std::size_t j = 0; j < k; ++j) {
+        const std::uint32_t other = near[i * k + j];
+        if (normal.dot(vector(points.normals[other])) > kOpposite) continue;
+        out[i] = std::min(out[i], std::abs(normal.dot(vector(points.positions[other]) - p)));
       }
     }
   });

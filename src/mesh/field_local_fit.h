@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "mesh/neighbours.h"
@@ -66,8 +67,7 @@ struct LocalSurface {
 };
 
 struct LocalFitOptions {
-  std::size_t neighbours = 16;
-  double width = 0.7;           ///< standard deviation of the Gaussian weight, in spacings
+  double width = 0.7;           ///< about the standard deviation of the weights, in spacings
   double normal_weight = 0.25;  ///< of the normals against the positions, dimensionless
   bool sharp = true;            ///< several sheets; false under noise
 };
@@ -79,23 +79,24 @@ class LocalFit {
     kSide      ///< a plane is enough where the place is clearly on one side of the surface
   };
 
-  /// `points` must outlive this. O(N log N).
-  LocalFit(const OrientedPoints& points, const LocalFitOptions& options);
+  /// `points` and `near` must outlive this. `near`: of_all(k) of the positions; k points take part in a fit. O(N log N).
+  LocalFit(const OrientedPoints& points, const std::vector<std::uint32_t>& near, const LocalFitOptions& options);
 
-  /// The surface near `x`; no sheet if no point is within `reach` spacings. If `direction` is not null, points whose normals point
-  /// against it are left out. O(log N).
+  /// The surface near `x`, fitted to the neighbours of the point nearest to it; no sheet if that is farther than `reach` spacings. If
+  /// `direction` is not null, points whose normals point against it are left out. O(log N).
   [[nodiscard]] LocalSurface fit(const Eigen::Vector3d& x, double reach, const Eigen::Vector3d* direction = nullptr,
                                  Detail detail = Detail::kSurface) const;
-  [[nodiscard]] const Neighbours& neighbours() const { return neighbours_; }
 
  private:
   const OrientedPoints& points_;
+  const std::vector<std::uint32_t>& near_;
+  std::size_t count_;  // neighbours of each point
   LocalFitOptions options_;
   Neighbours neighbours_;
 };
 
 /// Distance across the wall or gap at each point: to the nearest of its neighbours that face the other way, measured along the normal.
-/// Infinite where none of the 16 nearest does. O(N log N).
-[[nodiscard]] std::vector<double> wall_thickness(const OrientedPoints& points, const LocalFit& local);
+/// Infinite where none does. `near`: of_all(k) of the positions. O(N k).
+[[nodiscard]] std::vector<double> wall_thickness(const OrientedPoints& points, const std::vector<std::uint32_t>& near);
 
 }  // namespace g3r::mesh

@@ -25,12 +25,14 @@ namespace {
 using mesh::LocalFit;
 using mesh::LocalFitOptions;
 using mesh::LocalSurface;
+using mesh::Neighbours;
 using mesh::Octree;
 using mesh::Opinions;
 using mesh::OrientedPoints;
 using mesh::RefineDisc;
 
-constexpr double kCell = 0.8;        // finest cell, in median spacings
+constexpr std::size_t kFitPoints = 16;  // points that take part in a local fit
+constexpr double kCell = 0.8;           // finest cell, in median spacings
 constexpr double kDisc = 1.4;        // spacings: radius of the disc around each point that is refined; spans the holes of random sampling
 constexpr double kDiscHalf = 0.3;    // spacings: its half thickness; covers curvature within the disc
 constexpr double kMargin = 1.15;     // side of the octree over the longest side of the bounding box, at least
@@ -69,9 +71,19 @@ void report(const Monitor& monitor, double fraction) {
   if (monitor.progress && !monitor.progress("mesh", fraction)) throw Cancelled();
 }
 
-// Unit normals, the local spacing and, where the positions scatter, points moved onto the surface they scatter about.
-OrientedPoints prepare(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, double& noise, const Monitor& monitor) {
-  OrientedPoints out{points, normals, mesh::smooth_spacing(points)};
+// What the fits see of the cloud.
+struct Prepared {
+  OrientedPoints points;            // positions that scatter are moved onto the surface they scatter about
+  std::vector<std::uint32_t> near;  // of_all(kFitPoints)
+  bool noisy = false;
+};
+
+Prepared prepare(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const Monitor& monitor) {
+  const Neighbours neighbours(points);
+  Prepared prepared;
+  prepared.near = neighbours.of_all(kFitPoints);
+  OrientedPoints& out = prepared.points;
+  out = {points, normals, mesh::smooth_spacing(points, prepared.near)};
   for (Vec3& n : out.normals) {
     const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
     if (!(length > 0)) throw InvalidInput("a normal is zero");
@@ -80,12 +92,14 @@ OrientedPoints prepare(const std::vector<Vec3>& points, const std::vector<Vec3>&
   const double typical = median(out.spacing);
   if (!(typical > 0)) throw InvalidInput("all points are at one place");
   for (double& h : out.spacing) h = std::max(h, kLeastSpacing * typical);
-  const LocalFit local(out, LocalFitOptions{});
-  const mesh::Noise found = mesh::estimate_noise(out, local);
-  noise = found.position;
+  const mesh::Noise noise = mesh::estimate_noise(out, neighbours);
   report(monitor, 0.05);
-  if (noise > kNoisy) mesh::denoise(out, local, found, monitor.cancel);
-  return out;
+  prepared.noisy = noise.position > kNoisy;
+  if (prepared.noisy) {
+    mesh::denoise(out, neighbours, noise, monitor.cancel);
+    prepared.near = Neighbours(out.positions).of_all(kFitPoints);
+  }
+  return prepared;
 }
 
 // The median of the field over the points, or evenly many of them.
@@ -255,15 +269,15 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
   if (points.size() < 4) throw InvalidInput("a mesh needs at least 4 points");
   if (options.depth != 0 && (options.depth < 4 || options.depth > 12)) throw InvalidInput("mesh depth must be 4 to 12");
   report(monitor, 0);
-  double noise = 0;
-  const OrientedPoints oriented = prepare(points, normals, noise, monitor);
+  const Prepared prepared = prepare(points, normals, monitor);
+  const OrientedPoints& oriented = prepared.points;
   const double spacing = median(oriented.spacing);
   const double level = surface_level(oriented.positions, sampler);
-  const LocalFit local(oriented, LocalFitOptions{});
+  const LocalFit local(oriented, prepared.near, LocalFitOptions{});
   report(monitor, 0.2);
 
   const Octree octree =
-      make_octree(oriented, noise > kNoisy ? std::vector<double>{} : mesh::wall_thickness(oriented, local), options, monitor);
+      make_octree(oriented, prepared.noisy ? std::vector<double>{} : mesh::wall_thickness(oriented, prepared.near), options, monitor);
   require_memory_for(points.size(), octree, max_memory);
   report(monitor, 0.3);
   const Side side(local, sampler, level, spacing, box_of(oriented.positions));
@@ -296,7 +310,7 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
   report(monitor, 0.95);
   Mesh mesh = mesh::triangulate(surface, std::move(placed.positions), placed.normals);
   mesh::untangle(mesh, monitor.cancel);
-  mesh::finish_mesh(mesh, oriented.positions, options);
+  mesh::finish_mesh(mesh, oriented.positions, oriented.spacing, options);
   report(monitor, 1);
   return mesh;
 }

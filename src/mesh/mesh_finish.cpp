@@ -5,6 +5,7 @@
 
 #include "cpu/parallel.h"
 #include "g3r/error.h"
+#include "median.h"
 #include "mesh/mesh_parts.h"
 #include "mesh/neighbours.h"
 #include "mesh/simplify.h"
@@ -53,11 +54,10 @@ void drop_ears(const Mesh& mesh, std::vector<std::uint8_t>& keep) {
   }
 }
 
-void trim(Mesh& mesh, const std::vector<Vec3>& points, const MeshOptions& options) {
-  std::vector<double> spacing;
-  if (options.trim == MeshOptions::Trim::kAuto) spacing = smooth_spacing(points);
+void trim(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>& spacing, const MeshOptions& options) {
+  const bool by_distance = options.trim == MeshOptions::Trim::kDistance;
   const std::vector<double> distance = distance_to_points(
-      mesh.vertices, points, [&](std::uint32_t i) { return spacing.empty() ? options.trim_distance : kFarSpacings * spacing[i]; });
+      mesh.vertices, points, [&](std::uint32_t i) { return by_distance ? options.trim_distance : kFarSpacings * spacing[i]; });
   std::vector<std::uint8_t> keep(mesh.triangles.size());
   for (std::size_t t = 0; t < keep.size(); ++t) {
     const auto& v = mesh.triangles[t];
@@ -90,16 +90,14 @@ double far_share(const Mesh& mesh, const std::vector<Vec3>& points, double spaci
   return total > 0 ? far / total : 0;
 }
 
-void finish_mesh(Mesh& mesh, const std::vector<Vec3>& points, const MeshOptions& options) {
+void finish_mesh(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>& spacing, const MeshOptions& options) {
   const bool by_distance = options.trim == MeshOptions::Trim::kDistance;
   if (by_distance && !(options.trim_distance > 0)) throw InvalidInput("the trim distance must be positive");
   if (!(options.min_component >= 0)) throw InvalidInput("the smallest component must not be negative");
   if (mesh.triangles.empty()) return;
-  if (options.trim != MeshOptions::Trim::kOff) trim(mesh, points, options);
-  std::vector<double> spacing = smooth_spacing(points);
-  const auto middle = spacing.begin() + static_cast<std::ptrdiff_t>(spacing.size() / 2);
-  std::nth_element(spacing.begin(), middle, spacing.end());
-  remove_components(mesh, options.min_component * *middle * *middle, options.keep_largest);
+  if (options.trim != MeshOptions::Trim::kOff) trim(mesh, points, spacing, options);
+  const double typical = median(spacing);
+  remove_components(mesh, options.min_component * typical * typical, options.keep_largest);
   if (options.faces > 0) simplify(mesh, options.faces);
 }
 

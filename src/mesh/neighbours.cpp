@@ -5,10 +5,12 @@
 #include <nanoflann.hpp>
 
 #include "cpu/parallel.h"
+#include "mesh/vector.h"
 
 namespace g3r::mesh {
 namespace {
 
+constexpr std::size_t kBlock = 256;            // points per parallel block
 constexpr std::size_t kLeaf = 12;              // points per leaf of the k-d tree; a matter of speed only
 constexpr std::size_t kSpacingNeighbours = 8;  // as in the definition of the spacing
 
@@ -44,29 +46,45 @@ void Neighbours::nearest(const Vec3& x, std::size_t k, std::vector<std::uint32_t
   tree_->index.knnSearch(x.data(), k, index.data(), squared.data());
 }
 
-std::vector<double> smooth_spacing(const std::vector<Vec3>& positions) {
-  const Neighbours neighbours(positions);
-  const std::size_t n = positions.size(), k = std::min(kSpacingNeighbours + 1, n);
-  std::vector<std::uint32_t> near(n * k);
+std::uint32_t Neighbours::nearest(const Vec3& x, double& squared) const {
+  std::uint32_t index = 0;
+  tree_->index.knnSearch(x.data(), 1, &index, &squared);
+  return index;
+}
+
+std::vector<std::uint32_t> Neighbours::of_all(std::size_t k) const {
+  const std::vector<Vec3>& points = tree_->cloud.p;
+  k = std::min(k, points.size());
+  std::vector<std::uint32_t> out(points.size() * k);
+  parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    std::vector<double> squared(k);
+    for (std::size_t i = begin; i < end; ++i) tree_->index.knnSearch(points[i].data(), k, out.data() + i * k, squared.data());
+  });
+  return out;
+}
+
+std::vector<double> smooth_spacing(const std::vector<Vec3>& positions, const std::vector<std::uint32_t>& near) {
+  const std::size_t n = positions.size(), stride = near.size() / n, k = std::min(kSpacingNeighbours + 1, stride);
   std::vector<double> raw(n), smooth(n);
-  parallel::for_blocks(n, 256, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> index;
-    std::vector<double> squared;
+  parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      neighbours.nearest(positions[i], k, index, squared);
-      std::copy(index.begin(), index.end(), near.begin() + static_cast<std::ptrdiff_t>(i * k));
-      raw[i] = squared[k - 1] * M_PI / static_cast<double>(std::max<std::size_t>(k - 1, 1));
+      const Vec3 farthest = vector::subtract(positions[near[i * stride + k - 1]], positions[i]);
+      raw[i] = vector::dot(farthest, farthest) * M_PI / static_cast<double>(std::max<std::size_t>(k - 1, 1));
     }
   });
-  parallel::for_blocks(n, 256, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<double> around(k);
     for (std::size_t i = begin; i < end; ++i) {
-      for (std::size_t j = 0; j < k; ++j) around[j] = raw[near[i * k + j]];
+      for (std::size_t j = 0; j < k; ++j) around[j] = raw[near[i * stride + j]];
       std::nth_element(around.begin(), around.begin() + static_cast<std::ptrdiff_t>(k / 2), around.end());
       smooth[i] = std::sqrt(around[k / 2]);
     }
   });
   return smooth;
+}
+
+std::vector<double> smooth_spacing(const std::vector<Vec3>& positions) {
+  return smooth_spacing(positions, Neighbours(positions).of_all(kSpacingNeighbours + 1));
 }
 
 }  // namespace g3r::mesh

@@ -20,6 +20,10 @@ class Neighbours {
 
   /// The min(k, N) points nearest to x, nearest first, and their squared distances. O(k log N).
   void nearest(const Vec3& x, std::size_t k, std::vector<std::uint32_t>& index, std::vector<double>& squared) const;
+  /// The point nearest to x, and its squared distance. O(log N).
+  [[nodiscard]] std::uint32_t nearest(const Vec3& x, double& squared) const;
+  /// For every point, the min(k, N) points nearest to it, nearest first: N x min(k, N), row-major. O(k N log N).
+  [[nodiscard]] std::vector<std::uint32_t> of_all(std::size_t k) const;
 
  private:
   struct Tree;
@@ -29,5 +33,7 @@ class Neighbours {
 /// The median of h_j = d_8 sqrt(pi / 8) over each point and its 8 neighbours, in input units: less ragged than the spacing of single
 /// points, which random sampling scatters, and not led astray by a lone outlier. O(N log N).
 [[nodiscard]] std::vector<double> smooth_spacing(const std::vector<Vec3>& positions);
+/// The same from of_all(k) of these positions, k >= 9.
+[[nodiscard]] std::vector<double> smooth_spacing(const std::vector<Vec3>& positions, const std::vector<std::uint32_t>& near);
 
 }  // namespace g3r::mesh

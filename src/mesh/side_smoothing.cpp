@@ -42,13 +42,20 @@ std::vector<Around> open_corners(const Octree& octree, const std::vector<std::ui
   return out;
 }
 
-// Weight of the corner at place `other` of a leaf for the one at place `place`: how far it is along the sheet with normal n.
-double along(const std::array<float, 3>& n, std::uint32_t place, std::uint32_t other) {
-  double across = 0;
-  for (std::uint32_t a = 0; a < 3; ++a)
-    across += n[a] * (((other >> a) & 1U) != 0 ? 1.0 : 0.0) - n[a] * (((place >> a) & 1U) != 0 ? 1.0 : 0.0);
-  return std::exp(-across * across / (2 * kAcross * kAcross));
+// Weights of the corners around one, by how far they are along the sheet with normal n: at 13 + x + 3 y + 9 z for the corner (x, y, z) leaf
+// sides away, each -1, 0 or 1.
+std::array<double, 27> weights(const std::array<float, 3>& n) {
+  std::array<double, 27> out{};
+  for (std::size_t i = 0; i <= 13; ++i) {
+    const double across =
+        n[0] * (static_cast<double>(i % 3) - 1) + n[1] * (static_cast<double>(i / 3 % 3) - 1) + n[2] * (static_cast<double>(i / 9) - 1);
+    out[i] = out[26 - i] = std::exp(-across * across / (2 * kAcross * kAcross));
+  }
+  return out;
 }
+
+// Of a place of a leaf among the weights.
+std::size_t grid_of(std::uint32_t place) { return (place & 1U) + 3 * ((place >> 1U) & 1U) + 9 * (place >> 2U); }
 
 }  // namespace
 
@@ -57,11 +64,12 @@ std::vector<double> smooth_sides(const Octree& octree, const Opinions& opinions,
   const std::vector<Around> open = open_corners(octree, opinions.open);
   std::vector<double> next = side;
   const auto average = [&](const Around& a) {
+    const std::array<double, 27> along = weights(opinions.axis[a.corner]);
     double sum = 0, total = 0;
     for (std::size_t i = 0; i < a.count; ++i) {
       for (std::uint32_t other = 0; other < 8; ++other) {
         if (other == a.place[i]) continue;
-        const double weight = along(opinions.axis[a.corner], a.place[i], other);
+        const double weight = along[13 + grid_of(other) - grid_of(a.place[i])];
         sum += weight * side[octree.corners(a.leaf[i])[other]];
         total += weight;
       }
