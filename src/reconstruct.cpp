@@ -20,7 +20,7 @@ namespace g3r {
 namespace {
 
 constexpr double kFieldWidth = 0.35;     // of the winding field in spacings
-constexpr double kFieldAccuracy = 1e-3;  // of its sums
+constexpr double kFieldAccuracy = 1e-2;  // of its sums; only its side of a level counts, with a margin of 0.2
 constexpr double kFarSpacings = 4;       // surface farther than this from every point is a guess;
 constexpr double kFarShare = 0.05;       // more of it is worth a warning
 constexpr int kPaperDepth = 10;

@@ -31,7 +31,7 @@ Marks no_centres(const std::vector<Vec3>& centres) { return Marks(centres.size()
 
 Topology topology_after(Marks inside, const Marks& proposal) {
   DualSurface surface = contour(grid(), inside, no_centres);
-  remove_handles(grid(), proposal, no_centres, inside, surface);
+  HandleRemoval(grid(), Marks(inside.size(), 1), no_centres).propose(proposal, inside, surface);
   std::vector<Vec3> positions;
   for (std::size_t p = 0; p < surface.patch_count() + surface.midpoints.size(); ++p) positions.push_back({0, 0, static_cast<double>(p)});
   return topology(triangulate(surface, std::move(positions), {}));

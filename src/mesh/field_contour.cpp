@@ -21,7 +21,6 @@ constexpr std::size_t kMinTasks = 256;  // the traversal is cut into at least th
 constexpr std::array<std::uint32_t, 4> kCycle{0, 1, 3, 2};
 
 struct ActiveEdge : MinimalEdge {
-  std::uint8_t axis = 0;
   bool inside_low = false;
 };
 
@@ -146,7 +145,7 @@ class Traversal {
       if (octree_.nodes()[task.node[q]].level > octree_.nodes()[task.node[smallest]].level) smallest = q;
     }
     const auto& corners = octree_.corners(static_cast<std::size_t>(octree_.nodes()[task.node[smallest]].leaf));
-    ActiveEdge edge;
+    MinimalEdge edge;
     edge.low = corners[bits_of(smallest)];
     edge.high = corners[bits_of(smallest) | (1U << d)];
     edge.axis = task.axis;
@@ -158,38 +157,29 @@ class Traversal {
   std::vector<std::uint8_t> marked_;
 };
 
-// The minimal edges with a marked leaf around them for which choose(edge), which may change the edge.
-template <class Choose>
-std::vector<ActiveEdge> find_edges(const Octree& octree, std::vector<std::uint8_t> marked, const Choose& choose,
-                                   const std::atomic<bool>* cancel) {
+// Hands the minimal edges with a marked leaf around them to keep(edge, out), which may append to `out`, and returns all that it did.
+template <class Out, class Keep>
+std::vector<Out> find_edges(const Octree& octree, std::vector<std::uint8_t> marked, const Keep& keep, const std::atomic<bool>* cancel) {
   const Traversal traversal(octree, std::move(marked));
-  const auto take = [&](ActiveEdge e, std::vector<ActiveEdge>& out) {
-    if (choose(e)) out.push_back(e);
-  };
-  std::vector<ActiveEdge> edges;
+  std::vector<Out> edges;
   std::vector<Task> tasks{Task{}};
   for (int round = 0; round < 12 && !tasks.empty() && tasks.size() < kMinTasks; ++round) {
     std::vector<Task> next;
     for (const Task& task : tasks) {
       traversal.expand(
-          task, [&](const Task& t) { next.push_back(t); }, [&](const ActiveEdge& e) { take(e, edges); });
+          task, [&](const Task& t) { next.push_back(t); }, [&](const MinimalEdge& e) { keep(e, edges); });
     }
     tasks = std::move(next);
   }
-  std::vector<std::vector<ActiveEdge>> found(tasks.size());
+  std::vector<std::vector<Out>> found(tasks.size());
   parallel::for_each(
-      tasks.size(), [&](std::size_t t) { traversal.run(tasks[t], [&](const ActiveEdge& e) { take(e, found[t]); }); }, cancel);
+      tasks.size(), [&](std::size_t t) { traversal.run(tasks[t], [&](const MinimalEdge& e) { keep(e, found[t]); }); }, cancel);
   for (const auto& part : found) edges.insert(edges.end(), part.begin(), part.end());
   return edges;
 }
 
-std::vector<ActiveEdge> crossing_edges(const Octree& octree, const std::vector<std::uint8_t>& inside, std::vector<std::uint8_t> marked,
-                                       const std::atomic<bool>* cancel) {
-  const auto crosses = [&](ActiveEdge& e) {
-    e.inside_low = inside[e.low] != 0;
-    return inside[e.low] != inside[e.high];
-  };
-  return find_edges(octree, std::move(marked), crosses, cancel);
+void keep_crossing(const MinimalEdge& e, const std::vector<std::uint8_t>& inside, std::vector<ActiveEdge>& out) {
+  if (inside[e.low] != inside[e.high]) out.push_back({e, inside[e.low] != 0});
 }
 
 // ---- arcs: on every octree face the crossings of its rim are joined in pairs ----
@@ -458,7 +448,8 @@ DualSurface contour(const Octree& octree, const std::vector<std::uint8_t>& insid
     return std::any_of(c.begin(), c.end(), [&](std::uint32_t k) { return inside[k] != inside[c[0]]; });
   };
   const auto all = [](std::size_t) { return true; };
-  const std::vector<ActiveEdge> edges = crossing_edges(octree, inside, mark_nodes(octree, mixed), cancel);
+  const auto keep = [&](const MinimalEdge& e, std::vector<ActiveEdge>& out) { keep_crossing(e, inside, out); };
+  const auto edges = find_edges<ActiveEdge>(octree, mark_nodes(octree, mixed), keep, cancel);
   const Arcs arcs = join_arcs(octree, edges, all, centre_inside);
   DualSurface surface;
   const std::vector<std::uint32_t> sheet = add_sheets(edges, arcs.arcs, all, surface);
@@ -467,23 +458,21 @@ DualSurface contour(const Octree& octree, const std::vector<std::uint8_t>& insid
   return surface;
 }
 
-DualSurface sheets_in(const Octree& octree, const std::vector<std::uint8_t>& leaves, const std::vector<std::uint8_t>& inside,
-                      const InsideTest& centre_inside, const std::atomic<bool>* cancel) {
-  const auto marked = [&](std::size_t leaf) { return leaves[leaf] != 0; };
-  const std::vector<ActiveEdge> edges = crossing_edges(octree, inside, mark_nodes(octree, marked), cancel);
-  DualSurface surface;
-  add_sheets(edges, join_arcs(octree, edges, marked, centre_inside).arcs, marked, surface);
-  return surface;
+std::vector<MinimalEdge> edges_around(const Octree& octree, const std::vector<std::uint8_t>& leaves, const std::atomic<bool>* cancel) {
+  const auto keep = [](const MinimalEdge& e, std::vector<MinimalEdge>& out) { out.push_back(e); };
+  return find_edges<MinimalEdge>(octree, mark_nodes(octree, [&](std::size_t leaf) { return leaves[leaf] != 0; }), keep, cancel);
 }
 
-std::vector<MinimalEdge> edges_at(const Octree& octree, const std::vector<std::uint8_t>& corners, const std::atomic<bool>* cancel) {
-  const auto has_one = [&](std::size_t leaf) {
-    const auto& c = octree.corners(leaf);
-    return std::any_of(c.begin(), c.end(), [&](std::uint32_t k) { return corners[k] != 0; });
-  };
-  const auto ends_at_one = [&](const ActiveEdge& e) { return corners[e.low] != 0 || corners[e.high] != 0; };
-  const std::vector<ActiveEdge> edges = find_edges(octree, mark_nodes(octree, has_one), ends_at_one, cancel);
-  return {edges.begin(), edges.end()};
+DualSurface sheets_in(const Octree& octree, const std::vector<MinimalEdge>& edges, const std::vector<std::uint8_t>& leaves,
+                      const std::vector<std::uint8_t>& inside, const InsideTest& centre_inside) {
+  const auto marked = [&](std::size_t leaf) { return leaves[leaf] != 0; };
+  std::vector<ActiveEdge> crossing;
+  for (const MinimalEdge& e : edges) {
+    if (std::any_of(e.leaf.begin(), e.leaf.end(), marked)) keep_crossing(e, inside, crossing);
+  }
+  DualSurface surface;
+  add_sheets(crossing, join_arcs(octree, crossing, marked, centre_inside).arcs, marked, surface);
+  return surface;
 }
 
 }  // namespace g3r::mesh

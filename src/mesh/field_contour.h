@@ -44,20 +44,21 @@ using InsideTest = std::function<std::vector<std::uint8_t>(const std::vector<Vec
 [[nodiscard]] DualSurface contour(const Octree& octree, const std::vector<std::uint8_t>& inside, const InsideTest& centre_inside,
                                   const std::atomic<bool>* cancel = nullptr);
 
-/// Crossings and sheets of that surface in the leaves that are marked (one byte per leaf) alone, all of whose crossings are there; no
-/// polygons. O(nodes + leaves marked).
-[[nodiscard]] DualSurface sheets_in(const Octree& octree, const std::vector<std::uint8_t>& leaves, const std::vector<std::uint8_t>& inside,
-                                    const InsideTest& centre_inside, const std::atomic<bool>* cancel = nullptr);
-
 /// An edge of a leaf that no smaller leaf's edge subdivides.
 struct MinimalEdge {
   std::uint32_t low = 0, high = 0;      ///< corners
-  std::array<std::uint32_t, 4> leaf{};  ///< around it; a leaf twice as large may fill two adjacent places
+  std::array<std::uint32_t, 4> leaf{};  ///< around it, in order; a leaf twice as large may fill two adjacent places
+  std::uint8_t axis = 0;                ///< direction
 };
 
-/// The minimal edges that end at a marked corner (one byte per corner). O(nodes + edges).
-[[nodiscard]] std::vector<MinimalEdge> edges_at(const Octree& octree, const std::vector<std::uint8_t>& corners,
-                                                const std::atomic<bool>* cancel = nullptr);
+/// The minimal edges with a marked leaf (one byte per leaf) around them. O(nodes + edges). Throws Cancelled.
+[[nodiscard]] std::vector<MinimalEdge> edges_around(const Octree& octree, const std::vector<std::uint8_t>& leaves,
+                                                    const std::atomic<bool>* cancel = nullptr);
+
+/// Crossings and sheets of the surface in the marked leaves (one byte per leaf) alone, no polygons. `edges`: at least those around marked
+/// leaves. O(edges + leaves).
+[[nodiscard]] DualSurface sheets_in(const Octree& octree, const std::vector<MinimalEdge>& edges, const std::vector<std::uint8_t>& leaves,
+                                    const std::vector<std::uint8_t>& inside, const InsideTest& centre_inside);
 
 /// Cuts the polygons into triangles; `positions` has one entry per vertex of the surface, `normals` (may be empty) one per sheet.
 /// Quadrilaterals are cut along the diagonal that bends less against the normals; other polygons get a vertex at their centre.

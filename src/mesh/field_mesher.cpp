@@ -102,14 +102,12 @@ Prepared prepare(const std::vector<Vec3>& points, const std::vector<Vec3>& norma
   return prepared;
 }
 
-// The median of the field over the points, or evenly many of them.
-double surface_level(const std::vector<Vec3>& points, const FieldSampler& sampler) {
+// Of the points, or evenly many of them: the median of the field there is its level on the surface.
+std::vector<Vec3> level_places(const std::vector<Vec3>& points) {
   const std::size_t count = std::min(points.size(), kLevelPoints);
-  std::vector<Vec3> places;
-  for (std::size_t i = 0; i < count; ++i) places.push_back(points[i * points.size() / count]);
-  std::vector<double> value;
-  sampler.sample(places, value, nullptr);
-  return median(std::move(value));
+  std::vector<Vec3> places(count);
+  for (std::size_t i = 0; i < count; ++i) places[i] = points[i * points.size() / count];
+  return places;
 }
 
 std::size_t memory_for(std::size_t points, double leaves) {
@@ -166,20 +164,17 @@ void require_memory_for(std::size_t points, const Octree& octree, std::size_t ma
 // unless the field is sure of the contrary; elsewhere it is the field, scaled to a length.
 class Side {
  public:
-  Side(const LocalFit& local, const FieldSampler& sampler, double level, double spacing, const Box& box)
-      : local_(local),
-        sampler_(sampler),
-        level_(level),
-        spacing_(spacing),
-        box_(box),
-        reach_(0.5 * box.longest() + std::max(kBeyond * box.longest(), kBeyondSpacings * spacing)) {}
+  Side(const LocalFit& local, const FieldSampler& sampler, const OrientedPoints& points)
+      : local_(local), sampler_(sampler), points_(points), spacing_(median(points.spacing)), box_(box_of(points.positions)) {
+    reach_ = 0.5 * box_.longest() + std::max(kBeyond * box_.longest(), kBeyondSpacings * spacing_);
+  }
 
-  // `opinions` (may be null): filled in for all places.
-  std::vector<double> operator()(const std::vector<Vec3>& places, const std::atomic<bool>* cancel, Opinions* opinions = nullptr) const {
+  // `opinions`: filled in for all places.
+  std::vector<double> operator()(const std::vector<Vec3>& places, Opinions& opinions, const std::atomic<bool>* cancel) const {
     const double unknown = std::numeric_limits<double>::quiet_NaN();
     std::vector<double> value(places.size(), unknown);
     std::vector<std::uint8_t> sure(places.size(), 0);
-    if (opinions != nullptr) *opinions = {std::vector<double>(places.size(), 0), sure, std::vector<std::array<float, 3>>(places.size())};
+    opinions = {std::vector<double>(places.size(), 0), sure, std::vector<std::array<float, 3>>(places.size())};
     parallel::for_blocks(
         places.size(), 256,
         [&](std::size_t begin, std::size_t end) {
@@ -189,10 +184,9 @@ class Side {
             if (fit.count == 0) continue;
             value[i] = -fit.distance(x);
             sure[i] = fit.simple ? 1 : 0;
-            if (opinions == nullptr) continue;
-            opinions->open[i] = fit.simple ? 0 : 1;
-            for (int a = 0; a < 3; ++a) opinions->axis[i][static_cast<std::size_t>(a)] = static_cast<float>(fit.sheet[0].frame(2, a));
-            opinions->side[i] = fit.simple ? (value[i] > 0 ? 1 : -1) : kFitSay * std::clamp(value[i] / (kFitFar * fit.spacing), -1.0, 1.0);
+            opinions.open[i] = fit.simple ? 0 : 1;
+            for (int a = 0; a < 3; ++a) opinions.axis[i][static_cast<std::size_t>(a)] = static_cast<float>(fit.sheet[0].frame(2, a));
+            opinions.side[i] = fit.simple ? (value[i] > 0 ? 1 : -1) : kFitSay * std::clamp(value[i] / (kFitFar * fit.spacing), -1.0, 1.0);
           }
         },
         cancel);
@@ -200,30 +194,44 @@ class Side {
     return value;
   }
 
+  // By the fitted surface alone; outside where there is none.
+  [[nodiscard]] std::vector<std::uint8_t> by_fit(const std::vector<Vec3>& places) const {
+    std::vector<std::uint8_t> inside(places.size());
+    parallel::for_blocks(places.size(), 256, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const Eigen::Vector3d x(places[i][0], places[i][1], places[i][2]);
+        const LocalSurface fit = local_.fit(x, kLocalReach, nullptr, LocalFit::Detail::kSide);
+        inside[i] = fit.count > 0 && fit.distance(x) < 0 ? 1 : 0;
+      }
+    });
+    return inside;
+  }
+
  private:
   void ask_field(const std::vector<Vec3>& places, const std::vector<std::uint8_t>& sure, std::vector<double>& value,
-                 Opinions* opinions) const {
+                 Opinions& opinions) const {
     std::vector<std::size_t> ask;
-    std::vector<Vec3> queries;
     for (std::size_t i = 0; i < places.size(); ++i) {
       if (sure[i] != 0) continue;
       if (std::isnan(value[i]) && is_beyond(places[i])) {
         value[i] = -spacing_;
-        if (opinions != nullptr) opinions->side[i] = -1;
+        opinions.side[i] = -1;
         continue;
       }
       ask.push_back(i);
-      queries.push_back(places[i]);
     }
+    std::vector<Vec3> queries = level_places(points_.positions);
+    const auto levels = static_cast<std::ptrdiff_t>(queries.size());
+    for (const std::size_t i : ask) queries.push_back(places[i]);
     std::vector<double> field;
     sampler_.sample(queries, field, nullptr);
+    const double level = median({field.begin(), field.begin() + levels});
+    field.erase(field.begin(), field.begin() + levels);
     for (std::size_t k = 0; k < ask.size(); ++k) {
-      const double f = field[k] - level_;
+      const double f = field[k] - level;
       double& v = value[ask[k]];
-      if (opinions != nullptr) {
-        double& opinion = opinions->side[ask[k]];
-        opinion = opinions->open[ask[k]] != 0 ? std::clamp(2 * f + opinion, -1.0, 1.0) : f > 0 ? 1 : -1;
-      }
+      double& opinion = opinions.side[ask[k]];
+      opinion = opinions.open[ask[k]] != 0 ? std::clamp(2 * f + opinion, -1.0, 1.0) : f > 0 ? 1 : -1;
       if (std::isnan(v) || (std::abs(f) >= kFieldSure && (v > 0) != (f > 0))) v = f * spacing_;
     }
   }
@@ -237,9 +245,10 @@ class Side {
 
   const LocalFit& local_;
   const FieldSampler& sampler_;
-  double level_, spacing_;
+  const OrientedPoints& points_;
+  double spacing_;
   Box box_;
-  double reach_;  // half the side of the cube that everything inside is in
+  double reach_ = 0;  // half the side of the cube that everything inside is in
 };
 
 // Open corners by their averaged opinions, the others as they are.
@@ -272,7 +281,6 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
   const Prepared prepared = prepare(points, normals, monitor);
   const OrientedPoints& oriented = prepared.points;
   const double spacing = median(oriented.spacing);
-  const double level = surface_level(oriented.positions, sampler);
   const LocalFit local(oriented, prepared.near, LocalFitOptions{});
   report(monitor, 0.2);
 
@@ -280,27 +288,23 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
       make_octree(oriented, prepared.noisy ? std::vector<double>{} : mesh::wall_thickness(oriented, prepared.near), options, monitor);
   require_memory_for(points.size(), octree, max_memory);
   report(monitor, 0.3);
-  const Side side(local, sampler, level, spacing, box_of(oriented.positions));
+  const Side side(local, sampler, oriented);
   std::vector<Vec3> corners(octree.corner_count());
   for (std::size_t c = 0; c < corners.size(); ++c) corners[c] = octree.corner_position(c);
   Opinions opinions;
-  std::vector<double> value = side(corners, monitor.cancel, &opinions);
+  std::vector<double> value = side(corners, opinions, monitor.cancel);
   std::vector<std::uint8_t> inside(corners.size());
   for (std::size_t c = 0; c < corners.size(); ++c) inside[c] = value[c] > 0 && !octree.on_boundary(c) ? 1 : 0;
   report(monitor, 0.6);
 
-  const auto centre_inside = [&](const std::vector<Vec3>& centres) {
-    std::vector<std::uint8_t> in;
-    for (const double v : side(centres, monitor.cancel)) in.push_back(v > 0 ? 1 : 0);
-    return in;
-  };
+  const auto centre_inside = [&](const std::vector<Vec3>& centres) { return side.by_fit(centres); };
   mesh::DualSurface surface = mesh::contour(octree, inside, centre_inside, monitor.cancel);
   const std::vector<double> once = mesh::smooth_sides(octree, opinions, opinions.side, monitor.cancel);
   const std::vector<double> twice = mesh::smooth_sides(octree, opinions, once, monitor.cancel);
+  const mesh::HandleRemoval removal(octree, opinions.open, centre_inside, monitor.cancel);
   for (const Reading& reading : kReadings) {
     if (mesh::count_handles(surface) == 0) break;
-    const std::vector<std::uint8_t> signs = read_signs(octree, opinions, reading.averagings == 2 ? twice : once, reading.level, inside);
-    mesh::remove_handles(octree, signs, centre_inside, inside, surface, monitor.cancel);
+    removal.propose(read_signs(octree, opinions, reading.averagings == 2 ? twice : once, reading.level, inside), inside, surface);
   }
   for (std::size_t c = 0; c < inside.size(); ++c) {
     if ((value[c] > 0) != (inside[c] != 0) && !octree.on_boundary(c)) value[c] = (inside[c] != 0 ? kFlipped : -kFlipped) * spacing;

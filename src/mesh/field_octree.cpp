@@ -1,6 +1,7 @@
 #include "mesh/field_octree.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <new>
@@ -11,7 +12,6 @@
 namespace g3r::mesh {
 namespace {
 
-constexpr std::size_t kBlock = 1024;
 constexpr int kKeyBits = 21;  // a corner coordinate is 0..2^20 inclusive
 
 std::uint64_t corner_key(const std::array<std::uint32_t, 3>& c) {
@@ -23,6 +23,45 @@ struct Frontier {
   std::vector<std::uint32_t> node;
   std::vector<std::size_t> begin;  // node.size() + 1 offsets into request
   std::vector<std::uint32_t> request;
+};
+
+// Numbers keys in the order of their first use: open addressing with linear probing.
+class CornerTable {
+ public:
+  explicit CornerTable(std::size_t expected) { resize(std::bit_ceil(2 * expected + 1)); }
+
+  // `keys`: those numbered so far, in order; a new one is appended.
+  std::uint32_t number(std::uint64_t key, std::vector<std::uint64_t>& keys) {
+    std::size_t i = place(key);
+    while (slot_[i] != kFree && keys[slot_[i]] != key) i = (i + 1) & (slot_.size() - 1);
+    if (slot_[i] != kFree) return slot_[i];
+    const auto added = static_cast<std::uint32_t>(keys.size());
+    slot_[i] = added;
+    keys.push_back(key);
+    if (2 * keys.size() > slot_.size()) grow(keys);
+    return added;
+  }
+
+ private:
+  static constexpr std::uint32_t kFree = std::numeric_limits<std::uint32_t>::max();
+
+  // Fibonacci hashing: the top bits of a product are well mixed.
+  [[nodiscard]] std::size_t place(std::uint64_t key) const { return static_cast<std::size_t>((key * 0x9E3779B97F4A7C15U) >> shift_); }
+  void resize(std::size_t size) {
+    slot_.assign(size, kFree);
+    shift_ = 64 - std::countr_zero(size);
+  }
+  void grow(const std::vector<std::uint64_t>& keys) {
+    resize(2 * slot_.size());
+    for (std::uint32_t k = 0; k < keys.size(); ++k) {
+      std::size_t i = place(keys[k]);
+      while (slot_[i] != kFree) i = (i + 1) & (slot_.size() - 1);
+      slot_[i] = k;
+    }
+  }
+
+  std::vector<std::uint32_t> slot_;
+  int shift_ = 0;
 };
 
 // Conservative: a box that touches the disc always passes, a few more near its rim do too.
@@ -109,36 +148,16 @@ void Octree::refine(const std::vector<RefineDisc>& requests, int base_level, con
 }
 
 void Octree::number_corners() {
-  const std::size_t leaves = leaf_nodes_.size();
-  const auto key_of = [&](std::size_t leaf, std::uint32_t c) {
-    const OctreeNode& node = nodes_[leaf_nodes_[leaf]];
-    std::array<std::uint32_t, 3> g{};
-    for (std::size_t a = 0; a < 3; ++a) g[a] = node.low[a] + ((c >> a) & 1U) * extent(node);
-    return corner_key(g);
-  };
-  corner_keys_.resize(leaves * 8);
-  parallel::for_blocks(leaves, kBlock, [&](std::size_t first, std::size_t last) {
-    for (std::size_t l = first; l < last; ++l) {
-      for (std::uint32_t c = 0; c < 8; ++c) corner_keys_[8 * l + c] = key_of(l, c);
+  corners_.resize(leaf_nodes_.size());
+  CornerTable table(2 * leaf_nodes_.size());
+  for (std::size_t l = 0; l < corners_.size(); ++l) {
+    const OctreeNode& node = nodes_[leaf_nodes_[l]];
+    for (std::uint32_t c = 0; c < 8; ++c) {
+      std::array<std::uint32_t, 3> g{};
+      for (std::size_t a = 0; a < 3; ++a) g[a] = node.low[a] + ((c >> a) & 1U) * extent(node);
+      corners_[l][c] = table.number(corner_key(g), corner_keys_);
     }
-  });
-  parallel::sort(corner_keys_.begin(), corner_keys_.end(), std::less<>());  // equal keys are interchangeable
-  corner_keys_.erase(std::unique(corner_keys_.begin(), corner_keys_.end()), corner_keys_.end());
-  corner_keys_.shrink_to_fit();
-  corners_.resize(leaves);
-  parallel::for_blocks(leaves, kBlock, [&](std::size_t first, std::size_t last) {
-    for (std::size_t l = first; l < last; ++l) {
-      for (std::uint32_t c = 0; c < 8; c += 2) {
-        const auto low = std::lower_bound(corner_keys_.begin(), corner_keys_.end(), key_of(l, c));
-        corners_[l][c] = static_cast<std::uint32_t>(low - corner_keys_.begin());
-        // The corner at the other end of an edge along x comes next, but for those that subdivide the edge.
-        const std::uint64_t wanted = key_of(l, c + 1);
-        std::size_t next = corners_[l][c] + std::size_t{1};
-        while (corner_keys_[next] != wanted) ++next;
-        corners_[l][c + 1] = static_cast<std::uint32_t>(next);
-      }
-    }
-  });
+  }
 }
 
 std::array<std::uint32_t, 3> Octree::corner_grid(std::size_t corner) const {

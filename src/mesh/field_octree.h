@@ -64,7 +64,7 @@ class Octree {
   std::vector<OctreeNode> nodes_;
   std::vector<std::uint32_t> leaf_nodes_;
   std::vector<std::array<std::uint32_t, 8>> corners_;
-  std::vector<std::uint64_t> corner_keys_;  // sorted
+  std::vector<std::uint64_t> corner_keys_;
 };
 
 }  // namespace g3r::mesh

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
+#include "g3r/error.h"
 #include "mesh/disjoint_sets.h"
 
 namespace g3r::mesh {
@@ -19,18 +21,19 @@ struct Groups {
   std::vector<long> size;                         // corners of each
 };
 
-Groups group_corners(const Octree& octree, const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b,
-                     const std::atomic<bool>* cancel) {
-  std::vector<std::uint8_t> differs(a.size());
-  for (std::size_t c = 0; c < differs.size(); ++c) differs[c] = a[c] != b[c] ? 1 : 0;
+// `edges`: at least those at corners where a and b differ.
+Groups group_corners(const Octree& octree, const std::vector<MinimalEdge>& edges, const std::vector<std::uint8_t>& a,
+                     const std::vector<std::uint8_t>& b) {
+  const auto differs = [&](std::uint32_t c) { return a[c] != b[c]; };
   Groups g;
   g.of_corner.assign(a.size(), kNone);
   g.of_leaf.assign(octree.leaf_count(), kNone);
   g.leaves.assign(octree.leaf_count(), 0);
   DisjointSets sets(a.size());
-  for (const MinimalEdge& e : edges_at(octree, differs, cancel)) {
-    const std::uint32_t end = differs[e.low] != 0 ? e.low : e.high;
-    if (differs[e.high] != 0) sets.join(end, e.high);
+  for (const MinimalEdge& e : edges) {
+    if (!differs(e.low) && !differs(e.high)) continue;
+    const std::uint32_t end = differs(e.low) ? e.low : e.high;
+    if (differs(e.high)) sets.join(end, e.high);
     for (const std::uint32_t leaf : e.leaf) {
       std::uint32_t& first = g.of_leaf[leaf];
       if (first == kNone) first = end;
@@ -39,7 +42,7 @@ Groups group_corners(const Octree& octree, const std::vector<std::uint8_t>& a, c
     }
   }
   for (std::uint32_t c = 0; c < a.size(); ++c) {
-    if (differs[c] == 0) continue;
+    if (!differs(c)) continue;
     const std::size_t first = sets.find(c);  // the smallest, so its group has a number
     if (first == c) g.size.push_back(0);
     g.of_corner[c] = first == c ? static_cast<std::uint32_t>(g.size.size() - 1) : g.of_corner[first];
@@ -131,11 +134,25 @@ long count_handles(const DualSurface& surface) {
   return static_cast<long>(components.count()) - euler / 2;
 }
 
-void remove_handles(const Octree& octree, const std::vector<std::uint8_t>& proposal, const InsideTest& centre_inside,
-                    std::vector<std::uint8_t>& inside, DualSurface& surface, const std::atomic<bool>* cancel) {
-  const Groups groups = group_corners(octree, inside, proposal, cancel);
+HandleRemoval::HandleRemoval(const Octree& octree, const std::vector<std::uint8_t>& open, InsideTest centre_inside,
+                             const std::atomic<bool>* cancel)
+    : octree_(octree), centre_inside_(std::move(centre_inside)), cancel_(cancel) {
+  std::vector<std::uint8_t> leaves(octree.leaf_count(), 0);
+  for (std::size_t leaf = 0; leaf < leaves.size(); ++leaf) {
+    for (const std::uint32_t c : octree.corners(leaf)) leaves[leaf] |= open[c];
+  }
+  std::vector<std::uint8_t> around(leaves.size(), 0);
+  for (const MinimalEdge& e : edges_around(octree, leaves, cancel)) {
+    if (open[e.low] == 0 && open[e.high] == 0) continue;
+    for (const std::uint32_t leaf : e.leaf) around[leaf] = 1;
+  }
+  edges_ = edges_around(octree, around, cancel);
+}
+
+void HandleRemoval::propose(const std::vector<std::uint8_t>& proposal, std::vector<std::uint8_t>& inside, DualSurface& surface) const {
+  const Groups groups = group_corners(octree_, edges_, inside, proposal);
   if (groups.size.empty()) return;
-  const DualSurface here = sheets_in(octree, groups.leaves, inside, centre_inside, cancel);
+  const DualSurface here = sheets_in(octree_, edges_, groups.leaves, inside, centre_inside_);
   const Components components(surface, groups);
   std::vector<long> gain(groups.size.size(), 0);  // twice the change of the Euler characteristic: 4 for a handle less or a component more
   add_characteristic(here, groups, -1, gain);
@@ -143,7 +160,8 @@ void remove_handles(const Octree& octree, const std::vector<std::uint8_t>& propo
   std::vector<std::uint8_t> take(groups.size.size(), 1);
   std::vector<std::uint8_t> next = proposal;
   for (int round = 0; round < kRounds; ++round) {
-    const DualSurface result = sheets_in(octree, groups.leaves, next, centre_inside, cancel);
+    if (cancel_ != nullptr && cancel_->load()) throw Cancelled();
+    const DualSurface result = sheets_in(octree_, edges_, groups.leaves, next, centre_inside_);
     if (round == 0) add_characteristic(result, groups, 1, gain);
     const std::vector<std::size_t> after = components.near(result);
     bool settled = true;
@@ -155,7 +173,7 @@ void remove_handles(const Octree& octree, const std::vector<std::uint8_t>& propo
     }
     if (settled) {
       inside = std::move(next);
-      surface = contour(octree, inside, centre_inside, cancel);
+      surface = contour(octree_, inside, centre_inside_, cancel_);
       return;
     }
     if (std::find(take.begin(), take.end(), 1) == take.end()) return;

@@ -16,12 +16,25 @@ namespace g3r::mesh {
 /// Handles of all components together. O(sheets + crossings).
 [[nodiscard]] long count_handles(const DualSurface& surface);
 
-/// `inside` and `proposal` mark every corner of the octree. Where they differ, corners at edges around one leaf form a group. A group takes
-/// the proposal if `surface` = contour(octree, inside) loses handles by it and the group has few corners for each; parts split off or added
-/// do not count as handles lost. Updates `inside` and `surface`. The same result for any number of threads. Costs a contour if something
-/// changes, else O(nodes + crossings).
-/// Throws Cancelled.
-void remove_handles(const Octree& octree, const std::vector<std::uint8_t>& proposal, const InsideTest& centre_inside,
-                    std::vector<std::uint8_t>& inside, DualSurface& surface, const std::atomic<bool>* cancel = nullptr);
+/// Other readings of the same corners, taken where they have fewer handles. The same result for any number of threads.
+class HandleRemoval {
+ public:
+  /// `open`: 1 for corners that a proposal may change. `octree` must outlive this. O(nodes + edges near open corners). All members throw
+  /// Cancelled.
+  HandleRemoval(const Octree& octree, const std::vector<std::uint8_t>& open, InsideTest centre_inside,
+                const std::atomic<bool>* cancel = nullptr);
+
+  /// `inside` and `proposal` mark every corner of the octree. Where they differ, corners at edges around one leaf form a group. A group
+  /// takes the proposal if `surface` = contour(octree, inside) loses handles by it and the group has few corners for each; parts split off
+  /// or added do not count as handles lost. Updates `inside` and `surface`. Costs a contour if something changes, else O(crossings + edges
+  /// near open corners).
+  void propose(const std::vector<std::uint8_t>& proposal, std::vector<std::uint8_t>& inside, DualSurface& surface) const;
+
+ private:
+  const Octree& octree_;
+  InsideTest centre_inside_;
+  const std::atomic<bool>* cancel_;
+  std::vector<MinimalEdge> edges_;  // around all leaves with an edge that ends at an open corner
+};
 
 }  // namespace g3r::mesh
