@@ -31,7 +31,12 @@ Marks no_centres(const std::vector<Vec3>& centres) { return Marks(centres.size()
 
 Topology topology_after(Marks inside, const Marks& proposal) {
   DualSurface surface = contour(grid(), inside, no_centres);
-  HandleRemoval(grid(), Marks(inside.size(), 1), no_centres).propose(proposal, inside, surface);
+  const HandleRemoval removal(grid(), Marks(inside.size(), 1), no_centres);
+  if (removal.propose(proposal, inside, surface)) {
+    const long handles = count_handles(surface);
+    surface = contour(grid(), inside, no_centres);
+    EXPECT_EQ(handles, count_handles(surface));
+  }
   std::vector<Vec3> positions;
   for (std::size_t p = 0; p < surface.patch_count() + surface.midpoints.size(); ++p) positions.push_back({0, 0, static_cast<double>(p)});
   return topology(triangulate(surface, std::move(positions), {}));

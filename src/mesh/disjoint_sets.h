@@ -30,6 +30,8 @@ class DisjointSets {
     ++count_;
     return parent_.size() - 1;
   }
+  /// Number of elements.
+  [[nodiscard]] std::size_t size() const { return parent_.size(); }
   /// Number of sets.
   [[nodiscard]] std::size_t count() const { return count_; }
 

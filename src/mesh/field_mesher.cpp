@@ -261,6 +261,23 @@ std::vector<std::uint8_t> read_signs(const Octree& octree, const Opinions& opini
   return out;
 }
 
+// Reads the doubtful signs in other ways where that leaves fewer handles.
+void remove_handles(const Octree& octree, const Opinions& opinions, const mesh::InsideTest& centre_inside,
+                    std::vector<std::uint8_t>& inside, mesh::DualSurface& surface, const std::atomic<bool>* cancel) {
+  if (mesh::count_handles(surface) == 0) return;
+  const mesh::HandleRemoval removal(octree, opinions.open, centre_inside, cancel);
+  const std::vector<double> once = mesh::smooth_sides(octree, opinions, opinions.side, cancel);
+  const std::vector<double> twice = mesh::smooth_sides(octree, opinions, once, cancel);
+  bool changed = false;
+  for (const Reading& reading : kReadings) {
+    const std::vector<double>& side = reading.averagings == 2 ? twice : once;
+    if (!removal.propose(read_signs(octree, opinions, side, reading.level, inside), inside, surface)) continue;
+    changed = true;
+    if (mesh::count_handles(surface) == 0) break;
+  }
+  if (changed) surface = mesh::contour(octree, inside, centre_inside, cancel);
+}
+
 }  // namespace
 
 std::size_t field_mesh_memory(std::size_t points, double spacing, double longest_side, int depth) {
@@ -299,13 +316,7 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
 
   const auto centre_inside = [&](const std::vector<Vec3>& centres) { return side.by_fit(centres); };
   mesh::DualSurface surface = mesh::contour(octree, inside, centre_inside, monitor.cancel);
-  const std::vector<double> once = mesh::smooth_sides(octree, opinions, opinions.side, monitor.cancel);
-  const std::vector<double> twice = mesh::smooth_sides(octree, opinions, once, monitor.cancel);
-  const mesh::HandleRemoval removal(octree, opinions.open, centre_inside, monitor.cancel);
-  for (const Reading& reading : kReadings) {
-    if (mesh::count_handles(surface) == 0) break;
-    removal.propose(read_signs(octree, opinions, reading.averagings == 2 ? twice : once, reading.level, inside), inside, surface);
-  }
+  remove_handles(octree, opinions, centre_inside, inside, surface, monitor.cancel);
   for (std::size_t c = 0; c < inside.size(); ++c) {
     if ((value[c] > 0) != (inside[c] != 0) && !octree.on_boundary(c)) value[c] = (inside[c] != 0 ? kFlipped : -kFlipped) * spacing;
   }

@@ -77,12 +77,12 @@ void join_crossings(const DualSurface& s, const Use& use, const Number& number, 
   }
 }
 
-// How many components of the surface pass through the leaves of each group, once the sheets there are those of another surface.
-class Components {
+// The surface outside the leaves with a group.
+class Surroundings {
  public:
-  Components(const DualSurface& surface, const Groups& groups) : groups_(groups), outside_(surface.crossings.size()) {
+  Surroundings(const DualSurface& surface, const Groups& groups) : surface_(surface), groups_(groups), joined_(surface.crossings.size()) {
     join_crossings(
-        surface, [&](std::uint32_t leaf) { return groups.leaves[leaf] == 0; }, [](std::uint32_t k) { return k; }, outside_);
+        surface, [&](std::uint32_t leaf) { return groups.leaves[leaf] == 0; }, [](std::uint32_t k) { return k; }, joined_);
     for (std::size_t p = 0; p < surface.patch_count(); ++p) {
       if (groups.leaves[surface.patch_leaf[p]] == 0) continue;
       for (std::size_t k = surface.patch_begin[p]; k < surface.patch_begin[p + 1]; ++k) {
@@ -93,14 +93,12 @@ class Components {
     std::sort(known_.begin(), known_.end());
   }
 
-  // `inner`: all sheets of the leaves with a group. Crossings away from the corners of the groups are those of the surface.
-  [[nodiscard]] std::vector<std::size_t> near(const DualSurface& inner) const {
-    DisjointSets sets = outside_;
-    std::vector<std::size_t> number(inner.crossings.size());
-    for (std::size_t k = 0; k < number.size(); ++k) {
-      const Crossing& c = inner.crossings[k];
-      const auto found = std::lower_bound(known_.begin(), known_.end(), std::pair{key(c), std::uint32_t{0}});
-      number[k] = found != known_.end() && found->first == key(c) ? found->second : sets.add();
+  // Of the surface whose sheets in the leaves with a group are `inner`: how many components pass through the leaves of each group.
+  [[nodiscard]] std::vector<std::size_t> components_with(const DualSurface& inner) const {
+    DisjointSets sets = joined_;
+    const std::vector<std::uint32_t> number = numbers_of(inner);
+    for (const std::uint32_t n : number) {
+      if (n >= sets.size()) sets.add();
     }
     join_crossings(
         inner, [](std::uint32_t) { return true; }, [&](std::uint32_t k) { return number[k]; }, sets);
@@ -114,11 +112,50 @@ class Components {
     return count;
   }
 
+  // Crossings and sheets of that surface.
+  [[nodiscard]] DualSurface surface_with(const DualSurface& inner) const {
+    const std::vector<std::uint32_t> number = numbers_of(inner);
+    std::vector<std::uint32_t> kept(surface_.crossings.size() + inner.crossings.size(), kNone);
+    DualSurface out;
+    out.patch_begin.push_back(0);
+    const auto add = [&](const DualSurface& from, std::size_t patch, const auto& number_of) {
+      out.patch_leaf.push_back(from.patch_leaf[patch]);
+      for (std::size_t k = from.patch_begin[patch]; k < from.patch_begin[patch + 1]; ++k) {
+        const std::uint32_t crossing = from.patch_crossings[k];
+        std::uint32_t& n = kept[number_of(crossing)];
+        if (n == kNone) {
+          n = static_cast<std::uint32_t>(out.crossings.size());
+          out.crossings.push_back(from.crossings[crossing]);
+        }
+        out.patch_crossings.push_back(n);
+      }
+      out.patch_begin.push_back(out.patch_crossings.size());
+    };
+    for (std::size_t p = 0; p < surface_.patch_count(); ++p) {
+      if (groups_.leaves[surface_.patch_leaf[p]] == 0) add(surface_, p, [](std::uint32_t k) { return k; });
+    }
+    for (std::size_t p = 0; p < inner.patch_count(); ++p) add(inner, p, [&](std::uint32_t k) { return number[k]; });
+    return out;
+  }
+
  private:
   static std::uint64_t key(const Crossing& c) { return std::uint64_t{c.inside} << 32U | c.outside; }
 
+  // The number in the surface of each crossing of `inner`; new ones are numbered on.
+  [[nodiscard]] std::vector<std::uint32_t> numbers_of(const DualSurface& inner) const {
+    auto next = static_cast<std::uint32_t>(surface_.crossings.size());
+    std::vector<std::uint32_t> number;
+    number.reserve(inner.crossings.size());
+    for (const Crossing& c : inner.crossings) {
+      const auto found = std::lower_bound(known_.begin(), known_.end(), std::pair{key(c), std::uint32_t{0}});
+      number.push_back(found != known_.end() && found->first == key(c) ? found->second : next++);
+    }
+    return number;
+  }
+
+  const DualSurface& surface_;
   const Groups& groups_;
-  DisjointSets outside_;                                        // crossings of the surface
+  DisjointSets joined_;                                         // its crossings
   std::vector<std::pair<std::uint64_t, std::uint32_t>> known_;  // those of leaves with a group, by their corners
 };
 
@@ -149,21 +186,25 @@ HandleRemoval::HandleRemoval(const Octree& octree, const std::vector<std::uint8_
   edges_ = edges_around(octree, around, cancel);
 }
 
-void HandleRemoval::propose(const std::vector<std::uint8_t>& proposal, std::vector<std::uint8_t>& inside, DualSurface& surface) const {
+bool HandleRemoval::propose(const std::vector<std::uint8_t>& proposal, std::vector<std::uint8_t>& inside, DualSurface& surface) const {
   const Groups groups = group_corners(octree_, edges_, inside, proposal);
-  if (groups.size.empty()) return;
-  const DualSurface here = sheets_in(octree_, edges_, groups.leaves, inside, centre_inside_);
-  const Components components(surface, groups);
+  if (groups.size.empty()) return false;
+  std::vector<MinimalEdge> near;
+  for (const MinimalEdge& e : edges_) {
+    if (std::any_of(e.leaf.begin(), e.leaf.end(), [&](std::uint32_t leaf) { return groups.leaves[leaf] != 0; })) near.push_back(e);
+  }
+  const DualSurface here = sheets_in(octree_, near, groups.leaves, inside, centre_inside_);
+  const Surroundings surroundings(surface, groups);
   std::vector<long> gain(groups.size.size(), 0);  // twice the change of the Euler characteristic: 4 for a handle less or a component more
   add_characteristic(here, groups, -1, gain);
-  const std::vector<std::size_t> before = components.near(here);
+  const std::vector<std::size_t> before = surroundings.components_with(here);
   std::vector<std::uint8_t> take(groups.size.size(), 1);
   std::vector<std::uint8_t> next = proposal;
   for (int round = 0; round < kRounds; ++round) {
     if (cancel_ != nullptr && cancel_->load()) throw Cancelled();
-    const DualSurface result = sheets_in(octree_, edges_, groups.leaves, next, centre_inside_);
+    const DualSurface result = sheets_in(octree_, near, groups.leaves, next, centre_inside_);
     if (round == 0) add_characteristic(result, groups, 1, gain);
-    const std::vector<std::size_t> after = components.near(result);
+    const std::vector<std::size_t> after = surroundings.components_with(result);
     bool settled = true;
     for (std::size_t g = 0; g < take.size(); ++g) {
       if (take[g] == 0) continue;
@@ -173,15 +214,16 @@ void HandleRemoval::propose(const std::vector<std::uint8_t>& proposal, std::vect
     }
     if (settled) {
       inside = std::move(next);
-      surface = contour(octree_, inside, centre_inside_, cancel_);
-      return;
+      surface = surroundings.surface_with(result);
+      return true;
     }
-    if (std::find(take.begin(), take.end(), 1) == take.end()) return;
+    if (std::find(take.begin(), take.end(), 1) == take.end()) return false;
     next = inside;
     for (std::size_t c = 0; c < next.size(); ++c) {
       if (groups.of_corner[c] != kNone && take[groups.of_corner[c]] != 0) next[c] = proposal[c];
     }
   }
+  return false;
 }
 
 }  // namespace g3r::mesh

@@ -26,9 +26,9 @@ class HandleRemoval {
 
   /// `inside` and `proposal` mark every corner of the octree. Where they differ, corners at edges around one leaf form a group. A group
   /// takes the proposal if `surface` = contour(octree, inside) loses handles by it and the group has few corners for each; parts split off
-  /// or added do not count as handles lost. Updates `inside` and `surface`. Costs a contour if something changes, else O(crossings + edges
-  /// near open corners).
-  void propose(const std::vector<std::uint8_t>& proposal, std::vector<std::uint8_t>& inside, DualSurface& surface) const;
+  /// or added do not count as handles lost. Returns whether there was one, and updates `inside` and the crossings and sheets of `surface`,
+  /// which then has no polygons. O(crossings + edges near open corners).
+  bool propose(const std::vector<std::uint8_t>& proposal, std::vector<std::uint8_t>& inside, DualSurface& surface) const;
 
  private:
   const Octree& octree_;

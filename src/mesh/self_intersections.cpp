@@ -15,8 +15,6 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-constexpr std::size_t kBlock = 1024;
-
 // Segments p q and a b in the plane seen along `axis`; closed.
 bool segments_meet(std::size_t axis, const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
   const int pa = orientation_along(axis, p, q, a), pb = orientation_along(axis, p, q, b);
@@ -112,25 +110,19 @@ std::vector<TrianglePair> self_intersections(const Mesh& mesh) {
     return Corners{scaled.vertices[t[0]], scaled.vertices[t[1]], scaled.vertices[t[2]]};
   };
   const TriangleTree tree(scaled);
-  std::vector<std::vector<TrianglePair>> found((mesh.triangles.size() + kBlock - 1) / kBlock);
-  parallel::for_blocks(mesh.triangles.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-    std::vector<TrianglePair>& pairs = found[begin / kBlock];
-    for (std::size_t f = begin; f < end; ++f) {
-      const Corners mine = corners(f);
-      vector::Box around;
-      for (const Vec3& p : mine) around.extend(p);
-      if (!tree.contains(static_cast<std::uint32_t>(f))) continue;
-      tree.for_each_overlapping(around, [&](std::uint32_t other) {
-        if (other <= f || share_a_corner(mesh.triangles[f], mesh.triangles[other])) return;
-        const Corners theirs = corners(other);
-        if (surely_apart(mine, theirs) || surely_apart(theirs, mine) || touch_at_a_corner(mine, theirs)) return;
-        if (meet(mine, theirs)) pairs.push_back({static_cast<std::uint32_t>(f), other});
-      });
-    }
-    std::sort(pairs.begin(), pairs.end());
+  const std::vector<TriangleTree::PairJob> jobs = tree.pair_jobs();
+  std::vector<std::vector<TrianglePair>> found(jobs.size());
+  parallel::for_each(jobs.size(), [&](std::size_t job) {
+    tree.visit_pairs(jobs[job], [&](std::uint32_t f, std::uint32_t g) {
+      if (share_a_corner(mesh.triangles[f], mesh.triangles[g])) return;
+      const Corners mine = corners(f), theirs = corners(g);
+      if (surely_apart(mine, theirs) || surely_apart(theirs, mine) || touch_at_a_corner(mine, theirs)) return;
+      if (meet(mine, theirs)) found[job].push_back({f, g});
+    });
   });
   std::vector<TrianglePair> all;
   for (const std::vector<TrianglePair>& pairs : found) all.insert(all.end(), pairs.begin(), pairs.end());
+  std::sort(all.begin(), all.end());
   return all;
 }
 

@@ -36,6 +36,12 @@ struct Box {
       high[k] = std::max(high[k], p[k]);
     }
   }
+  void extend(const Box& other) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], other.low[k]);
+      high[k] = std::max(high[k], other.high[k]);
+    }
+  }
   /// Halved before adding: the sum of two large coordinates may overflow.
   [[nodiscard]] Vec3 centre() const { return add(scale(low, 0.5), scale(high, 0.5)); }
   [[nodiscard]] double longest_side() const { return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]}); }

@@ -18,8 +18,7 @@ using vector::dot;
 using vector::scale;
 using vector::subtract;
 
-// Below this many triangles testing all of them is quicker than descending.
-constexpr std::uint32_t kLeafSize = 4;
+constexpr std::size_t kPairJobs = 256;  // about as many jobs, whatever the number of threads
 
 double squared_distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 ab = subtract(b, a);
@@ -72,38 +71,66 @@ TriangleTree::TriangleTree(const Mesh& mesh) {
   }
   if (triangles_.empty()) throw InvalidInput("no triangle of the mesh has an area");
   nodes_.reserve(triangles_.size());
-  build(0, static_cast<std::uint32_t>(triangles_.size()));
+  std::vector<Item> items(triangles_.size());
+  for (std::uint32_t i = 0; i < items.size(); ++i) {
+    const Triangle& t = triangles_[i];
+    items[i] = {scale(add(add(t.a, t.b), t.c), 1.0 / 3), i};
+  }
+  build(items, 0, static_cast<std::uint32_t>(items.size()));
+  std::vector<Triangle> ordered;
+  ordered.reserve(items.size());
+  for (const Item& item : items) ordered.push_back(triangles_[item.triangle]);
+  triangles_ = std::move(ordered);
+  for (std::size_t i = nodes_.size(); i-- > 0;) {  // children come after their parents
+    Node& node = nodes_[i];
+    if (node.right == 0) {
+      for (std::uint32_t t = node.begin; t < node.end; ++t) node.box.extend(box_of(triangles_[t]));
+    } else {
+      node.box = nodes_[i + 1].box;
+      node.box.extend(nodes_[node.right].box);
+    }
+  }
 }
 
-/// Appends the node of triangles_[begin, end), splitting at the median centre along the longest side of the box of centres.
-void TriangleTree::build(std::uint32_t begin, std::uint32_t end) {
+/// Appends the node of items[begin, end), splitting at the median centre along the longest side of the box of centres.
+void TriangleTree::build(std::vector<Item>& items, std::uint32_t begin, std::uint32_t end) {
   const auto index = nodes_.size();
   nodes_.emplace_back();
-  vector::Box box, centres;
-  const auto centre = [](const Triangle& t) { return scale(add(add(t.a, t.b), t.c), 1.0 / 3); };
-  for (std::uint32_t i = begin; i < end; ++i) {
-    box.extend(triangles_[i].a);
-    box.extend(triangles_[i].b);
-    box.extend(triangles_[i].c);
-    centres.extend(centre(triangles_[i]));
-  }
-  nodes_[index].box = box;
   nodes_[index].begin = begin;
   nodes_[index].end = end;
   if (end - begin <= kLeafSize) return;
+  vector::Box centres;
+  for (std::uint32_t i = begin; i < end; ++i) centres.extend(items[i].centre);
   std::size_t axis = 0;
   for (std::size_t k = 1; k < 3; ++k) {
     if (centres.high[k] - centres.low[k] > centres.high[axis] - centres.low[axis]) axis = k;
   }
   const std::uint32_t middle = begin + (end - begin) / 2;
-  std::nth_element(triangles_.begin() + begin, triangles_.begin() + middle, triangles_.begin() + end,
-                   [&](const Triangle& s, const Triangle& t) {
-                     const double x = centre(s)[axis], y = centre(t)[axis];
-                     return x != y ? x < y : s.index < t.index;
-                   });
-  build(begin, middle);
+  std::nth_element(items.begin() + begin, items.begin() + middle, items.begin() + end, [&](const Item& s, const Item& t) {
+    return s.centre[axis] != t.centre[axis] ? s.centre[axis] < t.centre[axis] : s.triangle < t.triangle;
+  });
+  build(items, begin, middle);
   nodes_[index].right = static_cast<std::uint32_t>(nodes_.size());
-  build(middle, end);
+  build(items, middle, end);
+}
+
+std::vector<TriangleTree::PairJob> TriangleTree::pair_jobs() const {
+  std::vector<PairJob> jobs{{0, 0}};
+  bool split = true;
+  while (split && jobs.size() < kPairJobs) {
+    std::vector<PairJob> next;
+    split = false;
+    for (const PairJob& job : jobs) {
+      if (is_leaf(job.a) && is_leaf(job.b)) {
+        next.push_back(job);
+        continue;
+      }
+      split = true;
+      for_each_part(job, [&](const PairJob& part) { next.push_back(part); });
+    }
+    jobs = std::move(next);
+  }
+  return jobs;
 }
 
 TriangleTree::Closest TriangleTree::closest(const Vec3& point) const {
