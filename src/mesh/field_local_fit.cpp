@@ -14,6 +14,7 @@ using Eigen::Vector3d;
 
 constexpr double kSameSheet = 0.85;   // cosine: normals within about 32 degrees belong to one sheet
 constexpr std::size_t kMinSheet = 3;  // points; fewer are noise
+constexpr double kFaint = 6;          // points of a weight less than exp(-6) take no part
 constexpr double kRidge = 1e-3;       // on the curvatures, relative to the weight of the data: keeps them bounded where points are few
 constexpr double kJointClear = 0.03;  // spacings: sheets closer than this to each other's points do not form a crease
 
@@ -38,9 +39,9 @@ Eigen::Matrix3d frame_of(const Vector3d& n) {
   return f;
 }
 
-// About exp(-t) for t >= 0, and 0 from 16 on.
+// About exp(-t) for 0 <= t <= kFaint.
 double bell(double t) {
-  const double a = std::max(1 - t / 16, 0.0), a2 = a * a, a4 = a2 * a2, a8 = a4 * a4;
+  const double a = 1 - t / 16, a2 = a * a, a4 = a2 * a2, a8 = a4 * a4;
   return a8 * a8;
 }
 
@@ -260,8 +261,9 @@ LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* dire
   }
   const double scale = 1 / (2 * options_.width * options_.width * h * h);
   std::erase_if(members, [&](Member& m) {
-    m.weight = bell((m.weight - least) * scale);
-    return !(m.weight > 0);
+    const double t = (m.weight - least) * scale;
+    m.weight = bell(t);
+    return t > kFaint;
   });
   // Deal the points out: the nearest one left seeds a sheet, which takes those with similar normals.
   for (int s = 0; s < 3 && out.count < 3; ++s) {

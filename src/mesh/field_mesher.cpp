@@ -31,7 +31,7 @@ using mesh::Opinions;
 using mesh::OrientedPoints;
 using mesh::RefineDisc;
 
-constexpr std::size_t kFitPoints = 16;  // points that take part in a local fit
+constexpr std::size_t kFitPoints = 24;  // near each point: enough for fits half way to the next ones
 constexpr double kCell = 0.8;           // finest cell, in median spacings
 constexpr double kDisc = 1.4;        // spacings: radius of the disc around each point that is refined; spans the holes of random sampling
 constexpr double kDiscHalf = 0.3;    // spacings: its half thickness; covers curvature within the disc
