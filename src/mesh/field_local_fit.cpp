@@ -12,11 +12,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kSameSheet = 0.85;   // cosine: normals within about 32 degrees belong to one sheet
-constexpr std::size_t kMinSheet = 3;  // points; fewer are noise
-constexpr double kFaint = 6;          // points of a weight less than exp(-6) take no part
-constexpr double kRidge = 1e-3;       // on the curvatures, relative to the weight of the data: keeps them bounded where points are few
-constexpr double kJointClear = 0.03;  // spacings: sheets closer than this to each other's points do not form a crease
+constexpr double kSameSheet = 0.85;     // cosine: normals within about 32 degrees belong to one sheet
+constexpr std::size_t kMinSheet = 3;    // points; fewer are noise
+constexpr std::size_t kFitPoints = 16;  // that take part in a fit: the nearest ones
+constexpr double kFaint = 16;           // points weigh about exp(-t) for t up to this and nothing beyond
+constexpr double kRidge = 1e-3;         // on the curvatures, relative to the weight of the data: keeps them bounded where points are few
+constexpr double kJointClear = 0.03;    // spacings: sheets closer than this to each other's points do not form a crease
 
 constexpr double kAgainst = -0.2;    // cosine between a normal and the wanted direction from which they are against each other
 constexpr double kOpposite = -0.7;   // cosine: points whose normals differ by more than about 135 degrees are on opposite walls
@@ -39,9 +40,9 @@ Eigen::Matrix3d frame_of(const Vector3d& n) {
   return f;
 }
 
-// About exp(-t) for 0 <= t <= kFaint.
+// About exp(-t), 0 at kFaint.
 double bell(double t) {
-  const double a = 1 - t / 16, a2 = a * a, a4 = a2 * a2, a8 = a4 * a4;
+  const double a = 1 - t / kFaint, a2 = a * a, a4 = a2 * a2, a8 = a4 * a4;
   return a8 * a8;
 }
 
@@ -242,6 +243,7 @@ LocalFit::LocalFit(const OrientedPoints& points, const std::vector<std::uint32_t
 
 LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* direction, Detail detail) const {
   thread_local std::vector<Member> members;
+  thread_local std::vector<std::pair<double, std::uint32_t>> near;  // squared distances and points
   double squared = 0;
   const std::uint32_t nearest = neighbours_.nearest({x[0], x[1], x[2]}, squared);
   LocalSurface out;
@@ -249,22 +251,25 @@ LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* dire
   out.spacing = points_.spacing[nearest];
   const double h = out.spacing;
   if (out.nearest > reach * h) return out;
-  members.clear();
-  double least = std::numeric_limits<double>::infinity();
+  near.clear();
   for (std::size_t k = 0; k < count_; ++k) {
     const std::uint32_t i = near_[nearest * count_ + k];
+    near.emplace_back((vector(points_.positions[i]) - x).squaredNorm(), i);
+  }
+  const std::size_t used = std::min(kFitPoints, near.size());
+  std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(used), near.end());
+  const double scale = 1 / (2 * options_.width * options_.width * h * h);
+  members.clear();
+  double first = -1;
+  for (std::size_t k = 0; k < used; ++k) {
+    const auto [r2, i] = near[k];
     const Vector3d n = vector(points_.normals[i]);
     if (direction != nullptr && n.dot(*direction) < kAgainst) continue;
-    const Vector3d p = vector(points_.positions[i]);
-    members.push_back({p, n, (p - x).squaredNorm(), -1});
-    least = std::min(least, members.back().weight);
+    if (first < 0) first = r2;
+    const double exponent = (r2 - first) * scale;
+    if (exponent >= kFaint) break;
+    members.push_back({vector(points_.positions[i]), n, bell(exponent), -1});
   }
-  const double scale = 1 / (2 * options_.width * options_.width * h * h);
-  std::erase_if(members, [&](Member& m) {
-    const double t = (m.weight - least) * scale;
-    m.weight = bell(t);
-    return t > kFaint;
-  });
   // Deal the points out: the nearest one left seeds a sheet, which takes those with similar normals.
   for (int s = 0; s < 3 && out.count < 3; ++s) {
     const auto seed = std::find_if(members.begin(), members.end(), [](const Member& m) { return m.sheet == -1; });
@@ -323,13 +328,13 @@ LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* dire
 }
 
 std::vector<double> wall_thickness(const OrientedPoints& points, const std::vector<std::uint32_t>& near) {
-  const std::size_t n = points.positions.size(), k = near.size() / n;
+  const std::size_t n = points.positions.size(), stride = near.size() / n, k = std::min(stride, kFitPoints);
   std::vector<double> out(n, std::numeric_limits<double>::infinity());
   parallel::for_blocks(n, 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vector3d p = vector(points.positions[i]), normal = vector(points.normals[i]);
       for (std::size_t j = 0; j < k; ++j) {
-        const std::uint32_t other = near[i * k + j];
+        const std::uint32_t other = near[i * stride + j];
         if (normal.dot(vector(points.normals[other])) > kOpposite) continue;
         out[i] = std::min(out[i], std::abs(normal.dot(vector(points.positions[other]) - p)));
       }

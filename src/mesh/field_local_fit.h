@@ -79,11 +79,11 @@ class LocalFit {
     kSide      ///< a plane is enough where the place is clearly on one side of the surface
   };
 
-  /// `points` and `near` must outlive this. `near`: of_all(k) of the positions; k points take part in a fit. O(N log N).
+  /// `points` and `near` must outlive this. `near`: of_all(k) of the positions, k > 16. O(N log N).
   LocalFit(const OrientedPoints& points, const std::vector<std::uint32_t>& near, const LocalFitOptions& options);
 
-  /// The surface near `x`, fitted to the neighbours of the point nearest to it; no sheet if that is farther than `reach` spacings. If
-  /// `direction` is not null, points whose normals point against it are left out. O(log N).
+  /// The surface near `x`, fitted to the 16 nearest of the neighbours of the point nearest to it; no sheet if that is farther than `reach`
+  /// spacings. If `direction` is not null, points whose normals point against it are left out. O(log N).
   [[nodiscard]] LocalSurface fit(const Eigen::Vector3d& x, double reach, const Eigen::Vector3d* direction = nullptr,
                                  Detail detail = Detail::kSurface) const;
 
@@ -96,7 +96,7 @@ class LocalFit {
 };
 
 /// Distance across the wall or gap at each point: to the nearest of its neighbours that face the other way, measured along the normal.
-/// Infinite where none does. `near`: of_all(k) of the positions. O(N k).
+/// Infinite where none of the 16 nearest does. `near`: of_all(k) of the positions. O(N).
 [[nodiscard]] std::vector<double> wall_thickness(const OrientedPoints& points, const std::vector<std::uint32_t>& near);
 
 }  // namespace g3r::mesh

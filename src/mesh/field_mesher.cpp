@@ -31,16 +31,16 @@ using mesh::Opinions;
 using mesh::OrientedPoints;
 using mesh::RefineDisc;
 
-constexpr std::size_t kFitPoints = 24;  // near each point: enough for fits half way to the next ones
-constexpr double kCell = 0.8;           // finest cell, in median spacings
-constexpr double kDisc = 1.4;        // spacings: radius of the disc around each point that is refined; spans the holes of random sampling
-constexpr double kDiscHalf = 0.3;    // spacings: its half thickness; covers curvature within the disc
-constexpr double kMargin = 1.15;     // side of the octree over the longest side of the bounding box, at least
-constexpr int kBaseLevel = 4;        // coarsest leaves
-constexpr int kMaxSpread = 4;        // levels that locally dense or sparse sampling may add or take away
-constexpr double kLocalReach = 1.8;  // spacings from the nearest point within which the fitted surface gives the side
-constexpr double kThin = 1.3;        // walls and gaps get cells of at most their thickness over this,
-constexpr double kMaxThin = 2.0;     // but not smaller than a normal cell over this
+constexpr std::size_t kNear = 28;  // neighbours kept of each point; the 16 nearest to a place are nearly always among those of its nearest
+constexpr double kCell = 0.8;      // finest cell, in median spacings
+constexpr double kDisc = 1.4;      // spacings: radius of the disc around each point that is refined; spans the holes of random sampling
+constexpr double kDiscHalf = 0.3;  // spacings: its half thickness; covers curvature within the disc
+constexpr double kMargin = 1.15;   // side of the octree over the longest side of the bounding box, at least
+constexpr int kBaseLevel = 4;      // coarsest leaves
+constexpr int kMaxSpread = 4;      // levels that locally dense or sparse sampling may add or take away
+constexpr double kLocalReach = 1.8;          // spacings from the nearest point within which the fitted surface gives the side
+constexpr double kThin = 1.3;                // walls and gaps get cells of at most their thickness over this,
+constexpr double kMaxThin = 2.0;             // but not smaller than a normal cell over this
 constexpr double kLeastSpacing = 1e-2;       // of the median; clusters of almost equal points are no denser for the fits than this
 constexpr std::size_t kLevelPoints = 10000;  // the median of so many values is good to 1 % of their scatter
 constexpr double kNoisy = 0.15;              // spacings: positions that scatter more than this are smoothed first
@@ -74,14 +74,14 @@ void report(const Monitor& monitor, double fraction) {
 // What the fits see of the cloud.
 struct Prepared {
   OrientedPoints points;            // positions that scatter are moved onto the surface they scatter about
-  std::vector<std::uint32_t> near;  // of_all(kFitPoints)
+  std::vector<std::uint32_t> near;  // of_all(kNear)
   bool noisy = false;
 };
 
 Prepared prepare(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const Monitor& monitor) {
   const Neighbours neighbours(points);
   Prepared prepared;
-  prepared.near = neighbours.of_all(kFitPoints);
+  prepared.near = neighbours.of_all(kNear);
   OrientedPoints& out = prepared.points;
   out = {points, normals, mesh::smooth_spacing(points, prepared.near)};
   for (Vec3& n : out.normals) {
@@ -97,7 +97,7 @@ Prepared prepare(const std::vector<Vec3>& points, const std::vector<Vec3>& norma
   prepared.noisy = noise.position > kNoisy;
   if (prepared.noisy) {
     mesh::denoise(out, neighbours, noise, monitor.cancel);
-    prepared.near = Neighbours(out.positions).of_all(kFitPoints);
+    prepared.near = Neighbours(out.positions).of_all(kNear);
   }
   return prepared;
 }
