@@ -73,23 +73,6 @@ double misfit(const Sheet& s, const Member& m, double h, double normal_weight) {
   return m.weight * (d * d + normal_weight * (g - m.n).squaredNorm());
 }
 
-// Is x well on one side of the tangent planes of all members? Then their mean plane is fit enough to say which.
-bool clear_of(const std::vector<Member>& members, const Vector3d& x, double h, Sheet& plane) {
-  const bool outside = members[0].n.dot(x - members[0].p) > 0;
-  Vector3d mean_p = Vector3d::Zero(), mean_n = Vector3d::Zero();
-  double total = 0;
-  for (const Member& m : members) {
-    const double d = m.n.dot(x - m.p);
-    if ((d > 0) != outside || std::abs(d) < kClear * h) return false;
-    mean_p += m.weight * m.p;
-    mean_n += m.weight * m.n;
-    total += m.weight;
-  }
-  plane.origin = mean_p / total;
-  plane.frame = frame_of(mean_n.normalized());
-  return true;
-}
-
 Joint joint_of(const LocalSurface& s, const std::vector<Member>& members, int a, int b) {
   double a_at_b = 0, b_at_a = 0, wa = 0, wb = 0;
   for (const Member& m : members) {
@@ -241,6 +224,29 @@ double LocalSurface::distance(const Vector3d& x, int* active) const {
 LocalFit::LocalFit(const OrientedPoints& points, const std::vector<std::uint32_t>& near, const LocalFitOptions& options)
     : points_(points), near_(near), count_(near_.size() / points.positions.size()), options_(options), neighbours_(points.positions) {}
 
+// Is x well on one side of the tangent planes of all points next to point i, and do these belong to one sheet? Then their mean plane is fit
+// enough to say which.
+bool LocalFit::clear_of(std::uint32_t i, const Vector3d& x, double scale, Sheet& plane) const {
+  const Vector3d axis = vector(points_.normals[i]), p0 = vector(points_.positions[i]);
+  const bool outside = axis.dot(x - p0) > 0;
+  const double first = (x - p0).squaredNorm(), clear = kClear * points_.spacing[i];
+  Vector3d mean_p = Vector3d::Zero(), mean_n = Vector3d::Zero();
+  double total = 0;
+  for (std::size_t k = 0; k < std::min(kFitPoints, count_); ++k) {
+    const std::uint32_t j = near_[i * count_ + k];
+    const Vector3d p = vector(points_.positions[j]), n = vector(points_.normals[j]);
+    const double d = n.dot(x - p);
+    if ((d > 0) != outside || std::abs(d) < clear || n.dot(axis) <= kSameSheet) return false;
+    const double weight = bell(std::min(((x - p).squaredNorm() - first) * scale, kFaint));
+    mean_p += weight * p;
+    mean_n += weight * n;
+    total += weight;
+  }
+  plane.origin = mean_p / total;
+  plane.frame = frame_of(mean_n.normalized());
+  return true;
+}
+
 LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* direction, Detail detail) const {
   thread_local std::vector<Member> members;
   thread_local std::vector<std::pair<double, std::uint32_t>> near;  // squared distances and points
@@ -251,6 +257,12 @@ LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* dire
   out.spacing = points_.spacing[nearest];
   const double h = out.spacing;
   if (out.nearest > reach * h) return out;
+  const double scale = 1 / (2 * options_.width * options_.width * h * h);
+  if (detail == Detail::kSide && clear_of(nearest, x, scale, out.sheet[0])) {
+    out.count = 1;
+    out.simple = true;
+    return out;
+  }
   near.clear();
   for (std::size_t k = 0; k < count_; ++k) {
     const std::uint32_t i = near_[nearest * count_ + k];
@@ -258,7 +270,6 @@ LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* dire
   }
   const std::size_t used = std::min(kFitPoints, near.size());
   std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(used), near.end());
-  const double scale = 1 / (2 * options_.width * options_.width * h * h);
   members.clear();
   double first = -1;
   for (std::size_t k = 0; k < used; ++k) {
@@ -294,11 +305,6 @@ LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* dire
         if (m.sheet == out.count) m.sheet = -2;
       }
       continue;
-    }
-    if (detail == Detail::kSide && taken == members.size() && clear_of(members, x, h, out.sheet[0])) {
-      out.count = 1;
-      out.simple = true;
-      return out;
     }
     out.sheet[static_cast<std::size_t>(out.count)] = fit_sheet(members, out.count, h, options_.normal_weight);
     ++out.count;

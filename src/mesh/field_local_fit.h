@@ -88,6 +88,8 @@ class LocalFit {
                                  Detail detail = Detail::kSurface) const;
 
  private:
+  bool clear_of(std::uint32_t i, const Eigen::Vector3d& x, double scale, Sheet& plane) const;
+
   const OrientedPoints& points_;
   const std::vector<std::uint32_t>& near_;
   std::size_t count_;  // neighbours of each point
