@@ -174,7 +174,13 @@ std::vector<Out> find_edges(const Octree& octree, std::vector<std::uint8_t> mark
   std::vector<std::vector<Out>> found(tasks.size());
   parallel::for_each(
       tasks.size(), [&](std::size_t t) { traversal.run(tasks[t], [&](const MinimalEdge& e) { keep(e, found[t]); }); }, cancel);
-  for (const auto& part : found) edges.insert(edges.end(), part.begin(), part.end());
+  std::size_t count = edges.size();
+  for (const auto& part : found) count += part.size();
+  edges.reserve(count);
+  for (auto& part : found) {
+    edges.insert(edges.end(), part.begin(), part.end());
+    std::vector<Out>().swap(part);  // not all twice in memory
+  }
   return edges;
 }
 
