@@ -12,8 +12,9 @@ int run_mesh(const Settings& settings, Session& session) {
   if (cloud.normals.empty()) {
     throw InvalidInput(escape_text(settings.input) + " has no normals: `g3r orient` makes them, `g3r IN OUT` goes all the way");
   }
-  Mesh mesh =
-      session.stage("mesh", [&] { return mesh_oriented(cloud.positions, cloud.normals, settings.mesh_options, session.monitor()); });
+  MeshOptions options = settings.mesh_options;
+  options.threads = settings.options.threads;
+  Mesh mesh = session.stage("mesh", [&] { return mesh_oriented(cloud.positions, cloud.normals, options, session.monitor()); });
   const MeshCheck check = check_mesh(mesh);
   session.stage("carry", [&] { carry_attributes(mesh, cloud.positions, cloud.colors, cloud.confidence); });
   session.stage("write", [&] {
@@ -21,8 +22,8 @@ int run_mesh(const Settings& settings, Session& session) {
   });
   Stats stats;
   stats.points = stats.used = cloud.positions.size();
-  stats.method = settings.mesh_options.mesher == Mesher::kPoisson ? "poisson" : "field";
-  stats.depth = settings.mesh_options.depth;
+  stats.method = options.mesher == Mesher::kPoisson ? "poisson" : "field";
+  stats.depth = options.depth;
   stats.converged = true;
   stats.warnings = cloud.warnings;
   if (!check.closed) stats.warnings.emplace_back("the mesh is not closed");

@@ -51,12 +51,13 @@ Options read_options(const nb::dict& from) {
   using Unit = Epsilon::Unit;
   Options options;
   take_choice(from, "preset", options.preset, {{"default", Preset::kDefault}, {"paper", Preset::kPaper}});
-  take_choice(from, "method", options.method, {{"auto", Method::kAuto},
-                                                {"green", Method::kGreen},
-                                                {"energy", Method::kEnergy},
-                                                {"wnnc", Method::kWnnc},
-                                                {"agr", Method::kAgr},
-                                                {"pgr", Method::kPgr}});
+  take_choice(from, "method", options.method,
+              {{"auto", Method::kAuto},
+               {"green", Method::kGreen},
+               {"energy", Method::kEnergy},
+               {"wnnc", Method::kWnnc},
+               {"agr", Method::kAgr},
+               {"pgr", Method::kPgr}});
   take(from, "wnnc_widths", options.wnnc_widths);
   take_choice(from, "solver", options.solver, {{"auto", Solver::kAuto}, {"dense", Solver::kDense}, {"cg", Solver::kConjugateGradient}});
   take_choice(from, "epsilon_unit", options.epsilon.unit,
@@ -83,6 +84,7 @@ MeshOptions read_mesh_options(const nb::dict& from) {
   take(from, "keep_largest", options.keep_largest);
   take(from, "min_component", options.min_component);
   take(from, "faces", options.faces);
+  take(from, "threads", options.threads);
   return options;
 }
 

@@ -114,6 +114,7 @@ Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const Me
   if (points.count != normals.count) {
     throw InvalidInput(std::to_string(points.count) + " points but " + std::to_string(normals.count) + " normals");
   }
+  if (options.threads < 0) throw InvalidInput("threads must be 0 (all cores) or positive");
   std::vector<Vec3> kept;
   std::vector<Vec3> directions;
   for (std::size_t i = 0; i < points.count; ++i) {
@@ -124,15 +125,17 @@ Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const Me
     kept.push_back(p);
     directions.push_back({n[0] / size, n[1] / size, n[2] / size});
   }
-  const CanonicalCloud cloud = canonical_cloud(kept);
-  const std::vector<double> spacing = local_spacing(cloud.points);
-  std::vector<double> areas(kept.size());
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    const std::uint32_t p = cloud.point_of[i];
-    const double h = cloud.frame.length_to_world(spacing[p]);
-    areas[i] = h * h / cloud.multiplicity[p];
-  }
-  return make_mesh(kept, directions, areas, options, monitor);
+  return parallel::with_threads(options.threads, [&] {
+    const CanonicalCloud cloud = canonical_cloud(kept);
+    const std::vector<double> spacing = local_spacing(cloud.points);
+    std::vector<double> areas(kept.size());
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+      const std::uint32_t p = cloud.point_of[i];
+      const double h = cloud.frame.length_to_world(spacing[p]);
+      areas[i] = h * h / cloud.multiplicity[p];
+    }
+    return make_mesh(kept, directions, areas, options, monitor);
+  });
 }
 
 Reconstruction reconstruct(const PointsView& points, const Options& options, const MeshOptions& mesh_options, const Monitor& monitor) {

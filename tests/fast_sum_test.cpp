@@ -164,6 +164,19 @@ TEST(FastSum, ErrorStaysBelowTheAccuracyForManyPoints) {
   }
 }
 
+// Mollifiers of several spacings: what the far field leaves out of their tails counts most.
+TEST(FastSum, ErrorStaysBelowTheAccuracyForWideMollifiers) {
+  if (kSanitized) GTEST_SKIP() << "the direct sums take minutes";
+  constexpr std::size_t kMany = 4000;
+  for (const Case& c : clouds(kMany)) {
+    if (c.name != "sphere" && c.name != "needle" && c.name != "plane") continue;
+    const Truth truth(c.points, Widths(3 * spacing_of(c.points)));
+    for (const double accuracy : {2e-2, 1e-2, 3e-3, 1e-3, 3e-4}) {
+      EXPECT_LE(worst_error(truth, sum_plan(accuracy, kMany)), accuracy) << c.name;
+    }
+  }
+}
+
 TEST(FastSum, PointsMayHaveTheirOwnWidths) {
   const std::vector<Vec3> points = unit_points(shapes::torus(2500, 0.6, 0.25, 3).points);
   Random random(5);

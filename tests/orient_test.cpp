@@ -320,6 +320,36 @@ TEST(Noise, IsEstimatedAndNotMistakenForShape) {
   }
 }
 
+// Plates 2.5 spacings thick and 2.5 apart, noise of 0.35 spacings: neighbourhoods of 32 points see both sides of a plate.
+TEST(Noise, PlatesDoNotRaiseIt) {
+  shapes::Random random(4);
+  Surface plates;
+  constexpr double kSpacing = 0.02, kSigma = 0.35 * kSpacing;
+  const auto add_face = [&](std::size_t axis, double at, const Vec3& low, const Vec3& high, double side) {
+    const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const auto count = static_cast<int>((high[u] - low[u]) * (high[v] - low[v]) / (kSpacing * kSpacing));
+    for (int i = 0; i < count; ++i) {
+      Vec3 p{}, n{0, 0, 0};
+      p[axis] = at;
+      p[u] = random.uniform(low[u], high[u]);
+      p[v] = random.uniform(low[v], high[v]);
+      n[axis] = side;
+      for (double& c : p) c += kSigma * random.gaussian();
+      plates.points.push_back(p);
+      plates.normals.push_back(n);
+    }
+  };
+  for (int k = 0; k < 4; ++k) {
+    const Vec3 low{-0.35, -0.35, 5 * k * kSpacing}, high{0.35, 0.35, (5 * k + 2.5) * kSpacing};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      add_face(axis, low[axis], low, high, -1);
+      add_face(axis, high[axis], low, high, 1);
+    }
+  }
+  EXPECT_NEAR(plan(plates.points).noise / kSigma, 1, 0.4);
+  EXPECT_GE(shapes::share_correct(orient(plates.points).normals, plates.normals), 0.85);
+}
+
 // Noisy points on the wrong side must have lower confidence: area under the ROC curve.
 TEST(Confidence, RanksWrongSidesOnNoisyData) {
   shapes::Random random(4);

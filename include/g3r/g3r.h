@@ -164,6 +164,7 @@ struct MeshOptions {
   std::size_t keep_largest = 0;  ///< keep only this many components, largest first; 0: all
   double min_component = 8;      ///< drop components of less area than this many points stand for, 0: none; the largest always stays
   std::size_t faces = 0;         ///< simplify to about this many triangles; 0: off
+  int threads = 0;  ///< of mesh_oriented(), 0: all cores; reconstruct() takes Options::threads. The result does not depend on it
 };
 
 /// A mesh together with the normals it was made from.
@@ -179,7 +180,7 @@ struct Reconstruction {
 
 /// Meshes points that already have outward normals: N points and N normals (any length but zero).
 /// Points with a non-finite coordinate or a zero normal are left out.
-/// The field mesher takes the areas from the spacing of the points.
+/// The field mesher takes the areas from the spacing of the points. Throws InvalidInput, Cancelled, Unavailable, std::bad_alloc.
 [[nodiscard]] Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const MeshOptions& options = {},
                                  const Monitor& monitor = {});
 

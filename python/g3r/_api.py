@@ -197,11 +197,14 @@ def run(points: Any, *, colors: Any = None, epsilon: Union[str, float] = "auto",
 
 
 def mesh_oriented(points: Any, normals: Any = None, *, depth: Union[str, int] = "auto", mesher: str = "auto",
-                  progress: Optional[Progress] = None) -> Tuple[Floats, Indices]:
-    """A mesh of points that already have outward normals: V (v, 3) and F (m, 3). `normals` may be left out if `points` has them."""
+                  threads: int = 0, progress: Optional[Progress] = None) -> Tuple[Floats, Indices]:
+    """A mesh of points that already have outward normals: V (v, 3) and F (m, 3). `normals` may be left out if `points` has them.
+
+    threads: 0 for all cores; the result does not depend on it."""
     if normals is None:
         normals = member(points, "normals", "point_normals", "vertex_normals")
         if normals is None:
             raise InputError("there are no normals; g3r.reconstruct() takes points without them")
-    vertices, faces, _, _ = _g3r.mesh(as_points(points), as_points(normals, "normals"), {"mesher": mesher, **_depth(depth)}, progress)
+    options = {"mesher": mesher, "threads": int(threads), **_depth(depth)}
+    vertices, faces, _, _ = _g3r.mesh(as_points(points), as_points(normals, "normals"), options, progress)
     return vertices, faces

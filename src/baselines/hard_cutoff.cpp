@@ -11,9 +11,15 @@ namespace {
 
 constexpr std::size_t kBlock = 1024;  // points per parallel block
 
+double kernel_reach(const SumPlan& plan) { return plan.double_precision ? kMollifierReach<double> : kMollifierReach<float>; }
+
 // The Gaussian whose kernels are the plain ones from `width` on.
-double gaussian_width(double width, const SumPlan& plan) {
-  return width / (plan.double_precision ? kMollifierReach<double> : kMollifierReach<float>);
+double gaussian_width(double width, const SumPlan& plan) { return width / kernel_reach(plan); }
+
+// What is taken off pair by pair must have been summed as such.
+SumPlan with_whole_kernel(SumPlan plan) {
+  plan.reach = kernel_reach(plan);
+  return plan;
 }
 
 }  // namespace
@@ -22,7 +28,7 @@ HardCutoffSum::HardCutoffSum(const std::vector<Vec3>& points, const std::vector<
                              const std::atomic<bool>* cancel)
     : points_(points),
       width_(width),
-      sum_(points, morton, Widths(gaussian_width(width, plan)), plan, cancel),
+      sum_(points, morton, Widths(gaussian_width(width, plan)), with_whole_kernel(plan), cancel),
       near_(near_pairs(points, width, cancel)) {
   for (std::size_t i = 0; i < table_.size(); ++i) {
     const double share = static_cast<double>(i) / kIntervals;

@@ -5,18 +5,23 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace g3r {
 namespace {
 
-constexpr std::size_t kFewNeighbours = 16;
-constexpr std::size_t kManyNeighbours = 32;
-constexpr std::size_t kProbes = 2000;    // neighbourhoods looked at, spread along the canonical order
-constexpr double kFlattest = 0.02;       // share of them that decides
-constexpr double kCleanResidual = 0.1;   // in spacings
-constexpr double kFlatKurtosis = 0.1;    // share of neighbourhoods whose kurtosis decides
-constexpr double kSheetKurtosis = 1.96;  // of that quantile: 2.0 to 2.1 under Gaussian noise, 1.1 to 1.9 between sheets and on wires
+constexpr std::size_t kProbes = 2000;      // neighbourhoods looked at, spread along the canonical order
+constexpr std::size_t kNeighbours = 32;    // of each, nearest first
+constexpr std::size_t kClean = 12;         // nearest ones that tell noise from none
+constexpr std::size_t kSmall = 16;         // nearest ones that seldom reach across a wall
+constexpr std::size_t kSheets = 24;        // nearest ones whose kurtosis is taken
+constexpr double kFlattest = 0.02;         // share of the neighbourhoods that decides
+constexpr double kCleanResidual = 0.08;    // in spacings; clean models stay below 0.014, noise of 0.1 % of the diagonal gives 0.09
+constexpr double kFlatKurtosis = 0.1;      // share of neighbourhoods whose kurtosis decides
+constexpr double kSheetKurtosis = 1.85;    // of that quantile: 1.94 to 2.1 under Gaussian noise, 1.1 to 1.8 between sheets and on wires
+constexpr double kSmallToLarge = 1.27;     // residual of 32 neighbours to that of 16 on a noisy plane, while both are small
+constexpr double kSmallSaturation = 0.47;  // residual of 16 neighbours, in spacings, when noise fills the ball
 constexpr double kResidualToSigma = 0.95;
 constexpr double kLargestResidual = 0.8;    // beyond, the ball is full of noise and tells no more
 constexpr std::size_t kFewestPoints = 200;  // below, neighbourhoods are a large part of the shape
@@ -27,10 +32,8 @@ struct PlaneFit {
   double kurtosis;  // of the distances: 3 for a Gaussian (less, from few points), 1 for two sheets
 };
 
-PlaneFit fit_plane(const std::vector<Vec3>& points, const PointTree& tree, const Vec3& at, std::size_t neighbours) {
-  std::vector<std::uint32_t> index(neighbours);
-  std::vector<double> squared(neighbours);
-  const std::size_t found = tree.knnSearch(at.data(), neighbours, index.data(), squared.data());
+// To the first `found` of `index`.
+PlaneFit fit_plane(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t found) {
   const auto count = static_cast<double>(found);
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < found; ++k) mean += Eigen::Map<const Eigen::Vector3d>(points[index[k]].data()) / count;
@@ -63,19 +66,23 @@ double estimate_noise(const std::vector<Vec3>& points, double spacing) {
   if (points.size() < kFewestPoints) return 0;
   const PointSet set{points};
   const PointTree tree(3, set, nanoflann::KDTreeSingleIndexAdaptorParams(kPointTreeLeaf));
-  std::vector<double> few;
-  std::vector<double> many;
+  std::vector<double> clean;
+  std::vector<double> small;
+  std::vector<double> large;
   std::vector<double> kurtosis;
   for (std::size_t i = 0; i < points.size(); i += std::max<std::size_t>(1, points.size() / kProbes)) {
-    few.push_back(fit_plane(points, tree, points[i], kFewNeighbours).residual);
-    const PlaneFit wide = fit_plane(points, tree, points[i], kManyNeighbours);
-    many.push_back(wide.residual);
-    kurtosis.push_back(wide.kurtosis);
+    std::array<std::uint32_t, kNeighbours> index;
+    std::array<double, kNeighbours> squared;
+    tree.knnSearch(points[i].data(), kNeighbours, index.data(), squared.data());
+    clean.push_back(fit_plane(points, index.data(), kClean).residual);
+    small.push_back(fit_plane(points, index.data(), kSmall).residual);
+    kurtosis.push_back(fit_plane(points, index.data(), kSheets).kurtosis);
+    large.push_back(fit_plane(points, index.data(), kNeighbours).residual);
   }
-  const bool clean = quantile(few, kFlattest) < kCleanResidual * spacing;
-  const bool sheets = quantile(kurtosis, kFlatKurtosis) < kSheetKurtosis;
-  if (clean || sheets) return 0;
-  const double x = std::min(quantile(many, kFlattest) / spacing, kLargestResidual);
+  if (quantile(clean, kFlattest) < kCleanResidual * spacing || quantile(kurtosis, kFlatKurtosis) < kSheetKurtosis) return 0;
+  const double x16 = quantile(small, kFlattest) / spacing;
+  const double expected = kSmallToLarge * x16 / std::max(1 - std::pow(x16 / kSmallSaturation, 8), 0.1);
+  const double x = std::min({quantile(large, kFlattest) / spacing, expected, kLargestResidual});
   return kResidualToSigma * spacing * x / (1 - x);
 }
 

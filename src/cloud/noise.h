@@ -7,14 +7,15 @@
 
 namespace g3r {
 
-/// Standard deviation of the points from their surface, estimated from plane fits to neighbourhoods of 16 and 32 points; 0 for a clean
+/// Standard deviation of the points from their surface, estimated from plane fits to neighbourhoods of 12 to 32 points; 0 for a clean
 /// cloud.
 ///   - Noise lifts the residual of every neighbourhood; curvature, creases and thin parts only that of some. So the flattest 2 % decide:
-///     their residual below 0.1 h means clean (measured: clean models stay below 0.03 h, noise of 0.25 % of the diagonal gives 0.23 h).
+///     their 12-point residual below 0.08 h means clean (measured: clean models stay below 0.014 h, noise of 0.1 % of the diagonal gives
+///     0.09 h).
 ///   - Two sheets close together, and wires, also lift it everywhere, but there are neighbourhoods whose distances have two peaks: a 10 %
-///     quantile of the kurtosis (32 neighbours) below 1.96 means sheets or wires (measured: those 1.1 to 1.9, noise 2.0 to 2.1).
-///   - The size follows from the 32-point residual x h of the flattest 2 %: sigma = 0.95 h x / (1 - x), fitted to known noise of 0.25 to 1
-///   %.
+///     quantile of the kurtosis (24 neighbours) below 1.85 means sheets or wires (measured: those 1.1 to 1.8, noise 1.94 to 2.1).
+///   - The size follows from the residual x h of 32 neighbours: sigma = 0.95 h x / (1 - x), fitted to known noise of 0.25 to 1 %. Near
+///     walls 32 neighbours see both sides, so x is at most what the residual y h of 16 lets expect on a plane, 1.27 y / (1 - (y / 0.47)^8).
 /// `spacing`: typical_spacing(). Same units as the points. O(N log N); looks at about 2000 points.
 [[nodiscard]] double estimate_noise(const std::vector<Vec3>& points, double spacing);
 

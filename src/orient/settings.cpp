@@ -20,7 +20,12 @@ constexpr const char* kEnergySchedule = "45 cg";
 constexpr Steps kContinued{10, StepKind::kConjugateGradient};  // more gain little once the smooth part of the error is gone
 // The default on noisy input: the field must not see single points. Noise sigma turns the normal of an area s^2 of points h apart by about
 // sigma h / s^2, so widths for one accuracy are in proportion to sqrt(sigma h).
-constexpr double kNoisyWidth = 3;            // sigma, of epsilon and of the refinement
+constexpr double kNoisyWidth = 3;  // sigma, of epsilon and of the refinement
+// Noise below the distances between points: walls of a few sigma are still told apart, by narrower kernels and more steps.
+constexpr double kMildNoise = 0.7;    // h
+constexpr double kMildWidth = 2;      // sigma, of epsilon and of the refinement
+constexpr double kMildEpsilon = 0.5;  // h, at least
+constexpr const char* kMildSchedule = "20 cg";
 constexpr double kNoisyPolishEpsilon = 1.8;  // sqrt(sigma h)
 constexpr double kNoisyPolishWidth = 2.25;   // sqrt(sigma h)
 constexpr int kNoisyPolishSteps = 9;
@@ -132,10 +137,12 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   if (!paper && !green && (noise > 0 || wide)) {
     const double sigma = wide ? s.epsilon / kNoisyWidth : noise;
     const double size = std::sqrt(sigma * spacing);
+    const bool mild = sigma <= kMildNoise * spacing;
+    const double width = mild ? std::max(kMildEpsilon * spacing, kMildWidth * sigma) : kNoisyWidth * sigma;
     s.damping = kNoisyDamping / spacing;
     s.winding_weight = kNoisyWindingWeight * spacing;
-    if (options.epsilon.unit == Epsilon::Unit::kAuto) s.epsilon = std::max(s.epsilon, kNoisyWidth * sigma);
-    s.refinement_width = std::max(s.refinement_width, kNoisyWidth * sigma);
+    if (options.epsilon.unit == Epsilon::Unit::kAuto) s.epsilon = width;
+    s.refinement_width = std::max(s.refinement_width, width);
     s.polish_epsilon = std::max(s.polish_epsilon, kNoisyPolishEpsilon * size);
     s.polish_width = std::max(kRefinementWidth * spacing, kNoisyPolishWidth * size);
     s.polish_steps = kNoisyPolishSteps;
@@ -144,8 +151,8 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
     s.coarse_to_fine = false;
     if (s.epsilon > kWideEpsilon * spacing) s.cluster_side = kClusterSide * s.epsilon;
     if (options.schedule.empty()) {
-      s.schedule_text = kNoisySchedule;
-      s.schedule = parse_schedule(kNoisySchedule);
+      s.schedule_text = mild ? kMildSchedule : kNoisySchedule;
+      s.schedule = parse_schedule(s.schedule_text);
       if (options.tolerance < 0) s.tolerance = 0;
     }
   }

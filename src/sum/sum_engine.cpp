@@ -152,7 +152,7 @@ void SumEngine<T>::prepare(const std::vector<Vec3>& targets, const std::vector<d
       }
     }
   });
-  lists_ = build_interaction_lists(tree, sources_->tree, plan_.direct ? 0.0 : plan_.opening, kMollifierReach<T>);
+  lists_ = build_interaction_lists(tree, sources_->tree, plan_.direct ? 0.0 : plan_.opening, plan_.reach);
   make_matrices();
 }
 

@@ -11,6 +11,7 @@ struct SumPlan {
   bool double_precision = false;
   int order = 4;                 ///< of the expansions
   double opening = 0.5;          ///< far when radius_t + radius_s <= opening * distance
+  double reach = 5;              ///< mollifier widths between far nodes, at least; beyond, the far field's plain kernels are good enough
   std::size_t leaf_points = 64;  ///< largest leaf
 };
 
