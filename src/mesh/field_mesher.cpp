@@ -59,12 +59,15 @@ constexpr double kLeavesPerPoint = 9.5;  // measured: 7.2 to 10.4 without thin w
 constexpr double kThickness = 0.75;      // of the refined layer, in cells of the automatic depth,
 constexpr double kLayers = 2;            // and cells around it whatever their size
 
-// A way to read the opinions: after one or two averagings, at some level.
+// A way to read the opinions: after so many averagings, at some level.
 struct Reading {
-  int averagings;
+  std::size_t averagings;
   double level;
 };
-constexpr std::array<Reading, 5> kReadings{{{2, 0}, {1, 0.2}, {1, -0.2}, {1, 0.5}, {1, -0.5}}};
+constexpr std::array<Reading, 6> kReadings{{{2, 0}, {0, 0}, {1, 0.2}, {1, -0.2}, {1, 0.5}, {1, -0.5}}};
+
+// What a proposal may change: fewer corners in a group, and so smaller ones that can be taken, if it goes one way only.
+enum class Way { kBoth, kFill, kCut };
 
 void report(const Monitor& monitor, double fraction) {
   if (monitor.cancel != nullptr && monitor.cancel->load()) throw Cancelled();
@@ -151,6 +154,12 @@ Octree make_octree(const OrientedPoints& points, const std::vector<double>& thic
     requests[i] = {points.positions[i], points.normals[i], kDisc * reach, kDiscHalf * reach, std::max(wanted, kBaseLevel)};
   }
   return Octree(corner, side, requests, std::min(kBaseLevel, level), monitor.cancel);
+}
+
+std::vector<Vec3> corner_positions(const Octree& octree) {
+  std::vector<Vec3> out(octree.corner_count());
+  for (std::size_t c = 0; c < out.size(); ++c) out[c] = octree.corner_position(c);
+  return out;
 }
 
 void require_memory_for(std::size_t points, const Octree& octree, std::size_t max_memory) {
@@ -251,31 +260,37 @@ class Side {
   double reach_ = 0;  // half the side of the cube that everything inside is in
 };
 
-// Open corners by their averaged opinions, the others as they are.
-std::vector<std::uint8_t> read_signs(const Octree& octree, const Opinions& opinions, const std::vector<double>& side, double level,
-                                     const std::vector<std::uint8_t>& inside) {
-  std::vector<std::uint8_t> out = inside;
-  for (std::size_t c = 0; c < out.size(); ++c) {
-    if (opinions.open[c] != 0) out[c] = side[c] > level && !octree.on_boundary(c) ? 1 : 0;
+// Reads the doubtful signs in other ways where that leaves fewer handles. Returns whether any was changed.
+bool remove_handles(const Octree& octree, const Opinions& opinions, const mesh::InsideTest& centre_inside,
+                    std::vector<std::uint8_t>& inside, const mesh::DualSurface& surface, const std::atomic<bool>* cancel) {
+  if (mesh::count_handles(surface) == 0) return false;
+  const std::vector<std::vector<double>> averages = mesh::smooth_sides(octree, opinions, 2, cancel);
+  const auto sign = [&](const Reading& reading, std::size_t c) -> std::uint8_t {
+    const std::vector<double>& side = reading.averagings == 0 ? opinions.side : averages[reading.averagings - 1];
+    return side[c] > reading.level ? 1 : 0;
+  };
+  std::vector<std::uint8_t> in_doubt(inside.size(), 0);
+  std::vector<std::uint32_t> corners;
+  for (std::uint32_t c = 0; c < inside.size(); ++c) {
+    if (opinions.open[c] == 0 || octree.on_boundary(c)) continue;
+    if (std::all_of(kReadings.begin(), kReadings.end(), [&](const Reading& r) { return sign(r, c) == inside[c]; })) continue;
+    in_doubt[c] = 1;
+    corners.push_back(c);
   }
-  return out;
-}
-
-// Reads the doubtful signs in other ways where that leaves fewer handles.
-void remove_handles(const Octree& octree, const Opinions& opinions, const mesh::InsideTest& centre_inside,
-                    std::vector<std::uint8_t>& inside, mesh::DualSurface& surface, const std::atomic<bool>* cancel) {
-  if (mesh::count_handles(surface) == 0) return;
-  const mesh::HandleRemoval removal(octree, opinions.open, centre_inside, cancel);
-  const std::vector<double> once = mesh::smooth_sides(octree, opinions, opinions.side, cancel);
-  const std::vector<double> twice = mesh::smooth_sides(octree, opinions, once, cancel);
+  mesh::HandleRemoval removal(octree, in_doubt, inside, surface, centre_inside, cancel);
   bool changed = false;
   for (const Reading& reading : kReadings) {
-    const std::vector<double>& side = reading.averagings == 2 ? twice : once;
-    if (!removal.propose(read_signs(octree, opinions, side, reading.level, inside), inside, surface)) continue;
-    changed = true;
-    if (mesh::count_handles(surface) == 0) break;
+    for (const Way way : {Way::kBoth, Way::kFill, Way::kCut}) {
+      if (removal.handles() == 0) return changed;
+      std::vector<std::uint8_t> proposal = inside;
+      for (const std::uint32_t c : corners) {
+        const std::uint8_t now = sign(reading, c);
+        if (way == Way::kBoth || (now != 0) == (way == Way::kFill)) proposal[c] = now;
+      }
+      changed = removal.propose(proposal, inside) || changed;
+    }
   }
-  if (changed) surface = mesh::contour(octree, inside, centre_inside, cancel);
+  return changed;
 }
 
 }  // namespace
@@ -306,17 +321,19 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
   require_memory_for(points.size(), octree, max_memory);
   report(monitor, 0.3);
   const Side side(local, sampler, oriented);
-  std::vector<Vec3> corners(octree.corner_count());
-  for (std::size_t c = 0; c < corners.size(); ++c) corners[c] = octree.corner_position(c);
   Opinions opinions;
-  std::vector<double> value = side(corners, opinions, monitor.cancel);
-  std::vector<std::uint8_t> inside(corners.size());
-  for (std::size_t c = 0; c < corners.size(); ++c) inside[c] = value[c] > 0 && !octree.on_boundary(c) ? 1 : 0;
+  std::vector<double> value = side(corner_positions(octree), opinions, monitor.cancel);
+  std::vector<std::uint8_t> inside(value.size());
+  for (std::size_t c = 0; c < value.size(); ++c) inside[c] = value[c] > 0 && !octree.on_boundary(c) ? 1 : 0;
   report(monitor, 0.6);
 
   const auto centre_inside = [&](const std::vector<Vec3>& centres) { return side.by_fit(centres); };
   mesh::DualSurface surface = mesh::contour(octree, inside, centre_inside, monitor.cancel);
-  remove_handles(octree, opinions, centre_inside, inside, surface, monitor.cancel);
+  if (remove_handles(octree, opinions, centre_inside, inside, surface, monitor.cancel)) {
+    surface = {};
+    surface = mesh::contour(octree, inside, centre_inside, monitor.cancel);
+  }
+  opinions = {};
   for (std::size_t c = 0; c < inside.size(); ++c) {
     if ((value[c] > 0) != (inside[c] != 0) && !octree.on_boundary(c)) value[c] = (inside[c] != 0 ? kFlipped : -kFlipped) * spacing;
   }

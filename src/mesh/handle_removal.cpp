@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "g3r/error.h"
@@ -10,8 +11,8 @@
 namespace g3r::mesh {
 namespace {
 
-constexpr long kMostPerHandle = 60;  // corners: more are a change of shape, not of a doubtful spot
-constexpr int kRounds = 4;           // groups change what others do; what has not settled by then is left as it is
+constexpr long kMostPerHandle = 100;  // corners: more are a change of shape, not of a doubtful spot
+constexpr int kRounds = 4;            // groups change what others do; what has not settled by then is left as it is
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 // Groups of corners, those at edges around one leaf together.
@@ -77,10 +78,38 @@ void join_crossings(const DualSurface& s, const Use& use, const Number& number, 
   }
 }
 
+// Twice the Euler characteristic, where arcs count half for each of their two sheets.
+long twice_characteristic(const DualSurface& s) {
+  return 2 * static_cast<long>(s.patch_count() + s.crossings.size()) - static_cast<long>(s.patch_crossings.size());
+}
+
+// Joins the crossings that belong to the same of `parts` parts.
+void join_parts(const std::vector<std::uint32_t>& part, std::size_t parts, DisjointSets& sets) {
+  std::vector<std::uint32_t> first(parts, kNone);
+  for (std::uint32_t k = 0; k < part.size(); ++k) {
+    if (part[k] == kNone) continue;
+    if (first[part[k]] == kNone) first[part[k]] = k;
+    sets.join(first[part[k]], k);
+  }
+}
+
+long component_count(const DualSurface& s, const std::vector<std::uint32_t>& part, std::size_t parts) {
+  DisjointSets components(s.crossings.size());
+  join_crossings(
+      s, [](std::uint32_t) { return true; }, [](std::uint32_t k) { return k; }, components);
+  join_parts(part, parts, components);
+  return static_cast<long>(components.count());
+}
+
+std::uint64_t key(const Crossing& c) { return std::uint64_t{c.inside} << 32U | c.outside; }
+
 // The surface outside the leaves with a group.
 class Surroundings {
  public:
-  Surroundings(const DualSurface& surface, const Groups& groups) : surface_(surface), groups_(groups), joined_(surface.crossings.size()) {
+  // `part`: of each crossing of the surface, the one of `parts` parts it belongs to, or kNone.
+  Surroundings(const DualSurface& surface, const std::vector<std::uint32_t>& part, std::size_t parts, const Groups& groups)
+      : surface_(surface), part_(part), groups_(groups), joined_(surface.crossings.size()) {
+    join_parts(part, parts, joined_);
     join_crossings(
         surface, [&](std::uint32_t leaf) { return groups.leaves[leaf] == 0; }, [](std::uint32_t k) { return k; }, joined_);
     for (std::size_t p = 0; p < surface.patch_count(); ++p) {
@@ -112,20 +141,23 @@ class Surroundings {
     return count;
   }
 
-  // Crossings and sheets of that surface.
-  [[nodiscard]] DualSurface surface_with(const DualSurface& inner) const {
+  // Crossings and sheets of that surface, and the parts of the crossings.
+  [[nodiscard]] std::pair<DualSurface, std::vector<std::uint32_t>> surface_with(const DualSurface& inner) const {
     const std::vector<std::uint32_t> number = numbers_of(inner);
     std::vector<std::uint32_t> kept(surface_.crossings.size() + inner.crossings.size(), kNone);
     DualSurface out;
+    std::vector<std::uint32_t> part;
     out.patch_begin.push_back(0);
     const auto add = [&](const DualSurface& from, std::size_t patch, const auto& number_of) {
       out.patch_leaf.push_back(from.patch_leaf[patch]);
       for (std::size_t k = from.patch_begin[patch]; k < from.patch_begin[patch + 1]; ++k) {
         const std::uint32_t crossing = from.patch_crossings[k];
-        std::uint32_t& n = kept[number_of(crossing)];
+        const std::uint32_t before = number_of(crossing);
+        std::uint32_t& n = kept[before];
         if (n == kNone) {
           n = static_cast<std::uint32_t>(out.crossings.size());
           out.crossings.push_back(from.crossings[crossing]);
+          part.push_back(before < part_.size() ? part_[before] : kNone);
         }
         out.patch_crossings.push_back(n);
       }
@@ -135,12 +167,10 @@ class Surroundings {
       if (groups_.leaves[surface_.patch_leaf[p]] == 0) add(surface_, p, [](std::uint32_t k) { return k; });
     }
     for (std::size_t p = 0; p < inner.patch_count(); ++p) add(inner, p, [&](std::uint32_t k) { return number[k]; });
-    return out;
+    return {std::move(out), std::move(part)};
   }
 
  private:
-  static std::uint64_t key(const Crossing& c) { return std::uint64_t{c.inside} << 32U | c.outside; }
-
   // The number in the surface of each crossing of `inner`; new ones are numbered on.
   [[nodiscard]] std::vector<std::uint32_t> numbers_of(const DualSurface& inner) const {
     auto next = static_cast<std::uint32_t>(surface_.crossings.size());
@@ -154,6 +184,7 @@ class Surroundings {
   }
 
   const DualSurface& surface_;
+  const std::vector<std::uint32_t>& part_;
   const Groups& groups_;
   DisjointSets joined_;                                         // its crossings
   std::vector<std::pair<std::uint64_t, std::uint32_t>> known_;  // those of leaves with a group, by their corners
@@ -161,19 +192,11 @@ class Surroundings {
 
 }  // namespace
 
-long count_handles(const DualSurface& surface) {
-  // Vertices - edges + faces; every arc is on the rims of two sheets.
-  const auto vertices = static_cast<long>(surface.patch_count()), faces = static_cast<long>(surface.crossings.size());
-  const long euler = vertices - static_cast<long>(surface.patch_crossings.size()) / 2 + faces;
-  DisjointSets components(surface.crossings.size());
-  join_crossings(
-      surface, [](std::uint32_t) { return true; }, [](std::uint32_t k) { return k; }, components);
-  return static_cast<long>(components.count()) - euler / 2;
-}
+long count_handles(const DualSurface& surface) { return component_count(surface, {}, 0) - twice_characteristic(surface) / 4; }
 
-HandleRemoval::HandleRemoval(const Octree& octree, const std::vector<std::uint8_t>& open, InsideTest centre_inside,
-                             const std::atomic<bool>* cancel)
-    : octree_(octree), centre_inside_(std::move(centre_inside)), cancel_(cancel) {
+HandleRemoval::HandleRemoval(const Octree& octree, const std::vector<std::uint8_t>& open, const std::vector<std::uint8_t>& inside,
+                             const DualSurface& surface, InsideTest centre_inside, const std::atomic<bool>* cancel)
+    : octree_(octree), centre_inside_(std::move(centre_inside)), cancel_(cancel), handles_(count_handles(surface)) {
   std::vector<std::uint8_t> leaves(octree.leaf_count(), 0);
   for (std::size_t leaf = 0; leaf < leaves.size(); ++leaf) {
     for (const std::uint32_t c : octree.corners(leaf)) leaves[leaf] |= open[c];
@@ -184,9 +207,30 @@ HandleRemoval::HandleRemoval(const Octree& octree, const std::vector<std::uint8_
     for (const std::uint32_t leaf : e.leaf) around[leaf] = 1;
   }
   edges_ = edges_around(octree, around, cancel);
+  surface_ = sheets_in(octree, edges_, around, inside, centre_inside_);
+  // The rest of the surface never changes.
+  DisjointSets rest(surface.crossings.size());
+  join_crossings(
+      surface, [&](std::uint32_t leaf) { return around[leaf] == 0; }, [](std::uint32_t k) { return k; }, rest);
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> known;
+  std::vector<std::uint32_t> number(surface.crossings.size(), kNone);
+  for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+    if (around[surface.patch_leaf[p]] != 0) continue;
+    for (std::size_t k = surface.patch_begin[p]; k < surface.patch_begin[p + 1]; ++k) {
+      const std::uint32_t crossing = surface.patch_crossings[k];
+      std::uint32_t& n = number[rest.find(crossing)];
+      if (n == kNone) n = static_cast<std::uint32_t>(parts_++);
+      known.emplace_back(key(surface.crossings[crossing]), n);
+    }
+  }
+  std::sort(known.begin(), known.end());
+  for (const Crossing& c : surface_.crossings) {
+    const auto found = std::lower_bound(known.begin(), known.end(), std::pair{key(c), std::uint32_t{0}});
+    part_.push_back(found != known.end() && found->first == key(c) ? found->second : kNone);
+  }
 }
 
-bool HandleRemoval::propose(const std::vector<std::uint8_t>& proposal, std::vector<std::uint8_t>& inside, DualSurface& surface) const {
+bool HandleRemoval::propose(const std::vector<std::uint8_t>& proposal, std::vector<std::uint8_t>& inside) {
   const Groups groups = group_corners(octree_, edges_, inside, proposal);
   if (groups.size.empty()) return false;
   std::vector<MinimalEdge> near;
@@ -194,7 +238,7 @@ bool HandleRemoval::propose(const std::vector<std::uint8_t>& proposal, std::vect
     if (std::any_of(e.leaf.begin(), e.leaf.end(), [&](std::uint32_t leaf) { return groups.leaves[leaf] != 0; })) near.push_back(e);
   }
   const DualSurface here = sheets_in(octree_, near, groups.leaves, inside, centre_inside_);
-  const Surroundings surroundings(surface, groups);
+  const Surroundings surroundings(surface_, part_, parts_, groups);
   std::vector<long> gain(groups.size.size(), 0);  // twice the change of the Euler characteristic: 4 for a handle less or a component more
   add_characteristic(here, groups, -1, gain);
   const std::vector<std::size_t> before = surroundings.components_with(here);
@@ -214,7 +258,10 @@ bool HandleRemoval::propose(const std::vector<std::uint8_t>& proposal, std::vect
     }
     if (settled) {
       inside = std::move(next);
-      surface = surroundings.surface_with(result);
+      const auto handles_here = [&] { return 4 * component_count(surface_, part_, parts_) - twice_characteristic(surface_); };
+      const long four_times = handles_here();
+      std::tie(surface_, part_) = surroundings.surface_with(result);
+      handles_ += (handles_here() - four_times) / 4;
       return true;
     }
     if (std::find(take.begin(), take.end(), 1) == take.end()) return false;

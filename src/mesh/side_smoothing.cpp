@@ -59,11 +59,10 @@ std::size_t grid_of(std::uint32_t place) { return (place & 1U) + 3 * ((place >> 
 
 }  // namespace
 
-std::vector<double> smooth_sides(const Octree& octree, const Opinions& opinions, const std::vector<double>& side,
-                                 const std::atomic<bool>* cancel) {
+std::vector<std::vector<double>> smooth_sides(const Octree& octree, const Opinions& opinions, std::size_t times,
+                                              const std::atomic<bool>* cancel) {
   const std::vector<Around> open = open_corners(octree, opinions.open);
-  std::vector<double> next = side;
-  const auto average = [&](const Around& a) {
+  const auto average = [&](const Around& a, const std::vector<double>& side) {
     const std::array<double, 27> along = weights(opinions.axis[a.corner]);
     double sum = 0, total = 0;
     for (std::size_t i = 0; i < a.count; ++i) {
@@ -77,13 +76,17 @@ std::vector<double> smooth_sides(const Octree& octree, const Opinions& opinions,
     const double own = opinions.side[a.corner];
     return total > 0 ? (kOwn * own + sum / total) / (kOwn + 1) : own;
   };
-  parallel::for_blocks(
-      open.size(), kBlock,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) next[open[k].corner] = average(open[k]);
-      },
-      cancel);
-  return next;
+  std::vector<std::vector<double>> out(times, opinions.side);
+  for (std::size_t t = 0; t < times; ++t) {
+    const std::vector<double>& side = t == 0 ? opinions.side : out[t - 1];
+    parallel::for_blocks(
+        open.size(), kBlock,
+        [&](std::size_t begin, std::size_t end) {
+          for (std::size_t k = begin; k < end; ++k) out[t][open[k].corner] = average(open[k], side);
+        },
+        cancel);
+  }
+  return out;
 }
 
 }  // namespace g3r::mesh

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -17,10 +18,10 @@ struct Opinions {
   std::vector<std::array<float, 3>> axis;  ///< of open corners: unit normal of the nearest sheet, either way round
 };
 
-/// One averaging of `side`, which holds the opinions themselves or earlier averages: at each open corner its opinion with the values at the
-/// corners of its leaves that lie along the sheet, so that grain of the field goes and walls and gaps stay. The same values for any number
-/// of threads. O(leaves + open corners). Throws Cancelled.
-[[nodiscard]] std::vector<double> smooth_sides(const Octree& octree, const Opinions& opinions, const std::vector<double>& side,
-                                               const std::atomic<bool>* cancel = nullptr);
+/// Opinions averaged once, twice, ..., `times` times: at each open corner its opinion with the values at the corners of its leaves that lie
+/// along the sheet, so that grain of the field goes and walls and gaps stay. The same values for any number of threads.
+/// O(leaves + times x open corners). Throws Cancelled.
+[[nodiscard]] std::vector<std::vector<double>> smooth_sides(const Octree& octree, const Opinions& opinions, std::size_t times,
+                                                            const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace g3r::mesh
