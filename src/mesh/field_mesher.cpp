@@ -293,32 +293,15 @@ bool remove_handles(const Octree& octree, const Opinions& opinions, const mesh::
   return changed;
 }
 
-}  // namespace
-
-std::size_t field_mesh_memory(std::size_t points, double spacing, double longest_side, int depth) {
-  double leaves = kLeavesPerPoint;
-  if (depth > 0 && longest_side > 0) {
-    const double finer = kCell * spacing * std::exp2(depth) / (kMargin * longest_side + 8 * spacing);
-    leaves *= std::max(1.0, finer * finer * (kThickness * finer + kLayers) / (kThickness + kLayers));
-  }
-  return memory_for(points, leaves * static_cast<double>(points));
-}
-
-Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const FieldSampler& sampler, const MeshOptions& options,
-                const Monitor& monitor, std::size_t max_memory) {
-  if (points.size() != normals.size()) throw InvalidInput("points and normals differ in number");
-  if (points.size() < 4) throw InvalidInput("a mesh needs at least 4 points");
-  if (options.depth != 0 && (options.depth < 4 || options.depth > 12)) throw InvalidInput("mesh depth must be 4 to 12");
-  report(monitor, 0);
-  const Prepared prepared = prepare(points, normals, monitor);
+// Steps 2 to 6: all that they hold but the mesh is gone when its crossings are searched for.
+Mesh raw_mesh(const Prepared& prepared, const FieldSampler& sampler, const MeshOptions& options, const Monitor& monitor,
+              std::size_t max_memory) {
   const OrientedPoints& oriented = prepared.points;
   const double spacing = median(oriented.spacing);
   const LocalFit local(oriented, prepared.near, LocalFitOptions{});
-  report(monitor, 0.2);
-
   const Octree octree =
       make_octree(oriented, prepared.noisy ? std::vector<double>{} : mesh::wall_thickness(oriented, prepared.near), options, monitor);
-  require_memory_for(points.size(), octree, max_memory);
+  require_memory_for(oriented.positions.size(), octree, max_memory);
   report(monitor, 0.3);
   const Side side(local, sampler, oriented);
   Opinions opinions;
@@ -340,9 +323,32 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
   report(monitor, 0.7);
   mesh::PlacedVertices placed = mesh::place_vertices(octree, surface, value, local, monitor.cancel);
   report(monitor, 0.95);
-  Mesh mesh = mesh::triangulate(surface, std::move(placed.positions), placed.normals);
+  return mesh::triangulate(surface, std::move(placed.positions), placed.normals);
+}
+
+}  // namespace
+
+std::size_t field_mesh_memory(std::size_t points, double spacing, double longest_side, int depth) {
+  double leaves = kLeavesPerPoint;
+  if (depth > 0 && longest_side > 0) {
+    const double finer = kCell * spacing * std::exp2(depth) / (kMargin * longest_side + 8 * spacing);
+    leaves *= std::max(1.0, finer * finer * (kThickness * finer + kLayers) / (kThickness + kLayers));
+  }
+  return memory_for(points, leaves * static_cast<double>(points));
+}
+
+Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const FieldSampler& sampler, const MeshOptions& options,
+                const Monitor& monitor, std::size_t max_memory) {
+  if (points.size() != normals.size()) throw InvalidInput("points and normals differ in number");
+  if (points.size() < 4) throw InvalidInput("a mesh needs at least 4 points");
+  if (options.depth != 0 && (options.depth < 4 || options.depth > 12)) throw InvalidInput("mesh depth must be 4 to 12");
+  report(monitor, 0);
+  Prepared prepared = prepare(points, normals, monitor);
+  report(monitor, 0.2);
+  Mesh mesh = raw_mesh(prepared, sampler, options, monitor, max_memory);
+  prepared.near = {};
   mesh::untangle(mesh, monitor.cancel);
-  mesh::finish_mesh(mesh, oriented.positions, oriented.spacing, options);
+  mesh::finish_mesh(mesh, prepared.points.positions, prepared.points.spacing, options);
   report(monitor, 1);
   return mesh;
 }

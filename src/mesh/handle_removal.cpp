@@ -11,8 +11,8 @@
 namespace g3r::mesh {
 namespace {
 
-constexpr long kMostPerHandle = 100;  // corners: more are a change of shape, not of a doubtful spot
-constexpr int kRounds = 4;            // groups change what others do; what has not settled by then is left as it is
+constexpr long kMostPerHandle = 60;  // corners: more are a change of shape, not of a doubtful spot
+constexpr int kRounds = 4;           // groups change what others do; what has not settled by then is left as it is
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 // Groups of corners, those at edges around one leaf together.
@@ -233,11 +233,7 @@ HandleRemoval::HandleRemoval(const Octree& octree, const std::vector<std::uint8_
 bool HandleRemoval::propose(const std::vector<std::uint8_t>& proposal, std::vector<std::uint8_t>& inside) {
   const Groups groups = group_corners(octree_, edges_, inside, proposal);
   if (groups.size.empty()) return false;
-  std::vector<MinimalEdge> near;
-  for (const MinimalEdge& e : edges_) {
-    if (std::any_of(e.leaf.begin(), e.leaf.end(), [&](std::uint32_t leaf) { return groups.leaves[leaf] != 0; })) near.push_back(e);
-  }
-  const DualSurface here = sheets_in(octree_, near, groups.leaves, inside, centre_inside_);
+  const DualSurface here = sheets_in(octree_, edges_, groups.leaves, inside, centre_inside_);
   const Surroundings surroundings(surface_, part_, parts_, groups);
   std::vector<long> gain(groups.size.size(), 0);  // twice the change of the Euler characteristic: 4 for a handle less or a component more
   add_characteristic(here, groups, -1, gain);
@@ -246,7 +242,7 @@ bool HandleRemoval::propose(const std::vector<std::uint8_t>& proposal, std::vect
   std::vector<std::uint8_t> next = proposal;
   for (int round = 0; round < kRounds; ++round) {
     if (cancel_ != nullptr && cancel_->load()) throw Cancelled();
-    const DualSurface result = sheets_in(octree_, near, groups.leaves, next, centre_inside_);
+    const DualSurface result = sheets_in(octree_, edges_, groups.leaves, next, centre_inside_);
     if (round == 0) add_characteristic(result, groups, 1, gain);
     const std::vector<std::size_t> after = surroundings.components_with(result);
     bool settled = true;
