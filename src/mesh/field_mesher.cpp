@@ -54,8 +54,11 @@ constexpr double kFlipped = 0.1;            // spacings: distance from the surfa
 
 constexpr double kBaseBytes = 16 << 20;  // code, libraries, thread stacks;
 constexpr double kBytesPerPoint = 500;   // with those of the winding field;
-constexpr double kBytesPerLeaf = 320;    // measured, docs/meshing.md
-constexpr double kLeavesPerPoint = 9.5;  // measured: 7.2 to 10.4 without thin walls
+constexpr double kBytesPerLeaf = 260;    // measured, docs/meshing.md,
+constexpr double kBytesPerThin = 500;    // for those that thin walls and gaps add: most of their corners are in doubt
+constexpr double kBytesPerAsked = 320;   // and for all where the depth is given;
+constexpr double kPlainLeaves = 8.5;     // per point of a shape without thin walls: 7.2 to 9 measured,
+constexpr double kLeavesPerPoint = 9.5;  // and what is planned
 constexpr double kThickness = 0.75;      // of the refined layer, in cells of the automatic depth,
 constexpr double kLayers = 2;            // and cells around it whatever their size
 
@@ -113,9 +116,11 @@ std::vector<Vec3> level_places(const std::vector<Vec3>& points) {
   return places;
 }
 
-std::size_t memory_for(std::size_t points, double leaves) {
-  const double bytes = kBaseBytes + kBytesPerPoint * static_cast<double>(points) + kBytesPerLeaf * leaves;
-  return static_cast<std::size_t>(std::min(bytes, 0x1p62));
+// `depth`: 0 for the automatic one.
+std::size_t memory_for(std::size_t points, double leaves, int depth) {
+  const double plain = std::min(leaves, kPlainLeaves * static_cast<double>(points));
+  const double octree = depth > 0 ? kBytesPerAsked * leaves : kBytesPerLeaf * plain + kBytesPerThin * (leaves - plain);
+  return static_cast<std::size_t>(std::min(kBaseBytes + kBytesPerPoint * static_cast<double>(points) + octree, 0x1p62));
 }
 
 struct Box {
@@ -162,8 +167,8 @@ std::vector<Vec3> corner_positions(const Octree& octree) {
   return out;
 }
 
-void require_memory_for(std::size_t points, const Octree& octree, std::size_t max_memory) {
-  const std::size_t needed = memory_for(points, static_cast<double>(octree.leaf_count()));
+void require_memory_for(std::size_t points, const Octree& octree, int depth, std::size_t max_memory) {
+  const std::size_t needed = memory_for(points, static_cast<double>(octree.leaf_count()), depth);
   if (max_memory == 0 || needed <= max_memory) return;
   throw Unavailable("the mesh needs " + std::to_string(needed >> 20U) + " MiB, the limit is " + std::to_string(max_memory >> 20U) +
                     " MiB; raise the limit, lower the depth or thin the cloud");
@@ -301,7 +306,7 @@ Mesh raw_mesh(const Prepared& prepared, const FieldSampler& sampler, const MeshO
   const LocalFit local(oriented, prepared.near, LocalFitOptions{});
   const Octree octree =
       make_octree(oriented, prepared.noisy ? std::vector<double>{} : mesh::wall_thickness(oriented, prepared.near), options, monitor);
-  require_memory_for(oriented.positions.size(), octree, max_memory);
+  require_memory_for(oriented.positions.size(), octree, options.depth, max_memory);
   report(monitor, 0.3);
   const Side side(local, sampler, oriented);
   Opinions opinions;
@@ -334,7 +339,7 @@ std::size_t field_mesh_memory(std::size_t points, double spacing, double longest
     const double finer = kCell * spacing * std::exp2(depth) / (kMargin * longest_side + 8 * spacing);
     leaves *= std::max(1.0, finer * finer * (kThickness * finer + kLayers) / (kThickness + kLayers));
   }
-  return memory_for(points, leaves * static_cast<double>(points));
+  return memory_for(points, leaves * static_cast<double>(points), depth);
 }
 
 Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const FieldSampler& sampler, const MeshOptions& options,
