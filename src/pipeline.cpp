@@ -7,6 +7,7 @@
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
 #include "orient/coarse_to_fine.h"
+#include "orient/creases.h"
 #include "orient/polish.h"
 #include "orient/refine.h"
 #include "orient/settings.h"
@@ -174,6 +175,8 @@ Solution solve_on_points(const Problem& problem, const Options& options, Stages&
   solution.refinement = refine_normals(sum, solution.eta);
   if (s.polish_steps == 0) return solution;
   Polished polished = polish(problem.cloud.points, problem.cloud.morton, s, problem.local_spacing, {}, solution.refinement, stages);
+  const bool clean = !problem.local_spacing.empty();
+  if (clean) sharpen_creases(problem.cloud.points, problem.local_spacing, polished.refinement.normals);
   return {std::move(polished.eta), std::move(polished.refinement)};
 }
 

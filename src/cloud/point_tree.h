@@ -1,4 +1,4 @@
-// The k-d tree for nearest neighbours. Internal to src/cloud.
+// The k-d tree for nearest neighbours. Internal to src/cloud and src/orient.
 #pragma once
 
 #include <g3r/points.h>
