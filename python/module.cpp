@@ -51,13 +51,12 @@ Options read_options(const nb::dict& from) {
   using Unit = Epsilon::Unit;
   Options options;
   take_choice(from, "preset", options.preset, {{"default", Preset::kDefault}, {"paper", Preset::kPaper}});
-  take_choice(from, "method", options.method,
-              {{"auto", Method::kAuto},
-               {"green", Method::kGreen},
-               {"energy", Method::kEnergy},
-               {"wnnc", Method::kWnnc},
-               {"agr", Method::kAgr},
-               {"pgr", Method::kPgr}});
+  take_choice(from, "method", options.method, {{"auto", Method::kAuto},
+                                                {"green", Method::kGreen},
+                                                {"energy", Method::kEnergy},
+                                                {"wnnc", Method::kWnnc},
+                                                {"agr", Method::kAgr},
+                                                {"pgr", Method::kPgr}});
   take(from, "wnnc_widths", options.wnnc_widths);
   take_choice(from, "solver", options.solver, {{"auto", Solver::kAuto}, {"dense", Solver::kDense}, {"cg", Solver::kConjugateGradient}});
   take_choice(from, "epsilon_unit", options.epsilon.unit,

@@ -22,6 +22,8 @@ constexpr double kFlatKurtosis = 0.1;      // share of neighbourhoods whose kurt
 constexpr double kSheetKurtosis = 1.85;    // of that quantile: 1.94 to 2.1 under Gaussian noise, 1.1 to 1.8 between sheets and on wires
 constexpr double kSmallToLarge = 1.27;     // residual of 32 neighbours to that of 16 on a noisy plane, while both are small
 constexpr double kSmallSaturation = 0.47;  // residual of 16 neighbours, in spacings, when noise fills the ball
+constexpr double kSaturationPower = 8;     // how late the ratio of the two leaves kSmallToLarge
+constexpr double kLeastRoom = 0.1;         // of 1 - (x / saturation)^power: beyond, the small neighbourhoods bound nothing
 constexpr double kResidualToSigma = 0.95;
 constexpr double kLargestResidual = 0.8;    // beyond, the ball is full of noise and tells no more
 constexpr std::size_t kFewestPoints = 200;  // below, neighbourhoods are a large part of the shape
@@ -81,7 +83,7 @@ double estimate_noise(const std::vector<Vec3>& points, double spacing) {
   }
   if (quantile(clean, kFlattest) < kCleanResidual * spacing || quantile(kurtosis, kFlatKurtosis) < kSheetKurtosis) return 0;
   const double x16 = quantile(small, kFlattest) / spacing;
-  const double expected = kSmallToLarge * x16 / std::max(1 - std::pow(x16 / kSmallSaturation, 8), 0.1);
+  const double expected = kSmallToLarge * x16 / std::max(1 - std::pow(x16 / kSmallSaturation, kSaturationPower), kLeastRoom);
   const double x = std::min({quantile(large, kFlattest) / spacing, expected, kLargestResidual});
   return kResidualToSigma * spacing * x / (1 - x);
 }

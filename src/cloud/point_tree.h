@@ -1,4 +1,4 @@
-// The k-d tree for nearest neighbours. Internal to src/cloud and src/orient.
+// The k-d tree for nearest neighbours. Internal to src/cloud.
 #pragma once
 
 #include <g3r/points.h>

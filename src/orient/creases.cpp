@@ -1,50 +1,31 @@
 #include "orient/creases.h"
 
-#include "cloud/point_tree.h"
 #include "cpu/parallel.h"
 #include "median.h"
+#include "mesh/neighbours.h"
 #include "mesh/vector.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 
 namespace g3r {
 namespace {
 
-constexpr std::size_t kNeighbours = 16;
+constexpr std::size_t kNeighbours = 17;     // the point itself, first, and 16 others
 constexpr std::size_t kBlock = 1024;        // points per parallel block
 constexpr double kCreaseCosine = 0.965926;  // 15 degrees
 constexpr double kPlane = 0.05;             // spacings from a plane that holds a point
 constexpr double kRadius = 1.5;             // spacings
 constexpr int kRounds = 2;                  // the first is still among blurred normals
-constexpr double kPiecewiseSmooth = 0.53;
-
-using Neighbours = std::vector<std::array<std::uint32_t, kNeighbours>>;
-
-// The nearest of each point without itself.
-Neighbours find_neighbours(const std::vector<Vec3>& points) {
-  const PointSet set{points};
-  const PointTree tree(3, set, nanoflann::KDTreeSingleIndexAdaptorParams(kPointTreeLeaf));
-  Neighbours neighbours(points.size());
-  parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-    std::array<std::uint32_t, kNeighbours + 1> index{};
-    std::array<double, kNeighbours + 1> squared{};
-    for (std::size_t i = begin; i < end; ++i) {
-      tree.knnSearch(points[i].data(), kNeighbours + 1, index.data(), squared.data());
-      std::copy(index.begin() + 1, index.end(), neighbours[i].begin());
-    }
-  });
-  return neighbours;
-}
+constexpr double kPiecewiseSmooth = 0.53;   // share that tells CAD models from others
 
 struct Round {
   std::vector<Vec3> normals;
   std::vector<double> share;  // of the weight that planes leave, at creases; -1 elsewhere
 };
 
-Round average_in_planes(const std::vector<Vec3>& points, const std::vector<double>& spacing, const Neighbours& neighbours,
+Round average_in_planes(const std::vector<Vec3>& points, const std::vector<double>& spacing, const std::vector<std::uint32_t>& neighbours,
                         const std::vector<Vec3>& normals) {
   Round out{normals, std::vector<double>(points.size(), -1)};
   parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
@@ -55,7 +36,8 @@ Round average_in_planes(const std::vector<Vec3>& points, const std::vector<doubl
       double all = 0;
       double held = 0;
       Vec3 sum{0, 0, 0};
-      for (const std::uint32_t j : neighbours[i]) {
+      for (std::size_t k = 1; k < kNeighbours; ++k) {
+        const std::uint32_t j = neighbours[i * kNeighbours + k];
         const Vec3 d = vector::subtract(points[i], points[j]);
         const double near = std::exp(-vector::dot(d, d) / (2 * radius * radius));
         all += near;
@@ -79,8 +61,8 @@ Round average_in_planes(const std::vector<Vec3>& points, const std::vector<doubl
 }  // namespace
 
 bool sharpen_creases(const std::vector<Vec3>& points, const std::vector<double>& spacing, std::vector<Vec3>& normals) {
-  if (points.size() <= kNeighbours) return false;
-  const Neighbours neighbours = find_neighbours(points);
+  if (points.size() < kNeighbours) return false;
+  const std::vector<std::uint32_t> neighbours = mesh::Neighbours(points).of_all(kNeighbours);
   std::vector<Vec3> sharp = normals;
   for (int round = 0; round < kRounds; ++round) sharp = average_in_planes(points, spacing, neighbours, sharp).normals;
   std::vector<double> share = average_in_planes(points, spacing, neighbours, sharp).share;
