@@ -63,9 +63,10 @@ constexpr Form kForms[] = {{"green_9", NearForm::kGreen, 9, 21, 9, 0, 59},
 
 double pairs_per_second(const Form& form, double seconds) {
   shapes::Random random(1);
-  const std::size_t size = 3 + form.fields;
-  AlignedVector<float> records(kRuns * kSources * size);
-  for (std::size_t i = 0; i < records.size(); ++i) records[i] = static_cast<float>(random.uniform(i % size < 3 ? 1 : -1, 2));
+  const std::size_t fields = 3 + form.fields;
+  const std::size_t stride = kRuns * kSources + kLanes;
+  AlignedVector<float> values(fields * stride);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(random.uniform(i < 3 * stride ? 1 : -1, 2));
   std::vector<cpu::SourceRun<float>> runs;
   for (std::size_t r = 0; r < kRuns; ++r) {
     runs.push_back({static_cast<std::uint32_t>(r * kSources), static_cast<std::uint32_t>(kSources), {0, 0, 0}});
@@ -78,15 +79,19 @@ double pairs_per_second(const Form& form, double seconds) {
   cpu::NearTask<float> task{};
   task.form = form.form;
   task.batch = form.batch;
-  task.records = records.data();
-  task.record_size = size;
+  task.fields = values.data();
+  task.field_count = fields;
+  task.stride = stride;
   task.runs = runs.data();
   task.run_count = runs.size();
+  task.count = lanes;
   task.x = task.y = task.z = x.data();
   task.u = u.data();
-  task.block_count = kBlocks;
   task.uniform_width_squared = 1e-12F;  // no pair is near
+  task.reach = 5;
   task.out = out.data();
+  AlignedVector<float> workspace(cpu::near_workspace(fields));
+  task.workspace = workspace.data();
   return rate(seconds, [&] {
     cpu::near_field(task);
     return static_cast<double>(lanes * kRuns * kSources);

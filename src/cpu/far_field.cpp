@@ -87,11 +87,16 @@ HWY_INLINE void Accumulate(T* HWY_RESTRICT acc, Vec<T> weight, Vec<T> value) {
   hn::Store(hn::MulAdd(weight, value, hn::Load(d, acc)), d, acc);
 }
 
-// The record fields of kLanes sources, one field after the other; missing sources are zero.
+// The fields of kLanes sources from `begin` on, one after the other; missing sources are zero.
 template <class T>
-void Transpose(const T* records, std::size_t record_size, std::size_t count, T* HWY_RESTRICT fields) {
-  for (std::size_t f = 0; f < record_size; ++f) {
-    for (std::size_t i = 0; i < kLanes; ++i) fields[f * kLanes + i] = i < count ? records[i * record_size + f] : T{0};
+void LoadSources(const LeafTask<T>& task, std::size_t begin, T* HWY_RESTRICT fields) {
+  const Tag<T> d;
+  for (std::size_t f = 0; f < task.field_count; ++f) {
+    for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(d)) {
+      const std::size_t left = task.count - HWY_MIN(task.count, begin + lane);
+      const Vec<T> value = hn::LoadU(d, task.fields + f * task.field_stride + begin + lane);
+      hn::Store(hn::IfThenElseZero(hn::FirstN(d, left), value), d, fields + f * kLanes + lane);
+    }
   }
 }
 
@@ -102,13 +107,13 @@ void PointsToMultipole(const LeafTask<T>& task) {
   const std::size_t n = coefficient_count(task.order);
   T* basis = task.workspace;
   T* acc = basis + n * kLanes;
-  T* fields = acc + task.channels * n * kLanes;
   const T inverse_half = T{1} / task.half_side;
   const std::size_t first_field = task.local_widths ? 4 : 3;
   const auto batch = static_cast<std::size_t>(task.batch);
+  T* fields = acc + task.channels * n * kLanes;
   std::memset(acc, 0, task.channels * n * kLanes * sizeof(T));
   for (std::size_t begin = 0; begin < task.count; begin += kLanes) {
-    Transpose(task.records + begin * task.record_size, task.record_size, HWY_MIN(kLanes, task.count - begin), fields);
+    LoadSources(task, begin, fields);
     const T* f = fields + first_field * kLanes;
     for (std::size_t lane = 0; lane < kLanes; lane += lanes) {
       const Vec<T> x = hn::Load(d, fields + lane);
@@ -442,8 +447,10 @@ HWY_EXPORT(LocalToPointsDouble);
 HWY_EXPORT(TranslateFloat);
 HWY_EXPORT(TranslateDouble);
 
-// basis + accumulators + transposed records (x y z width and at most 3 + 2 x 9 fields)
-std::size_t leaf_workspace(std::size_t coefficients, std::size_t channels) { return (coefficients * (1 + channels) + 32) * kLanes; }
+// basis + accumulators + fields of one vector of sources
+std::size_t leaf_workspace(std::size_t coefficients, std::size_t channels) {
+  return (coefficients * (1 + channels) + kMostFields) * kLanes;
+}
 
 void points_to_multipole(const LeafTask<float>& task) { HWY_DYNAMIC_DISPATCH(PointsToMultipoleFloat)(task); }
 void points_to_multipole(const LeafTask<double>& task) { HWY_DYNAMIC_DISPATCH(PointsToMultipoleDouble)(task); }

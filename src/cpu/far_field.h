@@ -31,13 +31,14 @@ struct LeafTask {
   std::size_t channels;  ///< expansions per node
   std::size_t stride;    ///< length of one expansion
   // points to multipole
-  const T* records;  ///< first source record of the leaf
-  std::size_t record_size;
+  const T* fields;  ///< of its sources, as in NearTask
+  std::size_t field_count;
+  std::size_t field_stride;
   std::size_t count;  ///< points
   T* multipole;       ///< channels x stride, overwritten
   // local to points
   const T* local;  ///< channels x stride
-  const T* x;      ///< target blocks as in NearTask
+  const T* x;      ///< target blocks: block_count x kLanes
   const T* y;
   const T* z;
   const T* width_squared;

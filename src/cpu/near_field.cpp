@@ -1,9 +1,12 @@
 // The near field: exact pair sums. Highway compiles this file once per instruction set.
 //
-// Beyond kMollifierReach<T> widths R the kernels are plain powers of 1/rho. Within, they are polynomials in
+// The sources of a task are gathered into one array per field, so that vectors are full whatever the sizes of the leaves they come from.
+//
+// Beyond the reach of a task, at most kMollifierReach<T> widths R, the kernels are plain powers of 1/rho. Within, they are polynomials in
 // w = 2 (R^2 + 30) / R^2 * s / (s + 30) - 1 in [-1, 1], s = (rho / e)^2 in [0, R^2], fitted by Lawson iteration for the least relative
 // error (float: 6e-8, double: 1e-15 before rounding). The mapping spreads the bell of exp(-s/2), so degree 10 and 24 suffice where a
-// polynomial in s would need twice that. A vector of targets takes the mollified path when any lane is near; the lanes that are not keep the plain value.
+// polynomial in s would need twice that. A vector of sources takes the mollified path when any lane is near; the lanes that are not keep
+// the plain value.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cpu/near_field.cpp"
 #include "cpu/near_field.h"
@@ -18,12 +21,11 @@
 namespace g3r::cpu {
 namespace {
 
-constexpr double kMapPole = 30;    // c of w(s); 20..40 give about the same degree
+constexpr double kMapPole = 30;  // c of w(s); 20..40 give about the same degree
 template <class T>
 constexpr double kReachSquared = kMollifierReach<T>* kMollifierReach<T>;
 template <class T>
 constexpr double kMapScale = 2 * (kReachSquared<T> + kMapPole) / kReachSquared<T>;  // w = 1 at the reach
-constexpr std::size_t kRunsPerFlush = 8;  // source runs summed in T before they are added in double; bounds the rounding of long sums
 constexpr int kMaxBatch = 9;
 
 template <class T>
@@ -31,44 +33,52 @@ struct Polynomials;
 template <>
 struct Polynomials<float> {
   static constexpr int kDegree = 10;
-  static constexpr float kSingleLayer[kDegree + 1] = {3.356490651e-01F, -2.109202984e-01F, 1.247985877e-01F, -7.579804802e-02F, 3.640737097e-02F, -1.235096975e-02F,
-      2.213220652e-03F, 1.248106875e-04F, -1.325545821e-04F, 2.168155549e-06F, 6.532988285e-06F};  // NOLINT
-  static constexpr float kDoubleLayer[kDegree + 1] = {3.694301031e-02F, -6.544850826e-02F, 6.874023178e-02F, -5.271739658e-02F, 2.926637687e-02F, -1.089574491e-02F,
-      2.149868879e-03F, 7.662828656e-05F, -1.247450271e-04F, 4.201369121e-06F, 5.953868674e-06F};  // NOLINT
-  static constexpr float kStokeslet[kDegree + 1] = {2.547960387e-02F, -3.462541109e-02F, 2.588339531e-02F, -1.383588128e-02F, 5.266386861e-03F, -1.248453111e-03F,
-      9.028036458e-05F, 3.890562319e-05F, -7.762573976e-06F, -1.459254146e-06F, 4.054928515e-07F};  // NOLINT
-  static constexpr float kGradient[kDegree + 1] = {1.146340609e-02F, -3.082309253e-02F, 4.285684538e-02F, -3.888160955e-02F, 2.400000286e-02F, -9.646856020e-03F,
-      2.059324544e-03F, 3.703744792e-05F, -1.164463099e-04F, 6.002793598e-06F, 5.251592353e-06F};  // NOLINT
+  static constexpr float kSingleLayer[kDegree + 1] = {3.356490651e-01F,  -2.109202984e-01F, 1.247985877e-01F, -7.579804802e-02F,
+                                                      3.640737097e-02F,  -1.235096975e-02F, 2.213220652e-03F, 1.248106875e-04F,
+                                                      -1.325545821e-04F, 2.168155549e-06F,  6.532988285e-06F};  // NOLINT
+  static constexpr float kDoubleLayer[kDegree + 1] = {3.694301031e-02F,  -6.544850826e-02F, 6.874023178e-02F, -5.271739658e-02F,
+                                                      2.926637687e-02F,  -1.089574491e-02F, 2.149868879e-03F, 7.662828656e-05F,
+                                                      -1.247450271e-04F, 4.201369121e-06F,  5.953868674e-06F};  // NOLINT
+  static constexpr float kStokeslet[kDegree + 1] = {2.547960387e-02F,  -3.462541109e-02F, 2.588339531e-02F, -1.383588128e-02F,
+                                                    5.266386861e-03F,  -1.248453111e-03F, 9.028036458e-05F, 3.890562319e-05F,
+                                                    -7.762573976e-06F, -1.459254146e-06F, 4.054928515e-07F};  // NOLINT
+  static constexpr float kGradient[kDegree + 1] = {1.146340609e-02F,  -3.082309253e-02F, 4.285684538e-02F, -3.888160955e-02F,
+                                                   2.400000286e-02F,  -9.646856020e-03F, 2.059324544e-03F, 3.703744792e-05F,
+                                                   -1.164463099e-04F, 6.002793598e-06F,  5.251592353e-06F};  // NOLINT
 };
 template <>
 struct Polynomials<double> {
   static constexpr int kDegree = 24;
-  static constexpr double kSingleLayer[kDegree + 1] = {2.72238911498497105e-01, -1.96628995570388543e-01, 1.22041552220679431e-01, -9.38767211879213276e-02,
-      6.36532975560639841e-02, -3.55124354476142531e-02, 1.33667521248684220e-02, -1.87221549284269438e-03,
-      -1.00447010871894523e-03, 4.33479492326374995e-04, 8.71531243935183509e-05, -6.43831087415920486e-05,
-      -1.52842617681381186e-05, 8.23994650825937019e-06, 3.57644004047402987e-06, -6.19828048109925261e-07,
-      -7.26394739696446179e-07, -9.76273908300941179e-08, 9.14078289285755965e-08, 4.80875567915677717e-08,
-      6.73808728264686125e-10, -8.94533676379756188e-09, -2.86814591679717682e-09, 7.08848637133337684e-10,
+  static constexpr double kSingleLayer[kDegree + 1] = {
+      2.72238911498497105e-01,  -1.96628995570388543e-01, 1.22041552220679431e-01,  -9.38767211879213276e-02,
+      6.36532975560639841e-02,  -3.55124354476142531e-02, 1.33667521248684220e-02,  -1.87221549284269438e-03,
+      -1.00447010871894523e-03, 4.33479492326374995e-04,  8.71531243935183509e-05,  -6.43831087415920486e-05,
+      -1.52842617681381186e-05, 8.23994650825937019e-06,  3.57644004047402987e-06,  -6.19828048109925261e-07,
+      -7.26394739696446179e-07, -9.76273908300941179e-08, 9.14078289285755965e-08,  4.80875567915677717e-08,
+      6.73808728264686125e-10,  -8.94533676379756188e-09, -2.86814591679717682e-09, 7.08848637133337684e-10,
       4.17013371150739815e-10};  // NOLINT
-  static constexpr double kDoubleLayer[kDegree + 1] = {2.01166718020476080e-02, -4.30581442740953085e-02, 5.53298020606874871e-02, -5.70005705158219203e-02,
-      4.74088379271178084e-02, -2.98020127366235635e-02, 1.23890055148868014e-02, -2.04151894739308323e-03,
-      -8.67331441306248212e-04, 4.35830834632103237e-04, 7.19619343207371088e-05, -6.43977927655205748e-05,
-      -1.31880004148318429e-05, 8.52117086637677447e-06, 3.34405364235570986e-06, -6.99147573483444155e-07,
-      -7.11172127133926147e-07, -8.23308928412389936e-08, 9.75936165374723459e-08, 4.85394875779976892e-08,
+  static constexpr double kDoubleLayer[kDegree + 1] = {
+      2.01166718020476080e-02,  -4.30581442740953085e-02, 5.53298020606874871e-02,  -5.70005705158219203e-02,
+      4.74088379271178084e-02,  -2.98020127366235635e-02, 1.23890055148868014e-02,  -2.04151894739308323e-03,
+      -8.67331441306248212e-04, 4.35830834632103237e-04,  7.19619343207371088e-05,  -6.43977927655205748e-05,
+      -1.31880004148318429e-05, 8.52117086637677447e-06,  3.34405364235570986e-06,  -6.99147573483444155e-07,
+      -7.11172127133926147e-07, -8.23308928412389936e-08, 9.75936165374723459e-08,  4.85394875779976892e-08,
       -2.72723543696958550e-09, -9.90776908408788320e-09, -1.68788690034080203e-09, 9.21469765054919531e-10,
       2.23793630707046198e-10};  // NOLINT
-  static constexpr double kStokeslet[kDegree + 1] = {1.57114895741949818e-02, -2.77761856613164514e-02, 2.67659526632657123e-02, -1.95822323957149901e-02,
-      1.11852221262368698e-02, -4.56992260514550372e-03, 1.00868766793197912e-03, 9.99641456844417445e-05,
-      -1.23252977843750109e-04, 5.19438880044147083e-06, 1.43938911623116771e-05, -5.51493723960467629e-07,
-      -1.94187723378307295e-06, -1.52190991875949153e-07, 2.51121473510972186e-07, 7.40059988413645635e-08,
+  static constexpr double kStokeslet[kDegree + 1] = {
+      1.57114895741949818e-02,  -2.77761856613164514e-02, 2.67659526632657123e-02,  -1.95822323957149901e-02,
+      1.11852221262368698e-02,  -4.56992260514550372e-03, 1.00868766793197912e-03,  9.99641456844417445e-05,
+      -1.23252977843750109e-04, 5.19438880044147083e-06,  1.43938911623116771e-05,  -5.51493723960467629e-07,
+      -1.94187723378307295e-06, -1.52190991875949153e-07, 2.51121473510972186e-07,  7.40059988413645635e-08,
       -1.93436612501158679e-08, -1.68810633366780844e-08, -2.42648522998569806e-09, 2.11953706989512661e-09,
-      1.28229726827448888e-09, -4.63661094553928932e-11, -2.51441230517015657e-10, -1.90924654212535143e-11,
+      1.28229726827448888e-09,  -4.63661094553928932e-11, -2.51441230517015657e-10, -1.90924654212535143e-11,
       2.37574674697121477e-11};  // NOLINT
-  static constexpr double kGradient[kDegree + 1] = {4.40518222785261232e-03, -1.52819586127788849e-02, 2.85638493974249529e-02, -3.74183381201090223e-02,
-      3.62236158007392187e-02, -2.52320901312769429e-02, 1.13803178493715879e-02, -2.14148309744039214e-03,
-      -7.44078483866628527e-04, 4.30636489075930282e-04, 5.75681377737844482e-05, -6.38465355455712126e-05,
-      -1.12463705508543696e-05, 8.67414049790631883e-06, 3.09326561140328803e-06, -7.74760016771132008e-07,
-      -6.91919385251266299e-07, -6.33591945183250508e-08, 9.96345696869174391e-08, 4.47540418210992417e-08,
+  static constexpr double kGradient[kDegree + 1] = {
+      4.40518222785261232e-03,  -1.52819586127788849e-02, 2.85638493974249529e-02,  -3.74183381201090223e-02,
+      3.62236158007392187e-02,  -2.52320901312769429e-02, 1.13803178493715879e-02,  -2.14148309744039214e-03,
+      -7.44078483866628527e-04, 4.30636489075930282e-04,  5.75681377737844482e-05,  -6.38465355455712126e-05,
+      -1.12463705508543696e-05, 8.67414049790631883e-06,  3.09326561140328803e-06,  -7.74760016771132008e-07,
+      -6.91919385251266299e-07, -6.33591945183250508e-08, 9.96345696869174391e-08,  4.47540418210992417e-08,
       -3.42699442045166689e-09, -9.11945890867278143e-09, -1.78370930853171891e-09, 7.99120106011687983e-10,
       2.78650931919291843e-10};  // NOLINT
 };
@@ -168,21 +178,28 @@ HWY_INLINE Kernel<T> MollifiedKernel(Vec<T> r2, Vec<T> width_squared) {
   return k;
 }
 
-// Each form: what it needs, how many channels it sums, and one source's contribution.
+// The values of a vector of sources.
+template <class T>
+struct Fields {
+  const T* first;
+  std::size_t stride;
+  HWY_INLINE Vec<T> operator()(std::size_t f) const { return hn::Load(Tag<T>(), first + f * stride); }
+};
+
+// Each form: what it needs, how many channels it sums, and the contribution of a vector of sources.
 template <class T, int K>
 struct GreenForm {
   static constexpr bool kValue = true;
   static constexpr Third kThird = Third::kNone;
   static constexpr int kChannels = K;
   static constexpr int kTargetData = 0;
-  static HWY_INLINE void Add(const T* f, Vec<T> dx, Vec<T> dy, Vec<T> dz, const Kernel<T>& k, const Vec<T>* /*u*/, Vec<T>* sum) {
-    const Tag<T> d;
-    const Vec<T> dot = hn::MulAdd(dx, hn::Set(d, f[0]), hn::MulAdd(dy, hn::Set(d, f[1]), hn::Mul(dz, hn::Set(d, f[2]))));
+  static HWY_INLINE void Add(Fields<T> f, Vec<T> dx, Vec<T> dy, Vec<T> dz, const Kernel<T>& k, const Vec<T>* /*u*/, Vec<T>* sum) {
+    const Vec<T> dot = hn::MulAdd(dx, f(0), hn::MulAdd(dy, f(1), hn::Mul(dz, f(2))));
     const Vec<T> flux = hn::Mul(k.flux, dot);
     HWY_UNROLL(9)
     for (int c = 0; c < K; ++c) {
-      sum[c] = hn::MulAdd(k.value, hn::Set(d, f[3 + 2 * c]), sum[c]);
-      sum[c] = hn::MulAdd(flux, hn::Set(d, f[4 + 2 * c]), sum[c]);
+      sum[c] = hn::MulAdd(k.value, f(3 + 2 * c), sum[c]);
+      sum[c] = hn::MulAdd(flux, f(4 + 2 * c), sum[c]);
     }
   }
 };
@@ -193,12 +210,12 @@ struct GreenAdjointForm {
   static constexpr Third kThird = Third::kNone;
   static constexpr int kChannels = K + 3;
   static constexpr int kTargetData = K;
-  static HWY_INLINE void Add(const T* f, Vec<T> dx, Vec<T> dy, Vec<T> dz, const Kernel<T>& k, const Vec<T>* u, Vec<T>* sum) {
+  static HWY_INLINE void Add(Fields<T> f, Vec<T> dx, Vec<T> dy, Vec<T> dz, const Kernel<T>& k, const Vec<T>* u, Vec<T>* sum) {
     const Tag<T> d;
     Vec<T> charge = hn::Zero(d);
     HWY_UNROLL(9)
     for (int c = 0; c < K; ++c) {
-      const Vec<T> q = hn::Set(d, f[c]);
+      const Vec<T> q = f(c);
       charge = hn::MulAdd(u[c], q, charge);
       sum[c] = hn::MulAdd(k.value, q, sum[c]);
     }
@@ -215,11 +232,10 @@ struct StokesWindingForm {
   static constexpr Third kThird = Third::kStokeslet;
   static constexpr int kChannels = 4;
   static constexpr int kTargetData = 0;
-  static HWY_INLINE void Add(const T* f, Vec<T> dx, Vec<T> dy, Vec<T> dz, const Kernel<T>& k, const Vec<T>* /*u*/, Vec<T>* sum) {
-    const Tag<T> d;
-    const Vec<T> ex = hn::Set(d, f[0]);
-    const Vec<T> ey = hn::Set(d, f[1]);
-    const Vec<T> ez = hn::Set(d, f[2]);
+  static HWY_INLINE void Add(Fields<T> f, Vec<T> dx, Vec<T> dy, Vec<T> dz, const Kernel<T>& k, const Vec<T>* /*u*/, Vec<T>* sum) {
+    const Vec<T> ex = f(0);
+    const Vec<T> ey = f(1);
+    const Vec<T> ez = f(2);
     const Vec<T> dot = hn::MulAdd(dx, ex, hn::MulAdd(dy, ey, hn::Mul(dz, ez)));
     const Vec<T> along = hn::Mul(k.third, dot);
     sum[0] = hn::MulAdd(along, dx, hn::MulAdd(k.value, ex, sum[0]));
@@ -235,11 +251,10 @@ struct WindingGradientForm {
   static constexpr Third kThird = Third::kGradient;
   static constexpr int kChannels = 3;
   static constexpr int kTargetData = 0;
-  static HWY_INLINE void Add(const T* f, Vec<T> dx, Vec<T> dy, Vec<T> dz, const Kernel<T>& k, const Vec<T>* /*u*/, Vec<T>* sum) {
-    const Tag<T> d;
-    const Vec<T> ex = hn::Set(d, f[0]);
-    const Vec<T> ey = hn::Set(d, f[1]);
-    const Vec<T> ez = hn::Set(d, f[2]);
+  static HWY_INLINE void Add(Fields<T> f, Vec<T> dx, Vec<T> dy, Vec<T> dz, const Kernel<T>& k, const Vec<T>* /*u*/, Vec<T>* sum) {
+    const Vec<T> ex = f(0);
+    const Vec<T> ey = f(1);
+    const Vec<T> ez = f(2);
     const Vec<T> dot = hn::MulAdd(dx, ex, hn::MulAdd(dy, ey, hn::Mul(dz, ez)));
     const Vec<T> along = hn::Mul(k.third, dot);
     sum[0] = hn::NegMulAdd(along, dx, hn::MulAdd(k.flux, ex, sum[0]));
@@ -248,69 +263,96 @@ struct WindingGradientForm {
   }
 };
 
-// One vector of targets against one run of sources.
-template <class T, class Form, bool kLocalWidths>
-HWY_INLINE void AddRun(const NearTask<T>& task, const SourceRun<T>& run, Vec<T> x, Vec<T> y, Vec<T> z, Vec<T> half_width_squared,
-                       const Vec<T>* u, Vec<T>* sum) {
-  const Tag<T> d;
-  const Vec<T> uniform = hn::Set(d, task.uniform_width_squared);
-  const Vec<T> reach2 = hn::Set(d, static_cast<T>(kReachSquared<T>));
-  const T* record = task.records + run.begin * task.record_size;
-  for (std::uint32_t j = 0; j < run.count; ++j, record += task.record_size) {
-    const Vec<T> dx = hn::Sub(hn::Set(d, record[0]), x);
-    const Vec<T> dy = hn::Sub(hn::Set(d, record[1]), y);
-    const Vec<T> dz = hn::Sub(hn::Set(d, record[2]), z);
-    const Vec<T> r2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
-    Vec<T> width_squared = uniform;
-    if constexpr (kLocalWidths) width_squared = hn::MulAdd(hn::Set(d, T{0.5}), hn::Set(d, record[3]), half_width_squared);
-    Kernel<T> k = PlainKernel<T, Form::kValue, Form::kThird>(ReciprocalSqrt<T>(r2), width_squared);
-    const auto near = hn::Lt(r2, hn::Mul(reach2, width_squared));
-    if (HWY_UNLIKELY(!hn::AllFalse(d, near))) {
-      const Kernel<T> m = MollifiedKernel<T, Form::kValue, Form::kThird>(r2, width_squared);
-      k.flux = hn::IfThenElse(near, m.flux, k.flux);
-      if constexpr (Form::kValue) k.value = hn::IfThenElse(near, m.value, k.value);
-      if constexpr (Form::kThird != Third::kNone) k.third = hn::IfThenElse(near, m.third, k.third);
+// The sources of a task, run after run, in pieces of kGatheredSources: field f of the i-th at workspace[f * kGatherStride + i].
+constexpr std::size_t kGatherStride = kGatheredSources + kLanes;
+
+template <class T>
+class Gathering {
+ public:
+  explicit Gathering(const NearTask<T>& task) : task_(task) {}
+
+  // Gathers the next piece, padded to whole vectors by sources without any value. Returns its padded size, 0 when there are none left.
+  std::size_t next() {
+    const Tag<T> d;
+    const std::size_t lanes = hn::Lanes(d);
+    std::size_t size = 0;
+    while (run_ < task_.run_count && size < kGatheredSources) {
+      const SourceRun<T>& run = task_.runs[run_];
+      const std::size_t count = HWY_MIN(run.count - done_, kGatheredSources - size);
+      const T* from = task_.fields + run.begin + done_;
+      T* to = task_.workspace + size;
+      for (std::size_t f = 0; f < task_.field_count; ++f, from += task_.stride, to += kGatherStride) {
+        const Vec<T> shift = hn::Set(d, f < 3 ? run.shift[f] : T{0});
+        for (std::size_t i = 0; i < count; i += lanes) hn::StoreU(hn::Add(hn::LoadU(d, from + i), shift), d, to + i);
+      }
+      size += count;
+      done_ += count;
+      if (done_ < run.count) continue;
+      ++run_;
+      done_ = 0;
     }
-    Form::Add(record + (kLocalWidths ? 4 : 3), dx, dy, dz, k, u, sum);
+    if (size == 0) return 0;
+    const std::size_t padded = (size + lanes - 1) / lanes * lanes;
+    const std::size_t geometry = task_.local_widths ? 4 : 3;
+    for (std::size_t f = 0; f < task_.field_count; ++f) {
+      T* field = task_.workspace + f * kGatherStride;
+      const T pad = f < geometry ? field[size - 1] : T{0};
+      for (std::size_t i = size; i < padded; ++i) field[i] = pad;
+    }
+    return padded;
   }
-}
+
+ private:
+  const NearTask<T>& task_;
+  std::size_t run_ = 0;
+  std::size_t done_ = 0;  // sources of that run
+};
 
 template <class T, class Form, bool kLocalWidths>
 void Run(const NearTask<T>& task) {
   const Tag<T> d;
   const std::size_t lanes = hn::Lanes(d);
   constexpr std::size_t kChannels = Form::kChannels;
-  for (std::size_t block = 0; block < task.block_count; ++block) {
-    for (std::size_t lane = 0; lane < kLanes; lane += lanes) {
-      const std::size_t at = block * kLanes + lane;
-      const Vec<T> x = hn::Load(d, task.x + at);
-      const Vec<T> y = hn::Load(d, task.y + at);
-      const Vec<T> z = hn::Load(d, task.z + at);
-      Vec<T> half_width_squared = hn::Zero(d);
-      if constexpr (kLocalWidths) half_width_squared = hn::Mul(hn::Set(d, T{0.5}), hn::Load(d, task.width_squared + at));
-      Vec<T> u[Form::kTargetData + 1];
-      for (int c = 0; c < Form::kTargetData; ++c) {
-        u[c] = hn::Load(d, task.u + (block * Form::kTargetData + static_cast<std::size_t>(c)) * kLanes + lane);
+  constexpr std::size_t kTargetData = Form::kTargetData;
+  constexpr std::size_t kFirstField = kLocalWidths ? 4 : 3;
+  const T* source = task.workspace;
+  const Vec<T> reach2 = hn::Set(d, task.reach * task.reach);
+  const std::size_t blocks = (task.count + kLanes - 1) / kLanes;
+  for (std::size_t i = 0; i < blocks * kChannels * kLanes; ++i) task.out[i] = 0;
+  Gathering<T> gathering(task);
+  for (std::size_t size = gathering.next(); size > 0; size = gathering.next()) {
+    for (std::size_t t = 0; t < task.count; ++t) {
+      const std::size_t block = t / kLanes;
+      const std::size_t lane = t % kLanes;
+      const Vec<T> x = hn::Set(d, task.x[t]);
+      const Vec<T> y = hn::Set(d, task.y[t]);
+      const Vec<T> z = hn::Set(d, task.z[t]);
+      const Vec<T> half_width_squared = hn::Set(d, kLocalWidths ? T{0.5} * task.width_squared[t] : T{0});
+      Vec<T> u[kTargetData + 1];
+      for (std::size_t c = 0; c < kTargetData; ++c) u[c] = hn::Set(d, task.u[(block * kTargetData + c) * kLanes + lane]);
+      Vec<T> sum[kChannels];
+      for (std::size_t c = 0; c < kChannels; ++c) sum[c] = hn::Zero(d);
+      for (std::size_t s = 0; s < size; s += lanes) {
+        const Vec<T> dx = hn::Sub(hn::Load(d, source + s), x);
+        const Vec<T> dy = hn::Sub(hn::Load(d, source + kGatherStride + s), y);
+        const Vec<T> dz = hn::Sub(hn::Load(d, source + 2 * kGatherStride + s), z);
+        const Vec<T> r2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
+        Vec<T> width_squared = hn::Set(d, task.uniform_width_squared);
+        if constexpr (kLocalWidths) {
+          width_squared = hn::MulAdd(hn::Set(d, T{0.5}), hn::Load(d, source + 3 * kGatherStride + s), half_width_squared);
+        }
+        Kernel<T> k = PlainKernel<T, Form::kValue, Form::kThird>(ReciprocalSqrt<T>(r2), width_squared);
+        const auto near = hn::Lt(r2, hn::Mul(reach2, width_squared));
+        if (HWY_UNLIKELY(!hn::AllFalse(d, near))) {
+          const Kernel<T> m = MollifiedKernel<T, Form::kValue, Form::kThird>(r2, width_squared);
+          k.flux = hn::IfThenElse(near, m.flux, k.flux);
+          if constexpr (Form::kValue) k.value = hn::IfThenElse(near, m.value, k.value);
+          if constexpr (Form::kThird != Third::kNone) k.third = hn::IfThenElse(near, m.third, k.third);
+        }
+        Form::Add({source + kFirstField * kGatherStride + s, kGatherStride}, dx, dy, dz, k, u, sum);
       }
       double* out = task.out + block * kChannels * kLanes + lane;
-      for (std::size_t c = 0; c < kChannels; ++c) {
-        for (std::size_t i = 0; i < lanes; ++i) out[c * kLanes + i] = 0;
-      }
-      for (std::size_t first = 0; first < task.run_count; first += kRunsPerFlush) {
-        const std::size_t last = HWY_MIN(first + kRunsPerFlush, task.run_count);
-        Vec<T> sum[kChannels];
-        for (std::size_t c = 0; c < kChannels; ++c) sum[c] = hn::Zero(d);
-        for (std::size_t i = first; i < last; ++i) {
-          const SourceRun<T>& run = task.runs[i];
-          AddRun<T, Form, kLocalWidths>(task, run, hn::Sub(x, hn::Set(d, run.shift[0])), hn::Sub(y, hn::Set(d, run.shift[1])),
-                                        hn::Sub(z, hn::Set(d, run.shift[2])), half_width_squared, u, sum);
-        }
-        for (std::size_t c = 0; c < kChannels; ++c) {
-          HWY_ALIGN T part[kLanes];
-          hn::Store(sum[c], d, part);
-          for (std::size_t i = 0; i < lanes; ++i) out[c * kLanes + i] += static_cast<double>(part[i]);
-        }
-      }
+      for (std::size_t c = 0; c < kChannels; ++c) out[c * kLanes] += static_cast<double>(hn::GetLane(hn::SumOfLanes(d, sum[c])));
     }
   }
 }
@@ -327,19 +369,26 @@ void RunWidths(const NearTask<T>& task) {
 template <class T, template <class, int> class Form>
 void RunBatch(const NearTask<T>& task) {
   switch (task.batch) {
-    case 1: return RunWidths<T, Form<T, 1>>(task);
-    case 4: return RunWidths<T, Form<T, 4>>(task);
-    default: return RunWidths<T, Form<T, kMaxBatch>>(task);
+    case 1:
+      return RunWidths<T, Form<T, 1>>(task);
+    case 4:
+      return RunWidths<T, Form<T, 4>>(task);
+    default:
+      return RunWidths<T, Form<T, kMaxBatch>>(task);
   }
 }
 
 template <class T>
 void RunForm(const NearTask<T>& task) {
   switch (task.form) {
-    case NearForm::kGreen: return RunBatch<T, GreenForm>(task);
-    case NearForm::kGreenAdjoint: return RunBatch<T, GreenAdjointForm>(task);
-    case NearForm::kStokesWinding: return RunWidths<T, StokesWindingForm<T>>(task);
-    case NearForm::kWindingGradient: return RunWidths<T, WindingGradientForm<T>>(task);
+    case NearForm::kGreen:
+      return RunBatch<T, GreenForm>(task);
+    case NearForm::kGreenAdjoint:
+      return RunBatch<T, GreenAdjointForm>(task);
+    case NearForm::kStokesWinding:
+      return RunWidths<T, StokesWindingForm<T>>(task);
+    case NearForm::kWindingGradient:
+      return RunWidths<T, WindingGradientForm<T>>(task);
   }
 }
 

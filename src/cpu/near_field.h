@@ -1,6 +1,6 @@
-// Pair sums by SIMD: targets in the lanes, sources broadcast. One instruction set per machine, chosen at run time (Highway).
+// Pair sums by SIMD: sources in the lanes, targets one by one. One instruction set per machine, chosen at run time (Highway).
 //
-// All kernels are unnormalised (without 1/(4 pi)). Precision T: float, flushed to double every few source runs, or double throughout.
+// All kernels are unnormalised (without 1/(4 pi)). Precision T: float, added in double every thousand sources, or double throughout.
 // Relative error of one kernel evaluation: 1e-6 (float), 1e-14 (double), see docs/math.md, "Mollified kernels by polynomials".
 #pragma once
 
@@ -9,10 +9,11 @@
 
 namespace g3r::cpu {
 
-/// Targets come in blocks of this many lanes; the tail of a block repeats its last point.
+/// Targets are stored in blocks of this many lanes; the tail of a block repeats its last point. Arrays of sources are readable for as many
+/// elements past their end.
 inline constexpr std::size_t kLanes = 16;
 
-/// What is summed; F = floats per source record after x, y, z; C = channels of the result; U = channels of target data.
+/// What is summed; F = fields per source after x, y, z and the width; C = channels of the result; U = channels of target data.
 enum class NearForm {
   kGreen,            ///< eta, then (q_k, u_k) for k < K     F = 3 + 2K  C = K      Phi q_k + u_k g (r.eta)
   kGreenAdjoint,     ///< Q_k for k < K                      F = K       C = K + 3  Phi Q_k, and g r sum_k u_k(target) Q_k; U = K
@@ -20,7 +21,7 @@ enum class NearForm {
   kWindingGradient,  ///< eta                                F = 3       C = 3      g eta - b r (r.eta)
 };
 
-/// A run of consecutive sources, and what to subtract from target coordinates so that both are relative to the same centre.
+/// A run of consecutive sources, and what to add to their coordinates so that they are relative to the targets' centre.
 template <class T>
 struct SourceRun {
   std::uint32_t begin;
@@ -28,25 +29,34 @@ struct SourceRun {
   T shift[3];
 };
 
-/// One group of target blocks against a list of source runs.
+/// One group of targets against a list of source runs.
 template <class T>
 struct NearTask {
   NearForm form;
   int batch;                ///< K: 1, 4 or 9; ignored by forms without K
-  const T* records;         ///< source records: x y z [squared width if local_widths] F values
-  std::size_t record_size;  ///< in T
+  const T* fields;          ///< of the sources: x y z [squared width if local_widths] F values; field f of source i at [f * stride + i]
+  std::size_t field_count;  ///< at most kMostFields
+  std::size_t stride;
   const SourceRun<T>* runs;
   std::size_t run_count;
-  const T* x;  ///< target coordinates, block_count x kLanes
+  std::size_t count;  ///< targets
+  const T* x;         ///< target coordinates
   const T* y;
   const T* z;
-  const T* width_squared;  ///< block_count x kLanes, only with local_widths
-  const T* u;              ///< block_count x U x kLanes
-  std::size_t block_count;
+  const T* width_squared;   ///< of the targets, only with local_widths
+  const T* u;               ///< blocks x U x kLanes
   T uniform_width_squared;  ///< without local_widths
   bool local_widths;        ///< pairs use the mean of both squared widths
-  double* out;              ///< block_count x C x kLanes, overwritten
+  T reach;                  ///< widths from which on the kernels are plain powers; at most kMollifierReach<T>
+  double* out;              ///< blocks x C x kLanes, overwritten
+  T* workspace;             ///< near_workspace(field_count) elements, aligned
 };
+
+inline constexpr std::size_t kMostFields = 4 + 3 + 2 * 9;
+inline constexpr std::size_t kGatheredSources = 1024;  ///< at a time; what sums in T are added up over, which bounds their rounding
+
+/// Elements of T that a NearTask's workspace needs.
+constexpr std::size_t near_workspace(std::size_t field_count) { return field_count * (kGatheredSources + kLanes); }
 
 /// Evaluates a task. Thread safe; the result does not depend on anything but the task.
 void near_field(const NearTask<float>& task);

@@ -44,13 +44,12 @@ void for_targets(const TargetBlocks<T>& targets, const std::vector<double>& out,
 }
 
 template <class T>
-void fill_eta(SumEngine<T>& engine, const std::vector<Vec3>& eta, std::size_t fields) {
-  AlignedVector<T>& records = engine.records(fields);
-  const std::size_t size = engine.record_size(fields);
-  const std::size_t at = engine.record_size(0);
+void fill_eta(SumEngine<T>& engine, const std::vector<Vec3>& eta, std::size_t values) {
+  engine.begin_values(values);
   parallel::for_blocks(eta.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      for (std::size_t a = 0; a < 3; ++a) records[i * size + at + a] = static_cast<T>(eta[i][a]);
+    for (std::size_t a = 0; a < 3; ++a) {
+      T* value = engine.value(a);
+      for (std::size_t i = begin; i < end; ++i) value[i] = static_cast<T>(eta[i][a]);
     }
   });
 }
@@ -60,22 +59,19 @@ double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[
 template <class T>
 void green_into(SumEngine<T>& engine, const HarmonicValues& u, const std::vector<Vec3>& eta, std::vector<double>& out) {
   for_batches(u.count, [&](std::size_t first, std::size_t count, std::size_t batch) {
-    const std::size_t fields = 3 + 2 * batch;
-    fill_eta(engine, eta, fields);
-    AlignedVector<T>& records = engine.records(fields);
-    const std::size_t size = engine.record_size(fields);
-    const std::size_t at = engine.record_size(0) + 3;
+    fill_eta(engine, eta, 3 + 2 * batch);
     parallel::for_blocks(eta.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        T* field = records.data() + i * size + at;
-        for (std::size_t k = 0; k < batch; ++k) {
+      for (std::size_t k = 0; k < batch; ++k) {
+        T* monopole = engine.value(3 + 2 * k);
+        T* dipole = engine.value(4 + 2 * k);
+        for (std::size_t i = begin; i < end; ++i) {
           const std::size_t source = i * u.count + first + k;
-          field[2 * k] = k < count ? static_cast<T>(dot(u.gradient[source], eta[i])) : T{0};
-          field[2 * k + 1] = k < count ? static_cast<T>(u.value[source]) : T{0};
+          monopole[i] = k < count ? static_cast<T>(dot(u.gradient[source], eta[i])) : T{0};
+          dipole[i] = k < count ? static_cast<T>(u.value[source]) : T{0};
         }
       }
     });
-    const auto& sums = engine.run(NearForm::kGreen, static_cast<int>(batch), fields, batch);
+    const auto& sums = engine.run(NearForm::kGreen, static_cast<int>(batch), batch);
     for_targets(engine.targets(), sums, batch, [&](std::size_t p, const double* value) {
       for (std::size_t k = 0; k < count; ++k) out[p * u.count + first + k] = kInv4Pi * value[k * kLanes];
     });
@@ -85,14 +81,11 @@ void green_into(SumEngine<T>& engine, const HarmonicValues& u, const std::vector
 template <class T>
 void green_adjoint_into(SumEngine<T>& engine, const HarmonicValues& u, const std::vector<double>& q, std::vector<Vec3>& out) {
   for_batches(u.count, [&](std::size_t first, std::size_t count, std::size_t batch) {
-    AlignedVector<T>& records = engine.records(batch);
-    const std::size_t size = engine.record_size(batch);
-    const std::size_t at = engine.record_size(0);
+    engine.begin_values(batch);
     parallel::for_blocks(out.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t j = begin; j < end; ++j) {
-        for (std::size_t k = 0; k < batch; ++k) {
-          records[j * size + at + k] = k < count ? static_cast<T>(q[j * u.count + first + k]) : T{0};
-        }
+      for (std::size_t k = 0; k < batch; ++k) {
+        T* value = engine.value(k);
+        for (std::size_t j = begin; j < end; ++j) value[j] = k < count ? static_cast<T>(q[j * u.count + first + k]) : T{0};
       }
     });
     AlignedVector<T>& data = engine.target_data(batch);
@@ -105,7 +98,7 @@ void green_adjoint_into(SumEngine<T>& engine, const HarmonicValues& u, const std
         }
       }
     });
-    const auto& sums = engine.run(NearForm::kGreenAdjoint, static_cast<int>(batch), batch, batch + 3);
+    const auto& sums = engine.run(NearForm::kGreenAdjoint, static_cast<int>(batch), batch + 3);
     for_targets(engine.targets(), sums, batch + 3, [&](std::size_t p, const double* value) {
       for (std::size_t a = 0; a < 3; ++a) {
         double sum = -value[(batch + a) * kLanes];  // the kernel sums g (x - y), the formula wants g (y - x)
@@ -119,7 +112,7 @@ void green_adjoint_into(SumEngine<T>& engine, const HarmonicValues& u, const std
 template <class T>
 void stokes_winding_into(SumEngine<T>& engine, const std::vector<Vec3>& eta, std::vector<Vec3>& s, std::vector<double>& w) {
   fill_eta(engine, eta, 3);
-  const auto& sums = engine.run(NearForm::kStokesWinding, 1, 3, 4);
+  const auto& sums = engine.run(NearForm::kStokesWinding, 1, 4);
   for_targets(engine.targets(), sums, 4, [&](std::size_t p, const double* value) {
     for (std::size_t a = 0; a < 3; ++a) s[p][a] = kInv4Pi * value[a * kLanes];
     w[p] = kInv4Pi * value[3 * kLanes];
@@ -129,7 +122,7 @@ void stokes_winding_into(SumEngine<T>& engine, const std::vector<Vec3>& eta, std
 template <class T>
 void winding_gradient_into(SumEngine<T>& engine, const std::vector<Vec3>& eta, std::vector<Vec3>& out) {
   fill_eta(engine, eta, 3);
-  const auto& sums = engine.run(NearForm::kWindingGradient, 1, 3, 3);
+  const auto& sums = engine.run(NearForm::kWindingGradient, 1, 3);
   for_targets(engine.targets(), sums, 3, [&](std::size_t p, const double* value) {
     for (std::size_t a = 0; a < 3; ++a) out[p][a] = kInv4Pi * value[a * kLanes];
   });

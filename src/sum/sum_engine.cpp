@@ -84,13 +84,15 @@ SumEngine<T>::SumEngine(const std::vector<Vec3>& points, const std::vector<std::
   s.points = points;
   s.widths = widths.values;
   s.tree = build_octree(points, morton, s.widths, plan_.leaf_points);
-  s.local.resize(points.size() * 3);
+  const std::size_t stride = field_stride();
+  s.geometry.resize(geometry_fields() * stride);
   parallel::for_blocks(s.tree.leaves.size(), kNodeBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const OctreeNode& leaf = s.tree.nodes[s.tree.leaves[i]];
       const Vec3 centre = leaf.centre();
       for (std::size_t p = leaf.begin; p < leaf.end; ++p) {
-        for (std::size_t a = 0; a < 3; ++a) s.local[3 * p + a] = static_cast<T>(points[p][a] - centre[a]);
+        for (std::size_t a = 0; a < 3; ++a) s.geometry[a * stride + p] = static_cast<T>(points[p][a] - centre[a]);
+        if (local_widths_) s.geometry[3 * stride + p] = static_cast<T>(s.widths[p] * s.widths[p]);
       }
     }
   });
@@ -180,17 +182,11 @@ void SumEngine<T>::make_matrices() {
 }
 
 template <class T>
-AlignedVector<T>& SumEngine<T>::records(std::size_t fields) {
-  const std::size_t size = record_size(fields);
-  const std::size_t n = sources_->points.size();
-  records_.resize(n * size);
-  parallel::for_blocks(n, 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      for (std::size_t a = 0; a < 3; ++a) records_[i * size + a] = sources_->local[3 * i + a];
-      if (local_widths_) records_[i * size + 3] = static_cast<T>(sources_->widths[i] * sources_->widths[i]);
-    }
-  });
-  return records_;
+void SumEngine<T>::begin_values(std::size_t values) {
+  const bool fresh = fields_.empty();
+  field_count_ = geometry_fields() + values;
+  if (fields_.size() < field_count_ * field_stride()) fields_.resize(field_count_ * field_stride());
+  if (fresh) std::copy(sources_->geometry.begin(), sources_->geometry.end(), fields_.begin());
 }
 
 template <class T>
@@ -214,7 +210,7 @@ cpu::LeafTask<T> SumEngine<T>::leaf_task(cpu::NearForm form, int batch, double h
 }
 
 template <class T>
-void SumEngine<T>::upward(cpu::NearForm form, int batch, std::size_t record_size) {
+void SumEngine<T>::upward(cpu::NearForm form, int batch) {
   const Octree& tree = sources_->tree;
   multipoles_.resize(tree.nodes.size() * channels_ * stride_);
   parallel::for_blocks(
@@ -224,8 +220,9 @@ void SumEngine<T>::upward(cpu::NearForm form, int batch, std::size_t record_size
         for (std::size_t i = begin; i < end; ++i) {
           const OctreeNode& leaf = tree.nodes[tree.leaves[i]];
           cpu::LeafTask<T> task = leaf_task(form, batch, leaf.half_side());
-          task.records = records_.data() + leaf.begin * record_size;
-          task.record_size = record_size;
+          task.fields = fields_.data() + leaf.begin;
+          task.field_count = field_count_;
+          task.field_stride = field_stride();
           task.count = leaf.count();
           task.multipole = multipole(tree.leaves[i]);
           task.workspace = workspace.data();
@@ -313,14 +310,14 @@ void SumEngine<T>::downward(cpu::NearForm form) {
 }
 
 template <class T>
-void SumEngine<T>::leaves(cpu::NearForm form, int batch, std::size_t record_size, std::size_t out_channels) {
+void SumEngine<T>::leaves(cpu::NearForm form, int batch, std::size_t out_channels) {
   const Octree& tree = *target_tree_;
   const Octree& source_tree = sources_->tree;
   const std::size_t data_channels = form == cpu::NearForm::kGreenAdjoint ? static_cast<std::size_t>(batch) : 0;
   parallel::for_blocks(
       tree.leaves.size(), kLeafBlock,
       [&](std::size_t begin, std::size_t end) {
-        AlignedVector<T> workspace(plan_.direct ? 0 : cpu::leaf_workspace(coefficients_, 0));
+        AlignedVector<T> workspace(std::max(cpu::near_workspace(field_count_), plan_.direct ? 0 : cpu::leaf_workspace(coefficients_, 0)));
         std::vector<cpu::SourceRun<T>> runs;
         for (std::size_t i = begin; i < end; ++i) {
           const OctreeNode& leaf = tree.nodes[tree.leaves[i]];
@@ -336,19 +333,22 @@ void SumEngine<T>::leaves(cpu::NearForm form, int batch, std::size_t record_size
           cpu::NearTask<T> near{};
           near.form = form;
           near.batch = batch;
-          near.records = records_.data();
-          near.record_size = record_size;
+          near.fields = fields_.data();
+          near.field_count = field_count_;
+          near.stride = field_stride();
           near.runs = runs.data();
           near.run_count = runs.size();
+          near.count = leaf.count();
           near.x = targets_->x.data() + lane;
           near.y = targets_->y.data() + lane;
           near.z = targets_->z.data() + lane;
           near.width_squared = local_widths_ ? targets_->width_squared.data() + lane : nullptr;
           near.u = target_data_.data() + lane * data_channels;
-          near.block_count = targets_->first_block[i + 1] - first;
           near.uniform_width_squared = static_cast<T>(sources_->widths[0] * sources_->widths[0]);
           near.local_widths = local_widths_;
+          near.reach = static_cast<T>(std::min(plan_.reach, kMollifierReach<T>));
           near.out = out_.data() + lane * out_channels;
+          near.workspace = workspace.data();
           cpu::near_field(near);
           if (plan_.direct) continue;
           cpu::LeafTask<T> far = leaf_task(form, batch, leaf.half_side());
@@ -358,7 +358,7 @@ void SumEngine<T>::leaves(cpu::NearForm form, int batch, std::size_t record_size
           far.z = near.z;
           far.width_squared = near.width_squared;
           far.u = near.u;
-          far.block_count = near.block_count;
+          far.block_count = targets_->first_block[i + 1] - first;
           far.out = near.out;
           far.workspace = workspace.data();
           cpu::local_to_points(far);
@@ -368,16 +368,16 @@ void SumEngine<T>::leaves(cpu::NearForm form, int batch, std::size_t record_size
 }
 
 template <class T>
-const std::vector<double>& SumEngine<T>::run(cpu::NearForm form, int batch, std::size_t fields, std::size_t out_channels) {
+const std::vector<double>& SumEngine<T>::run(cpu::NearForm form, int batch, std::size_t out_channels) {
   channels_ = expansion_channels(form, batch, local_widths_);
   set_order(order_for(form, batch, plan_.order));
   out_.resize(targets_->x.size() * out_channels);
   if (!plan_.direct) {
-    upward(form, batch, record_size(fields));
+    upward(form, batch);
     across(form);
     downward(form);
   }
-  leaves(form, batch, record_size(fields), out_channels);
+  leaves(form, batch, out_channels);
   return out_;
 }
 

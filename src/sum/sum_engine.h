@@ -38,16 +38,16 @@ class SumEngine {
             const std::atomic<bool>* cancel);
 
   [[nodiscard]] bool local_widths() const { return local_widths_; }
-  [[nodiscard]] std::size_t record_size(std::size_t fields) const { return 3 + (local_widths_ ? 1 : 0) + fields; }
   [[nodiscard]] const TargetBlocks<T>& targets() const { return *targets_; }
 
-  /// N source records with coordinates filled in and `fields` values per source for the caller to fill, from index record_size(0).
-  AlignedVector<T>& records(std::size_t fields);
+  /// Makes room for `values` values per source, for the caller to fill: the k-th of source i is value(k)[i].
+  void begin_values(std::size_t values);
+  [[nodiscard]] T* value(std::size_t k) { return fields_.data() + (geometry_fields() + k) * field_stride(); }
   /// Target data: blocks x channels x lanes for the caller to fill.
   AlignedVector<T>& target_data(std::size_t channels);
 
-  /// Runs a form over records() and target_data(): result is blocks x out_channels x lanes, without 1/(4 pi).
-  const std::vector<double>& run(cpu::NearForm form, int batch, std::size_t fields, std::size_t out_channels);
+  /// Runs a form over the values and target_data(): result is blocks x out_channels x lanes, without 1/(4 pi).
+  const std::vector<double>& run(cpu::NearForm form, int batch, std::size_t out_channels);
 
  private:
   // What belongs to the sources, shared by engines with other targets.
@@ -55,7 +55,7 @@ class SumEngine {
     std::vector<Vec3> points;
     Octree tree;
     std::vector<double> widths;
-    AlignedVector<T> local;                           // N x 3 relative to the leaf's centre
+    AlignedVector<T> geometry;  // x, y, z relative to the leaf's centre, and the squared width with local widths: fields as in fields_
     std::array<AlignedVector<T>, 8> child_to_parent;  // M2M by octant, column after column
     std::array<AlignedVector<T>, 8> parent_to_child;  // L2L by octant
   };
@@ -63,10 +63,13 @@ class SumEngine {
   void set_order(int order);
   void prepare(const std::vector<Vec3>& targets, const std::vector<double>& target_widths);
   void make_matrices();
-  void upward(cpu::NearForm form, int batch, std::size_t record_size);
+  // x, y, z and, with local widths, the squared width.
+  [[nodiscard]] std::size_t geometry_fields() const { return local_widths_ ? 4 : 3; }
+  [[nodiscard]] std::size_t field_stride() const { return cpu::padded_count(sources_->points.size()) + cpu::kLanes; }
+  void upward(cpu::NearForm form, int batch);
   void across(cpu::NearForm form);
   void downward(cpu::NearForm form);
-  void leaves(cpu::NearForm form, int batch, std::size_t record_size, std::size_t out_channels);
+  void leaves(cpu::NearForm form, int batch, std::size_t out_channels);
   cpu::LeafTask<T> leaf_task(cpu::NearForm form, int batch, double half_side) const;
   T* multipole(std::size_t node) { return multipoles_.data() + node * channels_ * stride_; }
   T* local(std::size_t node) { return locals_.data() + node * channels_ * stride_; }
@@ -86,7 +89,8 @@ class SumEngine {
   std::size_t coefficients_ = 0;
   std::size_t stride_ = 0;    // of one expansion
   std::size_t channels_ = 0;  // expansions per node
-  AlignedVector<T> records_;
+  AlignedVector<T> fields_;   // geometry and values of the sources, one field after the other, field_stride() apart
+  std::size_t field_count_ = 0;
   AlignedVector<T> target_data_;
   AlignedVector<T> multipoles_;
   AlignedVector<T> locals_;
