@@ -101,7 +101,7 @@ void describe(const Problem& problem, const PointsView& points, const Options& o
   stats.harmonics = settings.method == Method::kGreen ? format_harmonics(settings.harmonics) : "1,x,y,z";
   stats.sums = settings.dense || settings.sums.direct ? "direct" : "hierarchical";
   stats.accuracy = settings.sums.direct ? 0 : settings.accuracy;
-  stats.tolerance = settings.tolerance;
+  stats.tolerance = starts_coarse(settings, cloud.size()) ? settings.continued_tolerance : settings.tolerance;
   stats.threads = parallel::thread_count(options.threads);
   stats.planned_memory_bytes = planned_memory(settings, points.count, cloud.size());
   if (problem.baseline) {

@@ -73,6 +73,27 @@ TEST(Orient, ResidualsOfConjugateGradientsFall) {
   EXPECT_LE(o.stats.iterations.back().residual, 2e-3);
 }
 
+// From 40,000 points on a solution on a quarter of them is the start.
+TEST(Orient, CoarseStartsSaveSteps) {
+  if (kSanitized) GTEST_SKIP() << "long";
+  const Surface s = shapes::join(shapes::sphere(30000, 0.9), shapes::torus(10000, 0.4, 0.15, 4), true);
+  Options options;
+  const Orientation coarse = orient(s.points, options);
+  options.schedule = "45 cg";
+  const Orientation direct = orient(s.points, options);
+  EXPECT_TRUE(coarse.stats.converged);
+  EXPECT_LT(3 * coarse.stats.iterations.size(), direct.stats.iterations.size());
+  EXPECT_LE(coarse.stats.iterations.back().residual, coarse.stats.tolerance);
+  EXPECT_GT(coarse.stats.tolerance, direct.stats.tolerance);
+  EXPECT_EQ(shapes::share_correct(coarse.normals, s.normals), 1);
+  EXPECT_LE(shapes::angle_error(coarse.normals, s.normals), 1.1 * shapes::angle_error(direct.normals, s.normals));
+  for (const int threads : {1, 3}) {
+    options.schedule.clear();
+    options.threads = threads;
+    EXPECT_EQ(orient(s.points, options).normals, coarse.normals) << threads;
+  }
+}
+
 TEST(Orient, IsTheSameForEveryOrderOfThePoints) {
   const Surface s = shapes::torus(3000, 0.6, 0.25, 8);
   std::vector<Vec3> shuffled = s.points;

@@ -22,13 +22,15 @@ Settings coarser(Settings settings) {
   settings.refinement_width *= kSpacingRatio;
   settings.winding_weight *= kSpacingRatio;
   settings.damping /= kSpacingRatio;
+  settings.tolerance = settings.start_tolerance;
+  settings.first_sums = settings.sums;
   return settings;
 }
 
 // The winding gradient at `points` of the solution on a quarter of them, or nothing when there are too few.
 std::vector<Vec3> coarse_gradient(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
                                   Stages& stages) {
-  if (!settings.coarse_to_fine || points.size() / kThinning < kFewestCoarsePoints) return {};
+  if (!starts_coarse(settings, points.size())) return {};
   std::vector<Vec3> some;
   std::vector<std::uint64_t> codes;
   for (std::size_t i = kThinning / 2; i < points.size(); i += kThinning) {
@@ -42,6 +44,10 @@ std::vector<Vec3> coarse_gradient(const std::vector<Vec3>& points, const std::ve
 }
 
 }  // namespace
+
+bool starts_coarse(const Settings& settings, std::size_t points) {
+  return settings.coarse_to_fine && points / kThinning >= kFewestCoarsePoints;
+}
 
 IterativeResult solve_coarse_to_fine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
                                      Stages& stages) {
@@ -58,7 +64,8 @@ IterativeResult solve_coarse_to_fine(const std::vector<Vec3>& points, const std:
   }
   const double before = coarsest ? 0 : kCoarseShare;
   const double share = 1 - before;
-  return solve_iteratively(*system, coarsest ? settings.schedule : settings.continued_schedule, settings.tolerance, std::move(start),
+  return solve_iteratively(*system, coarsest ? settings.schedule : settings.continued_schedule,
+                           coarsest ? settings.tolerance : settings.continued_tolerance, std::move(start),
                            [&](int step, int steps, double) { stages.progress(before + share * step / steps); });
 }
 

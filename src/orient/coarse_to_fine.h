@@ -12,9 +12,13 @@
 
 namespace g3r {
 
+/// Whether solve_coarse_to_fine() begins with fewer points.
+[[nodiscard]] bool starts_coarse(const Settings& settings, std::size_t points);
+
 /// Solves settings.method on N points in canonical order. With settings.coarse_to_fine and enough points, every 4th point is solved first
 /// (recursively, all lengths doubled), and the start is that solution's winding gradient as area vectors (gradient_to_areas()).
-/// The smooth part of the error, which conjugate gradients reduce slowest, is gone from the start. Measured: docs/design.md.
+/// The smooth part of the error, which conjugate gradients reduce slowest, is gone from the start, so the tolerances of starts and of
+/// continued solves are wider. Measured: docs/design.md.
 /// The returned residuals are those of the finest level. Throws like solve_iteratively().
 [[nodiscard]] IterativeResult solve_coarse_to_fine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton,
                                                    const Settings& settings, Stages& stages);

@@ -17,7 +17,10 @@ constexpr double kEnergyWindingWeight = 0.1;  // larger converges slower, 0 lose
 constexpr double kEnergyTolerance = 2.5e-3;   // slats and spokes need this residual; smooth shapes get there in half the steps
 constexpr double kAcceptedResidual = 2e-2;    // from here on normals change little; all clean models get below
 constexpr const char* kEnergySchedule = "45 cg";
-constexpr Steps kContinued{10, StepKind::kConjugateGradient};  // more gain little once the smooth part of the error is gone
+constexpr double kStartTolerance = 5e-3;  // of a coarse solution that is only a start
+// After a coarse start: smooth shapes are there in 2 to 10 steps, thin walls and narrow gaps in 15 to 25.
+constexpr Steps kContinued{25, StepKind::kConjugateGradient};
+constexpr double kContinuedTolerance = 8e-3;
 // The default on noisy input: the field must not see single points. Noise sigma turns the normal of an area s^2 of points h apart by about
 // sigma h / s^2, so widths for one accuracy are in proportion to sqrt(sigma h).
 constexpr double kNoisyWidth = 3;  // sigma, of epsilon and of the refinement
@@ -35,7 +38,7 @@ constexpr double kWideEpsilon = 1.5;             // h; from here on clusters pay
 constexpr double kNoisyDamping = 0.28;           // 1/h: the self term of a flat patch
 constexpr double kNoisyWindingWeight = 0.03;     // h; W eta = 1/2 is wrong at points off the surface, so it must not weigh much
 constexpr const char* kNoisySchedule = "10 cg";  // semi-convergence: more steps fit the noise
-// Of the sums. Solves from 0 amplify errors with every step; a few steps from a good start give the same normals with 2e-2 as with 1e-3.
+// Of the sums. Solves from 0 amplify errors with every step; starts, and steps from them, give the same normals with 2e-2 as with 1e-3.
 constexpr double kAccuracy = 1e-2;
 constexpr double kContinuedAccuracy = 2e-2;
 // The default for least squares over the harmonics.
@@ -133,6 +136,8 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   s.coarse_to_fine = !paper && !green && options.schedule.empty();
   s.continued_schedule = {kContinued};
   s.tolerance = options.tolerance >= 0 ? options.tolerance : paper ? 0 : green ? kGreenTolerance : kEnergyTolerance;
+  s.continued_tolerance = options.tolerance >= 0 ? options.tolerance : kContinuedTolerance;
+  s.start_tolerance = std::max(s.tolerance, kStartTolerance);
   const bool wide = s.epsilon > kWideEpsilon * spacing;
   if (!paper && !green && (noise > 0 || wide)) {
     const double sigma = wide ? s.epsilon / kNoisyWidth : noise;

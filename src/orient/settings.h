@@ -34,11 +34,13 @@ struct Settings {
   std::vector<Steps> schedule;            ///< from eta = 0
   std::vector<Steps> continued_schedule;  ///< from a coarse solution
   std::string schedule_text;
-  double tolerance = 0;          ///< stop at this relative residual
-  double accepted_residual = 0;  ///< at or below this the result counts as converged
-  double accuracy = 0;           ///< of the sums
-  SumPlan first_sums;            ///< of the solve from eta = 0
-  SumPlan sums;                  ///< of everything after it
+  double tolerance = 0;            ///< stop at this relative residual
+  double continued_tolerance = 0;  ///< the same after a start from a coarse solution
+  double start_tolerance = 0;      ///< the same for a solution that is only a start
+  double accepted_residual = 0;    ///< at or below this the result counts as converged
+  double accuracy = 0;             ///< of the sums
+  SumPlan first_sums;              ///< of the solve from eta = 0
+  SumPlan sums;                    ///< of everything after it
 };
 
 /// `noise`: estimate_noise(). Throws InvalidInput for an option out of range, naming it and the range.
