@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t kLeafBlock = 4096;
+constexpr std::size_t kFewEdges = 32;   // leaves for each, from which on sorting the edges costs less than counting those of every leaf
 constexpr std::size_t kMinTasks = 256;  // the traversal is cut into at least this many independent tasks where the tree allows it
 
 // Order of the four quadrants around an edge along axis d, counter-clockwise seen from +d: bit 0 = upper along d+1, bit 1 = along d+2.
@@ -184,10 +185,6 @@ std::vector<Out> find_edges(const Octree& octree, std::vector<std::uint8_t> mark
   return edges;
 }
 
-void keep_crossing(const MinimalEdge& e, const std::vector<std::uint8_t>& inside, std::vector<ActiveEdge>& out) {
-  if (inside[e.low] != inside[e.high]) out.push_back({e, inside[e.low] != 0});
-}
-
 // ---- arcs: on every octree face the crossings of its rim are joined in pairs ----
 
 // Place `slot` of an edge and the next one are different leaves, and so share a face with the edge on its rim.
@@ -212,6 +209,12 @@ std::vector<FaceRecord> face_records(const Octree& octree, const std::vector<Act
       }
     }
   };
+  if (edges.size() < octree.leaf_count() / kFewEdges) {
+    std::vector<FaceRecord> few;
+    for_each_record([&](const FaceRecord& r) { few.push_back(r); });
+    std::sort(few.begin(), few.end());
+    return few;
+  }
   // By the first leaf of the face, then each leaf's few.
   std::vector<std::size_t> begin(octree.leaf_count() + 2, 0);
   for_each_record([&](const FaceRecord& r) { ++begin[(r.face >> 32U) + 2]; });
@@ -436,15 +439,6 @@ void make_polygons(const Octree& octree, const std::vector<ActiveEdge>& edges, c
   }
 }
 
-// Crossings and sheets of the leaves for which complete(leaf); returns the sheet of every (edge, place).
-template <class Complete>
-std::vector<std::uint32_t> add_sheets(const std::vector<ActiveEdge>& edges, const std::vector<Arc>& arcs, const Complete& complete,
-                                      DualSurface& surface) {
-  surface.crossings.reserve(edges.size());
-  for (const ActiveEdge& e : edges) surface.crossings.push_back(e.inside_low ? Crossing{e.low, e.high} : Crossing{e.high, e.low});
-  return label_sheets(edges, arcs, complete, surface);
-}
-
 }  // namespace
 
 DualSurface contour(const Octree& octree, const std::vector<std::uint8_t>& inside, const InsideTest& centre_inside,
@@ -454,11 +448,15 @@ DualSurface contour(const Octree& octree, const std::vector<std::uint8_t>& insid
     return std::any_of(c.begin(), c.end(), [&](std::uint32_t k) { return inside[k] != inside[c[0]]; });
   };
   const auto all = [](std::size_t) { return true; };
-  const auto keep = [&](const MinimalEdge& e, std::vector<ActiveEdge>& out) { keep_crossing(e, inside, out); };
+  const auto keep = [&](const MinimalEdge& e, std::vector<ActiveEdge>& out) {
+    if (inside[e.low] != inside[e.high]) out.push_back({e, inside[e.low] != 0});
+  };
   const auto edges = find_edges<ActiveEdge>(octree, mark_nodes(octree, mixed), keep, cancel);
   const Arcs arcs = join_arcs(octree, edges, all, centre_inside);
   DualSurface surface;
-  const std::vector<std::uint32_t> sheet = add_sheets(edges, arcs.arcs, all, surface);
+  surface.crossings.reserve(edges.size());
+  for (const ActiveEdge& e : edges) surface.crossings.push_back(e.inside_low ? Crossing{e.low, e.high} : Crossing{e.high, e.low});
+  const std::vector<std::uint32_t> sheet = label_sheets(edges, arcs.arcs, all, surface);
   const auto middle = split_double_edges(arcs, sheet, surface);
   make_polygons(octree, edges, sheet, middle, surface);
   return surface;
@@ -469,16 +467,21 @@ std::vector<MinimalEdge> edges_around(const Octree& octree, const std::vector<st
   return find_edges<MinimalEdge>(octree, mark_nodes(octree, [&](std::size_t leaf) { return leaves[leaf] != 0; }), keep, cancel);
 }
 
-DualSurface sheets_in(const Octree& octree, const std::vector<MinimalEdge>& edges, const std::vector<std::uint8_t>& leaves,
-                      const std::vector<std::uint8_t>& inside, const InsideTest& centre_inside) {
+Sheets sheets_in(const Octree& octree, const std::vector<MinimalEdge>& edges, const std::vector<std::uint32_t>& chosen,
+                 const std::vector<std::uint8_t>& leaves, const std::vector<std::uint8_t>& inside, const InsideTest& centre_inside) {
   const auto marked = [&](std::size_t leaf) { return leaves[leaf] != 0; };
   std::vector<ActiveEdge> crossing;
-  for (const MinimalEdge& e : edges) {
-    if (std::any_of(e.leaf.begin(), e.leaf.end(), marked)) keep_crossing(e, inside, crossing);
+  std::vector<std::uint32_t> number;
+  for (const std::uint32_t k : chosen) {
+    const MinimalEdge& e = edges[k];
+    if (inside[e.low] == inside[e.high] || std::none_of(e.leaf.begin(), e.leaf.end(), marked)) continue;
+    crossing.push_back({e, inside[e.low] != 0});
+    number.push_back(k);
   }
   DualSurface surface;
-  add_sheets(crossing, join_arcs(octree, crossing, marked, centre_inside).arcs, marked, surface);
-  return surface;
+  label_sheets(crossing, join_arcs(octree, crossing, marked, centre_inside).arcs, marked, surface);
+  for (std::uint32_t& k : surface.patch_crossings) k = number[k];
+  return {std::move(surface.patch_leaf), std::move(surface.patch_begin), std::move(surface.patch_crossings)};
 }
 
 }  // namespace g3r::mesh

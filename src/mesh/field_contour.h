@@ -55,10 +55,18 @@ struct MinimalEdge {
 [[nodiscard]] std::vector<MinimalEdge> edges_around(const Octree& octree, const std::vector<std::uint8_t>& leaves,
                                                     const std::atomic<bool>* cancel = nullptr);
 
-/// Crossings and sheets of the surface in the marked leaves (one byte per leaf) alone, no polygons. `edges`: at least those around marked
-/// leaves. O(edges + leaves).
-[[nodiscard]] DualSurface sheets_in(const Octree& octree, const std::vector<MinimalEdge>& edges, const std::vector<std::uint8_t>& leaves,
-                                    const std::vector<std::uint8_t>& inside, const InsideTest& centre_inside);
+/// Sheets without a surface around them.
+struct Sheets {
+  std::vector<std::uint32_t> leaf;  ///< that holds each sheet
+  std::vector<std::size_t> begin;   ///< sheets + 1 offsets into rim
+  std::vector<std::uint32_t> rim;   ///< edges that cross on the rim of each sheet
+};
+
+/// The sheets of the surface in the marked leaves (one byte per leaf) alone. `chosen`: of `edges`, at least those around marked leaves; in
+/// the order that the edges of rims are to have. O(chosen log chosen), and O(leaves) where many are chosen.
+[[nodiscard]] Sheets sheets_in(const Octree& octree, const std::vector<MinimalEdge>& edges, const std::vector<std::uint32_t>& chosen,
+                               const std::vector<std::uint8_t>& leaves, const std::vector<std::uint8_t>& inside,
+                               const InsideTest& centre_inside);
 
 /// Cuts the polygons into triangles; `positions` has one entry per vertex of the surface, `normals` (may be empty) one per sheet.
 /// Quadrilaterals are cut along the diagonal that bends less against the normals; other polygons get a vertex at their centre.

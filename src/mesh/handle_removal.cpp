@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 #include "g3r/error.h"
@@ -15,188 +14,86 @@ constexpr long kMostPerHandle = 60;  // corners: more are a change of shape, not
 constexpr int kRounds = 4;           // groups change what others do; what has not settled by then is left as it is
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-// Groups of corners, those at edges around one leaf together.
-struct Groups {
-  std::vector<std::uint32_t> of_corner, of_leaf;  // group or kNone; of leaves whose sheets depend on the corners of a group
-  std::vector<std::uint8_t> leaves;               // whether a leaf has a group
-  std::vector<long> size;                         // corners of each
-};
+// Whether a group of so many corners may be taken for so many handles.
+bool is_worth(long handles, long corners) { return handles > 0 && corners <= kMostPerHandle * handles; }
 
-// `edges`: at least those at corners where a and b differ.
-Groups group_corners(const Octree& octree, const std::vector<MinimalEdge>& edges, const std::vector<std::uint8_t>& a,
-                     const std::vector<std::uint8_t>& b) {
-  const auto differs = [&](std::uint32_t c) { return a[c] != b[c]; };
-  Groups g;
-  g.of_corner.assign(a.size(), kNone);
-  g.of_leaf.assign(octree.leaf_count(), kNone);
-  g.leaves.assign(octree.leaf_count(), 0);
-  DisjointSets sets(a.size());
-  for (const MinimalEdge& e : edges) {
-    if (!differs(e.low) && !differs(e.high)) continue;
-    const std::uint32_t end = differs(e.low) ? e.low : e.high;
-    if (differs(e.high)) sets.join(end, e.high);
-    for (const std::uint32_t leaf : e.leaf) {
-      std::uint32_t& first = g.of_leaf[leaf];
-      if (first == kNone) first = end;
-      sets.join(first, end);
-      g.leaves[leaf] = 1;
-    }
-  }
-  for (std::uint32_t c = 0; c < a.size(); ++c) {
-    if (!differs(c)) continue;
-    const std::size_t first = sets.find(c);  // the smallest, so its group has a number
-    if (first == c) g.size.push_back(0);
-    g.of_corner[c] = first == c ? static_cast<std::uint32_t>(g.size.size() - 1) : g.of_corner[first];
-    ++g.size[g.of_corner[c]];
-  }
-  for (std::uint32_t& leaf : g.of_leaf) {
-    if (leaf != kNone) leaf = g.of_corner[leaf];
-  }
-  return g;
-}
+// Twice the Euler characteristic of a sheet, half of each of its arcs counted; a sheet is a vertex, an arc an edge, a crossing a face.
+int twice_characteristic(const Sheets& s, std::size_t sheet) { return 2 - static_cast<int>(s.begin[sheet + 1] - s.begin[sheet]); }
 
-// Adds `sign` times twice the Euler characteristic of the part of the surface that can depend on each group. A sheet is a vertex, an arc
-// an edge that belongs half to each of its two sheets, a crossing a face.
-void add_characteristic(const DualSurface& s, const Groups& groups, long sign, std::vector<long>& twice) {
-  for (std::size_t p = 0; p < s.patch_count(); ++p) {
-    const std::uint32_t g = groups.of_leaf[s.patch_leaf[p]];
-    if (g != kNone) twice[g] += sign * (2 - static_cast<long>(s.patch_begin[p + 1] - s.patch_begin[p]));
-  }
-  for (const Crossing& c : s.crossings) {
-    const std::uint32_t g = groups.of_corner[c.inside] != kNone ? groups.of_corner[c.inside] : groups.of_corner[c.outside];
-    if (g != kNone) twice[g] += 2 * sign;
+// Joins the crossings around each of the sheets for which use(leaf). `node`: of edges, among the sets.
+template <class Use>
+void join_rims(const Sheets& s, const std::vector<std::uint32_t>& node, const Use& use, DisjointSets& sets) {
+  for (std::size_t p = 0; p < s.leaf.size(); ++p) {
+    if (!use(s.leaf[p])) continue;
+    const std::size_t first = node[s.rim[s.begin[p]]];
+    for (std::size_t k = s.begin[p] + 1; k < s.begin[p + 1]; ++k) sets.join(first, node[s.rim[k]]);
   }
 }
 
-// Joins the crossings around each of the sheets for which use(leaf). `number(k)`: of crossing k among the sets.
-template <class Use, class Number>
-void join_crossings(const DualSurface& s, const Use& use, const Number& number, DisjointSets& sets) {
+// Joins the crossings around each of the sheets for which use(leaf).
+template <class Use>
+void join_crossings(const DualSurface& s, const Use& use, DisjointSets& sets) {
   for (std::size_t p = 0; p < s.patch_count(); ++p) {
     if (!use(s.patch_leaf[p])) continue;
-    const std::size_t first = number(s.patch_crossings[s.patch_begin[p]]);
-    for (std::size_t k = s.patch_begin[p] + 1; k < s.patch_begin[p + 1]; ++k) sets.join(first, number(s.patch_crossings[k]));
+    const std::size_t first = s.patch_crossings[s.patch_begin[p]];
+    for (std::size_t k = s.patch_begin[p] + 1; k < s.patch_begin[p + 1]; ++k) sets.join(first, s.patch_crossings[k]);
   }
 }
 
-// Twice the Euler characteristic, where arcs count half for each of their two sheets.
-long twice_characteristic(const DualSurface& s) {
-  return 2 * static_cast<long>(s.patch_count() + s.crossings.size()) - static_cast<long>(s.patch_crossings.size());
-}
-
-// Joins the crossings that belong to the same of `parts` parts.
-void join_parts(const std::vector<std::uint32_t>& part, std::size_t parts, DisjointSets& sets) {
-  std::vector<std::uint32_t> first(parts, kNone);
-  for (std::uint32_t k = 0; k < part.size(); ++k) {
-    if (part[k] == kNone) continue;
-    if (first[part[k]] == kNone) first[part[k]] = k;
-    sets.join(first[part[k]], k);
-  }
-}
-
-long component_count(const DualSurface& s, const std::vector<std::uint32_t>& part, std::size_t parts) {
-  DisjointSets components(s.crossings.size());
-  join_crossings(
-      s, [](std::uint32_t) { return true; }, [](std::uint32_t k) { return k; }, components);
-  join_parts(part, parts, components);
-  return static_cast<long>(components.count());
-}
-
-std::uint64_t key(const Crossing& c) { return std::uint64_t{c.inside} << 32U | c.outside; }
-
-// The surface outside the leaves with a group.
-class Surroundings {
+// How many different values each group has; most have one.
+class DifferentValues {
  public:
-  // `part`: of each crossing of the surface, the one of `parts` parts it belongs to, or kNone.
-  Surroundings(const DualSurface& surface, const std::vector<std::uint32_t>& part, std::size_t parts, const Groups& groups)
-      : surface_(surface), part_(part), groups_(groups), joined_(surface.crossings.size()) {
-    join_parts(part, parts, joined_);
-    join_crossings(
-        surface, [&](std::uint32_t leaf) { return groups.leaves[leaf] == 0; }, [](std::uint32_t k) { return k; }, joined_);
-    for (std::size_t p = 0; p < surface.patch_count(); ++p) {
-      if (groups.leaves[surface.patch_leaf[p]] == 0) continue;
-      for (std::size_t k = surface.patch_begin[p]; k < surface.patch_begin[p + 1]; ++k) {
-        const std::uint32_t number = surface.patch_crossings[k];
-        known_.emplace_back(key(surface.crossings[number]), number);
-      }
-    }
-    std::sort(known_.begin(), known_.end());
+  explicit DifferentValues(std::size_t groups) : first_(groups, kNone), count_(groups, 0) {}
+
+  void add(std::uint32_t group, std::uint32_t value) {
+    if (value == first_[group]) return;
+    if (first_[group] != kNone) return further_.emplace_back(group, value), void();
+    first_[group] = value;
+    count_[group] = 1;
   }
 
-  // Of the surface whose sheets in the leaves with a group are `inner`: how many components pass through the leaves of each group.
-  [[nodiscard]] std::vector<std::size_t> components_with(const DualSurface& inner) const {
-    DisjointSets sets = joined_;
-    const std::vector<std::uint32_t> number = numbers_of(inner);
-    for (const std::uint32_t n : number) {
-      if (n >= sets.size()) sets.add();
-    }
-    join_crossings(
-        inner, [](std::uint32_t) { return true; }, [&](std::uint32_t k) { return number[k]; }, sets);
-    std::vector<std::pair<std::uint32_t, std::size_t>> seen;
-    for (std::size_t p = 0; p < inner.patch_count(); ++p)
-      seen.emplace_back(groups_.of_leaf[inner.patch_leaf[p]], sets.find(number[inner.patch_crossings[inner.patch_begin[p]]]));
-    std::sort(seen.begin(), seen.end());
-    seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
-    std::vector<std::size_t> count(groups_.size.size(), 0);
-    for (const auto& [g, component] : seen) ++count[g];
-    return count;
-  }
-
-  // Crossings and sheets of that surface, and the parts of the crossings.
-  [[nodiscard]] std::pair<DualSurface, std::vector<std::uint32_t>> surface_with(const DualSurface& inner) const {
-    const std::vector<std::uint32_t> number = numbers_of(inner);
-    std::vector<std::uint32_t> kept(surface_.crossings.size() + inner.crossings.size(), kNone);
-    DualSurface out;
-    std::vector<std::uint32_t> part;
-    out.patch_begin.push_back(0);
-    const auto add = [&](const DualSurface& from, std::size_t patch, const auto& number_of) {
-      out.patch_leaf.push_back(from.patch_leaf[patch]);
-      for (std::size_t k = from.patch_begin[patch]; k < from.patch_begin[patch + 1]; ++k) {
-        const std::uint32_t crossing = from.patch_crossings[k];
-        const std::uint32_t before = number_of(crossing);
-        std::uint32_t& n = kept[before];
-        if (n == kNone) {
-          n = static_cast<std::uint32_t>(out.crossings.size());
-          out.crossings.push_back(from.crossings[crossing]);
-          part.push_back(before < part_.size() ? part_[before] : kNone);
-        }
-        out.patch_crossings.push_back(n);
-      }
-      out.patch_begin.push_back(out.patch_crossings.size());
-    };
-    for (std::size_t p = 0; p < surface_.patch_count(); ++p) {
-      if (groups_.leaves[surface_.patch_leaf[p]] == 0) add(surface_, p, [](std::uint32_t k) { return k; });
-    }
-    for (std::size_t p = 0; p < inner.patch_count(); ++p) add(inner, p, [&](std::uint32_t k) { return number[k]; });
-    return {std::move(out), std::move(part)};
+  std::vector<long> count() {
+    std::sort(further_.begin(), further_.end());
+    further_.erase(std::unique(further_.begin(), further_.end()), further_.end());
+    for (const auto& [group, value] : further_) ++count_[group];
+    return std::move(count_);
   }
 
  private:
-  // The number in the surface of each crossing of `inner`; new ones are numbered on.
-  [[nodiscard]] std::vector<std::uint32_t> numbers_of(const DualSurface& inner) const {
-    auto next = static_cast<std::uint32_t>(surface_.crossings.size());
-    std::vector<std::uint32_t> number;
-    number.reserve(inner.crossings.size());
-    for (const Crossing& c : inner.crossings) {
-      const auto found = std::lower_bound(known_.begin(), known_.end(), std::pair{key(c), std::uint32_t{0}});
-      number.push_back(found != known_.end() && found->first == key(c) ? found->second : next++);
-    }
-    return number;
-  }
-
-  const DualSurface& surface_;
-  const std::vector<std::uint32_t>& part_;
-  const Groups& groups_;
-  DisjointSets joined_;                                         // its crossings
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> known_;  // those of leaves with a group, by their corners
+  std::vector<std::uint32_t> first_;
+  std::vector<long> count_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> further_;
 };
+
+// Mixes the bits of a number well (splitmix64).
+std::uint64_t mixed(std::uint64_t x) {
+  x += 0x9E3779B97F4A7C15U;
+  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9U;
+  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBU;
+  return x ^ (x >> 31U);
+}
+
+std::uint64_t key(std::uint32_t inside, std::uint32_t outside) { return std::uint64_t{inside} << 32U | outside; }
 
 }  // namespace
 
-long count_handles(const DualSurface& surface) { return component_count(surface, {}, 0) - twice_characteristic(surface) / 4; }
+long count_handles(const DualSurface& surface) {
+  DisjointSets components(surface.crossings.size());
+  join_crossings(
+      surface, [](std::uint32_t) { return true; }, components);
+  const long twice =
+      2 * static_cast<long>(surface.patch_count() + surface.crossings.size()) - static_cast<long>(surface.patch_crossings.size());
+  return static_cast<long>(components.count()) - twice / 4;
+}
 
 HandleRemoval::HandleRemoval(const Octree& octree, const std::vector<std::uint8_t>& open, const std::vector<std::uint8_t>& inside,
                              const DualSurface& surface, InsideTest centre_inside, const std::atomic<bool>* cancel)
-    : octree_(octree), centre_inside_(std::move(centre_inside)), cancel_(cancel), handles_(count_handles(surface)) {
+    : octree_(octree),
+      centre_inside_(std::move(centre_inside)),
+      cancel_(cancel),
+      handles_(count_handles(surface)),
+      group_(octree.leaf_count(), kNone),
+      changed_(octree.leaf_count(), 0) {
   std::vector<std::uint8_t> leaves(octree.leaf_count(), 0);
   for (std::size_t leaf = 0; leaf < leaves.size(); ++leaf) {
     for (const std::uint32_t c : octree.corners(leaf)) leaves[leaf] |= open[c];
@@ -207,11 +104,57 @@ HandleRemoval::HandleRemoval(const Octree& octree, const std::vector<std::uint8_
     for (const std::uint32_t leaf : e.leaf) around[leaf] = 1;
   }
   edges_ = edges_around(octree, around, cancel);
-  surface_ = sheets_in(octree, edges_, around, inside, centre_inside_);
-  // The rest of the surface never changes.
+  list_edges(open, around);
+  std::vector<std::uint32_t> crossing;
+  for (std::uint32_t k = 0; k < edges_.size(); ++k) {
+    if (inside[edges_[k].low] != inside[edges_[k].high]) crossing.push_back(k);
+  }
+  sheets_ = sheets_in(octree, edges_, crossing, around, inside, centre_inside_);
+  twice_.assign(octree.leaf_count(), 0);
+  for (std::size_t p = 0; p < sheets_.leaf.size(); ++p) twice_[sheets_.leaf[p]] += twice_characteristic(sheets_, p);
+  number_parts(surface, around);
+  components_ = join_components();
+}
+
+void HandleRemoval::list_edges(const std::vector<std::uint8_t>& open, const std::vector<std::uint8_t>& around) {
+  std::vector<std::uint32_t> place(open.size(), kNone);
+  for (std::uint32_t c = 0; c < open.size(); ++c) {
+    if (open[c] == 0) continue;
+    place[c] = static_cast<std::uint32_t>(corners_.size());
+    corners_.push_back(c);
+  }
+  // Counts, then fills.
+  const auto list = [&](std::size_t items, const auto& for_each_item, EdgeLists& out) {
+    out.begin.assign(items + 2, 0);
+    for (const MinimalEdge& e : edges_) for_each_item(e, [&](std::size_t i) { ++out.begin[i + 2]; });
+    for (std::size_t i = 2; i < out.begin.size(); ++i) out.begin[i] += out.begin[i - 1];
+    out.edges.resize(out.begin.back());
+    for (std::uint32_t k = 0; k < edges_.size(); ++k) for_each_item(edges_[k], [&](std::size_t i) { out.edges[out.begin[i + 1]++] = k; });
+    out.begin.pop_back();
+  };
+  list(
+      corners_.size(),
+      [&](const MinimalEdge& e, const auto& use) {
+        for (const std::uint32_t c : {e.low, e.high}) {
+          if (place[c] != kNone) use(place[c]);
+        }
+      },
+      at_corner_);
+  list(
+      around.size(),
+      [&](const MinimalEdge& e, const auto& use) {
+        for (std::size_t k = 0; k < 4; ++k) {
+          if (around[e.leaf[k]] != 0 && e.leaf[k] != e.leaf[(k + 3) % 4]) use(e.leaf[k]);
+        }
+      },
+      around_leaf_);
+}
+
+// The parts that the surface falls into outside the leaves `around`, and the edges where they come to these leaves.
+void HandleRemoval::number_parts(const DualSurface& surface, const std::vector<std::uint8_t>& around) {
   DisjointSets rest(surface.crossings.size());
   join_crossings(
-      surface, [&](std::uint32_t leaf) { return around[leaf] == 0; }, [](std::uint32_t k) { return k; }, rest);
+      surface, [&](std::uint32_t leaf) { return around[leaf] == 0; }, rest);
   std::vector<std::pair<std::uint64_t, std::uint32_t>> known;
   std::vector<std::uint32_t> number(surface.crossings.size(), kNone);
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {
@@ -220,53 +163,239 @@ HandleRemoval::HandleRemoval(const Octree& octree, const std::vector<std::uint8_
       const std::uint32_t crossing = surface.patch_crossings[k];
       std::uint32_t& n = number[rest.find(crossing)];
       if (n == kNone) n = static_cast<std::uint32_t>(parts_++);
-      known.emplace_back(key(surface.crossings[crossing]), n);
+      known.emplace_back(key(surface.crossings[crossing].inside, surface.crossings[crossing].outside), n);
     }
   }
   std::sort(known.begin(), known.end());
-  for (const Crossing& c : surface_.crossings) {
-    const auto found = std::lower_bound(known.begin(), known.end(), std::pair{key(c), std::uint32_t{0}});
-    part_.push_back(found != known.end() && found->first == key(c) ? found->second : kNone);
+  node_.assign(edges_.size(), kNone);
+  for (const std::uint32_t edge : sheets_.rim) {
+    const MinimalEdge& e = edges_[edge];
+    for (const std::uint64_t k : {key(e.low, e.high), key(e.high, e.low)}) {
+      const auto found = std::lower_bound(known.begin(), known.end(), std::pair{k, std::uint32_t{0}});
+      if (found != known.end() && found->first == k) node_[edge] = found->second;
+    }
   }
 }
 
-bool HandleRemoval::propose(const std::vector<std::uint8_t>& proposal, std::vector<std::uint8_t>& inside) {
-  const Groups groups = group_corners(octree_, edges_, inside, proposal);
-  if (groups.size.empty()) return false;
-  const DualSurface here = sheets_in(octree_, edges_, groups.leaves, inside, centre_inside_);
-  const Surroundings surroundings(surface_, part_, parts_, groups);
-  std::vector<long> gain(groups.size.size(), 0);  // twice the change of the Euler characteristic: 4 for a handle less or a component more
-  add_characteristic(here, groups, -1, gain);
-  const std::vector<std::size_t> before = surroundings.components_with(here);
-  std::vector<std::uint8_t> take(groups.size.size(), 1);
-  std::vector<std::uint8_t> next = proposal;
-  for (int round = 0; round < kRounds; ++round) {
-    if (cancel_ != nullptr && cancel_->load()) throw Cancelled();
-    const DualSurface result = sheets_in(octree_, edges_, groups.leaves, next, centre_inside_);
-    if (round == 0) add_characteristic(result, groups, 1, gain);
-    const std::vector<std::size_t> after = surroundings.components_with(result);
-    bool settled = true;
-    for (std::size_t g = 0; g < take.size(); ++g) {
-      if (take[g] == 0) continue;
-      const long handles = gain[g] / 4 - (static_cast<long>(after[g]) - static_cast<long>(before[g]));
-      take[g] = handles > 0 && groups.size[g] <= kMostPerHandle * handles ? 1 : 0;
-      settled = settled && take[g] != 0;
-    }
-    if (settled) {
-      inside = std::move(next);
-      const auto handles_here = [&] { return 4 * component_count(surface_, part_, parts_) - twice_characteristic(surface_); };
-      const long four_times = handles_here();
-      std::tie(surface_, part_) = surroundings.surface_with(result);
-      handles_ += (handles_here() - four_times) / 4;
-      return true;
-    }
-    if (std::find(take.begin(), take.end(), 1) == take.end()) return false;
-    next = inside;
-    for (std::size_t c = 0; c < next.size(); ++c) {
-      if (groups.of_corner[c] != kNone && take[groups.of_corner[c]] != 0) next[c] = proposal[c];
+// Numbers the crossings of `sheets_` and finds their components; returns how many there are, with one for each part that has no crossing.
+std::size_t HandleRemoval::join_components() {
+  for (std::uint32_t& n : node_) {
+    if (n >= parts_) n = kNone;
+  }
+  auto nodes = static_cast<std::uint32_t>(parts_);
+  for (const std::uint32_t edge : sheets_.rim) {
+    if (node_[edge] == kNone) node_[edge] = nodes++;
+  }
+  DisjointSets sets(nodes);
+  join_rims(
+      sheets_, node_, [](std::uint32_t) { return true; }, sets);
+  component_.resize(nodes);
+  for (std::uint32_t n = 0; n < nodes; ++n) component_[n] = static_cast<std::uint32_t>(sets.find(n));
+  return sets.count();
+}
+
+HandleRemoval::Groups HandleRemoval::group_corners(const std::vector<std::uint8_t>& proposal, const std::vector<std::uint8_t>& inside) {
+  Groups g;
+  for (std::uint32_t i = 0; i < corners_.size(); ++i) {
+    if (proposal[corners_[i]] != inside[corners_[i]]) g.place.push_back(i);
+  }
+  DisjointSets sets(g.place.size());
+  for (std::uint32_t k = 0; k < g.place.size(); ++k) {
+    for (const std::uint32_t edge : at_corner_.of(g.place[k])) {
+      for (const std::uint32_t leaf : edges_[edge].leaf) {
+        if (group_[leaf] == k) continue;
+        if (group_[leaf] == kNone) {
+          g.leaves.push_back(leaf);
+        } else {
+          sets.join(group_[leaf], k);
+        }
+        group_[leaf] = k;
+      }
     }
   }
-  return false;
+  for (std::uint32_t k = 0; k < g.place.size(); ++k) {
+    const std::size_t first = sets.find(k);  // the smallest, so its group has a number
+    if (first == k) g.size.push_back(0), g.name.push_back(0);
+    g.of.push_back(first == k ? static_cast<std::uint32_t>(g.size.size() - 1) : g.of[first]);
+    ++g.size[g.of[k]];
+    g.name[g.of[k]] += mixed(corners_[g.place[k]]);
+  }
+  std::vector<std::uint32_t> change(g.size.size(), 0);
+  for (const std::uint32_t leaf : g.leaves) {
+    group_[leaf] = g.of[group_[leaf]];
+    change[group_[leaf]] = std::max(change[group_[leaf]], changed_[leaf]);
+  }
+  for (std::size_t i = 0; i < change.size(); ++i) g.name[i] = mixed(g.name[i] + change[i]);
+  return g;
+}
+
+void HandleRemoval::drop_refused(Groups& g) {
+  std::vector<std::uint32_t> number(g.size.size(), kNone);
+  std::uint32_t kept = 0;
+  for (std::size_t i = 0; i < number.size(); ++i) {
+    if (refused_.contains(g.name[i])) continue;
+    number[i] = kept;
+    g.size[kept] = g.size[i];
+    g.name[kept++] = g.name[i];
+  }
+  g.size.resize(kept);
+  g.name.resize(kept);
+  std::size_t corners = 0;
+  for (std::size_t k = 0; k < g.of.size(); ++k) {
+    if (number[g.of[k]] == kNone) continue;
+    g.place[corners] = g.place[k];
+    g.of[corners++] = number[g.of[k]];
+  }
+  g.place.resize(corners);
+  g.of.resize(corners);
+  std::erase_if(g.leaves, [&](std::uint32_t leaf) { return (group_[leaf] = number[group_[leaf]]) == kNone; });
+}
+
+// In the leaves of the groups.
+Sheets HandleRemoval::sheets_of(const Groups& groups, const std::vector<std::uint8_t>& inside) const {
+  std::vector<std::uint8_t> marked(group_.size(), 0), seen(edges_.size(), 0);
+  std::vector<std::uint32_t> crossing;
+  for (const std::uint32_t leaf : groups.leaves) {
+    marked[leaf] = 1;
+    for (const std::uint32_t edge : around_leaf_.of(leaf)) {
+      if (seen[edge] != 0 || inside[edges_[edge].low] == inside[edges_[edge].high]) continue;
+      seen[edge] = 1;
+      crossing.push_back(edge);
+    }
+  }
+  return sheets_in(octree_, edges_, crossing, marked, inside, centre_inside_);
+}
+
+// For each group twice the change of the Euler characteristic: 4 for a handle less or a component more.
+std::vector<long> HandleRemoval::gains(const Groups& groups, const Sheets& changed, const std::vector<std::uint8_t>& from,
+                                       const std::vector<std::uint8_t>& to) const {
+  std::vector<long> gain(groups.size.size(), 0);
+  for (const std::uint32_t leaf : groups.leaves) gain[group_[leaf]] -= twice_[leaf];
+  for (std::size_t p = 0; p < changed.leaf.size(); ++p) gain[group_[changed.leaf[p]]] += twice_characteristic(changed, p);
+  const auto crosses = [](const MinimalEdge& e, const std::vector<std::uint8_t>& inside) {
+    return inside[e.low] != inside[e.high] ? 1 : 0;
+  };
+  for (std::size_t k = 0; k < groups.place.size(); ++k) {
+    const std::uint32_t corner = corners_[groups.place[k]];
+    for (const std::uint32_t edge : at_corner_.of(groups.place[k])) {
+      const MinimalEdge& e = edges_[edge];
+      const bool counted = e.high == corner && from[e.low] != to[e.low];  // with the other end
+      if (!counted) gain[groups.of[k]] += 2 * (crosses(e, to) - crosses(e, from));
+    }
+  }
+  return gain;
+}
+
+// How many components of the surface now pass through the leaves of each group.
+std::vector<long> HandleRemoval::components_through(const Groups& groups) const {
+  DifferentValues components(groups.size.size());
+  for (std::size_t p = 0; p < sheets_.leaf.size(); ++p) {
+    const std::uint32_t g = group_[sheets_.leaf[p]];
+    if (g != kNone) components.add(g, component_[node_[sheets_.rim[sheets_.begin[p]]]]);
+  }
+  return components.count();
+}
+
+// Takes the proposal of those groups that it does good to while the others taken take it too. Returns whether some do.
+bool HandleRemoval::settle(const Groups& groups, const Sheets& changed, const std::vector<long>& gain, std::vector<std::uint8_t>& take) {
+  // No handles can be lost without a gain but by joining components.
+  const std::vector<long> before = components_through(groups);
+  std::vector<long> least(take.size(), 0);  // components afterwards
+  for (const std::uint32_t leaf : changed.leaf) least[group_[leaf]] = 1;
+  bool hope = false;
+  for (std::size_t g = 0; g < take.size(); ++g) hope = hope || is_worth(gain[g] / 4 + before[g] - least[g], groups.size[g]);
+  if (!hope) return false;
+
+  auto nodes = static_cast<std::uint32_t>(component_.size());
+  std::vector<std::uint32_t> added;
+  for (const std::uint32_t edge : changed.rim) {
+    if (node_[edge] != kNone) continue;
+    node_[edge] = nodes++;
+    added.push_back(edge);
+  }
+  const auto taken = [&](std::uint32_t leaf) { return group_[leaf] != kNone && take[group_[leaf]] != 0; };
+  DisjointSets elsewhere(nodes);
+  join_rims(
+      sheets_, node_, [&](std::uint32_t leaf) { return group_[leaf] == kNone; }, elsewhere);
+  std::fill(take.begin(), take.end(), 1);
+  bool settled = false;
+  for (int round = 0; round < kRounds && !settled && std::find(take.begin(), take.end(), 1) != take.end(); ++round) {
+    DisjointSets sets = elsewhere;
+    join_rims(
+        sheets_, node_, [&](std::uint32_t leaf) { return group_[leaf] != kNone && take[group_[leaf]] == 0; }, sets);
+    join_rims(changed, node_, taken, sets);
+    DifferentValues components(take.size());
+    for (std::size_t p = 0; p < changed.leaf.size(); ++p) {
+      if (!taken(changed.leaf[p])) continue;
+      components.add(group_[changed.leaf[p]], static_cast<std::uint32_t>(sets.find(node_[changed.rim[changed.begin[p]]])));
+    }
+    const std::vector<long> after = components.count();
+    settled = true;
+    for (std::size_t g = 0; g < take.size(); ++g) {
+      if (take[g] == 0) continue;
+      take[g] = is_worth(gain[g] / 4 - (after[g] - before[g]), groups.size[g]) ? 1 : 0;
+      settled = settled && take[g] != 0;
+    }
+  }
+  for (const std::uint32_t edge : added) node_[edge] = kNone;
+  if (!settled) std::fill(take.begin(), take.end(), 0);
+  return settled;
+}
+
+void HandleRemoval::accept(const Groups& groups, const Sheets& changed, const std::vector<std::uint8_t>& take) {
+  const auto taken = [&](std::uint32_t leaf) { return group_[leaf] != kNone && take[group_[leaf]] != 0; };
+  ++changes_;
+  for (const std::uint32_t leaf : groups.leaves) {
+    if (!taken(leaf)) continue;
+    twice_[leaf] = 0;
+    changed_[leaf] = changes_;
+  }
+  Sheets now;
+  now.begin.push_back(0);
+  const auto add = [&](const Sheets& from, std::size_t p) {
+    now.leaf.push_back(from.leaf[p]);
+    for (std::size_t k = from.begin[p]; k < from.begin[p + 1]; ++k) now.rim.push_back(from.rim[k]);
+    now.begin.push_back(now.rim.size());
+  };
+  for (std::size_t p = 0; p < sheets_.leaf.size(); ++p) {
+    if (!taken(sheets_.leaf[p])) add(sheets_, p);
+  }
+  for (std::size_t p = 0; p < changed.leaf.size(); ++p) {
+    if (!taken(changed.leaf[p])) continue;
+    add(changed, p);
+    twice_[changed.leaf[p]] += twice_characteristic(changed, p);
+  }
+  sheets_ = std::move(now);
+}
+
+bool HandleRemoval::propose(const std::vector<std::uint8_t>& proposal, std::vector<std::uint8_t>& inside) {
+  if (cancel_ != nullptr && cancel_->load()) throw Cancelled();
+  Groups groups = group_corners(proposal, inside);
+  drop_refused(groups);
+  bool settled = false;
+  if (!groups.size.empty()) {
+    std::vector<std::uint8_t> next = inside;
+    for (const std::uint32_t i : groups.place) next[corners_[i]] = proposal[corners_[i]];
+    const Sheets changed = sheets_of(groups, next);
+    const std::vector<long> gain = gains(groups, changed, inside, next);
+    std::vector<std::uint8_t> take(groups.size.size(), 0);
+    settled = settle(groups, changed, gain, take);
+    for (std::size_t g = 0; g < take.size(); ++g) {
+      if (take[g] == 0) refused_.insert(groups.name[g]);
+    }
+    if (settled) {
+      for (std::size_t k = 0; k < groups.place.size(); ++k) {
+        if (take[groups.of[k]] != 0) inside[corners_[groups.place[k]]] = proposal[corners_[groups.place[k]]];
+      }
+      accept(groups, changed, take);
+      long four_times = -4 * static_cast<long>(std::exchange(components_, 0));
+      for (std::size_t g = 0; g < take.size(); ++g) four_times -= take[g] != 0 ? gain[g] : 0;
+      components_ = join_components();
+      handles_ += (four_times + 4 * static_cast<long>(components_)) / 4;
+    }
+  }
+  for (const std::uint32_t leaf : groups.leaves) group_[leaf] = kNone;
+  return settled;
 }
 
 }  // namespace g3r::mesh

@@ -7,6 +7,8 @@
 
 #include <atomic>
 #include <cstdint>
+#include <span>
+#include <unordered_set>
 #include <vector>
 
 #include "mesh/field_contour.h"
@@ -27,22 +29,58 @@ class HandleRemoval {
 
   /// Where `proposal` differs from `inside` (both mark every corner of the octree), corners at edges around one leaf form a group. A group
   /// takes the proposal if the surface loses handles by it and the group has few corners for each; parts split off or added do not count as
-  /// handles lost. Returns whether there was one, and updates `inside`, which is that of the constructor or of the last call.
-  /// O(corners + edges near open corners).
+  /// handles lost. A group that was refused is not looked at again before the surface changes next to it. Returns whether any took it, and
+  /// updates `inside`, which is that of the constructor or of the last call.
+  /// O(corners + edges around the groups that are looked at), and O(sheets near open corners) if one could lose a handle.
   bool propose(const std::vector<std::uint8_t>& proposal, std::vector<std::uint8_t>& inside);
 
   /// Of contour(octree, inside) now.
   [[nodiscard]] long handles() const { return handles_; }
 
  private:
+  // Numbers of edges, those of item i at begin[i] to begin[i + 1].
+  struct EdgeLists {
+    std::vector<std::uint32_t> begin, edges;
+    [[nodiscard]] std::span<const std::uint32_t> of(std::size_t i) const { return {edges.data() + begin[i], edges.data() + begin[i + 1]}; }
+  };
+  // Corners where a proposal differs, those at edges around one leaf together.
+  struct Groups {
+    std::vector<std::uint32_t> place, of;  // of these corners in corners_, and their groups
+    std::vector<std::uint32_t> leaves;     // whose sheets depend on them; group_ has their groups
+    std::vector<long> size;                // corners of each
+    std::vector<std::uint64_t> name;       // of each: the same for the same corners and the same sheets in its leaves
+  };
+
+  void list_edges(const std::vector<std::uint8_t>& open, const std::vector<std::uint8_t>& around);
+  void number_parts(const DualSurface& surface, const std::vector<std::uint8_t>& around);
+  std::size_t join_components();
+  [[nodiscard]] Groups group_corners(const std::vector<std::uint8_t>& proposal, const std::vector<std::uint8_t>& inside);
+  void drop_refused(Groups& groups);
+  [[nodiscard]] Sheets sheets_of(const Groups& groups, const std::vector<std::uint8_t>& inside) const;
+  [[nodiscard]] std::vector<long> gains(const Groups& groups, const Sheets& changed, const std::vector<std::uint8_t>& from,
+                                        const std::vector<std::uint8_t>& to) const;
+  [[nodiscard]] std::vector<long> components_through(const Groups& groups) const;
+  bool settle(const Groups& groups, const Sheets& changed, const std::vector<long>& gain, std::vector<std::uint8_t>& take);
+  void accept(const Groups& groups, const Sheets& changed, const std::vector<std::uint8_t>& take);
+
   const Octree& octree_;
   InsideTest centre_inside_;
   const std::atomic<bool>* cancel_;
-  std::vector<MinimalEdge> edges_;   // around all leaves with an edge that ends at an open corner
-  DualSurface surface_;              // crossings and sheets in these leaves,
-  std::vector<std::uint32_t> part_;  // and for each crossing the part of the rest that it belongs to
-  std::size_t parts_ = 0;
+  std::vector<std::uint32_t> corners_;    // open ones, ascending
+  std::vector<MinimalEdge> edges_;        // around all leaves with an edge that ends at an open corner
+  EdgeLists at_corner_, around_leaf_;     // by place in corners_, by leaf
+  std::size_t parts_ = 0;                 // of the surface elsewhere, which never changes
+  std::vector<std::uint32_t> node_;       // of edges: the part it crosses, another number if it crosses between these leaves only, or kNone
+  Sheets sheets_;                         // of the surface in these leaves
+  std::vector<int> twice_;                // of leaves: what their sheets add to twice the Euler characteristic
+  std::vector<std::uint32_t> component_;  // of nodes
+  std::size_t components_ = 0;
   long handles_ = 0;
+
+  std::vector<std::uint32_t> group_;    // of leaves, kNone between proposals
+  std::vector<std::uint32_t> changed_;  // of leaves: which change of the surface was the last there
+  std::uint32_t changes_ = 0;
+  std::unordered_set<std::uint64_t> refused_;  // names of groups
 };
 
 }  // namespace g3r::mesh
