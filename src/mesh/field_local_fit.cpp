@@ -24,6 +24,9 @@ constexpr double kOpposite = -0.7;   // cosine: points whose normals differ by m
 constexpr double kAgree = 0.5;       // spacings: tangent planes this near do not count when asked whether a place has all on one side
 constexpr double kClear = 0.2;       // spacings: from tangent planes, beyond which curvature cannot change the side of a place
 constexpr double kFacing = -0.3;     // cosine: sheets that face away from each other this much are two walls, not one bend
+constexpr int kSteps = 3;            // of the search for the nearest point; then the tree is faster
+constexpr double kWider = 1 + 1e-9;  // more than rounding can make of a squared distance
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 constexpr double kSplitGain = 0.05;  // several sheets must reduce the squared misfit of one sheet to this share
 
 Vector3d vector(const Vec3& p) { return {p[0], p[1], p[2]}; }
@@ -97,10 +100,11 @@ Joint joint_of(const LocalSurface& s, const std::vector<Member>& members, int a,
 void prefer_one_sheet(LocalSurface& s, std::vector<Member>& members, double normal_weight) {
   if (s.walls) return;
   double split = 0, whole = 0;
-  std::vector<int> sheet;
-  for (Member& m : members) {
+  std::array<int, kFitPoints> sheet{};
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    Member& m = members[i];
     if (m.sheet >= 0) split += misfit(s.sheet[static_cast<std::size_t>(m.sheet)], m, s.spacing, normal_weight);
-    sheet.push_back(m.sheet);
+    sheet[i] = m.sheet;
     if (m.sheet >= 0) m.sheet = 0;
   }
   const Sheet one = fit_sheet(members, 0, s.spacing, normal_weight);
@@ -222,7 +226,52 @@ double LocalSurface::distance(const Vector3d& x, int* active) const {
 }
 
 LocalFit::LocalFit(const OrientedPoints& points, const std::vector<std::uint32_t>& near, const LocalFitOptions& options)
-    : points_(points), near_(near), count_(near_.size() / points.positions.size()), options_(options), neighbours_(points.positions) {}
+    : points_(points),
+      near_(near),
+      count_(near_.size() / points.positions.size()),
+      options_(options),
+      neighbours_(points.positions),
+      widest_(*std::max_element(points.spacing.begin(), points.spacing.end())) {}
+
+// The point nearest to x and its squared distance; kNone if it is surely farther than `reach` of its spacings. Places are mostly asked for
+// one after the other, so the search goes from the last point found to the nearest of its neighbours, until no point that is not its
+// neighbour can be nearer. Where it starts does not change what is found.
+std::uint32_t LocalFit::nearest(const Vector3d& x, double reach, double& squared) const {
+  thread_local std::uint32_t last = 0;
+  const std::vector<Vec3>& p = points_.positions;
+  if (last >= p.size()) last = 0;
+  const Vec3 place{x[0], x[1], x[2]};
+  const auto squared_distance = [](const Vec3& a, const Vec3& b) {  // as the tree of neighbours_ computes it
+    const double dx = a[0] - b[0], dy = a[1] - b[1], dz = a[2] - b[2];
+    return dx * dx + dy * dy + dz * dz;
+  };
+  const double most = reach * widest_;
+  squared = kWider * most * most;
+  for (int step = 0; step < kSteps; ++step) {
+    const std::uint32_t centre = last;
+    const std::uint32_t* const near = near_.data() + centre * count_;
+    const double to_centre = squared_distance(place, p[centre]);
+    double best = to_centre;
+    bool tie = false;
+    for (std::size_t k = 0; k < count_; ++k) {
+      const double d = squared_distance(place, p[near[k]]);
+      if (d > best || near[k] == last) continue;
+      tie = d == best;
+      best = d;
+      last = near[k];
+    }
+    const double others = std::sqrt(squared_distance(p[centre], p[near[count_ - 1]])) - std::sqrt(to_centre);
+    if (!tie && others > 0 && kWider * best < others * others) {
+      squared = best;
+      return last;
+    }
+    squared = std::min(squared, kWider * best);
+    if (last == centre || tie) break;
+  }
+  const std::uint32_t found = neighbours_.nearest(place, squared, kNone);
+  if (found != kNone) last = found;
+  return found;
+}
 
 // Is x well on one side of the tangent planes of all points next to point i, and do these belong to one sheet? Then their mean plane is fit
 // enough to say which.
@@ -249,27 +298,30 @@ bool LocalFit::clear_of(std::uint32_t i, const Vector3d& x, double scale, Sheet&
 
 LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* direction, Detail detail) const {
   thread_local std::vector<Member> members;
-  thread_local std::vector<std::pair<double, std::uint32_t>> near;  // squared distances and points
   double squared = 0;
-  const std::uint32_t nearest = neighbours_.nearest({x[0], x[1], x[2]}, squared);
+  const std::uint32_t nearest = this->nearest(x, reach, squared);
   LocalSurface out;
-  out.nearest = std::sqrt(squared);
+  if (nearest == kNone) return out;
   out.spacing = points_.spacing[nearest];
   const double h = out.spacing;
-  if (out.nearest > reach * h) return out;
+  if (std::sqrt(squared) > reach * h) return out;
   const double scale = 1 / (2 * options_.width * options_.width * h * h);
   if (detail == Detail::kSide && clear_of(nearest, x, scale, out.sheet[0])) {
     out.count = 1;
     out.simple = true;
     return out;
   }
-  near.clear();
+  // The nearest ones, by insertion: the neighbours are nearly in order.
+  std::array<std::pair<double, std::uint32_t>, kFitPoints> near;  // squared distances and points
+  std::size_t used = 0;
   for (std::size_t k = 0; k < count_; ++k) {
     const std::uint32_t i = near_[nearest * count_ + k];
-    near.emplace_back((vector(points_.positions[i]) - x).squaredNorm(), i);
+    const std::pair now{(vector(points_.positions[i]) - x).squaredNorm(), i};
+    if (used == kFitPoints && now >= near[used - 1]) continue;
+    std::size_t place = used < kFitPoints ? used++ : used - 1;
+    for (; place > 0 && now < near[place - 1]; --place) near[place] = near[place - 1];
+    near[place] = now;
   }
-  const std::size_t used = std::min(kFitPoints, near.size());
-  std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(used), near.end());
   members.clear();
   double first = -1;
   for (std::size_t k = 0; k < used; ++k) {
@@ -295,10 +347,10 @@ LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* dire
         const bool same = m.n.dot(axis) > (options_.sharp ? kSameSheet : 0.0) || &m == &*seed;
         m.sheet = same ? out.count : -1;
         if (!same) continue;
-        mean += m.weight * m.n;
+        if (pass == 0) mean += m.weight * m.n;
         ++taken;
       }
-      axis = mean.normalized();
+      if (pass == 0) axis = mean.normalized();
     }
     if (taken < std::min(kMinSheet, members.size()) && out.count > 0) {
       for (Member& m : members) {

@@ -59,7 +59,6 @@ struct LocalSurface {
   bool walls = false;            ///< two of the sheets face away from each other or each other
   std::array<Joint, 3> joint{};  ///< of sheets 0-1, 0-2, 1-2
   double spacing = 0;            ///< local spacing h
-  double nearest = 0;            ///< distance from the place to the nearest point
   bool simple = false;  ///< one sheet, every point near belongs to it, and it has the place on the same side as their tangent planes
 
   /// Signed distance to the joined sheets, positive outside; which sheet it belongs to (may be null).
@@ -88,6 +87,7 @@ class LocalFit {
                                  Detail detail = Detail::kSurface) const;
 
  private:
+  [[nodiscard]] std::uint32_t nearest(const Eigen::Vector3d& x, double reach, double& squared) const;
   bool clear_of(std::uint32_t i, const Eigen::Vector3d& x, double scale, Sheet& plane) const;
 
   const OrientedPoints& points_;
@@ -95,6 +95,7 @@ class LocalFit {
   std::size_t count_;  // neighbours of each point
   LocalFitOptions options_;
   Neighbours neighbours_;
+  double widest_;  // spacing
 };
 
 /// Distance across the wall or gap at each point: to the nearest of its neighbours that face the other way, measured along the normal.

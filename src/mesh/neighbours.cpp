@@ -24,6 +24,18 @@ struct Cloud {
   }
 };
 
+// The nearest point so far, as nanoflann's searches see it.
+struct Nearest {
+  std::uint32_t index;
+  double squared;
+  [[nodiscard]] bool full() const { return true; }
+  [[nodiscard]] double worstDist() const { return squared; }
+  bool addPoint(double distance, std::uint32_t point) {
+    if (distance < squared) squared = distance, index = point;
+    return true;
+  }
+};
+
 using KdTree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, std::uint32_t>;
 
 }  // namespace
@@ -46,10 +58,11 @@ void Neighbours::nearest(const Vec3& x, std::size_t k, std::vector<std::uint32_t
   tree_->index.knnSearch(x.data(), k, index.data(), squared.data());
 }
 
-std::uint32_t Neighbours::nearest(const Vec3& x, double& squared) const {
-  std::uint32_t index = 0;
-  tree_->index.knnSearch(x.data(), 1, &index, &squared);
-  return index;
+std::uint32_t Neighbours::nearest(const Vec3& x, double& squared, std::uint32_t none) const {
+  Nearest result{none, squared};
+  tree_->index.findNeighbors(result, x.data(), {});
+  squared = result.squared;
+  return result.index;
 }
 
 std::vector<std::uint32_t> Neighbours::of_all(std::size_t k) const {
