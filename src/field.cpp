@@ -8,6 +8,7 @@
 #include <g3r/g3r.h>
 
 #include <cmath>
+#include <utility>
 
 namespace g3r {
 namespace {
@@ -17,14 +18,14 @@ constexpr double kAccuracy = 1e-3;      // of the sums
 
 constexpr std::size_t kFewestPoints = 4;  // of a surface
 
-}  // namespace
-
-OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& normals, const std::vector<double>& areas) {
+// `local`: the local spacings, empty if they are not known.
+OrientedCloud with_areas(CanonicalCloud cloud, const std::vector<Vec3>& normals, const std::vector<double>& areas,
+                         std::vector<double> local) {
   OrientedCloud out;
-  out.cloud = canonical_cloud(points);
+  out.cloud = std::move(cloud);
   out.eta.assign(out.cloud.size(), Vec3{0, 0, 0});
   const double scale = out.cloud.frame.scale * out.cloud.frame.scale;
-  for (std::size_t i = 0; i < points.count; ++i) {
+  for (std::size_t i = 0; i < normals.size(); ++i) {
     const std::uint32_t p = out.cloud.point_of[i];
     if (p == kNoPoint) continue;
     for (std::size_t a = 0; a < 3; ++a) out.eta[p][a] += scale * areas[i] * normals[i][a];
@@ -33,12 +34,32 @@ OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& 
   for (std::uint32_t p = 0; p < out.eta.size(); ++p) {
     if (out.eta[p] == Vec3{0, 0, 0}) without_area.push_back(p);
   }
-  if (out.eta.size() - without_area.size() >= kFewestPoints) {
+  if (!without_area.empty() && out.eta.size() - without_area.size() >= kFewestPoints) {
     remove_points(out.cloud, without_area);
     std::erase(out.eta, Vec3{0, 0, 0});
+    local.clear();
   }
-  out.spacing = typical_spacing(local_spacing(out.cloud.points));
+  out.spacing = typical_spacing(local.empty() ? local_spacing(out.cloud.points) : std::move(local));
   return out;
+}
+
+}  // namespace
+
+OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& normals, const std::vector<double>& areas) {
+  return with_areas(canonical_cloud(points), normals, areas, {});
+}
+
+OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& normals) {
+  CanonicalCloud cloud = canonical_cloud(points);
+  std::vector<double> local = local_spacing(cloud.points);
+  std::vector<double> areas(normals.size(), 0);
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    const std::uint32_t p = cloud.point_of[i];
+    if (p == kNoPoint) continue;
+    const double h = cloud.frame.length_to_world(local[p]);
+    areas[i] = h * h / cloud.multiplicity[p];
+  }
+  return with_areas(std::move(cloud), normals, areas, std::move(local));
 }
 
 struct Field::Impl {

@@ -17,5 +17,7 @@ struct OrientedCloud {
 
 /// From N points, N unit normals and N areas in squared input units. Throws InvalidInput like canonical_cloud().
 [[nodiscard]] OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& normals, const std::vector<double>& areas);
+/// The same with the squared local spacing as the area of each point, duplicates sharing it.
+[[nodiscard]] OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& normals);
 
 }  // namespace g3r

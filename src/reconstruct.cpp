@@ -1,5 +1,4 @@
 // From points, or oriented points, to a mesh.
-#include "cloud/spacing.h"
 #include "cpu/parallel.h"
 #include "mesh/field_mesher.h"
 #include "mesh/mesh_finish.h"
@@ -56,9 +55,8 @@ Mesh mesh_with_poisson(const OrientedCloud& oriented, const std::vector<Vec3>& n
 
 // Meshes in normalised units, so that georeferenced coordinates lose nothing, and maps back.
 // `far_share` (may be null): share of the surface farther than kFarSpacings from every point.
-Mesh make_mesh(const PointsView& points, const std::vector<Vec3>& normals, const std::vector<double>& areas, const MeshOptions& options,
-               const Monitor& monitor, std::size_t max_memory = 0, double* far_share = nullptr) {
-  const OrientedCloud oriented = oriented_cloud(points, normals, areas);
+Mesh make_mesh(const OrientedCloud& oriented, const MeshOptions& options, const Monitor& monitor, std::size_t max_memory = 0,
+               double* far_share = nullptr) {
   std::vector<Vec3> directions(oriented.eta.size());
   for (std::size_t i = 0; i < directions.size(); ++i) {
     const Vec3& e = oriented.eta[i];
@@ -125,17 +123,7 @@ Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const Me
     kept.push_back(p);
     directions.push_back({n[0] / size, n[1] / size, n[2] / size});
   }
-  return parallel::with_threads(options.threads, [&] {
-    const CanonicalCloud cloud = canonical_cloud(kept);
-    const std::vector<double> spacing = local_spacing(cloud.points);
-    std::vector<double> areas(kept.size());
-    for (std::size_t i = 0; i < kept.size(); ++i) {
-      const std::uint32_t p = cloud.point_of[i];
-      const double h = cloud.frame.length_to_world(spacing[p]);
-      areas[i] = h * h / cloud.multiplicity[p];
-    }
-    return make_mesh(kept, directions, areas, options, monitor);
-  });
+  return parallel::with_threads(options.threads, [&] { return make_mesh(oriented_cloud(kept, directions), options, monitor); });
 }
 
 Reconstruction reconstruct(const PointsView& points, const Options& options, const MeshOptions& mesh_options, const Monitor& monitor) {
@@ -149,7 +137,8 @@ Reconstruction reconstruct(const PointsView& points, const Options& options, con
   stages.begin("mesh");
   double far = 0;
   parallel::with_threads(options.threads, [&] {
-    out.mesh = make_mesh(points, out.orientation.normals, out.orientation.areas, chosen, monitor, options.max_memory, &far);
+    const OrientedCloud oriented = oriented_cloud(points, out.orientation.normals, out.orientation.areas);
+    out.mesh = make_mesh(oriented, chosen, monitor, options.max_memory, &far);
     out.check = check_mesh(out.mesh);
     carry_attributes(out.mesh, points, {}, out.orientation.confidence);
   });

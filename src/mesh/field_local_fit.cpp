@@ -225,12 +225,13 @@ double LocalSurface::distance(const Vector3d& x, int* active) const {
   return result.f;
 }
 
-LocalFit::LocalFit(const OrientedPoints& points, const std::vector<std::uint32_t>& near, const LocalFitOptions& options)
+LocalFit::LocalFit(const OrientedPoints& points, const Neighbours& neighbours, const std::vector<std::uint32_t>& near,
+                   const LocalFitOptions& options)
     : points_(points),
       near_(near),
       count_(near_.size() / points.positions.size()),
       options_(options),
-      neighbours_(points.positions),
+      neighbours_(neighbours),
       widest_(*std::max_element(points.spacing.begin(), points.spacing.end())) {}
 
 // The point nearest to x and its squared distance; kNone if it is surely farther than `reach` of its spacings. Places are mostly asked for

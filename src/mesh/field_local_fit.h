@@ -78,8 +78,9 @@ class LocalFit {
     kSide      ///< a plane is enough where the place is clearly on one side of the surface
   };
 
-  /// `points` and `near` must outlive this. `near`: of_all(k) of the positions, k > 16. O(N log N).
-  LocalFit(const OrientedPoints& points, const std::vector<std::uint32_t>& near, const LocalFitOptions& options);
+  /// All but the options must outlive this. `neighbours`: of the positions, `near`: its of_all(k), k > 16. O(N).
+  LocalFit(const OrientedPoints& points, const Neighbours& neighbours, const std::vector<std::uint32_t>& near,
+           const LocalFitOptions& options);
 
   /// The surface near `x`, fitted to the 16 nearest of the neighbours of the point nearest to it; no sheet if that is farther than `reach`
   /// spacings. If `direction` is not null, points whose normals point against it are left out. O(log N).
@@ -94,7 +95,7 @@ class LocalFit {
   const std::vector<std::uint32_t>& near_;
   std::size_t count_;  // neighbours of each point
   LocalFitOptions options_;
-  Neighbours neighbours_;
+  const Neighbours& neighbours_;
   double widest_;  // spacing
 };
 

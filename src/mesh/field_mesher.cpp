@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <string>
 
 #include "cpu/parallel.h"
@@ -79,17 +80,22 @@ void report(const Monitor& monitor, double fraction) {
 
 // What the fits see of the cloud.
 struct Prepared {
-  OrientedPoints points;            // positions that scatter are moved onto the surface they scatter about
-  std::vector<std::uint32_t> near;  // of_all(kNear)
+  OrientedPoints points;                         // positions that scatter are moved onto the surface they scatter about
+  std::unique_ptr<const Neighbours> neighbours;  // of these positions
+  std::vector<std::uint32_t> near;               // of_all(kNear)
   bool noisy = false;
 };
 
-Prepared prepare(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const Monitor& monitor) {
-  const Neighbours neighbours(points);
-  Prepared prepared;
-  prepared.near = neighbours.of_all(kNear);
+// In place: the neighbours refer to the positions.
+void prepare(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const Monitor& monitor, Prepared& prepared) {
   OrientedPoints& out = prepared.points;
-  out = {points, normals, mesh::smooth_spacing(points, prepared.near)};
+  out = {points, normals, {}};
+  const auto find_neighbours = [&] {
+    prepared.neighbours = std::make_unique<Neighbours>(out.positions);
+    prepared.near = prepared.neighbours->of_all(kNear);
+  };
+  find_neighbours();
+  out.spacing = mesh::smooth_spacing(out.positions, prepared.near);
   for (Vec3& n : out.normals) {
     const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
     if (!(length > 0)) throw InvalidInput("a normal is zero");
@@ -98,14 +104,13 @@ Prepared prepare(const std::vector<Vec3>& points, const std::vector<Vec3>& norma
   const double typical = median(out.spacing);
   if (!(typical > 0)) throw InvalidInput("all points are at one place");
   for (double& h : out.spacing) h = std::max(h, kLeastSpacing * typical);
-  const mesh::Noise noise = mesh::estimate_noise(out, neighbours);
+  const mesh::Noise noise = mesh::estimate_noise(out, *prepared.neighbours);
   report(monitor, 0.05);
   prepared.noisy = noise.position > kNoisy;
   if (prepared.noisy) {
-    mesh::denoise(out, neighbours, noise, monitor.cancel);
-    prepared.near = Neighbours(out.positions).of_all(kNear);
+    mesh::denoise(out, *prepared.neighbours, noise, monitor.cancel);
+    find_neighbours();
   }
-  return prepared;
 }
 
 // Of the points, or evenly many of them: the median of the field there is its level on the surface.
@@ -303,7 +308,7 @@ Mesh raw_mesh(const Prepared& prepared, const FieldSampler& sampler, const MeshO
               std::size_t max_memory) {
   const OrientedPoints& oriented = prepared.points;
   const double spacing = median(oriented.spacing);
-  const LocalFit local(oriented, prepared.near, LocalFitOptions{});
+  const LocalFit local(oriented, *prepared.neighbours, prepared.near, LocalFitOptions{});
   const Octree octree =
       make_octree(oriented, prepared.noisy ? std::vector<double>{} : mesh::wall_thickness(oriented, prepared.near), options, monitor);
   require_memory_for(oriented.positions.size(), octree, options.depth, max_memory);
@@ -348,9 +353,11 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
   if (points.size() < 4) throw InvalidInput("a mesh needs at least 4 points");
   if (options.depth != 0 && (options.depth < 4 || options.depth > 12)) throw InvalidInput("mesh depth must be 4 to 12");
   report(monitor, 0);
-  Prepared prepared = prepare(points, normals, monitor);
+  Prepared prepared;
+  prepare(points, normals, monitor, prepared);
   report(monitor, 0.2);
   Mesh mesh = raw_mesh(prepared, sampler, options, monitor, max_memory);
+  prepared.neighbours.reset();
   prepared.near = {};
   mesh::untangle(mesh, monitor.cancel);
   mesh::finish_mesh(mesh, prepared.points.positions, prepared.points.spacing, options);
