@@ -155,21 +155,27 @@ void HandleRemoval::number_parts(const DualSurface& surface, const std::vector<s
   DisjointSets rest(surface.crossings.size());
   join_crossings(
       surface, [&](std::uint32_t leaf) { return around[leaf] == 0; }, rest);
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> known;
-  std::vector<std::uint32_t> number(surface.crossings.size(), kNone);
-  for (std::size_t p = 0; p < surface.patch_count(); ++p) {
-    if (around[surface.patch_leaf[p]] != 0) continue;
-    for (std::size_t k = surface.patch_begin[p]; k < surface.patch_begin[p + 1]; ++k) {
-      const std::uint32_t crossing = surface.patch_crossings[k];
-      std::uint32_t& n = number[rest.find(crossing)];
-      if (n == kNone) n = static_cast<std::uint32_t>(parts_++);
-      known.emplace_back(key(surface.crossings[crossing].inside, surface.crossings[crossing].outside), n);
+  std::vector<std::uint8_t> in_these(surface.crossings.size(), 0);
+  const auto for_each_crossing = [&](bool these, const auto& use) {
+    for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+      if ((around[surface.patch_leaf[p]] != 0) != these) continue;
+      for (std::size_t k = surface.patch_begin[p]; k < surface.patch_begin[p + 1]; ++k) use(surface.patch_crossings[k]);
     }
-  }
+  };
+  for_each_crossing(true, [&](std::uint32_t crossing) { in_these[crossing] = 1; });
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> known;  // crossings between the two, by their corners, and parts
+  std::vector<std::uint32_t> number(surface.crossings.size(), kNone);
+  for_each_crossing(false, [&](std::uint32_t crossing) {
+    if (in_these[crossing] == 0) return;
+    std::uint32_t& n = number[rest.find(crossing)];
+    if (n == kNone) n = static_cast<std::uint32_t>(parts_++);
+    known.emplace_back(key(surface.crossings[crossing].inside, surface.crossings[crossing].outside), n);
+  });
   std::sort(known.begin(), known.end());
   node_.assign(edges_.size(), kNone);
   for (const std::uint32_t edge : sheets_.rim) {
     const MinimalEdge& e = edges_[edge];
+    if (std::all_of(e.leaf.begin(), e.leaf.end(), [&](std::uint32_t leaf) { return around[leaf] != 0; })) continue;
     for (const std::uint64_t k : {key(e.low, e.high), key(e.high, e.low)}) {
       const auto found = std::lower_bound(known.begin(), known.end(), std::pair{k, std::uint32_t{0}});
       if (found != known.end() && found->first == k) node_[edge] = found->second;
@@ -177,7 +183,7 @@ void HandleRemoval::number_parts(const DualSurface& surface, const std::vector<s
   }
 }
 
-// Numbers the crossings of `sheets_` and finds their components; returns how many there are, with one for each part that has no crossing.
+// Numbers the crossings of `sheets_` and finds their components; returns how many there are.
 std::size_t HandleRemoval::join_components() {
   for (std::uint32_t& n : node_) {
     if (n >= parts_) n = kNone;
@@ -229,11 +235,12 @@ HandleRemoval::Groups HandleRemoval::group_corners(const std::vector<std::uint8_
   return g;
 }
 
+// And groups that are too large even if they had all handles.
 void HandleRemoval::drop_refused(Groups& g) {
   std::vector<std::uint32_t> number(g.size.size(), kNone);
   std::uint32_t kept = 0;
   for (std::size_t i = 0; i < number.size(); ++i) {
-    if (refused_.contains(g.name[i])) continue;
+    if (!is_worth(handles_, g.size[i]) || refused_.contains(g.name[i])) continue;
     number[i] = kept;
     g.size[kept] = g.size[i];
     g.name[kept++] = g.name[i];

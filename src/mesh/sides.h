@@ -31,19 +31,29 @@ inline std::size_t corner_at(const Mesh& mesh, const Side& side, std::uint32_t v
 }
 
 /// Calls group(sides, count) once for every edge, with all sides between its two vertices, ordered by corner; edges come in the order of
-/// (low, high). O(F log F).
+/// (low, high). O(V + F) where few sides meet at a vertex.
 template <class Group>
 void for_each_edge(const Mesh& mesh, const Group& group) {
-  std::vector<Side> sides;
-  sides.reserve(3 * mesh.triangles.size());
-  for (std::size_t corner = 0; corner < 3 * mesh.triangles.size(); ++corner) {
+  const auto side_at = [&](std::size_t corner) {
     const std::uint32_t from = vertex_of(mesh, corner), to = vertex_of(mesh, next_corner(corner));
-    sides.push_back({std::min(from, to), std::max(from, to), corner});
+    return Side{std::min(from, to), std::max(from, to), corner};
+  };
+  // By the lower vertex, then each vertex's few.
+  const std::size_t corners = 3 * mesh.triangles.size();
+  std::vector<std::size_t> first(mesh.vertices.size() + 2, 0);
+  for (std::size_t corner = 0; corner < corners; ++corner) ++first[side_at(corner).low + 2];
+  for (std::size_t v = 2; v < first.size(); ++v) first[v] += first[v - 1];
+  std::vector<Side> sides(corners);
+  for (std::size_t corner = 0; corner < corners; ++corner) {
+    const Side side = side_at(corner);
+    sides[first[side.low + 1]++] = side;
   }
-  parallel::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    if (a.low != b.low) return a.low < b.low;
-    if (a.high != b.high) return a.high < b.high;
-    return a.corner < b.corner;
+  constexpr std::size_t kBlock = 4096;
+  parallel::for_blocks(mesh.vertices.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      std::sort(sides.begin() + static_cast<std::ptrdiff_t>(first[v]), sides.begin() + static_cast<std::ptrdiff_t>(first[v + 1]),
+                [](const Side& a, const Side& b) { return a.high != b.high ? a.high < b.high : a.corner < b.corner; });
+    }
   });
   for (std::size_t begin = 0; begin < sides.size();) {
     std::size_t end = begin + 1;
