@@ -131,27 +131,35 @@ Sheet fit_sheet(const std::vector<Member>& members, int which, double h, double 
   Sheet s;
   s.origin = mean_p / total;
   s.frame = frame_of(mean_n.normalized());
-  // The normal equations from the moments sum w u^a v^b, which all their entries are sums of.
-  double m00 = 0, m10 = 0, m01 = 0, m20 = 0, m11 = 0, m02 = 0, m30 = 0, m21 = 0, m12 = 0, m03 = 0, m40 = 0, m31 = 0, m22 = 0, m13 = 0,
-         m04 = 0;
-  std::array<double, 6> right{};
+  // The normal equations from the moments sum w u^a v^b, which all their entries are sums of; pairs of u and v side by side.
+  using Pair = Eigen::Array2d;
+  double m00 = 0, m11 = 0, m22 = 0, right0 = 0, right4 = 0;
+  Pair first = Pair::Zero(), second = first, cube = first, mixed = first, fourth = first, uneven = first, slope = first, curved = first;
   for (const Member& m : members) {
     if (m.sheet != which) continue;
     const Vector3d q = s.frame * (m.p - s.origin) / h;
     const Vector3d n = s.frame * m.n;
-    const double u = q[0], v = q[1], up = 1 / std::max(n[2], 0.2);
-    const double w = m.weight, wu = w * u, wv = w * v, wuu = wu * u, wuv = wu * v, wvv = wv * v;
-    m00 += w, m10 += wu, m01 += wv, m20 += wuu, m11 += wuv, m02 += wvv;
-    m30 += wuu * u, m21 += wuu * v, m12 += wvv * u, m03 += wvv * v;
-    m40 += wuu * u * u, m31 += wuu * u * v, m22 += wuu * v * v, m13 += wvv * u * v, m04 += wvv * v * v;
-    const double z = q[2], su = -n[0] * up * normal_weight, sv = -n[1] * up * normal_weight;  // height, slopes
-    right[0] += w * z;
-    right[1] += wu * z + w * su;
-    right[2] += wv * z + w * sv;
-    right[3] += wuu * z + 2 * wu * su;
-    right[4] += wuv * z + wv * su + wu * sv;
-    right[5] += wvv * z + 2 * wv * sv;
+    const double w = m.weight, up = 1 / std::max(n[2], 0.2), z = q[2];
+    const Pair uv(q[0], q[1]), vu(q[1], q[0]), along = -Pair(n[0], n[1]) * up * normal_weight;  // slopes
+    const Pair wuv = w * uv, wsquare = wuv * uv, wcube = wsquare * uv, wmixed = wsquare * vu;
+    const double product = wuv[0] * q[1];
+    m00 += w;
+    first += wuv;       // m10, m01
+    second += wsquare;  // m20, m02
+    m11 += product;
+    cube += wcube;                                      // m30, m03
+    mixed += wmixed;                                    // m21, m12
+    fourth += wcube * uv;                               // m40, m04
+    uneven += Pair(wcube[0] * q[1], wmixed[1] * q[1]);  // m31, m13
+    m22 += wmixed[0] * q[1];
+    right0 += w * z;
+    slope += wuv * z + w * along;
+    curved += wsquare * z + 2 * wuv * along;
+    right4 += product * z + wuv[1] * along[0] + wuv[0] * along[1];
   }
+  const double m10 = first[0], m01 = first[1], m20 = second[0], m02 = second[1], m30 = cube[0], m03 = cube[1], m21 = mixed[0],
+               m12 = mixed[1], m40 = fourth[0], m04 = fourth[1], m31 = uneven[0], m13 = uneven[1];
+  std::array<double, 6> right{right0, slope[0], slope[1], curved[0], right4, curved[1]};
   // Heights have the row (1, u, v, u^2, uv, v^2), slopes along u (0, 1, 0, 2u, v, 0) and along v (0, 0, 1, 0, u, 2v).
   const double k = normal_weight;
   const Lower6 lower{m00 * (1 + 1e-12),

@@ -31,6 +31,17 @@ void gather(std::vector<T>& values, const std::vector<std::uint32_t>& from) {
   values = std::move(out);
 }
 
+// Returns whether any triangle went.
+bool keep_triangles(Mesh& mesh, const std::vector<std::uint8_t>& keep) {
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (keep[t] != 0) mesh.triangles[count++] = mesh.triangles[t];
+  }
+  if (count == mesh.triangles.size()) return false;
+  mesh.triangles.resize(count);
+  return true;
+}
+
 // Gives every fan of triangles around a vertex its own vertex: corner c of triangle t is number 3 t + c, and corners at one vertex
 // belong together if their triangles share an edge at it.
 void split_fans(Mesh& mesh, std::vector<std::uint32_t>& source) {
@@ -88,12 +99,7 @@ void drop_unused_vertices(Mesh& mesh) {
 }
 
 void remove_triangles(Mesh& mesh, const std::vector<std::uint8_t>& keep) {
-  if (std::all_of(keep.begin(), keep.end(), [](std::uint8_t k) { return k != 0; })) return;
-  std::size_t count = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (keep[t] != 0) mesh.triangles[count++] = mesh.triangles[t];
-  }
-  mesh.triangles.resize(count);
+  if (!keep_triangles(mesh, keep)) return;
   std::vector<std::uint32_t> source;
   split_fans(mesh, source);
   gather(mesh.vertices, source);
@@ -121,7 +127,7 @@ void remove_components(Mesh& mesh, double min_area, std::size_t keep_largest) {
   }
   std::vector<std::uint8_t> keep(mesh.triangles.size());
   for (std::size_t t = 0; t < keep.size(); ++t) keep[t] = stays[groups.find(mesh.triangles[t][0])];
-  remove_triangles(mesh, keep);
+  if (keep_triangles(mesh, keep)) drop_unused_vertices(mesh);  // no vertex keeps some of its triangles only
 }
 
 }  // namespace g3r::mesh
