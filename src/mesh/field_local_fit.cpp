@@ -189,15 +189,6 @@ Sheet fit_sheet(const std::vector<Member>& members, int which, double h, double 
   return s;
 }
 
-double Sheet::distance(const Vector3d& x, Vector3d* gradient) const {
-  const Vector3d q = frame * (x - origin);
-  const double u = q[0], v = q[1];
-  const double gu = c[1] + 2 * c[3] * u + c[4] * v, gv = c[2] + c[4] * u + 2 * c[5] * v;
-  const double length = std::sqrt(1 + gu * gu + gv * gv);
-  if (gradient != nullptr) *gradient = frame.transpose() * Vector3d(-gu, -gv, 1) / length;
-  return (q[2] - (c[0] + c[1] * u + c[2] * v + c[3] * u * u + c[4] * u * v + c[5] * v * v)) / length;
-}
-
 double LocalSurface::distance(const Vector3d& x, int* active) const {
   struct Part {
     double f;

@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -31,7 +32,14 @@ struct Sheet {
   std::array<double, 6> c{};
 
   /// Distance to the sheet to first order, positive outside, and its gradient (about a unit vector; may be null).
-  double distance(const Eigen::Vector3d& x, Eigen::Vector3d* gradient = nullptr) const;
+  double distance(const Eigen::Vector3d& x, Eigen::Vector3d* gradient = nullptr) const {
+    const Eigen::Vector3d q = frame * (x - origin);
+    const double u = q[0], v = q[1];
+    const double gu = c[1] + 2 * c[3] * u + c[4] * v, gv = c[2] + c[4] * u + 2 * c[5] * v;
+    const double length = std::sqrt(1 + gu * gu + gv * gv);
+    if (gradient != nullptr) *gradient = frame.transpose() * Eigen::Vector3d(-gu, -gv, 1) / length;
+    return (q[2] - (c[0] + c[1] * u + c[2] * v + c[3] * u * u + c[4] * u * v + c[5] * v * v)) / length;
+  }
 };
 
 /// A point that takes part in a fit.

@@ -94,16 +94,19 @@ HandleRemoval::HandleRemoval(const Octree& octree, const std::vector<std::uint8_
       handles_(count_handles(surface)),
       group_(octree.leaf_count(), kNone),
       changed_(octree.leaf_count(), 0) {
-  std::vector<std::uint8_t> leaves(octree.leaf_count(), 0);
-  for (std::size_t leaf = 0; leaf < leaves.size(); ++leaf) {
-    for (const std::uint32_t c : octree.corners(leaf)) leaves[leaf] |= open[c];
+  std::vector<std::uint8_t> own(octree.leaf_count(), 0);  // leaves with an open corner
+  for (std::size_t leaf = 0; leaf < own.size(); ++leaf) {
+    for (const std::uint32_t c : octree.corners(leaf)) own[leaf] |= open[c];
   }
-  std::vector<std::uint8_t> around(leaves.size(), 0);
-  for (const MinimalEdge& e : edges_around(octree, leaves, cancel)) {
+  edges_ = edges_around(octree, own, cancel);
+  std::vector<std::uint8_t> around = own, larger(own.size(), 0);  // next to a leaf with one
+  for (const MinimalEdge& e : edges_) {
     if (open[e.low] == 0 && open[e.high] == 0) continue;
-    for (const std::uint32_t leaf : e.leaf) around[leaf] = 1;
+    for (const std::uint32_t leaf : e.leaf) around[leaf] = 1, larger[leaf] = own[leaf] == 0 ? 1 : 0;
   }
-  edges_ = edges_around(octree, around, cancel);
+  for (const MinimalEdge& e : edges_around(octree, larger, cancel)) {
+    if (std::all_of(e.leaf.begin(), e.leaf.end(), [&](std::uint32_t leaf) { return own[leaf] == 0; })) edges_.push_back(e);
+  }
   list_edges(open, around);
   std::vector<std::uint32_t> crossing;
   for (std::uint32_t k = 0; k < edges_.size(); ++k) {

@@ -93,13 +93,19 @@ class TriangleTree {
   template <class Visit>
   void visit_leaves(const Node& a, const Node& b, const Visit& visit) const {
     std::array<vector::Box, kLeafSize> boxes;
-    for (std::uint32_t j = b.begin; j < b.end; ++j) boxes[j - b.begin] = box_of(triangles_[j]);
+    std::array<bool, kLeafSize> near{};
+    for (std::uint32_t j = b.begin; j < b.end; ++j) {
+      boxes[j - b.begin] = box_of(triangles_[j]);
+      near[j - b.begin] = &a == &b || vector::meet(a.box, boxes[j - b.begin]);
+    }
     for (std::uint32_t i = a.begin; i < a.end; ++i) {
-      const vector::Box own = box_of(triangles_[i]);
+      const vector::Box own = &a == &b ? boxes[i - a.begin] : box_of(triangles_[i]);
+      if (&a != &b && !vector::meet(own, b.box)) continue;
       const std::uint32_t f = triangles_[i].index;
       for (std::uint32_t j = &a == &b ? i + 1 : b.begin; j < b.end; ++j) {
+        if (!near[j - b.begin] || !vector::meet(own, boxes[j - b.begin])) continue;
         const std::uint32_t g = triangles_[j].index;
-        if (vector::meet(own, boxes[j - b.begin])) visit(std::min(f, g), std::max(f, g));
+        visit(std::min(f, g), std::max(f, g));
       }
     }
   }
