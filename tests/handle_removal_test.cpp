@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
+#include <random>
 
 #include "mesh_topology.h"
 
@@ -83,6 +85,49 @@ TEST(HandleRemoval, SpecksAreNeitherGainNorLoss) {
   const Topology t = topology_after(drilled, specks);
   EXPECT_EQ(t.genus, 1);
   EXPECT_EQ(t.components, 1U);
+}
+
+// Signs of a random smooth function on an octree with leaves of several sizes, read at several levels one after the other.
+TEST(HandleRemoval, CountsTheHandlesOfTheSurfaceAfterEveryProposal) {
+  const RefineDisc ball{{0.2, 0.1, 0}, {0, 0, 0}, 0.5, 0, 5};
+  const Octree octree({-1, -1, -1}, 2, {ball}, 4);
+  long before = 0, after = 0;
+  for (std::uint32_t seed = 1; seed <= 12; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> phase(0, 2 * M_PI);
+    std::array<double, 6> p{};
+    for (double& a : p) a = phase(random);
+    std::vector<double> value(octree.corner_count());
+    Marks open(value.size(), 0);
+    for (std::size_t c = 0; c < value.size(); ++c) {
+      const Vec3 x = octree.corner_position(c);
+      value[c] = std::sin(9 * x[0] + p[0]) + std::sin(9 * x[1] + p[1]) + std::sin(9 * x[2] + p[2]) + 0.5 * std::sin(23 * x[0] + p[3]) +
+                 0.5 * std::sin(23 * x[1] + p[4]) + 0.5 * std::sin(23 * x[2] + p[5]);
+      open[c] = std::abs(value[c]) < 0.5 && !octree.on_boundary(c) ? 1 : 0;
+    }
+    const auto read = [&](double level) {
+      Marks out(value.size());
+      for (std::size_t c = 0; c < out.size(); ++c) out[c] = value[c] > (open[c] != 0 ? level : 0) && !octree.on_boundary(c) ? 1 : 0;
+      return out;
+    };
+    Marks inside = read(0);
+    const DualSurface surface = contour(octree, inside, no_centres);
+    HandleRemoval removal(octree, open, inside, surface, no_centres);
+    long handles = count_handles(surface);
+    before += handles;
+    for (const double level : {0.1, -0.1, 0.3, -0.3, 0.1, 0.45}) {
+      const bool changed = removal.propose(read(level), inside);
+      ASSERT_EQ(removal.handles(), count_handles(contour(octree, inside, no_centres)));
+      if (changed) {
+        ASSERT_LT(removal.handles(), handles);
+      } else {
+        ASSERT_EQ(removal.handles(), handles);
+      }
+      handles = removal.handles();
+    }
+    after += handles;
+  }
+  EXPECT_LT(after, before);
 }
 
 }  // namespace

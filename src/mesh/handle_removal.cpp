@@ -46,10 +46,12 @@ class DifferentValues {
   explicit DifferentValues(std::size_t groups) : first_(groups, kNone), count_(groups, 0) {}
 
   void add(std::uint32_t group, std::uint32_t value) {
-    if (value == first_[group]) return;
-    if (first_[group] != kNone) return further_.emplace_back(group, value), void();
-    first_[group] = value;
-    count_[group] = 1;
+    if (first_[group] == kNone) {
+      first_[group] = value;
+      count_[group] = 1;
+    } else if (first_[group] != value) {
+      further_.emplace_back(group, value);
+    }
   }
 
   std::vector<long> count() {
@@ -306,16 +308,21 @@ std::vector<long> HandleRemoval::components_through(const Groups& groups) const 
   return components.count();
 }
 
-// Takes the proposal of those groups that it does good to while the others taken take it too. Returns whether some do.
-bool HandleRemoval::settle(const Groups& groups, const Sheets& changed, const std::vector<long>& gain, std::vector<std::uint8_t>& take) {
-  // No handles can be lost without a gain but by joining components.
-  const std::vector<long> before = components_through(groups);
-  std::vector<long> least(take.size(), 0);  // components afterwards
+// Whether some group can be worth it: no handle is lost without a gain but by joining components. `before`: components through each group.
+bool HandleRemoval::can_lose(const Groups& groups, const Sheets& changed, const std::vector<long>& gain,
+                             const std::vector<long>& before) const {
+  std::vector<long> least(gain.size(), 0);  // components afterwards
   for (const std::uint32_t leaf : changed.leaf) least[group_[leaf]] = 1;
-  bool hope = false;
-  for (std::size_t g = 0; g < take.size(); ++g) hope = hope || is_worth(gain[g] / 4 + before[g] - least[g], groups.size[g]);
-  if (!hope) return false;
+  for (std::size_t g = 0; g < gain.size(); ++g) {
+    if (is_worth(gain[g] / 4 + before[g] - least[g], groups.size[g])) return true;
+  }
+  return false;
+}
 
+// Marks the groups that lose handles by the proposal while all the marked ones take it. False if there is none, or if this has not settled.
+bool HandleRemoval::settle(const Groups& groups, const Sheets& changed, const std::vector<long>& gain, std::vector<std::uint8_t>& take) {
+  const std::vector<long> before = components_through(groups);
+  if (!can_lose(groups, changed, gain, before)) return false;
   auto nodes = static_cast<std::uint32_t>(component_.size());
   std::vector<std::uint32_t> added;
   for (const std::uint32_t edge : changed.rim) {
@@ -348,7 +355,6 @@ bool HandleRemoval::settle(const Groups& groups, const Sheets& changed, const st
     }
   }
   for (const std::uint32_t edge : added) node_[edge] = kNone;
-  if (!settled) std::fill(take.begin(), take.end(), 0);
   return settled;
 }
 

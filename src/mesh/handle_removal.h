@@ -60,6 +60,8 @@ class HandleRemoval {
   [[nodiscard]] std::vector<long> gains(const Groups& groups, const Sheets& changed, const std::vector<std::uint8_t>& from,
                                         const std::vector<std::uint8_t>& to) const;
   [[nodiscard]] std::vector<long> components_through(const Groups& groups) const;
+  [[nodiscard]] bool can_lose(const Groups& groups, const Sheets& changed, const std::vector<long>& gain,
+                              const std::vector<long>& before) const;
   bool settle(const Groups& groups, const Sheets& changed, const std::vector<long>& gain, std::vector<std::uint8_t>& take);
   void accept(const Groups& groups, const Sheets& changed, const std::vector<std::uint8_t>& take);
 
