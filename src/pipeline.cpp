@@ -2,6 +2,7 @@
 #include "baselines/baseline.h"
 #include "cloud/canonical_cloud.h"
 #include "cloud/clusters.h"
+#include "cloud/neighbours.h"
 #include "cloud/noise.h"
 #include "cloud/outliers.h"
 #include "cloud/spacing.h"
@@ -21,12 +22,14 @@
 #include <g3r/g3r.h>
 
 #include <cmath>
+#include <memory>
 #include <numeric>
 #include <optional>
 
 namespace g3r {
 namespace {
 
+constexpr std::size_t kNear = 17;    // a point and its 16 nearest
 constexpr float kUnsure = 0.5F;      // confidence below which a point counts as unsure
 constexpr double kManyUnsure = 0.2;  // share of unsure points above which the orientation is called inconsistent
 
@@ -34,7 +37,8 @@ constexpr double kManyUnsure = 0.2;  // share of unsure points above which the o
 struct Problem {
   CanonicalCloud cloud;
   std::vector<Vec3> outliers;         // taken out of the cloud; their indices follow those of its points
-  std::vector<double> local_spacing;  // smoothed, per point
+  std::vector<std::uint32_t> near;    // kNear nearest of every point, itself included; with local_spacing only
+  std::vector<double> local_spacing;  // smoothed, per point; of clean clouds only
   double spacing = 0;
   double noise = 0;
   Settings settings;
@@ -46,19 +50,25 @@ Problem prepare(const PointsView& points, const Options& options, Stages& stages
   stages.begin("build");
   problem.cloud = canonical_cloud(points);
   stages.check();
-  std::vector<double> local = local_spacing(problem.cloud.points);
+  const std::vector<Vec3>& cloud = problem.cloud.points;
+  auto neighbours = std::make_unique<Neighbours>(cloud);
+  problem.near = neighbours->of_all(kNear);
+  std::vector<double> local = local_spacing(cloud, problem.near);
   problem.spacing = typical_spacing(local);
   if (options.preset != Preset::kPaper && !is_baseline(options.method)) {
-    const std::vector<std::uint32_t> outliers = find_outliers(problem.cloud.points, local, problem.spacing);
+    const std::vector<std::uint32_t> outliers = find_outliers(cloud, problem.near, local, problem.spacing);
     if (!outliers.empty()) {
       problem.outliers = remove_points(problem.cloud, outliers);
-      local = local_spacing(problem.cloud.points);
+      neighbours = std::make_unique<Neighbours>(cloud);
+      problem.near = neighbours->of_all(kNear);
+      local = local_spacing(cloud, problem.near);
     }
   }
-  problem.noise = options.preset == Preset::kPaper ? 0 : estimate_noise(problem.cloud.points, problem.spacing);
-  problem.settings = choose_settings(options, problem.cloud, problem.spacing, problem.noise);
+  problem.noise = options.preset == Preset::kPaper ? 0 : estimate_noise(cloud, *neighbours, problem.spacing);
+  problem.settings = choose_settings(options, problem.cloud, problem.spacing, problem.noise, problem.outliers.size());
   const bool clean = problem.noise == 0 && problem.settings.polish_steps > 0;
-  if (clean) problem.local_spacing = smoothed_spacing(problem.cloud.points, local);
+  if (clean) problem.local_spacing = smoothed_spacing(local, problem.near);
+  if (!clean) problem.near = {};
   if (!options.wnnc_widths.empty() && options.method != Method::kWnnc) throw InvalidInput("wnnc_widths belong to the method wnnc");
   if (is_baseline(options.method)) {
     const double epsilon = options.epsilon.unit == Epsilon::Unit::kAuto ? 0 : problem.settings.epsilon;
@@ -176,7 +186,7 @@ Solution solve_on_points(const Problem& problem, const Options& options, Stages&
   if (s.polish_steps == 0) return solution;
   Polished polished = polish(problem.cloud.points, problem.cloud.morton, s, problem.local_spacing, {}, solution.refinement, stages);
   const bool clean = !problem.local_spacing.empty();
-  if (clean) sharpen_creases(problem.cloud.points, problem.local_spacing, polished.refinement.normals);
+  if (clean) sharpen_creases(problem.cloud.points, problem.near, problem.local_spacing, polished.refinement.normals);
   return {std::move(polished.eta), std::move(polished.refinement)};
 }
 

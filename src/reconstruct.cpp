@@ -2,7 +2,7 @@
 #include "cpu/parallel.h"
 #include "mesh/field_mesher.h"
 #include "mesh/mesh_finish.h"
-#include "mesh/neighbours.h"
+#include "mesh/smooth_spacing.h"
 #include "mesh/screened_poisson.h"
 #include "orient/settings.h"
 #include "oriented_cloud.h"

@@ -1,6 +1,8 @@
 // Normals at creases: sharpened on piecewise smooth shapes, left alone elsewhere.
 #include "orient/creases.h"
 
+#include "cloud/neighbours.h"
+
 #include "shapes.h"
 
 #include <gtest/gtest.h>
@@ -49,10 +51,12 @@ BlurredCube blurred_cube(std::size_t per_face) {
   return out;
 }
 
+std::vector<std::uint32_t> near(const std::vector<Vec3>& points) { return Neighbours(points).of_all(17); }
+
 TEST(Creases, OfPiecewiseSmoothShapesAreSharpened) {
   const BlurredCube input = blurred_cube(1000);
   std::vector<Vec3> normals = input.blurred;
-  EXPECT_TRUE(sharpen_creases(input.cube.points, input.spacing, normals));
+  EXPECT_TRUE(sharpen_creases(input.cube.points, near(input.cube.points), input.spacing, normals));
   EXPECT_LE(shapes::angle_error(normals, input.cube.normals), shapes::angle_error(input.blurred, input.cube.normals) / 2);
   EXPECT_GE(shapes::share_correct(normals, input.cube.normals), 0.999);
 }
@@ -68,10 +72,10 @@ TEST(Creases, RoughSurfacesStayAsTheyAre) {
     for (double& c : n) c /= size;
   }
   const std::vector<Vec3> before = normals;
-  EXPECT_FALSE(sharpen_creases(rough.points, std::vector<double>(rough.points.size(), 0.023), normals));
+  EXPECT_FALSE(sharpen_creases(rough.points, near(rough.points), std::vector<double>(rough.points.size(), 0.023), normals));
   EXPECT_EQ(normals, before);
   normals = rough.normals;
-  EXPECT_FALSE(sharpen_creases(rough.points, std::vector<double>(rough.points.size(), 0.023), normals));
+  EXPECT_FALSE(sharpen_creases(rough.points, near(rough.points), std::vector<double>(rough.points.size(), 0.023), normals));
   EXPECT_EQ(normals, rough.normals);
 }
 

@@ -9,7 +9,7 @@
 #include "field_shapes.h"
 #include "mesh/field_mesher.h"
 #include "mesh/mesh_parts.h"
-#include "mesh/neighbours.h"
+#include "mesh/smooth_spacing.h"
 #include "mesh/simplify.h"
 #include "mesh_topology.h"
 

@@ -2,6 +2,7 @@
 #include "cloud/outliers.h"
 
 #include "cloud/canonical_cloud.h"
+#include "cloud/neighbours.h"
 #include "cloud/spacing.h"
 #include "shapes.h"
 
@@ -17,8 +18,9 @@ constexpr std::size_t kPoints = 6000;
 
 std::size_t flagged(const std::vector<Vec3>& points) {
   const CanonicalCloud cloud = canonical_cloud(points);
-  const std::vector<double> local = local_spacing(cloud.points);
-  return find_outliers(cloud.points, local, typical_spacing(local)).size();
+  const std::vector<std::uint32_t> near = Neighbours(cloud.points).of_all(17);
+  const std::vector<double> local = local_spacing(cloud.points, near);
+  return find_outliers(cloud.points, near, local, typical_spacing(local)).size();
 }
 
 // Samples of a torus of which the share falls tenfold from one end to the other.

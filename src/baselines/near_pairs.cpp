@@ -1,6 +1,6 @@
 #include "baselines/near_pairs.h"
 
-#include "cloud/point_tree.h"
+#include "cloud/neighbours.h"
 #include "cpu/parallel.h"
 
 #include <algorithm>
@@ -13,8 +13,7 @@ constexpr std::size_t kBlock = 1024;  // points per parallel block
 }  // namespace
 
 NearPairs near_pairs(const std::vector<Vec3>& points, double radius, const std::atomic<bool>* cancel) {
-  const PointSet set{points};
-  const PointTree tree(3, set, nanoflann::KDTreeSingleIndexAdaptorParams(kPointTreeLeaf));
+  const Neighbours neighbours(points);
   const std::size_t n = points.size();
   std::vector<std::vector<std::uint32_t>> found((n + kBlock - 1) / kBlock);
   NearPairs pairs;
@@ -23,10 +22,10 @@ NearPairs near_pairs(const std::vector<Vec3>& points, double radius, const std::
       n, kBlock,
       [&](std::size_t begin, std::size_t end) {
         std::vector<std::uint32_t>& here = found[begin / kBlock];
-        std::vector<std::pair<std::uint32_t, double>> matches;
+        std::vector<std::uint32_t> matches;
         for (std::size_t i = begin; i < end; ++i) {
-          tree.radiusSearch(points[i].data(), radius * radius, matches, nanoflann::SearchParams(0, 0, false));
-          for (const auto& match : matches) here.push_back(match.first);
+          neighbours.within(points[i], radius, matches);
+          here.insert(here.end(), matches.begin(), matches.end());
           pairs.first[i + 1] = matches.size();
         }
       },

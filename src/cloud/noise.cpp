@@ -1,11 +1,8 @@
 #include "cloud/noise.h"
 
-#include "cloud/point_tree.h"
-
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace g3r {
@@ -64,18 +61,16 @@ double quantile(std::vector<double> values, double share) {
 
 }  // namespace
 
-double estimate_noise(const std::vector<Vec3>& points, double spacing) {
+double estimate_noise(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing) {
   if (points.size() < kFewestPoints) return 0;
-  const PointSet set{points};
-  const PointTree tree(3, set, nanoflann::KDTreeSingleIndexAdaptorParams(kPointTreeLeaf));
   std::vector<double> clean;
   std::vector<double> small;
   std::vector<double> large;
   std::vector<double> kurtosis;
+  std::vector<std::uint32_t> index;
+  std::vector<double> squared;
   for (std::size_t i = 0; i < points.size(); i += std::max<std::size_t>(1, points.size() / kProbes)) {
-    std::array<std::uint32_t, kNeighbours> index;
-    std::array<double, kNeighbours> squared;
-    tree.knnSearch(points[i].data(), kNeighbours, index.data(), squared.data());
+    neighbours.nearest(points[i], kNeighbours, index, squared);
     clean.push_back(fit_plane(points, index.data(), kClean).residual);
     small.push_back(fit_plane(points, index.data(), kSmall).residual);
     kurtosis.push_back(fit_plane(points, index.data(), kSheets).kurtosis);

@@ -1,6 +1,8 @@
 // How noisy a cloud is, from the cloud alone.
 #pragma once
 
+#include "cloud/neighbours.h"
+
 #include <g3r/points.h>
 
 #include <vector>
@@ -16,7 +18,7 @@ namespace g3r {
 ///     quantile of the kurtosis (24 neighbours) below 1.85 means sheets or wires (measured: those 1.1 to 1.8, noise 1.94 to 2.1).
 ///   - The size follows from the residual x h of 32 neighbours: sigma = 0.95 h x / (1 - x), fitted to known noise of 0.25 to 1 %. Near
 ///     walls 32 neighbours see both sides, so x is at most what the residual y h of 16 lets expect on a plane, 1.27 y / (1 - (y / 0.47)^8).
-/// `spacing`: typical_spacing(). Same units as the points. O(N log N); looks at about 2000 points.
-[[nodiscard]] double estimate_noise(const std::vector<Vec3>& points, double spacing);
+/// `neighbours` of these points; `spacing`: typical_spacing(). Same units as the points. Looks at about 2000 points, in O(log N) each.
+[[nodiscard]] double estimate_noise(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing);
 
 }  // namespace g3r

@@ -1,11 +1,9 @@
 #include "cloud/outliers.h"
 
-#include "cloud/point_tree.h"
 #include "cpu/parallel.h"
 
 #include <Eigen/Eigenvalues>
 
-#include <array>
 #include <cmath>
 
 namespace g3r {
@@ -13,14 +11,14 @@ namespace {
 
 constexpr std::size_t kFewNeighbours = 8;
 constexpr std::size_t kManyNeighbours = 16;
-constexpr double kAlone = 2;              // local spacing against the neighbours'
+constexpr double kAlone = 2;                // local spacing against the neighbours'
 constexpr double kSparse = 2;               // local spacing against the typical one
 constexpr double kVolumetric = 0.07;        // share of the smallest principal spread; 1/3 in a ball
 constexpr std::size_t kFewestPoints = 100;  // below, sparse parts are a matter of chance
 constexpr std::size_t kBlock = 256;         // points per parallel block
 constexpr double kMostOutliers = 1.0 / 3;
 
-bool fills_space(const std::vector<Vec3>& points, const std::array<std::uint32_t, kManyNeighbours + 1>& index, std::size_t count) {
+bool fills_space(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < count; ++k) mean += Eigen::Map<const Eigen::Vector3d>(points[index[k]].data()) / static_cast<double>(count);
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -34,21 +32,19 @@ bool fills_space(const std::vector<Vec3>& points, const std::array<std::uint32_t
 
 }  // namespace
 
-std::vector<std::uint32_t> find_outliers(const std::vector<Vec3>& points, const std::vector<double>& local, double typical) {
+std::vector<std::uint32_t> find_outliers(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near,
+                                         const std::vector<double>& local, double typical) {
   if (points.size() < kFewestPoints) return {};
-  const PointSet set{points};
-  const PointTree tree(3, set, nanoflann::KDTreeSingleIndexAdaptorParams(kPointTreeLeaf));
+  const std::size_t stride = near.size() / points.size();
   std::vector<char> outlier(points.size(), 0);
   parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-    std::array<std::uint32_t, kManyNeighbours + 1> index{};
-    std::array<double, kManyNeighbours + 1> squared{};
     for (std::size_t i = begin; i < end; ++i) {
       if (local[i] <= 1.5 * typical) continue;  // most points; both rules ask for more
-      const std::size_t found = tree.knnSearch(points[i].data(), kManyNeighbours + 1, index.data(), squared.data());
+      const std::uint32_t* index = near.data() + i * stride;
       double neighbours = 0;  // mean logarithm
       for (std::size_t k = 1; k <= kFewNeighbours; ++k) neighbours += std::log(local[index[k]]) / kFewNeighbours;
       const bool alone = std::log(local[i]) - neighbours > std::log(kAlone);
-      outlier[i] = alone || (local[i] > kSparse * typical && fills_space(points, index, found)) ? 1 : 0;
+      outlier[i] = alone || (local[i] > kSparse * typical && fills_space(points, index, kManyNeighbours + 1)) ? 1 : 0;
     }
   });
   std::vector<std::uint32_t> indices;

@@ -1,9 +1,10 @@
 #include "cloud/spacing.h"
 
-#include "cloud/point_tree.h"
+#include "cloud/neighbours.h"
 #include "cpu/parallel.h"
 #include "median.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -17,37 +18,36 @@ constexpr std::size_t kBlock = 1024;    // points per parallel block
 
 }  // namespace
 
-std::vector<double> local_spacing(const std::vector<Vec3>& points) {
-  const std::size_t k = std::min(kNeighbours, points.size() - 1);
-  const PointSet set{points};
-  const PointTree tree(3, set, nanoflann::KDTreeSingleIndexAdaptorParams(kPointTreeLeaf));
+std::vector<double> local_spacing(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near) {
+  const std::size_t stride = near.size() / points.size();
+  const std::size_t k = std::min(kNeighbours + 1, stride) - 1;
   const double factor = std::sqrt(std::numbers::pi / static_cast<double>(k));
   std::vector<double> spacing(points.size());
   parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-    std::array<std::uint32_t, kNeighbours + 1> index{};
-    std::array<double, kNeighbours + 1> squared{};
     for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t found = tree.knnSearch(points[i].data(), k + 1, index.data(), squared.data());
-      spacing[i] = std::max(kLeastSpacing, factor * std::sqrt(squared[found - 1]));
+      const Vec3& p = points[i];
+      const Vec3& q = points[near[i * stride + k]];
+      spacing[i] = std::max(kLeastSpacing, factor * std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]));
     }
   });
   return spacing;
 }
 
-std::vector<double> smoothed_spacing(const std::vector<Vec3>& points, const std::vector<double>& local) {
-  const PointSet set{points};
-  const PointTree tree(3, set, nanoflann::KDTreeSingleIndexAdaptorParams(kPointTreeLeaf));
-  std::vector<double> logarithm(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) logarithm[i] = std::log(local[i]);
-  std::vector<double> spacing(points.size());
-  parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-    std::array<std::uint32_t, kSmoothing> index{};
-    std::array<double, kSmoothing> squared{};
+std::vector<double> local_spacing(const std::vector<Vec3>& points) {
+  return local_spacing(points, Neighbours(points).of_all(kNeighbours + 1));
+}
+
+std::vector<double> smoothed_spacing(const std::vector<double>& local, const std::vector<std::uint32_t>& near) {
+  const std::size_t stride = near.size() / local.size();
+  const std::size_t count = std::min(kSmoothing, stride);
+  std::vector<double> logarithm(local.size());
+  for (std::size_t i = 0; i < local.size(); ++i) logarithm[i] = std::log(local[i]);
+  std::vector<double> spacing(local.size());
+  parallel::for_blocks(local.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t found = tree.knnSearch(points[i].data(), kSmoothing, index.data(), squared.data());
       double sum = 0;
-      for (std::size_t k = 0; k < found; ++k) sum += logarithm[index[k]];
-      spacing[i] = std::exp(sum / static_cast<double>(found));
+      for (std::size_t k = 0; k < count; ++k) sum += logarithm[near[i * stride + k]];
+      spacing[i] = std::exp(sum / static_cast<double>(count));
     }
   });
   return spacing;

@@ -3,6 +3,7 @@
 
 #include <g3r/points.h>
 
+#include <cstdint>
 #include <vector>
 
 namespace g3r {
@@ -15,10 +16,12 @@ inline constexpr double kLeastSpacing = 1e-6;
 /// sample (docs/math.md, "Spacing"). Fewer than 9 points: k = N - 1. N values in the units of the points, all > 0 for distinct points. O(N
 /// log N). Points in the unit frame: none is below kLeastSpacing.
 [[nodiscard]] std::vector<double> local_spacing(const std::vector<Vec3>& points);
+/// The same from Neighbours::of_all(k) of these points, k >= 9.
+[[nodiscard]] std::vector<double> local_spacing(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near);
 
 /// Local spacings averaged (geometric mean) over each point's 16 nearest, itself included: they follow the density, not the luck of the
-/// sample. O(N log N).
-[[nodiscard]] std::vector<double> smoothed_spacing(const std::vector<Vec3>& points, const std::vector<double>& local);
+/// sample. `near`: Neighbours::of_all(k), k >= 16. O(N).
+[[nodiscard]] std::vector<double> smoothed_spacing(const std::vector<double>& local, const std::vector<std::uint32_t>& near);
 
 /// The typical spacing: the median of the local ones, which a few far points cannot move.
 [[nodiscard]] double typical_spacing(std::vector<double> local);

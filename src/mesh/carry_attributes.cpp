@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "cloud/neighbours.h"
 #include "cpu/parallel.h"
-#include "mesh/neighbours.h"
 #include "mesh/vector.h"
 
 namespace g3r {
@@ -29,7 +29,7 @@ void carry_attributes(Mesh& mesh, const PointsView& points, const std::vector<st
     source.push_back(i);
   }
   if (finite.empty() || (colors.empty() && confidence.empty())) return;
-  const mesh::Neighbours neighbours(finite);
+  const Neighbours neighbours(finite);
   mesh.colors.resize(colors.empty() ? 0 : mesh.vertices.size());
   mesh.confidence.resize(confidence.empty() ? 0 : mesh.vertices.size());
   parallel::for_blocks(mesh.vertices.size(), 256, [&](std::size_t begin, std::size_t end) {

@@ -14,7 +14,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh/neighbours.h"
+#include "cloud/neighbours.h"
 
 namespace g3r::mesh {
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "cloud/neighbours.h"
 #include "cpu/parallel.h"
 #include "g3r/error.h"
 #include "median.h"
@@ -18,6 +19,7 @@
 #include "mesh/handle_removal.h"
 #include "mesh/mesh_finish.h"
 #include "mesh/side_smoothing.h"
+#include "mesh/smooth_spacing.h"
 #include "mesh/untangle.h"
 
 namespace g3r {
@@ -26,7 +28,6 @@ namespace {
 using mesh::LocalFit;
 using mesh::LocalFitOptions;
 using mesh::LocalSurface;
-using mesh::Neighbours;
 using mesh::Octree;
 using mesh::Opinions;
 using mesh::OrientedPoints;

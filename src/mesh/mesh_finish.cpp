@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cloud/neighbours.h"
 #include "cpu/parallel.h"
 #include "g3r/error.h"
 #include "median.h"
 #include "mesh/mesh_parts.h"
-#include "mesh/neighbours.h"
 #include "mesh/simplify.h"
+#include "mesh/smooth_spacing.h"
 #include "mesh/vector.h"
 
 namespace g3r::mesh {

@@ -2,7 +2,6 @@
 
 #include "cpu/parallel.h"
 #include "median.h"
-#include "mesh/neighbours.h"
 #include "mesh/vector.h"
 
 #include <algorithm>
@@ -25,7 +24,7 @@ struct Round {
   std::vector<double> share;  // of the weight that planes leave, at creases; -1 elsewhere
 };
 
-Round average_in_planes(const std::vector<Vec3>& points, const std::vector<double>& spacing, const std::vector<std::uint32_t>& neighbours,
+Round average_in_planes(const std::vector<Vec3>& points, const std::vector<double>& spacing, const std::vector<std::uint32_t>& near,
                         const std::vector<Vec3>& normals) {
   Round out{normals, std::vector<double>(points.size(), -1)};
   parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
@@ -37,7 +36,7 @@ Round average_in_planes(const std::vector<Vec3>& points, const std::vector<doubl
       double held = 0;
       Vec3 sum{0, 0, 0};
       for (std::size_t k = 1; k < kNeighbours; ++k) {
-        const std::uint32_t j = neighbours[i * kNeighbours + k];
+        const std::uint32_t j = near[i * kNeighbours + k];
         const Vec3 d = vector::subtract(points[i], points[j]);
         const double near = std::exp(-vector::dot(d, d) / (2 * radius * radius));
         all += near;
@@ -60,12 +59,12 @@ Round average_in_planes(const std::vector<Vec3>& points, const std::vector<doubl
 
 }  // namespace
 
-bool sharpen_creases(const std::vector<Vec3>& points, const std::vector<double>& spacing, std::vector<Vec3>& normals) {
+bool sharpen_creases(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near, const std::vector<double>& spacing,
+                     std::vector<Vec3>& normals) {
   if (points.size() < kNeighbours) return false;
-  const std::vector<std::uint32_t> neighbours = mesh::Neighbours(points).of_all(kNeighbours);
   std::vector<Vec3> sharp = normals;
-  for (int round = 0; round < kRounds; ++round) sharp = average_in_planes(points, spacing, neighbours, sharp).normals;
-  std::vector<double> share = average_in_planes(points, spacing, neighbours, sharp).share;
+  for (int round = 0; round < kRounds; ++round) sharp = average_in_planes(points, spacing, near, sharp).normals;
+  std::vector<double> share = average_in_planes(points, spacing, near, sharp).share;
   share.erase(std::remove(share.begin(), share.end(), -1.0), share.end());
   if (share.empty() || median(share) < kPiecewiseSmooth) return false;
   normals = std::move(sharp);

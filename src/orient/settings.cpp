@@ -1,5 +1,7 @@
 #include "orient/settings.h"
 
+#include "orient/coarse_to_fine.h"
+
 #include <g3r/error.h>
 
 #include <algorithm>
@@ -11,16 +13,21 @@ namespace g3r {
 namespace {
 
 // The default: energy form. Widths in spacings h.
-constexpr double kEnergyEpsilon = 0.3;        // smaller converges slower, larger blurs thin walls
-constexpr double kCoarsestEpsilon = 0.5;      // without a start: converges faster, tells more sides right
-constexpr double kEnergyWindingWeight = 0.1;  // larger converges slower, 0 loses nested shells
-constexpr double kEnergyTolerance = 2.5e-3;   // slats and spokes need this residual; smooth shapes get there in half the steps
-constexpr double kAcceptedResidual = 2e-2;    // from here on normals change little; all clean models get below
+constexpr double kEnergyEpsilon = 0.4;         // smaller converges slower, larger blurs thin walls
+constexpr double kCoarsestEpsilon = 0.5;       // without a start: converges faster, tells more sides right
+constexpr double kEnergyWindingWeight = 0.1;   // larger converges slower, 0 loses nested shells
+constexpr double kCoarseWindingWeight = 0.03;  // with a coarse start: tells more sides of thin walls right
+constexpr double kEnergyTolerance = 2.5e-3;    // slats and spokes need this residual; smooth shapes get there in half the steps
+constexpr double kAcceptedResidual = 2e-2;     // from here on normals change little; all clean models get below
 constexpr const char* kEnergySchedule = "45 cg";
-constexpr double kStartTolerance = 5e-3;  // of a coarse solution that is only a start
-// After a coarse start: smooth shapes are there in 2 to 10 steps, thin walls and narrow gaps in 15 to 25.
-constexpr Steps kContinued{25, StepKind::kConjugateGradient};
-constexpr double kContinuedTolerance = 8e-3;
+constexpr double kStartTolerance = 8e-3;  // of a coarse solution that is only a start
+// After a coarse start: smooth shapes are there in 2 to 14 steps, thin walls and narrow gaps in 13 to 28.
+constexpr Steps kContinued{30, StepKind::kConjugateGradient};
+constexpr double kContinuedTolerance = 9e-3;
+// The same where outliers were taken out: some are always left, and more steps fit those.
+constexpr Steps kContinuedAmongOutliers{10, StepKind::kConjugateGradient};
+constexpr double kToleranceAmongOutliers = 1.5e-2;
+constexpr double kFewOutliers = 1e-3;  // of the points; clean clouds lose one point at most
 // The default on noisy input: the field must not see single points. Noise sigma turns the normal of an area s^2 of points h apart by about
 // sigma h / s^2, so widths for one accuracy are in proportion to sqrt(sigma h).
 constexpr double kNoisyWidth = 3;  // sigma, of epsilon and of the refinement
@@ -98,7 +105,7 @@ double paper_epsilon(const CanonicalCloud& cloud) {
   return kPaperLeafFactor * std::ldexp(2.0, -deepest);
 }
 
-Settings choose_settings(const Options& options, const CanonicalCloud& cloud, double spacing, double noise) {
+Settings choose_settings(const Options& options, const CanonicalCloud& cloud, double spacing, double noise, std::size_t outliers) {
   const bool paper = options.preset == Preset::kPaper;
   Settings s;
   s.method = options.method != Method::kAuto ? options.method : paper ? Method::kGreen : Method::kEnergy;
@@ -115,7 +122,6 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   }
   const bool green = s.method == Method::kGreen;
   s.constant_weight = paper ? 1 : kGreenConstantWeight;
-  s.winding_weight = kEnergyWindingWeight * spacing;
   s.epsilon = (green ? kGreenEpsilon : kEnergyEpsilon) * spacing;
   if (paper) s.epsilon = std::max(paper_epsilon(cloud), kPaperLeastEpsilon * spacing);
   if (options.epsilon.unit != Epsilon::Unit::kAuto) s.epsilon = checked_epsilon(options.epsilon, cloud, spacing);
@@ -125,7 +131,7 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   s.polish_steps = paper ? 0 : kPolishSteps;
   s.polish_epsilon = std::min(s.epsilon, kPolishEpsilon * spacing);
   s.polish_width = kPolishWidth * spacing;
-  s.polish_winding_weight = s.winding_weight;
+  s.polish_winding_weight = kEnergyWindingWeight * spacing;
 
   require(options.solver != Solver::kDense || green, "the dense solver belongs to the method green");
   s.dense = options.solver == Solver::kDense ||
@@ -134,9 +140,11 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   s.schedule = parse_schedule(s.schedule_text);
   s.accepted_residual = options.tolerance >= 0 ? options.tolerance : std::max(s.tolerance, kAcceptedResidual);
   s.coarse_to_fine = !paper && !green && options.schedule.empty();
-  s.continued_schedule = {kContinued};
+  const bool among_outliers = static_cast<double>(outliers) > kFewOutliers * static_cast<double>(cloud.size());
+  s.continued_schedule = {among_outliers ? kContinuedAmongOutliers : kContinued};
+  s.winding_weight = (starts_coarse(s, cloud.size()) ? kCoarseWindingWeight : kEnergyWindingWeight) * spacing;
   s.tolerance = options.tolerance >= 0 ? options.tolerance : paper ? 0 : green ? kGreenTolerance : kEnergyTolerance;
-  s.continued_tolerance = options.tolerance >= 0 ? options.tolerance : kContinuedTolerance;
+  s.continued_tolerance = options.tolerance >= 0 ? options.tolerance : among_outliers ? kToleranceAmongOutliers : kContinuedTolerance;
   s.start_tolerance = std::max(s.tolerance, kStartTolerance);
   const bool wide = s.epsilon > kWideEpsilon * spacing;
   if (!paper && !green && (noise > 0 || wide)) {

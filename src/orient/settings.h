@@ -43,8 +43,10 @@ struct Settings {
   SumPlan sums;                    ///< of everything after it
 };
 
-/// `noise`: estimate_noise(). Throws InvalidInput for an option out of range, naming it and the range.
-[[nodiscard]] Settings choose_settings(const Options& options, const CanonicalCloud& cloud, double spacing, double noise);
+/// `noise`: estimate_noise(); `outliers`: points that find_outliers() took out. Throws InvalidInput for an option out of range, naming it
+/// and the range.
+[[nodiscard]] Settings choose_settings(const Options& options, const CanonicalCloud& cloud, double spacing, double noise,
+                                       std::size_t outliers);
 
 /// The paper's mollifier for clean input: 0.8 x the leaf side of an octree with at most one point per leaf, at its deepest level.
 [[nodiscard]] double paper_epsilon(const CanonicalCloud& cloud);

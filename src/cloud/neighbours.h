@@ -1,4 +1,4 @@
-// Nearest points: a k-d tree over positions. The only mesher file that names nanoflann is neighbours.cpp.
+// Nearest points: a k-d tree over positions. The only file that names nanoflann is neighbours.cpp.
 #pragma once
 
 #include <g3r/points.h>
@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-namespace g3r::mesh {
+namespace g3r {
 
 class Neighbours {
  public:
@@ -23,7 +23,10 @@ class Neighbours {
   /// The point nearest to x among those whose squared distance is less than `squared`, which becomes that of this point; `none` if there is
   /// no such point. The less `squared`, the faster. O(log N).
   [[nodiscard]] std::uint32_t nearest(const Vec3& x, double& squared, std::uint32_t none) const;
-  /// For every point, the min(k, N) points nearest to it, nearest first: N x min(k, N), row-major. O(k N log N).
+  /// All points closer to x than `radius`, in no particular order.
+  void within(const Vec3& x, double radius, std::vector<std::uint32_t>& index) const;
+  /// For every point, the min(k, N) points nearest to it, nearest first (itself, but for
+  /// points in the same place): N x min(k, N), row-major. O(k N log N).
   [[nodiscard]] std::vector<std::uint32_t> of_all(std::size_t k) const;
 
  private:
@@ -31,10 +34,4 @@ class Neighbours {
   std::unique_ptr<Tree> tree_;
 };
 
-/// The median of h_j = d_8 sqrt(pi / 8) over each point and its 8 neighbours, in input units: less ragged than the spacing of single
-/// points, which random sampling scatters, and not led astray by a lone outlier. O(N log N).
-[[nodiscard]] std::vector<double> smooth_spacing(const std::vector<Vec3>& positions);
-/// The same from of_all(k) of these positions, k >= 9.
-[[nodiscard]] std::vector<double> smooth_spacing(const std::vector<Vec3>& positions, const std::vector<std::uint32_t>& near);
-
-}  // namespace g3r::mesh
+}  // namespace g3r

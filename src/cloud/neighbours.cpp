@@ -1,18 +1,16 @@
-#include "mesh/neighbours.h"
+#include "cloud/neighbours.h"
 
 #include <algorithm>
 #include <cmath>
 #include <nanoflann.hpp>
 
 #include "cpu/parallel.h"
-#include "mesh/vector.h"
 
-namespace g3r::mesh {
+namespace g3r {
 namespace {
 
-constexpr std::size_t kBlock = 256;            // points per parallel block
-constexpr std::size_t kLeaf = 12;              // points per leaf of the k-d tree; a matter of speed only
-constexpr std::size_t kSpacingNeighbours = 8;  // as in the definition of the spacing
+constexpr std::size_t kBlock = 256;  // points per parallel block
+constexpr std::size_t kLeaf = 12;    // points per leaf of the k-d tree; a matter of speed only
 
 struct Cloud {
   const std::vector<Vec3>& p;
@@ -65,6 +63,13 @@ std::uint32_t Neighbours::nearest(const Vec3& x, double& squared, std::uint32_t 
   return result.index;
 }
 
+void Neighbours::within(const Vec3& x, double radius, std::vector<std::uint32_t>& index) const {
+  std::vector<std::pair<std::uint32_t, double>> matches;
+  tree_->index.radiusSearch(x.data(), radius * radius, matches, nanoflann::SearchParams(0, 0, false));
+  index.clear();
+  for (const auto& match : matches) index.push_back(match.first);
+}
+
 std::vector<std::uint32_t> Neighbours::of_all(std::size_t k) const {
   const std::vector<Vec3>& points = tree_->cloud.p;
   k = std::min(k, points.size());
@@ -76,28 +81,4 @@ std::vector<std::uint32_t> Neighbours::of_all(std::size_t k) const {
   return out;
 }
 
-std::vector<double> smooth_spacing(const std::vector<Vec3>& positions, const std::vector<std::uint32_t>& near) {
-  const std::size_t n = positions.size(), stride = near.size() / n, k = std::min(kSpacingNeighbours + 1, stride);
-  std::vector<double> raw(n), smooth(n);
-  parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Vec3 farthest = vector::subtract(positions[near[i * stride + k - 1]], positions[i]);
-      raw[i] = vector::dot(farthest, farthest) * M_PI / static_cast<double>(std::max<std::size_t>(k - 1, 1));
-    }
-  });
-  parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
-    std::vector<double> around(k);
-    for (std::size_t i = begin; i < end; ++i) {
-      for (std::size_t j = 0; j < k; ++j) around[j] = raw[near[i * stride + j]];
-      std::nth_element(around.begin(), around.begin() + static_cast<std::ptrdiff_t>(k / 2), around.end());
-      smooth[i] = std::sqrt(around[k / 2]);
-    }
-  });
-  return smooth;
-}
-
-std::vector<double> smooth_spacing(const std::vector<Vec3>& positions) {
-  return smooth_spacing(positions, Neighbours(positions).of_all(kSpacingNeighbours + 1));
-}
-
-}  // namespace g3r::mesh
+}  // namespace g3r

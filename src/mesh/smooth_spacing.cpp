@@ -1,0 +1,42 @@
+#include "mesh/smooth_spacing.h"
+
+#include "cloud/neighbours.h"
+#include "cpu/parallel.h"
+#include "mesh/vector.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace g3r::mesh {
+namespace {
+
+constexpr std::size_t kBlock = 256;            // points per parallel block
+constexpr std::size_t kSpacingNeighbours = 8;  // as in the definition of the spacing
+
+}  // namespace
+
+std::vector<double> smooth_spacing(const std::vector<Vec3>& positions, const std::vector<std::uint32_t>& near) {
+  const std::size_t n = positions.size(), stride = near.size() / n, k = std::min(kSpacingNeighbours + 1, stride);
+  std::vector<double> raw(n), smooth(n);
+  parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3 farthest = vector::subtract(positions[near[i * stride + k - 1]], positions[i]);
+      raw[i] = vector::dot(farthest, farthest) * M_PI / static_cast<double>(std::max<std::size_t>(k - 1, 1));
+    }
+  });
+  parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
+    std::vector<double> around(k);
+    for (std::size_t i = begin; i < end; ++i) {
+      for (std::size_t j = 0; j < k; ++j) around[j] = raw[near[i * stride + j]];
+      std::nth_element(around.begin(), around.begin() + static_cast<std::ptrdiff_t>(k / 2), around.end());
+      smooth[i] = std::sqrt(around[k / 2]);
+    }
+  });
+  return smooth;
+}
+
+std::vector<double> smooth_spacing(const std::vector<Vec3>& positions) {
+  return smooth_spacing(positions, Neighbours(positions).of_all(kSpacingNeighbours + 1));
+}
+
+}  // namespace g3r::mesh
