@@ -62,7 +62,7 @@ BaselineSettings choose_baseline(const Options& options, double given_epsilon, d
 }
 
 std::size_t baseline_memory(const BaselineSettings& settings, double spacing, std::size_t points) {
-  constexpr std::size_t kPerSum = 1100;  // as planned_memory()
+  constexpr std::size_t kPerSum = 1100;  // as planned_memory(), without neighbours
   if (settings.method == Method::kAgr) return 2 * kPerSum * points;
   const double reach = settings.widths.widest / spacing;  // 0 for pgr
   return static_cast<std::size_t>(static_cast<double>(points) * 2 * sizeof(std::uint32_t) * std::numbers::pi * reach * reach);
