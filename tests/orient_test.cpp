@@ -94,6 +94,22 @@ TEST(Orient, CoarseStartsSaveSteps) {
   }
 }
 
+// W eta = 1/2 is not true of open surfaces: steps that make it so turn their normals.
+TEST(Orient, CoarseStartsSpareOpenSurfaces) {
+  if (kSanitized) GTEST_SKIP() << "long";
+  const Surface sphere = shapes::sphere(90000);
+  Surface half;
+  for (std::size_t i = 0; i < sphere.points.size(); ++i) {
+    if (sphere.points[i][2] < 0) continue;
+    half.points.push_back(sphere.points[i]);
+    half.normals.push_back(sphere.normals[i]);
+  }
+  ASSERT_GT(half.points.size(), 40000U);
+  const Orientation o = orient(half.points);
+  EXPECT_GE(shapes::share_correct(o.normals, half.normals), 0.999);
+  EXPECT_LE(shapes::angle_error(o.normals, half.normals), 0.01);
+}
+
 TEST(Orient, IsTheSameForEveryOrderOfThePoints) {
   const Surface s = shapes::torus(3000, 0.6, 0.25, 8);
   std::vector<Vec3> shuffled = s.points;

@@ -1,10 +1,12 @@
 #include "orient/coarse_to_fine.h"
 
 #include "orient/polish.h"
+#include "orient/refine.h"
 #include "solve/energy_system.h"
 #include "solve/green_system.h"
 #include "sum/fast_sum.h"
 
+#include <algorithm>
 #include <memory>
 
 namespace g3r {
@@ -14,6 +16,8 @@ constexpr std::size_t kThinning = 4;  // points per coarse point: twice the spac
 constexpr double kSpacingRatio = 2;
 constexpr std::size_t kFewestCoarsePoints = 10000;  // a coarser start costs sides on thin parts and saves little
 constexpr double kCoarseShare = 0.2;                // of the progress bar
+constexpr double kManyUnsure = 0.04;                // share of the points from which more steps are tried
+constexpr float kUnsure = 0.5F;                     // confidence below which a point counts as unsure
 
 Settings coarser(Settings settings) {
   settings.spacing *= kSpacingRatio;
@@ -43,6 +47,13 @@ std::vector<Vec3> coarse_gradient(const std::vector<Vec3>& points, const std::ve
   return sum.winding_gradient_at(eta, points, stages.cancel());
 }
 
+double unsure_share(FastSum& field, const std::vector<Vec3>& eta) {
+  const Refinement refined = refine_normals(field, eta);
+  const std::vector<float> confidence = side_confidence(eta, refined.normals, refined.strength);
+  const auto unsure = std::count_if(confidence.begin(), confidence.end(), [](float c) { return c < kUnsure; });
+  return static_cast<double>(unsure) / static_cast<double>(eta.size());
+}
+
 }  // namespace
 
 bool starts_coarse(const Settings& settings, std::size_t points) {
@@ -62,11 +73,23 @@ IterativeResult solve_coarse_to_fine(const std::vector<Vec3>& points, const std:
   } else {
     system = std::make_unique<EnergySystem>(sum, settings.damping, settings.winding_weight);
   }
-  const double before = coarsest ? 0 : kCoarseShare;
-  const double share = 1 - before;
-  return solve_iteratively(*system, coarsest ? settings.schedule : settings.continued_schedule,
-                           coarsest ? settings.tolerance : settings.continued_tolerance, std::move(start),
-                           [&](int step, int steps, double) { stages.progress(before + share * step / steps); });
+  if (coarsest) {
+    return solve_iteratively(*system, settings.schedule, settings.tolerance, {},
+                             [&](int step, int steps, double) { stages.progress(static_cast<double>(step) / steps); });
+  }
+  const double tolerance = settings.continued_tolerance;
+  IterativeResult result =
+      solve_iteratively(*system, settings.continued_schedule, tolerance, std::move(start),
+                        [&](int step, int steps, double) { stages.progress(kCoarseShare + (1 - kCoarseShare) * step / steps); });
+  if (result.converged || settings.doubtful_schedule.empty()) return result;
+  FastSum field(points, morton, Widths(settings.refinement_width), settings.sums, stages.cancel());
+  const double unsure = unsure_share(field, result.eta);
+  if (unsure < kManyUnsure) return result;
+  IterativeResult more = solve_iteratively(*system, settings.doubtful_schedule, tolerance, result.eta);
+  if (unsure_share(field, more.eta) > unsure) return result;
+  more.kinds.insert(more.kinds.begin(), result.kinds.begin(), result.kinds.end());
+  more.residuals.insert(more.residuals.begin(), result.residuals.begin(), result.residuals.end());
+  return more;
 }
 
 }  // namespace g3r

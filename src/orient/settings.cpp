@@ -21,11 +21,11 @@ constexpr double kEnergyTolerance = 2.5e-3;    // slats and spokes need this res
 constexpr double kAcceptedResidual = 2e-2;     // from here on normals change little; all clean models get below
 constexpr const char* kEnergySchedule = "45 cg";
 constexpr double kStartTolerance = 8e-3;  // of a coarse solution that is only a start
-// After a coarse start: smooth shapes are there in 2 to 14 steps, thin walls and narrow gaps in 13 to 28.
-constexpr Steps kContinued{30, StepKind::kConjugateGradient};
+// After a coarse start smooth shapes are there in 2 to 10 steps. More are right for thin walls and narrow gaps only: on open surfaces, of
+// which the equations are not true, and among outliers, some of which are always left, they fit what is wrong.
+constexpr Steps kContinued{10, StepKind::kConjugateGradient};
+constexpr Steps kDoubtful{20, StepKind::kConjugateGradient};
 constexpr double kContinuedTolerance = 9e-3;
-// The same where outliers were taken out: some are always left, and more steps fit those.
-constexpr Steps kContinuedAmongOutliers{10, StepKind::kConjugateGradient};
 constexpr double kToleranceAmongOutliers = 1.5e-2;
 constexpr double kFewOutliers = 1e-2;  // of the points; clean clouds lose one point, very uneven ones 0.6 %
 // The default on noisy input: the field must not see single points. Noise sigma turns the normal of an area s^2 of points h apart by about
@@ -141,7 +141,8 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   s.accepted_residual = options.tolerance >= 0 ? options.tolerance : std::max(s.tolerance, kAcceptedResidual);
   s.coarse_to_fine = !paper && !green && options.schedule.empty();
   const bool among_outliers = static_cast<double>(outliers) > kFewOutliers * static_cast<double>(cloud.size());
-  s.continued_schedule = {among_outliers ? kContinuedAmongOutliers : kContinued};
+  s.continued_schedule = {kContinued};
+  if (!among_outliers) s.doubtful_schedule = {kDoubtful};
   s.winding_weight = (starts_coarse(s, cloud.size()) ? kCoarseWindingWeight : kEnergyWindingWeight) * spacing;
   s.tolerance = options.tolerance >= 0 ? options.tolerance : paper ? 0 : green ? kGreenTolerance : kEnergyTolerance;
   s.continued_tolerance = options.tolerance >= 0 ? options.tolerance : among_outliers ? kToleranceAmongOutliers : kContinuedTolerance;

@@ -33,6 +33,7 @@ struct Settings {
   double polish_width = 0;                ///< of the refinement that ends polish()
   std::vector<Steps> schedule;            ///< from eta = 0
   std::vector<Steps> continued_schedule;  ///< from a coarse solution
+  std::vector<Steps> doubtful_schedule;   ///< after it, where many sides are unsure; empty: never
   std::string schedule_text;
   double tolerance = 0;            ///< stop at this relative residual
   double continued_tolerance = 0;  ///< the same after a start from a coarse solution
