@@ -30,7 +30,6 @@ namespace g3r {
 namespace {
 
 constexpr std::size_t kNear = 17;    // a point and its 16 nearest
-constexpr float kUnsure = 0.5F;      // confidence below which a point counts as unsure
 constexpr double kManyUnsure = 0.2;  // share of unsure points above which the orientation is called inconsistent
 
 // Options and cloud, resolved.
@@ -67,8 +66,11 @@ Problem prepare(const PointsView& points, const Options& options, Stages& stages
   problem.noise = options.preset == Preset::kPaper ? 0 : estimate_noise(cloud, *neighbours, problem.spacing);
   problem.settings = choose_settings(options, problem.cloud, problem.spacing, problem.noise, problem.outliers.size());
   const bool clean = problem.noise == 0 && problem.settings.polish_steps > 0;
-  if (clean) problem.local_spacing = smoothed_spacing(local, problem.near);
-  if (!clean) problem.near = {};
+  if (clean) {
+    problem.local_spacing = smoothed_spacing(local, problem.near);
+  } else {
+    problem.near = {};
+  }
   if (!options.wnnc_widths.empty() && options.method != Method::kWnnc) throw InvalidInput("wnnc_widths belong to the method wnnc");
   if (is_baseline(options.method)) {
     const double epsilon = options.epsilon.unit == Epsilon::Unit::kAuto ? 0 : problem.settings.epsilon;
@@ -248,14 +250,9 @@ void hand_out(const CanonicalCloud& cloud, const std::vector<Vec3>& eta, const s
 
 void judge(const CanonicalCloud& cloud, const std::vector<float>& confidence, Stats& stats) {
   double sum = 0;
-  std::size_t unsure = 0;
-  for (const float c : confidence) {
-    sum += static_cast<double>(c);
-    if (c < kUnsure) ++unsure;
-  }
-  const auto size = static_cast<double>(cloud.size());
-  stats.confidence_mean = sum / size;
-  stats.confidence_below_half = static_cast<double>(unsure) / size;
+  for (const float c : confidence) sum += static_cast<double>(c);
+  stats.confidence_mean = sum / static_cast<double>(cloud.size());
+  stats.confidence_below_half = unsure_share(confidence);
   if (!stats.converged) stats.warnings.emplace_back("the solver did not reach its tolerance; normals may be less accurate");
   stats.consistent = stats.confidence_below_half <= kManyUnsure;
   if (!stats.consistent) {

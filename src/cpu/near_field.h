@@ -52,8 +52,8 @@ struct NearTask {
   T* workspace;             ///< near_workspace(field_count) elements, aligned
 };
 
-inline constexpr std::size_t kMostFields = 4 + 3 + 2 * 9;
-inline constexpr std::size_t kGatheredSources = 1024;  ///< at a time; what sums in T are added up over, which bounds their rounding
+inline constexpr std::size_t kMostFields = 4 + 3 + 2 * 9;  ///< geometry with widths, and kGreen of 9 harmonics
+inline constexpr std::size_t kGatheredSources = 1024;      ///< at a time; what sums in T are added up over, which bounds their rounding
 
 /// Elements of T that a NearTask's workspace needs.
 constexpr std::size_t near_workspace(std::size_t field_count) { return field_count * (kGatheredSources + kLanes); }

@@ -6,7 +6,6 @@
 #include "solve/green_system.h"
 #include "sum/fast_sum.h"
 
-#include <algorithm>
 #include <memory>
 
 namespace g3r {
@@ -16,8 +15,7 @@ constexpr std::size_t kThinning = 4;  // points per coarse point: twice the spac
 constexpr double kSpacingRatio = 2;
 constexpr std::size_t kFewestCoarsePoints = 10000;  // a coarser start costs sides on thin parts and saves little
 constexpr double kCoarseShare = 0.2;                // of the progress bar
-constexpr double kManyUnsure = 0.04;                // share of the points from which more steps are tried
-constexpr float kUnsure = 0.5F;                     // confidence below which a point counts as unsure
+constexpr double kDoubtfulShare = 0.04;             // share of the points from which more steps are tried
 
 Settings coarser(Settings settings) {
   settings.spacing *= kSpacingRatio;
@@ -47,11 +45,9 @@ std::vector<Vec3> coarse_gradient(const std::vector<Vec3>& points, const std::ve
   return sum.winding_gradient_at(eta, points, stages.cancel());
 }
 
-double unsure_share(FastSum& field, const std::vector<Vec3>& eta) {
+double unsure_share_of(FastSum& field, const std::vector<Vec3>& eta) {
   const Refinement refined = refine_normals(field, eta);
-  const std::vector<float> confidence = side_confidence(eta, refined.normals, refined.strength);
-  const auto unsure = std::count_if(confidence.begin(), confidence.end(), [](float c) { return c < kUnsure; });
-  return static_cast<double>(unsure) / static_cast<double>(eta.size());
+  return unsure_share(side_confidence(eta, refined.normals, refined.strength));
 }
 
 }  // namespace
@@ -83,10 +79,10 @@ IterativeResult solve_coarse_to_fine(const std::vector<Vec3>& points, const std:
                         [&](int step, int steps, double) { stages.progress(kCoarseShare + (1 - kCoarseShare) * step / steps); });
   if (result.converged || settings.doubtful_schedule.empty()) return result;
   FastSum field(points, morton, Widths(settings.refinement_width), settings.sums, stages.cancel());
-  const double unsure = unsure_share(field, result.eta);
-  if (unsure < kManyUnsure) return result;
+  const double unsure = unsure_share_of(field, result.eta);
+  if (unsure < kDoubtfulShare) return result;
   IterativeResult more = solve_iteratively(*system, settings.doubtful_schedule, tolerance, result.eta);
-  if (unsure_share(field, more.eta) > unsure) return result;
+  if (unsure_share_of(field, more.eta) > unsure) return result;
   more.kinds.insert(more.kinds.begin(), result.kinds.begin(), result.kinds.end());
   more.residuals.insert(more.residuals.begin(), result.residuals.begin(), result.residuals.end());
   return more;

@@ -26,6 +26,7 @@ struct Round {
 
 Round average_in_planes(const std::vector<Vec3>& points, const std::vector<double>& spacing, const std::vector<std::uint32_t>& near,
                         const std::vector<Vec3>& normals) {
+  const std::size_t stride = near.size() / points.size();
   Round out{normals, std::vector<double>(points.size(), -1)};
   parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -36,15 +37,15 @@ Round average_in_planes(const std::vector<Vec3>& points, const std::vector<doubl
       double held = 0;
       Vec3 sum{0, 0, 0};
       for (std::size_t k = 1; k < kNeighbours; ++k) {
-        const std::uint32_t j = near[i * kNeighbours + k];
+        const std::uint32_t j = near[i * stride + k];
         const Vec3 d = vector::subtract(points[i], points[j]);
-        const double near = std::exp(-vector::dot(d, d) / (2 * radius * radius));
-        all += near;
+        const double nearness = std::exp(-vector::dot(d, d) / (2 * radius * radius));
+        all += nearness;
         const double cosine = vector::dot(normals[i], normals[j]);
         if (cosine <= 0) continue;
         least = std::min(least, cosine);
         const double height = vector::dot(normals[j], d) / plane;
-        const double weight = near * std::exp(-height * height / 2);
+        const double weight = nearness * std::exp(-height * height / 2);
         held += weight;
         sum = vector::add(sum, vector::scale(normals[j], weight));
       }

@@ -16,7 +16,7 @@ namespace g3r {
 /// the median share of the weight that planes leave, sum w_ij / sum exp(-|p_i - p_j|^2 / ...), is at least 0.53 (measured: CAD models
 /// 0.54 to 0.64, others at most 0.50). Returns whether it was. The idea of weights by tangent planes: Oztireli, Guennebaud, Gross,
 /// "Feature preserving point set surfaces based on non-linear kernel regression", Eurographics 2009. docs/study.md, "Creases".
-/// `near`: Neighbours::of_all(17); `spacing`: smoothed_spacing(); `normals`: N unit vectors, consistent sides. O(N).
+/// `near`: Neighbours::of_all(k), k >= 17; `spacing`: smoothed_spacing(); `normals`: N unit vectors, consistent sides. O(N).
 bool sharpen_creases(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near, const std::vector<double>& spacing,
                      std::vector<Vec3>& normals);
 

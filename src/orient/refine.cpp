@@ -9,6 +9,7 @@
 namespace g3r {
 namespace {
 
+constexpr float kUnsure = 0.5F;    // confidence below which a point counts as unsure
 constexpr double kFullSize = 0.5;  // share of the median from which a size no longer lowers the confidence
 
 double length(const Vec3& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
@@ -57,6 +58,11 @@ std::vector<float> side_confidence(const std::vector<Vec3>& eta, const std::vect
     confidence[i] = static_cast<float>(c);
   }
   return confidence;
+}
+
+double unsure_share(const std::vector<float>& confidence) {
+  const auto unsure = std::count_if(confidence.begin(), confidence.end(), [](float c) { return c < kUnsure; });
+  return static_cast<double>(unsure) / static_cast<double>(confidence.size());
 }
 
 }  // namespace g3r

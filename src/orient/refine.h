@@ -32,4 +32,7 @@ struct Refinement {
 [[nodiscard]] std::vector<float> side_confidence(const std::vector<Vec3>& eta, const std::vector<Vec3>& normals,
                                                  const std::vector<double>& strength);
 
+/// Share of the points, of at least one, whose side_confidence() is below a half. O(N).
+[[nodiscard]] double unsure_share(const std::vector<float>& confidence);
+
 }  // namespace g3r

@@ -14,7 +14,7 @@ namespace g3r {
 
 inline constexpr double kInv4Pi = 0.25 * std::numbers::inv_pi;
 
-/// Beyond this many widths the near field in precision T uses the plain kernels (the far field from SumPlan::reach on): Phi differs by
+/// Beyond this many widths, or SumPlan::reach if that is less, the near field in precision T uses the plain kernels: Phi differs by
 /// erfc(5/sqrt2) = 6e-7 (float) and erfc(7/sqrt2) = 3e-12 (double), g by 2e-5 and 1e-10, b by 1e-4 and 2e-9, relative.
 template <class T>
 inline constexpr double kMollifierReach = sizeof(T) == 4 ? 5 : 7;

@@ -49,6 +49,7 @@ SumPlan sum_plan(double accuracy, std::size_t points) {
   plan.direct = accuracy == 0 || points < kDirectBelow;
   if (plan.direct) {
     plan.opening = 0;
+    plan.reach = kSettings.back().reach;  // the whole kernel
     plan.leaf_points = kDirectLeafPoints;
   }
   return plan;
