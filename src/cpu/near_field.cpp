@@ -263,25 +263,25 @@ struct WindingGradientForm {
   }
 };
 
-// The sources of a task, run after run, in pieces of kGatheredSources: field f of the i-th at workspace[f * kGatherStride + i].
-constexpr std::size_t kGatherStride = kGatheredSources + kLanes;
-
+// The sources of a task, run after run, in pieces of gathered_sources(): field f of the i-th at workspace[f * stride() + i].
 template <class T>
 class Gathering {
  public:
-  explicit Gathering(const NearTask<T>& task) : task_(task) {}
+  explicit Gathering(const NearTask<T>& task) : task_(task), most_(gathered_sources(task.field_count)) {}
+
+  [[nodiscard]] std::size_t stride() const { return most_ + kLanes; }
 
   // Gathers the next piece, padded to whole vectors by sources without any value. Returns its padded size, 0 when there are none left.
   std::size_t next() {
     const Tag<T> d;
     const std::size_t lanes = hn::Lanes(d);
     std::size_t size = 0;
-    while (run_ < task_.run_count && size < kGatheredSources) {
+    while (run_ < task_.run_count && size < most_) {
       const SourceRun<T>& run = task_.runs[run_];
-      const std::size_t count = HWY_MIN(run.count - done_, kGatheredSources - size);
+      const std::size_t count = HWY_MIN(run.count - done_, most_ - size);
       const T* from = task_.fields + run.begin + done_;
       T* to = task_.workspace + size;
-      for (std::size_t f = 0; f < task_.field_count; ++f, from += task_.stride, to += kGatherStride) {
+      for (std::size_t f = 0; f < task_.field_count; ++f, from += task_.stride, to += stride()) {
         const Vec<T> shift = hn::Set(d, f < 3 ? run.shift[f] : T{0});
         for (std::size_t i = 0; i < count; i += lanes) hn::StoreU(hn::Add(hn::LoadU(d, from + i), shift), d, to + i);
       }
@@ -295,7 +295,7 @@ class Gathering {
     const std::size_t padded = (size + lanes - 1) / lanes * lanes;
     const std::size_t geometry = task_.local_widths ? 4 : 3;
     for (std::size_t f = 0; f < task_.field_count; ++f) {
-      T* field = task_.workspace + f * kGatherStride;
+      T* field = task_.workspace + f * stride();
       const T pad = f < geometry ? field[size - 1] : T{0};
       for (std::size_t i = size; i < padded; ++i) field[i] = pad;
     }
@@ -304,6 +304,7 @@ class Gathering {
 
  private:
   const NearTask<T>& task_;
+  std::size_t most_;
   std::size_t run_ = 0;
   std::size_t done_ = 0;  // sources of that run
 };
@@ -320,6 +321,7 @@ void Run(const NearTask<T>& task) {
   const std::size_t blocks = (task.count + kLanes - 1) / kLanes;
   for (std::size_t i = 0; i < blocks * kChannels * kLanes; ++i) task.out[i] = 0;
   Gathering<T> gathering(task);
+  const std::size_t stride = gathering.stride();
   for (std::size_t size = gathering.next(); size > 0; size = gathering.next()) {
     for (std::size_t t = 0; t < task.count; ++t) {
       const std::size_t block = t / kLanes;
@@ -334,12 +336,12 @@ void Run(const NearTask<T>& task) {
       for (std::size_t c = 0; c < kChannels; ++c) sum[c] = hn::Zero(d);
       for (std::size_t s = 0; s < size; s += lanes) {
         const Vec<T> dx = hn::Sub(hn::Load(d, source + s), x);
-        const Vec<T> dy = hn::Sub(hn::Load(d, source + kGatherStride + s), y);
-        const Vec<T> dz = hn::Sub(hn::Load(d, source + 2 * kGatherStride + s), z);
+        const Vec<T> dy = hn::Sub(hn::Load(d, source + stride + s), y);
+        const Vec<T> dz = hn::Sub(hn::Load(d, source + 2 * stride + s), z);
         const Vec<T> r2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
         Vec<T> width_squared = hn::Set(d, task.uniform_width_squared);
         if constexpr (kLocalWidths) {
-          width_squared = hn::MulAdd(hn::Set(d, T{0.5}), hn::Load(d, source + 3 * kGatherStride + s), half_width_squared);
+          width_squared = hn::MulAdd(hn::Set(d, T{0.5}), hn::Load(d, source + 3 * stride + s), half_width_squared);
         }
         Kernel<T> k = PlainKernel<T, Form::kValue, Form::kThird>(ReciprocalSqrt<T>(r2), width_squared);
         const auto near = hn::Lt(r2, hn::Mul(reach2, width_squared));
@@ -349,7 +351,7 @@ void Run(const NearTask<T>& task) {
           if constexpr (Form::kValue) k.value = hn::IfThenElse(near, m.value, k.value);
           if constexpr (Form::kThird != Third::kNone) k.third = hn::IfThenElse(near, m.third, k.third);
         }
-        Form::Add({source + kFirstField * kGatherStride + s, kGatherStride}, dx, dy, dz, k, u, sum);
+        Form::Add({source + kFirstField * stride + s, stride}, dx, dy, dz, k, u, sum);
       }
       double* out = task.out + block * kChannels * kLanes + lane;
       for (std::size_t c = 0; c < kChannels; ++c) out[c * kLanes] += static_cast<double>(hn::GetLane(hn::SumOfLanes(d, sum[c])));

@@ -1,6 +1,6 @@
 // Pair sums by SIMD: sources in the lanes, targets one by one. One instruction set per machine, chosen at run time (Highway).
 //
-// All kernels are unnormalised (without 1/(4 pi)). Precision T: float, added in double every thousand sources, or double throughout.
+// All kernels are unnormalised (without 1/(4 pi)). Precision T: float, added in double every 1536 sources or fewer, or double throughout.
 // Relative error of one kernel evaluation: 1e-6 (float), 1e-14 (double), see docs/math.md, "Mollified kernels by polynomials".
 #pragma once
 
@@ -53,10 +53,13 @@ struct NearTask {
 };
 
 inline constexpr std::size_t kMostFields = 4 + 3 + 2 * 9;  ///< geometry with widths, and kGreen of 9 harmonics
-inline constexpr std::size_t kGatheredSources = 1024;      ///< at a time; what sums in T are added up over, which bounds their rounding
+inline constexpr std::size_t kGatheredValues = 6144;       ///< at a time; they stay in the first cache
+
+/// Sources gathered at a time: what sums in T are added up over, which bounds their rounding. A multiple of kLanes.
+constexpr std::size_t gathered_sources(std::size_t field_count) { return kGatheredValues / field_count / kLanes * kLanes; }
 
 /// Elements of T that a NearTask's workspace needs.
-constexpr std::size_t near_workspace(std::size_t field_count) { return field_count * (kGatheredSources + kLanes); }
+constexpr std::size_t near_workspace(std::size_t field_count) { return field_count * (gathered_sources(field_count) + kLanes); }
 
 /// Evaluates a task. Thread safe; the result does not depend on anything but the task.
 void near_field(const NearTask<float>& task);

@@ -278,11 +278,15 @@ void SumEngine<T>::across(cpu::NearForm form) {
           }
           const Offset& displaced = lists_.offsets[offset];
           std::size_t level = 0;  // of the target; a group's targets ascend, and nodes are numbered level by level
+          std::array<T, 3> move = moved<T>(displaced.to_source(level));
           moves.clear();
           for (; i < lists_.chunk_begin[chunk + 1] && lists_.far[i].offset == offset; ++i) {
             const FarPair& pair = lists_.far[i];
-            while (pair.target >= tree.level_begin[level + 1]) ++level;
-            moves.push_back({multipole(pair.source), local(pair.target), moved<T>(displaced.to_source(level))});
+            if (pair.target >= tree.level_begin[level + 1]) {
+              while (pair.target >= tree.level_begin[level + 1]) ++level;
+              move = moved<T>(displaced.to_source(level));
+            }
+            moves.push_back({multipole(pair.source), local(pair.target), move});
           }
           cpu::translate(matrix, moves.data(), moves.size(), channels_, stride_, stokes);
         }
