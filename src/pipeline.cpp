@@ -9,6 +9,7 @@
 #include "cpu/parallel.h"
 #include "orient/coarse_to_fine.h"
 #include "orient/creases.h"
+#include "orient/jets.h"
 #include "orient/polish.h"
 #include "orient/refine.h"
 #include "orient/settings.h"
@@ -187,8 +188,12 @@ Solution solve_on_points(const Problem& problem, const Options& options, Stages&
   solution.refinement = refine_normals(sum, solution.eta);
   if (s.polish_steps == 0) return solution;
   Polished polished = polish(problem.cloud.points, problem.cloud.morton, s, problem.local_spacing, {}, solution.refinement, stages);
-  const bool clean = !problem.local_spacing.empty();
-  if (clean) sharpen_creases(problem.cloud.points, problem.near, problem.local_spacing, polished.refinement.normals);
+  if (!problem.local_spacing.empty()) {  // clean
+    std::vector<Vec3>& normals = polished.refinement.normals;
+    fit_jets(problem.cloud.points, problem.near, problem.local_spacing, normals);
+    const bool changed = sharpen_creases(problem.cloud.points, problem.near, problem.local_spacing, normals);
+    if (changed) fit_jets(problem.cloud.points, problem.near, problem.local_spacing, normals);
+  }
   return {std::move(polished.eta), std::move(polished.refinement)};
 }
 

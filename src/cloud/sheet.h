@@ -1,0 +1,42 @@
+// A smooth sheet of surface, fitted to points and their normals.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace g3r {
+
+/// A smooth sheet: height a + b u + c v + d u^2 + e u v + g v^2 over a tangent plane, outside above.
+struct Sheet {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< rows: u, v, normal
+  std::array<double, 6> c{};
+
+  /// Distance to the sheet to first order, positive outside, and its gradient (about a unit vector; may be null).
+  double distance(const Eigen::Vector3d& x, Eigen::Vector3d* gradient = nullptr) const {
+    const Eigen::Vector3d q = frame * (x - origin);
+    const double u = q[0], v = q[1];
+    const double gu = c[1] + 2 * c[3] * u + c[4] * v, gv = c[2] + c[4] * u + 2 * c[5] * v;
+    const double length = std::sqrt(1 + gu * gu + gv * gv);
+    if (gradient != nullptr) *gradient = frame.transpose() * Eigen::Vector3d(-gu, -gv, 1) / length;
+    return (q[2] - (c[0] + c[1] * u + c[2] * v + c[3] * u * u + c[4] * u * v + c[5] * v * v)) / length;
+  }
+};
+
+/// A point that takes part in a fit.
+struct FitPoint {
+  Eigen::Vector3d p, n;  ///< position, unit normal
+  double weight = 0;
+  int sheet = -1;  ///< number of the sheet it belongs to, < 0: none
+};
+
+/// The sheet that minimises sum weight [ (height misfit)^2 + normal_weight h^2 |slope misfit|^2 ] over the points of sheet `which`,
+/// of which there is at least one. `h`: length unit of the fit.
+[[nodiscard]] Sheet fit_sheet(const std::vector<FitPoint>& points, int which, double h, double normal_weight);
+
+/// Rows: two directions across `n` (unit length), and n; right-handed.
+[[nodiscard]] Eigen::Matrix3d frame_of(const Eigen::Vector3d& n);
+
+}  // namespace g3r

@@ -1,0 +1,67 @@
+#include "orient/jets.h"
+
+#include "cloud/sheet.h"
+#include "cpu/parallel.h"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace g3r {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t kNeighbours = 17;  // the point itself, first, and 16 others
+constexpr std::size_t kFewest = 7;       // that take part, itself included: one more than the height field has numbers
+constexpr std::size_t kBlock = 1024;     // points per parallel block
+constexpr double kSameSheet = 0.9;       // cosine between normals
+constexpr double kSteepest = 0.6;        // height over distance in the tangent plane
+constexpr double kRadius = 1.5;          // spacings
+constexpr double kScatter = 0.007;       // spacings, standard deviation of the heights
+
+Vector3d vector_of(const Vec3& p) { return {p[0], p[1], p[2]}; }
+
+}  // namespace
+
+void fit_jets(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near, const std::vector<double>& spacing,
+              std::vector<Vec3>& normals) {
+  if (points.size() < kNeighbours) return;
+  const std::size_t stride = near.size() / points.size();
+  std::vector<Vec3> out = normals;
+  parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    std::vector<FitPoint> members;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vector3d centre = vector_of(points[i]);
+      const Vector3d normal = vector_of(normals[i]);
+      const double scale = 1 / (2 * kRadius * kRadius * spacing[i] * spacing[i]);
+      members.clear();
+      for (std::size_t k = 0; k < kNeighbours; ++k) {
+        const std::uint32_t j = near[i * stride + k];
+        const Vector3d d = vector_of(points[j]) - centre;
+        const Vector3d n = vector_of(normals[j]);
+        const double height = normal.dot(d);
+        const double steepest = kSteepest * kSteepest / (1 + kSteepest * kSteepest);  // of height^2 over distance^2
+        if (n.dot(normal) <= kSameSheet || height * height > steepest * d.squaredNorm()) continue;
+        members.push_back({d, n, std::exp(-d.squaredNorm() * scale), 0});
+      }
+      if (members.size() < kFewest) continue;
+      const Sheet sheet = fit_sheet(members, 0, spacing[i], 0);
+      double misfit = 0;
+      double total = 0;
+      for (const FitPoint& m : members) {
+        const double distance = sheet.distance(m.p);
+        misfit += m.weight * distance * distance;
+        total += m.weight;
+      }
+      const double free = 1 - (kFewest - 1) / static_cast<double>(members.size());  // share of the degrees of freedom
+      if (misfit > free * total * kScatter * kScatter * spacing[i] * spacing[i]) continue;
+      Vector3d fitted;
+      (void)sheet.distance(Vector3d::Zero(), &fitted);
+      if (fitted.dot(normal) > kSameSheet) out[i] = {fitted[0], fitted[1], fitted[2]};
+    }
+  });
+  normals = std::move(out);
+}
+
+}  // namespace g3r

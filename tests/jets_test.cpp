@@ -1,0 +1,105 @@
+// Normals of smooth regions from quadratic fits: exact where the surface is quadratic, of second order elsewhere, off where nothing is
+// proven.
+#include "orient/jets.h"
+
+#include "cloud/neighbours.h"
+
+#include "shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace g3r {
+namespace {
+
+using shapes::Surface;
+
+std::vector<std::uint32_t> near(const std::vector<Vec3>& points) { return Neighbours(points).of_all(17); }
+
+// Normals turned at random by about `angle`.
+std::vector<Vec3> disturbed(const std::vector<Vec3>& normals, double angle) {
+  shapes::Random random(3);
+  std::vector<Vec3> out = normals;
+  for (Vec3& n : out) {
+    for (double& c : n) c += angle * random.gaussian();
+    const double size = std::hypot(n[0], n[1], n[2]);
+    for (double& c : n) c /= size;
+  }
+  return out;
+}
+
+double sphere_error(std::size_t count) {
+  const Surface sphere = shapes::sphere(count);
+  std::vector<Vec3> normals = disturbed(sphere.normals, 0.02);
+  fit_jets(sphere.points, near(sphere.points), std::vector<double>(count, std::sqrt(4 * 3.14159265 / static_cast<double>(count))), normals);
+  return std::sqrt(shapes::angle_error(normals, sphere.normals));  // in proportion to the angle
+}
+
+TEST(Jets, ConvergeOnASphereWhateverTheErrorsOfTheNormals) {
+  const double coarse = sphere_error(2000);
+  const double fine = sphere_error(32000);  // a quarter of the spacing
+  EXPECT_LT(coarse, 0.003);
+  EXPECT_LT(fine, coarse / 8);  // at least of order 1.5
+}
+
+TEST(Jets, AreExactOnAParaboloid) {
+  shapes::Random random(5);
+  constexpr std::size_t kCount = 3000;
+  std::vector<Vec3> points;
+  std::vector<Vec3> truth;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const double u = random.uniform(-1, 1);
+    const double v = random.uniform(-1, 1);
+    points.push_back({u, v, 0});
+    truth.push_back({0, 0, 1});
+  }
+  std::vector<Vec3> normals = disturbed(truth, 0.05);
+  fit_jets(points, near(points), std::vector<double>(kCount, 2 / std::sqrt(kCount)), normals);
+  EXPECT_LT(shapes::angle_error(normals, truth), 1e-4);  // 2e-3 before
+  std::size_t exact = 0;
+  for (const Vec3& n : normals) exact += n[2] > 1 - 1e-12 ? 1 : 0;
+  EXPECT_GT(exact, kCount * 95 / 100);
+}
+
+TEST(Jets, LeaveNoisyPointsAlone) {
+  const std::size_t count = 4000;
+  Surface sphere = shapes::sphere(count);
+  const double h = std::sqrt(4 * 3.14159265 / static_cast<double>(count));
+  shapes::Random random(9);
+  for (Vec3& p : sphere.points) {
+    for (double& c : p) c += 0.1 * h * random.gaussian();
+  }
+  const std::vector<Vec3> before = disturbed(sphere.normals, 0.02);
+  std::vector<Vec3> normals = before;
+  fit_jets(sphere.points, near(sphere.points), std::vector<double>(count, h), normals);
+  std::size_t changed = 0;
+  for (std::size_t i = 0; i < count; ++i) changed += normals[i] != before[i] ? 1 : 0;
+  EXPECT_LT(changed, count / 100);
+}
+
+TEST(Jets, LeaveEdgesTheirSidesAndFewPointsAsTheyAre) {
+  const std::vector<Vec3> few{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  std::vector<Vec3> normals(3, Vec3{0, 0, 1});
+  fit_jets(few, near(few), {1, 1, 1}, normals);
+  EXPECT_EQ(normals, std::vector<Vec3>(3, Vec3{0, 0, 1}));
+
+  // A thin plate: the other side's points, whose normals are opposite, take no part.
+  shapes::Random random(11);
+  constexpr std::size_t kCount = 4000;
+  std::vector<Vec3> points;
+  std::vector<Vec3> truth;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const double side = i % 2 == 0 ? 1 : -1;
+    points.push_back({random.uniform(-1, 1), random.uniform(-1, 1), 0.01 * side});
+    truth.push_back({0, 0, side});
+  }
+  normals = disturbed(truth, 0.05);
+  fit_jets(points, near(points), std::vector<double>(kCount, 2 / std::sqrt(kCount / 2.0)), normals);
+  EXPECT_LT(shapes::angle_error(normals, truth), 1.2e-3);
+  for (std::size_t i = 0; i < kCount; ++i) EXPECT_GT(normals[i][2] * truth[i][2], 0.8);
+}
+
+}  // namespace
+}  // namespace g3r
