@@ -16,7 +16,7 @@ constexpr std::size_t kNeighbours = 17;  // the point itself, first, and 16 othe
 constexpr std::size_t kFewest = 7;       // that take part, itself included: one more than the height field has numbers
 constexpr std::size_t kBlock = 1024;     // points per parallel block
 constexpr double kSameSheet = 0.9;       // cosine between normals
-constexpr double kSteepest = 0.6;        // height over distance in the tangent plane
+constexpr double kSteepest = 0.5145;     // height above the tangent plane over distance
 constexpr double kRadius = 1.5;          // spacings
 constexpr double kScatter = 0.007;       // spacings, standard deviation of the heights
 
@@ -41,8 +41,7 @@ void fit_jets(const std::vector<Vec3>& points, const std::vector<std::uint32_t>&
         const Vector3d d = vector_of(points[j]) - centre;
         const Vector3d n = vector_of(normals[j]);
         const double height = normal.dot(d);
-        const double steepest = kSteepest * kSteepest / (1 + kSteepest * kSteepest);  // of height^2 over distance^2
-        if (n.dot(normal) <= kSameSheet || height * height > steepest * d.squaredNorm()) continue;
+        if (n.dot(normal) <= kSameSheet || height * height > kSteepest * kSteepest * d.squaredNorm()) continue;
         members.push_back({d, n, std::exp(-d.squaredNorm() * scale), 0});
       }
       if (members.size() < kFewest) continue;
