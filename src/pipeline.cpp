@@ -191,8 +191,9 @@ Solution solve_on_points(const Problem& problem, const Options& options, Stages&
   if (!problem.local_spacing.empty()) {  // clean
     std::vector<Vec3>& normals = polished.refinement.normals;
     fit_jets(problem.cloud.points, problem.near, problem.local_spacing, normals);
-    const bool changed = sharpen_creases(problem.cloud.points, problem.near, problem.local_spacing, normals);
-    if (changed) fit_jets(problem.cloud.points, problem.near, problem.local_spacing, normals);
+    if (sharpen_creases(problem.cloud.points, problem.near, problem.local_spacing, normals)) {
+      fit_jets(problem.cloud.points, problem.near, problem.local_spacing, normals);
+    }
   }
   return {std::move(polished.eta), std::move(polished.refinement)};
 }

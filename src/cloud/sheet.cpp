@@ -32,7 +32,7 @@ void solve(Lower6 a, std::array<double, 6>& b) {
 
 }  // namespace
 
-Eigen::Matrix3d frame_of(const Vector3d& n) {
+Eigen::Matrix3d tangent_frame(const Vector3d& n) {
   Eigen::Matrix3d f;
   const Vector3d axis = std::abs(n.x()) < 0.6 ? Vector3d::UnitX() : std::abs(n.y()) < 0.6 ? Vector3d::UnitY() : Vector3d::UnitZ();
   const Vector3d u = n.cross(axis).normalized();
@@ -53,7 +53,7 @@ Sheet fit_sheet(const std::vector<FitPoint>& points, int which, double h, double
   }
   Sheet s;
   s.origin = mean_p / total;
-  s.frame = frame_of(mean_n.normalized());
+  s.frame = tangent_frame(mean_n.normalized());
   // The normal equations from the moments sum w u^a v^b, which all their entries are sums of; pairs of u and v side by side.
   using Pair = Eigen::Array2d;
   double m00 = 0, m11 = 0, m22 = 0, right0 = 0, right4 = 0;

@@ -1,6 +1,8 @@
 // A smooth sheet of surface, fitted to points and their normals.
 #pragma once
 
+#include <g3r/points.h>
+
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
@@ -33,10 +35,13 @@ struct FitPoint {
 };
 
 /// The sheet that minimises sum weight [ (height misfit)^2 + normal_weight h^2 |slope misfit|^2 ] over the points of sheet `which`,
-/// of which there is at least one. `h`: length unit of the fit.
+/// of which there is at least one with a weight above 0. `h` > 0: length unit of the fit. The normals also give the tangent plane.
+/// Throws nothing. O(points).
 [[nodiscard]] Sheet fit_sheet(const std::vector<FitPoint>& points, int which, double h, double normal_weight);
 
+[[nodiscard]] inline Eigen::Vector3d to_eigen(const Vec3& p) { return {p[0], p[1], p[2]}; }
+
 /// Rows: two directions across `n` (unit length), and n; right-handed.
-[[nodiscard]] Eigen::Matrix3d frame_of(const Eigen::Vector3d& n);
+[[nodiscard]] Eigen::Matrix3d tangent_frame(const Eigen::Vector3d& n);
 
 }  // namespace g3r

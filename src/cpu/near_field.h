@@ -53,7 +53,7 @@ struct NearTask {
 };
 
 inline constexpr std::size_t kMostFields = 4 + 3 + 2 * 9;  ///< geometry with widths, and kGreen of 9 harmonics
-inline constexpr std::size_t kGatheredValues = 6144;       ///< at a time; they stay in the first cache
+inline constexpr std::size_t kGatheredValues = 6144;       ///< at a time: 24 KiB of floats, which stay in the first cache
 
 /// Sources gathered at a time: what sums in T are added up over, which bounds their rounding. A multiple of kLanes.
 constexpr std::size_t gathered_sources(std::size_t field_count) { return kGatheredValues / field_count / kLanes * kLanes; }

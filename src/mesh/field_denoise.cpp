@@ -19,8 +19,6 @@ constexpr double kSameSide = 0.3;       // cosine: points that face elsewhere be
 constexpr double kReach = 2.0;          // widths: points beyond weigh less than 14 %
 constexpr double kMostNormalWeight = 4.0;
 
-Vector3d vector(const Vec3& p) { return {p[0], p[1], p[2]}; }
-
 // The points near point i that face the same way, weighed by their distance along the surface.
 class Neighbourhood {
  public:
@@ -29,17 +27,17 @@ class Neighbourhood {
   const std::vector<FitPoint>& gather(std::size_t i, double width) {
     const double h = points_.spacing[i];
     const auto k = static_cast<std::size_t>(std::clamp(M_PI * kReach * kReach * width * width, 12.0, 200.0));
-    const Vector3d x = vector(points_.positions[i]);
+    const Vector3d x = to_eigen(points_.positions[i]);
     neighbours_.nearest(points_.positions[i], k, index_, squared_);
-    Vector3d axis = vector(points_.normals[i]);
+    Vector3d axis = to_eigen(points_.normals[i]);
     const double scale = 1 / (2 * width * width * h * h);
     for (int pass = 0; pass < 2; ++pass) {  // the second time about the mean normal, which is less noisy
       Vector3d mean = Vector3d::Zero();
       members_.clear();
       for (const std::uint32_t j : index_) {
-        const Vector3d n = vector(points_.normals[j]);
+        const Vector3d n = to_eigen(points_.normals[j]);
         if (n.dot(axis) < kSameSide) continue;
-        const Vector3d p = vector(points_.positions[j]);
+        const Vector3d p = to_eigen(points_.positions[j]);
         const double along = axis.dot(p - x);
         const double weight = std::exp(-((p - x).squaredNorm() - along * along) * scale);
         members_.push_back({p, n, weight, 0});
@@ -47,7 +45,7 @@ class Neighbourhood {
       }
       if (mean.norm() > 0) axis = mean.normalized();
     }
-    if (members_.empty()) members_.push_back({x, vector(points_.normals[i]), 1, 0});
+    if (members_.empty()) members_.push_back({x, to_eigen(points_.normals[i]), 1, 0});
     return members_;
   }
 
@@ -106,7 +104,7 @@ void denoise(OrientedPoints& points, const Neighbours& neighbours, const Noise& 
         Neighbourhood near(points, neighbours);
         for (std::size_t i = begin; i < end; ++i) {
           const Sheet sheet = fit_sheet(near.gather(i, width), 0, points.spacing[i], normal_weight);
-          Vector3d x = vector(points.positions[i]), g;
+          Vector3d x = to_eigen(points.positions[i]), g;
           for (int step = 0; step < 3; ++step) {
             const double f = sheet.distance(x, &g);
             x -= f * g;

@@ -28,8 +28,6 @@ constexpr double kWider = 1 + 1e-9;  // more than rounding can make of a squared
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 constexpr double kSplitGain = 0.05;  // several sheets must reduce the squared misfit of one sheet to this share
 
-Vector3d vector(const Vec3& p) { return {p[0], p[1], p[2]}; }
-
 using Member = FitPoint;
 
 // About exp(-t), 0 at kFaint.
@@ -175,14 +173,14 @@ std::uint32_t LocalFit::nearest(const Vector3d& x, double reach, double& squared
 // Is x well on one side of the tangent planes of all points next to point i, and do these belong to one sheet? Then their mean plane is fit
 // enough to say which.
 bool LocalFit::clear_of(std::uint32_t i, const Vector3d& x, double scale, Sheet& plane) const {
-  const Vector3d axis = vector(points_.normals[i]), p0 = vector(points_.positions[i]);
+  const Vector3d axis = to_eigen(points_.normals[i]), p0 = to_eigen(points_.positions[i]);
   const bool outside = axis.dot(x - p0) > 0;
   const double first = (x - p0).squaredNorm(), clear = kClear * points_.spacing[i];
   Vector3d mean_p = Vector3d::Zero(), mean_n = Vector3d::Zero();
   double total = 0;
   for (std::size_t k = 0; k < std::min(kFitPoints, count_); ++k) {
     const std::uint32_t j = near_[i * count_ + k];
-    const Vector3d p = vector(points_.positions[j]), n = vector(points_.normals[j]);
+    const Vector3d p = to_eigen(points_.positions[j]), n = to_eigen(points_.normals[j]);
     const double d = n.dot(x - p);
     if ((d > 0) != outside || std::abs(d) < clear || n.dot(axis) <= kSameSheet) return false;
     const double weight = bell(std::min(((x - p).squaredNorm() - first) * scale, kFaint));
@@ -191,7 +189,7 @@ bool LocalFit::clear_of(std::uint32_t i, const Vector3d& x, double scale, Sheet&
     total += weight;
   }
   plane.origin = mean_p / total;
-  plane.frame = frame_of(mean_n.normalized());
+  plane.frame = tangent_frame(mean_n.normalized());
   return true;
 }
 
@@ -215,7 +213,7 @@ LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* dire
   std::size_t used = 0;
   for (std::size_t k = 0; k < count_; ++k) {
     const std::uint32_t i = near_[nearest * count_ + k];
-    const std::pair now{(vector(points_.positions[i]) - x).squaredNorm(), i};
+    const std::pair now{(to_eigen(points_.positions[i]) - x).squaredNorm(), i};
     if (used == kFitPoints && now >= near[used - 1]) continue;
     std::size_t place = used < kFitPoints ? used++ : used - 1;
     for (; place > 0 && now < near[place - 1]; --place) near[place] = near[place - 1];
@@ -225,12 +223,12 @@ LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* dire
   double first = -1;
   for (std::size_t k = 0; k < used; ++k) {
     const auto [r2, i] = near[k];
-    const Vector3d n = vector(points_.normals[i]);
+    const Vector3d n = to_eigen(points_.normals[i]);
     if (direction != nullptr && n.dot(*direction) < kAgainst) continue;
     if (first < 0) first = r2;
     const double exponent = (r2 - first) * scale;
     if (exponent >= kFaint) break;
-    members.push_back({vector(points_.positions[i]), n, bell(exponent), -1});
+    members.push_back({to_eigen(points_.positions[i]), n, bell(exponent), -1});
   }
   // Deal the points out: the nearest one left seeds a sheet, which takes those with similar normals.
   for (int s = 0; s < 3 && out.count < 3; ++s) {
@@ -289,11 +287,11 @@ std::vector<double> wall_thickness(const OrientedPoints& points, const std::vect
   std::vector<double> out(n, std::numeric_limits<double>::infinity());
   parallel::for_blocks(n, 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Vector3d p = vector(points.positions[i]), normal = vector(points.normals[i]);
+      const Vector3d p = to_eigen(points.positions[i]), normal = to_eigen(points.normals[i]);
       for (std::size_t j = 0; j < k; ++j) {
         const std::uint32_t other = near[i * stride + j];
-        if (normal.dot(vector(points.normals[other])) > kOpposite) continue;
-        out[i] = std::min(out[i], std::abs(normal.dot(vector(points.positions[other]) - p)));
+        if (normal.dot(to_eigen(points.normals[other])) > kOpposite) continue;
+        out[i] = std::min(out[i], std::abs(normal.dot(to_eigen(points.positions[other]) - p)));
       }
     }
   });

@@ -20,7 +20,6 @@ constexpr double kOnSurface = 0.05;     // spacings: a point on a crease must al
 constexpr double kMinSine = 0.3;        // sheets at less than about 17 degrees have no well placed intersection
 constexpr int kNewtonSteps = 5;
 
-Vector3d vector(const Vec3& p) { return {p[0], p[1], p[2]}; }
 Vec3 array(const Vector3d& p) { return {p[0], p[1], p[2]}; }
 
 // Nearest common zero of the given sheets, by Newton steps of least length. False if they are nearly parallel.
@@ -127,7 +126,7 @@ PlacedVertices place_vertices(const Octree& octree, const DualSurface& surface, 
           Vector3d start = Vector3d::Zero(), outward = Vector3d::Zero();
           for (std::size_t k = surface.patch_begin[i]; k < surface.patch_begin[i + 1]; ++k) {
             const Crossing& c = surface.crossings[surface.patch_crossings[k]];
-            const Vector3d a = vector(octree.corner_position(c.inside)), b = vector(octree.corner_position(c.outside));
+            const Vector3d a = to_eigen(octree.corner_position(c.inside)), b = to_eigen(octree.corner_position(c.outside));
             const double va = std::max(value[c.inside], 0.0), vb = std::max(-value[c.outside], 0.0);
             const double t = va + vb > 0 ? std::clamp(va / (va + vb), 0.01, 0.99) : 0.5;
             start += a + t * (b - a);
@@ -137,7 +136,7 @@ PlacedVertices place_vertices(const Octree& octree, const DualSurface& surface, 
           const double length = outward.norm();
           if (length > 0) outward /= length;
           const OctreeNode& leaf = octree.nodes()[octree.leaf_nodes()[surface.patch_leaf[i]]];
-          const Vector3d low = vector(octree.world(leaf.low[0], leaf.low[1], leaf.low[2]));
+          const Vector3d low = to_eigen(octree.world(leaf.low[0], leaf.low[1], leaf.low[2]));
           const double cell = octree.unit() * octree.extent(leaf);
           const AlignedBox3d box(low, low + Vector3d::Constant(cell));
 
@@ -159,7 +158,7 @@ PlacedVertices place_vertices(const Octree& octree, const DualSurface& surface, 
       },
       cancel);
   for (std::size_t m = 0; m < surface.midpoints.size(); ++m) {
-    const Vector3d a = vector(out.positions[surface.midpoints[m][0]]), b = vector(out.positions[surface.midpoints[m][1]]);
+    const Vector3d a = to_eigen(out.positions[surface.midpoints[m][0]]), b = to_eigen(out.positions[surface.midpoints[m][1]]);
     out.positions[sheets + m] = array(0.5 * (a + b));
   }
   return out;

@@ -20,8 +20,6 @@ constexpr double kSteepest = 0.5145;     // height above the tangent plane over 
 constexpr double kRadius = 1.5;          // spacings
 constexpr double kScatter = 0.007;       // spacings, standard deviation of the heights
 
-Vector3d vector_of(const Vec3& p) { return {p[0], p[1], p[2]}; }
-
 }  // namespace
 
 void fit_jets(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near, const std::vector<double>& spacing,
@@ -32,14 +30,14 @@ void fit_jets(const std::vector<Vec3>& points, const std::vector<std::uint32_t>&
   parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<FitPoint> members;
     for (std::size_t i = begin; i < end; ++i) {
-      const Vector3d centre = vector_of(points[i]);
-      const Vector3d normal = vector_of(normals[i]);
+      const Vector3d centre = to_eigen(points[i]);
+      const Vector3d normal = to_eigen(normals[i]);
       const double scale = 1 / (2 * kRadius * kRadius * spacing[i] * spacing[i]);
       members.clear();
       for (std::size_t k = 0; k < kNeighbours; ++k) {
         const std::uint32_t j = near[i * stride + k];
-        const Vector3d d = vector_of(points[j]) - centre;
-        const Vector3d n = vector_of(normals[j]);
+        const Vector3d d = to_eigen(points[j]) - centre;
+        const Vector3d n = to_eigen(normals[j]);
         const double height = normal.dot(d);
         if (n.dot(normal) <= kSameSheet || height * height > kSteepest * kSteepest * d.squaredNorm()) continue;
         members.push_back({d, n, std::exp(-d.squaredNorm() * scale), 0});
