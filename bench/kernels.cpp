@@ -105,7 +105,7 @@ double m2l_operations_per_second(double seconds) {
   std::vector<cpu::Translation<float>> moves;
   for (std::size_t c = 0; c < kColumns; ++c) moves.push_back({in.data() + c * kOrder7, out.data() + c * kOrder7, {}});
   return rate(seconds, [&] {
-    cpu::translate({matrix.data(), kOrder7, kOrder7, kOrder7}, moves.data(), kColumns, 1, kOrder7, false);
+    cpu::translate({matrix.data(), kOrder7, kOrder7, kOrder7}, moves.data(), kColumns, 1, kOrder7, cpu::Moved::kAll);
     return 2.0 * kOrder7 * kOrder7 * kColumns;
   });
 }

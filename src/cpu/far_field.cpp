@@ -230,6 +230,10 @@ void LocalToPoints(const LeafTask<T>& task) {
   const Vec<T> unit = hn::Set(d, inverse_half);
   const Vec<T> unit2 = hn::Set(d, inverse_half * inverse_half);
   const auto local = [&](std::size_t channel) { return task.local + channel * task.stride; };
+  T* winding = basis + n * kLanes;  // of all pairs
+  if (task.form == NearForm::kStokesWinding) {
+    for (std::size_t a = 0; a < n; ++a) winding[a] = local(0)[a] + local(kTransposedWinding)[a];
+  }
   for (std::size_t block = 0; block < task.block_count; ++block) {
     for (std::size_t lane = 0; lane < kLanes; lane += lanes) {
       const std::size_t at = block * kLanes + lane;
@@ -270,14 +274,15 @@ void LocalToPoints(const LeafTask<T>& task) {
         }
         case NearForm::kStokesWinding: {
           double* out = task.out + block * 4 * kLanes + lane;
-          const Vec<T> half = hn::Set(d, T{0.5});
-          const Vec<T> w = hn::Mul(unit, Evaluate<T>(local(0), basis, n));
-          const Gradient<T> grad_w = EvaluateGradient<T>(local(0), basis, task.order, unit2);
+          const Vec<T> forward_w = hn::Mul(unit, Evaluate<T>(local(0), basis, n));
+          const Vec<T> w = hn::Mul(unit, Evaluate<T>(winding, basis, n));
+          const Gradient<T> grad_w = EvaluateGradient<T>(winding, basis, task.order, unit2);
           Vec<T> width2 = hn::Set(d, task.uniform_width_squared);
           Gradient<T> mollified{hn::Mul(width2, grad_w.x), hn::Mul(width2, grad_w.y), hn::Mul(width2, grad_w.z)};
           if (task.local_widths) {  // the mean of both squared widths
             width2 = hn::Load(d, task.width_squared + at);
-            const Gradient<T> weighted = EvaluateGradient<T>(local(8), basis, task.order, unit2);
+            const Vec<T> half = hn::Set(d, T{0.5});
+            const Gradient<T> weighted = EvaluateGradient<T>(local(kStokesLocals), basis, task.order, unit2);
             mollified.x = hn::Mul(half, hn::MulAdd(width2, grad_w.x, weighted.x));
             mollified.y = hn::Mul(half, hn::MulAdd(width2, grad_w.y, weighted.y));
             mollified.z = hn::Mul(half, hn::MulAdd(width2, grad_w.z, weighted.z));
@@ -295,9 +300,8 @@ void LocalToPoints(const LeafTask<T>& task) {
           for (std::size_t k = 0; k < 3; ++k) {
             const Vec<T> e = hn::Mul(unit, Evaluate<T>(local(1 + k), basis, n));
             const Vec<T> p = hn::Mul(unit, Evaluate<T>(local(4 + k), basis, n));
-            const Vec<T> forward = hn::NegMulAdd(at_point[k], w, e);
-            const Vec<T> both = hn::Mul(half, hn::Add(forward, hn::Add(p, side[k])));
-            AddTo<T>(out + k * kLanes, hn::Sub(both, extra[k]));
+            const Vec<T> forward = hn::NegMulAdd(at_point[k], forward_w, e);
+            AddTo<T>(out + k * kLanes, hn::Sub(hn::Add(forward, hn::Add(p, side[k])), extra[k]));
           }
           AddTo<T>(out + 3 * kLanes, w);
           break;
@@ -381,31 +385,94 @@ HWY_INLINE void ForRows(std::size_t rows, const Use& use) {
   for (; row < rows; row += lanes) use(std::integral_constant<std::size_t, 1>(), row);
 }
 
-template <class T>
-void TranslateStokes(const TranslationMatrix<T>& matrix, const Translation<T>* translations, std::size_t count, std::size_t channels,
-                     std::size_t distance) {
-  const T* from[kMaxChannels];
-  T* to[kMaxChannels];
+template <class T, std::size_t kChannels>
+void TranslateStokes(const TranslationMatrix<T>& matrix, const Translation<T>* translations, std::size_t count, std::size_t distance) {
+  const T* from[kChannels];
+  T* to[kChannels];
   for (std::size_t i = 0; i < count; ++i) {
     const Translation<T>& t = translations[i];
-    for (std::size_t c = 0; c < channels; ++c) {
+    for (std::size_t c = 0; c < kChannels; ++c) {
       from[c] = t.from + c * distance;
       to[c] = t.to + c * distance;
     }
-    ForRows<T>(matrix.rows, [&](auto vectors, std::size_t row) HWY_ATTR {
-      if (channels == kStokesChannels) {
-        TranslateStokesTile<T, vectors, kStokesChannels>(matrix, row, from, to, t.move);
-      } else {
-        TranslateStokesTile<T, vectors, kStokesChannels + 1>(matrix, row, from, to, t.move);
-      }
-    });
+    ForRows<T>(matrix.rows,
+               [&](auto vectors, std::size_t row) HWY_ATTR { TranslateStokesTile<T, vectors, kChannels>(matrix, row, from, to, t.move); });
   }
+}
+
+// M2L of one form of S: the expansions taken from a source, and where they go at the target.
+template <bool kTransposed, bool kWeighted>
+struct StokesRoute {
+  static constexpr std::size_t kCount = (kTransposed ? 5 : 4) + (kWeighted ? 1 : 0);
+  static constexpr std::size_t from(std::size_t c) {
+    if (c == 0) return 0;
+    return kWeighted && c == kCount - 1 ? kStokesMultipoles : c + (kTransposed ? 3 : 0);
+  }
+  static constexpr std::size_t to(std::size_t c) {
+    if (c == 0) return kTransposed ? kTransposedWinding : 0;
+    return kWeighted && c == kCount - 1 ? kStokesLocals : from(c);
+  }
+};
+
+template <class T, std::size_t kVectors, std::size_t kPairs, bool kTransposed, bool kWeighted>
+HWY_INLINE void StokesPairsTile(const TranslationMatrix<T>& matrix, std::size_t row, const Translation<T>* pairs, std::size_t distance) {
+  using Route = StokesRoute<kTransposed, kWeighted>;
+  constexpr std::size_t kCount = Route::kCount;
+  const Tag<T> d;
+  const T* from[kPairs * kCount];
+  for (std::size_t p = 0; p < kPairs; ++p) {
+    for (std::size_t c = 0; c < kCount; ++c) from[p * kCount + c] = pairs[p].from + Route::from(c) * distance;
+  }
+  Vec<T> sum[kVectors][kPairs * kCount];
+  MultiplyTile<T, kVectors, kPairs * kCount>(matrix, row, from, sum);
+  for (std::size_t p = 0; p < kPairs; ++p) {
+    for (std::size_t v = 0; v < kVectors; ++v) {
+      Vec<T>* one = sum[v] + p * kCount;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const Vec<T> shift = hn::Set(d, pairs[p].move[a]);
+        Vec<T>& moment = one[kTransposed ? 4 : 1 + a];
+        moment = hn::MulAdd(shift, one[kTransposed ? 1 + a : 0], moment);
+      }
+      for (std::size_t c = 0; c < kCount; ++c) {
+        T* at = pairs[p].to + Route::to(c) * distance + row + v * hn::Lanes(d);
+        hn::Store(hn::Add(one[c], hn::Load(d, at)), d, at);
+      }
+    }
+  }
+}
+
+template <class T, bool kTransposed, bool kWeighted>
+void TranslateStokesPairs(const TranslationMatrix<T>& matrix, const Translation<T>* pairs, std::size_t count, std::size_t distance) {
+  ForRows<T>(matrix.rows, [&](auto vectors, std::size_t row) HWY_ATTR {
+    std::size_t i = 0;
+    for (; i + 2 <= count; i += 2) StokesPairsTile<T, vectors, 2, kTransposed, kWeighted>(matrix, row, pairs + i, distance);
+    if (i < count) StokesPairsTile<T, vectors, 1, kTransposed, kWeighted>(matrix, row, pairs + i, distance);
+  });
+}
+
+template <class T, bool kTransposed>
+void TranslateStokesPairs(const TranslationMatrix<T>& matrix, const Translation<T>* pairs, std::size_t count, std::size_t channels,
+                          std::size_t distance) {
+  if (channels == kStokesMultipoles) return TranslateStokesPairs<T, kTransposed, false>(matrix, pairs, count, distance);
+  TranslateStokesPairs<T, kTransposed, true>(matrix, pairs, count, distance);
 }
 
 template <class T>
 void Translate(const TranslationMatrix<T>& matrix, const Translation<T>* translations, std::size_t count, std::size_t channels,
-               std::size_t distance, bool stokes) {
-  if (stokes) return TranslateStokes(matrix, translations, count, channels, distance);
+               std::size_t distance, Moved moved) {
+  switch (moved) {
+    case Moved::kStokes:
+      static_assert(kStokesLocals == kStokesMultipoles + 1);
+      if (channels == kStokesMultipoles) return TranslateStokes<T, kStokesMultipoles>(matrix, translations, count, distance);
+      if (channels == kStokesLocals) return TranslateStokes<T, kStokesLocals>(matrix, translations, count, distance);
+      return TranslateStokes<T, kStokesLocals + 1>(matrix, translations, count, distance);
+    case Moved::kStokesForward:
+      return TranslateStokesPairs<T, false>(matrix, translations, count, channels, distance);
+    case Moved::kStokesTransposed:
+      return TranslateStokesPairs<T, true>(matrix, translations, count, channels, distance);
+    case Moved::kAll:
+      break;
+  }
   constexpr std::size_t kBatch = 64;  // expansions; all channels of a translation, whatever their number
   const T* from[kBatch];
   T* to[kBatch];
@@ -426,12 +493,12 @@ void PointsToMultipoleDouble(const LeafTask<double>& task) { PointsToMultipole(t
 void LocalToPointsFloat(const LeafTask<float>& task) { LocalToPoints(task); }
 void LocalToPointsDouble(const LeafTask<double>& task) { LocalToPoints(task); }
 void TranslateFloat(const TranslationMatrix<float>& matrix, const Translation<float>* translations, std::size_t count, std::size_t channels,
-                    std::size_t distance, bool stokes) {
-  Translate(matrix, translations, count, channels, distance, stokes);
+                    std::size_t distance, Moved moved) {
+  Translate(matrix, translations, count, channels, distance, moved);
 }
 void TranslateDouble(const TranslationMatrix<double>& matrix, const Translation<double>* translations, std::size_t count,
-                     std::size_t channels, std::size_t distance, bool stokes) {
-  Translate(matrix, translations, count, channels, distance, stokes);
+                     std::size_t channels, std::size_t distance, Moved moved) {
+  Translate(matrix, translations, count, channels, distance, moved);
 }
 
 }  // namespace g3r::cpu::HWY_NAMESPACE
@@ -447,7 +514,7 @@ HWY_EXPORT(LocalToPointsDouble);
 HWY_EXPORT(TranslateFloat);
 HWY_EXPORT(TranslateDouble);
 
-// basis + accumulators + fields of one vector of sources
+// P2M: basis, accumulators and fields of one vector of sources. L2P (channels = 1): basis and one expansion.
 std::size_t leaf_workspace(std::size_t coefficients, std::size_t channels) {
   return (coefficients * (1 + channels) + kMostFields) * kLanes;
 }
@@ -457,12 +524,12 @@ void points_to_multipole(const LeafTask<double>& task) { HWY_DYNAMIC_DISPATCH(Po
 void local_to_points(const LeafTask<float>& task) { HWY_DYNAMIC_DISPATCH(LocalToPointsFloat)(task); }
 void local_to_points(const LeafTask<double>& task) { HWY_DYNAMIC_DISPATCH(LocalToPointsDouble)(task); }
 void translate(const TranslationMatrix<float>& matrix, const Translation<float>* translations, std::size_t count, std::size_t channels,
-               std::size_t distance, bool stokes) {
-  HWY_DYNAMIC_DISPATCH(TranslateFloat)(matrix, translations, count, channels, distance, stokes);
+               std::size_t distance, Moved moved) {
+  HWY_DYNAMIC_DISPATCH(TranslateFloat)(matrix, translations, count, channels, distance, moved);
 }
 void translate(const TranslationMatrix<double>& matrix, const Translation<double>* translations, std::size_t count, std::size_t channels,
-               std::size_t distance, bool stokes) {
-  HWY_DYNAMIC_DISPATCH(TranslateDouble)(matrix, translations, count, channels, distance, stokes);
+               std::size_t distance, Moved moved) {
+  HWY_DYNAMIC_DISPATCH(TranslateDouble)(matrix, translations, count, channels, distance, moved);
 }
 
 }  // namespace g3r::cpu

@@ -10,11 +10,15 @@
 
 namespace g3r::cpu {
 
-/// Expansions a form carries: K for kGreen and kGreenAdjoint, 1 for kWindingGradient. kStokesWinding carries
+/// Expansions a form carries: K for kGreen and kGreenAdjoint, 1 for kWindingGradient. The multipoles of kStokesWinding are
 ///   0: W   1..3: E_a = eta_a + (y-c)_a dipole   4..6: P_a = eta_a   7: Q = (y-c) . eta   8: W of width^2 eta (only with local widths)
-/// so that S = (E-form + its transpose) / 2 is symmetric to rounding although expansions are truncated.
-inline constexpr std::size_t kStokesChannels = 8;
-inline constexpr std::size_t kMaxChannels = 9;
+/// S can be had from W and E or, transposed, from P and Q. Every pair of nodes uses one of the two and the pair turned round the other, so
+/// that S is symmetric to rounding although expansions are truncated. Its locals therefore are
+///   0: W of the pairs that use E   1..7: as above   8: W of the other pairs   9: W of width^2 eta
+inline constexpr std::size_t kStokesMultipoles = 8;
+inline constexpr std::size_t kStokesLocals = 9;
+inline constexpr std::size_t kTransposedWinding = 8;
+inline constexpr std::size_t kMaxChannels = 10;
 
 /// Length of one expansion in memory: the coefficients padded to whole vectors.
 constexpr std::size_t padded_count(std::size_t coefficients) { return (coefficients + kLanes - 1) / kLanes * kLanes; }
@@ -65,7 +69,7 @@ struct TranslationMatrix {
   std::size_t stride;
 };
 
-/// The expansions of one node moved to another: `channels` expansions one after the other.
+/// The expansions of one node and those of another that they are added to: each node's one after the other.
 template <class T>
 struct Translation {
   const T* from;
@@ -73,12 +77,19 @@ struct Translation {
   std::array<T, 3> move;  ///< old centre - new centre; of kStokesWinding only
 };
 
-/// to += matrix from, for every expansion of `count` translations. Those of kStokesWinding (`stokes`) also move their moments:
-/// E_a += move_a W, Q += move . P. `distance`: from one expansion of a node to its next.
-/// Every result is the same whatever other translations go with it.
+/// Which expansions are moved.
+enum class Moved : std::uint8_t {
+  kAll,               ///< each to its own place
+  kStokes,            ///< M2M and L2L of kStokesWinding: as kAll, and the moments move with their centre: E_a += move_a W, Q += move . P
+  kStokesForward,     ///< M2L of kStokesWinding: W and E,
+  kStokesTransposed,  ///< or W, P and Q
+};
+
+/// to += matrix from, for `channels` expansions (of the source) of `count` translations. `distance`: from one expansion of a node to its
+/// next. Every result is the same whatever other translations go with it.
 void translate(const TranslationMatrix<float>& matrix, const Translation<float>* translations, std::size_t count, std::size_t channels,
-               std::size_t distance, bool stokes);
+               std::size_t distance, Moved moved);
 void translate(const TranslationMatrix<double>& matrix, const Translation<double>* translations, std::size_t count, std::size_t channels,
-               std::size_t distance, bool stokes);
+               std::size_t distance, Moved moved);
 
 }  // namespace g3r::cpu

@@ -15,13 +15,13 @@ constexpr std::size_t kLeafBlock = 4;                 // leaves per parallel blo
 constexpr std::size_t kNodeBlock = 32;                // nodes per parallel block
 constexpr std::size_t kKeptMatrixBytes = 128u << 20;  // M2L matrices kept in memory up to this; beyond, made when needed
 
-std::size_t expansion_channels(cpu::NearForm form, int batch, bool local_widths) {
+std::size_t multipole_channels(cpu::NearForm form, int batch, bool local_widths) {
   switch (form) {
     case cpu::NearForm::kGreen:
     case cpu::NearForm::kGreenAdjoint:
       return static_cast<std::size_t>(batch);
     case cpu::NearForm::kStokesWinding:
-      return cpu::kStokesChannels + (local_widths ? 1 : 0);
+      return cpu::kStokesMultipoles + (local_widths ? 1 : 0);
     case cpu::NearForm::kWindingGradient:
       return 1;
   }
@@ -204,7 +204,6 @@ cpu::LeafTask<T> SumEngine<T>::leaf_task(cpu::NearForm form, int batch, double h
   task.half_side = static_cast<T>(half_side);
   task.local_widths = local_widths_;
   task.uniform_width_squared = static_cast<T>(sources_->widths[0] * sources_->widths[0]);
-  task.channels = channels_;
   task.stride = stride_;
   return task;
 }
@@ -212,11 +211,11 @@ cpu::LeafTask<T> SumEngine<T>::leaf_task(cpu::NearForm form, int batch, double h
 template <class T>
 void SumEngine<T>::upward(cpu::NearForm form, int batch) {
   const Octree& tree = sources_->tree;
-  multipoles_.resize(tree.nodes.size() * channels_ * stride_);
+  multipoles_.resize(tree.nodes.size() * multipole_channels_ * stride_);
   parallel::for_blocks(
       tree.leaves.size(), kLeafBlock,
       [&](std::size_t begin, std::size_t end) {
-        AlignedVector<T> workspace(cpu::leaf_workspace(coefficients_, channels_));
+        AlignedVector<T> workspace(cpu::leaf_workspace(coefficients_, multipole_channels_));
         for (std::size_t i = begin; i < end; ++i) {
           const OctreeNode& leaf = tree.nodes[tree.leaves[i]];
           cpu::LeafTask<T> task = leaf_task(form, batch, leaf.half_side());
@@ -224,13 +223,14 @@ void SumEngine<T>::upward(cpu::NearForm form, int batch) {
           task.field_count = field_count_;
           task.field_stride = field_stride();
           task.count = leaf.count();
+          task.channels = multipole_channels_;
           task.multipole = multipole(tree.leaves[i]);
           task.workspace = workspace.data();
           cpu::points_to_multipole(task);
         }
       },
       cancel_);
-  const bool stokes = form == cpu::NearForm::kStokesWinding;
+  const cpu::Moved moving = form == cpu::NearForm::kStokesWinding ? cpu::Moved::kStokes : cpu::Moved::kAll;
   const std::size_t full_stride = cpu::padded_count(coefficient_count(plan_.order));
   for (std::size_t level = tree.levels(); level-- > 0;) {
     const std::size_t first = tree.level_begin[level];
@@ -238,13 +238,13 @@ void SumEngine<T>::upward(cpu::NearForm form, int batch) {
       for (std::size_t i = first + begin; i < first + end; ++i) {
         const OctreeNode& node = tree.nodes[i];
         if (node.leaf()) continue;
-        std::fill_n(multipole(i), channels_ * stride_, T{0});
+        std::fill_n(multipole(i), multipole_channels_ * stride_, T{0});
         for (std::uint32_t c = node.first_child; c < node.first_child + node.child_count; ++c) {
           const cpu::TranslationMatrix<T> matrix{sources_->child_to_parent[octant(tree.nodes[c])].data(), coefficients_, stride_,
                                                  full_stride};
           const Vec3 move = difference(tree.nodes[c].centre(), node.centre());
           const cpu::Translation<T> up{multipole(c), multipole(i), moved<T>(move)};
-          cpu::translate(matrix, &up, 1, channels_, stride_, stokes);
+          cpu::translate(matrix, &up, 1, multipole_channels_, stride_, moving);
         }
       }
     });
@@ -254,7 +254,7 @@ void SumEngine<T>::upward(cpu::NearForm form, int batch) {
 template <class T>
 void SumEngine<T>::across(cpu::NearForm form) {
   const Octree& tree = *target_tree_;
-  locals_.resize(tree.nodes.size() * channels_ * stride_);
+  locals_.resize(tree.nodes.size() * local_channels_ * stride_);
   const bool stokes = form == cpu::NearForm::kStokesWinding;
   const bool kept = !matrices_.empty();
   parallel::for_each(
@@ -262,7 +262,7 @@ void SumEngine<T>::across(cpu::NearForm form) {
       [&](std::size_t chunk) {
         const std::size_t first = chunk * kTargetChunk;
         const std::size_t last = std::min(first + kTargetChunk, tree.nodes.size());
-        std::fill(local(first), local(last - 1) + channels_ * stride_, T{0});
+        std::fill(local(first), local(last - 1) + local_channels_ * stride_, T{0});
         std::vector<cpu::Translation<T>> moves;
         const std::size_t full = coefficient_count(plan_.order);
         AlignedVector<T> made(kept ? 0 : full * cpu::padded_count(full));
@@ -279,6 +279,8 @@ void SumEngine<T>::across(cpu::NearForm form) {
           const Offset& displaced = lists_.offsets[offset];
           std::size_t level = 0;  // of the target; a group's targets ascend, and nodes are numbered level by level
           std::array<T, 3> move = moved<T>(displaced.to_source(level));
+          cpu::Moved moving = cpu::Moved::kAll;
+          if (stokes) moving = displaced.positive() ? cpu::Moved::kStokesForward : cpu::Moved::kStokesTransposed;
           moves.clear();
           for (; i < lists_.chunk_begin[chunk + 1] && lists_.far[i].offset == offset; ++i) {
             const FarPair& pair = lists_.far[i];
@@ -288,7 +290,7 @@ void SumEngine<T>::across(cpu::NearForm form) {
             }
             moves.push_back({multipole(pair.source), local(pair.target), move});
           }
-          cpu::translate(matrix, moves.data(), moves.size(), channels_, stride_, stokes);
+          cpu::translate(matrix, moves.data(), moves.size(), multipole_channels_, stride_, moving);
         }
       },
       cancel_);
@@ -297,7 +299,7 @@ void SumEngine<T>::across(cpu::NearForm form) {
 template <class T>
 void SumEngine<T>::downward(cpu::NearForm form) {
   const Octree& tree = *target_tree_;
-  const bool stokes = form == cpu::NearForm::kStokesWinding;
+  const cpu::Moved moving = form == cpu::NearForm::kStokesWinding ? cpu::Moved::kStokes : cpu::Moved::kAll;
   const std::size_t full_stride = cpu::padded_count(coefficient_count(plan_.order));
   for (std::size_t level = 1; level < tree.levels(); ++level) {
     const std::size_t first = tree.level_begin[level];
@@ -307,7 +309,7 @@ void SumEngine<T>::downward(cpu::NearForm form) {
         const cpu::TranslationMatrix<T> matrix{sources_->parent_to_child[octant(node)].data(), coefficients_, stride_, full_stride};
         const Vec3 move = difference(tree.nodes[node.parent].centre(), node.centre());
         const cpu::Translation<T> down{local(node.parent), local(i), moved<T>(move)};
-        cpu::translate(matrix, &down, 1, channels_, stride_, stokes);
+        cpu::translate(matrix, &down, 1, local_channels_, stride_, moving);
       }
     });
   }
@@ -321,7 +323,7 @@ void SumEngine<T>::leaves(cpu::NearForm form, int batch, std::size_t out_channel
   parallel::for_blocks(
       tree.leaves.size(), kLeafBlock,
       [&](std::size_t begin, std::size_t end) {
-        AlignedVector<T> workspace(std::max(cpu::near_workspace(field_count_), plan_.direct ? 0 : cpu::leaf_workspace(coefficients_, 0)));
+        AlignedVector<T> workspace(std::max(cpu::near_workspace(field_count_), plan_.direct ? 0 : cpu::leaf_workspace(coefficients_, 1)));
         std::vector<cpu::SourceRun<T>> runs;
         for (std::size_t i = begin; i < end; ++i) {
           const OctreeNode& leaf = tree.nodes[tree.leaves[i]];
@@ -373,7 +375,8 @@ void SumEngine<T>::leaves(cpu::NearForm form, int batch, std::size_t out_channel
 
 template <class T>
 const std::vector<double>& SumEngine<T>::run(cpu::NearForm form, int batch, std::size_t out_channels) {
-  channels_ = expansion_channels(form, batch, local_widths_);
+  multipole_channels_ = multipole_channels(form, batch, local_widths_);
+  local_channels_ = multipole_channels_ + (form == cpu::NearForm::kStokesWinding ? 1 : 0);
   set_order(order_for(form, batch, plan_.order));
   out_.resize(targets_->x.size() * out_channels);
   if (!plan_.direct) {

@@ -71,8 +71,8 @@ class SumEngine {
   void downward(cpu::NearForm form);
   void leaves(cpu::NearForm form, int batch, std::size_t out_channels);
   cpu::LeafTask<T> leaf_task(cpu::NearForm form, int batch, double half_side) const;
-  T* multipole(std::size_t node) { return multipoles_.data() + node * channels_ * stride_; }
-  T* local(std::size_t node) { return locals_.data() + node * channels_ * stride_; }
+  T* multipole(std::size_t node) { return multipoles_.data() + node * multipole_channels_ * stride_; }
+  T* local(std::size_t node) { return locals_.data() + node * local_channels_ * stride_; }
 
   SumPlan plan_;
   bool local_widths_;
@@ -87,9 +87,10 @@ class SumEngine {
   // Of the current run:
   int order_ = 0;
   std::size_t coefficients_ = 0;
-  std::size_t stride_ = 0;    // of one expansion
-  std::size_t channels_ = 0;  // expansions per node
-  AlignedVector<T> fields_;   // geometry and values of the sources, one field after the other, field_stride() apart
+  std::size_t stride_ = 0;              // of one expansion
+  std::size_t multipole_channels_ = 0;  // expansions per node
+  std::size_t local_channels_ = 0;
+  AlignedVector<T> fields_;  // geometry and values of the sources, one field after the other, field_stride() apart
   std::size_t field_count_ = 0;
   AlignedVector<T> target_data_;
   AlignedVector<T> multipoles_;

@@ -16,6 +16,9 @@ struct Offset {
   std::array<std::int32_t, 3> displacement{0, 0, 0};  ///< target centre - source centre, in half sides of the smaller node
   auto operator<=>(const Offset&) const = default;
 
+  /// True for one of an offset and its opposite. No offset of far nodes is 0.
+  [[nodiscard]] bool positive() const { return displacement > std::array<std::int32_t, 3>{0, 0, 0}; }
+
   /// Source centre - target centre for a target of `level`. Exact.
   [[nodiscard]] Vec3 to_source(std::size_t level) const {
     const std::size_t smaller = level + static_cast<std::size_t>(std::max(level_difference, 0));
