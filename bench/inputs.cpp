@@ -8,6 +8,8 @@
 #include <cmath>
 #include <functional>
 
+#include "cloud/neighbours.h"
+#include "cloud/spacing.h"
 #include "mesh/used_vertices.h"
 #include "mesh/vector.h"
 #include "metrics/random.h"
@@ -19,6 +21,10 @@ namespace {
 constexpr double kOutlierBox = 1.2;    // outliers fill the bounding box, enlarged by this factor about its centre
 constexpr double kPatchRadius = 0.05;  // of the box diagonal
 constexpr std::size_t kMaxChunks = 1000;
+
+constexpr double kThinSpacings = 1.5;
+constexpr double kThinDeviations = 4;
+constexpr double kOppositeCosine = -0.5;
 
 // Streams of the seed. Chunks of samples count on from kChunkStream.
 constexpr std::uint64_t kOutlierStream = 100;
@@ -33,7 +39,7 @@ double diagonal(const vector::Box& box) {
 
 Input sampled(const Mesh& mesh, std::size_t count, std::uint64_t seed, double noise) {
   Samples samples = sample_mesh(mesh, count, seed, noise);
-  return {std::move(samples.points), std::move(samples.normals), count};
+  return {std::move(samples.points), std::move(samples.normals), count, noise};
 }
 
 /// `count` samples for which `keep` is true.
@@ -143,6 +149,21 @@ Input make_input(const Mesh& mesh, const InputKind& kind, std::size_t count, std
       break;
   }
   return sampled(mesh, count, seed, 0);
+}
+
+std::vector<bool> thin_parts(const Input& input) {
+  const std::vector<Vec3> points(input.points.begin(), input.points.begin() + static_cast<std::ptrdiff_t>(input.surface));
+  const double h = typical_spacing(local_spacing(points));
+  const double reach = std::max(kThinSpacings * h, kThinDeviations * input.noise);
+  const Neighbours neighbours(points);
+  std::vector<bool> thin(points.size());
+  std::vector<std::uint32_t> near;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    neighbours.within(points[i], reach, near);
+    thin[i] = std::any_of(near.begin(), near.end(),
+                          [&](std::uint32_t j) { return vector::dot(input.normals[i], input.normals[j]) < kOppositeCosine; });
+  }
+  return thin;
 }
 
 }  // namespace g3r::bench

@@ -18,6 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kWorstShown = 3;
+constexpr double kMostThin = 0.05;  // share of thin parts up to which a model counts as thick
 
 /// One column of the tables: where its value comes from and how it is shown.
 struct Score {
@@ -86,6 +87,8 @@ Json row_json(const Row& row) {
       {"50", row.angle_quantiles[0]}, {"90", row.angle_quantiles[1]}, {"95", row.angle_quantiles[2]}, {"99", row.angle_quantiles[3]}};
   if (row.confidence_auc >= 0) json["confidence_auc"] = row.confidence_auc;
   if (row.outlier_confidence >= 0) json["outlier_confidence"] = row.outlier_confidence;
+  json["thin"] = row.thin;
+  if (row.wrong_thin >= 0) json["wrong_thin"] = row.wrong_thin;
   json["seconds"] = row.seconds;
   json["cpu_seconds"] = row.cpu_seconds;
   for (const auto& [stage, seconds] : row.stats.seconds) json["stage_seconds"][stage] = seconds;
@@ -157,6 +160,26 @@ void write_summaries(const std::vector<Score>& scores, const std::vector<std::st
     out << '\n';
   }
   out << '\n';
+}
+
+// The summary of the models that the sample can hold, where there are others.
+void write_thick_summaries(const std::vector<std::string>& methods, const std::vector<const Row*>& rows, std::ostream& out) {
+  const auto thick = select(rows, [](const Row& row) { return row.thin <= kMostThin; });
+  if (thick.size() == rows.size()) return;
+  const auto thin = select(rows, [](const Row& row) { return row.thin > kMostThin; });
+  out << "Without the models of which more than " << 100 * kMostThin
+      << " % of the points lie within 1.5 spacings, or 4 standard deviations of "
+      << "the noise, of points on another side:";
+  const char* separator = " ";
+  for (const std::string& model : distinct(thin, [](const Row& row) { return row.model; })) {
+    const auto found = std::find_if(thin.begin(), thin.end(), [&](const Row* row) { return row->model == model; });
+    char share[32];
+    std::snprintf(share, sizeof share, " %.0f %%", 100 * (*found)->thin);
+    out << separator << model << share;
+    separator = ", ";
+  }
+  out << ".\n\n";
+  write_summaries(point_scores(), methods, thick, out);
 }
 
 void write_cell(const Row& row, std::ostream& out) {
@@ -236,6 +259,7 @@ std::string to_markdown(const RunInfo& run, const std::vector<Row>& rows) {
     const auto meshed = select(good, [](const Row& row) { return row.mesh.has_value(); });
     out << "## " << cloud.first << ", " << cloud.second << " points\n\n";
     write_summaries(point_scores(), methods, good, out);
+    write_thick_summaries(methods, good, out);
     write_summaries(cost_scores(), methods, good, out);
     if (!meshed.empty()) write_summaries(mesh_scores(), methods, meshed, out);
     write_models(methods, here, !meshed.empty(), out);

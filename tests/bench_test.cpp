@@ -82,6 +82,18 @@ TEST(BenchInputs, PatchesAreEmpty) {
   EXPECT_LT(lonely, 50u);
 }
 
+TEST(BenchInputs, ThinPartsFaceAnotherSideNearby) {
+  const auto share = [](double thickness, const char* kind) {  // of a plate of 1 x 1, sampled at a spacing of 0.01
+    Mesh plate = shapes::cube();
+    for (Vec3& p : plate.vertices) p[2] *= thickness;
+    const std::vector<bool> thin = thin_parts(make_input(plate, parse_input_kind(kind), kCount, 1));
+    return static_cast<double>(std::count(thin.begin(), thin.end(), true)) / static_cast<double>(thin.size());
+  };
+  EXPECT_GT(share(0.005, "clean"), 0.9);
+  EXPECT_EQ(share(0.2, "clean"), 0);
+  EXPECT_NEAR(share(0.2, "noise:8"), 2 / 2.8, 0.02);  // 4 standard deviations are 0.46: both plates, not the rim
+}
+
 TEST(BenchInputs, UnknownKindsAreRefused) {
   for (const char* text : {"", "noise", "noise:", "noise:x", "noise:0", "noise:1%", "holes:3", "clean:1", "outliers:99", "gradient:nan"}) {
     EXPECT_THROW((void)parse_input_kind(text), InvalidInput) << text;
