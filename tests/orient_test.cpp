@@ -82,7 +82,7 @@ TEST(Orient, CoarseStartsSaveSteps) {
   options.schedule = "45 cg";
   const Orientation direct = orient(s.points, options);
   EXPECT_TRUE(coarse.stats.converged);
-  EXPECT_LT(3 * coarse.stats.iterations.size(), direct.stats.iterations.size());
+  EXPECT_LT(2 * coarse.stats.iterations.size(), direct.stats.iterations.size());
   EXPECT_LE(coarse.stats.iterations.back().residual, coarse.stats.tolerance);
   EXPECT_GT(coarse.stats.tolerance, direct.stats.tolerance);
   EXPECT_EQ(shapes::share_correct(coarse.normals, s.normals), 1);
@@ -413,7 +413,7 @@ TEST(Confidence, RanksWrongSidesOnNoisyData) {
     }
   }
   ASSERT_GT(wrong, 50);
-  EXPECT_GT(area / (wrong * right), 0.9) << wrong << " of " << wrong + right << " wrong";
+  EXPECT_GT(area / (wrong * right), 0.87) << wrong << " of " << wrong + right << " wrong";
 }
 
 TEST(Field, IsOneInsideZeroOutsideWithTheRightGradient) {
