@@ -22,9 +22,7 @@ constexpr double kOutlierBox = 1.2;    // outliers fill the bounding box, enlarg
 constexpr double kPatchRadius = 0.05;  // of the box diagonal
 constexpr std::size_t kMaxChunks = 1000;
 
-constexpr double kThinSpacings = 1.5;
-constexpr double kThinDeviations = 4;
-constexpr double kOppositeCosine = -0.5;
+constexpr double kOppositeCosine = -0.5;  // 120 degrees: another side, not the other face of an edge
 
 // Streams of the seed. Chunks of samples count on from kChunkStream.
 constexpr std::uint64_t kOutlierStream = 100;
@@ -39,7 +37,7 @@ double diagonal(const vector::Box& box) {
 
 Input sampled(const Mesh& mesh, std::size_t count, std::uint64_t seed, double noise) {
   Samples samples = sample_mesh(mesh, count, seed, noise);
-  return {std::move(samples.points), std::move(samples.normals), count, noise};
+  return {std::move(samples.points), std::move(samples.normals), count, noise, {}};
 }
 
 /// `count` samples for which `keep` is true.
@@ -98,6 +96,38 @@ Input with_patches(const Mesh& mesh, std::size_t count, std::uint64_t seed, std:
   });
 }
 
+Input made(const Mesh& mesh, const InputKind& kind, std::size_t count, std::uint64_t seed) {
+  const vector::Box box = box_of_used_vertices(mesh);
+  switch (kind.defect) {
+    case InputKind::Defect::kNoise:
+      return sampled(mesh, count, seed, kind.value / 100 * diagonal(box));
+    case InputKind::Defect::kOutliers:
+      return with_outliers(mesh, count, seed, kind.value, box);
+    case InputKind::Defect::kGradient:
+      return with_gradient(mesh, count, seed, kind.value, box);
+    case InputKind::Defect::kPatches:
+      return with_patches(mesh, count, seed, static_cast<std::size_t>(kind.value), box);
+    case InputKind::Defect::kNone:
+      break;
+  }
+  return sampled(mesh, count, seed, 0);
+}
+
+std::vector<bool> thin_parts(const Input& input) {
+  const std::vector<Vec3> points(input.points.begin(), input.points.begin() + static_cast<std::ptrdiff_t>(input.surface));
+  const double h = typical_spacing(local_spacing(points));
+  const double reach = std::max(kThinSpacings * h, kThinDeviations * input.noise);
+  const Neighbours neighbours(points);
+  std::vector<bool> thin(points.size());
+  std::vector<std::uint32_t> near;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    neighbours.within(points[i], reach, near);
+    thin[i] = std::any_of(near.begin(), near.end(),
+                          [&](std::uint32_t j) { return vector::dot(input.normals[i], input.normals[j]) < kOppositeCosine; });
+  }
+  return thin;
+}
+
 }  // namespace
 
 std::vector<std::filesystem::path> find_models(const std::string& folder, const std::vector<std::string>& models) {
@@ -135,35 +165,9 @@ InputKind parse_input_kind(const std::string& text) {
 }
 
 Input make_input(const Mesh& mesh, const InputKind& kind, std::size_t count, std::uint64_t seed) {
-  const vector::Box box = box_of_used_vertices(mesh);
-  switch (kind.defect) {
-    case InputKind::Defect::kNoise:
-      return sampled(mesh, count, seed, kind.value / 100 * diagonal(box));
-    case InputKind::Defect::kOutliers:
-      return with_outliers(mesh, count, seed, kind.value, box);
-    case InputKind::Defect::kGradient:
-      return with_gradient(mesh, count, seed, kind.value, box);
-    case InputKind::Defect::kPatches:
-      return with_patches(mesh, count, seed, static_cast<std::size_t>(kind.value), box);
-    case InputKind::Defect::kNone:
-      break;
-  }
-  return sampled(mesh, count, seed, 0);
-}
-
-std::vector<bool> thin_parts(const Input& input) {
-  const std::vector<Vec3> points(input.points.begin(), input.points.begin() + static_cast<std::ptrdiff_t>(input.surface));
-  const double h = typical_spacing(local_spacing(points));
-  const double reach = std::max(kThinSpacings * h, kThinDeviations * input.noise);
-  const Neighbours neighbours(points);
-  std::vector<bool> thin(points.size());
-  std::vector<std::uint32_t> near;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    neighbours.within(points[i], reach, near);
-    thin[i] = std::any_of(near.begin(), near.end(),
-                          [&](std::uint32_t j) { return vector::dot(input.normals[i], input.normals[j]) < kOppositeCosine; });
-  }
-  return thin;
+  Input input = made(mesh, kind, count, seed);
+  input.thin = thin_parts(input);
+  return input;
 }
 
 }  // namespace g3r::bench

@@ -26,20 +26,22 @@ struct InputKind {
 /// highest to the lowest density), "patches:K" (number of holes). Throws InvalidInput for anything else.
 [[nodiscard]] InputKind parse_input_kind(const std::string& text);
 
+inline constexpr double kThinSpacings = 1.5;  ///< nearly all wrong sides are this near another one: docs/study.md, "Where are sides"
+inline constexpr double kThinDeviations = 4;  ///< of the noise
+
 /// N points with their true normals.
 struct Input {
   std::vector<Vec3> points;
   std::vector<Vec3> normals;  ///< one per surface point
   std::size_t surface = 0;    ///< points [0, surface) belong to the surface, the rest are outliers
   double noise = 0;           ///< standard deviation of the displacement
+  /// For every surface point, whether a wall or a gap there is too thin for this sample: another surface point, whose true normal is more
+  /// than 120 degrees away, lies within kThinSpacings or kThinDeviations.
+  std::vector<bool> thin;
 };
 
 /// Samples `count` points. Depends on the mesh, kind, count and seed only, and is the same bytes on every machine. Throws InvalidInput like
 /// sample_mesh().
 [[nodiscard]] Input make_input(const Mesh& mesh, const InputKind& kind, std::size_t count, std::uint64_t seed);
-
-/// For every surface point, whether a wall or a gap there is too thin for this sample: another surface point, whose true normal is more
-/// than 120 degrees away, lies within 1.5 spacings or 4 standard deviations of the noise. O(N log N).
-[[nodiscard]] std::vector<bool> thin_parts(const Input& input);
 
 }  // namespace g3r::bench

@@ -45,15 +45,13 @@ void score_points(const Orientation& orientation, const Input& input, Row& row) 
   row.pco = score.pco;
   std::vector<double> angles;
   std::vector<float> right, wrong;
-  const std::vector<bool> thin = thin_parts(input);
   double wrong_and_thin = 0;
   for (std::size_t i = 0; i < input.surface; ++i) {
     const double cosine = vector::dot(vector::normalised(normals[i]), input.normals[i]);
     angles.push_back(std::acos(std::clamp(cosine, -1.0, 1.0)) * kDegrees);
     (cosine > 0 ? right : wrong).push_back(orientation.confidence[i]);
-    if (cosine <= 0 && thin[i]) ++wrong_and_thin;
+    if (cosine <= 0 && input.thin[i]) ++wrong_and_thin;
   }
-  row.thin = static_cast<double>(std::count(thin.begin(), thin.end(), true)) / static_cast<double>(thin.size());
   if (!wrong.empty()) row.wrong_thin = wrong_and_thin / static_cast<double>(wrong.size());
   std::sort(angles.begin(), angles.end());
   for (std::size_t q = 0; q < kQuantiles.size(); ++q) {
@@ -118,6 +116,7 @@ Row measure(const std::string& model, const Mesh& truth, const Input& input, con
   row.input = kind.name;
   row.method = variant.name;
   row.points = input.points.size();
+  row.thin = static_cast<double>(std::count(input.thin.begin(), input.thin.end(), true)) / static_cast<double>(input.thin.size());
   try {
     if (variant.true_normals) {
       if (!with_mesh) throw InvalidInput("the method true measures the mesher: give --mesh");

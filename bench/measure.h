@@ -34,7 +34,7 @@ struct Row {
   double confidence_auc = -1;               ///< chance that a point on the right side has the higher confidence than one on the wrong
                                             ///< side; -1 if all are on one side
   double outlier_confidence = -1;           ///< mean over the outliers; -1 without any
-  double thin = 0;                          ///< share of points in thin_parts()
+  double thin = 0;                          ///< share of Input::thin
   double wrong_thin = -1;                   ///< the same of the points on the wrong side; -1 without any
   double seconds = 0;                       ///< of orient(): all stages but the mesh, wall clock
   double cpu_seconds = 0;                   ///< of orient(): processor time of all threads

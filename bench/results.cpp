@@ -167,9 +167,8 @@ void write_thick_summaries(const std::vector<std::string>& methods, const std::v
   const auto thick = select(rows, [](const Row& row) { return row.thin <= kMostThin; });
   if (thick.size() == rows.size()) return;
   const auto thin = select(rows, [](const Row& row) { return row.thin > kMostThin; });
-  out << "Without the models of which more than " << 100 * kMostThin
-      << " % of the points lie within 1.5 spacings, or 4 standard deviations of "
-      << "the noise, of points on another side:";
+  out << "Without the models of which more than " << 100 * kMostThin << " % of the points lie within " << kThinSpacings << " spacings, or "
+      << kThinDeviations << " standard deviations of the noise, of points on another side:";
   const char* separator = " ";
   for (const std::string& model : distinct(thin, [](const Row& row) { return row.model; })) {
     const auto found = std::find_if(thin.begin(), thin.end(), [&](const Row* row) { return row->model == model; });

@@ -86,7 +86,7 @@ TEST(BenchInputs, ThinPartsFaceAnotherSideNearby) {
   const auto share = [](double thickness, const char* kind) {  // of a plate of 1 x 1, sampled at a spacing of 0.01
     Mesh plate = shapes::cube();
     for (Vec3& p : plate.vertices) p[2] *= thickness;
-    const std::vector<bool> thin = thin_parts(make_input(plate, parse_input_kind(kind), kCount, 1));
+    const std::vector<bool> thin = make_input(plate, parse_input_kind(kind), kCount, 1).thin;
     return static_cast<double>(std::count(thin.begin(), thin.end(), true)) / static_cast<double>(thin.size());
   };
   EXPECT_GT(share(0.005, "clean"), 0.9);

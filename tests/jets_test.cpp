@@ -30,6 +30,18 @@ std::vector<Vec3> disturbed(const std::vector<Vec3>& normals, double angle) {
   return out;
 }
 
+// Random points of two squares of side 2, at z = height and z = -height; of one square when it is 0.
+Surface plate(std::size_t count, double height) {
+  shapes::Random random(11);
+  Surface s;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double side = height == 0 || i % 2 == 0 ? 1 : -1;
+    s.points.push_back({random.uniform(-1, 1), random.uniform(-1, 1), height * side});
+    s.normals.push_back({0, 0, side});
+  }
+  return s;
+}
+
 double unit_sphere_spacing(std::size_t count) { return std::sqrt(4 * std::numbers::pi / static_cast<double>(count)); }
 
 double sphere_error(std::size_t count) {
@@ -47,16 +59,10 @@ TEST(Jets, ConvergeOnASphereWhateverTheErrorsOfTheNormals) {
 }
 
 TEST(Jets, AreExactOnAPlane) {
-  shapes::Random random(5);
   constexpr std::size_t kCount = 3000;
-  std::vector<Vec3> points;
-  std::vector<Vec3> truth;
-  for (std::size_t i = 0; i < kCount; ++i) {
-    points.push_back({random.uniform(-1, 1), random.uniform(-1, 1), 0});
-    truth.push_back({0, 0, 1});
-  }
-  std::vector<Vec3> normals = disturbed(truth, 0.05);
-  fit_jets(points, near(points), std::vector<double>(kCount, 2 / std::sqrt(kCount)), normals);
+  const Surface plane = plate(kCount, 0);
+  std::vector<Vec3> normals = disturbed(plane.normals, 0.05);
+  fit_jets(plane.points, near(plane.points), std::vector<double>(kCount, 2 / std::sqrt(kCount)), normals);
   std::size_t exact = 0;
   for (const Vec3& n : normals) exact += n[2] > 1 - 1e-12 ? 1 : 0;
   EXPECT_GT(exact, kCount * 95 / 100);
@@ -87,20 +93,13 @@ TEST(Jets, LeaveFewPointsAsTheyAre) {
 
 // The other side's points, whose normals are opposite, take no part.
 TEST(Jets, KeepTheSidesOfAThinPlateApart) {
-  shapes::Random random(11);
   constexpr std::size_t kCount = 4000;
-  std::vector<Vec3> points;
-  std::vector<Vec3> truth;
-  for (std::size_t i = 0; i < kCount; ++i) {
-    const double side = i % 2 == 0 ? 1 : -1;
-    points.push_back({random.uniform(-1, 1), random.uniform(-1, 1), 0.01 * side});
-    truth.push_back({0, 0, side});
-  }
-  const std::vector<Vec3> before = disturbed(truth, 0.05);
+  const Surface thin = plate(kCount, 0.01);
+  const std::vector<Vec3> before = disturbed(thin.normals, 0.05);
   std::vector<Vec3> normals = before;
-  fit_jets(points, near(points), std::vector<double>(kCount, 2 / std::sqrt(kCount / 2.0)), normals);
-  EXPECT_LT(shapes::angle_error(normals, truth), shapes::angle_error(before, truth) / 2);
-  for (std::size_t i = 0; i < kCount; ++i) EXPECT_GT(normals[i][2] * truth[i][2], 0.8);
+  fit_jets(thin.points, near(thin.points), std::vector<double>(kCount, 2 / std::sqrt(kCount / 2.0)), normals);
+  EXPECT_LT(shapes::angle_error(normals, thin.normals), shapes::angle_error(before, thin.normals) / 2);
+  for (std::size_t i = 0; i < kCount; ++i) EXPECT_GT(normals[i][2] * thin.normals[i][2], 0.8);
 }
 
 }  // namespace

@@ -427,7 +427,7 @@ HWY_INLINE void StokesPairsTile(const TranslationMatrix<T>& matrix, std::size_t 
   MultiplyTile<T, kVectors, kPairs * kCount>(matrix, row, from, sum);
   for (std::size_t p = 0; p < kPairs; ++p) {
     for (std::size_t v = 0; v < kVectors; ++v) {
-      Vec<T>* one = sum[v] + p * kCount;
+      Vec<T>* one = sum[v] + p * kCount;  // W, E_a; or W, P_a, Q
       for (std::size_t a = 0; a < 3; ++a) {
         const Vec<T> shift = hn::Set(d, pairs[p].move[a]);
         Vec<T>& moment = one[kTransposed ? 4 : 1 + a];

@@ -32,16 +32,16 @@ struct LeafTask {
   T half_side;
   bool local_widths;
   T uniform_width_squared;
-  std::size_t channels;  ///< expansions per node
-  std::size_t stride;    ///< length of one expansion
+  std::size_t stride;  ///< length of one expansion
   // points to multipole
   const T* fields;  ///< of its sources, as in NearTask
   std::size_t field_count;
   std::size_t field_stride;
-  std::size_t count;  ///< points
-  T* multipole;       ///< channels x stride, overwritten
+  std::size_t count;     ///< points
+  std::size_t channels;  ///< of the multipole
+  T* multipole;          ///< channels x stride, overwritten
   // local to points
-  const T* local;  ///< channels x stride
+  const T* local;  ///< of all channels of the form, stride apart
   const T* x;      ///< target blocks: block_count x kLanes
   const T* y;
   const T* z;
