@@ -10,6 +10,7 @@
 #include "orient/coarse_to_fine.h"
 #include "orient/creases.h"
 #include "orient/jets.h"
+#include "orient/open_sheets.h"
 #include "orient/polish.h"
 #include "orient/refine.h"
 #include "orient/settings.h"
@@ -23,6 +24,7 @@
 #include <g3r/g3r.h>
 
 #include <cmath>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -30,8 +32,10 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kNear = 17;    // a point and its 16 nearest
-constexpr double kManyUnsure = 0.2;  // share of unsure points above which the orientation is called inconsistent
+constexpr std::size_t kNear = 17;          // a point and its 16 nearest
+constexpr std::size_t kFewestApart = 100;  // points that are solved for again without the open sheets of their cloud
+constexpr double kSameSide = 0.5;          // cosine between the normals of a point and of its cluster on an open sheet
+constexpr double kManyUnsure = 0.2;        // share of unsure points above which the orientation is called inconsistent
 
 // Options and cloud, resolved.
 struct Problem {
@@ -45,6 +49,14 @@ struct Problem {
   std::optional<BaselineSettings> baseline;  // with the methods wnnc, agr and pgr
 };
 
+// What the steps after noise and outliers need. `near`: kNear nearest of every point; `local`: local_spacing().
+void choose_scales(Problem& problem, const Options& options, std::vector<std::uint32_t> near, const std::vector<double>& local) {
+  problem.settings = choose_settings(options, problem.cloud, problem.spacing, problem.noise, problem.outliers.size());
+  if (problem.noise > 0 || problem.settings.polish_steps == 0) return;
+  problem.local_spacing = smoothed_spacing(local, near);
+  problem.near = std::move(near);
+}
+
 Problem prepare(const PointsView& points, const Options& options, Stages& stages) {
   Problem problem;
   stages.begin("build");
@@ -52,26 +64,20 @@ Problem prepare(const PointsView& points, const Options& options, Stages& stages
   stages.check();
   const std::vector<Vec3>& cloud = problem.cloud.points;
   auto neighbours = std::make_unique<Neighbours>(cloud);
-  problem.near = neighbours->of_all(kNear);
-  std::vector<double> local = local_spacing(cloud, problem.near);
+  std::vector<std::uint32_t> near = neighbours->of_all(kNear);
+  std::vector<double> local = local_spacing(cloud, near);
   problem.spacing = typical_spacing(local);
   if (options.preset != Preset::kPaper && !is_baseline(options.method)) {
-    const std::vector<std::uint32_t> outliers = find_outliers(cloud, problem.near, local, problem.spacing);
+    const std::vector<std::uint32_t> outliers = find_outliers(cloud, near, local, problem.spacing);
     if (!outliers.empty()) {
       problem.outliers = remove_points(problem.cloud, outliers);
       neighbours = std::make_unique<Neighbours>(cloud);
-      problem.near = neighbours->of_all(kNear);
-      local = local_spacing(cloud, problem.near);
+      near = neighbours->of_all(kNear);
+      local = local_spacing(cloud, near);
     }
   }
   problem.noise = options.preset == Preset::kPaper ? 0 : estimate_noise(cloud, *neighbours, problem.spacing);
-  problem.settings = choose_settings(options, problem.cloud, problem.spacing, problem.noise, problem.outliers.size());
-  const bool clean = problem.noise == 0 && problem.settings.polish_steps > 0;
-  if (clean) {
-    problem.local_spacing = smoothed_spacing(local, problem.near);
-  } else {
-    problem.near = {};
-  }
+  choose_scales(problem, options, std::move(near), local);
   if (!options.wnnc_widths.empty() && options.method != Method::kWnnc) throw InvalidInput("wnnc_widths belong to the method wnnc");
   if (is_baseline(options.method)) {
     const double epsilon = options.epsilon.unit == Epsilon::Unit::kAuto ? 0 : problem.settings.epsilon;
@@ -143,6 +149,7 @@ void warn_of_noise(const Problem& problem, Stats& stats) {
 struct Solution {
   std::vector<Vec3> eta;
   Refinement refinement;
+  OpenSheets sheets;
 };
 
 void record(const Settings& s, const IterativeResult& result, Stats& stats) {
@@ -157,7 +164,7 @@ Solution solve_by_baseline(const Problem& problem, Stages& stages, Stats& stats)
   BaselineResult result = solve_baseline(problem.cloud, *problem.baseline, stages);
   stats.converged = result.converged;
   stats.iterations = std::move(result.iterations);
-  return {std::move(result.eta), {std::move(result.normals), std::move(result.strength)}};
+  return {std::move(result.eta), {std::move(result.normals), std::move(result.strength)}, {}};
 }
 
 std::vector<Vec3> solve(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
@@ -175,8 +182,18 @@ std::vector<Vec3> solve(const Problem& problem, const Options& options, Stages& 
   return std::move(result.eta);
 }
 
+// Points on open sheets get area vectors along the normals found for them.
+void set_sheet_areas(const OpenSheets& sheets, const std::vector<double>& spacing, const std::vector<Vec3>& normals,
+                     std::vector<Vec3>& eta) {
+  for (std::size_t i = 0; i < sheets.sheet.size(); ++i) {
+    if (sheets.sheet[i] == OpenSheets::kNone) continue;
+    for (std::size_t a = 0; a < 3; ++a) eta[i][a] = spacing[i] * spacing[i] * normals[i][a];
+  }
+}
+
 Solution solve_on_points(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
   const Settings& s = problem.settings;
+  const std::vector<Vec3>& points = problem.cloud.points;
   Solution solution;
   solution.eta = solve(problem, options, stages, stats);
   stages.begin("refine");
@@ -184,18 +201,40 @@ Solution solve_on_points(const Problem& problem, const Options& options, Stages&
     solution.refinement.normals = normalised(solution.eta);
     return solution;
   }
-  FastSum sum(problem.cloud.points, problem.cloud.morton, Widths(s.refinement_width), s.sums, stages.cancel());
+  FastSum sum(points, problem.cloud.morton, Widths(s.refinement_width), s.sums, stages.cancel());
   solution.refinement = refine_normals(sum, solution.eta);
   if (s.polish_steps == 0) return solution;
-  Polished polished = polish(problem.cloud.points, problem.cloud.morton, s, problem.local_spacing, {}, solution.refinement, stages);
-  if (!problem.local_spacing.empty()) {  // clean
-    std::vector<Vec3>& normals = polished.refinement.normals;
-    fit_jets(problem.cloud.points, problem.near, problem.local_spacing, normals);
-    if (sharpen_creases(problem.cloud.points, problem.near, problem.local_spacing, normals)) {
-      fit_jets(problem.cloud.points, problem.near, problem.local_spacing, normals);
+  Polished polished = polish(points, problem.cloud.morton, s, problem.local_spacing, {}, solution.refinement, stages);
+  std::vector<Vec3>& normals = polished.refinement.normals;
+  OpenSheets sheets;
+  if (problem.local_spacing.empty()) {  // noisy
+    const Neighbours neighbours(points);
+    const NoisyCloud noisy{points, neighbours, problem.noise, problem.spacing};
+    sheets = find_open_sheets(points, {}, &noisy, normals);
+    if (!sheets.sheet.empty()) set_sheet_areas(sheets, local_spacing(points), normals, polished.eta);
+  } else {
+    sheets = find_open_sheets(points, problem.near, nullptr, normals);
+    set_sheet_areas(sheets, problem.local_spacing, normals, polished.eta);
+    fit_jets(points, problem.near, problem.local_spacing, normals);
+    if (sharpen_creases(points, problem.near, problem.local_spacing, normals)) {
+      fit_jets(points, problem.near, problem.local_spacing, normals);
     }
   }
-  return {std::move(polished.eta), std::move(polished.refinement)};
+  return {std::move(polished.eta), std::move(polished.refinement), std::move(sheets)};
+}
+
+// From clusters to their points, whose normals face the side of the cluster's.
+void spread_sheets(const OpenSheets& sheets, const Clusters& clusters, const std::vector<Vec3>& cluster_normals, Solution& solution) {
+  if (sheets.sheet.empty()) return;
+  for (std::size_t i = 0; i < solution.eta.size(); ++i) {
+    const std::uint32_t c = clusters.cluster_of[i];
+    solution.sheets.sheet.push_back(sheets.sheet[c]);
+    solution.sheets.certainty.push_back(sheets.certainty[c]);
+    if (sheets.sheet[c] == OpenSheets::kNone) continue;
+    Vec3& n = solution.refinement.normals[i];
+    const Vec3& side = cluster_normals[c];
+    if (n[0] * side[0] + n[1] * side[1] + n[2] * side[2] < kSameSide) n = side;
+  }
 }
 
 // Where the kernels are so wide that they see groups of points: the same equations on one point per group, all of whose area vectors are
@@ -212,7 +251,13 @@ Solution solve_on_clusters(const Problem& problem, Stages& stages, Stats& stats)
   stages.begin("refine");
   FastSum wide(clusters.points, clusters.morton, Widths(s.refinement_width), s.sums, stages.cancel());
   const Refinement first = refine_normals(wide, system.to_areas(std::move(result.eta)));
-  const std::vector<Vec3> eta = polish(clusters.points, clusters.morton, s, {}, clusters.multiplicity, first, stages).eta;
+  Polished polished = polish(clusters.points, clusters.morton, s, {}, clusters.multiplicity, first, stages);
+  std::vector<Vec3>& eta = polished.eta;
+  const Neighbours neighbours(problem.cloud.points);
+  const NoisyCloud noisy{problem.cloud.points, neighbours, problem.noise, problem.spacing};
+  OpenSheets sheets;
+  if (problem.noise > 0) sheets = find_open_sheets(clusters.points, {}, &noisy, polished.refinement.normals);
+  if (!sheets.sheet.empty()) set_sheet_areas(sheets, local_spacing(clusters.points), polished.refinement.normals, eta);
   const FastSum field(clusters.points, clusters.morton, Widths(s.polish_width), s.sums, stages.cancel());
   Solution solution;
   solution.eta.resize(problem.cloud.size());
@@ -221,7 +266,60 @@ Solution solve_on_clusters(const Problem& problem, Stages& stages, Stats& stats)
     for (std::size_t a = 0; a < 3; ++a) solution.eta[i][a] = eta[c][a] / clusters.multiplicity[c];
   }
   solution.refinement = unit_normals(field.winding_gradient_at(eta, problem.cloud.points, stages.cancel()), solution.eta);
+  spread_sheets(sheets, clusters, polished.refinement.normals, solution);
   return solution;
+}
+
+Solution solve_any(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
+  if (problem.baseline) return solve_by_baseline(problem, stages, stats);
+  if (problem.settings.cluster_side > 0) return solve_on_clusters(problem, stages, stats);
+  return solve_on_points(problem, options, stages, stats);
+}
+
+// Solves for some points (ascending) without the others.
+void solve_apart(const Problem& problem, const std::vector<std::uint32_t>& some, const Options& options, Stages& stages, Stats& stats,
+                 Solution& solution) {
+  if (some.size() < kFewestApart) return;
+  Problem part;
+  part.cloud.frame = problem.cloud.frame;
+  for (const std::uint32_t i : some) {
+    part.cloud.points.push_back(problem.cloud.points[i]);
+    part.cloud.morton.push_back(problem.cloud.morton[i]);
+  }
+  std::vector<std::uint32_t> near = Neighbours(part.cloud.points).of_all(kNear);
+  const std::vector<double> local = local_spacing(part.cloud.points, near);
+  part.spacing = typical_spacing(local);
+  part.noise = problem.noise;
+  choose_scales(part, options, std::move(near), local);
+  const Solution apart = solve_any(part, options, stages, stats);
+  for (std::size_t k = 0; k < some.size(); ++k) {
+    const std::uint32_t i = some[k];
+    solution.eta[i] = apart.eta[k];
+    solution.refinement.normals[i] = apart.refinement.normals[k];
+    solution.refinement.strength[i] = apart.refinement.strength[k];
+    const bool open = !apart.sheets.sheet.empty() && apart.sheets.sheet[k] != OpenSheets::kNone;
+    solution.sheets.sheet[i] = open ? some[apart.sheets.sheet[k]] : OpenSheets::kNone;
+    solution.sheets.certainty[i] = open ? apart.sheets.certainty[k] : 1;
+  }
+}
+
+// An open sheet makes the equations of everything beside it wrong too. So each sheet is solved for alone, which may show that it was none,
+// and then everything else without the sheets.
+void solve_sheets_apart(const Problem& problem, const Options& options, Stages& stages, Stats& stats, Solution& solution) {
+  std::map<std::uint32_t, std::vector<std::uint32_t>> parts;
+  const auto collect = [&] {
+    parts.clear();
+    for (std::uint32_t i = 0; i < solution.sheets.sheet.size(); ++i) parts[solution.sheets.sheet[i]].push_back(i);
+  };
+  collect();
+  if (parts.size() < 2) return;  // no sheet, or one that is all there is
+  for (const auto& [sheet, points] : parts) {
+    if (sheet != OpenSheets::kNone) solve_apart(problem, points, options, stages, stats, solution);
+  }
+  collect();
+  if (parts.size() > 1 && parts.count(OpenSheets::kNone) > 0) {
+    solve_apart(problem, parts[OpenSheets::kNone], options, stages, stats, solution);
+  }
 }
 
 // Outliers follow the field, have no area and deserve no confidence.
@@ -254,16 +352,40 @@ void hand_out(const CanonicalCloud& cloud, const std::vector<Vec3>& eta, const s
   }
 }
 
+std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
+
+// The sides of points on open sheets do not come from the equations, and their confidence neither.
+void add_sheets(const OpenSheets& sheets, std::vector<float>& confidence, Stats& stats) {
+  if (sheets.sheet.empty()) return;
+  std::size_t open = 0;
+  std::size_t undecided = 0;
+  for (std::size_t i = 0; i < sheets.sheet.size(); ++i) {
+    if (sheets.sheet[i] == OpenSheets::kNone) continue;
+    confidence[i] = sheets.certainty[i];
+    ++open;
+    undecided += sheets.certainty[i] < 1 ? 1 : 0;
+  }
+  if (open == 0) return;
+  const auto all = static_cast<double>(confidence.size());
+  stats.open_share = static_cast<double>(open) / all;
+  stats.undecided_share = static_cast<double>(undecided) / all;
+  std::string warning = "open: " + percent(stats.open_share) + " of the points lie on sheets without an inside; their sides are consistent";
+  if (undecided > 0) warning += ", but which one is the outside is a choice: the one that faces up (+z)";
+  stats.warnings.push_back(warning);
+}
+
 void judge(const CanonicalCloud& cloud, const std::vector<float>& confidence, Stats& stats) {
   double sum = 0;
   for (const float c : confidence) sum += static_cast<double>(c);
   stats.confidence_mean = sum / static_cast<double>(cloud.size());
   stats.confidence_below_half = unsure_share(confidence);
-  if (!stats.converged) stats.warnings.emplace_back("the solver did not reach its tolerance; normals may be less accurate");
-  stats.consistent = stats.confidence_below_half <= kManyUnsure;
-  if (!stats.consistent) {
-    stats.warnings.push_back("orientation not consistent: " + std::to_string(std::lround(100 * stats.confidence_below_half)) +
-                             " % of the points could face either way; the cloud may be open, very noisy or too sparse");
+  if (!stats.converged && stats.open_share < 1) {
+    stats.warnings.emplace_back("the solver did not reach its tolerance; normals may be less accurate");
+  }
+  stats.consistent = stats.confidence_below_half + stats.undecided_share <= kManyUnsure;
+  if (stats.confidence_below_half > kManyUnsure) {
+    stats.warnings.push_back("orientation not consistent: " + percent(stats.confidence_below_half) +
+                             " of the points could face either way; the cloud may be open, very noisy or too sparse");
   }
 }
 
@@ -272,11 +394,11 @@ Orientation orient_in_arena(const PointsView& points, const Options& options, St
   const Problem problem = prepare(points, options, stages);
   describe(problem, points, options, out.stats);
   require_memory(out.stats.planned_memory_bytes, options);
-  Solution solution = problem.baseline                    ? solve_by_baseline(problem, stages, out.stats)
-                      : problem.settings.cluster_side > 0 ? solve_on_clusters(problem, stages, out.stats)
-                                                          : solve_on_points(problem, options, stages, out.stats);
+  Solution solution = solve_any(problem, options, stages, out.stats);
+  solve_sheets_apart(problem, options, stages, out.stats, solution);
   std::vector<Vec3>& normals = solution.refinement.normals;
   std::vector<float> confidence = side_confidence(solution.eta, normals, solution.refinement.strength);
+  add_sheets(solution.sheets, confidence, out.stats);
   judge(problem.cloud, confidence, out.stats);
   warn_of_noise(problem, out.stats);
   add_outliers(problem, stages, solution, confidence);

@@ -89,6 +89,8 @@ std::string report_json(const Stats& stats, const MeshCheck* mesh) {
   report["iterations"] = iterations_json(stats);
   report["converged"] = stats.converged;
   report["consistent"] = stats.consistent;
+  report["open_share"] = number(stats.open_share);
+  report["undecided_share"] = number(stats.undecided_share);
   report["seconds"] = seconds_json(stats);
   report["planned_memory_bytes"] = stats.planned_memory_bytes;
   report["peak_memory_bytes"] = stats.peak_memory_bytes;

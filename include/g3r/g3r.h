@@ -116,7 +116,9 @@ struct Stats {
   std::vector<Iteration> iterations;
   double tolerance = 0;
   bool converged = false;
-  bool consistent = true;       ///< false: so many points could face either way that the cloud may have no clear inside
+  bool consistent = true;       ///< false: more than a fifth of the points could face either way: there may be no clear inside
+  double open_share = 0;        ///< share of the points, 0..1, on open sheets, whose sides follow from neighbour to neighbour
+  double undecided_share = 0;   ///< of all points, those on sheets either side of which could be the outside
   double condition_number = 0;  ///< 0 unless asked for
   double confidence_mean = 0;
   double confidence_below_half = 0;                     ///< share of the points, 0..1

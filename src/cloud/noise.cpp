@@ -1,6 +1,6 @@
 #include "cloud/noise.h"
 
-#include <Eigen/Eigenvalues>
+#include "cloud/plane_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,34 +24,6 @@ constexpr double kLeastRoom = 0.1;         // of 1 - (x / saturation)^power: bey
 constexpr double kResidualToSigma = 0.95;
 constexpr double kLargestResidual = 0.8;    // beyond, the ball is full of noise and tells no more
 constexpr std::size_t kFewestPoints = 200;  // below, neighbourhoods are a large part of the shape
-
-// Plane fit to the nearest neighbours of one point.
-struct PlaneFit {
-  double residual;  // root mean square distance, corrected for the 3 parameters
-  double kurtosis;  // of the distances: 3 for a Gaussian (less, from few points), 1 for two sheets
-};
-
-// To the first `found` of `index`.
-PlaneFit fit_plane(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t found) {
-  const auto count = static_cast<double>(found);
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (std::size_t k = 0; k < found; ++k) mean += Eigen::Map<const Eigen::Vector3d>(points[index[k]].data()) / count;
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (std::size_t k = 0; k < found; ++k) {
-    const Eigen::Vector3d d = Eigen::Map<const Eigen::Vector3d>(points[index[k]].data()) - mean;
-    spread += d * d.transpose();
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(spread);
-  const Eigen::Vector3d normal = eigen.eigenvectors().col(0);
-  double second = 0;
-  double fourth = 0;
-  for (std::size_t k = 0; k < found; ++k) {
-    const double t = normal.dot(Eigen::Map<const Eigen::Vector3d>(points[index[k]].data()) - mean);
-    second += t * t;
-    fourth += t * t * t * t;
-  }
-  return {std::sqrt(std::max(0.0, eigen.eigenvalues()[0]) / (count - 3)), second > 0 ? count * fourth / (second * second) : 0};
-}
 
 double quantile(std::vector<double> values, double share) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));

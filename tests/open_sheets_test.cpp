@@ -1,0 +1,193 @@
+// Surfaces without an inside: sides consistent, directions right, told apart from solids and from thin walls.
+#include "orient/open_sheets.h"
+
+#include "cloud/plane_fit.h"
+#include "cloud/spacing.h"
+
+#include "shapes.h"
+
+#include <g3r/g3r.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace g3r {
+namespace {
+
+using shapes::Surface;
+
+// z = height(x, y) at random places of [-1, 1]^2, facing up; `scatter` along the normal, in spacings. Slopes by differences.
+Surface terrain(std::size_t count, const std::function<double(double, double)>& height, double scatter = 0) {
+  constexpr double kStep = 1e-6;
+  shapes::Random random(5);
+  const double noise = scatter * 2 / std::sqrt(static_cast<double>(count));
+  Surface s;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = random.uniform(-1, 1);
+    const double y = random.uniform(-1, 1);
+    const double along_x = (height(x + kStep, y) - height(x - kStep, y)) / (2 * kStep);
+    const double along_y = (height(x, y + kStep) - height(x, y - kStep)) / (2 * kStep);
+    const double size = std::sqrt(1 + along_x * along_x + along_y * along_y);
+    const Vec3 n{-along_x / size, -along_y / size, 1 / size};
+    const double t = noise * random.gaussian();
+    s.points.push_back({x + t * n[0], y + t * n[1], height(x, y) + t * n[2]});
+    s.normals.push_back(n);
+    s.areas.push_back(4 * size / static_cast<double>(count));
+  }
+  return s;
+}
+
+double flat(double, double) { return 0; }
+double saddle(double x, double y) { return 0.5 * (x * x - y * y); }
+double hill(double x, double y) { return 0.5 * std::exp(-4 * (x * x + y * y)); }
+double waves(double x, double y) { return 0.15 * std::sin(5 * x) * std::cos(4 * y); }
+
+Surface upper_part(const Surface& whole, double least_z) {
+  Surface part;
+  for (std::size_t i = 0; i < whole.points.size(); ++i) {
+    if (whole.points[i][2] < least_z) continue;
+    part.points.push_back(whole.points[i]);
+    part.normals.push_back(whole.normals[i]);
+    part.areas.push_back(whole.areas[i]);
+  }
+  return part;
+}
+
+// The equations alone leave 49 to 51 % of these on the right side, and turn directions by up to 90 degrees.
+TEST(OpenSheets, TerrainFacesUp) {
+  for (const auto& height : {flat, saddle, hill, waves}) {
+    const Surface s = terrain(4000, height);
+    const Orientation o = orient(s.points);
+    EXPECT_EQ(shapes::share_correct(o.normals, s.normals), 1);
+    EXPECT_LT(shapes::angle_error(o.normals, s.normals), 1e-3);
+    EXPECT_EQ(o.stats.open_share, 1);
+    EXPECT_EQ(o.stats.undecided_share, 1);
+    EXPECT_FALSE(o.stats.consistent);
+    EXPECT_EQ(*std::max_element(o.confidence.begin(), o.confidence.end()), 0.5F);
+    const bool warned = std::any_of(o.stats.warnings.begin(), o.stats.warnings.end(),
+                                    [](const std::string& w) { return w.find("open: 100 %") != std::string::npos; });
+    EXPECT_TRUE(warned);
+    double area = 0;
+    double true_area = 0;
+    for (const double a : o.areas) area += a;
+    for (const double a : s.areas) true_area += a;
+    EXPECT_NEAR(area / true_area, 1, 0.1);
+  }
+}
+
+TEST(OpenSheets, NoiseIsNoObstacle) {
+  for (const double scatter : {0.1, 0.5, 1.5}) {
+    const Surface s = terrain(scatter < 1 ? 6000 : 16000, waves, scatter);
+    const Orientation o = orient(s.points);
+    EXPECT_GE(shapes::share_correct(o.normals, s.normals), 0.999) << scatter;
+    EXPECT_LT(shapes::angle_error(o.normals, s.normals), 0.01) << scatter;
+  }
+}
+
+TEST(OpenSheets, TakeTheOutsideTheEquationsFind) {
+  const Surface half = upper_part(shapes::sphere(8000), 0);
+  const Orientation o = orient(half.points);
+  EXPECT_EQ(shapes::share_correct(o.normals, half.normals), 1);
+  EXPECT_LT(shapes::angle_error(o.normals, half.normals), 1e-3);
+  EXPECT_EQ(o.stats.open_share, 1);
+  EXPECT_EQ(o.stats.undecided_share, 0);
+  EXPECT_TRUE(o.stats.consistent);
+}
+
+TEST(OpenSheets, SolidsHaveNone) {
+  for (const Surface& s : {shapes::sphere(3000), shapes::torus(5000, 0.6, 0.25, 2),
+                           shapes::join(shapes::sphere(4000, 0.8), shapes::sphere(2000, 0.5), true)}) {
+    EXPECT_EQ(orient(s.points).stats.open_share, 0);
+  }
+}
+
+// Alone the sphere is easy; the ground below it makes its equations wrong.
+TEST(OpenSheets, DoNotDisturbTheSolidsBesideThem) {
+  Surface s = terrain(8000, waves);
+  for (Vec3& p : s.points) p = {3 * p[0], 3 * p[1], 3 * p[2] - 1.6};
+  const Surface scene = shapes::join(s, shapes::sphere(4000));
+  const Orientation o = orient(scene.points);
+  EXPECT_EQ(shapes::share_correct(o.normals, scene.normals), 1);
+  EXPECT_LT(shapes::angle_error(o.normals, scene.normals), 1e-3);
+  EXPECT_NEAR(o.stats.open_share, 2.0 / 3, 1e-12);
+}
+
+TEST(OpenSheets, TurnWithTheCloudButForTheChoiceOfSide) {
+  const Surface s = terrain(3000, waves);
+  Surface turned = s;
+  for (auto* vectors : {&turned.points, &turned.normals}) {
+    for (Vec3& p : *vectors) p = {0.6 * p[0] - 0.8 * p[2], p[1], 0.8 * p[0] + 0.6 * p[2]};
+  }
+  const double right = shapes::share_correct(orient(turned.points).normals, turned.normals);
+  EXPECT_EQ(std::max(right, 1 - right), 1);
+}
+
+TEST(OpenSheets, AreTheSameForEveryOrderAndNumberOfThreads) {
+  const Surface s = terrain(3000, waves);
+  Options one;
+  one.threads = 1;
+  const Orientation o = orient(s.points, one);
+  std::vector<Vec3> backwards(s.points.rbegin(), s.points.rend());
+  Options three;
+  three.threads = 3;
+  const Orientation p = orient(backwards, three);
+  for (std::size_t i = 0; i < backwards.size(); ++i) {
+    ASSERT_EQ(o.normals[i], p.normals[backwards.size() - 1 - i]);
+    ASSERT_EQ(o.areas[i], p.areas[backwards.size() - 1 - i]);
+  }
+}
+
+// Given normals as the equations leave them: in the sheet, or on it but facing either way.
+TEST(OpenSheets, AreFoundByWrongDirectionsOnly) {
+  const Surface s = terrain(2000, waves);
+  const std::vector<std::uint32_t> near = Neighbours(s.points).of_all(17);
+  std::vector<Vec3> normals = s.normals;
+  EXPECT_TRUE(find_open_sheets(s.points, near, nullptr, normals).sheet.empty());
+  EXPECT_EQ(normals, s.normals);
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    if (s.points[i][0] < -0.2) {
+      for (double& c : normals[i]) c = -c;  // one part upside down,
+    } else if (s.points[i][0] < 0) {
+      normals[i] = {-1, 0, 0};  // a seam
+    }
+  }
+  const OpenSheets found = find_open_sheets(s.points, near, nullptr, normals);
+  EXPECT_EQ(found.sheet, std::vector<std::uint32_t>(normals.size(), 0));
+  EXPECT_EQ(shapes::share_correct(normals, s.normals), 1);
+}
+
+// Random points of both sides of a plate 0.1 spacings thick: normals in it are wrong, but it is no sheet.
+TEST(OpenSheets, ThinWallsAreNone) {
+  Surface s = terrain(4000, flat);
+  for (std::size_t i = 0; i < s.points.size(); i += 2) s.points[i][2] += 0.1 * 2 / std::sqrt(4000.0);
+  const std::vector<std::uint32_t> near = Neighbours(s.points).of_all(17);
+  std::vector<Vec3> normals(s.points.size(), Vec3{1, 0, 0});
+  EXPECT_TRUE(find_open_sheets(s.points, near, nullptr, normals).sheet.empty());
+}
+
+TEST(PlaneFit, KnowsPlaneNoiseAndWalls) {
+  shapes::Random random(9);
+  const auto fit = [&](const std::function<double(int)>& height) {
+    std::vector<Vec3> points;
+    std::vector<std::uint32_t> index;
+    for (int i = 0; i < 2000; ++i) {
+      points.push_back({random.uniform(-1, 1), random.uniform(-1, 1), height(i)});
+      index.push_back(static_cast<std::uint32_t>(i));
+    }
+    return fit_plane(points, index.data(), index.size());
+  };
+  const PlaneFit plane = fit([](int) { return 0.3; });
+  EXPECT_NEAR(std::abs(plane.normal[2]), 1, 1e-12);
+  EXPECT_NEAR(plane.residual, 0, 1e-7);
+  const PlaneFit noise = fit([&](int) { return 0.02 * random.gaussian(); });
+  EXPECT_NEAR(noise.residual, 0.02, 0.001);
+  EXPECT_NEAR(noise.flatness, 0.02 * std::sqrt(3.0), 0.003);  // a uniform distribution over [-1, 1] spreads by 1 / sqrt(3)
+  EXPECT_NEAR(noise.kurtosis, 3, 0.3);
+  EXPECT_NEAR(fit([](int i) { return i % 2 == 0 ? 0.02 : -0.02; }).kurtosis, 1, 0.05);
+}
+
+}  // namespace
+}  // namespace g3r
