@@ -357,6 +357,18 @@ TEST(Noise, IsEstimatedAndNotMistakenForShape) {
   }
 }
 
+// The narrow kernels of clean clouds would follow it: an error of 0.02.
+TEST(Noise, OfATwentiethOfTheSpacingIsFound) {
+  shapes::Random random(4);
+  Surface s = shapes::torus(12000, 0.6, 0.25, 6);
+  const double spacing = plan(s.points).spacing;
+  for (Vec3& p : s.points) {
+    for (double& c : p) c += 0.05 * spacing * random.gaussian();
+  }
+  EXPECT_NEAR(plan(s.points).noise / spacing, 0.05, 0.03);
+  EXPECT_LE(shapes::angle_error(orient(s.points).normals, s.normals), 0.005);
+}
+
 // Plates 2.5 spacings thick and 2.5 apart, noise of 0.35 spacings: neighbourhoods of 32 points see both sides of a plate.
 TEST(Noise, PlatesDoNotRaiseIt) {
   shapes::Random random(4);

@@ -112,4 +112,16 @@ Sheet fit_sheet(const std::vector<FitPoint>& points, int which, double h, double
   return s;
 }
 
+double quadratic_residual(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count, const Vec3& normal, double h) {
+  std::vector<FitPoint> members;
+  for (std::size_t k = 0; k < count; ++k) members.push_back({to_eigen(points[index[k]]), to_eigen(normal), 1, 0});
+  const Sheet sheet = fit_sheet(members, 0, h, 0);
+  double misfit = 0;
+  for (const FitPoint& m : members) {
+    const double distance = sheet.distance(m.p);
+    misfit += distance * distance;
+  }
+  return std::sqrt(misfit / static_cast<double>(count - 6));
+}
+
 }  // namespace g3r

@@ -6,6 +6,8 @@
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace g3r {
@@ -38,6 +40,11 @@ struct FitPoint {
 /// of which there is at least one with a weight above 0. `h` > 0: length unit of the fit. The normals also give the tangent plane.
 /// Throws nothing. O(points).
 [[nodiscard]] Sheet fit_sheet(const std::vector<FitPoint>& points, int which, double h, double normal_weight);
+
+/// Root mean square distance, corrected for the 6 numbers, of points[index[0]], ..., points[index[count - 1]] from the quadratic height
+/// field fitted to them over the plane with this normal, count > 6. `h` > 0: length unit of the fit. O(count).
+[[nodiscard]] double quadratic_residual(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count, const Vec3& normal,
+                                        double h);
 
 [[nodiscard]] inline Eigen::Vector3d to_eigen(const Vec3& p) { return {p[0], p[1], p[2]}; }
 

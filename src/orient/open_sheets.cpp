@@ -30,12 +30,15 @@ constexpr double kNoisyFlat = 0.35;          // flatness of plainly flat places 
 constexpr std::size_t kProbes = 500;         // places looked at where a look at all takes long
 constexpr double kProbedWrong = 0.005;       // share of these that have to be wrong
 constexpr std::size_t kKurtosisPoints = 17;  // of a plane whose kurtosis is taken, at least
-constexpr double kOneSheet = 0.87;           // kurtosis over that of a Gaussian: 0.9 to 1 on sheets, less between two walls
+constexpr double kOneSheet = 0.87;           // kurtosis over that of a Gaussian: 0.9 to 1 on sheets, less between two walls;
+constexpr std::size_t kMany = 24;            // from so many points on
+constexpr double kOneSheetOfMany = 0.94;     // it is 0.95 to 1 on sheets
 constexpr double kParallel = 0.95;           // cosine between the planes of adjacent points; less where the samples are strokes
 constexpr double kSmooth = 0.03;             // misfit of a quadratic height field, in spacings, that proves one sheet
 constexpr double kWrongCosine = 0.866025;    // 30 degrees
 constexpr std::size_t kFewestWrong = 30;     // side by side that make an open sheet,
-constexpr double kLeastWrong = 0.02;         // and share of all that are connected with them
+constexpr double kLeastWrong = 0.02;         // and share of all that are connected with them,
+constexpr double kLeastWrongNoisy = 0.15;    // under noise
 constexpr double kSamePlane = 0.9;           // cosine between normals of neighbours on one sheet
 constexpr double kSlope = 0.5;               // height above the other's plane over distance, of neighbours on one sheet
 constexpr double kAgree = 0.5;               // cosine between given normals that stay together
@@ -65,6 +68,7 @@ class Planes {
   [[nodiscard]] bool is_flat(const PlaneFit& fit) const { return fit.flatness < flat_ && fit.breadth > kBroad; }
 
   [[nodiscard]] PlaneFit at(std::size_t i) const { return fit(i, count_); }
+  [[nodiscard]] double least_kurtosis() const { return count_ < kMany ? kOneSheet : kOneSheetOfMany; }
 
   // Kurtosis of the distances from the plane over that of Gaussian ones; 1 on a smooth sheet, be it curved.
   [[nodiscard]] double kurtosis_at(std::size_t i) const {
@@ -100,12 +104,7 @@ class Planes {
     const std::uint32_t* index = near_.data() + i * (near_.size() / points_.size());
     const Vec3 furthest = vector::subtract(points_[index[count - 1]], points_[i]);
     const double spacing = std::sqrt(dot(furthest, furthest) * std::numbers::pi / static_cast<double>(count));
-    std::vector<FitPoint> members;
-    for (std::size_t k = 0; k < count; ++k) members.push_back({to_eigen(points_[index[k]]), to_eigen(normal), 1, 0});
-    const Sheet sheet = fit_sheet(members, 0, spacing, 0);
-    double misfit = 0;
-    for (const FitPoint& m : members) misfit += sheet.distance(m.p) * sheet.distance(m.p);
-    return misfit < kSmooth * kSmooth * spacing * spacing * static_cast<double>(count - 6);
+    return quadratic_residual(points_, index, count, normal, spacing) < kSmooth * spacing;
   }
 
   const std::vector<Vec3>& points_;
@@ -145,7 +144,7 @@ bool is_one_sheet(const Planes& fits, const std::vector<Plane>& planes, const st
     }
     parallel.push_back(sum / static_cast<double>(kAdjacent));
   }
-  return median(kurtosis) >= kOneSheet && median(parallel) >= kParallel;
+  return median(kurtosis) >= fits.least_kurtosis() && median(parallel) >= kParallel;
 }
 
 // Disjoint sets whose members are on the same or on opposite sides of each other.
@@ -200,7 +199,8 @@ void for_adjacent(const std::vector<std::uint32_t>& near, std::size_t points, co
 }
 
 // The component of every point, or kNone: those in which many wrong points lie side by side.
-std::vector<std::uint32_t> components_of_sheets(const std::vector<std::uint32_t>& near, const std::vector<std::uint8_t>& wrong) {
+std::vector<std::uint32_t> components_of_sheets(const std::vector<std::uint32_t>& near, const std::vector<std::uint8_t>& wrong,
+                                                double least_wrong) {
   const std::size_t n = wrong.size();
   DisjointSets groups(n);
   for_adjacent(near, n, [&](std::uint32_t i, std::uint32_t j) {
@@ -223,7 +223,7 @@ std::vector<std::uint32_t> components_of_sheets(const std::vector<std::uint32_t>
   std::vector<std::uint32_t> sheet(n, OpenSheets::kNone);
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t component = components.find(i);
-    const bool is_sheet = has_group[component] != 0 && wrong_members[component] >= kLeastWrong * members[component];
+    const bool is_sheet = has_group[component] != 0 && wrong_members[component] >= least_wrong * members[component];
     if (is_sheet) sheet[i] = static_cast<std::uint32_t>(component);
   }
   return sheet;
@@ -280,7 +280,7 @@ OpenSheets find_open_sheets(const std::vector<Vec3>& points, const std::vector<s
   const std::vector<Plane> planes = fits.everywhere();
   std::vector<std::uint8_t> wrong(n);
   for (std::size_t i = 0; i < n; ++i) wrong[i] = planes[i].flat && is_wrong(planes[i].normal, normals[i]) ? 1 : 0;
-  found.sheet = components_of_sheets(near, wrong);
+  found.sheet = components_of_sheets(near, wrong, noisy == nullptr ? kLeastWrong : kLeastWrongNoisy);
   const bool any = std::any_of(found.sheet.begin(), found.sheet.end(), [](std::uint32_t s) { return s != OpenSheets::kNone; });
   if (!any || !is_one_sheet(fits, planes, near, wrong)) return {};
   // Sides are those of the given normals where these lie along plain planes, of the planes elsewhere.
