@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <tuple>
@@ -34,6 +35,9 @@ constexpr double kOneSheet = 0.87;           // kurtosis over that of a Gaussian
 constexpr std::size_t kMany = 24;            // from so many points on
 constexpr double kOneSheetOfMany = 0.94;     // it is 0.95 to 1 on sheets
 constexpr double kParallel = 0.95;           // cosine between the planes of adjacent points; less where the samples are strokes
+constexpr double kFacing = 4;                // spacings within which another wall explains wrong normals
+constexpr double kOpposite = 0.7;            // cosine to the normal of a plane from which on a point faces it
+constexpr double kBeyondNoise = 4;           // standard deviations that a point of the same sheet may be off its plane
 constexpr double kSmooth = 0.03;             // misfit of a quadratic height field, in spacings, that proves one sheet
 constexpr double kWrongCosine = 0.866025;    // 30 degrees
 constexpr std::size_t kFewestWrong = 30;     // side by side that make an open sheet,
@@ -77,6 +81,21 @@ class Planes {
     if (noisy_ == nullptr && is_smooth(i, count, plane.normal)) return 1;
     const auto total = static_cast<double>(count);
     return plane.kurtosis / (3 * (total - 1) / (total + 1));
+  }
+
+  // Whether there is another wall close by, in front of or behind the plane.
+  [[nodiscard]] bool is_faced_at(std::size_t i, const Vec3& normal, const Neighbours& neighbours) const {
+    const std::uint32_t* index = near_.data() + i * (near_.size() / points_.size());
+    const Vec3 furthest = vector::subtract(points_[index[kAround]], points_[i]);
+    const double spacing = noisy_ != nullptr ? noisy_->spacing : std::sqrt(dot(furthest, furthest) * std::numbers::pi / (kAround + 1.0));
+    const double thickness = noisy_ != nullptr ? kBeyondNoise * noisy_->noise : 0;
+    std::vector<std::uint32_t> found;
+    neighbours.within(points_[i], kFacing * spacing + thickness, found);
+    return std::any_of(found.begin(), found.end(), [&](std::uint32_t j) {
+      const Vec3 d = vector::subtract((noisy_ != nullptr ? noisy_->points : points_)[j], points_[i]);
+      const double height = std::abs(dot(d, normal));
+      return height > thickness && height > kOpposite * std::sqrt(dot(d, d));
+    });
   }
 
   [[nodiscard]] std::vector<Plane> everywhere() const {
@@ -128,23 +147,24 @@ bool probes_find_wrong(const Planes& planes, const std::vector<Vec3>& normals) {
   return static_cast<double>(wrong) >= kProbedWrong * static_cast<double>(probes);
 }
 
-// Whether the points around the wrong ones lie on one sheet, and not on two walls or along strokes, which lie in planes of their own.
+// Whether the points around the wrong ones of a component lie on one sheet by itself, and not on two walls or along strokes, which lie in
+// planes of their own.
 bool is_one_sheet(const Planes& fits, const std::vector<Plane>& planes, const std::vector<std::uint32_t>& near,
-                  const std::vector<std::uint8_t>& wrong) {
-  const auto count = static_cast<std::size_t>(std::count(wrong.begin(), wrong.end(), 1));
+                  const Neighbours& neighbours, const std::vector<std::uint32_t>& wrong) {
   std::vector<double> kurtosis;
   std::vector<double> parallel;
-  std::size_t seen = 0;
-  for (std::size_t i = 0; i < wrong.size(); ++i) {
-    if (wrong[i] == 0 || seen++ % std::max<std::size_t>(1, count / kProbes) != 0) continue;
+  std::size_t faced = 0;
+  for (std::size_t k = 0; k < wrong.size(); k += std::max<std::size_t>(1, wrong.size() / kProbes)) {
+    const std::uint32_t i = wrong[k];
     kurtosis.push_back(fits.kurtosis_at(i));
     double sum = 0;
-    for (std::size_t k = 1; k <= kAdjacent; ++k) {
-      sum += std::abs(dot(planes[i].normal, planes[near[i * (near.size() / wrong.size()) + k]].normal));
+    for (std::size_t m = 1; m <= kAdjacent; ++m) {
+      sum += std::abs(dot(planes[i].normal, planes[near[i * (near.size() / planes.size()) + m]].normal));
     }
     parallel.push_back(sum / static_cast<double>(kAdjacent));
+    faced += fits.is_faced_at(i, planes[i].normal, neighbours) ? 1 : 0;
   }
-  return median(kurtosis) >= fits.least_kurtosis() && median(parallel) >= kParallel;
+  return 2 * faced < kurtosis.size() && median(kurtosis) >= fits.least_kurtosis() && median(parallel) >= kParallel;
 }
 
 // Disjoint sets whose members are on the same or on opposite sides of each other.
@@ -281,8 +301,18 @@ OpenSheets find_open_sheets(const std::vector<Vec3>& points, const std::vector<s
   std::vector<std::uint8_t> wrong(n);
   for (std::size_t i = 0; i < n; ++i) wrong[i] = planes[i].flat && is_wrong(planes[i].normal, normals[i]) ? 1 : 0;
   found.sheet = components_of_sheets(near, wrong, noisy == nullptr ? kLeastWrong : kLeastWrongNoisy);
-  const bool any = std::any_of(found.sheet.begin(), found.sheet.end(), [](std::uint32_t s) { return s != OpenSheets::kNone; });
-  if (!any || !is_one_sheet(fits, planes, near, wrong)) return {};
+  std::map<std::uint32_t, std::vector<std::uint32_t>> wrong_of;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (wrong[i] != 0 && !found.sheet.empty() && found.sheet[i] != OpenSheets::kNone) wrong_of[found.sheet[i]].push_back(i);
+  }
+  if (wrong_of.empty()) return {};
+  const Neighbours neighbours(noisy != nullptr ? noisy->points : points);
+  std::vector<std::uint8_t> is_sheet(n, 0);
+  for (const auto& [sheet, some] : wrong_of) is_sheet[sheet] = is_one_sheet(fits, planes, near, neighbours, some) ? 1 : 0;
+  for (std::uint32_t& sheet : found.sheet) {
+    if (sheet != OpenSheets::kNone && is_sheet[sheet] == 0) sheet = OpenSheets::kNone;
+  }
+  if (std::all_of(found.sheet.begin(), found.sheet.end(), [](std::uint32_t s) { return s == OpenSheets::kNone; })) return {};
   // Sides are those of the given normals where these lie along plain planes, of the planes elsewhere.
   std::vector<std::uint8_t> trusted(n);
   for (std::size_t i = 0; i < n; ++i) trusted[i] = planes[i].flat && wrong[i] == 0 ? 1 : 0;
