@@ -16,6 +16,7 @@ constexpr double kSpacingRatio = 2;
 constexpr std::size_t kFewestCoarsePoints = 10000;  // a coarser start costs sides on thin parts and saves little
 constexpr double kCoarseShare = 0.2;                // of the progress bar
 constexpr double kDoubtfulShare = 0.04;             // share of the points from which more steps are tried
+constexpr double kWorse = 1.25;                     // of that share after them, from which they are undone
 
 Settings coarser(Settings settings) {
   settings.spacing *= kSpacingRatio;
@@ -80,9 +81,9 @@ IterativeResult solve_coarse_to_fine(const std::vector<Vec3>& points, const std:
   if (result.converged || settings.doubtful_schedule.empty()) return result;
   FastSum field(points, morton, Widths(settings.refinement_width), settings.sums, stages.cancel());
   const double unsure = unsure_share_of(field, result.eta);
-  if (unsure < kDoubtfulShare) return result;
-  IterativeResult more = solve_iteratively(*system, settings.doubtful_schedule, tolerance, result.eta);
-  if (unsure_share_of(field, more.eta) > unsure) return result;
+  if (unsure < kDoubtfulShare + settings.unsure_of_noise) return result;
+  IterativeResult more = solve_iteratively(*system, settings.doubtful_schedule, settings.doubtful_tolerance, result.eta);
+  if (settings.unsure_of_noise == 0 && unsure_share_of(field, more.eta) > kWorse * unsure) return result;
   more.kinds.insert(more.kinds.begin(), result.kinds.begin(), result.kinds.end());
   more.residuals.insert(more.residuals.begin(), result.residuals.begin(), result.residuals.end());
   return more;

@@ -51,7 +51,7 @@ void gradient_to_areas(FastSum& sum, const std::vector<double>& areas, std::vect
 Polished polish(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
                 const std::vector<double>& spacing, const std::vector<double>& multiplicity, const Refinement& refined, Stages& stages) {
   FastSum sum(points, morton, widths_of(settings.polish_epsilon, settings, spacing), settings.sums, stages.cancel());
-  EnergySystem system(sum, settings.damping, settings.polish_winding_weight, multiplicity);
+  EnergySystem system(sum, settings.polish_damping, settings.polish_winding_weight, multiplicity);
   std::vector<Vec3> start = refined.normals;
   for (std::size_t i = 0; i < start.size(); ++i) {
     for (double& c : start[i]) c *= refined.strength[i];

@@ -24,7 +24,8 @@ constexpr double kStartTolerance = 8e-3;  // of a coarse solution that is only a
 // After a coarse start smooth shapes are there in 2 to 10 steps. More are right for thin walls and narrow gaps only: on open surfaces, of
 // which the equations are not true, and among outliers, some of which are always left, they fit what is wrong.
 constexpr Steps kContinued{10, StepKind::kConjugateGradient};
-constexpr Steps kDoubtful{20, StepKind::kConjugateGradient};
+constexpr Steps kDoubtful{60, StepKind::kConjugateGradient};
+constexpr double kDoubtfulTolerance = 2.5e-3;
 constexpr double kContinuedTolerance = 9e-3;
 constexpr double kToleranceAmongOutliers = 1.5e-2;
 constexpr double kFewOutliers = 1e-2;  // of the points; clean clouds lose one point, very uneven ones 0.6 %
@@ -36,6 +37,10 @@ constexpr double kMildNoise = 0.7;    // h
 constexpr double kMildWidth = 2;      // sigma, of epsilon and of the refinement
 constexpr double kMildEpsilon = 0.5;  // h, at least
 constexpr const char* kMildSchedule = "20 cg";
+// Less still: the solve of clean clouds tells more sides of thin walls right, and only the polish has to know of the noise.
+constexpr double kSlightNoise = 0.35;    // h
+constexpr double kUnsurePerNoise = 0.9;  // share of the points whose sides a noise of one h makes unsure, about
+constexpr Steps kDoubtfulNoisy{20, StepKind::kConjugateGradient};
 constexpr double kNoisyPolishEpsilon = 1.8;  // sqrt(sigma h)
 constexpr double kNoisyPolishWidth = 2.25;   // sqrt(sigma h)
 constexpr int kNoisyPolishSteps = 9;
@@ -146,6 +151,7 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   s.winding_weight = (starts_coarse(s, cloud.size()) ? kCoarseWindingWeight : kEnergyWindingWeight) * spacing;
   s.tolerance = options.tolerance >= 0 ? options.tolerance : paper ? 0 : green ? kGreenTolerance : kEnergyTolerance;
   s.continued_tolerance = options.tolerance >= 0 ? options.tolerance : among_outliers ? kToleranceAmongOutliers : kContinuedTolerance;
+  s.doubtful_tolerance = options.tolerance >= 0 ? options.tolerance : kDoubtfulTolerance;
   s.start_tolerance = std::max(s.tolerance, kStartTolerance);
   const bool wide = s.epsilon > kWideEpsilon * spacing;
   if (!paper && !green && (noise > 0 || wide)) {
@@ -153,21 +159,27 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
     const double size = std::sqrt(sigma * spacing);
     const bool mild = sigma <= kMildNoise * spacing;
     const double width = mild ? std::max(kMildEpsilon * spacing, kMildWidth * sigma) : kNoisyWidth * sigma;
-    s.damping = kNoisyDamping / spacing;
-    s.winding_weight = kNoisyWindingWeight * spacing;
-    if (options.epsilon.unit == Epsilon::Unit::kAuto) s.epsilon = width;
     s.refinement_width = std::max(s.refinement_width, width);
     s.polish_epsilon = std::max(s.polish_epsilon, kNoisyPolishEpsilon * size);
     s.polish_width = std::max(kRefinementWidth * spacing, kNoisyPolishWidth * size);
     s.polish_steps = kNoisyPolishSteps;
+    s.polish_damping = kNoisyDamping / spacing;
     s.polish_winding_weight = kNoisyPolishWindingWeight * spacing;
-    s.coarsest_epsilon = s.epsilon;
-    s.coarse_to_fine = false;
-    if (s.epsilon > kWideEpsilon * spacing) s.cluster_side = kClusterSide * s.epsilon;
-    if (options.schedule.empty()) {
-      s.schedule_text = mild ? kMildSchedule : kNoisySchedule;
-      s.schedule = parse_schedule(s.schedule_text);
-      if (options.tolerance < 0) s.tolerance = 0;
+    if (sigma <= kSlightNoise * spacing) {
+      s.unsure_of_noise = kUnsurePerNoise * sigma / spacing;
+      if (!s.doubtful_schedule.empty()) s.doubtful_schedule = {kDoubtfulNoisy};
+    } else {
+      s.damping = s.polish_damping;
+      s.winding_weight = kNoisyWindingWeight * spacing;
+      if (options.epsilon.unit == Epsilon::Unit::kAuto) s.epsilon = width;
+      s.coarsest_epsilon = s.epsilon;
+      s.coarse_to_fine = false;
+      if (s.epsilon > kWideEpsilon * spacing) s.cluster_side = kClusterSide * s.epsilon;
+      if (options.schedule.empty()) {
+        s.schedule_text = mild ? kMildSchedule : kNoisySchedule;
+        s.schedule = parse_schedule(s.schedule_text);
+        if (options.tolerance < 0) s.tolerance = 0;
+      }
     }
   }
   s.accuracy = options.accuracy != -1 ? options.accuracy : kAccuracy;

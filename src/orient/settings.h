@@ -29,14 +29,17 @@ struct Settings {
   bool coarse_to_fine = false;            ///< start from a solution on fewer points
   int polish_steps = 0;                   ///< conjugate gradients of polish(); 0: no polish
   double polish_epsilon = 0;              ///< of polish()
+  double polish_damping = 0;              ///< of polish()
   double polish_winding_weight = 0;       ///< of polish()
   double polish_width = 0;                ///< of the refinement that ends polish()
   std::vector<Steps> schedule;            ///< from eta = 0
   std::vector<Steps> continued_schedule;  ///< from a coarse solution
   std::vector<Steps> doubtful_schedule;   ///< after it, where many sides are unsure; empty: never
+  double unsure_of_noise = 0;             ///< share of the points whose sides noise alone makes unsure
   std::string schedule_text;
   double tolerance = 0;            ///< stop at this relative residual
   double continued_tolerance = 0;  ///< the same after a start from a coarse solution
+  double doubtful_tolerance = 0;   ///< the same of the steps where many sides are unsure
   double start_tolerance = 0;      ///< the same for a solution that is only a start
   double accepted_residual = 0;    ///< at or below this the result counts as converged
   double accuracy = 0;             ///< of the sums
