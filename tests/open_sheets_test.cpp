@@ -168,6 +168,22 @@ TEST(OpenSheets, ThinWallsAreNone) {
   EXPECT_TRUE(find_open_sheets(s.points, near, nullptr, normals).sheet.empty());
 }
 
+// Normals wrong in places on two parallel planes: with the other plane within 4 spacings they are the trouble of a thin wall.
+TEST(OpenSheets, WallsCloseByAreNone) {
+  constexpr std::size_t kCount = 4000;
+  const double h = 2 / std::sqrt(kCount / 2.0);
+  for (const double distance : {2.0, 3.0, 8.0}) {
+    Surface s = terrain(kCount, flat);
+    for (std::size_t i = 0; i < kCount; i += 2) s.points[i][2] -= distance * h;
+    std::vector<Vec3> normals = s.normals;
+    for (std::size_t i = 0; i < kCount; ++i) {
+      if (std::abs(s.points[i][0]) < 0.1) normals[i] = {1, 0, 0};
+    }
+    const std::vector<std::uint32_t> near = Neighbours(s.points).of_all(17);
+    EXPECT_EQ(find_open_sheets(s.points, near, nullptr, normals).sheet.empty(), distance < 4) << distance;
+  }
+}
+
 TEST(PlaneFit, KnowsPlaneNoiseAndWalls) {
   shapes::Random random(9);
   const auto fit = [&](const std::function<double(int)>& height) {

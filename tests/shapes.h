@@ -115,6 +115,43 @@ inline Surface torus(std::size_t n, double major = 0.6, double minor = 0.25, std
   return s;
 }
 
+/// Square plates one above the other, each closed: random points, uniform by area, `spacing` apart; `thickness` and `gap` in spacings.
+inline Surface plates(int count, double side, double thickness, double gap, double spacing) {
+  Surface s;
+  Random random(4);
+  for (int k = 0; k < count; ++k) {
+    const double bottom = k * (thickness + gap) * spacing;
+    const Vec3 low{-side / 2, -side / 2, bottom};
+    const Vec3 high{side / 2, side / 2, bottom + thickness * spacing};
+    for (int face = 0; face < 6; ++face) {
+      const auto axis = static_cast<std::size_t>(face / 2);
+      const std::size_t u = (axis + 1) % 3;
+      const std::size_t v = (axis + 2) % 3;
+      const auto points = static_cast<int>((high[u] - low[u]) * (high[v] - low[v]) / (spacing * spacing));
+      for (int i = 0; i < points; ++i) {
+        Vec3 p{};
+        Vec3 n{};
+        p[axis] = face % 2 == 0 ? low[axis] : high[axis];
+        p[u] = random.uniform(low[u], high[u]);
+        p[v] = random.uniform(low[v], high[v]);
+        n[axis] = face % 2 == 0 ? -1 : 1;
+        s.points.push_back(p);
+        s.normals.push_back(n);
+        s.areas.push_back(spacing * spacing);
+      }
+    }
+  }
+  return s;
+}
+
+/// Moves every coordinate of every point by Gaussian noise.
+inline void scatter(Surface& s, double sigma) {
+  Random random(4);
+  for (Vec3& p : s.points) {
+    for (double& c : p) c += sigma * random.gaussian();
+  }
+}
+
 /// Joins two surfaces; `flip` turns the normals of the second (an inner shell faces inwards).
 inline Surface join(Surface a, const Surface& b, bool flip = false) {
   for (std::size_t i = 0; i < b.points.size(); ++i) {

@@ -24,6 +24,7 @@ Settings coarser(Settings settings) {
   settings.coarsest_epsilon *= kSpacingRatio;
   settings.refinement_width *= kSpacingRatio;
   settings.winding_weight *= kSpacingRatio;
+  settings.doubtful_winding_weight *= kSpacingRatio;
   settings.damping /= kSpacingRatio;
   settings.tolerance = settings.start_tolerance;
   settings.first_sums = settings.sums;
@@ -82,7 +83,9 @@ IterativeResult solve_coarse_to_fine(const std::vector<Vec3>& points, const std:
   FastSum field(points, morton, Widths(settings.refinement_width), settings.sums, stages.cancel());
   const double unsure = unsure_share_of(field, result.eta);
   if (unsure < kDoubtfulShare + settings.unsure_of_noise) return result;
-  IterativeResult more = solve_iteratively(*system, settings.doubtful_schedule, settings.doubtful_tolerance, result.eta);
+  FastSum wider(points, morton, Widths(settings.coarsest_epsilon), settings.first_sums, stages.cancel());
+  EnergySystem heavier(wider, settings.damping, settings.doubtful_winding_weight);
+  IterativeResult more = solve_iteratively(heavier, settings.doubtful_schedule, settings.doubtful_tolerance, result.eta);
   if (settings.unsure_of_noise == 0 && unsure_share_of(field, more.eta) > kWorse * unsure) return result;
   more.kinds.insert(more.kinds.begin(), result.kinds.begin(), result.kinds.end());
   more.residuals.insert(more.residuals.begin(), result.residuals.begin(), result.residuals.end());

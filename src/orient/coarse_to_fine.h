@@ -19,8 +19,9 @@ namespace g3r {
 /// (recursively, all lengths doubled), and the start is that solution's winding gradient as area vectors (gradient_to_areas()).
 /// The smooth part of the error, which conjugate gradients reduce slowest, is gone from the start, so the tolerances of starts and of
 /// continued solves are wider. Measured: docs/design.md.
-/// Where the sides of many points are unsure in the end, more steps are tried, and kept on clean clouds if fewer are unsure then; under
-/// noise every step makes more of them unsure, right or wrong.
+/// Where the sides of many points are unsure in the end (thin walls, narrow gaps), more steps are tried, wider and with more weight on the
+/// winding number, which turns parts that are wrong as a whole. They are undone if a quarter more points are unsure then; not under noise,
+/// of which every step makes more of them unsure, right or wrong.
 /// The returned residuals are those of the finest level. Throws like solve_iteratively().
 [[nodiscard]] IterativeResult solve_coarse_to_fine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton,
                                                    const Settings& settings, Stages& stages);

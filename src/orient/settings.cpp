@@ -40,7 +40,7 @@ constexpr const char* kMildSchedule = "20 cg";
 // Less still: the solve of clean clouds tells more sides of thin walls right, and only the polish has to know of the noise.
 constexpr double kSlightNoise = 0.35;    // h
 constexpr double kUnsurePerNoise = 0.9;  // share of the points whose sides a noise of one h makes unsure, about
-constexpr Steps kDoubtfulNoisy{20, StepKind::kConjugateGradient};
+constexpr Steps kDoubtfulNoisy{30, StepKind::kConjugateGradient};
 constexpr double kNoisyPolishEpsilon = 1.8;  // sqrt(sigma h)
 constexpr double kNoisyPolishWidth = 2.25;   // sqrt(sigma h)
 constexpr int kNoisyPolishSteps = 9;
@@ -151,6 +151,7 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   s.winding_weight = (starts_coarse(s, cloud.size()) ? kCoarseWindingWeight : kEnergyWindingWeight) * spacing;
   s.tolerance = options.tolerance >= 0 ? options.tolerance : paper ? 0 : green ? kGreenTolerance : kEnergyTolerance;
   s.continued_tolerance = options.tolerance >= 0 ? options.tolerance : among_outliers ? kToleranceAmongOutliers : kContinuedTolerance;
+  s.doubtful_winding_weight = kEnergyWindingWeight * spacing;
   s.doubtful_tolerance = options.tolerance >= 0 ? options.tolerance : kDoubtfulTolerance;
   s.start_tolerance = std::max(s.tolerance, kStartTolerance);
   const bool wide = s.epsilon > kWideEpsilon * spacing;
