@@ -38,8 +38,9 @@ struct OpenSheets {
 ///     each other stay together, so that closed parts of a scene keep their sides;
 ///   - the whole: if two thirds of the normals along plain planes agree, their majority at least 5 % of the points, they decide; else
 ///     neither side is the outside, and the mean normal is turned upwards (+z; if it is level +y, then +x).
-/// A component is none if half of its wrong points have another wall within 4 spacings, in front of or behind their planes. Two walls closer
-/// together than that shows are told from one sheet by the kurtosis of the distances (0.87 of a Gaussian's, 0.94 from 24 points on), strokes by planes that do not go on from one point to the next (cosine 0.95). `points`: the cloud or, under noise, centroids of its
+/// A component is none if half of its wrong points have another wall within 4 spacings, in front of or behind their planes. Two walls
+/// closer together than that shows are told from one sheet by the kurtosis of the distances (0.87 of a Gaussian's, 0.94 from 24 points on),
+/// strokes by planes that do not go on from one point to the next (cosine 0.95). `points`: the cloud or, under noise, centroids of its
 /// parts; `near`: Neighbours::of_all(k) of them, k >= 17, not used under noise; `normals`: N unit vectors, changed on sheets. `noisy`
 /// (null: clean): planes are then fitted to the points of that cloud within about 8 standard deviations, flat below 0.35. Fewer than 30
 /// points have no sheets. O(N), with sheets O(N log N); under noise about 500 places are looked at first.
