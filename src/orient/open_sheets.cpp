@@ -85,9 +85,7 @@ class Planes {
 
   // Whether there is another wall close by, in front of or behind the plane.
   [[nodiscard]] bool is_faced_at(std::size_t i, const Vec3& normal, const Neighbours& neighbours) const {
-    const std::uint32_t* index = near_.data() + i * (near_.size() / points_.size());
-    const Vec3 furthest = vector::subtract(points_[index[kAround]], points_[i]);
-    const double spacing = noisy_ != nullptr ? noisy_->spacing : std::sqrt(dot(furthest, furthest) * std::numbers::pi / (kAround + 1.0));
+    const double spacing = noisy_ != nullptr ? noisy_->spacing : spacing_at(i, kAround + 1);
     const double thickness = noisy_ != nullptr ? kBeyondNoise * noisy_->noise : 0;
     std::vector<std::uint32_t> found;
     neighbours.within(points_[i], kFacing * spacing + thickness, found);
@@ -111,19 +109,22 @@ class Planes {
 
  private:
   [[nodiscard]] PlaneFit fit(std::size_t i, std::size_t count) const {
-    if (noisy_ == nullptr) return fit_plane(points_, near_.data() + i * (near_.size() / points_.size()), count);
+    if (noisy_ == nullptr) return fit_plane(points_, nearest_to(i), count);
     std::vector<std::uint32_t> index;
     std::vector<double> squared;
     noisy_->neighbours.nearest(points_[i], count, index, squared);
     return fit_plane(noisy_->points, index.data(), index.size());
   }
 
-  // Of a clean cloud.
+  // Of a clean cloud: the nearest points of a point, the spacing of the first `count`, whether they lie on one smooth sheet.
+  [[nodiscard]] const std::uint32_t* nearest_to(std::size_t i) const { return near_.data() + i * (near_.size() / points_.size()); }
+  [[nodiscard]] double spacing_at(std::size_t i, std::size_t count) const {
+    const Vec3 furthest = vector::subtract(points_[nearest_to(i)[count - 1]], points_[i]);
+    return std::sqrt(dot(furthest, furthest) * std::numbers::pi / static_cast<double>(count));
+  }
   [[nodiscard]] bool is_smooth(std::size_t i, std::size_t count, const Vec3& normal) const {
-    const std::uint32_t* index = near_.data() + i * (near_.size() / points_.size());
-    const Vec3 furthest = vector::subtract(points_[index[count - 1]], points_[i]);
-    const double spacing = std::sqrt(dot(furthest, furthest) * std::numbers::pi / static_cast<double>(count));
-    return quadratic_residual(points_, index, count, normal, spacing) < kSmooth * spacing;
+    const double spacing = spacing_at(i, count);
+    return quadratic_residual(points_, nearest_to(i), count, normal, spacing) < kSmooth * spacing;
   }
 
   const std::vector<Vec3>& points_;
