@@ -385,9 +385,9 @@ TEST(Noise, SlightNoiseOnPlatesCostsNoSides) {
   EXPECT_GE(shapes::share_correct(orient(plates.points).normals, plates.normals), 0.998);
 }
 
-// More steps from the coarse start alone left 2 % of the sides wrong here.
+// More steps with the width and the weight of the solve before left 3 % of the sides wrong here.
 TEST(Orient, PlatesAreRightFromACoarseStart) {
-  const Surface plates = shapes::plates(8, 1, 1.8, 2.7, 0.02);
+  const Surface plates = shapes::plates(9, 1, 1.8, 2.7, 0.02);
   ASSERT_GT(plates.points.size(), 40000U);
   EXPECT_GE(shapes::share_correct(orient(plates.points).normals, plates.normals), 0.998);
 }
