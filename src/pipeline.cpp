@@ -34,6 +34,10 @@ namespace {
 
 constexpr std::size_t kNear = 17;          // a point and its 16 nearest
 constexpr std::size_t kFewestApart = 100;  // points that are solved for again without the open sheets of their cloud
+constexpr std::uint32_t kFewer = 4;        // points for one of start_on_fewer()
+constexpr int kStepsAfterFewer = 1;        // of the polish after it
+constexpr double kFewUnsure = 0.04;        // share of unsure points up to which its result is taken
+constexpr double kLessUnsure = 0.95;       // of that share, up to which a solve from zero is better
 constexpr double kSameSide = 0.5;          // cosine between the normals of a point and of its cluster on an open sheet
 constexpr double kManyUnsure = 0.2;        // share of unsure points above which the orientation is called inconsistent
 
@@ -136,13 +140,13 @@ void describe(const Problem& problem, const PointsView& points, const Options& o
   if (is_flat(cloud)) stats.warnings.emplace_back("the cloud is flat (all points in one plane): which side is outside is a choice");
 }
 
-// Beyond this the points fill a volume as much as they sample a surface.
-void warn_of_noise(const Problem& problem, Stats& stats) {
-  constexpr double kStrongNoise = 1.5;  // spacings
+void warn_of_volume(const Problem& problem, Stats& stats) {
+  constexpr double kStrongNoise = 0.8;  // spacings; estimate_noise() finds 0.8 to 1 where points fill a volume
+  constexpr double kVolume = 2.7;       // between surface and volume
   if (problem.noise <= kStrongNoise * problem.spacing) return;
+  if (dimension(problem.cloud.points, Neighbours(problem.cloud.points)) < kVolume) return;
   stats.consistent = false;
-  stats.warnings.emplace_back(
-      "very noisy: the points scatter by more than 1.5 spacings; detail below that is lost, or there is no surface");
+  stats.warnings.emplace_back("the points fill a volume: there is no surface, or the noise hides it");
 }
 
 // Area vectors, normals and the strength of the field they come from (empty without a refinement), of every point in canonical order.
@@ -191,19 +195,52 @@ void set_sheet_areas(const OpenSheets& sheets, const std::vector<double>& spacin
   }
 }
 
-Solution solve_on_points(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
-  const Settings& s = problem.settings;
+// The same problem on some of the points (ascending).
+Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, const Options& options) {
+  Problem part;
+  part.cloud.frame = problem.cloud.frame;
+  for (const std::uint32_t i : some) {
+    part.cloud.points.push_back(problem.cloud.points[i]);
+    part.cloud.morton.push_back(problem.cloud.morton[i]);
+  }
+  std::vector<std::uint32_t> near = Neighbours(part.cloud.points).of_all(kNear);
+  const std::vector<double> local = local_spacing(part.cloud.points, near);
+  part.spacing = typical_spacing(local);
+  part.noise = problem.noise;
+  choose_scales(part, options, std::move(near), local);
+  return part;
+}
+
+Solution solve_any(const Problem& problem, const Options& options, Stages& stages, Stats& stats);
+
+// Normals at `points` from the field of a solution on a quarter of the cloud's points, beside which the noise is half as large.
+std::optional<Refinement> start_on_fewer(const Problem& problem, const Settings& settings, const std::vector<Vec3>& points,
+                                         const Options& options, Stages& stages, Stats& stats) {
+  if (!settings.start_on_fewer) return std::nullopt;
+  std::vector<std::uint32_t> some;
+  for (std::uint32_t i = kFewer / 2; i < problem.cloud.size(); i += kFewer) some.push_back(i);
+  const Problem part = part_of(problem, some, options);
+  const Solution solution = solve_any(part, options, stages, stats);
+  const FastSum field(part.cloud.points, part.cloud.morton, Widths(part.settings.polish_width), part.settings.sums, stages.cancel());
+  return unit_normals(field.winding_gradient_at(solution.eta, points, stages.cancel()), std::vector<Vec3>(points.size(), Vec3{0, 0, 0}));
+}
+
+Solution solve_on_points(const Problem& problem, const Settings& s, const Options& options, Stages& stages, Stats& stats) {
   const std::vector<Vec3>& points = problem.cloud.points;
   Solution solution;
-  solution.eta = solve(problem, options, stages, stats);
-  stages.begin("refine");
-  if (s.refinement_width == 0) {
-    solution.refinement.normals = normalised(solution.eta);
-    return solution;
+  if (std::optional<Refinement> start = start_on_fewer(problem, s, points, options, stages, stats)) {
+    solution.refinement = std::move(*start);
+  } else {
+    solution.eta = solve(problem, options, stages, stats);
+    stages.begin("refine");
+    if (s.refinement_width == 0) {
+      solution.refinement.normals = normalised(solution.eta);
+      return solution;
+    }
+    FastSum sum(points, problem.cloud.morton, Widths(s.refinement_width), s.sums, stages.cancel());
+    solution.refinement = refine_normals(sum, solution.eta);
+    if (s.polish_steps == 0) return solution;
   }
-  FastSum sum(points, problem.cloud.morton, Widths(s.refinement_width), s.sums, stages.cancel());
-  solution.refinement = refine_normals(sum, solution.eta);
-  if (s.polish_steps == 0) return solution;
   Polished polished = polish(points, problem.cloud.morton, s, problem.local_spacing, {}, solution.refinement, stages);
   std::vector<Vec3>& normals = polished.refinement.normals;
   OpenSheets sheets;
@@ -237,12 +274,8 @@ void spread_sheets(const OpenSheets& sheets, const Clusters& clusters, const std
   }
 }
 
-// Where the kernels are so wide that they see groups of points: the same equations on one point per group, all of whose area vectors are
-// equal. The refinement is evaluated at every point.
-Solution solve_on_clusters(const Problem& problem, Stages& stages, Stats& stats) {
-  const Settings& s = problem.settings;
+Refinement solve_clusters(const Clusters& clusters, const Settings& s, Stages& stages, Stats& stats) {
   stages.begin("solve");
-  const Clusters clusters = cluster_points(problem.cloud.points, problem.cloud.morton, s.cluster_side);
   FastSum sum(clusters.points, clusters.morton, Widths(s.epsilon), s.first_sums, stages.cancel());
   EnergySystem system(sum, s.damping, s.winding_weight, clusters.multiplicity);
   IterativeResult result = solve_iteratively(system, s.schedule, s.tolerance, {},
@@ -250,8 +283,16 @@ Solution solve_on_clusters(const Problem& problem, Stages& stages, Stats& stats)
   record(s, result, stats);
   stages.begin("refine");
   FastSum wide(clusters.points, clusters.morton, Widths(s.refinement_width), s.sums, stages.cancel());
-  const Refinement first = refine_normals(wide, system.to_areas(std::move(result.eta)));
-  Polished polished = polish(clusters.points, clusters.morton, s, {}, clusters.multiplicity, first, stages);
+  return refine_normals(wide, system.to_areas(std::move(result.eta)));
+}
+
+// Where the kernels are so wide that they see groups of points: the same equations on one point per group, all of whose area vectors are
+// equal. The refinement is evaluated at every point.
+Solution solve_on_clusters(const Problem& problem, const Settings& s, const Options& options, Stages& stages, Stats& stats) {
+  const Clusters clusters = cluster_points(problem.cloud.points, problem.cloud.morton, s.cluster_side);
+  std::optional<Refinement> first = start_on_fewer(problem, s, clusters.points, options, stages, stats);
+  if (!first) first = solve_clusters(clusters, s, stages, stats);
+  Polished polished = polish(clusters.points, clusters.morton, s, {}, clusters.multiplicity, *first, stages);
   std::vector<Vec3>& eta = polished.eta;
   const Neighbours neighbours(problem.cloud.points);
   const NoisyCloud noisy{problem.cloud.points, neighbours, problem.noise, problem.spacing};
@@ -270,28 +311,39 @@ Solution solve_on_clusters(const Problem& problem, Stages& stages, Stats& stats)
   return solution;
 }
 
+Solution solve_with(const Problem& problem, const Settings& s, const Options& options, Stages& stages, Stats& stats) {
+  if (s.cluster_side > 0) return solve_on_clusters(problem, s, options, stages, stats);
+  return solve_on_points(problem, s, options, stages, stats);
+}
+
+double unsure_share_of(const Solution& solution) {
+  return unsure_share(side_confidence(solution.eta, solution.refinement.normals, solution.refinement.strength));
+}
+
 Solution solve_any(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
   if (problem.baseline) return solve_by_baseline(problem, stages, stats);
-  if (problem.settings.cluster_side > 0) return solve_on_clusters(problem, stages, stats);
-  return solve_on_points(problem, options, stages, stats);
+  Settings s = problem.settings;
+  if (!s.start_on_fewer) return solve_with(problem, s, options, stages, stats);
+  // The field of fewer points is smooth, and every further step on all points fits more of their noise. Thin walls need the steps.
+  s.polish_steps = kStepsAfterFewer;
+  const Stats before = stats;
+  Solution from_fewer = solve_with(problem, s, options, stages, stats);
+  const double unsure = unsure_share_of(from_fewer);
+  if (unsure < kFewUnsure) return from_fewer;
+  s.start_on_fewer = false;
+  s.polish_steps = problem.settings.polish_steps;
+  Stats stats_from_zero = before;
+  Solution from_zero = solve_with(problem, s, options, stages, stats_from_zero);
+  if (unsure_share_of(from_zero) > kLessUnsure * unsure) return from_fewer;
+  stats = std::move(stats_from_zero);
+  return from_zero;
 }
 
 // Solves for some points (ascending) without the others.
 void solve_apart(const Problem& problem, const std::vector<std::uint32_t>& some, const Options& options, Stages& stages, Stats& stats,
                  Solution& solution) {
   if (some.size() < kFewestApart) return;
-  Problem part;
-  part.cloud.frame = problem.cloud.frame;
-  for (const std::uint32_t i : some) {
-    part.cloud.points.push_back(problem.cloud.points[i]);
-    part.cloud.morton.push_back(problem.cloud.morton[i]);
-  }
-  std::vector<std::uint32_t> near = Neighbours(part.cloud.points).of_all(kNear);
-  const std::vector<double> local = local_spacing(part.cloud.points, near);
-  part.spacing = typical_spacing(local);
-  part.noise = problem.noise;
-  choose_scales(part, options, std::move(near), local);
-  const Solution apart = solve_any(part, options, stages, stats);
+  const Solution apart = solve_any(part_of(problem, some, options), options, stages, stats);
   for (std::size_t k = 0; k < some.size(); ++k) {
     const std::uint32_t i = some[k];
     solution.eta[i] = apart.eta[k];
@@ -400,7 +452,7 @@ Orientation orient_in_arena(const PointsView& points, const Options& options, St
   std::vector<float> confidence = side_confidence(solution.eta, normals, solution.refinement.strength);
   add_sheets(solution.sheets, confidence, out.stats);
   judge(problem.cloud, confidence, out.stats);
-  warn_of_noise(problem, out.stats);
+  warn_of_volume(problem, out.stats);
   add_outliers(problem, stages, solution, confidence);
   hand_out(problem.cloud, solution.eta, normals, confidence, out);
   stages.finish(out.stats);

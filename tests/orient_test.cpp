@@ -341,50 +341,6 @@ TEST(Orient, SmallestCloudsWork) {
   }
 }
 
-TEST(Noise, IsEstimatedAndNotMistakenForShape) {
-  shapes::Random random(4);
-  const Surface clean = shapes::torus(8000, 0.6, 0.25, 6);
-  const Surface two_sheets = shapes::join(shapes::sphere(6000, 0.5), shapes::sphere(6000, 0.49), true);
-  EXPECT_EQ(plan(clean.points).noise, 0);
-  EXPECT_EQ(plan(two_sheets.points).noise, 0);
-  for (const double sigma : {0.01, 0.02}) {
-    Surface noisy = clean;
-    for (Vec3& p : noisy.points) {
-      for (double& c : p) c += sigma * random.gaussian();
-    }
-    EXPECT_NEAR(plan(noisy.points).noise / sigma, 1, 0.4);
-    EXPECT_GE(shapes::share_correct(orient(noisy.points).normals, noisy.normals), 0.999);
-  }
-}
-
-// The narrow kernels of clean clouds would follow it: an error of 0.02.
-TEST(Noise, OfATwentiethOfTheSpacingIsFound) {
-  shapes::Random random(4);
-  Surface s = shapes::torus(12000, 0.6, 0.25, 6);
-  const double spacing = plan(s.points).spacing;
-  for (Vec3& p : s.points) {
-    for (double& c : p) c += 0.05 * spacing * random.gaussian();
-  }
-  EXPECT_NEAR(plan(s.points).noise / spacing, 0.05, 0.03);
-  EXPECT_LE(shapes::angle_error(orient(s.points).normals, s.normals), 0.005);
-}
-
-// Plates 2.5 spacings thick and 2.5 apart, noise of 0.35 spacings: neighbourhoods of 32 points see both sides of a plate.
-TEST(Noise, PlatesDoNotRaiseIt) {
-  Surface plates = shapes::plates(4, 0.7, 2.5, 2.5, 0.02);
-  const double sigma = 0.35 * 0.02;
-  shapes::scatter(plates, sigma);
-  EXPECT_NEAR(plan(plates.points).noise / sigma, 1, 0.4);
-  EXPECT_GE(shapes::share_correct(orient(plates.points).normals, plates.normals), 0.85);
-}
-
-// Solved as noisy clouds are, 2 % of the sides were wrong.
-TEST(Noise, SlightNoiseOnPlatesCostsNoSides) {
-  Surface plates = shapes::plates(8, 0.7, 2.5, 3.5, 0.02);
-  shapes::scatter(plates, 0.1 * 0.02);
-  EXPECT_GE(shapes::share_correct(orient(plates.points).normals, plates.normals), 0.998);
-}
-
 // More steps with the width and the weight of the solve before left 3 % of the sides wrong here.
 TEST(Orient, PlatesAreRightFromACoarseStart) {
   const Surface plates = shapes::plates(9, 1, 1.8, 2.7, 0.02);

@@ -1,10 +1,13 @@
 #include "cloud/noise.h"
 
+#include "cloud/layers.h"
 #include "cloud/plane_fit.h"
 #include "cloud/sheet.h"
+#include "cloud/spacing.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace g3r {
 namespace {
@@ -24,14 +27,46 @@ constexpr double kSmallToLarge = 1.27;     // residual of 32 neighbours to that 
 constexpr double kSmallSaturation = 0.47;  // residual of 16 neighbours, in spacings, when noise fills the ball
 constexpr double kSaturationPower = 8;     // how late the ratio of the two leaves kSmallToLarge
 constexpr double kLeastRoom = 0.1;         // of 1 - (x / saturation)^power: beyond, the small neighbourhoods bound nothing
-constexpr double kResidualToSigma = 0.95;
-constexpr double kLargestResidual = 0.8;    // beyond, the ball is full of noise and tells no more
-constexpr std::size_t kFewestPoints = 200;  // below, neighbourhoods are a large part of the shape
+constexpr double kSigmaIntercept = 0.842;  // of x / sigma as a line in x, fitted to known noise of 0.1 to 0.8 h
+constexpr double kSigmaSlope = 0.372;
+constexpr double kLargestResidual = 0.62;      // beyond, the ball is full of noise and tells no more
+constexpr std::size_t kLayerProbes = 500;      // neighbourhoods that may hold several sheets
+constexpr std::size_t kLayerNeighbours = 256;  // of each
+constexpr double kLayerShare = 0.1;            // share of these neighbourhoods that decides: at the others are folds, edges, a third wall
+constexpr double kLayerBias = 0.92;            // sigma at that share, of smooth surfaces, over the true one
+constexpr double kResolved = 1.0;              // in spacings: larger noise fills these neighbourhoods, too
+constexpr std::size_t kThinning = 4;           // then every fourth point has neighbourhoods twice as large
+constexpr std::size_t kFewestThinned = 4000;   // left by it; of fewer, 256 points are no small part of the shape
+constexpr std::size_t kFewestPoints = 200;     // below, neighbourhoods are a large part of the shape
 
 double quantile(std::vector<double> values, double share) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
   std::nth_element(values.begin(), at, values.end());
   return *at;
+}
+
+// Standard deviation about sheets, of which a neighbourhood may hold up to three.
+double layered_noise(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing) {
+  std::vector<double> sigma;
+  std::vector<std::uint32_t> index;
+  std::vector<double> squared;
+  for (std::size_t i = 0; i < points.size(); i += std::max<std::size_t>(1, points.size() / kLayerProbes)) {
+    neighbours.nearest(points[i], kLayerNeighbours, index, squared);
+    const Vec3 normal = fit_plane(points, index.data(), index.size()).normal;
+    sigma.push_back(layered_deviation(points, index.data(), index.size(), points[i], normal));
+  }
+  const double found = quantile(sigma, kLayerShare) / kLayerBias;
+  if (found < kResolved * spacing || points.size() < kThinning * kFewestThinned) return found;
+  std::vector<Vec3> thinned;
+  for (std::size_t i = 0; i < points.size(); i += kThinning) thinned.push_back(points[i]);
+  return layered_noise(thinned, Neighbours(thinned), typical_spacing(local_spacing(thinned)));
+}
+
+// By how the planes through 16 and 32 neighbours miss them; infinite where noise fills their ball.
+double small_noise(double x16, double x32) {
+  const double expected = kSmallToLarge * x16 / std::max(1 - std::pow(x16 / kSmallSaturation, kSaturationPower), kLeastRoom);
+  const double x = std::min(x32, expected);
+  return x > kLargestResidual ? std::numeric_limits<double>::infinity() : x / (kSigmaIntercept - kSigmaSlope * x);
 }
 
 }  // namespace
@@ -57,10 +92,23 @@ double estimate_noise(const std::vector<Vec3>& points, const Neighbours& neighbo
   const double flattest = quantile(clean, kFlattest) / spacing;
   const bool smooth = quantile(quadratic, kFlattest) < kCleanQuadratic * spacing;
   if (flattest < (smooth ? kNoisyResidual : kCleanResidual) || quantile(kurtosis, kFlatKurtosis) < kSheetKurtosis) return 0;
-  const double x16 = quantile(small, kFlattest) / spacing;
-  const double expected = kSmallToLarge * x16 / std::max(1 - std::pow(x16 / kSmallSaturation, kSaturationPower), kLeastRoom);
-  const double x = std::min({quantile(large, kFlattest) / spacing, expected, kLargestResidual});
-  return kResidualToSigma * spacing * x / (1 - x);
+  const double resolved = spacing * small_noise(quantile(small, kFlattest) / spacing, quantile(large, kFlattest) / spacing);
+  return std::min(resolved, layered_noise(points, neighbours, spacing));
+}
+
+double dimension(const std::vector<Vec3>& points, const Neighbours& neighbours) {
+  constexpr std::size_t kMost = 2048, kShare = 16, kRatio = 8;
+  if (points.size() < kFewestPoints) return 2;
+  const std::size_t far = std::min(kMost, points.size() / kShare);
+  std::vector<double> found;
+  std::vector<std::uint32_t> index;
+  std::vector<double> squared;
+  for (std::size_t i = 0; i < points.size(); i += std::max<std::size_t>(1, points.size() / kLayerProbes)) {
+    neighbours.nearest(points[i], far, index, squared);
+    const double ratio = squared.back() / squared[far / kRatio];
+    if (ratio > 1) found.push_back(2 * std::log(kRatio) / std::log(ratio));
+  }
+  return found.empty() ? 2 : quantile(std::move(found), 0.5);
 }
 
 }  // namespace g3r

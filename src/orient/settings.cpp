@@ -32,6 +32,8 @@ constexpr double kFewOutliers = 1e-2;  // of the points; clean clouds lose one p
 // The default on noisy input: the field must not see single points. Noise sigma turns the normal of an area s^2 of points h apart by about
 // sigma h / s^2, so widths for one accuracy are in proportion to sqrt(sigma h).
 constexpr double kNoisyWidth = 3;  // sigma, of epsilon and of the refinement
+constexpr double kWidened = 1.4;   // sigmas for one where points of one place are far apart across the surface: from there on
+constexpr double kWidenedFrom = 0.4, kWidenedFull = 0.9;  // h, of sigma
 // Noise below the distances between points: walls of a few sigma are still told apart, by narrower kernels and more steps.
 constexpr double kMildNoise = 0.7;    // h
 constexpr double kMildWidth = 2;      // sigma, of epsilon and of the refinement
@@ -41,6 +43,8 @@ constexpr const char* kMildSchedule = "20 cg";
 constexpr double kSlightNoise = 0.35;    // h
 constexpr double kUnsurePerNoise = 0.9;  // share of the points whose sides a noise of one h makes unsure, about
 constexpr Steps kDoubtfulNoisy{30, StepKind::kConjugateGradient};
+// Of so many noisy points every fourth is solved for first, recursively: beside their spacing the noise is half as large.
+constexpr std::size_t kManyNoisyPoints = 80000;
 constexpr double kNoisyPolishEpsilon = 1.8;  // sqrt(sigma h)
 constexpr double kNoisyPolishWidth = 2.25;   // sqrt(sigma h)
 constexpr int kNoisyPolishSteps = 9;
@@ -92,6 +96,11 @@ double checked_epsilon(const Epsilon& epsilon, const CanonicalCloud& cloud, doub
     default:
       return epsilon.value;
   }
+}
+
+double widened(double noise, double spacing) {
+  const double share = std::clamp((noise / spacing - kWidenedFrom) / (kWidenedFull - kWidenedFrom), 0.0, 1.0);
+  return noise * (1 + (kWidened - 1) * share);
 }
 
 void require(bool good, const std::string& message) {
@@ -156,13 +165,14 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   s.start_tolerance = std::max(s.tolerance, kStartTolerance);
   const bool wide = s.epsilon > kWideEpsilon * spacing;
   if (!paper && !green && (noise > 0 || wide)) {
-    const double sigma = wide ? s.epsilon / kNoisyWidth : noise;
+    const double sigma = wide ? s.epsilon / kNoisyWidth : widened(noise, spacing);
     const double size = std::sqrt(sigma * spacing);
     const bool mild = sigma <= kMildNoise * spacing;
     const double width = mild ? std::max(kMildEpsilon * spacing, kMildWidth * sigma) : kNoisyWidth * sigma;
     s.refinement_width = std::max(s.refinement_width, width);
     s.polish_epsilon = std::max(s.polish_epsilon, kNoisyPolishEpsilon * size);
     s.polish_width = std::max(kRefinementWidth * spacing, kNoisyPolishWidth * size);
+    s.start_on_fewer = options.schedule.empty() && options.epsilon.unit == Epsilon::Unit::kAuto && cloud.size() >= kManyNoisyPoints;
     s.polish_steps = kNoisyPolishSteps;
     s.polish_damping = kNoisyDamping / spacing;
     s.polish_winding_weight = kNoisyPolishWindingWeight * spacing;

@@ -1,0 +1,121 @@
+#include "cloud/layers.h"
+
+#include "cloud/sheet.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+
+namespace g3r {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::ArrayXXd;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kRadius = 0.6;  // of the cylinder, in distances of the farthest point
+constexpr double kHeight = 0.8;  // up to where the cylinder is inside the ball of the points
+constexpr double kTail = 1.5;    // deviations of a sheet that have to be inside for its own deviation to count
+constexpr Eigen::Index kFewest = 20;
+constexpr Eigen::Index kTerms = 5;  // u, v, u^2, u v, v^2
+constexpr int kSteps = 20;
+constexpr double kLeastShare = 0.05;  // of the deviation about one sheet, that about more: a mixture must not shrink to points
+
+struct Heights {
+  MatrixXd terms;   // n x kTerms, of order 1
+  VectorXd z;       // from the centre
+  double most = 0;  // |z| up to which there are points all around
+};
+
+struct Mixture {
+  double sigma = 0;
+  double criterion = 0;  // Bayesian information criterion, but for a constant
+};
+
+Heights heights(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count, const Vec3& centre, const Vec3& normal) {
+  const Eigen::Matrix3d frame = tangent_frame(to_eigen(normal));
+  const double radius = (to_eigen(points[index[count - 1]]) - to_eigen(centre)).norm();
+  const auto most = static_cast<Eigen::Index>(count);
+  Heights h{MatrixXd(most, kTerms), VectorXd(most), kHeight * radius};
+  Eigen::Index n = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const Eigen::Vector3d q = frame * (to_eigen(points[index[k]]) - to_eigen(centre)) / radius;
+    const double u = q[0] / kRadius, v = q[1] / kRadius;
+    if (u * u + v * v >= 1) continue;
+    h.terms.row(n) << u, v, u * u, u * v, v * v;
+    h.z[n++] = q[2] * radius;
+  }
+  h.terms.conservativeResize(n, kTerms);
+  h.z.conservativeResize(n);
+  return h;
+}
+
+// Starts from one sheet's fit (`slopes`, `middle`, `deviation`) with offsets `start` times its deviation.
+template <std::size_t kSheets>
+Mixture fit_mixture(const Heights& h, const Eigen::LDLT<MatrixXd>& normal_equations, VectorXd slopes, double middle, double deviation,
+                    const std::array<double, kSheets>& start) {
+  const Eigen::Index n = h.z.size();
+  const auto total = static_cast<double>(n);
+  Eigen::Array<double, 1, kSheets> offset, share;
+  for (std::size_t c = 0; c < kSheets; ++c) offset[static_cast<Eigen::Index>(c)] = middle + start[c] * deviation;
+  share.setConstant(1.0 / kSheets);
+  double sigma = deviation / 2;
+  double likelihood = 0;
+  Eigen::Array<double, Eigen::Dynamic, kSheets> member(n, kSheets);
+  for (int step = 0; step < kSteps; ++step) {
+    ArrayXd flat = (h.z - h.terms * slopes).array();
+    for (Eigen::Index c = 0; c < member.cols(); ++c) {
+      member.col(c) = share[c] * (-0.5 * ((flat - offset[c]) / sigma).square()).exp() + 1e-300;
+    }
+    const ArrayXd sum = member.rowwise().sum();
+    likelihood = sum.log().sum() - total * std::log(sigma);
+    member.colwise() /= sum;
+    share = member.colwise().sum() / total;
+    offset = (member.colwise() * flat).colwise().sum() / (total * share + 1e-9);
+    const VectorXd own = (member.rowwise() * offset).rowwise().sum();  // expected offset of a point
+    slopes = normal_equations.solve(h.terms.transpose() * (h.z - own));
+    flat = (h.z - h.terms * slopes).array();
+    // The ball cuts sheets near its poles, which makes them look thinner than they are.
+    double squares = 0, counted = 0;
+    for (Eigen::Index c = 0; c < member.cols(); ++c) {
+      if (std::abs(offset[c]) + kTail * sigma > h.most) continue;
+      squares += (member.col(c) * (flat - offset[c]).square()).sum();
+      counted += total * share[c];
+    }
+    if (counted <= 0) break;
+    const double freedom = 1 - static_cast<double>(kTerms + kSheets) / total;
+    sigma = std::max(std::sqrt(squares / (counted * freedom)), kLeastShare * deviation);
+  }
+  return {sigma, -2 * likelihood + 2 * static_cast<double>(kSheets - 1) * std::log(total)};
+}
+
+}  // namespace
+
+double layered_deviation(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count, const Vec3& centre,
+                         const Vec3& normal) {
+  const Heights h = heights(points, index, count, centre, normal);
+  const Eigen::Index n = h.z.size();
+  if (n < kFewest) return 0;
+  const auto total = static_cast<double>(n);
+  const MatrixXd ridge = 1e-9 * total * MatrixXd::Identity(kTerms, kTerms);
+  // One sheet: the constant is the mean of what the other terms leave, so both are taken about their means.
+  const Eigen::RowVectorXd mean_term = h.terms.colwise().mean();
+  const MatrixXd centred = h.terms.rowwise() - mean_term;
+  const Eigen::LDLT<MatrixXd> one(centred.transpose() * centred + ridge);
+  const VectorXd slopes = one.solve(centred.transpose() * h.z);
+  const double middle = h.z.mean() - mean_term * slopes;
+  const double misfit = ((h.z - h.terms * slopes).array() - middle).square().sum();
+  if (misfit <= 0) return 0;
+  const double deviation = std::sqrt(misfit / (total - kTerms - 1));
+  Mixture best{deviation, total * std::log(misfit / total) + total};
+  const Eigen::LDLT<MatrixXd> several(h.terms.transpose() * h.terms + ridge);
+  for (const Mixture& mixture : {fit_mixture<2>(h, several, slopes, middle, deviation, {-0.9, 0.9}),
+                                 fit_mixture<3>(h, several, slopes, middle, deviation, {-1.3, 0, 1.3})}) {
+    if (mixture.criterion < best.criterion) best = mixture;
+  }
+  return best.sigma;
+}
+
+}  // namespace g3r
