@@ -246,7 +246,7 @@ Solution solve_on_points(const Problem& problem, const Settings& s, const Option
   OpenSheets sheets;
   if (problem.local_spacing.empty()) {  // noisy
     const Neighbours neighbours(points);
-    const NoisyCloud noisy{points, neighbours, problem.noise, problem.spacing};
+    const NoisyCloud noisy{points, neighbours, s.noise, problem.spacing};
     sheets = find_open_sheets(points, {}, &noisy, normals);
     if (!sheets.sheet.empty()) set_sheet_areas(sheets, local_spacing(points), normals, polished.eta);
   } else {
@@ -295,7 +295,7 @@ Solution solve_on_clusters(const Problem& problem, const Settings& s, const Opti
   Polished polished = polish(clusters.points, clusters.morton, s, {}, clusters.multiplicity, *first, stages);
   std::vector<Vec3>& eta = polished.eta;
   const Neighbours neighbours(problem.cloud.points);
-  const NoisyCloud noisy{problem.cloud.points, neighbours, problem.noise, problem.spacing};
+  const NoisyCloud noisy{problem.cloud.points, neighbours, s.noise, problem.spacing};
   OpenSheets sheets;
   if (problem.noise > 0) sheets = find_open_sheets(clusters.points, {}, &noisy, polished.refinement.normals);
   if (!sheets.sheet.empty()) set_sheet_areas(sheets, local_spacing(clusters.points), polished.refinement.normals, eta);

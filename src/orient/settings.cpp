@@ -166,6 +166,7 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   const bool wide = s.epsilon > kWideEpsilon * spacing;
   if (!paper && !green && (noise > 0 || wide)) {
     const double sigma = wide ? s.epsilon / kNoisyWidth : widened(noise, spacing);
+    s.noise = sigma;
     const double size = std::sqrt(sigma * spacing);
     const bool mild = sigma <= kMildNoise * spacing;
     const double width = mild ? std::max(kMildEpsilon * spacing, kMildWidth * sigma) : kNoisyWidth * sigma;

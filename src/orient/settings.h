@@ -22,6 +22,7 @@ struct Settings {
   double damping = 0;               ///< energy: d
   double winding_weight = 0;        ///< energy: l
   double spacing = 0;
+  double noise = 0;  ///< that the widths are made for: up to 1.4 times that of the points, 0 when clean
   double epsilon = 0;
   double coarsest_epsilon = 0;            ///< of the first solve, at its own spacing: without a start a wider one does better
   double refinement_width = 0;            ///< 0: no refinement
