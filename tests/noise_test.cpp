@@ -90,7 +90,7 @@ TEST(Noise, PointsInAVolumeHaveNoSurface) {
   shapes::Random random(5);
   std::vector<Vec3> volume;
   for (int i = 0; i < 20000; ++i) volume.push_back({random.gaussian(), random.gaussian(), random.gaussian()});
-  EXPECT_GT(dimension(volume, Neighbours(volume)), 2.7);
+  EXPECT_GT(dimension(volume, Neighbours(volume)), 2.9);
   Surface torus = shapes::torus(20000, 0.6, 0.25, 6);
   shapes::scatter(torus, 0.03);
   EXPECT_LT(dimension(torus.points, Neighbours(torus.points)), 2.5);

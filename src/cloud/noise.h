@@ -26,9 +26,9 @@ namespace g3r {
 /// sorts the thinned clouds, O(N log N).
 [[nodiscard]] double estimate_noise(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing);
 
-/// How the number of points grows with the distance from one, as its power: about 2 on a surface, noisy or not, 3 in a volume. From the
-/// distances r of the neighbours k = min(2048, N / 16) and k / 8, ln 8 / ln(r_k / r_(k/8)), the median over about 500 points. `neighbours`
-/// of these points, N >= 200 (fewer: 2). O(k log N).
+/// How the number of points grows with the distance from one, as its power: about 2 on a surface, noisy or not, nearly 3 in a volume (2.6
+/// to 3: its boundary counts). From the distances r of the neighbours k = min(2048, N / 16) and k / 8, ln 8 / ln(r_k / r_(k/8)), the median
+/// over about 500 points. `neighbours` of these points, N >= 200 (fewer: 2). O(k log N).
 [[nodiscard]] double dimension(const std::vector<Vec3>& points, const Neighbours& neighbours);
 
 }  // namespace g3r

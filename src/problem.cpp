@@ -1,0 +1,72 @@
+#include "problem.h"
+
+#include "cloud/neighbours.h"
+#include "cloud/noise.h"
+#include "cloud/outliers.h"
+#include "cloud/spacing.h"
+
+#include <g3r/error.h>
+
+#include <memory>
+#include <utility>
+
+namespace g3r {
+namespace {
+
+constexpr std::size_t kNear = 17;  // a point and its 16 nearest
+
+// What the steps after noise and outliers need. `near`: kNear nearest of every point; `local`: local_spacing().
+void choose_scales(Problem& problem, const Options& options, std::vector<std::uint32_t> near, const std::vector<double>& local) {
+  problem.settings = choose_settings(options, problem.cloud, problem.spacing, problem.noise, problem.outliers.size());
+  if (problem.noise > 0 || problem.settings.polish_steps == 0) return;
+  problem.local_spacing = smoothed_spacing(local, near);
+  problem.near = std::move(near);
+}
+
+}  // namespace
+
+Problem prepare(const PointsView& points, const Options& options, Stages& stages) {
+  Problem problem;
+  stages.begin("build");
+  problem.cloud = canonical_cloud(points);
+  stages.check();
+  const std::vector<Vec3>& cloud = problem.cloud.points;
+  auto neighbours = std::make_unique<Neighbours>(cloud);
+  std::vector<std::uint32_t> near = neighbours->of_all(kNear);
+  std::vector<double> local = local_spacing(cloud, near);
+  problem.spacing = typical_spacing(local);
+  if (options.preset != Preset::kPaper && !is_baseline(options.method)) {
+    const std::vector<std::uint32_t> outliers = find_outliers(cloud, near, local, problem.spacing);
+    if (!outliers.empty()) {
+      problem.outliers = remove_points(problem.cloud, outliers);
+      neighbours = std::make_unique<Neighbours>(cloud);
+      near = neighbours->of_all(kNear);
+      local = local_spacing(cloud, near);
+    }
+  }
+  problem.noise = options.preset == Preset::kPaper ? 0 : estimate_noise(cloud, *neighbours, problem.spacing);
+  choose_scales(problem, options, std::move(near), local);
+  if (!options.wnnc_widths.empty() && options.method != Method::kWnnc) throw InvalidInput("wnnc_widths belong to the method wnnc");
+  if (is_baseline(options.method)) {
+    const double epsilon = options.epsilon.unit == Epsilon::Unit::kAuto ? 0 : problem.settings.epsilon;
+    problem.baseline = choose_baseline(options, epsilon, problem.spacing, problem.settings.sums);
+  }
+  return problem;
+}
+
+Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, const Options& options) {
+  Problem part;
+  part.cloud.frame = problem.cloud.frame;
+  for (const std::uint32_t i : some) {
+    part.cloud.points.push_back(problem.cloud.points[i]);
+    part.cloud.morton.push_back(problem.cloud.morton[i]);
+  }
+  std::vector<std::uint32_t> near = Neighbours(part.cloud.points).of_all(kNear);
+  const std::vector<double> local = local_spacing(part.cloud.points, near);
+  part.spacing = typical_spacing(local);
+  part.noise = problem.noise;
+  choose_scales(part, options, std::move(near), local);
+  return part;
+}
+
+}  // namespace g3r

@@ -1,0 +1,35 @@
+// A cloud and options, resolved: what is solved for.
+#pragma once
+
+#include "baselines/baseline.h"
+#include "cloud/canonical_cloud.h"
+#include "orient/settings.h"
+#include "stages.h"
+
+#include <g3r/g3r.h>
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace g3r {
+
+struct Problem {
+  CanonicalCloud cloud;
+  std::vector<Vec3> outliers;         ///< taken out of the cloud; their indices follow those of its points
+  std::vector<std::uint32_t> near;    ///< 17 nearest of every point, itself included; with local_spacing only
+  std::vector<double> local_spacing;  ///< smoothed, per point; of clean clouds only
+  double spacing = 0;                 ///< typical_spacing()
+  double noise = 0;                   ///< estimate_noise()
+  Settings settings;
+  std::optional<BaselineSettings> baseline;  ///< with the methods wnnc, agr and pgr
+};
+
+/// Canonical order, outliers, spacing, noise and settings of a cloud. Throws InvalidInput for a cloud or an option out of range, Cancelled.
+/// O(N log N).
+[[nodiscard]] Problem prepare(const PointsView& points, const Options& options, Stages& stages);
+
+/// The same problem on some of its points (ascending indices), with a spacing and settings of their own.
+[[nodiscard]] Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, const Options& options);
+
+}  // namespace g3r

@@ -1,0 +1,30 @@
+// From a problem to area vectors and normals.
+#pragma once
+
+#include "orient/open_sheets.h"
+#include "orient/refine.h"
+#include "problem.h"
+#include "stages.h"
+
+#include <g3r/g3r.h>
+
+#include <vector>
+
+namespace g3r {
+
+/// Of every point in canonical order.
+struct Solution {
+  std::vector<Vec3> eta;  ///< area vectors
+  Refinement refinement;  ///< normals, and the strength of the field they come from (empty without a refinement)
+  OpenSheets sheets;
+};
+
+/// Solves with the problem's method and settings: on the points, on clusters of them, or with a start from fewer. Adds the iterations and
+/// whether they converged to `stats`. Throws Cancelled.
+[[nodiscard]] Solution solve(const Problem& problem, const Options& options, Stages& stages, Stats& stats);
+
+/// An open sheet makes the equations of everything beside it wrong too. So each sheet is solved for alone, which may show that it was none,
+/// and then everything else without the sheets. Nothing happens without a sheet, or with one that is all there is.
+void solve_sheets_apart(const Problem& problem, const Options& options, Stages& stages, Stats& stats, Solution& solution);
+
+}  // namespace g3r
