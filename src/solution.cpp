@@ -43,8 +43,7 @@ Solution solve_by_baseline(const Problem& problem, Stages& stages, Stats& stats)
   return {std::move(result.eta), {std::move(result.normals), std::move(result.strength)}, {}};
 }
 
-std::vector<Vec3> solve_equations(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
-  const Settings& s = problem.settings;
+std::vector<Vec3> solve_equations(const Problem& problem, const Settings& s, const Options& options, Stages& stages, Stats& stats) {
   if (s.dense) {
     const HarmonicValues u = weighted_harmonics(s.harmonics, problem.cloud.points, s.constant_weight);
     DenseResult dense = solve_dense(problem.cloud.points, s.epsilon, u, options.condition_number, stages.cancel());
@@ -85,7 +84,7 @@ Solution solve_on_points(const Problem& problem, const Settings& s, const Option
   if (std::optional<Refinement> start = start_on_fewer(problem, s, points, options, stages, stats)) {
     solution.refinement = std::move(*start);
   } else {
-    solution.eta = solve_equations(problem, options, stages, stats);
+    solution.eta = solve_equations(problem, s, options, stages, stats);
     stages.begin("refine");
     if (s.refinement_width == 0) {
       solution.refinement.normals = normalised(solution.eta);
@@ -198,13 +197,12 @@ Solution solve(const Problem& problem, const Options& options, Stages& stages, S
   if (!s.start_on_fewer) return solve_with(problem, s, options, stages, stats);
   // The field of fewer points is smooth, and every further step on all points fits more of their noise. Thin walls need the steps.
   s.polish_steps = kStepsAfterFewer;
-  const Stats before = stats;
+  Stats stats_from_zero = stats;
   Solution from_fewer = solve_with(problem, s, options, stages, stats);
   const double unsure = unsure_share_of(from_fewer);
   if (unsure < kFewUnsure) return from_fewer;
   s.start_on_fewer = false;
   s.polish_steps = problem.settings.polish_steps;
-  Stats stats_from_zero = before;
   Solution from_zero = solve_with(problem, s, options, stages, stats_from_zero);
   if (unsure_share_of(from_zero) > kLessUnsure * unsure) return from_fewer;
   stats = std::move(stats_from_zero);

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string>
 #include <vector>
 
 namespace g3r {
@@ -90,14 +91,15 @@ TEST(Noise, ManyPointsAreStartedFromFewer) {
 TEST(Noise, PointsInAVolumeHaveNoSurface) {
   shapes::Random random(5);
   std::vector<Vec3> volume;
-  for (int i = 0; i < (kSanitized ? 5000 : 20000); ++i) volume.push_back({random.gaussian(), random.gaussian(), random.gaussian()});
+  for (int i = 0; i < 5000; ++i) volume.push_back({random.gaussian(), random.gaussian(), random.gaussian()});
   EXPECT_GT(dimension(volume, Neighbours(volume)), 2.9);
   Surface torus = shapes::torus(20000, 0.6, 0.25, 6);
   shapes::scatter(torus, 0.03);
   EXPECT_LT(dimension(torus.points, Neighbours(torus.points)), 2.5);
   const Orientation o = orient(volume);
   EXPECT_FALSE(o.stats.consistent);
-  EXPECT_FALSE(o.stats.warnings.empty());
+  EXPECT_TRUE(std::any_of(o.stats.warnings.begin(), o.stats.warnings.end(),
+                          [](const std::string& w) { return w.find("volume") != std::string::npos; }));
 }
 
 TEST(Noise, IsEstimatedAndNotMistakenForShape) {

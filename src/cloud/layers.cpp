@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -11,17 +12,21 @@ namespace g3r {
 namespace {
 
 using Eigen::ArrayXd;
-using Eigen::ArrayXXd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kRadius = 0.6;  // of the cylinder, in distances of the farthest point
-constexpr double kHeight = 0.8;  // up to where the cylinder is inside the ball of the points
-constexpr double kTail = 1.5;    // deviations of a sheet that have to be inside for its own deviation to count
-constexpr Eigen::Index kFewest = 20;
-constexpr Eigen::Index kTerms = 5;  // u, v, u^2, u v, v^2
-constexpr int kSteps = 20;
+constexpr double kRadius = 0.6;       // of the cylinder, in distances of the farthest point
+constexpr double kHeight = 0.8;       // up to where the cylinder is inside the ball of the points
+constexpr double kTail = 1.5;         // deviations of a sheet that have to be inside for its own deviation to count
+constexpr Eigen::Index kFewest = 20;  // heights: three sheets have ten numbers
+constexpr Eigen::Index kTerms = 5;    // u, v, u^2, u v, v^2
+constexpr int kSteps = 20;            // of expectation and maximisation
 constexpr double kLeastShare = 0.05;  // of the deviation about one sheet, that about more: a mixture must not shrink to points
+constexpr double kRidge = 1e-9;       // on the terms, relative: points on a line leave some of them open
+constexpr double kNoShare = 1e-300;   // keeps the logarithm of a likelihood finite
+// Offsets to start from, in deviations about one sheet: where equal sheets without scatter would be, nearly (1; 1.22 and 0).
+constexpr std::array<double, 2> kTwoSheets{-0.9, 0.9};
+constexpr std::array<double, 3> kThreeSheets{-1.3, 0, 1.3};
 
 struct Heights {
   MatrixXd terms;   // n x kTerms, of order 1
@@ -67,13 +72,13 @@ Mixture fit_mixture(const Heights& h, const Eigen::LDLT<MatrixXd>& normal_equati
   for (int step = 0; step < kSteps; ++step) {
     ArrayXd flat = (h.z - h.terms * slopes).array();
     for (Eigen::Index c = 0; c < member.cols(); ++c) {
-      member.col(c) = share[c] * (-0.5 * ((flat - offset[c]) / sigma).square()).exp() + 1e-300;
+      member.col(c) = share[c] * (-0.5 * ((flat - offset[c]) / sigma).square()).exp() + kNoShare;
     }
     const ArrayXd sum = member.rowwise().sum();
     likelihood = sum.log().sum() - total * std::log(sigma);
     member.colwise() /= sum;
     share = member.colwise().sum() / total;
-    offset = (member.colwise() * flat).colwise().sum() / (total * share + 1e-9);
+    offset = (member.colwise() * flat).colwise().sum() / (total * share + kNoShare);
     const VectorXd own = (member.rowwise() * offset).rowwise().sum();  // expected offset of a point
     slopes = normal_equations.solve(h.terms.transpose() * (h.z - own));
     flat = (h.z - h.terms * slopes).array();
@@ -99,7 +104,7 @@ double layered_deviation(const std::vector<Vec3>& points, const std::uint32_t* i
   const Eigen::Index n = h.z.size();
   if (n < kFewest) return 0;
   const auto total = static_cast<double>(n);
-  const MatrixXd ridge = 1e-9 * total * MatrixXd::Identity(kTerms, kTerms);
+  const MatrixXd ridge = kRidge * total * MatrixXd::Identity(kTerms, kTerms);
   // One sheet: the constant is the mean of what the other terms leave, so both are taken about their means.
   const Eigen::RowVectorXd mean_term = h.terms.colwise().mean();
   const MatrixXd centred = h.terms.rowwise() - mean_term;
@@ -111,8 +116,8 @@ double layered_deviation(const std::vector<Vec3>& points, const std::uint32_t* i
   const double deviation = std::sqrt(misfit / (total - kTerms - 1));
   Mixture best{deviation, total * std::log(misfit / total) + total};
   const Eigen::LDLT<MatrixXd> several(h.terms.transpose() * h.terms + ridge);
-  for (const Mixture& mixture : {fit_mixture<2>(h, several, slopes, middle, deviation, {-0.9, 0.9}),
-                                 fit_mixture<3>(h, several, slopes, middle, deviation, {-1.3, 0, 1.3})}) {
+  for (const Mixture& mixture : {fit_mixture<2>(h, several, slopes, middle, deviation, kTwoSheets),
+                                 fit_mixture<3>(h, several, slopes, middle, deviation, kThreeSheets)}) {
     if (mixture.criterion < best.criterion) best = mixture;
   }
   return best.sigma;

@@ -45,16 +45,24 @@ double quantile(std::vector<double> values, double share) {
   return *at;
 }
 
+// Calls visit(point, its `count` nearest, their squared distances) for about `probes` points, spread along their order.
+template <typename Visit>
+void for_some(const std::vector<Vec3>& points, const Neighbours& neighbours, std::size_t probes, std::size_t count, Visit visit) {
+  std::vector<std::uint32_t> index;
+  std::vector<double> squared;
+  for (std::size_t i = 0; i < points.size(); i += std::max<std::size_t>(1, points.size() / probes)) {
+    neighbours.nearest(points[i], count, index, squared);
+    visit(points[i], index, squared);
+  }
+}
+
 // Standard deviation about sheets, of which a neighbourhood may hold up to three.
 double layered_noise(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing) {
   std::vector<double> sigma;
-  std::vector<std::uint32_t> index;
-  std::vector<double> squared;
-  for (std::size_t i = 0; i < points.size(); i += std::max<std::size_t>(1, points.size() / kLayerProbes)) {
-    neighbours.nearest(points[i], kLayerNeighbours, index, squared);
+  for_some(points, neighbours, kLayerProbes, kLayerNeighbours, [&](const Vec3& point, const auto& index, const auto&) {
     const Vec3 normal = fit_plane(points, index.data(), index.size()).normal;
-    sigma.push_back(layered_deviation(points, index.data(), index.size(), points[i], normal));
-  }
+    sigma.push_back(layered_deviation(points, index.data(), index.size(), point, normal));
+  });
   const double found = quantile(sigma, kLayerShare) / kLayerBias;
   if (found < kResolved * spacing || points.size() < kThinning * kFewestThinned) return found;
   std::vector<Vec3> thinned;
@@ -78,17 +86,14 @@ double estimate_noise(const std::vector<Vec3>& points, const Neighbours& neighbo
   std::vector<double> large;
   std::vector<double> quadratic;
   std::vector<double> kurtosis;
-  std::vector<std::uint32_t> index;
-  std::vector<double> squared;
-  for (std::size_t i = 0; i < points.size(); i += std::max<std::size_t>(1, points.size() / kProbes)) {
-    neighbours.nearest(points[i], kNeighbours, index, squared);
+  for_some(points, neighbours, kProbes, kNeighbours, [&](const Vec3&, const auto& index, const auto&) {
     clean.push_back(fit_plane(points, index.data(), kClean).residual);
     const PlaneFit plane = fit_plane(points, index.data(), kSmall);
     small.push_back(plane.residual);
     quadratic.push_back(quadratic_residual(points, index.data(), kSmall, plane.normal, spacing));
     kurtosis.push_back(fit_plane(points, index.data(), kSheets).kurtosis);
     large.push_back(fit_plane(points, index.data(), kNeighbours).residual);
-  }
+  });
   const double flattest = quantile(clean, kFlattest) / spacing;
   const bool smooth = quantile(quadratic, kFlattest) < kCleanQuadratic * spacing;
   if (flattest < (smooth ? kNoisyResidual : kCleanResidual) || quantile(kurtosis, kFlatKurtosis) < kSheetKurtosis) return 0;
@@ -101,13 +106,10 @@ double dimension(const std::vector<Vec3>& points, const Neighbours& neighbours) 
   if (points.size() < kFewestPoints) return 2;
   const std::size_t far = std::min(kMost, points.size() / kShare);
   std::vector<double> found;
-  std::vector<std::uint32_t> index;
-  std::vector<double> squared;
-  for (std::size_t i = 0; i < points.size(); i += std::max<std::size_t>(1, points.size() / kLayerProbes)) {
-    neighbours.nearest(points[i], far, index, squared);
+  for_some(points, neighbours, kLayerProbes, far, [&](const Vec3&, const auto&, const std::vector<double>& squared) {
     const double ratio = squared.back() / squared[far / kRatio];
     if (ratio > 1) found.push_back(2 * std::log(kRatio) / std::log(ratio));
-  }
+  });
   return found.empty() ? 2 : quantile(std::move(found), 0.5);
 }
 

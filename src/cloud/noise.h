@@ -21,7 +21,7 @@ namespace g3r {
 ///     at most what the residual y h of 16 lets expect on a plane, 1.27 y / (1 - (y / 0.47)^8): 32 neighbours reach across walls.
 ///   - And, of any size, layered_deviation() of 256 neighbours, its 10 % quantile: it tells two or three sheets from one, but needs them to
 ///     be smooth as far as that. Noise above h fills such neighbourhoods as well, so every fourth point is taken then, as often as needed.
-/// Within 15 % of the truth on smooth shapes from 0.2 to 3 h and on walls of 3 sigma (docs/study.md, "Walls and the size of the noise").
+/// Within about 15 % of the truth on smooth shapes from 0.2 to 3 h and on walls of 3 sigma (docs/study.md, "Walls and the size of the noise").
 /// `neighbours` of these points; `spacing`: typical_spacing(). Same units as the points. Looks at about 2000 points, in O(log N) each, and
 /// sorts the thinned clouds, O(N log N).
 [[nodiscard]] double estimate_noise(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing);

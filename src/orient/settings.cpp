@@ -32,8 +32,9 @@ constexpr double kFewOutliers = 1e-2;  // of the points; clean clouds lose one p
 // The default on noisy input: the field must not see single points. Noise sigma turns the normal of an area s^2 of points h apart by about
 // sigma h / s^2, so widths for one accuracy are in proportion to sqrt(sigma h).
 constexpr double kNoisyWidth = 3;  // sigma, of epsilon and of the refinement
-constexpr double kWidened = 1.4;   // sigmas for one where points of one place are far apart across the surface: from there on
-constexpr double kWidenedFrom = 0.4, kWidenedFull = 0.9;  // h, of sigma
+// The more the points scatter beside their spacing, the more of the scatter the kernels have to hide.
+constexpr double kWidened = 1.4;                          // times the noise
+constexpr double kWidenedFrom = 0.4, kWidenedFull = 0.9;  // h, of the noise: where the factor begins and where it is reached
 // Noise below the distances between points: walls of a few sigma are still told apart, by narrower kernels and more steps.
 constexpr double kMildNoise = 0.7;    // h
 constexpr double kMildWidth = 2;      // sigma, of epsilon and of the refinement
@@ -98,6 +99,7 @@ double checked_epsilon(const Epsilon& epsilon, const CanonicalCloud& cloud, doub
   }
 }
 
+// The noise that the widths are made for.
 double widened(double noise, double spacing) {
   const double share = std::clamp((noise / spacing - kWidenedFrom) / (kWidenedFull - kWidenedFrom), 0.0, 1.0);
   return noise * (1 + (kWidened - 1) * share);
