@@ -15,17 +15,12 @@
 #include "sum/fast_sum.h"
 
 #include <map>
-#include <optional>
 #include <utility>
 
 namespace g3r {
 namespace {
 
 constexpr std::size_t kFewestApart = 100;  // points that are solved for again without the open sheets of their cloud
-constexpr std::uint32_t kFewer = 4;        // points for one of start_on_fewer()
-constexpr int kStepsAfterFewer = 1;        // of the polish after it
-constexpr double kFewUnsure = 0.04;        // share of unsure points up to which its result is taken
-constexpr double kLessUnsure = 0.95;       // of that share, up to which a solve from zero is better
 constexpr double kSameSide = 0.5;          // cosine between the normals of a point and of its cluster on an open sheet
 
 void record(const Settings& s, const IterativeResult& result, Stats& stats) {
@@ -66,34 +61,21 @@ void set_sheet_areas(const OpenSheets& sheets, const std::vector<double>& spacin
   }
 }
 
-// Normals at `points` from the field of a solution on a quarter of the cloud's points, beside which the noise is half as large.
-std::optional<Refinement> start_on_fewer(const Problem& problem, const Settings& settings, const std::vector<Vec3>& points,
-                                         const Options& options, Stages& stages, Stats& stats) {
-  if (!settings.start_on_fewer) return std::nullopt;
-  std::vector<std::uint32_t> some;
-  for (std::uint32_t i = kFewer / 2; i < problem.cloud.size(); i += kFewer) some.push_back(i);
-  const Problem part = part_of(problem, some, options);
-  const Solution solution = solve(part, options, stages, stats);
-  const FastSum field(part.cloud.points, part.cloud.morton, Widths(part.settings.polish_width), part.settings.sums, stages.cancel());
-  return unit_normals(field.winding_gradient_at(solution.eta, points, stages.cancel()), std::vector<Vec3>(points.size(), Vec3{0, 0, 0}));
-}
-
-Solution solve_on_points(const Problem& problem, const Settings& s, const Options& options, Stages& stages, Stats& stats) {
+Solution solve_on_points(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
+  const Settings& s = problem.settings;
   const std::vector<Vec3>& points = problem.cloud.points;
   Solution solution;
-  if (std::optional<Refinement> start = start_on_fewer(problem, s, points, options, stages, stats)) {
-    solution.refinement = std::move(*start);
-  } else {
-    solution.eta = solve_equations(problem, s, options, stages, stats);
-    stages.begin("refine");
-    if (s.refinement_width == 0) {
-      solution.refinement.normals = normalised(solution.eta);
-      return solution;
-    }
+  solution.eta = solve_equations(problem, s, options, stages, stats);
+  stages.begin("refine");
+  if (s.refinement_width == 0) {
+    solution.refinement.normals = normalised(solution.eta);
+    return solution;
+  }
+  {
     FastSum sum(points, problem.cloud.morton, Widths(s.refinement_width), s.sums, stages.cancel());
     solution.refinement = refine_normals(sum, solution.eta);
-    if (s.polish_steps == 0) return solution;
   }
+  if (s.polish_steps == 0) return solution;
   Polished polished = polish(points, problem.cloud.morton, s, problem.local_spacing, {}, solution.refinement, stages);
   std::vector<Vec3>& normals = polished.refinement.normals;
   OpenSheets sheets;
@@ -141,11 +123,11 @@ Refinement solve_clusters(const Clusters& clusters, const Settings& s, Stages& s
 
 // Where the kernels are so wide that they see groups of points: the same equations on one point per group, all of whose area vectors are
 // equal. The refinement is evaluated at every point.
-Solution solve_on_clusters(const Problem& problem, const Settings& s, const Options& options, Stages& stages, Stats& stats) {
+Solution solve_on_clusters(const Problem& problem, Stages& stages, Stats& stats) {
+  const Settings& s = problem.settings;
   const Clusters clusters = cluster_points(problem.cloud.points, problem.cloud.morton, s.cluster_side);
-  std::optional<Refinement> first = start_on_fewer(problem, s, clusters.points, options, stages, stats);
-  if (!first) first = solve_clusters(clusters, s, stages, stats);
-  Polished polished = polish(clusters.points, clusters.morton, s, {}, clusters.multiplicity, *first, stages);
+  const Refinement first = solve_clusters(clusters, s, stages, stats);
+  Polished polished = polish(clusters.points, clusters.morton, s, {}, clusters.multiplicity, first, stages);
   std::vector<Vec3>& eta = polished.eta;
   const Neighbours neighbours(problem.cloud.points);
   const NoisyCloud noisy{problem.cloud.points, neighbours, s.noise, problem.spacing};
@@ -162,15 +144,6 @@ Solution solve_on_clusters(const Problem& problem, const Settings& s, const Opti
   solution.refinement = unit_normals(field.winding_gradient_at(eta, problem.cloud.points, stages.cancel()), solution.eta);
   spread_sheets(sheets, clusters, polished.refinement.normals, solution);
   return solution;
-}
-
-Solution solve_with(const Problem& problem, const Settings& s, const Options& options, Stages& stages, Stats& stats) {
-  if (s.cluster_side > 0) return solve_on_clusters(problem, s, options, stages, stats);
-  return solve_on_points(problem, s, options, stages, stats);
-}
-
-double unsure_share_of(const Solution& solution) {
-  return unsure_share(side_confidence(solution.eta, solution.refinement.normals, solution.refinement.strength));
 }
 
 // Solves for some points (ascending) without the others.
@@ -193,20 +166,8 @@ void solve_apart(const Problem& problem, const std::vector<std::uint32_t>& some,
 
 Solution solve(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
   if (problem.baseline) return solve_by_baseline(problem, stages, stats);
-  Settings s = problem.settings;
-  if (!s.start_on_fewer) return solve_with(problem, s, options, stages, stats);
-  // The field of fewer points is smooth, and every further step on all points fits more of their noise. Thin walls need the steps.
-  s.polish_steps = kStepsAfterFewer;
-  Stats stats_from_zero = stats;
-  Solution from_fewer = solve_with(problem, s, options, stages, stats);
-  const double unsure = unsure_share_of(from_fewer);
-  if (unsure < kFewUnsure) return from_fewer;
-  s.start_on_fewer = false;
-  s.polish_steps = problem.settings.polish_steps;
-  Solution from_zero = solve_with(problem, s, options, stages, stats_from_zero);
-  if (unsure_share_of(from_zero) > kLessUnsure * unsure) return from_fewer;
-  stats = std::move(stats_from_zero);
-  return from_zero;
+  if (problem.settings.cluster_side > 0) return solve_on_clusters(problem, stages, stats);
+  return solve_on_points(problem, options, stages, stats);
 }
 
 void solve_sheets_apart(const Problem& problem, const Options& options, Stages& stages, Stats& stats, Solution& solution) {

@@ -19,8 +19,8 @@ struct Solution {
   OpenSheets sheets;
 };
 
-/// Solves with the problem's method and settings: on the points, on clusters of them, or with a start from fewer. Adds the iterations and
-/// whether they converged to `stats`. Throws Cancelled.
+/// Solves with the problem's method and settings, on the points or on clusters of them. Adds the iterations and whether they converged to
+/// `stats`. Throws Cancelled.
 [[nodiscard]] Solution solve(const Problem& problem, const Options& options, Stages& stages, Stats& stats);
 
 /// An open sheet makes the equations of everything beside it wrong too. So each sheet is solved for alone, which may show that it was none,

@@ -77,8 +77,8 @@ TEST(Noise, WallsOfFourDeviationsDoNotRaiseIt) {
   EXPECT_NEAR(estimate(plates) / sigma, 1, 0.25);
 }
 
-// A solve on all of them follows their noise: an error of 0.0055, and many sides unsure.
-TEST(Noise, ManyPointsAreStartedFromFewer) {
+// With a weight of the winding number in proportion to h the steps fit noise: an error of 0.0055, and many sides unsure.
+TEST(Noise, OfManyPointsIsNotFitted) {
   Surface s = shapes::torus(160000, 0.6, 0.25, 6);
   shapes::scatter(s, 0.006);
   const Orientation o = orient(s.points);
@@ -137,6 +137,14 @@ TEST(Noise, PlatesDoNotRaiseIt) {
   shapes::scatter(plates, sigma);
   EXPECT_NEAR(plan(plates.points).noise / sigma, 1, 0.4);
   EXPECT_GE(shapes::share_correct(orient(plates.points).normals, plates.normals), 0.85);
+}
+
+// 95,000 points on walls 3 spacings thick: a start from the field of fewer points has 55 % of the sides.
+TEST(Noise, ManyPointsOnThinWallsKeepTheirSides) {
+  if (kSanitized) GTEST_SKIP() << "the code of smaller clouds, for minutes";
+  Surface plates = shapes::plates(6, 1.7, 3, 4, 0.02);
+  shapes::scatter(plates, 0.5 * 0.02);
+  EXPECT_GE(shapes::share_correct(orient(plates.points).normals, plates.normals), 0.88);
 }
 
 // Solved as noisy clouds are, 2 % of the sides were wrong.

@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t kThinning = 4;  // points per coarse point: twice the spacing
 constexpr double kSpacingRatio = 2;
+constexpr double kCubeRatio = 8;
 constexpr std::size_t kFewestCoarsePoints = 10000;  // a coarser start costs sides on thin parts and saves little
 constexpr double kCoarseShare = 0.2;                // of the progress bar
 constexpr double kDoubtfulShare = 0.04;             // share of the points from which more steps are tried
@@ -23,8 +24,8 @@ Settings coarser(Settings settings) {
   settings.epsilon *= kSpacingRatio;
   settings.coarsest_epsilon *= kSpacingRatio;
   settings.refinement_width *= kSpacingRatio;
-  settings.winding_weight *= kSpacingRatio;
-  settings.doubtful_winding_weight *= kSpacingRatio;
+  settings.winding_weight *= kCubeRatio;
+  settings.doubtful_winding_weight *= kCubeRatio;
   settings.damping /= kSpacingRatio;
   settings.tolerance = settings.start_tolerance;
   settings.first_sums = settings.sums;

@@ -13,12 +13,15 @@ namespace g3r {
 namespace {
 
 // The default: energy form. Widths in spacings h.
-constexpr double kEnergyEpsilon = 0.4;         // smaller converges slower, larger blurs thin walls
-constexpr double kCoarsestEpsilon = 0.5;       // without a start: converges faster, tells more sides right
-constexpr double kEnergyWindingWeight = 0.1;   // larger converges slower, 0 loses nested shells
-constexpr double kCoarseWindingWeight = 0.03;  // with a coarse start: tells more sides of thin walls right
-constexpr double kEnergyTolerance = 2.5e-3;    // slats and spokes need this residual; smooth shapes get there in half the steps
-constexpr double kAcceptedResidual = 2e-2;     // from here on normals change little; all clean models get below
+constexpr double kEnergyEpsilon = 0.4;    // smaller converges slower, larger blurs thin walls
+constexpr double kCoarsestEpsilon = 0.5;  // without a start: converges faster, tells more sides right
+// Weights l of the winding number, in h^3: S eta and l W^T W eta keep their proportion for any number of points.
+constexpr double kWindingWeight = 250;          // from eta = 0; larger converges slower, 0 loses nested shells
+constexpr double kContinuedWindingWeight = 30;  // with a coarse start or among outliers: tells more sides of thin walls right
+constexpr double kDoubtfulWindingWeight = 35;
+constexpr double kPolishWindingWeight = 100;
+constexpr double kEnergyTolerance = 2.5e-3;  // slats and spokes need this residual; smooth shapes get there in half the steps
+constexpr double kAcceptedResidual = 2e-2;   // from here on normals change little; all clean models get below
 constexpr const char* kEnergySchedule = "45 cg";
 constexpr double kStartTolerance = 8e-3;  // of a coarse solution that is only a start
 // After a coarse start smooth shapes are there in 2 to 10 steps. More are right for thin walls and narrow gaps only: on open surfaces, of
@@ -26,8 +29,7 @@ constexpr double kStartTolerance = 8e-3;  // of a coarse solution that is only a
 constexpr Steps kContinued{10, StepKind::kConjugateGradient};
 constexpr Steps kDoubtful{60, StepKind::kConjugateGradient};
 constexpr double kDoubtfulTolerance = 2.5e-3;
-constexpr double kContinuedTolerance = 9e-3;
-constexpr double kToleranceAmongOutliers = 1.5e-2;
+constexpr double kContinuedTolerance = 1.5e-2;
 constexpr double kFewOutliers = 1e-2;  // of the points; clean clouds lose one point, very uneven ones 0.6 %
 // The default on noisy input: the field must not see single points. Noise sigma turns the normal of an area s^2 of points h apart by about
 // sigma h / s^2, so widths for one accuracy are in proportion to sqrt(sigma h).
@@ -44,17 +46,17 @@ constexpr const char* kMildSchedule = "20 cg";
 constexpr double kSlightNoise = 0.35;    // h
 constexpr double kUnsurePerNoise = 0.9;  // share of the points whose sides a noise of one h makes unsure, about
 constexpr Steps kDoubtfulNoisy{30, StepKind::kConjugateGradient};
-// Of so many noisy points every fourth is solved for first, recursively: beside their spacing the noise is half as large.
-constexpr std::size_t kManyNoisyPoints = 80000;
 constexpr double kNoisyPolishEpsilon = 1.8;  // sqrt(sigma h)
 constexpr double kNoisyPolishWidth = 2.25;   // sqrt(sigma h)
 constexpr int kNoisyPolishSteps = 9;
-constexpr double kNoisyPolishWindingWeight = 0.007;  // h; more costs sides, less costs narrow gaps
-constexpr double kClusterSide = 0.9;                 // epsilon; the kernel at width epsilon cannot tell points of one cluster apart
-constexpr double kWideEpsilon = 1.5;             // h; from here on clusters pay, and an epsilon that is asked for is taken to mean noise
-constexpr double kNoisyDamping = 0.28;           // 1/h: the self term of a flat patch
-constexpr double kNoisyWindingWeight = 0.03;     // h; W eta = 1/2 is wrong at points off the surface, so it must not weigh much
-constexpr const char* kNoisySchedule = "10 cg";  // semi-convergence: more steps fit the noise
+constexpr double kClusterSide = 0.9;    // epsilon; the kernel at width epsilon cannot tell points of one cluster apart
+constexpr double kWideEpsilon = 1.5;    // h; from here on clusters pay, and an epsilon that is asked for is taken to mean noise
+constexpr double kNoisyDamping = 0.28;  // 1/h: the self term of a flat patch
+// W eta = 1/2 is wrong at points off the surface, and the more so the farther off they are. Both for little noise, in h^3.
+constexpr double kNoisyWindingWeight = 200;
+constexpr double kNoisyPolishWindingWeight = 90;  // more costs sides, less costs narrow gaps
+constexpr double kWeightFall = 0.6;               // the weights fall with (1 + this (sigma / h)^2)^3
+constexpr const char* kNoisySchedule = "10 cg";   // semi-convergence: more steps fit the noise
 // Of the sums. Solves from 0 amplify errors with every step; starts, and steps from them, give the same normals with 2e-2 as with 1e-3.
 constexpr double kAccuracy = 1e-2;
 constexpr double kContinuedAccuracy = 2e-2;
@@ -105,6 +107,8 @@ double widened(double noise, double spacing) {
   return noise * (1 + (kWidened - 1) * share);
 }
 
+double cube(double x) { return x * x * x; }
+
 void require(bool good, const std::string& message) {
   if (!good) throw InvalidInput(message);
 }
@@ -147,7 +151,7 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   s.polish_steps = paper ? 0 : kPolishSteps;
   s.polish_epsilon = std::min(s.epsilon, kPolishEpsilon * spacing);
   s.polish_width = kPolishWidth * spacing;
-  s.polish_winding_weight = kEnergyWindingWeight * spacing;
+  s.polish_winding_weight = kPolishWindingWeight * cube(spacing);
 
   require(options.solver != Solver::kDense || green, "the dense solver belongs to the method green");
   s.dense = options.solver == Solver::kDense ||
@@ -159,10 +163,11 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   const bool among_outliers = static_cast<double>(outliers) > kFewOutliers * static_cast<double>(cloud.size());
   s.continued_schedule = {kContinued};
   if (!among_outliers) s.doubtful_schedule = {kDoubtful};
-  s.winding_weight = (starts_coarse(s, cloud.size()) ? kCoarseWindingWeight : kEnergyWindingWeight) * spacing;
+  const bool light = starts_coarse(s, cloud.size()) || among_outliers;
+  s.winding_weight = (light ? kContinuedWindingWeight : kWindingWeight) * cube(spacing);
   s.tolerance = options.tolerance >= 0 ? options.tolerance : paper ? 0 : green ? kGreenTolerance : kEnergyTolerance;
-  s.continued_tolerance = options.tolerance >= 0 ? options.tolerance : among_outliers ? kToleranceAmongOutliers : kContinuedTolerance;
-  s.doubtful_winding_weight = kEnergyWindingWeight * spacing;
+  s.continued_tolerance = options.tolerance >= 0 ? options.tolerance : kContinuedTolerance;
+  s.doubtful_winding_weight = kDoubtfulWindingWeight * cube(spacing);
   s.doubtful_tolerance = options.tolerance >= 0 ? options.tolerance : kDoubtfulTolerance;
   s.start_tolerance = std::max(s.tolerance, kStartTolerance);
   const bool wide = s.epsilon > kWideEpsilon * spacing;
@@ -170,21 +175,21 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
     const double sigma = wide ? s.epsilon / kNoisyWidth : widened(noise, spacing);
     s.noise = sigma;
     const double size = std::sqrt(sigma * spacing);
+    const double believed = cube(spacing / (1 + kWeightFall * (noise / spacing) * (noise / spacing)));
     const bool mild = sigma <= kMildNoise * spacing;
     const double width = mild ? std::max(kMildEpsilon * spacing, kMildWidth * sigma) : kNoisyWidth * sigma;
     s.refinement_width = std::max(s.refinement_width, width);
     s.polish_epsilon = std::max(s.polish_epsilon, kNoisyPolishEpsilon * size);
     s.polish_width = std::max(kRefinementWidth * spacing, kNoisyPolishWidth * size);
-    s.start_on_fewer = options.schedule.empty() && options.epsilon.unit == Epsilon::Unit::kAuto && cloud.size() >= kManyNoisyPoints;
     s.polish_steps = kNoisyPolishSteps;
     s.polish_damping = kNoisyDamping / spacing;
-    s.polish_winding_weight = kNoisyPolishWindingWeight * spacing;
+    s.polish_winding_weight = kNoisyPolishWindingWeight * believed;
     if (sigma <= kSlightNoise * spacing) {
       s.unsure_of_noise = kUnsurePerNoise * sigma / spacing;
       if (!s.doubtful_schedule.empty()) s.doubtful_schedule = {kDoubtfulNoisy};
     } else {
       s.damping = s.polish_damping;
-      s.winding_weight = kNoisyWindingWeight * spacing;
+      s.winding_weight = kNoisyWindingWeight * believed;
       if (options.epsilon.unit == Epsilon::Unit::kAuto) s.epsilon = width;
       s.coarsest_epsilon = s.epsilon;
       s.coarse_to_fine = false;

@@ -20,7 +20,7 @@ struct Settings {
   std::vector<Harmonic> harmonics;  ///< green only
   double constant_weight = 1;       ///< green: weight of the row u = 1
   double damping = 0;               ///< energy: d
-  double winding_weight = 0;        ///< energy: l
+  double winding_weight = 0;        ///< energy: l, length^3
   double spacing = 0;
   double noise = 0;  ///< that the widths are made for: up to 1.4 times that of the points, 0 when clean
   double epsilon = 0;
@@ -28,7 +28,6 @@ struct Settings {
   double refinement_width = 0;            ///< 0: no refinement
   double cluster_side = 0;                ///< energy: solve on clusters of points of this size; 0: on the points
   bool coarse_to_fine = false;            ///< start from a solution on fewer points
-  bool start_on_fewer = false;            ///< under noise: first try normals from fewer points, without a solve
   int polish_steps = 0;                   ///< conjugate gradients of polish(); 0: no polish
   double polish_epsilon = 0;              ///< of polish()
   double polish_damping = 0;              ///< of polish()

@@ -15,7 +15,7 @@ namespace g3r {
 /// M = D (S_e + l W^T D^2 W) D + d I, what the system of all points becomes on vectors that are constant on each group.
 class EnergySystem : public LinearSystem {
  public:
-  /// `damping` d >= 0, 1/length; `winding_weight` l > 0, length. `sum` must outlive the system.
+  /// `damping` d >= 0, 1/length; `winding_weight` l > 0, cubed length. `sum` must outlive the system.
   /// `multiplicity`: one m_i >= 1 per point, or empty for ones.
   EnergySystem(FastSum& sum, double damping, double winding_weight, const std::vector<double>& multiplicity = {});
 
