@@ -54,8 +54,8 @@ constexpr double kWideEpsilon = 1.5;    // h; from here on clusters pay, and an 
 constexpr double kNoisyDamping = 0.28;  // 1/h: the self term of a flat patch
 // W eta = 1/2 is wrong at points off the surface, and the more so the farther off they are. Both for little noise, in h^3.
 constexpr double kNoisyWindingWeight = 200;
-constexpr double kNoisyPolishWindingWeight = 90;  // more costs sides, less costs narrow gaps
-constexpr double kWeightFall = 0.6;               // the weights fall with (1 + this (sigma / h)^2)^3
+constexpr double kNoisyPolishWindingWeight = 70;  // more costs sides, less costs narrow gaps
+constexpr double kWeightFall = 0.28;              // the weights fall with (1 + this (sigma / h)^2)^3
 constexpr const char* kNoisySchedule = "10 cg";   // semi-convergence: more steps fit the noise
 // Of the sums. Solves from 0 amplify errors with every step; starts, and steps from them, give the same normals with 2e-2 as with 1e-3.
 constexpr double kAccuracy = 1e-2;

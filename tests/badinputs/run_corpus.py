@@ -11,7 +11,7 @@ A file passes when
   must_succeed_with_warning  the same, and stderr holds one of the hints
 and always: no signal, no time-out, peak RSS within the budget, no control byte on stderr, no *.tmp left behind.
 """
-import json, os, re, shutil, struct, subprocess, sys, tempfile, time, math, collections
+import json, os, re, shutil, struct, sys, tempfile, time, math, collections
 a = sys.argv[1:]
 cut = a.index('--'); opt, cmd = a[:cut], a[cut + 1:]
 def get(k, d=None): return opt[opt.index(k) + 1] if k in opt else d
