@@ -13,11 +13,11 @@ namespace {
 
 constexpr std::size_t kThinning = 4;  // points per coarse point: twice the spacing
 constexpr double kSpacingRatio = 2;
-constexpr double kCubeRatio = 8;
-constexpr std::size_t kFewestCoarsePoints = 10000;  // a coarser start costs sides on thin parts and saves little
-constexpr double kCoarseShare = 0.2;                // of the progress bar
-constexpr double kDoubtfulShare = 0.04;             // share of the points from which more steps are tried
-constexpr double kWorse = 1.25;                     // of that share after them, from which they are undone
+constexpr double kCubeRatio = kSpacingRatio * kSpacingRatio * kSpacingRatio;  // of the weights of the winding number
+constexpr std::size_t kFewestCoarsePoints = 10000;                            // a coarser start costs sides on thin parts and saves little
+constexpr double kCoarseShare = 0.2;                                          // of the progress bar
+constexpr double kDoubtfulShare = 0.04;                                       // share of the points from which more steps are tried
+constexpr double kWorse = 1.25;                                               // of that share after them, from which they are undone
 
 Settings coarser(Settings settings) {
   settings.spacing *= kSpacingRatio;

@@ -74,8 +74,8 @@ def obj_files(sp, sp32, rng):
 
 def pcd_files(sp, sp32, rng):
     """PCD"""
-    ip = [[int(round(1000 * c)) for c in p] for p in sp]
-    nr = [p + p for p in sp]
+    ip = thousandths(sp)
+    nr = with_normals(sp)
     add('pcd_ascii_ok.pcd', pcd_head(600) + xyz(sp), S, 'valid', 'control', sp, tol=2e-7)
     add('pcd_binary_ok.pcd', pcd_head(600, data='binary') + body(sp, '<3f'), S, 'valid', 'control', sp32)
     cmp_raw = b''.join(struct.pack('<600f', *[p[k] for p in sp]) for k in range(3))
@@ -151,8 +151,8 @@ def off_files(sp, sp32, rng):
 
 def npy_files(sp, sp32, rng):
     """NPY"""
-    ip = [[int(round(1000 * c)) for c in p] for p in sp]
-    nr = [p + p for p in sp]
+    ip = thousandths(sp)
+    nr = with_normals(sp)
     fl = body(sp, '<3f')
     add('npy_f4.npy', npy("'<f4'", 'False', '(600, 3)', fl), S, 'valid', 'control', sp32)
     add('npy_f8.npy', npy("'<f8'", 'False', '(600, 3)', body(sp, '<3d')), S, 'valid', 'control', sp)

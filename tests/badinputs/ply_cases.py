@@ -32,7 +32,7 @@ def ply_awkward(sp, sp32, rng):
                                            ('float z', 'float x', 'float y')), S, 'valid', 'z x y order', sp32)
     add('ply_mixed_types.ply', ply_bin(sp, '<dfd', ('double x', 'float y', 'double z')), S, 'valid',
         'double x, float y, double z', [[p[0], f32(p[1]), p[2]] for p in sp])
-    ip = [[int(round(1000 * c)) for c in p] for p in sp]
+    ip = thousandths(sp)
     add('ply_int_coords.ply', ply_bin(ip, '<3i', ('int x', 'int y', 'int z')), S, 'valid', 'integer coordinates', ip)
     sh = [[int(round(30000 * c)) for c in p] for p in sp]
     add('ply_short_coords.ply', ply_bin(sh, '>3h', ('int16 x', 'int16 y', 'int16 z')), S, 'valid',
@@ -89,7 +89,7 @@ def ply_awkward(sp, sp32, rng):
         b''.join(struct.pack('<62f', *(p + [0.0] * 59)) for p in sp), W, 'valid',
         '62 properties, all-zero normals (3DGS export): the zero normals must not be trusted', sp32, read=S, also=[S],
         hint=['normal'])
-    nr = [p + p for p in sp]
+    nr = with_normals(sp)
     add('ply_with_normals.ply', ply_bin(nr, '<6f', XYZF + ('float nx', 'float ny', 'float nz')), S, 'valid',
         'unit normals present', sp32, normals=True)
     nb = [p + ([0.0, 0.0, 0.0] if i % 10 == 0 else [math.nan] * 3 if i % 10 == 1 else [2.5 * c for c in p])

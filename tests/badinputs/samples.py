@@ -45,6 +45,14 @@ def torus(nu, nv, R=1.0, r=0.4):
                r * math.sin(2 * PI * j / nv))) for i in range(nu) for j in range(nv)]
 
 
+def thousandths(pts):  # whole numbers
+    return [[int(round(1000 * c)) for c in p] for p in pts]
+
+
+def with_normals(pts):  # of the unit sphere
+    return [p + p for p in pts]
+
+
 def fin(p):
     return all(math.isfinite(c) for c in p[:3])
 
