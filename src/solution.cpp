@@ -7,6 +7,7 @@
 #include "orient/coarse_to_fine.h"
 #include "orient/creases.h"
 #include "orient/jets.h"
+#include "orient/planes.h"
 #include "orient/polish.h"
 #include "solve/dense_solver.h"
 #include "solve/energy_system.h"
@@ -61,6 +62,18 @@ void set_sheet_areas(const OpenSheets& sheets, const std::vector<double>& spacin
   }
 }
 
+// The normals of a clean cloud, where its points prove what the surface is.
+void fit_surface(const Problem& problem, std::vector<Vec3>& normals) {
+  const std::vector<Vec3>& points = problem.cloud.points;
+  const Neighbours neighbours(points);
+  const auto fit = [&] {
+    const std::vector<std::uint8_t> proven = fit_jets(points, problem.near, problem.local_spacing, normals);
+    fit_planes(points, neighbours, problem.local_spacing, proven, normals);
+  };
+  fit();
+  if (sharpen_creases(points, problem.near, problem.local_spacing, normals)) fit();
+}
+
 Solution solve_on_points(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
   const Settings& s = problem.settings;
   const std::vector<Vec3>& points = problem.cloud.points;
@@ -87,10 +100,7 @@ Solution solve_on_points(const Problem& problem, const Options& options, Stages&
   } else {
     sheets = find_open_sheets(points, problem.near, nullptr, normals);
     set_sheet_areas(sheets, problem.local_spacing, normals, polished.eta);
-    fit_jets(points, problem.near, problem.local_spacing, normals);
-    if (sharpen_creases(points, problem.near, problem.local_spacing, normals)) {
-      fit_jets(points, problem.near, problem.local_spacing, normals);
-    }
+    fit_surface(problem, normals);
   }
   return {std::move(polished.eta), std::move(polished.refinement), std::move(sheets)};
 }

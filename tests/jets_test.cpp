@@ -18,18 +18,6 @@ using shapes::Surface;
 
 std::vector<std::uint32_t> near(const std::vector<Vec3>& points) { return Neighbours(points).of_all(17); }
 
-// Normals turned at random by about `angle`.
-std::vector<Vec3> disturbed(const std::vector<Vec3>& normals, double angle) {
-  shapes::Random random(3);
-  std::vector<Vec3> out = normals;
-  for (Vec3& n : out) {
-    for (double& c : n) c += angle * random.gaussian();
-    const double size = std::hypot(n[0], n[1], n[2]);
-    for (double& c : n) c /= size;
-  }
-  return out;
-}
-
 // Random points of two squares of side 2, at z = height and z = -height; of one square when it is 0.
 Surface plate(std::size_t count, double height) {
   shapes::Random random(11);
@@ -46,7 +34,7 @@ double unit_sphere_spacing(std::size_t count) { return std::sqrt(4 * std::number
 
 double sphere_error(std::size_t count) {
   const Surface sphere = shapes::sphere(count);
-  std::vector<Vec3> normals = disturbed(sphere.normals, 0.02);
+  std::vector<Vec3> normals = shapes::disturbed(sphere.normals, 0.02);
   fit_jets(sphere.points, near(sphere.points), std::vector<double>(count, unit_sphere_spacing(count)), normals);
   return std::sqrt(shapes::angle_error(normals, sphere.normals));  // in proportion to the angle
 }
@@ -61,7 +49,7 @@ TEST(Jets, ConvergeOnASphereWhateverTheErrorsOfTheNormals) {
 TEST(Jets, AreExactOnAPlane) {
   constexpr std::size_t kCount = 3000;
   const Surface plane = plate(kCount, 0);
-  std::vector<Vec3> normals = disturbed(plane.normals, 0.05);
+  std::vector<Vec3> normals = shapes::disturbed(plane.normals, 0.05);
   fit_jets(plane.points, near(plane.points), std::vector<double>(kCount, 2 / std::sqrt(kCount)), normals);
   std::size_t exact = 0;
   for (const Vec3& n : normals) exact += n[2] > 1 - 1e-12 ? 1 : 0;
@@ -76,7 +64,7 @@ TEST(Jets, LeaveNoisyPointsAlone) {
   for (Vec3& p : sphere.points) {
     for (double& c : p) c += 0.1 * h * random.gaussian();
   }
-  const std::vector<Vec3> before = disturbed(sphere.normals, 0.02);
+  const std::vector<Vec3> before = shapes::disturbed(sphere.normals, 0.02);
   std::vector<Vec3> normals = before;
   fit_jets(sphere.points, near(sphere.points), std::vector<double>(count, h), normals);
   std::size_t changed = 0;
@@ -95,7 +83,7 @@ TEST(Jets, LeaveFewPointsAsTheyAre) {
 TEST(Jets, KeepTheSidesOfAThinPlateApart) {
   constexpr std::size_t kCount = 4000;
   const Surface thin = plate(kCount, 0.01);
-  const std::vector<Vec3> before = disturbed(thin.normals, 0.05);
+  const std::vector<Vec3> before = shapes::disturbed(thin.normals, 0.05);
   std::vector<Vec3> normals = before;
   fit_jets(thin.points, near(thin.points), std::vector<double>(kCount, 2 / std::sqrt(kCount / 2.0)), normals);
   EXPECT_LT(shapes::angle_error(normals, thin.normals), shapes::angle_error(before, thin.normals) / 2);

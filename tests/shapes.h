@@ -152,6 +152,17 @@ inline void scatter(Surface& s, double sigma) {
   }
 }
 
+/// The normals, turned at random by about `angle`.
+inline std::vector<Vec3> disturbed(std::vector<Vec3> normals, double angle) {
+  Random random(3);
+  for (Vec3& n : normals) {
+    for (double& c : n) c += angle * random.gaussian();
+    const double size = std::hypot(n[0], n[1], n[2]);
+    for (double& c : n) c /= size;
+  }
+  return normals;
+}
+
 /// Joins two surfaces; `flip` turns the normals of the second (an inner shell faces inwards).
 inline Surface join(Surface a, const Surface& b, bool flip = false) {
   for (std::size_t i = 0; i < b.points.size(); ++i) {

@@ -22,9 +22,10 @@ constexpr double kScatter = 0.007;       // spacings, standard deviation of the 
 
 }  // namespace
 
-void fit_jets(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near, const std::vector<double>& spacing,
-              std::vector<Vec3>& normals) {
-  if (points.size() < kNeighbours) return;
+std::vector<std::uint8_t> fit_jets(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near,
+                                   const std::vector<double>& spacing, std::vector<Vec3>& normals) {
+  std::vector<std::uint8_t> proven(points.size(), 0);
+  if (points.size() < kNeighbours) return proven;
   const std::size_t stride = near.size() / points.size();
   std::vector<Vec3> out = normals;
   parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
@@ -55,10 +56,13 @@ void fit_jets(const std::vector<Vec3>& points, const std::vector<std::uint32_t>&
       if (misfit > free * total * kScatter * kScatter * spacing[i] * spacing[i]) continue;
       Vector3d fitted;
       (void)sheet.distance(Vector3d::Zero(), &fitted);
-      if (fitted.dot(normal) > kSameSheet) out[i] = {fitted[0], fitted[1], fitted[2]};
+      if (fitted.dot(normal) <= kSameSheet) continue;
+      out[i] = {fitted[0], fitted[1], fitted[2]};
+      proven[i] = 1;
     }
   });
   normals = std::move(out);
+  return proven;
 }
 
 }  // namespace g3r

@@ -1,0 +1,95 @@
+// Normals of flat facets: exact on narrow ones, at creases and on both sides of thin walls; left alone where no plane is proven.
+#include "orient/planes.h"
+
+#include "shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+namespace g3r {
+namespace {
+
+using shapes::Surface;
+
+std::vector<Vec3> fitted(const Surface& surface, double spacing, std::vector<Vec3> normals, std::uint8_t proven = 0) {
+  const std::size_t n = surface.points.size();
+  fit_planes(surface.points, Neighbours(surface.points), std::vector<double>(n, spacing), std::vector<std::uint8_t>(n, proven), normals);
+  return normals;
+}
+
+double share_exact(const std::vector<Vec3>& normals, const std::vector<Vec3>& truth) {
+  std::size_t exact = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const Vec3& n = normals[i];
+    exact += n[0] * truth[i][0] + n[1] * truth[i][1] + n[2] * truth[i][2] > 1 - 1e-8 ? 1 : 0;
+  }
+  return static_cast<double>(exact) / static_cast<double>(truth.size());
+}
+
+// How many differ by more than `degrees`.
+std::size_t turned(const std::vector<Vec3>& a, const std::vector<Vec3>& b, double degrees) {
+  std::size_t count = 0;
+  const double least = std::cos(degrees * std::numbers::pi / 180);
+  for (std::size_t i = 0; i < a.size(); ++i) count += a[i][0] * b[i][0] + a[i][1] * b[i][1] + a[i][2] * b[i][2] < least ? 1 : 0;
+  return count;
+}
+
+// Bars, every point of which is nearer to a crease than to most of its neighbours: what is not exact has too few points on its facet.
+TEST(Planes, AreFoundOnFacetsASpacingOrTwoWide) {
+  constexpr double kSpacing = 0.02;
+  for (const double thickness : {2.0, 4.0, 50.0}) {  // spacings
+    const Surface bars = shapes::plates(3, 1, thickness, 5, kSpacing);
+    const std::vector<Vec3> normals = fitted(bars, kSpacing, shapes::disturbed(bars.normals, 0.3));
+    EXPECT_GT(share_exact(normals, bars.normals), 0.95) << thickness;
+    EXPECT_GT(shapes::share_correct(normals, bars.normals), 0.995) << thickness;
+  }
+}
+
+// Walls a twentieth of a spacing thick, whose points have as many neighbours on the other side.
+TEST(Planes, TellTheSidesOfAThinWallApart) {
+  constexpr double kSpacing = 0.02;
+  const Surface wall = shapes::plates(1, 1, 0.05, 5, kSpacing);
+  const std::vector<Vec3> normals = fitted(wall, kSpacing, shapes::disturbed(wall.normals, 0.3));
+  EXPECT_GT(share_exact(normals, wall.normals), 0.98);
+}
+
+TEST(Planes, AreNotFoundAmongRoughPoints) {
+  Surface rough = shapes::sphere(8000);
+  const double spacing = 0.9 * std::sqrt(4 * std::numbers::pi / 8000);
+  shapes::scatter(rough, 0.2 * spacing);
+  EXPECT_LT(turned(fitted(rough, spacing, rough.normals), rough.normals, 0.1), 80);
+}
+
+// Rows five times as dense along as across, as scanners make them: every row lies in a plane across the surface.
+TEST(Planes, AreNotThoseOfRowsAcrossACurvedSurface) {
+  constexpr double kAlong = 0.004;
+  constexpr double kAcross = 0.02;
+  Surface waves;
+  shapes::Random random(8);
+  for (double x = -0.5; x < 0.5; x += kAcross) {
+    for (double y = -0.5; y < 0.5; y += kAlong) {
+      const double v = y + kAlong * random.uniform();
+      waves.points.push_back({x, v, 0.05 * std::sin(20 * x) * std::cos(20 * v)});
+      Vec3 n{-std::cos(20 * x) * std::cos(20 * v), std::sin(20 * x) * std::sin(20 * v), 1};
+      const double size = std::hypot(n[0], n[1], n[2]);
+      for (double& c : n) c /= size;
+      waves.normals.push_back(n);
+    }
+  }
+  EXPECT_LT(turned(fitted(waves, std::sqrt(kAlong * kAcross), waves.normals), waves.normals, 5), waves.points.size() / 100);
+}
+
+TEST(Planes, LeaveProvenPointsAndFewPointsAsTheyAre) {
+  const Surface wall = shapes::plates(1, 1, 5, 5, 0.1);
+  const std::vector<Vec3> before = shapes::disturbed(wall.normals, 0.1);
+  EXPECT_EQ(fitted(wall, 0.1, before, 1), before);
+  const Surface few{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, std::vector<Vec3>(4, Vec3{0, 0.6, 0.8}), {}};
+  EXPECT_EQ(fitted(few, 1, few.normals), few.normals);
+}
+
+}  // namespace
+}  // namespace g3r
