@@ -6,6 +6,7 @@
 #include "cloud/spacing.h"
 #include "orient/coarse_to_fine.h"
 #include "orient/creases.h"
+#include "orient/facets.h"
 #include "orient/jets.h"
 #include "orient/planes.h"
 #include "orient/polish.h"
@@ -22,6 +23,7 @@ namespace g3r {
 namespace {
 
 constexpr std::size_t kFewestApart = 100;  // points that are solved for again without the open sheets of their cloud
+constexpr double kAtOdds = 1e-3;           // share of the points against most of their facet, from which facets are solved for
 constexpr double kSameSide = 0.5;          // cosine between the normals of a point and of its cluster on an open sheet
 
 void record(const Settings& s, const IterativeResult& result, Stats& stats) {
@@ -63,15 +65,20 @@ void set_sheet_areas(const OpenSheets& sheets, const std::vector<double>& spacin
 }
 
 // The normals of a clean cloud, where its points prove what the surface is.
-void fit_surface(const Problem& problem, std::vector<Vec3>& normals) {
+void fit_surface(const Problem& problem, std::vector<Vec3>& eta, std::vector<Vec3>& normals, Stages& stages) {
   const std::vector<Vec3>& points = problem.cloud.points;
+  const std::vector<double>& spacing = problem.local_spacing;
   const Neighbours neighbours(points);
+  std::vector<std::uint8_t> proven;
   const auto fit = [&] {
-    const std::vector<std::uint8_t> proven = fit_jets(points, problem.near, problem.local_spacing, normals);
-    fit_planes(points, neighbours, problem.local_spacing, proven, normals);
+    proven = fit_jets(points, problem.near, spacing, normals);
+    fit_planes(points, neighbours, spacing, proven, normals);
   };
   fit();
-  if (sharpen_creases(points, problem.near, problem.local_spacing, normals)) fit();
+  if (sharpen_creases(points, problem.near, spacing, normals)) fit();
+  const Facets facets = find_facets(points, problem.near, spacing, proven, normals);
+  if (share_at_odds(facets, normals) < kAtOdds) return;
+  choose_facet_sides(points, problem.cloud.morton, problem.settings, spacing, facets, eta, normals, stages);
 }
 
 Solution solve_on_points(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
@@ -100,7 +107,7 @@ Solution solve_on_points(const Problem& problem, const Options& options, Stages&
   } else {
     sheets = find_open_sheets(points, problem.near, nullptr, normals);
     set_sheet_areas(sheets, problem.local_spacing, normals, polished.eta);
-    fit_surface(problem, normals);
+    fit_surface(problem, polished.eta, normals, stages);
   }
   return {std::move(polished.eta), std::move(polished.refinement), std::move(sheets)};
 }

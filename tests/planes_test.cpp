@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 namespace g3r {
@@ -15,10 +16,20 @@ namespace {
 
 using shapes::Surface;
 
-std::vector<Vec3> fitted(const Surface& surface, double spacing, std::vector<Vec3> normals, std::uint8_t proven = 0) {
+struct Fitted {
+  std::vector<Vec3> normals;
+  std::vector<std::uint8_t> proven;
+};
+
+Fitted fit(const Surface& surface, double spacing, std::vector<Vec3> normals, std::uint8_t proven = 0) {
   const std::size_t n = surface.points.size();
-  fit_planes(surface.points, Neighbours(surface.points), std::vector<double>(n, spacing), std::vector<std::uint8_t>(n, proven), normals);
-  return normals;
+  Fitted out{std::move(normals), std::vector<std::uint8_t>(n, proven)};
+  fit_planes(surface.points, Neighbours(surface.points), std::vector<double>(n, spacing), out.proven, out.normals);
+  return out;
+}
+
+std::vector<Vec3> fitted(const Surface& surface, double spacing, const std::vector<Vec3>& normals) {
+  return fit(surface, spacing, normals).normals;
 }
 
 double share_exact(const std::vector<Vec3>& normals, const std::vector<Vec3>& truth) {
@@ -86,7 +97,9 @@ TEST(Planes, AreNotThoseOfRowsAcrossACurvedSurface) {
 TEST(Planes, LeaveProvenPointsAndFewPointsAsTheyAre) {
   const Surface wall = shapes::plates(1, 1, 5, 5, 0.1);
   const std::vector<Vec3> before = shapes::disturbed(wall.normals, 0.1);
-  EXPECT_EQ(fitted(wall, 0.1, before, 1), before);
+  EXPECT_EQ(fit(wall, 0.1, before, 1).normals, before);
+  const Fitted found = fit(wall, 0.1, before);
+  for (std::size_t i = 0; i < before.size(); ++i) EXPECT_EQ(found.proven[i] != 0, found.normals[i] != before[i]);
   const Surface few{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, std::vector<Vec3>(4, Vec3{0, 0.6, 0.8}), {}};
   EXPECT_EQ(fitted(few, 1, few.normals), few.normals);
 }

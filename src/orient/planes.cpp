@@ -82,7 +82,7 @@ Candidate best_plane(const Around& around, const Vec3& normal) {
 }  // namespace
 
 void fit_planes(const std::vector<Vec3>& points, const Neighbours& neighbours, const std::vector<double>& spacing,
-                const std::vector<std::uint8_t>& proven, std::vector<Vec3>& normals) {
+                std::vector<std::uint8_t>& proven, std::vector<Vec3>& normals) {
   parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> index;
     std::vector<double> squared;
@@ -107,6 +107,7 @@ void fit_planes(const std::vector<Vec3>& points, const Neighbours& neighbours, c
       if (held < static_cast<std::size_t>(kFewest)) continue;  // rounding
       const PlaneFit plane = fit_plane(points, index.data(), held);
       if (plane.breadth < kNarrowest) continue;
+      proven[i] = 1;
       normals[i] = vector::scale(plane.normal, vector::dot(plane.normal, normals[i]) < 0 ? -1 : 1);
     }
   });

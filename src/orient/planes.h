@@ -16,9 +16,9 @@ namespace g3r {
 /// the planes through p_i and two of the 10 nearest (every pair, as RANSAC would in the limit: Fischler and Bolles, "Random sample
 /// consensus", Communications of the ACM 1981) that are less than 84 degrees off n_i; the best is fitted to what it holds. Points along a
 /// line, which a curved surface has in planes across it, prove nothing: their second principal spread has to be 0.15 of the first.
-/// Points with proven[i] != 0 keep their normals. docs/study.md, "Planes". `spacing`: smoothed_spacing(); `normals`: N unit vectors.
-/// O(N log N), about 3 us a point that is not proven.
+/// Points with proven[i] != 0 keep their normals; those that get one are marked so. docs/study.md, "Planes". `spacing`: smoothed_spacing();
+/// `normals`: N unit vectors. O(N log N), about 3 us a point that is not proven.
 void fit_planes(const std::vector<Vec3>& points, const Neighbours& neighbours, const std::vector<double>& spacing,
-                const std::vector<std::uint8_t>& proven, std::vector<Vec3>& normals);
+                std::vector<std::uint8_t>& proven, std::vector<Vec3>& normals);
 
 }  // namespace g3r

@@ -1,0 +1,141 @@
+#include "orient/facets.h"
+
+#include "mesh/vector.h"
+#include "solve/energy_system.h"
+#include "solve/iterative_solver.h"
+#include "sum/fast_sum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace g3r {
+namespace {
+
+constexpr std::size_t kNeighbours = 17;  // the point itself, first, and 16 others
+constexpr std::size_t kFewest = 10;      // points of a facet
+constexpr double kWithin = 0.003;        // spacings, of one point from another's plane
+constexpr double kParallel = 0.9995;     // cosine
+constexpr double kEpsilon = 0.5;         // spacings
+constexpr double kWindingWeight = 100;   // cubed spacings; 30 to 1000 give the same sides
+constexpr Steps kSteps{30, StepKind::kConjugateGradient};
+constexpr double kTolerance = 5e-3;  // sides change no more from 1e-2 on
+
+// P M P x = P b.
+class OnFacets : public LinearSystem {
+ public:
+  OnFacets(LinearSystem& system, const Facets& facets, const std::vector<double>& areas, const std::vector<Vec3>& normals)
+      : system_(system), facets_(facets), areas_(areas), normals_(normals), squares_(facets.count, 0) {
+    for (std::size_t i = 0; i < facets.of.size(); ++i) {
+      if (facets.of[i] != Facets::kNone) squares_[facets.of[i]] += areas[i] * areas[i];
+    }
+  }
+  [[nodiscard]] std::vector<Vec3> project(std::vector<Vec3> v) const {
+    std::vector<double> sum(facets_.count, 0);
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      if (facets_.of[i] != Facets::kNone) sum[facets_.of[i]] += areas_[i] * vector::dot(normals_[i], v[i]);
+    }
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      const std::uint32_t f = facets_.of[i];
+      if (f != Facets::kNone) v[i] = vector::scale(normals_[i], areas_[i] * sum[f] / squares_[f]);
+    }
+    return v;
+  }
+  std::vector<Vec3> apply(const std::vector<Vec3>& x) override { return project(system_.apply(x)); }
+  std::vector<Vec3> right_side() override { return project(system_.right_side()); }
+
+ private:
+  LinearSystem& system_;
+  const Facets& facets_;
+  const std::vector<double>& areas_;
+  const std::vector<Vec3>& normals_;
+  std::vector<double> squares_;  // sum of A_i^2 of every facet
+};
+
+}  // namespace
+
+Facets find_facets(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near, const std::vector<double>& spacing,
+                   const std::vector<std::uint8_t>& proven, const std::vector<Vec3>& normals) {
+  Facets facets;
+  facets.of.assign(points.size(), Facets::kNone);
+  if (points.size() < kNeighbours) return facets;
+  const std::size_t stride = near.size() / points.size();
+  const auto parallel = [&](std::size_t i, std::size_t j) { return std::abs(vector::dot(normals[i], normals[j])) >= kParallel; };
+  const auto in_one_plane = [&](std::size_t i, std::size_t j) {
+    const Vec3 d = vector::subtract(points[i], points[j]);
+    return std::max(std::abs(vector::dot(normals[i], d)), std::abs(vector::dot(normals[j], d))) <=
+           kWithin * std::min(spacing[i], spacing[j]);
+  };
+  std::vector<std::uint8_t> done(proven.size(), 0);
+  std::vector<std::uint32_t> members;
+  for (std::uint32_t seed = 0; seed < points.size(); ++seed) {
+    if (proven[seed] == 0 || done[seed] != 0) continue;
+    members.assign(1, seed);
+    done[seed] = 1;
+    for (std::size_t m = 0; m < members.size(); ++m) {
+      const std::uint32_t i = members[m];
+      for (std::size_t k = 1; k < kNeighbours; ++k) {
+        const std::uint32_t j = near[i * stride + k];
+        if (proven[j] == 0 || done[j] != 0 || !parallel(i, j) || !parallel(seed, j) || !in_one_plane(i, j)) continue;
+        done[j] = 1;
+        members.push_back(j);
+      }
+    }
+    if (members.size() < kFewest) continue;
+    for (const std::uint32_t i : members) facets.of[i] = static_cast<std::uint32_t>(facets.count);
+    ++facets.count;
+  }
+  return facets;
+}
+
+namespace {
+
+// The normal of the first point of every facet, to whose side those of the others are turned.
+std::vector<Vec3> first_normals(const Facets& facets, const std::vector<Vec3>& normals) {
+  std::vector<Vec3> first(facets.count, Vec3{0, 0, 0});
+  for (std::size_t i = normals.size(); i-- > 0;) {
+    if (facets.of[i] != Facets::kNone) first[facets.of[i]] = normals[i];
+  }
+  return first;
+}
+
+}  // namespace
+
+double share_at_odds(const Facets& facets, const std::vector<Vec3>& normals) {
+  const std::vector<Vec3> first = first_normals(facets, normals);
+  std::vector<std::size_t> same(facets.count, 0);
+  std::vector<std::size_t> all(facets.count, 0);
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const std::uint32_t f = facets.of[i];
+    if (f == Facets::kNone) continue;
+    ++all[f];
+    same[f] += vector::dot(normals[i], first[f]) > 0 ? 1 : 0;
+  }
+  std::size_t odd = 0;
+  for (std::size_t f = 0; f < facets.count; ++f) odd += std::min(same[f], all[f] - same[f]);
+  return static_cast<double>(odd) / static_cast<double>(normals.size());
+}
+
+void choose_facet_sides(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
+                        const std::vector<double>& spacing, const Facets& facets, std::vector<Vec3>& eta, std::vector<Vec3>& normals,
+                        Stages& stages) {
+  const double h = settings.spacing;
+  const std::vector<Vec3> first = first_normals(facets, normals);
+  std::vector<Vec3> turned = normals;
+  std::vector<double> areas(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    areas[i] = spacing[i] * spacing[i];
+    if (facets.of[i] != Facets::kNone && vector::dot(normals[i], first[facets.of[i]]) < 0) turned[i] = vector::scale(normals[i], -1);
+  }
+  FastSum sum(points, morton, Widths(kEpsilon * h), settings.first_sums, stages.cancel());
+  EnergySystem free(sum, settings.damping, kWindingWeight * h * h * h);
+  OnFacets system(free, facets, areas, turned);
+  const std::vector<Vec3> solved = solve_iteratively(system, {kSteps}, kTolerance, system.project(eta)).eta;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (facets.of[i] == Facets::kNone) continue;
+    eta[i] = solved[i];
+    normals[i] = vector::scale(turned[i], vector::dot(solved[i], turned[i]) < 0 ? -1 : 1);
+  }
+}
+
+}  // namespace g3r

@@ -1,0 +1,41 @@
+// The sides of flat facets, whole facets at a time.
+#pragma once
+
+#include "orient/settings.h"
+#include "stages.h"
+
+#include <g3r/points.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace g3r {
+
+/// Sets of points side by side in one plane.
+struct Facets {
+  static constexpr std::uint32_t kNone = 0xffffffffU;
+  std::vector<std::uint32_t> of;  ///< N: number of the facet of every point, or kNone
+  std::size_t count = 0;
+};
+
+/// Grows facets over the 16 nearest points from seeds in the order of the points: p_j joins beside p_i if both are proven and each lies
+/// within 0.003 h of the other's plane, and its normal is parallel, on either side, to that of p_i and of the seed to 1.8 degrees. Sets of
+/// fewer than 10 points are no facets. `near`: Neighbours::of_all(k), k >= 17; `proven`: fit_jets() or fit_planes() found its normal;
+/// `spacing`: smoothed_spacing(). O(N).
+[[nodiscard]] Facets find_facets(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near,
+                                 const std::vector<double>& spacing, const std::vector<std::uint8_t>& proven,
+                                 const std::vector<Vec3>& normals);
+
+/// Share of all points whose normal is on another side than that of most points of their facet. O(N).
+[[nodiscard]] double share_at_odds(const Facets& facets, const std::vector<Vec3>& normals);
+
+/// One side for every facet. Single points of a wall thinner than the spacing cannot tell their side, the whole facet can: the energy
+/// form's equations are restricted to area vectors eta_i = c_f A_i n_i on facets, with one unknown c_f per facet, its n_i on one side, and
+/// free ones elsewhere, which is Galerkin's method with the orthogonal projector P onto these: P M P eta = P b, by conjugate gradients from
+/// `eta`. n_i and eta_i on facets become those of the solution, sides by the sign of c_f; the others stay. docs/math.md, "Facets".
+/// `spacing`: smoothed_spacing(), A_i its square. `eta`, `normals`: in and out.
+void choose_facet_sides(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
+                        const std::vector<double>& spacing, const Facets& facets, std::vector<Vec3>& eta, std::vector<Vec3>& normals,
+                        Stages& stages);
+
+}  // namespace g3r

@@ -1,0 +1,124 @@
+// Flat facets: found whole, told from curved surfaces, and each on the side that its points decide together.
+#include "orient/facets.h"
+
+#include "cloud/canonical_cloud.h"
+#include "cloud/neighbours.h"
+#include "cloud/spacing.h"
+
+#include "shapes.h"
+
+#include <g3r/g3r.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <vector>
+
+namespace g3r {
+namespace {
+
+using shapes::Surface;
+
+constexpr double kSpacing = 0.02;
+
+std::vector<std::uint32_t> near(const std::vector<Vec3>& points) { return Neighbours(points).of_all(17); }
+
+Facets facets_of(const Surface& s, double spacing, const std::vector<Vec3>& normals) {
+  const std::size_t n = s.points.size();
+  return find_facets(s.points, near(s.points), std::vector<double>(n, spacing), std::vector<std::uint8_t>(n, 1), normals);
+}
+
+// Turns the normals of every fifth point round.
+std::vector<Vec3> partly_turned(std::vector<Vec3> normals) {
+  for (std::size_t i = 0; i < normals.size(); i += 5) {
+    for (double& c : normals[i]) c = -c;
+  }
+  return normals;
+}
+
+TEST(Facets, AreTheFacesOfABox) {
+  const Surface box = shapes::plates(1, 1, 20, 5, kSpacing);
+  for (const std::vector<Vec3>& normals : {box.normals, partly_turned(box.normals)}) {
+    const Facets facets = facets_of(box, kSpacing, normals);
+    std::set<std::uint32_t> found(facets.of.begin(), facets.of.end());
+    found.erase(Facets::kNone);
+    EXPECT_EQ(facets.count, 6U);
+    EXPECT_EQ(found.size(), 6U);
+    for (std::size_t i = 1; i < box.points.size(); ++i) {
+      if (facets.of[i] == Facets::kNone || facets.of[i - 1] == Facets::kNone) continue;
+      EXPECT_EQ(facets.of[i] == facets.of[i - 1], box.normals[i] == box.normals[i - 1]);
+    }
+  }
+}
+
+TEST(Facets, OfAThinWallAreItsSides) {
+  const Surface wall = shapes::plates(1, 1, 0.1, 5, kSpacing);
+  const Facets facets = facets_of(wall, kSpacing, wall.normals);
+  ASSERT_GE(facets.count, 2U);
+  for (std::size_t i = 0; i < wall.points.size(); ++i) {
+    for (const std::size_t j : {std::size_t{0}, wall.points.size() / 2}) {
+      if (facets.of[i] != facets.of[j] || facets.of[j] == Facets::kNone) continue;
+      EXPECT_EQ(wall.normals[i], wall.normals[j]);
+    }
+  }
+}
+
+// However smooth a surface, a facet never goes round it.
+TEST(Facets, StayFlatOnSmoothSurfaces) {
+  const Surface sphere = shapes::sphere(20000);
+  EXPECT_EQ(facets_of(sphere, std::sqrt(4 * std::numbers::pi * 0.81 / 20000), sphere.normals).count, 0U);
+  const Surface dense = shapes::sphere(100000);
+  const Facets caps = facets_of(dense, 1, dense.normals);  // everything near counts as in one plane
+  ASSERT_GT(caps.count, 0U);
+  std::vector<Vec3> first(caps.count, Vec3{0, 0, 0});
+  for (std::size_t i = 0; i < dense.points.size(); ++i) {
+    if (caps.of[i] == Facets::kNone) continue;
+    Vec3& n = first[caps.of[i]];
+    if (n == Vec3{0, 0, 0}) n = dense.normals[i];
+    EXPECT_GT(n[0] * dense.normals[i][0] + n[1] * dense.normals[i][1] + n[2] * dense.normals[i][2], 0.998);
+  }
+}
+
+TEST(Facets, CountPointsAtOdds) {
+  const Surface box = shapes::plates(1, 1, 20, 5, kSpacing);
+  const std::vector<Vec3> turned = partly_turned(box.normals);
+  EXPECT_EQ(share_at_odds(facets_of(box, kSpacing, box.normals), box.normals), 0);
+  EXPECT_NEAR(share_at_odds(facets_of(box, kSpacing, turned), turned), 0.2, 0.005);
+}
+
+// Walls a tenth of a spacing thick: single points cannot tell their side (51 % right without facets), facets can.
+TEST(Facets, OfWallsThinnerThanTheSpacingTellTheirSides) {
+  const Surface walls = shapes::plates(4, 1, 0.1, 6, 0.04);
+  EXPECT_GE(shapes::share_correct(orient(walls.points).normals, walls.normals), 0.97);
+}
+
+// The projector keeps area vectors that are one multiple of A_i n_i on a facet, so a solution on the right sides stays there.
+TEST(Facets, OnTheRightSideStayThere) {
+  const Surface box = shapes::plates(2, 1, 5, 5, 0.04);
+  const CanonicalCloud cloud = canonical_cloud(box.points);
+  std::vector<Vec3> truth(cloud.size());
+  for (std::size_t i = 0; i < box.points.size(); ++i) truth[cloud.point_of[i]] = box.normals[i];
+  const std::vector<std::uint32_t> around = near(cloud.points);
+  const std::vector<double> spacing = smoothed_spacing(local_spacing(cloud.points, around), around);
+  const Facets facets = find_facets(cloud.points, around, spacing, std::vector<std::uint8_t>(cloud.size(), 1), truth);
+  std::vector<Vec3> eta = truth;
+  for (std::size_t i = 0; i < eta.size(); ++i) {
+    for (double& c : eta[i]) c *= spacing[i] * spacing[i];
+  }
+  std::vector<Vec3> normals = truth;
+  const Monitor monitor;
+  Stages stages(monitor);
+  const Settings settings = choose_settings({}, cloud, typical_spacing(spacing), 0, 0);
+  choose_facet_sides(cloud.points, cloud.morton, settings, spacing, facets, eta, normals, stages);
+  EXPECT_EQ(normals, truth);
+  for (std::size_t i = 0; i < eta.size(); ++i) {
+    if (facets.of[i] == Facets::kNone) continue;
+    const double along = eta[i][0] * truth[i][0] + eta[i][1] * truth[i][1] + eta[i][2] * truth[i][2];
+    EXPECT_NEAR(along, std::hypot(eta[i][0], eta[i][1], eta[i][2]), 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace g3r
