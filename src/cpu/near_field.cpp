@@ -197,7 +197,7 @@ struct GreenForm {
     const Vec<T> dot = hn::MulAdd(dx, f(0), hn::MulAdd(dy, f(1), hn::Mul(dz, f(2))));
     const Vec<T> flux = hn::Mul(k.flux, dot);
     HWY_UNROLL(9)
-    for (int c = 0; c < K; ++c) {
+    for (std::size_t c = 0; c < K; ++c) {
       sum[c] = hn::MulAdd(k.value, f(3 + 2 * c), sum[c]);
       sum[c] = hn::MulAdd(flux, f(4 + 2 * c), sum[c]);
     }
@@ -214,7 +214,7 @@ struct GreenAdjointForm {
     const Tag<T> d;
     Vec<T> charge = hn::Zero(d);
     HWY_UNROLL(9)
-    for (int c = 0; c < K; ++c) {
+    for (std::size_t c = 0; c < K; ++c) {
       const Vec<T> q = f(c);
       charge = hn::MulAdd(u[c], q, charge);
       sum[c] = hn::MulAdd(k.value, q, sum[c]);

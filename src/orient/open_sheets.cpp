@@ -253,7 +253,7 @@ std::vector<std::uint32_t> components_of_sheets(const std::vector<std::uint32_t>
 // By the first axis from z to x that the sum of the normals is not level to.
 bool faces_down(const Vec3& sum) {
   const double size = std::max({std::abs(sum[0]), std::abs(sum[1]), std::abs(sum[2])});
-  for (const std::size_t axis : {2, 1, 0}) {
+  for (const std::size_t axis : {std::size_t{2}, std::size_t{1}, std::size_t{0}}) {
     if (std::abs(sum[axis]) > kLevel * size) return sum[axis] < 0;
   }
   return false;
