@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -86,6 +87,20 @@ TEST(FieldMesher, CubeKeepsItsEdgesAndMostCorners) {
     if (nearest < 1e-6) ++corners;
   }
   EXPECT_GE(corners, 6U);  // a face may have too few points near a corner
+}
+
+// The cube is centred like its octree, so that edges run between cells, which must not both take them.
+TEST(FieldMesher, CreasesBetweenCellsMakeNoTwoVerticesAtOnePlace) {
+  for (const std::size_t n : {3000, 6000, 12000}) {
+    const OrientedSample s = cube_sample(n, 0.5, 3);
+    const DistanceSampler field([](const Vec3& p) { return cube_distance(p, 0.5); }, 1.0 / std::sqrt(static_cast<double>(n) / 6));
+    std::vector<Vec3> at = field_mesh(s.points, s.normals, field).vertices;
+    std::sort(at.begin(), at.end());
+    std::size_t close = 0;
+    for (std::size_t i = 1; i < at.size(); ++i)
+      close += norm({at[i][0] - at[i - 1][0], at[i][1] - at[i - 1][1], at[i][2] - at[i - 1][2]}) < 1e-9 ? 1 : 0;
+    EXPECT_EQ(close, 0U) << n;
+  }
 }
 
 TEST(FieldMesher, SameBytesForAnyNumberOfThreads) {

@@ -13,11 +13,11 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-constexpr double kTrust = 3.0;          // spacings: with no point nearer than this the fit says nothing and the field alone decides
-constexpr double kReach = 0.3;          // cells that a vertex may leave its leaf by
-constexpr double kFeatureReach = 0.05;  // the same for vertices on creases: a crease belongs to the leaves it passes through
-constexpr double kOnSurface = 0.05;     // spacings: a point on a crease must also lie on the joined surface
-constexpr double kMinSine = 0.3;        // sheets at less than about 17 degrees have no well placed intersection
+constexpr double kTrust = 3.0;       // spacings: with no point nearer than this the fit says nothing and the field alone decides
+constexpr double kReach = 0.3;       // cells that a vertex may leave its leaf by
+constexpr double kShift = 0.1;      // smallest cells, along every axis, of the boxes that share the creases between leaves
+constexpr double kOnSurface = 0.05;  // spacings: a point on a crease must also lie on the joined surface
+constexpr double kMinSine = 0.3;     // sheets at less than about 17 degrees have no well placed intersection
 constexpr int kNewtonSteps = 5;
 
 Vec3 array(const Vector3d& p) { return {p[0], p[1], p[2]}; }
@@ -44,15 +44,17 @@ bool intersect(const LocalSurface& s, std::initializer_list<int> which, Vector3d
 
 class Placer {
  public:
-  Placer(const LocalSurface& surface, const AlignedBox3d& box) : s_(surface), box_(box) {}
+  /// A crease belongs to the leaves it passes through, each piece to one: two vertices at one place would make triangles without area. The
+  /// boxes are shifted by the same for all leaves, because creases of CAD models like to run exactly between leaves.
+  Placer(const LocalSurface& surface, const AlignedBox3d& leaf, double shift) : s_(surface), box_(leaf) {
+    box_.translate(Vector3d::Constant(-shift));
+  }
 
   // A corner or the middle of the crease within the leaf.
   bool feature(const Vector3d& start, Vector3d& x) const {
-    const double cell = box_.sizes()[0];
-    const AlignedBox3d reach(box_.min().array() - kFeatureReach * cell, box_.max().array() + kFeatureReach * cell);
     if (s_.count == 3) {
       x = start;
-      if (intersect(s_, {0, 1, 2}, x) && reach.contains(x) && on_surface(x)) return true;
+      if (intersect(s_, {0, 1, 2}, x) && box_.contains(x) && on_surface(x)) return true;
     }
     constexpr std::array<std::array<int, 2>, 3> kPairs{{{0, 1}, {0, 2}, {1, 2}}};
     bool found = false;
@@ -61,7 +63,7 @@ class Placer {
       const auto [a, b] = kPairs[k];
       if (b >= s_.count || s_.joint[k] == Joint::kNone) continue;
       Vector3d y = start;
-      if (!intersect(s_, {a, b}, y) || !centre_in_box(a, b, reach, y) || !on_surface(y)) continue;
+      if (!intersect(s_, {a, b}, y) || !centre_in_box(a, b, y) || !on_surface(y)) continue;
       const double d = (y - start).squaredNorm();
       if (found && d >= best) continue;
       found = true;
@@ -87,7 +89,7 @@ class Placer {
   bool on_surface(const Vector3d& x) const { return std::abs(s_.distance(x)) < kOnSurface * s_.spacing; }
 
   // Slides a point of the crease of sheets a and b to the middle of the part within the box; false if no part is.
-  bool centre_in_box(int a, int b, const AlignedBox3d& reach, Vector3d& x) const {
+  bool centre_in_box(int a, int b, Vector3d& x) const {
     Vector3d ga, gb;
     s_.sheet[static_cast<std::size_t>(a)].distance(x, &ga);
     s_.sheet[static_cast<std::size_t>(b)].distance(x, &gb);
@@ -95,20 +97,20 @@ class Placer {
     double low = -std::numeric_limits<double>::infinity(), high = -low;
     for (int k = 0; k < 3; ++k) {
       if (std::abs(t[k]) < 1e-9) {
-        if (x[k] < reach.min()[k] || x[k] > reach.max()[k]) return false;
+        if (x[k] < box_.min()[k] || x[k] > box_.max()[k]) return false;
         continue;
       }
-      const double p = (reach.min()[k] - x[k]) / t[k], q = (reach.max()[k] - x[k]) / t[k];
+      const double p = (box_.min()[k] - x[k]) / t[k], q = (box_.max()[k] - x[k]) / t[k];
       low = std::max(low, std::min(p, q));
       high = std::min(high, std::max(p, q));
     }
     if (low >= high) return false;
     x += 0.5 * (low + high) * t;
-    return intersect(s_, {a, b}, x) && reach.contains(x);
+    return intersect(s_, {a, b}, x) && box_.contains(x);
   }
 
   const LocalSurface& s_;
-  const AlignedBox3d& box_;
+  AlignedBox3d box_;
 };
 
 }  // namespace
@@ -117,6 +119,7 @@ PlacedVertices place_vertices(const Octree& octree, const DualSurface& surface, 
                               const std::atomic<bool>* cancel) {
   PlacedVertices out;
   const std::size_t sheets = surface.patch_count();
+  const double shift = kShift * octree.unit() * static_cast<double>(std::uint32_t{1} << (kMaxOctreeLevel - octree.depth()));
   out.positions.resize(sheets + surface.midpoints.size());
   out.normals.resize(sheets);
   parallel::for_blocks(
@@ -143,7 +146,7 @@ PlacedVertices place_vertices(const Octree& octree, const DualSurface& surface, 
           Vector3d x = start, normal = outward;
           const LocalSurface fit = local.fit(start, kTrust, length > 0 ? &outward : nullptr);
           if (fit.count > 0) {
-            const Placer placer(fit, box);
+            const Placer placer(fit, box, shift);
             if (!placer.feature(start, x)) x = placer.smooth(start);
             const AlignedBox3d reach(box.min().array() - kReach * cell, box.max().array() + kReach * cell);
             if (!x.allFinite()) x = start;
