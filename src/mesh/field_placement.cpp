@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "cpu/parallel.h"
 
@@ -13,11 +14,13 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-constexpr double kTrust = 3.0;       // spacings: with no point nearer than this the fit says nothing and the field alone decides
-constexpr double kReach = 0.3;       // cells that a vertex may leave its leaf by
-constexpr double kShift = 0.1;      // smallest cells, along every axis, of the boxes that share the creases between leaves
-constexpr double kOnSurface = 0.05;  // spacings: a point on a crease must also lie on the joined surface
-constexpr double kMinSine = 0.3;     // sheets at less than about 17 degrees have no well placed intersection
+constexpr double kTrust = 3.0;          // spacings: with no point nearer than this the fit says nothing and the field alone decides
+constexpr double kReach = 0.3;          // cells that a vertex may leave its leaf by
+constexpr double kFeatureReach = 0.05;  // the same for vertices on creases: a crease belongs to the leaves it passes through
+constexpr double kApart = 0.05;         // smallest cells: of two vertices on creases that are nearer, one steps aside
+constexpr double kAside = 0.3;          // of the way to where it would be without the crease
+constexpr double kOnSurface = 0.05;     // spacings: a point on a crease must also lie on the joined surface
+constexpr double kMinSine = 0.3;        // sheets at less than about 17 degrees have no well placed intersection
 constexpr int kNewtonSteps = 5;
 
 Vec3 array(const Vector3d& p) { return {p[0], p[1], p[2]}; }
@@ -42,19 +45,27 @@ bool intersect(const LocalSurface& s, std::initializer_list<int> which, Vector3d
   return x.allFinite();
 }
 
+// What a vertex is on.
+enum class Feature : std::uint8_t { kNone, kCrease, kCorner };
+
+struct Placed {
+  Vec3 position{0, 0, 0};
+  Vec3 normal{0, 0, 0};
+  Feature feature = Feature::kNone;
+  double moved = 0;  // from where the field alone puts it; fits are made there
+};
+
 class Placer {
  public:
-  /// A crease belongs to the leaves it passes through, each piece to one: two vertices at one place would make triangles without area. The
-  /// boxes are shifted by the same for all leaves, because creases of CAD models like to run exactly between leaves.
-  Placer(const LocalSurface& surface, const AlignedBox3d& leaf, double shift) : s_(surface), box_(leaf) {
-    box_.translate(Vector3d::Constant(-shift));
-  }
+  Placer(const LocalSurface& surface, const AlignedBox3d& box) : s_(surface), box_(box) {}
 
   // A corner or the middle of the crease within the leaf.
-  bool feature(const Vector3d& start, Vector3d& x) const {
+  Feature feature(const Vector3d& start, Vector3d& x) const {
+    const double cell = box_.sizes()[0];
+    const AlignedBox3d reach(box_.min().array() - kFeatureReach * cell, box_.max().array() + kFeatureReach * cell);
     if (s_.count == 3) {
       x = start;
-      if (intersect(s_, {0, 1, 2}, x) && box_.contains(x) && on_surface(x)) return true;
+      if (intersect(s_, {0, 1, 2}, x) && reach.contains(x) && on_surface(x)) return Feature::kCorner;
     }
     constexpr std::array<std::array<int, 2>, 3> kPairs{{{0, 1}, {0, 2}, {1, 2}}};
     bool found = false;
@@ -63,14 +74,14 @@ class Placer {
       const auto [a, b] = kPairs[k];
       if (b >= s_.count || s_.joint[k] == Joint::kNone) continue;
       Vector3d y = start;
-      if (!intersect(s_, {a, b}, y) || !centre_in_box(a, b, y) || !on_surface(y)) continue;
+      if (!intersect(s_, {a, b}, y) || !centre_in_box(a, b, reach, y) || !on_surface(y)) continue;
       const double d = (y - start).squaredNorm();
       if (found && d >= best) continue;
       found = true;
       best = d;
       x = y;
     }
-    return found;
+    return found ? Feature::kCrease : Feature::kNone;
   }
 
   Vector3d smooth(Vector3d x) const {
@@ -89,7 +100,7 @@ class Placer {
   bool on_surface(const Vector3d& x) const { return std::abs(s_.distance(x)) < kOnSurface * s_.spacing; }
 
   // Slides a point of the crease of sheets a and b to the middle of the part within the box; false if no part is.
-  bool centre_in_box(int a, int b, Vector3d& x) const {
+  bool centre_in_box(int a, int b, const AlignedBox3d& reach, Vector3d& x) const {
     Vector3d ga, gb;
     s_.sheet[static_cast<std::size_t>(a)].distance(x, &ga);
     s_.sheet[static_cast<std::size_t>(b)].distance(x, &gb);
@@ -97,69 +108,124 @@ class Placer {
     double low = -std::numeric_limits<double>::infinity(), high = -low;
     for (int k = 0; k < 3; ++k) {
       if (std::abs(t[k]) < 1e-9) {
-        if (x[k] < box_.min()[k] || x[k] > box_.max()[k]) return false;
+        if (x[k] < reach.min()[k] || x[k] > reach.max()[k]) return false;
         continue;
       }
-      const double p = (box_.min()[k] - x[k]) / t[k], q = (box_.max()[k] - x[k]) / t[k];
+      const double p = (reach.min()[k] - x[k]) / t[k], q = (reach.max()[k] - x[k]) / t[k];
       low = std::max(low, std::min(p, q));
       high = std::min(high, std::max(p, q));
     }
     if (low >= high) return false;
     x += 0.5 * (low + high) * t;
-    return intersect(s_, {a, b}, x) && box_.contains(x);
+    return intersect(s_, {a, b}, x) && reach.contains(x);
   }
 
   const LocalSurface& s_;
-  AlignedBox3d box_;
+  const AlignedBox3d& box_;
 };
+
+// Where the dual surface's vertices go, one by one.
+class Placement {
+ public:
+  Placement(const Octree& octree, const DualSurface& surface, const std::vector<double>& value, const LocalFit& local)
+      : octree_(octree), surface_(surface), value_(value), local_(local) {}
+
+  // The i-th patch's vertex; on a crease or corner only with `features`.
+  [[nodiscard]] Placed place(std::size_t i, bool features) const {
+    Vector3d start = Vector3d::Zero(), outward = Vector3d::Zero();
+    for (std::size_t k = surface_.patch_begin[i]; k < surface_.patch_begin[i + 1]; ++k) {
+      const Crossing& c = surface_.crossings[surface_.patch_crossings[k]];
+      const Vector3d a = to_eigen(octree_.corner_position(c.inside)), b = to_eigen(octree_.corner_position(c.outside));
+      const double va = std::max(value_[c.inside], 0.0), vb = std::max(-value_[c.outside], 0.0);
+      const double t = va + vb > 0 ? std::clamp(va / (va + vb), 0.01, 0.99) : 0.5;
+      start += a + t * (b - a);
+      outward += (b - a).normalized();
+    }
+    start /= static_cast<double>(surface_.patch_begin[i + 1] - surface_.patch_begin[i]);
+    const double length = outward.norm();
+    if (length > 0) outward /= length;
+    const OctreeNode& leaf = octree_.nodes()[octree_.leaf_nodes()[surface_.patch_leaf[i]]];
+    const Vector3d low = to_eigen(octree_.world(leaf.low[0], leaf.low[1], leaf.low[2]));
+    const double cell = octree_.unit() * octree_.extent(leaf);
+    const AlignedBox3d box(low, low + Vector3d::Constant(cell));
+
+    Vector3d x = start, normal = outward;
+    Feature feature = Feature::kNone;
+    const LocalSurface fit = local_.fit(start, kTrust, length > 0 ? &outward : nullptr);
+    if (fit.count > 0) {
+      const Placer placer(fit, box);
+      if (features) feature = placer.feature(start, x);
+      if (feature == Feature::kNone) x = placer.smooth(start);
+      const AlignedBox3d reach(box.min().array() - kReach * cell, box.max().array() + kReach * cell);
+      if (!x.allFinite()) x = start;
+      x = x.cwiseMax(reach.min()).cwiseMin(reach.max());
+      int active = 0;
+      fit.distance(x, &active);
+      fit.sheet[static_cast<std::size_t>(active)].distance(x, &normal);
+    }
+    return {array(x), array(normal), feature, (x - start).norm()};
+  }
+
+ private:
+  const Octree& octree_;
+  const DualSurface& surface_;
+  const std::vector<double>& value_;
+  const LocalFit& local_;
+};
+
+// Leaves reach a little beyond their boxes for features, so that none between two of them, where CAD models like to have them, is missed.
+// If several take the same place their vertices coincide, and triangles have no area. Of such vertices all but one, a corner if there is
+// any, then the one that moved least: those that have to step aside, ascending.
+std::vector<std::uint32_t> taken_twice(const std::vector<Placed>& placed, double apart) {
+  std::vector<std::uint32_t> order;
+  for (std::uint32_t i = 0; i < placed.size(); ++i) {
+    if (placed[i].feature != Feature::kNone) order.push_back(i);
+  }
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return std::tie(placed[a].position, a) < std::tie(placed[b].position, b); });
+  const auto better = [&](std::uint32_t a, std::uint32_t b) {
+    return std::tuple(placed[b].feature, placed[a].moved, a) < std::tuple(placed[a].feature, placed[b].moved, b);
+  };
+  std::vector<std::uint32_t> losers;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    for (std::size_t m = k + 1; m < order.size(); ++m) {
+      const Vec3& p = placed[order[k]].position;
+      const Vec3& q = placed[order[m]].position;
+      if (q[0] - p[0] > apart) break;
+      if ((to_eigen(p) - to_eigen(q)).norm() <= apart) losers.push_back(better(order[k], order[m]) ? order[m] : order[k]);
+    }
+  }
+  std::sort(losers.begin(), losers.end());
+  losers.erase(std::unique(losers.begin(), losers.end()), losers.end());
+  return losers;
+}
 
 }  // namespace
 
 PlacedVertices place_vertices(const Octree& octree, const DualSurface& surface, const std::vector<double>& value, const LocalFit& local,
                               const std::atomic<bool>* cancel) {
-  PlacedVertices out;
   const std::size_t sheets = surface.patch_count();
-  const double shift = kShift * octree.unit() * static_cast<double>(std::uint32_t{1} << (kMaxOctreeLevel - octree.depth()));
-  out.positions.resize(sheets + surface.midpoints.size());
-  out.normals.resize(sheets);
+  const Placement placement(octree, surface, value, local);
+  std::vector<Placed> placed(sheets);
   parallel::for_blocks(
       sheets, 256,
       [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          Vector3d start = Vector3d::Zero(), outward = Vector3d::Zero();
-          for (std::size_t k = surface.patch_begin[i]; k < surface.patch_begin[i + 1]; ++k) {
-            const Crossing& c = surface.crossings[surface.patch_crossings[k]];
-            const Vector3d a = to_eigen(octree.corner_position(c.inside)), b = to_eigen(octree.corner_position(c.outside));
-            const double va = std::max(value[c.inside], 0.0), vb = std::max(-value[c.outside], 0.0);
-            const double t = va + vb > 0 ? std::clamp(va / (va + vb), 0.01, 0.99) : 0.5;
-            start += a + t * (b - a);
-            outward += (b - a).normalized();
-          }
-          start /= static_cast<double>(surface.patch_begin[i + 1] - surface.patch_begin[i]);
-          const double length = outward.norm();
-          if (length > 0) outward /= length;
-          const OctreeNode& leaf = octree.nodes()[octree.leaf_nodes()[surface.patch_leaf[i]]];
-          const Vector3d low = to_eigen(octree.world(leaf.low[0], leaf.low[1], leaf.low[2]));
-          const double cell = octree.unit() * octree.extent(leaf);
-          const AlignedBox3d box(low, low + Vector3d::Constant(cell));
-
-          Vector3d x = start, normal = outward;
-          const LocalSurface fit = local.fit(start, kTrust, length > 0 ? &outward : nullptr);
-          if (fit.count > 0) {
-            const Placer placer(fit, box, shift);
-            if (!placer.feature(start, x)) x = placer.smooth(start);
-            const AlignedBox3d reach(box.min().array() - kReach * cell, box.max().array() + kReach * cell);
-            if (!x.allFinite()) x = start;
-            x = x.cwiseMax(reach.min()).cwiseMin(reach.max());
-            int active = 0;
-            fit.distance(x, &active);
-            fit.sheet[static_cast<std::size_t>(active)].distance(x, &normal);
-          }
-          out.positions[i] = array(x);
-          out.normals[i] = array(normal);
-        }
+        for (std::size_t i = begin; i < end; ++i) placed[i] = placement.place(i, true);
       },
       cancel);
+  const double smallest = octree.unit() * static_cast<double>(std::uint32_t{1} << (kMaxOctreeLevel - octree.depth()));
+  for (const std::uint32_t i : taken_twice(placed, kApart * smallest)) {
+    const Vector3d taken = to_eigen(placed[i].position);
+    placed[i] = placement.place(i, false);
+    placed[i].position = array(taken + kAside * (to_eigen(placed[i].position) - taken));
+  }
+  PlacedVertices out;
+  out.positions.resize(sheets + surface.midpoints.size());
+  out.normals.resize(sheets);
+  for (std::size_t i = 0; i < sheets; ++i) {
+    out.positions[i] = placed[i].position;
+    out.normals[i] = placed[i].normal;
+  }
   for (std::size_t m = 0; m < surface.midpoints.size(); ++m) {
     const Vector3d a = to_eigen(out.positions[surface.midpoints[m][0]]), b = to_eigen(out.positions[surface.midpoints[m][1]]);
     out.positions[sheets + m] = array(0.5 * (a + b));
