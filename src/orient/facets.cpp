@@ -19,7 +19,16 @@ constexpr double kParallel = 0.9995;     // cosine
 constexpr double kEpsilon = 0.5;         // spacings
 constexpr double kWindingWeight = 100;   // cubed spacings; 30 to 1000 give the same sides
 constexpr Steps kSteps{30, StepKind::kConjugateGradient};
-constexpr double kTolerance = 5e-3;  // sides change no more from 1e-2 on
+constexpr double kTolerance = 5e-3;  // 2.5e-3 and twice the steps give the same sides
+
+// The normal of the first point of every facet, to whose side those of the others are turned.
+std::vector<Vec3> first_normals(const Facets& facets, const std::vector<Vec3>& normals) {
+  std::vector<Vec3> first(facets.count, Vec3{0, 0, 0});
+  for (std::size_t i = normals.size(); i-- > 0;) {
+    if (facets.of[i] != Facets::kNone) first[facets.of[i]] = normals[i];
+  }
+  return first;
+}
 
 // P M P x = P b.
 class OnFacets : public LinearSystem {
@@ -87,19 +96,6 @@ Facets find_facets(const std::vector<Vec3>& points, const std::vector<std::uint3
   }
   return facets;
 }
-
-namespace {
-
-// The normal of the first point of every facet, to whose side those of the others are turned.
-std::vector<Vec3> first_normals(const Facets& facets, const std::vector<Vec3>& normals) {
-  std::vector<Vec3> first(facets.count, Vec3{0, 0, 0});
-  for (std::size_t i = normals.size(); i-- > 0;) {
-    if (facets.of[i] != Facets::kNone) first[facets.of[i]] = normals[i];
-  }
-  return first;
-}
-
-}  // namespace
 
 double share_at_odds(const Facets& facets, const std::vector<Vec3>& normals) {
   const std::vector<Vec3> first = first_normals(facets, normals);
