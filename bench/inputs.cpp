@@ -11,8 +11,8 @@
 #include "cloud/neighbours.h"
 #include "cloud/spacing.h"
 #include "mesh/used_vertices.h"
-#include "mesh/vector.h"
 #include "metrics/random.h"
+#include "vector.h"
 
 namespace g3r::bench {
 

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "mesh/vector.h"
+#include "vector.h"
 
 namespace g3r::bench {
 

@@ -4,8 +4,8 @@
 #include "baselines/stretched_winding.h"
 #include "baselines/wnnc.h"
 #include "cloud/canonical_cloud.h"
-#include "mesh/vector.h"
 #include "shapes.h"
+#include "vector.h"
 
 #include <g3r/g3r.h>
 #include <gtest/gtest.h>

@@ -57,6 +57,37 @@ TEST(Layers, NoDeviationIsNone) {
   EXPECT_LT(deviation_of_sheets({0, 1}, 0, 128), 0.03);  // the least share of that about one sheet
 }
 
+// Of the 24 points nearest to one on a curved sheet that has another beside it.
+TwoSheets two_sheets(double gap, double sigma) {
+  shapes::Random random(7);
+  std::vector<Vec3> points;
+  for (const double offset : {0.0, gap}) {
+    for (int i = 0; i < 100; ++i) {
+      const double x = random.uniform(-5, 5), y = random.uniform(-5, 5);
+      points.push_back({x, y, offset + 0.3 * x + 0.05 * (x * x - y * y) + sigma * random.gaussian()});
+    }
+  }
+  std::vector<std::uint32_t> index;
+  std::vector<double> squared;
+  Neighbours(points).nearest({0, 0, 0}, 24, index, squared);
+  return fit_two_sheets(points, index.data(), index.size(), {0.1, 0, std::sqrt(0.99)});
+}
+
+TEST(Layers, TwoSheetsHaveTheirGap) {
+  for (const double gap : {0.3, 0.6, 1.2}) {
+    const TwoSheets sheets = two_sheets(gap, 0);
+    EXPECT_NEAR(sheets.gap / gap, 1, 0.15) << gap;  // across the slope
+    EXPECT_LT(sheets.deviation, 0.05 * gap) << gap;
+  }
+}
+
+TEST(Layers, NoiseAboutOneSheetIsNotTwo) {
+  for (const double sigma : {0.1, 0.5}) {
+    const TwoSheets sheets = two_sheets(0, sigma);
+    EXPECT_GT(sheets.deviation, 0.2 * sheets.gap) << sigma;
+  }
+}
+
 double estimate(const Surface& s) { return estimate_noise(s.points, Neighbours(s.points), typical_spacing(local_spacing(s.points))); }
 
 TEST(Noise, IsNearTheTruthFromAQuarterOfTheSpacingToThreeSpacings) {
@@ -152,6 +183,44 @@ TEST(Noise, SlightNoiseOnPlatesCostsNoSides) {
   Surface plates = shapes::plates(8, 0.7, 2.5, 3.5, 0.02);
   shapes::scatter(plates, 0.1 * 0.02);
   EXPECT_GE(shapes::share_correct(orient(plates.points).normals, plates.normals), 0.998);
+}
+
+// Plates 0.7 spacings thick and as far apart: no neighbourhood has a single side in it.
+TEST(Noise, PlatesWithoutSingleSidesAreClean) {
+  const Surface plates = shapes::plates(6, 0.9, 0.7, 0.7, 0.02);
+  EXPECT_EQ(estimate(plates), 0);
+  EXPECT_GE(shapes::share_correct(orient(plates.points).normals, plates.normals), 0.9);
+}
+
+TEST(Noise, CurvedWallsCloseTogetherAreClean) {
+  Surface walls;
+  std::uint64_t seed = 1;
+  for (const double radius : {0.3, 0.28, 0.25, 0.23}) {  // 0.5 and 0.76 spacings apart
+    walls = shapes::join(walls, shapes::torus(static_cast<std::size_t>(16000 * radius / 1.06), 0.6, radius, seed++));
+  }
+  EXPECT_EQ(estimate(walls), 0);
+}
+
+// Where a shape is small for its points, curvature lifts most residuals, but not all; noise lifts all.
+TEST(Noise, FewPointsOnUnevenShapesAreClean) {
+  const Surface ellipsoid = shapes::ellipsoid(400, 1, 0.3, 0.1);
+  EXPECT_EQ(estimate(ellipsoid), 0);
+  EXPECT_EQ(estimate(shapes::ellipsoid(280, 1, 0.3, 0.1)), 0);  // no residual is small, but some are far smaller than others
+  EXPECT_EQ(estimate(shapes::torus(600, 0.6, 0.1, 3)), 0);
+  Surface noisy = ellipsoid;
+  shapes::scatter(noisy, 0.02);
+  EXPECT_GT(estimate(noisy), 0.01);
+}
+
+// Rounding puts many noisy points on planes.
+TEST(Noise, RoundedCoordinatesDoNotHideIt) {
+  Surface s = shapes::torus(12000, 0.6, 0.25, 6);
+  const double h = plan(s.points).spacing;
+  shapes::scatter(s, 0.4 * h);
+  for (Vec3& p : s.points) {
+    for (double& c : p) c = std::round(c / (0.4 * h)) * 0.4 * h;
+  }
+  EXPECT_NEAR(estimate(s) / h, 0.41, 0.1);
 }
 
 }  // namespace

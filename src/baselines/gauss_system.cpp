@@ -1,6 +1,6 @@
 #include "baselines/gauss_system.h"
 
-#include "mesh/vector.h"
+#include "vector.h"
 
 namespace g3r {
 namespace {

@@ -1,8 +1,8 @@
 #include "baselines/hard_cutoff.h"
 
 #include "cpu/parallel.h"
-#include "mesh/vector.h"
 #include "sum/kernels.h"
+#include "vector.h"
 
 #include <algorithm>
 

@@ -2,8 +2,8 @@
 
 #include "baselines/near_pairs.h"
 #include "cloud/canonical_cloud.h"
-#include "mesh/vector.h"
 #include "sum/kernels.h"
+#include "vector.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "baselines/wnnc.h"
 
 #include "baselines/hard_cutoff.h"
-#include "mesh/vector.h"
 #include "orient/refine.h"
+#include "vector.h"
 
 #include <g3r/error.h>
 

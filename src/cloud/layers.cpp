@@ -23,6 +23,8 @@ constexpr Eigen::Index kTerms = 5;    // u, v, u^2, u v, v^2
 constexpr int kSteps = 20;            // of expectation and maximisation
 constexpr double kLeastShare = 0.05;  // of the deviation about one sheet, that about more: a mixture must not shrink to points
 constexpr double kRidge = 1e-9;       // on the terms, relative: points on a line leave some of them open
+constexpr int kRounds = 12;           // of two sheets: most are settled after 4
+constexpr int kFewestOnSheet = 4;     // of two sheets, on either
 constexpr double kNoShare = 1e-300;   // keeps the logarithm of a likelihood finite
 // Offsets to start from, in deviations about one sheet: where equal sheets without scatter would be, nearly (1; 1.22 and 0).
 constexpr std::array<double, 2> kTwoSheets{-0.9, 0.9};
@@ -121,6 +123,54 @@ double layered_deviation(const std::vector<Vec3>& points, const std::uint32_t* i
     if (mixture.criterion < best.criterion) best = mixture;
   }
   return best.sigma;
+}
+
+TwoSheets fit_two_sheets(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count, const Vec3& normal) {
+  constexpr Eigen::Index kMost = 32;
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, kTerms + 2, 0, kMost, kTerms + 2>;
+  using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
+  using Square = Eigen::Matrix<double, kTerms + 2, kTerms + 2>;
+  const auto n = static_cast<Eigen::Index>(count);
+  const Eigen::Matrix3d frame = tangent_frame(to_eigen(normal));
+  const Eigen::Vector3d centre = to_eigen(points[index[0]]);
+  const double radius = (to_eigen(points[index[count - 1]]) - centre).norm();
+  if (!(radius > 0)) return {};
+  Rows rows(n, kTerms + 2);  // on the upper sheet, on the lower one, terms
+  Column z(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Eigen::Vector3d q = frame * (to_eigen(points[index[k]]) - centre) / radius;
+    rows.row(k) << 0, 0, q[0], q[1], q[0] * q[0], q[0] * q[1], q[1] * q[1];
+    z[k] = q[2];
+  }
+  const Square ridge = kRidge * static_cast<double>(n) * Square::Identity();
+  const auto fit = [&]() -> Eigen::Matrix<double, kTerms + 2, 1> {
+    return (rows.transpose() * rows + ridge).ldlt().solve(rows.transpose() * z);
+  };
+  rows.col(0).setOnes();
+  Column above = z - rows * fit();  // one sheet
+  Column sorted = above;
+  std::nth_element(sorted.data(), sorted.data() + n / 2, sorted.data() + n);
+  double middle = sorted[n / 2];
+  TwoSheets sheets;
+  for (int round = 0; round < kRounds; ++round) {
+    bool settled = round > 0;
+    int upper = 0;
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const double on_upper = above[k] >= middle ? 1 : 0;
+      settled = settled && rows(k, 0) == on_upper;
+      rows(k, 0) = on_upper;
+      rows(k, 1) = 1 - on_upper;
+      upper += above[k] >= middle ? 1 : 0;
+    }
+    if (upper < kFewestOnSheet || static_cast<int>(n) - upper < kFewestOnSheet) return {};
+    if (settled) break;
+    const Eigen::Matrix<double, kTerms + 2, 1> solution = fit();
+    const double freedom = static_cast<double>(n - kTerms - 2);
+    sheets = {radius * std::sqrt((z - rows * solution).squaredNorm() / freedom), radius * (solution[0] - solution[1])};
+    above = z - rows.rightCols<kTerms>() * solution.tail<kTerms>();
+    middle = (solution[0] + solution[1]) / 2;
+  }
+  return sheets;
 }
 
 }  // namespace g3r

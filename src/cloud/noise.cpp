@@ -1,5 +1,6 @@
 #include "cloud/noise.h"
 
+#include "cloud/exact_plane.h"
 #include "cloud/layers.h"
 #include "cloud/plane_fit.h"
 #include "cloud/sheet.h"
@@ -19,10 +20,20 @@ constexpr std::size_t kSmall = 16;         // nearest ones that seldom reach acr
 constexpr std::size_t kSheets = 24;        // nearest ones whose kurtosis is taken
 constexpr double kFlattest = 0.02;         // share of the neighbourhoods that decides
 constexpr double kCleanResidual = 0.02;    // in spacings, of planes: below it is clean
-constexpr double kCleanQuadratic = 0.022;  // in spacings, of height fields through kSmall points, which curvature does not lift
-constexpr double kNoisyResidual = 0.08;    // in spacings, of planes, from where it is noise whatever the height fields say
+constexpr double kCleanQuadratic = 0.017;  // in spacings, of height fields through kClean points, which curvature does not lift
+constexpr double kUnevenQuadratic = 0.04;  // the same where the other neighbourhoods are lifted far more: by shape, then
+constexpr double kUneven = 0.15;           // of the median of the height fields' residuals, that of the flattest: 0.25 or more under noise
 constexpr double kFlatKurtosis = 0.1;      // share of neighbourhoods whose kurtosis decides
 constexpr double kSheetKurtosis = 1.85;    // of that quantile: 1.94 to 2.1 under Gaussian noise, 1.1 to 1.8 between sheets and on wires
+constexpr double kOnPlanes = 0.4;          // share of the points on exact planes that shows a cloud to be clean
+constexpr double kBetweenSheets = 0.005;   // share of neighbourhoods with two sheets that does: none in a thousand under noise
+constexpr std::size_t kFewestBetween = 5;  // such neighbourhoods
+constexpr std::size_t kFewSheets = 16;     // nearest ones on two sheets, of which those take a smaller share of the gap
+constexpr double kFewApart = 0.08;         // of the gap, the deviation from sheets through kFewSheets
+constexpr double kApart = 0.12;            // and through kSheets
+constexpr double kOnSheet = 0.05;          // in spacings, that deviation
+constexpr double kRounded = 0.05;          // in spacings, steps of coordinates that put noisy points on planes
+constexpr double kSameCoordinate = 1e-4;   // in spacings, between coordinates that differ by rounding only
 constexpr double kSmallToLarge = 1.27;     // residual of 32 neighbours to that of 16 on a noisy plane, while both are small
 constexpr double kSmallSaturation = 0.47;  // residual of 16 neighbours, in spacings, when noise fills the ball
 constexpr double kSaturationPower = 8;     // how late the ratio of the two leaves kSmallToLarge
@@ -77,6 +88,42 @@ double small_noise(double x16, double x32) {
   return x > kLargestResidual ? std::numeric_limits<double>::infinity() : x / (kSigmaIntercept - kSigmaSlope * x);
 }
 
+// Whether the coordinates along some axis are multiples of a step.
+bool rounded(const std::vector<Vec3>& points, double spacing) {
+  std::vector<double> sorted(points.size());
+  for (std::size_t a = 0; a < 3; ++a) {
+    std::transform(points.begin(), points.end(), sorted.begin(), [&](const Vec3& p) { return p[a]; });
+    std::sort(sorted.begin(), sorted.end());
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 1; i < sorted.size(); ++i) {
+      const double step = sorted[i] - sorted[i - 1];
+      if (step > kSameCoordinate * spacing) least = std::min(least, step);
+    }
+    if (least > kRounded * spacing && std::isfinite(least)) return true;
+  }
+  return false;
+}
+
+bool between_sheets(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, std::size_t count, double share,
+                    double spacing) {
+  const Vec3 normal = fit_plane(points, index.data(), count).normal;
+  const TwoSheets sheets = fit_two_sheets(points, index.data(), count, normal);
+  return sheets.deviation < std::min(share * sheets.gap, kOnSheet * spacing);
+}
+
+// Whether the points lie on several sheets without scatter, as those of thin walls and narrow gaps do: on planes, or on two curved sheets.
+bool on_exact_sheets(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing) {
+  std::size_t looked = 0, on_planes = 0, between = 0;
+  for_some(points, neighbours, kProbes, kPlaneNeighbours, [&](const Vec3&, const auto& index, const auto&) {
+    ++looked;
+    if (!find_exact_plane(points, index, spacing).points.empty()) ++on_planes;
+    if (between_sheets(points, index, kFewSheets, kFewApart, spacing) || between_sheets(points, index, kSheets, kApart, spacing)) ++between;
+  });
+  const auto share = [&](std::size_t some) { return static_cast<double>(some) / static_cast<double>(looked); };
+  if (share(on_planes) < kOnPlanes && (between < kFewestBetween || share(between) < kBetweenSheets)) return false;
+  return !rounded(points, spacing);
+}
+
 }  // namespace
 
 double estimate_noise(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing) {
@@ -87,16 +134,17 @@ double estimate_noise(const std::vector<Vec3>& points, const Neighbours& neighbo
   std::vector<double> quadratic;
   std::vector<double> kurtosis;
   for_some(points, neighbours, kProbes, kNeighbours, [&](const Vec3&, const auto& index, const auto&) {
-    clean.push_back(fit_plane(points, index.data(), kClean).residual);
-    const PlaneFit plane = fit_plane(points, index.data(), kSmall);
-    small.push_back(plane.residual);
-    quadratic.push_back(quadratic_residual(points, index.data(), kSmall, plane.normal, spacing));
+    const PlaneFit plane = fit_plane(points, index.data(), kClean);
+    clean.push_back(plane.residual);
+    quadratic.push_back(quadratic_residual(points, index.data(), kClean, plane.normal, spacing));
+    small.push_back(fit_plane(points, index.data(), kSmall).residual);
     kurtosis.push_back(fit_plane(points, index.data(), kSheets).kurtosis);
     large.push_back(fit_plane(points, index.data(), kNeighbours).residual);
   });
-  const double flattest = quantile(clean, kFlattest) / spacing;
-  const bool smooth = quantile(quadratic, kFlattest) < kCleanQuadratic * spacing;
-  if (flattest < (smooth ? kNoisyResidual : kCleanResidual) || quantile(kurtosis, kFlatKurtosis) < kSheetKurtosis) return 0;
+  const double curved = quantile(quadratic, kFlattest);
+  const bool uneven = curved < kUnevenQuadratic * spacing && curved < kUneven * quantile(quadratic, 0.5);
+  if (quantile(clean, kFlattest) < kCleanResidual * spacing || curved < kCleanQuadratic * spacing || uneven) return 0;
+  if (quantile(kurtosis, kFlatKurtosis) < kSheetKurtosis || on_exact_sheets(points, neighbours, spacing)) return 0;
   const double resolved = spacing * small_noise(quantile(small, kFlattest) / spacing, quantile(large, kFlattest) / spacing);
   return std::min(resolved, layered_noise(points, neighbours, spacing));
 }

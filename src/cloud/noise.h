@@ -10,20 +10,23 @@
 namespace g3r {
 
 /// Standard deviation of the points from their surface in each coordinate; 0 for a clean cloud.
-///   - Noise lifts the residual of every neighbourhood; curvature, creases and thin parts only that of some. So the flattest 2 % decide:
-///     their 12-point residual below 0.02 h means clean, and so does one below 0.08 h where 16-point quadratic height fields, which
-///     curvature does not lift, leave less than 0.022 h (measured: 28 clean models of 5,000 to 50,000 points are clean by this, noise of
-///     0.04 h is found).
-///   - Two sheets close together, and wires, also lift it everywhere, but there are neighbourhoods whose distances have two peaks: a 10 %
+///   - Noise lifts the residual of every neighbourhood; curvature, creases and thin parts only that of some. So the flattest 2 %
+///     decide: their 12-point residual from a plane below 0.02 h means clean, and so does one from a quadratic height field, which
+///     curvature does not lift, below 0.017 h, or below 0.04 h and 0.15 of the median (under noise it is 0.25 of that or more).
+///   - Two sheets close together, and wires, lift it everywhere, but there are neighbourhoods whose distances have two peaks: a 10 %
 ///     quantile of the kurtosis (24 neighbours) below 1.85 means sheets or wires (measured: those 1.1 to 1.8, noise 1.94 to 2.1).
-///   - The size is the less of two. While noise is small, from the residual x h of 32 neighbours: sigma = h x / (0.842 - 0.372 x), where x
-///   is
-///     at most what the residual y h of 16 lets expect on a plane, 1.27 y / (1 - (y / 0.47)^8): 32 neighbours reach across walls.
-///   - And, of any size, layered_deviation() of 256 neighbours, its 10 % quantile: it tells two or three sheets from one, but needs them to
-///     be smooth as far as that. Noise above h fills such neighbourhoods as well, so every fourth point is taken then, as often as needed.
-/// Within about 15 % of the truth on smooth shapes from 0.2 to 3 h and on walls of 3 sigma (docs/study.md, "Walls and the size of the noise").
-/// `neighbours` of these points; `spacing`: typical_spacing(). Same units as the points. Looks at about 2000 points, in O(log N) each, and
-/// sorts the thinned clouds, O(N log N).
+///   - Noise leaves no exact surface behind. Where 40 % of the points are on an exact plane (find_exact_plane()), or 0.5 % of the
+///     neighbourhoods lie on two sheets (fit_two_sheets()) within 0.08 (16 points) or 0.12 (24) of their gap, the cloud is clean,
+///     unless its coordinates are rounded to steps of 0.05 h or more, which puts noise on planes.
+///   - The size is the less of two. While noise is small, from the residual x h of 32 neighbours: sigma = h x / (0.842
+///   - 0.372 x), x being at most what the residual y h of 16 lets expect on a plane, 1.27 y / (1
+///   - (y / 0.47)^8): 32 neighbours reach across walls.
+///   - And, of any size, layered_deviation() of 256 neighbours, its 10 % quantile: it tells two or three sheets from one, but needs
+///     them to be smooth as far as that. Noise above h fills such neighbourhoods as well, so every fourth point is taken then, as often
+///     as needed.
+/// Within about 15 % of the truth on smooth shapes from 0.2 to 3 h and on walls of 3 sigma (docs/study.md, "Walls and the size of the
+/// noise"). `neighbours` of these points; `spacing`: typical_spacing(). Same units as the points. Looks at about 2000 points, in O(log N)
+/// each, and sorts the thinned clouds, O(N log N).
 [[nodiscard]] double estimate_noise(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing);
 
 /// How the number of points grows with the distance from one, as its power: about 2 on a surface, noisy or not, nearly 3 in a volume (2.6

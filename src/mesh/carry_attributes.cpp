@@ -5,7 +5,7 @@
 
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
-#include "mesh/vector.h"
+#include "vector.h"
 
 namespace g3r {
 namespace {

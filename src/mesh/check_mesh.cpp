@@ -12,7 +12,7 @@
 #include "mesh/disjoint_sets.h"
 #include "mesh/sides.h"
 #include "mesh/used_vertices.h"
-#include "mesh/vector.h"
+#include "vector.h"
 
 namespace g3r {
 

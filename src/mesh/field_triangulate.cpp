@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "mesh/field_contour.h"
-#include "mesh/vector.h"
+#include "vector.h"
 
 namespace g3r::mesh {
 namespace {

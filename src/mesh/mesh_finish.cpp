@@ -10,7 +10,7 @@
 #include "mesh/mesh_parts.h"
 #include "mesh/simplify.h"
 #include "mesh/smooth_spacing.h"
-#include "mesh/vector.h"
+#include "vector.h"
 
 namespace g3r::mesh {
 namespace {

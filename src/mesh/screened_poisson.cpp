@@ -15,7 +15,7 @@
 #include <thread>
 
 #include "mesh/split_nonmanifold.h"
-#include "mesh/vector.h"
+#include "vector.h"
 
 namespace g3r {
 

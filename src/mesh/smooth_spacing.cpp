@@ -2,7 +2,7 @@
 
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
-#include "mesh/vector.h"
+#include "vector.h"
 
 #include <algorithm>
 #include <cmath>

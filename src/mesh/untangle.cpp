@@ -8,7 +8,7 @@
 
 #include "g3r/error.h"
 #include "mesh/self_intersections.h"
-#include "mesh/vector.h"
+#include "vector.h"
 
 namespace g3r::mesh {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <g3r/mesh.h>
 
-#include "mesh/vector.h"
+#include "vector.h"
 
 namespace g3r {
 

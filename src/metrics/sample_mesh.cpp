@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "mesh/used_vertices.h"
-#include "mesh/vector.h"
 #include "metrics/random.h"
+#include "vector.h"
 
 namespace g3r {
 

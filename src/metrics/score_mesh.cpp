@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "cpu/parallel.h"
-#include "mesh/vector.h"
 #include "metrics/triangle_tree.h"
+#include "vector.h"
 
 namespace g3r {
 

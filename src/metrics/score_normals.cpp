@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "mesh/vector.h"
+#include "vector.h"
 
 namespace g3r {
 

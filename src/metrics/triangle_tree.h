@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh/vector.h"
+#include "vector.h"
 
 namespace g3r {
 

@@ -2,7 +2,7 @@
 
 #include "cpu/parallel.h"
 #include "median.h"
-#include "mesh/vector.h"
+#include "vector.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 #include "orient/facets.h"
 
-#include "mesh/vector.h"
 #include "solve/energy_system.h"
 #include "solve/iterative_solver.h"
 #include "sum/fast_sum.h"
+#include "vector.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,10 +16,12 @@ constexpr std::size_t kNeighbours = 17;  // the point itself, first, and 16 othe
 constexpr std::size_t kFewest = 10;      // points of a facet
 constexpr double kWithin = 0.003;        // spacings, of one point from another's plane
 constexpr double kParallel = 0.9995;     // cosine
-constexpr double kEpsilon = 0.5;         // spacings
+constexpr double kEpsilon = 0.2;         // spacings
 constexpr double kWindingWeight = 100;   // cubed spacings; 30 to 1000 give the same sides
-constexpr Steps kSteps{30, StepKind::kConjugateGradient};
-constexpr double kTolerance = 5e-3;  // 2.5e-3 and twice the steps give the same sides
+constexpr Steps kSteps{120, StepKind::kConjugateGradient};
+constexpr double kTolerance = 2e-3;
+constexpr double kSettledTolerance = 5e-3;  // where no facet has changed its side in the last
+constexpr int kSettledSteps = 10;           // steps
 
 // The normal of the first point of every facet, to whose side those of the others are turned.
 std::vector<Vec3> first_normals(const Facets& facets, const std::vector<Vec3>& normals) {
@@ -59,6 +61,27 @@ class OnFacets : public LinearSystem {
   const std::vector<double>& areas_;
   const std::vector<Vec3>& normals_;
   std::vector<double> squares_;  // sum of A_i^2 of every facet
+};
+
+// Says when the sides of all facets have been the same for some steps.
+class SettledSides {
+ public:
+  SettledSides(const Facets& facets, const std::vector<Vec3>& normals) : facets_(facets), normals_(normals), last_(facets.count, 0) {}
+  bool operator()(const IterativeResult& solve) {
+    std::vector<std::uint8_t> sides(facets_.count, 0);
+    for (std::size_t i = 0; i < normals_.size(); ++i) {
+      if (facets_.of[i] != Facets::kNone) sides[facets_.of[i]] = vector::dot(solve.eta[i], normals_[i]) < 0 ? 1 : 0;
+    }
+    unchanged_ = sides == last_ ? unchanged_ + 1 : 0;
+    last_ = std::move(sides);
+    return unchanged_ >= kSettledSteps && solve.residuals.back() <= kSettledTolerance;
+  }
+
+ private:
+  const Facets& facets_;
+  const std::vector<Vec3>& normals_;
+  std::vector<std::uint8_t> last_;
+  int unchanged_ = 0;
 };
 
 }  // namespace
@@ -126,7 +149,9 @@ void choose_facet_sides(const std::vector<Vec3>& points, const std::vector<std::
   FastSum sum(points, morton, Widths(kEpsilon * h), settings.first_sums, stages.cancel());
   EnergySystem free(sum, settings.damping, kWindingWeight * h * h * h);
   OnFacets system(free, facets, areas, turned);
-  const std::vector<Vec3> solved = solve_iteratively(system, {kSteps}, kTolerance, system.project(eta)).eta;
+  SettledSides settled(facets, turned);
+  const std::vector<Vec3> solved =
+      solve_iteratively(system, {kSteps}, kTolerance, system.project(eta), {}, [&](const IterativeResult& r) { return settled(r); }).eta;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (facets.of[i] == Facets::kNone) continue;
     eta[i] = solved[i];

@@ -5,7 +5,7 @@
 #include "cpu/parallel.h"
 #include "median.h"
 #include "mesh/disjoint_sets.h"
-#include "mesh/vector.h"
+#include "vector.h"
 
 #include <algorithm>
 #include <cmath>

@@ -51,7 +51,8 @@ std::vector<Steps> parse_schedule(const std::string& text) {
 }
 
 IterativeResult solve_iteratively(LinearSystem& system, const std::vector<Steps>& schedule, double tolerance, std::vector<Vec3> start,
-                                  const std::function<void(int, int, double)>& after_step) {
+                                  const std::function<void(int, int, double)>& after_step,
+                                  const std::function<bool(const IterativeResult&)>& enough) {
   int total = 0;
   for (const Steps& steps : schedule) total += steps.count;
   IterativeResult result;
@@ -89,6 +90,10 @@ IterativeResult solve_iteratively(LinearSystem& system, const std::vector<Steps>
       result.kinds.push_back(steps.kind);
       result.residuals.push_back(std::sqrt(squared) / size);
       if (after_step) after_step(++done, total, result.residuals.back());
+      if (enough && enough(result)) {
+        result.converged = true;
+        return result;
+      }
     }
   }
   result.converged = squared == 0 || std::sqrt(squared) <= tolerance * size;

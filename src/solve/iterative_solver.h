@@ -30,9 +30,11 @@ struct IterativeResult {
 };
 
 /// Follows the schedule until the relative residual falls to `tolerance` (0: never stop early).
-/// `start`: eta to begin with, or empty for 0. `after_step(step, steps, residual)` may throw to stop.
+/// `start`: eta to begin with, or empty for 0. `after_step(step, steps, residual)` may throw to stop; `enough`, asked after it, ends the
+/// solve when it is true, which then counts as converged.
 /// Sources: Hestenes and Stiefel 1952. One product with M per step; reductions in fixed order.
 [[nodiscard]] IterativeResult solve_iteratively(LinearSystem& system, const std::vector<Steps>& schedule, double tolerance,
-                                                std::vector<Vec3> start = {}, const std::function<void(int, int, double)>& after_step = {});
+                                                std::vector<Vec3> start = {}, const std::function<void(int, int, double)>& after_step = {},
+                                                const std::function<bool(const IterativeResult&)>& enough = {});
 
 }  // namespace g3r
