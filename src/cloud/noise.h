@@ -18,9 +18,9 @@ namespace g3r {
 ///   - Noise leaves no exact surface behind. Where 40 % of the points are on an exact plane (find_exact_plane()), or 0.5 % of the
 ///     neighbourhoods lie on two sheets (fit_two_sheets()) within 0.08 (16 points) or 0.12 (24) of their gap, the cloud is clean,
 ///     unless its coordinates are rounded to steps of 0.05 h or more, which puts noise on planes.
-///   - The size is the less of two. While noise is small, from the residual x h of 32 neighbours: sigma = h x / (0.842
-///   - 0.372 x), x being at most what the residual y h of 16 lets expect on a plane, 1.27 y / (1
-///   - (y / 0.47)^8): 32 neighbours reach across walls.
+///   - The size is the less of two. While noise is small, from the residual x h of 32 neighbours:
+///     sigma = h x / (0.842 - 0.372 x), x being at most what the residual y h of 16 lets expect on a plane, 1.27 y / (1 - (y / 0.47)^8):
+///     32 neighbours reach across walls.
 ///   - And, of any size, layered_deviation() of 256 neighbours, its 10 % quantile: it tells two or three sheets from one, but needs
 ///     them to be smooth as far as that. Noise above h fills such neighbourhoods as well, so every fourth point is taken then, as often
 ///     as needed.
