@@ -24,6 +24,7 @@ namespace {
 
 constexpr std::size_t kFewestApart = 100;  // points that are solved for again without the open sheets of their cloud
 constexpr double kAtOdds = 1e-3;           // share of the points against most of their facet, from which facets are solved for
+constexpr int kFacetRounds = 3;            // points on no facet come right after those on one, and facets grow
 constexpr double kSameSide = 0.5;          // cosine between the normals of a point and of its cluster on an open sheet
 
 void record(const Settings& s, const IterativeResult& result, Stats& stats) {
@@ -64,6 +65,26 @@ void set_sheet_areas(const OpenSheets& sheets, const std::vector<double>& spacin
   }
 }
 
+// Where the points of a cloud's facets disagree about their sides, every facet gets one, and the other points their normals from the field
+// of what the facets have become. `fit` proves normals; `proven`: those it has.
+template <typename Fit>
+void agree_on_facets(const Problem& problem, const std::vector<std::uint8_t>& proven, const Fit& fit, std::vector<Vec3>& eta,
+                     std::vector<Vec3>& normals, Stages& stages) {
+  const std::vector<Vec3>& points = problem.cloud.points;
+  const Settings& s = problem.settings;
+  for (int round = 0; round < kFacetRounds; ++round) {
+    const Facets facets = find_facets(points, problem.near, problem.local_spacing, proven, normals);
+    if (share_at_odds(facets, normals) < kAtOdds) return;
+    choose_facet_sides(points, problem.cloud.morton, s, problem.local_spacing, facets, eta, normals, stages);
+    FastSum sum(points, problem.cloud.morton, Widths(s.polish_width), s.sums, stages.cancel());
+    const Refinement refined = refine_normals(sum, eta);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (facets.of[i] == Facets::kNone) normals[i] = refined.normals[i];
+    }
+    fit();
+  }
+}
+
 // The normals of a clean cloud, where its points prove what the surface is.
 void fit_surface(const Problem& problem, std::vector<Vec3>& eta, std::vector<Vec3>& normals, Stages& stages) {
   const std::vector<Vec3>& points = problem.cloud.points;
@@ -76,9 +97,7 @@ void fit_surface(const Problem& problem, std::vector<Vec3>& eta, std::vector<Vec
   };
   fit();
   if (sharpen_creases(points, problem.near, spacing, normals)) fit();
-  const Facets facets = find_facets(points, problem.near, spacing, proven, normals);
-  if (share_at_odds(facets, normals) < kAtOdds) return;
-  choose_facet_sides(points, problem.cloud.morton, problem.settings, spacing, facets, eta, normals, stages);
+  agree_on_facets(problem, proven, fit, eta, normals, stages);
 }
 
 Solution solve_on_points(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
