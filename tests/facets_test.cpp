@@ -94,6 +94,12 @@ TEST(Facets, OfWallsThinnerThanTheSpacingTellTheirSides) {
   EXPECT_GE(shapes::share_correct(orient(walls.points).normals, walls.normals), 0.97);
 }
 
+// Walls half a spacing thick, one apart: 52 % right in steps too few and too wide, 97 % if points on no facet keep their normals.
+TEST(Facets, CloseTogetherTellTheirSidesAndThoseOfPointsBesideThem) {
+  const Surface walls = shapes::plates(4, 0.5, 0.5, 1, kSpacing);
+  EXPECT_GE(shapes::share_correct(orient(walls.points).normals, walls.normals), 0.98);
+}
+
 // The projector keeps area vectors that are one multiple of A_i n_i on a facet, so a solution on the right sides stays there.
 TEST(Facets, OnTheRightSideStayThere) {
   const Surface box = shapes::plates(2, 1, 5, 5, 0.04);
