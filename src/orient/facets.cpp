@@ -154,8 +154,8 @@ void choose_facet_sides(const std::vector<Vec3>& points, const std::vector<std::
       solve_iteratively(system, {kSteps}, kTolerance, system.project(eta), {}, [&](const IterativeResult& r) { return settled(r); }).eta;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (facets.of[i] == Facets::kNone) continue;
-    eta[i] = solved[i];
     normals[i] = vector::scale(turned[i], vector::dot(solved[i], turned[i]) < 0 ? -1 : 1);
+    eta[i] = vector::scale(normals[i], areas[i]);
   }
 }
 
