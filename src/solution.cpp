@@ -76,7 +76,7 @@ void agree_on_facets(const Problem& problem, const std::vector<std::uint8_t>& pr
     const Facets facets = find_facets(points, problem.near, problem.local_spacing, proven, normals);
     if (share_at_odds(facets, normals) < kAtOdds) return;
     choose_facet_sides(points, problem.cloud.morton, s, problem.local_spacing, facets, eta, normals, stages);
-    FastSum sum(points, problem.cloud.morton, Widths(s.polish_width), s.sums, stages.cancel());
+    FastSum sum(points, problem.cloud.morton, local_widths(s.polish_width, s, problem.local_spacing), s.sums, stages.cancel());
     const Refinement refined = refine_normals(sum, eta);
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (facets.of[i] == Facets::kNone) normals[i] = refined.normals[i];

@@ -1,5 +1,6 @@
 #include "orient/facets.h"
 
+#include "orient/polish.h"
 #include "solve/energy_system.h"
 #include "solve/iterative_solver.h"
 #include "sum/fast_sum.h"
@@ -146,7 +147,7 @@ void choose_facet_sides(const std::vector<Vec3>& points, const std::vector<std::
     areas[i] = spacing[i] * spacing[i];
     if (facets.of[i] != Facets::kNone && vector::dot(normals[i], first[facets.of[i]]) < 0) turned[i] = vector::scale(normals[i], -1);
   }
-  FastSum sum(points, morton, Widths(kEpsilon * h), settings.first_sums, stages.cancel());
+  FastSum sum(points, morton, local_widths(kEpsilon * h, settings, spacing), settings.first_sums, stages.cancel());
   EnergySystem free(sum, settings.damping, kWindingWeight * h * h * h);
   OnFacets system(free, facets, areas, turned);
   SettledSides settled(facets, turned);

@@ -13,14 +13,6 @@ namespace {
 
 constexpr double kMostArea = 3;  // of the areas handed in, and its inverse the least
 
-// `width` at the typical spacing, in proportion to the local one.
-Widths widths_of(double width, const Settings& settings, const std::vector<double>& spacing) {
-  if (spacing.empty()) return Widths(width);
-  std::vector<double> widths(spacing.size());
-  for (std::size_t i = 0; i < widths.size(); ++i) widths[i] = width / settings.spacing * spacing[i];
-  return Widths(std::move(widths));
-}
-
 std::vector<double> areas_of(const Settings& settings, const std::vector<double>& spacing, const std::vector<double>& multiplicity) {
   if (spacing.empty() && multiplicity.empty()) return {settings.spacing * settings.spacing};
   std::vector<double> areas(std::max(spacing.size(), multiplicity.size()));
@@ -32,6 +24,13 @@ std::vector<double> areas_of(const Settings& settings, const std::vector<double>
 }
 
 }  // namespace
+
+Widths local_widths(double width, const Settings& settings, const std::vector<double>& spacing) {
+  if (spacing.empty()) return Widths(width);
+  std::vector<double> widths(spacing.size());
+  for (std::size_t i = 0; i < widths.size(); ++i) widths[i] = width / settings.spacing * spacing[i];
+  return Widths(std::move(widths));
+}
 
 void gradient_to_areas(FastSum& sum, const std::vector<double>& areas, std::vector<Vec3>& gradient) {
   std::vector<double> lengths(gradient.size());
@@ -50,7 +49,7 @@ void gradient_to_areas(FastSum& sum, const std::vector<double>& areas, std::vect
 
 Polished polish(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
                 const std::vector<double>& spacing, const std::vector<double>& multiplicity, const Refinement& refined, Stages& stages) {
-  FastSum sum(points, morton, widths_of(settings.polish_epsilon, settings, spacing), settings.sums, stages.cancel());
+  FastSum sum(points, morton, local_widths(settings.polish_epsilon, settings, spacing), settings.sums, stages.cancel());
   EnergySystem system(sum, settings.polish_damping, settings.polish_winding_weight, multiplicity);
   std::vector<Vec3> start = refined.normals;
   for (std::size_t i = 0; i < start.size(); ++i) {
@@ -60,7 +59,7 @@ Polished polish(const std::vector<Vec3>& points, const std::vector<std::uint64_t
   const std::vector<Steps> schedule{{settings.polish_steps, StepKind::kConjugateGradient}};
   Polished polished;
   polished.eta = system.to_areas(solve_iteratively(system, schedule, 0, system.from_areas(std::move(start))).eta);
-  FastSum narrow(points, morton, widths_of(settings.polish_width, settings, spacing), settings.sums, stages.cancel());
+  FastSum narrow(points, morton, local_widths(settings.polish_width, settings, spacing), settings.sums, stages.cancel());
   polished.refinement = refine_normals(narrow, polished.eta);
   return polished;
 }
