@@ -223,5 +223,20 @@ TEST(Noise, RoundedCoordinatesDoNotHideIt) {
   EXPECT_NEAR(estimate(s) / h, 0.41, 0.1);
 }
 
+// A raster of heights, turned so that no coordinate is rounded: its rows, columns and diagonals lie in planes, with any noise.
+TEST(Noise, OfRastersIsFound) {
+  for (const double sigma : {0.4, 0.8, 1.5}) {
+    shapes::Random random(8);
+    Surface raster;
+    for (int i = 0; i < 100; ++i) {
+      for (int j = 0; j < 100; ++j) {
+        const double z = 8 * std::sin(i / 15.0) * std::cos(j / 12.0) + sigma * random.gaussian();
+        raster.points.push_back({0.6 * i + 0.8 * z, 0.8 * (0.8 * i - 0.6 * z) + 0.6 * j, 0.6 * (0.8 * i - 0.6 * z) - 0.8 * j});
+      }
+    }
+    EXPECT_GT(estimate(raster), 0.5 * sigma) << sigma;
+  }
+}
+
 }  // namespace
 }  // namespace g3r

@@ -96,6 +96,7 @@ ExactPlane find_exact_plane(const std::vector<Vec3>& points, const std::vector<s
   const PlaneFit fit = fit_plane(points, plane.points.data(), plane.points.size());
   if (fit.breadth < kNarrowest) return {};
   plane.normal = fit.normal;
+  plane.breadth = fit.breadth;
   return plane;
 }
 

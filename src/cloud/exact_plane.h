@@ -17,6 +17,7 @@ inline constexpr std::size_t kPlaneNeighbours = 33;
 struct ExactPlane {
   std::vector<std::uint32_t> points;  ///< on it, nearest first; none: there is no such plane
   Vec3 normal{0, 0, 0};               ///< of the least squares plane through them, either side
+  double breadth = 0;                 ///< their second principal spread over the first: 0 along a line, 1 all around
 };
 
 /// The plane through points[index[0]] that holds most of the points `index` (at most kPlaneNeighbours, nearest first): 8 or more to within

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace g3r {
@@ -25,7 +26,8 @@ constexpr double kUnevenQuadratic = 0.04;  // the same where the other neighbour
 constexpr double kUneven = 0.15;           // of the median of the height fields' residuals, that of the flattest: 0.25 or more under noise
 constexpr double kFlatKurtosis = 0.1;      // share of neighbourhoods whose kurtosis decides
 constexpr double kSheetKurtosis = 1.85;    // of that quantile: 1.94 to 2.1 under Gaussian noise, 1.1 to 1.8 between sheets and on wires
-constexpr double kOnPlanes = 0.4;          // share of the points on exact planes that shows a cloud to be clean
+constexpr double kOnPlanes = 0.42;         // share of the points on one exact plane that shows a cloud to be clean
+constexpr double kBroad = 0.4;             // breadth of the points on it, unlike those of a row
 constexpr double kBetweenSheets = 0.005;   // share of neighbourhoods with two sheets that does: none in a thousand under noise
 constexpr std::size_t kFewestBetween = 5;  // such neighbourhoods
 constexpr std::size_t kFewSheets = 16;     // nearest ones on two sheets, of which those take a smaller share of the gap
@@ -104,6 +106,17 @@ bool rounded(const std::vector<Vec3>& points, double spacing) {
   return false;
 }
 
+// Whether the first of the points is on a facet. Rows, columns and diagonals of a raster lie in planes across the surface however noisy it
+// is: such planes hold narrow strips, or there is another one among the points that are not on the first.
+bool on_one_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing) {
+  const ExactPlane plane = find_exact_plane(points, index, spacing);
+  if (plane.breadth < kBroad) return false;
+  std::vector<std::uint32_t> others{index.front()};
+  std::copy_if(index.begin(), index.end(), std::back_inserter(others),
+               [&](std::uint32_t i) { return std::find(plane.points.begin(), plane.points.end(), i) == plane.points.end(); });
+  return find_exact_plane(points, others, spacing).points.empty();
+}
+
 bool between_sheets(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, std::size_t count, double share,
                     double spacing) {
   const Vec3 normal = fit_plane(points, index.data(), count).normal;
@@ -116,7 +129,7 @@ bool on_exact_sheets(const std::vector<Vec3>& points, const Neighbours& neighbou
   std::size_t looked = 0, on_planes = 0, between = 0;
   for_some(points, neighbours, kProbes, kPlaneNeighbours, [&](const Vec3&, const auto& index, const auto&) {
     ++looked;
-    if (!find_exact_plane(points, index, spacing).points.empty()) ++on_planes;
+    if (on_one_plane(points, index, spacing)) ++on_planes;
     if (between_sheets(points, index, kFewSheets, kFewApart, spacing) || between_sheets(points, index, kSheets, kApart, spacing)) ++between;
   });
   const auto share = [&](std::size_t some) { return static_cast<double>(some) / static_cast<double>(looked); };
