@@ -15,7 +15,7 @@ namespace g3r {
 ///     curvature does not lift, below 0.017 h, or below 0.04 h and 0.15 of the median (under noise it is 0.25 of that or more).
 ///   - Two sheets close together, and wires, lift it everywhere, but there are neighbourhoods whose distances have two peaks: a 10 %
 ///     quantile of the kurtosis (24 neighbours) below 1.85 means sheets or wires (measured: those 1.1 to 1.8, noise 1.94 to 2.1).
-///   - Noise leaves no exact surface behind. Where 42 % of the points are on an exact plane (find_exact_plane(), breadth 0.4) and no
+///   - Noise leaves no exact surface behind. Where 40 % of the points are on an exact plane (find_exact_plane(), breadth 0.4) and no
 ///     second one, which those of a raster are, or 0.5 % of the neighbourhoods lie on two sheets (fit_two_sheets()) within 0.08 (16
 ///     points) or 0.12 (24) of their gap, the cloud is clean, unless its coordinates are rounded to steps of 0.05 h or more, which puts
 ///     noise on planes.
