@@ -5,6 +5,7 @@
 #include "cloud/plane_fit.h"
 #include "cloud/sheet.h"
 #include "cloud/spacing.h"
+#include "vector.h"
 
 #include <algorithm>
 #include <cmath>
@@ -28,6 +29,9 @@ constexpr double kFlatKurtosis = 0.1;      // share of neighbourhoods whose kurt
 constexpr double kSheetKurtosis = 1.85;    // of that quantile: 1.94 to 2.1 under Gaussian noise, 1.1 to 1.8 between sheets and on wires
 constexpr double kOnPlanes = 0.4;          // share of the points on one exact plane that shows a cloud to be clean
 constexpr double kBroad = 0.4;             // breadth of the points on it, unlike those of a row
+constexpr std::size_t kWide = 64;          // nearest ones whose plane is the surface's wherever that is not folded
+constexpr double kAlong = 0.5;             // cosine from which an exact plane lies along the surface
+constexpr double kMostlyAlong = 0.25;      // least share of the exact planes that do: none of those of scan lines
 constexpr double kBetweenSheets = 0.005;   // share of neighbourhoods with two sheets that does: none in a thousand under noise
 constexpr std::size_t kFewestBetween = 5;  // such neighbourhoods
 constexpr std::size_t kFewSheets = 16;     // nearest ones on two sheets, of which those take a smaller share of the gap
@@ -106,15 +110,16 @@ bool rounded(const std::vector<Vec3>& points, double spacing) {
   return false;
 }
 
-// Whether the first of the points is on a facet. Rows, columns and diagonals of a raster lie in planes across the surface however noisy it
-// is: such planes hold narrow strips, or there is another one among the points that are not on the first.
-bool on_one_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing) {
+// The facet that the first of the points is on; none, of breadth 0, where the points may be those of rows: the lines of a raster or a
+// scanner lie in planes across the surface however noisy it is, but in narrow strips of them, or there is another plane among the other
+// points.
+ExactPlane find_facet(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing) {
   const ExactPlane plane = find_exact_plane(points, index, spacing);
-  if (plane.breadth < kBroad) return false;
+  if (plane.breadth < kBroad) return {};
   std::vector<std::uint32_t> others{index.front()};
   std::copy_if(index.begin(), index.end(), std::back_inserter(others),
                [&](std::uint32_t i) { return std::find(plane.points.begin(), plane.points.end(), i) == plane.points.end(); });
-  return find_exact_plane(points, others, spacing).points.empty();
+  return find_exact_plane(points, others, spacing).points.empty() ? plane : ExactPlane{};
 }
 
 bool between_sheets(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, std::size_t count, double share,
@@ -126,15 +131,23 @@ bool between_sheets(const std::vector<Vec3>& points, const std::vector<std::uint
 
 // Whether the points lie on several sheets without scatter, as those of thin walls and narrow gaps do: on planes, or on two curved sheets.
 bool on_exact_sheets(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing) {
-  std::size_t looked = 0, on_planes = 0, between = 0;
-  for_some(points, neighbours, kProbes, kPlaneNeighbours, [&](const Vec3&, const auto& index, const auto&) {
+  std::size_t looked = 0, on_facets = 0, along = 0, between = 0;
+  std::vector<std::uint32_t> wide;
+  std::vector<double> squared;
+  for_some(points, neighbours, kProbes, kPlaneNeighbours, [&](const Vec3& point, const auto& index, const auto&) {
     ++looked;
-    if (on_one_plane(points, index, spacing)) ++on_planes;
+    const ExactPlane facet = find_facet(points, index, spacing);
+    if (facet.breadth > 0) {
+      neighbours.nearest(point, kWide, wide, squared);
+      ++on_facets;
+      along += std::abs(vector::dot(facet.normal, fit_plane(points, wide.data(), wide.size()).normal)) > kAlong ? 1 : 0;
+    }
     if (between_sheets(points, index, kFewSheets, kFewApart, spacing) || between_sheets(points, index, kSheets, kApart, spacing)) ++between;
   });
-  const auto share = [&](std::size_t some) { return static_cast<double>(some) / static_cast<double>(looked); };
-  if (share(on_planes) < kOnPlanes && (between < kFewestBetween || share(between) < kBetweenSheets)) return false;
-  return !rounded(points, spacing);
+  const auto share = [](std::size_t some, std::size_t all) { return static_cast<double>(some) / static_cast<double>(all); };
+  const bool flat = share(on_facets, looked) >= kOnPlanes && share(along, on_facets) >= kMostlyAlong;
+  const bool sheets = between >= kFewestBetween && share(between, looked) >= kBetweenSheets;
+  return (flat || sheets) && !rounded(points, spacing);
 }
 
 }  // namespace

@@ -16,9 +16,9 @@ namespace g3r {
 ///   - Two sheets close together, and wires, lift it everywhere, but there are neighbourhoods whose distances have two peaks: a 10 %
 ///     quantile of the kurtosis (24 neighbours) below 1.85 means sheets or wires (measured: those 1.1 to 1.8, noise 1.94 to 2.1).
 ///   - Noise leaves no exact surface behind. Where 40 % of the points are on an exact plane (find_exact_plane(), breadth 0.4) and no
-///     second one, which those of a raster are, or 0.5 % of the neighbourhoods lie on two sheets (fit_two_sheets()) within 0.08 (16
-///     points) or 0.12 (24) of their gap, the cloud is clean, unless its coordinates are rounded to steps of 0.05 h or more, which puts
-///     noise on planes.
+///     second one, a quarter of these planes within 60 degrees of that of 64 points (those of rasters and scan lines are not), or 0.5 % of
+///     the neighbourhoods lie on two sheets (fit_two_sheets()) within 0.08 (16 points) or 0.12 (24) of their gap, the cloud is clean,
+///     unless its coordinates are rounded to steps of 0.05 h or more, which puts noise on planes.
 ///   - The size is the less of two. While noise is small, from the residual x h of 32 neighbours:
 ///     sigma = h x / (0.842 - 0.372 x), x being at most what the residual y h of 16 lets expect on a plane, 1.27 y / (1 - (y / 0.47)^8):
 ///     32 neighbours reach across walls.
