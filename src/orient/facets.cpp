@@ -20,7 +20,7 @@ constexpr double kParallel = 0.9995;     // cosine
 constexpr double kEpsilon = 0.2;         // spacings
 constexpr double kWindingWeight = 100;   // cubed spacings; 30 to 1000 give the same sides
 constexpr Steps kSteps{120, StepKind::kConjugateGradient};
-constexpr double kTolerance = 2e-3;
+constexpr double kTolerance = 2e-3;         // less adds nothing, 5e-3 leaves walls of half a spacing on the wrong side
 constexpr double kSettledTolerance = 5e-3;  // where no facet has changed its side in the last
 constexpr int kSettledSteps = 10;           // steps
 

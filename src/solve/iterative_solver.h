@@ -26,7 +26,7 @@ struct IterativeResult {
   std::vector<Vec3> eta;
   std::vector<StepKind> kinds;    ///< per step done
   std::vector<double> residuals;  ///< |b - M eta| / |b| after each step, by recurrence
-  bool converged = false;         ///< the tolerance was reached
+  bool converged = false;         ///< the tolerance was reached, or it was `enough`
 };
 
 /// Follows the schedule until the relative residual falls to `tolerance` (0: never stop early).
