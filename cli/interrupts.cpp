@@ -63,7 +63,7 @@ void Interrupts::wait() {
   sigaddset(&wake, kWakeSignal);
   const timespec grace{0, kGraceMilliseconds * 1'000'000};
   if (sigtimedwait(&wake, nullptr, &grace) == kWakeSignal) return;
-  constexpr std::string_view kMessage = "\ng3r: interrupted, nothing written\n";
+  constexpr std::string_view kMessage = "\ng3r: interrupted\n";
   [[maybe_unused]] const auto written = write(STDERR_FILENO, kMessage.data(), kMessage.size());
   _exit(exit_code_);
 }

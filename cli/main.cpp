@@ -105,7 +105,7 @@ int run_program(int argc, const char* const* argv) {
   } catch (const Unavailable& error) {
     return complain(kUnavailable, error.what());
   } catch (const Cancelled&) {
-    return complain(interrupts->exit_code(), "interrupted, nothing written");
+    return complain(interrupts->exit_code(), "interrupted");
   } catch (const std::bad_alloc&) {
     return complain(kOutOfMemory, "out of memory");
   } catch (const std::exception& error) {

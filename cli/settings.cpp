@@ -149,7 +149,8 @@ void add_finish_options(CLI::App& app, Settings& s) {
   app.add_flag_callback(
       "--open", [&o] { o.trim = MeshOptions::Trim::kAuto; }, "For open scans: the same as --trim auto");
   app.add_option("--keep-largest", o.keep_largest, "Keep only the N largest components (default: all)")->type_name("N");
-  app.add_option("--min-component", o.min_component, "Drop components of less area than N points stand for (default 8; 0 keeps all)")
+  app.add_option("--min-component", o.min_component,
+                 "Drop components of less area than N points stand for (default 8, more under noise; 0 keeps all)")
       ->check(range(0.0, 1e15))
       ->type_name("N");
   app.add_option("--faces", o.faces, "Simplify to about N triangles")->type_name("N");

@@ -1,6 +1,7 @@
 // The winding field of an oriented cloud, anywhere in space.
+#include "areas.h"
 #include "cloud/canonical_cloud.h"
-#include "cloud/outliers.h"
+#include "cloud/neighbours.h"
 #include "cloud/spacing.h"
 #include "oriented_cloud.h"
 #include "sum/fast_sum.h"
@@ -16,50 +17,45 @@ namespace {
 constexpr double kDefaultWidth = 0.55;  // spacings; the width of the refinement
 constexpr double kAccuracy = 1e-3;      // of the sums
 
-constexpr std::size_t kFewestPoints = 4;  // of a surface
-
-// `local`: the local spacings, empty if they are not known.
-OrientedCloud with_areas(CanonicalCloud cloud, const std::vector<Vec3>& normals, const std::vector<double>& areas,
-                         std::vector<double> local) {
-  OrientedCloud out;
-  out.cloud = std::move(cloud);
-  out.eta.assign(out.cloud.size(), Vec3{0, 0, 0});
-  const double scale = out.cloud.frame.scale * out.cloud.frame.scale;
-  for (std::size_t i = 0; i < normals.size(); ++i) {
-    const std::uint32_t p = out.cloud.point_of[i];
-    if (p == kNoPoint) continue;
-    for (std::size_t a = 0; a < 3; ++a) out.eta[p][a] += scale * areas[i] * normals[i][a];
-  }
-  std::vector<std::uint32_t> without_area;  // outliers
-  for (std::uint32_t p = 0; p < out.eta.size(); ++p) {
-    if (out.eta[p] == Vec3{0, 0, 0}) without_area.push_back(p);
-  }
-  if (!without_area.empty() && out.eta.size() - without_area.size() >= kFewestPoints) {
-    remove_points(out.cloud, without_area);
-    std::erase(out.eta, Vec3{0, 0, 0});
-    local.clear();
-  }
-  out.spacing = typical_spacing(local.empty() ? local_spacing(out.cloud.points) : std::move(local));
-  return out;
-}
+constexpr std::size_t kNear = 17;  // neighbours, of which areas need 16
 
 }  // namespace
 
 OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& normals, const std::vector<double>& areas) {
-  return with_areas(canonical_cloud(points), normals, areas, {});
+  std::vector<Vec3> kept;  // all but outliers, which have no area and may be far away
+  std::vector<std::size_t> input;
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    if (areas[i] == 0) continue;
+    kept.push_back(points[i]);
+    input.push_back(i);
+  }
+  OrientedCloud out;
+  out.cloud = canonical_cloud(PointsView(kept));
+  out.eta.assign(out.cloud.size(), Vec3{0, 0, 0});
+  const double scale = out.cloud.frame.scale;
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    const std::uint32_t p = out.cloud.point_of[k];
+    if (p == kNoPoint) continue;
+    const double area = areas[input[k]] * scale * scale;  // from the left: the square of a scale may leave the range of double
+    for (std::size_t a = 0; a < 3; ++a) out.eta[p][a] += area * normals[input[k]][a];
+  }
+  out.spacing = typical_spacing(local_spacing(out.cloud.points));
+  return out;
 }
 
 OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& normals) {
-  CanonicalCloud cloud = canonical_cloud(points);
-  std::vector<double> local = local_spacing(cloud.points);
-  std::vector<double> areas(normals.size(), 0);
-  for (std::size_t i = 0; i < areas.size(); ++i) {
-    const std::uint32_t p = cloud.point_of[i];
+  OrientedCloud out;
+  out.cloud = canonical_cloud(points);
+  std::vector<Vec3> merged(out.cloud.size(), Vec3{0, 0, 0});
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const std::uint32_t p = out.cloud.point_of[i];
     if (p == kNoPoint) continue;
-    const double h = cloud.frame.length_to_world(local[p]);
-    areas[i] = h * h / cloud.multiplicity[p];
+    for (std::size_t a = 0; a < 3; ++a) merged[p][a] += normals[i][a] / out.cloud.multiplicity[p];
   }
-  return with_areas(std::move(cloud), normals, areas, std::move(local));
+  const std::vector<std::uint32_t> near = Neighbours(out.cloud.points).of_all(kNear);
+  out.eta = area_vectors(out.cloud.points, out.cloud.morton, near, merged, {}, nullptr);
+  out.spacing = typical_spacing(local_spacing(out.cloud.points, near));
+  return out;
 }
 
 struct Field::Impl {

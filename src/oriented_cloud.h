@@ -11,13 +11,14 @@ namespace g3r {
 
 struct OrientedCloud {
   CanonicalCloud cloud;
-  std::vector<Vec3> eta;  ///< M area-weighted normals in normalised units; duplicates are added up, points without area left out
+  std::vector<Vec3> eta;  ///< M area-weighted normals in normalised units; duplicates are added up
   double spacing = 0;     ///< typical, normalised units
 };
 
-/// From N points, N unit normals and N areas in squared input units. Throws InvalidInput like canonical_cloud().
+/// From N points, N unit normals and N areas in squared input units. Points without area are left out. Throws InvalidInput like
+/// canonical_cloud().
 [[nodiscard]] OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& normals, const std::vector<double>& areas);
-/// The same with the squared local spacing as the area of each point, duplicates sharing it.
+/// The same with areas from the spacing of the points: area_vectors(). Duplicates share theirs.
 [[nodiscard]] OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& normals);
 
 }  // namespace g3r

@@ -1,4 +1,5 @@
 // The whole program on one page: one line per step (orient_in_arena).
+#include "areas.h"
 #include "baselines/baseline.h"
 #include "cloud/neighbours.h"
 #include "cloud/noise.h"
@@ -17,6 +18,7 @@
 namespace g3r {
 namespace {
 
+constexpr std::size_t kNear = 17;    // neighbours, of which areas need 16
 constexpr double kManyUnsure = 0.2;  // share of unsure points above which the orientation is called inconsistent
 
 const char* name_of(Method method) {
@@ -90,6 +92,14 @@ void add_outliers(const Problem& problem, Stages& stages, Solution& solution, st
   confidence.insert(confidence.end(), none.size(), 0.0F);
 }
 
+// The solve is for normals; the lengths of its vectors follow the luck of the sample. Earlier methods keep theirs.
+void settle_areas(const Problem& problem, Stages& stages, Solution& solution) {
+  if (problem.settings.method != Method::kEnergy) return;
+  const std::vector<Vec3>& points = problem.cloud.points;
+  const std::vector<std::uint32_t> near = problem.near.empty() ? Neighbours(points).of_all(kNear) : problem.near;
+  solution.eta = area_vectors(points, problem.cloud.morton, near, solution.refinement.normals, solution.sheets, stages.cancel());
+}
+
 // From the canonical order back to the caller's. A duplicate gets its twin's normal and its share of the area.
 void hand_out(const CanonicalCloud& cloud, const std::vector<Vec3>& eta, const std::vector<Vec3>& normals,
               const std::vector<float>& confidence, Orientation& out) {
@@ -153,10 +163,11 @@ Orientation orient_in_arena(const PointsView& points, const Options& options, St
   Solution solution = solve(problem, options, stages, out.stats);
   solve_sheets_apart(problem, options, stages, out.stats, solution);
   std::vector<Vec3>& normals = solution.refinement.normals;
-  std::vector<float> confidence = side_confidence(solution.eta, normals, solution.refinement.strength);
+  std::vector<float> confidence = side_confidence(solution.eta, normals, solution.refinement.strength, problem.local_spacing);
   add_sheets(solution.sheets, confidence, out.stats);
   judge(problem.cloud, confidence, out.stats);
   warn_of_volume(problem, out.stats);
+  settle_areas(problem, stages, solution);
   add_outliers(problem, stages, solution, confidence);
   hand_out(problem.cloud, solution.eta, normals, confidence, out);
   stages.finish(out.stats);

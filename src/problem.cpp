@@ -31,18 +31,24 @@ Problem prepare(const PointsView& points, const Options& options, Stages& stages
   problem.cloud = canonical_cloud(points);
   stages.check();
   const std::vector<Vec3>& cloud = problem.cloud.points;
-  auto neighbours = std::make_unique<Neighbours>(cloud);
-  std::vector<std::uint32_t> near = neighbours->of_all(kNear);
-  std::vector<double> local = local_spacing(cloud, near);
+  std::unique_ptr<Neighbours> neighbours;
+  std::vector<std::uint32_t> near;
+  std::vector<double> local;
+  const auto look_around = [&] {
+    neighbours = std::make_unique<Neighbours>(cloud);
+    near = neighbours->of_all(kNear);
+    local = local_spacing(cloud, near);
+  };
+  look_around();
   problem.spacing = typical_spacing(local);
-  if (options.preset != Preset::kPaper && !is_baseline(options.method)) {
-    const std::vector<std::uint32_t> outliers = find_outliers(cloud, near, local, problem.spacing);
-    if (!outliers.empty()) {
-      problem.outliers = remove_points(problem.cloud, outliers);
-      neighbours = std::make_unique<Neighbours>(cloud);
-      near = neighbours->of_all(kNear);
-      local = local_spacing(cloud, near);
-    }
+  bool outliers_wanted = options.preset != Preset::kPaper && !is_baseline(options.method);
+  while (outliers_wanted) {
+    std::vector<Vec3> removed = remove_points(problem.cloud, find_outliers(cloud, near, local, problem.spacing));
+    if (removed.empty()) break;
+    problem.outliers.insert(problem.outliers.begin(), removed.begin(), removed.end());
+    outliers_wanted = refit_frame(problem.cloud, problem.outliers);  // far ones may have hidden nearer ones
+    look_around();
+    if (outliers_wanted) problem.spacing = typical_spacing(local);
   }
   problem.noise = options.preset == Preset::kPaper ? 0 : estimate_noise(cloud, *neighbours, problem.spacing);
   choose_scales(problem, options, std::move(near), local);

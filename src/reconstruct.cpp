@@ -2,8 +2,8 @@
 #include "cpu/parallel.h"
 #include "mesh/field_mesher.h"
 #include "mesh/mesh_finish.h"
-#include "mesh/smooth_spacing.h"
 #include "mesh/screened_poisson.h"
+#include "mesh/smooth_spacing.h"
 #include "orient/settings.h"
 #include "oriented_cloud.h"
 #include "stages.h"
@@ -70,7 +70,7 @@ Mesh make_mesh(const OrientedCloud& oriented, const MeshOptions& options, const 
   if (options.mesher == Mesher::kPoisson) {
     mesh = mesh_with_poisson(oriented, directions, options.depth);
     normalised.min_component = 0;  // specks of screened Poisson are part of its result
-    mesh::finish_mesh(mesh, oriented.cloud.points, mesh::smooth_spacing(oriented.cloud.points), normalised);
+    mesh::finish_mesh(mesh, oriented.cloud.points, mesh::smooth_spacing(oriented.cloud.points), 0, normalised);
   } else {
     mesh = field_mesh(oriented.cloud.points, directions, WindingSampler(oriented, monitor.cancel), normalised, monitor, max_memory);
   }

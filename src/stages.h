@@ -23,14 +23,18 @@ class Stages {
     progress(0);
   }
   void progress(double fraction) {
+    fraction_ = fraction;
+    still_going();
+  }
+  /// Progress that nothing is known of: callers get a chance to cancel.
+  void still_going() {
     check();
-    if (monitor_.progress && !monitor_.progress(stage_, fraction)) throw Cancelled();
+    if (monitor_.progress && !monitor_.progress(stage_, fraction_)) throw Cancelled();
   }
   void check() const {
     if (monitor_.cancel != nullptr && monitor_.cancel->load(std::memory_order_relaxed)) throw Cancelled();
   }
   [[nodiscard]] const std::atomic<bool>* cancel() const { return monitor_.cancel; }
-  [[nodiscard]] const Monitor& monitor() const { return monitor_; }
 
   /// Ends the last stage and writes times and peak memory.
   void finish(Stats& stats) {
@@ -56,6 +60,7 @@ class Stages {
   const Monitor& monitor_;
   Clock::time_point stage_start_;
   std::string stage_;
+  double fraction_ = 0;
   std::vector<std::pair<std::string, double>> seconds_;
 };
 

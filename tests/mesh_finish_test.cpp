@@ -7,10 +7,11 @@
 #include <limits>
 
 #include "field_shapes.h"
+#include "median.h"
 #include "mesh/field_mesher.h"
 #include "mesh/mesh_parts.h"
-#include "mesh/smooth_spacing.h"
 #include "mesh/simplify.h"
+#include "mesh/smooth_spacing.h"
 #include "mesh_topology.h"
 
 namespace {
@@ -45,11 +46,32 @@ TEST(MeshFinish, ComponentsBelowTheAreaAreDropped) {
   EXPECT_NEAR(topology(one).volume, 4.0 / 3.0 * M_PI, 0.02);
 }
 
+// What noise makes grows with it, so what goes unasked does too.
+TEST(MeshFinish, SpecksMayBeLargerUnderNoise) {
+  TwoSpheres two;
+  const std::vector<double> spacing = mesh::smooth_spacing(two.sample.points);
+  const double h = median(spacing);
+  const double points = 1.13 / (h * h);  // that the small sphere stands for
+  const double noise = std::sqrt((points / 8 - 1) / 4);
+  const auto components = [&](double times, std::optional<double> least) {
+    Mesh mesh = two.mesh;
+    MeshOptions options;
+    options.min_component = least;
+    mesh::finish_mesh(mesh, two.sample.points, spacing, times * noise, options);
+    return topology(mesh).components;
+  };
+  EXPECT_EQ(components(0, {}), 2U);
+  EXPECT_EQ(components(0.9, {}), 2U);
+  EXPECT_EQ(components(1.1, {}), 1U);
+  EXPECT_EQ(components(1.1, 8), 2U);
+  EXPECT_EQ(components(0, 1.1 * points), 1U);
+}
+
 TEST(MeshFinish, LargestComponentsAreKept) {
   TwoSpheres two;
   MeshOptions options;
   options.keep_largest = 1;
-  mesh::finish_mesh(two.mesh, two.sample.points, mesh::smooth_spacing(two.sample.points), options);
+  mesh::finish_mesh(two.mesh, two.sample.points, mesh::smooth_spacing(two.sample.points), 0, options);
   EXPECT_EQ(topology(two.mesh).components, 1U);
   EXPECT_GT(topology(two.mesh).volume, 4.0);
 }
@@ -63,7 +85,7 @@ TEST(MeshFinish, TrimmingOpensTheMeshWherePointsAreMissing) {
   MeshOptions options;
   options.trim = MeshOptions::Trim::kAuto;
   EXPECT_GT(mesh::far_share(two.mesh, half, 4), 0.3);
-  mesh::finish_mesh(two.mesh, half, mesh::smooth_spacing(half), options);
+  mesh::finish_mesh(two.mesh, half, mesh::smooth_spacing(half), 0, options);
   const MeshCheck check = check_mesh(two.mesh);
   EXPECT_FALSE(check.closed);
   EXPECT_TRUE(check.manifold);
@@ -76,7 +98,7 @@ TEST(MeshFinish, TrimmingClosedDataChangesNothing) {
   const Mesh before = two.mesh;
   MeshOptions options;
   options.trim = MeshOptions::Trim::kAuto;
-  mesh::finish_mesh(two.mesh, two.sample.points, mesh::smooth_spacing(two.sample.points), options);
+  mesh::finish_mesh(two.mesh, two.sample.points, mesh::smooth_spacing(two.sample.points), 0, options);
   EXPECT_EQ(before.triangles, two.mesh.triangles);
 }
 
@@ -84,9 +106,9 @@ TEST(MeshFinish, TrimDistanceMustBePositiveAndLeaveSomething) {
   TwoSpheres two;
   MeshOptions options;
   options.trim = MeshOptions::Trim::kDistance;
-  EXPECT_THROW(mesh::finish_mesh(two.mesh, two.sample.points, mesh::smooth_spacing(two.sample.points), options), InvalidInput);
+  EXPECT_THROW(mesh::finish_mesh(two.mesh, two.sample.points, mesh::smooth_spacing(two.sample.points), 0, options), InvalidInput);
   options.trim_distance = 1e-9;
-  EXPECT_THROW(mesh::finish_mesh(two.mesh, two.sample.points, mesh::smooth_spacing(two.sample.points), options), InvalidInput);
+  EXPECT_THROW(mesh::finish_mesh(two.mesh, two.sample.points, mesh::smooth_spacing(two.sample.points), 0, options), InvalidInput);
 }
 
 TEST(MeshFinish, TouchingTrianglesAreSeparatedAtTheirCommonVertex) {

@@ -9,6 +9,7 @@
 #include <g3r/g3r.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace g3r {
@@ -77,6 +78,64 @@ TEST(Outliers, RemovedPointsAreNumberedAfterTheOthers) {
     const std::uint32_t now = cloud.point_of[i];
     EXPECT_EQ(now < 198 ? cloud.points[now] : removed[now - 198], before.points[before.point_of[i]]);
   }
+}
+
+// A scanner that saw nothing says (0, 0, 0), which at UTM coordinates is a million sizes of the object away: what is left must be resolved
+// as if it had never been there.
+TEST(Outliers, FarStrayPointsChangeNothing) {
+  shapes::Surface both = shapes::sphere(4000, 5, {5e5, 5.2e6, 100});
+  const shapes::Surface cavity = shapes::sphere(4000, 4, {5e5, 5.2e6, 100});
+  both.points.insert(both.points.end(), cavity.points.begin(), cavity.points.end());
+  for (const Vec3& n : cavity.normals) both.normals.push_back({-n[0], -n[1], -n[2]});
+  const Orientation without = orient(both.points);
+  std::vector<Vec3> points = both.points;
+  points.push_back({0, 0, 0});
+  points.push_back({4.9e5, 5.2e6, 0});  // hidden by the first until that one is gone
+  const Orientation with = orient(points);
+  EXPECT_EQ(with.stats.outliers, 2U);
+  EXPECT_NEAR(with.stats.spacing, without.stats.spacing, 1e-6 * without.stats.spacing);
+  EXPECT_EQ(share_right(both, {with.normals.begin(), with.normals.begin() + 8000}), 1.0);
+  EXPECT_LT(with.confidence[8000] + with.confidence[8001], 1e-6F);
+  const Mesh mesh = reconstruct(points).mesh;
+  for (const Vec3& v : mesh.vertices) ASSERT_LT(std::hypot(v[0] - 5e5, v[1] - 5.2e6, v[2] - 100), 5.2);
+  const std::vector<Vec3> queries{{5e5, 5.2e6, 104.5}, {5e5, 5.2e6, 100}};  // in the wall and in the cavity
+  const std::vector<double> winding = Field(points, with).value(queries), expected = Field(both.points, without).value(queries);
+  EXPECT_GT(expected[0] - expected[1], 0.9);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(winding[i], expected[i], 1e-3);
+}
+
+TEST(Outliers, TheFrameFollowsWhatIsLeft) {
+  std::vector<Vec3> points = shapes::torus(200, 0.6, 0.25, 1).points;
+  points.push_back({100, 0, 0});
+  CanonicalCloud cloud = canonical_cloud(points);
+  std::vector<Vec3> others = remove_points(cloud, {cloud.point_of[200]});
+  ASSERT_TRUE(refit_frame(cloud, others));
+  EXPECT_FALSE(refit_frame(cloud, others));
+  EXPECT_TRUE(std::is_sorted(cloud.morton.begin(), cloud.morton.end()));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint32_t p = cloud.point_of[i];
+    const Vec3& unit = p < 200 ? cloud.points[p] : others[p - 200];
+    const Vec3 expected = cloud.frame.to_unit(points[i]);
+    for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(unit[a], expected[a], 1e-11);
+    if (p < 200) {
+      EXPECT_EQ(cloud.morton[p], morton_code(unit));
+    }
+  }
+}
+
+// Where points lie closer their areas are smaller, which is no reason for doubt.
+TEST(Density, IsNoDoubt) {
+  const std::size_t n = 6000;
+  shapes::Surface surface = shapes::sphere(n);
+  const shapes::Surface fine = shapes::sphere(12 * n);
+  for (std::size_t i = 0; i < fine.points.size(); ++i) {
+    if (fine.points[i][2] < 0.75) continue;
+    surface.points.push_back(fine.points[i]);
+    surface.normals.push_back(fine.normals[i]);
+  }
+  const Orientation o = orient(surface.points);
+  EXPECT_TRUE(o.stats.consistent);
+  EXPECT_LT(o.stats.confidence_below_half, 0.02);
 }
 
 TEST(Density, MayFallTenfold) {

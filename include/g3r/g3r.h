@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -106,7 +107,7 @@ struct Stats {
   double spacing = 0;   ///< typical distance between neighbours, square root of area per point
   double noise = 0;     ///< estimated standard deviation of the points from their surface, 0: clean
   double epsilon = 0;
-  int depth = 0;  ///< octree depth of the mesher, 0 if no mesh was made
+  int depth = 0;  ///< octree depth asked of the mesher; 0: the automatic one, or no mesh
   std::string preset;
   std::string method;
   std::string solver;     ///< "dense", "cg" or "wnnc"
@@ -164,9 +165,11 @@ struct MeshOptions {
   Trim trim = Trim::kOff;
   double trim_distance = 0;      ///< input units, > 0 with Trim::kDistance
   std::size_t keep_largest = 0;  ///< keep only this many components, largest first; 0: all
-  double min_component = 8;      ///< drop components of less area than this many points stand for, 0: none; the largest always stays
-  std::size_t faces = 0;         ///< simplify to about this many triangles; 0: off
-  int threads = 0;  ///< of mesh_oriented(), 0: all cores; reconstruct() takes Options::threads. The result does not depend on it
+  /// Components of less area than this many points stand for are dropped, 0: none; the largest always stays. Empty: 8, and where points
+  /// scatter by s spacings 8 (1 + 4 s^2).
+  std::optional<double> min_component;
+  std::size_t faces = 0;  ///< simplify to about this many triangles; 0: off
+  int threads = 0;        ///< of mesh_oriented(), 0: all cores; reconstruct() takes Options::threads. The result does not depend on it
 };
 
 /// A mesh together with the normals it was made from.
@@ -212,7 +215,8 @@ class Field {
   Field(Field&&) noexcept;
   Field& operator=(Field&&) noexcept;
 
-  /// w at Q query points: Q values. O(N + Q log N) after a build of O(N log N).
+  /// w at Q query points, finite: Q values. O(N + Q log N) after a build of O(N log N); queries farther from the centre of the points' box
+  /// than 0.55 of its longest side, on any axis, O(N) each.
   [[nodiscard]] std::vector<double> value(const PointsView& queries, const Monitor& monitor = {}) const;
   /// Gradient of w at Q query points, in 1 / input units; points inward.
   [[nodiscard]] std::vector<Vec3> gradient(const PointsView& queries, const Monitor& monitor = {}) const;

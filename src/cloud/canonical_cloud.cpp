@@ -213,6 +213,33 @@ CanonicalCloud canonical_cloud(const PointsView& points) {
   return cloud;
 }
 
+bool refit_frame(CanonicalCloud& cloud, std::vector<Vec3>& others) {
+  const Bounds bounds = bounds_of(cloud.points);
+  double side = 0;
+  for (std::size_t a = 0; a < 3; ++a) side = std::max(side, bounds.high[a] - bounds.low[a]);
+  if (side >= kBoxSide / 2) return false;
+  const Frame inner = frame_of(bounds);
+  for (std::size_t a = 0; a < 3; ++a) cloud.frame.centre[a] += inner.centre[a] / cloud.frame.scale;
+  cloud.frame.scale *= inner.scale;
+  std::vector<Vec3> unit(cloud.size());
+  for (std::size_t i = 0; i < unit.size(); ++i) unit[i] = inner.to_unit(cloud.points[i]);
+  for (Vec3& p : others) p = inner.to_unit(p);
+  MortonOrder order = morton_order(unit);
+  const std::vector<std::uint32_t> multiplicity = cloud.multiplicity;
+  std::vector<std::uint32_t> renumbered(cloud.size());
+  for (std::uint32_t k = 0; k < cloud.size(); ++k) {
+    const std::uint32_t i = order.index[k];
+    cloud.points[k] = unit[i];
+    cloud.multiplicity[k] = multiplicity[i];
+    renumbered[i] = k;
+  }
+  cloud.morton = std::move(order.code);
+  for (std::uint32_t& p : cloud.point_of) {
+    if (p < renumbered.size()) p = renumbered[p];
+  }
+  return true;
+}
+
 bool is_flat(const CanonicalCloud& cloud) {
   constexpr double kFlatness = 1e-6;  // thickness over extent; a scan of any solid is far above
   // The plane through the first point, the point farthest from it, and the point farthest from the line through both.

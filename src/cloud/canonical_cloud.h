@@ -46,6 +46,10 @@ struct MortonOrder {
 };
 [[nodiscard]] MortonOrder morton_order(const std::vector<Vec3>& unit_points);
 
+/// Fits the frame anew, and sorts anew, where the points fill less than half of its longest side because far ones have been taken out: the
+/// grid and the kernels have to resolve what is left. `others`, in the unit frame, move with it. Returns whether it did. O(N).
+bool refit_frame(CanonicalCloud& cloud, std::vector<Vec3>& others);
+
 /// Whether all points lie in one plane, within 1e-6 of their extent: nothing says which side is outside. O(N).
 [[nodiscard]] bool is_flat(const CanonicalCloud& cloud);
 

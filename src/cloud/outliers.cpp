@@ -76,10 +76,9 @@ std::vector<Vec3> remove_points(CanonicalCloud& cloud, const std::vector<std::ui
   }
   cloud.points.resize(staying);
   cloud.morton.resize(staying);
-  cloud.multiplicity.resize(staying);
-  cloud.multiplicity.insert(cloud.multiplicity.end(), removed_multiplicity.begin(), removed_multiplicity.end());
+  std::copy(removed_multiplicity.begin(), removed_multiplicity.end(), cloud.multiplicity.begin() + static_cast<std::ptrdiff_t>(staying));
   for (std::uint32_t& p : cloud.point_of) {
-    if (p != kNoPoint) p = renumbered[p];
+    if (p < renumbered.size()) p = renumbered[p];
   }
   return removed;
 }

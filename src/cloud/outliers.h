@@ -19,7 +19,8 @@ namespace g3r {
 [[nodiscard]] std::vector<std::uint32_t> find_outliers(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near,
                                                        const std::vector<double>& local, double typical);
 
-/// Takes the points with these indices out of the cloud and returns them. point_of and multiplicity number them after those that stay.
+/// Takes the points with these indices out of the cloud and returns them. point_of and multiplicity number them after those that stay, and
+/// before those taken out earlier.
 std::vector<Vec3> remove_points(CanonicalCloud& cloud, const std::vector<std::uint32_t>& indices);
 
 }  // namespace g3r

@@ -35,8 +35,11 @@ inline void wait() {
 #endif
 }
 
-/// Number of threads a request for `threads` gets: 0 asks for all cores.
-inline int thread_count(int threads) { return threads > 0 ? threads : tbb::info::default_concurrency(); }
+/// Number of threads a request for `threads` gets: 0 asks for all cores. Never more than there are cores.
+inline int thread_count(int threads) {
+  const int cores = tbb::info::default_concurrency();
+  return threads > 0 ? std::min(threads, cores) : cores;
+}
 
 /// Runs `work()` with at most `threads` threads (0: all cores) and returns what it returns.
 template <class Work>

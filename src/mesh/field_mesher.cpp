@@ -84,7 +84,7 @@ struct Prepared {
   OrientedPoints points;                         // positions that scatter are moved onto the surface they scatter about
   std::unique_ptr<const Neighbours> neighbours;  // of these positions
   std::vector<std::uint32_t> near;               // of_all(kNear)
-  bool noisy = false;
+  double noise = 0;                              // of the positions as they came, in spacings; 0 where it is too little to tell
 };
 
 // In place: the neighbours refer to the positions.
@@ -107,8 +107,8 @@ void prepare(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, 
   for (double& h : out.spacing) h = std::max(h, kLeastSpacing * typical);
   const mesh::Noise noise = mesh::estimate_noise(out, *prepared.neighbours);
   report(monitor, 0.05);
-  prepared.noisy = noise.position > kNoisy;
-  if (prepared.noisy) {
+  if (noise.position > kNoisy) {
+    prepared.noise = noise.position;
     mesh::denoise(out, *prepared.neighbours, noise, monitor.cancel);
     find_neighbours();
   }
@@ -311,7 +311,7 @@ Mesh raw_mesh(const Prepared& prepared, const FieldSampler& sampler, const MeshO
   const double spacing = median(oriented.spacing);
   const LocalFit local(oriented, *prepared.neighbours, prepared.near, LocalFitOptions{});
   const Octree octree =
-      make_octree(oriented, prepared.noisy ? std::vector<double>{} : mesh::wall_thickness(oriented, prepared.near), options, monitor);
+      make_octree(oriented, prepared.noise > 0 ? std::vector<double>{} : mesh::wall_thickness(oriented, prepared.near), options, monitor);
   require_memory_for(oriented.positions.size(), octree, options.depth, max_memory);
   report(monitor, 0.3);
   const Side side(local, sampler, oriented);
@@ -361,7 +361,7 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
   prepared.neighbours.reset();
   prepared.near = {};
   mesh::untangle(mesh, monitor.cancel);
-  mesh::finish_mesh(mesh, prepared.points.positions, prepared.points.spacing, options);
+  mesh::finish_mesh(mesh, prepared.points.positions, prepared.points.spacing, prepared.noise, options);
   report(monitor, 1);
   return mesh;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "cloud/neighbours.h"
 #include "cpu/parallel.h"
 
 namespace g3r::mesh {
@@ -177,26 +178,24 @@ class Placement {
 // If several take the same place their vertices coincide, and triangles have no area. Of such vertices all but one, a corner if there is
 // any, then the one that moved least: those that have to step aside, ascending.
 std::vector<std::uint32_t> taken_twice(const std::vector<Placed>& placed, double apart) {
-  std::vector<std::uint32_t> order;
+  std::vector<std::uint32_t> on_feature;
+  std::vector<Vec3> positions;
   for (std::uint32_t i = 0; i < placed.size(); ++i) {
-    if (placed[i].feature != Feature::kNone) order.push_back(i);
+    if (placed[i].feature == Feature::kNone) continue;
+    on_feature.push_back(i);
+    positions.push_back(placed[i].position);
   }
-  std::sort(order.begin(), order.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return std::tie(placed[a].position, a) < std::tie(placed[b].position, b); });
+  if (positions.empty()) return {};
+  const Neighbours neighbours(positions);
   const auto better = [&](std::uint32_t a, std::uint32_t b) {
     return std::tuple(placed[b].feature, placed[a].moved, a) < std::tuple(placed[a].feature, placed[b].moved, b);
   };
-  std::vector<std::uint32_t> losers;
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    for (std::size_t m = k + 1; m < order.size(); ++m) {
-      const Vec3& p = placed[order[k]].position;
-      const Vec3& q = placed[order[m]].position;
-      if (q[0] - p[0] > apart) break;
-      if ((to_eigen(p) - to_eigen(q)).norm() <= apart) losers.push_back(better(order[k], order[m]) ? order[m] : order[k]);
-    }
+  std::vector<std::uint32_t> losers, close;
+  for (const std::uint32_t i : on_feature) {
+    neighbours.within(placed[i].position, apart, close);
+    const auto yields_to = [&](std::uint32_t k) { return on_feature[k] != i && !better(i, on_feature[k]); };
+    if (std::any_of(close.begin(), close.end(), yields_to)) losers.push_back(i);
   }
-  std::sort(losers.begin(), losers.end());
-  losers.erase(std::unique(losers.begin(), losers.end()), losers.end());
   return losers;
 }
 

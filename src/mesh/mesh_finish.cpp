@@ -15,8 +15,10 @@
 namespace g3r::mesh {
 namespace {
 
-constexpr double kFarSpacings = 4;  // surface farther from every point than this is a guess
-constexpr int kEarPasses = 2;       // of removing triangles that hang on by one edge, for a smoother boundary
+constexpr double kFarSpacings = 4;     // surface farther from every point than this is a guess
+constexpr double kLeastComponent = 8;  // points: smaller ones are specks of the sign
+constexpr double kLeastPerNoise = 4;   // noise leaves larger ones: a sphere of 1.7 standard deviations
+constexpr int kEarPasses = 2;          // of removing triangles that hang on by one edge, for a smoother boundary
 
 // Distance of each place to the nearest point, in units of `unit(nearest point)`.
 template <class Unit>
@@ -91,14 +93,16 @@ double far_share(const Mesh& mesh, const std::vector<Vec3>& points, double spaci
   return total > 0 ? far / total : 0;
 }
 
-void finish_mesh(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>& spacing, const MeshOptions& options) {
+void finish_mesh(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>& spacing, double noise,
+                 const MeshOptions& options) {
   const bool by_distance = options.trim == MeshOptions::Trim::kDistance;
   if (by_distance && !(options.trim_distance > 0)) throw InvalidInput("the trim distance must be positive");
-  if (!(options.min_component >= 0)) throw InvalidInput("the smallest component must not be negative");
+  const double least = options.min_component.value_or(kLeastComponent * (1 + kLeastPerNoise * noise * noise));
+  if (!(least >= 0)) throw InvalidInput("the smallest component must not be negative");
   if (mesh.triangles.empty()) return;
   if (options.trim != MeshOptions::Trim::kOff) trim(mesh, points, spacing, options);
   const double typical = median(spacing);
-  remove_components(mesh, options.min_component * typical * typical, options.keep_largest);
+  remove_components(mesh, least * typical * typical, options.keep_largest);
   if (options.faces > 0) simplify(mesh, options.faces);
 }
 

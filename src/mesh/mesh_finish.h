@@ -12,7 +12,7 @@ namespace g3r::mesh {
 
 /// Trims, drops components and simplifies as the options ask; `trim_distance` is in the units of the mesh. A closed 2-manifold stays
 /// closed unless trimmed, and 2-manifold always. Throws InvalidInput if an option is out of range or nothing would be left.
-/// `spacing`: of each point.
-void finish_mesh(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>& spacing, const MeshOptions& options);
+/// `spacing`: of each point; `noise`: standard deviation of the points about the surface, in spacings.
+void finish_mesh(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>& spacing, double noise, const MeshOptions& options);
 
 }  // namespace g3r::mesh

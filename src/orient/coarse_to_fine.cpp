@@ -32,9 +32,12 @@ Settings coarser(Settings settings) {
   return settings;
 }
 
+IterativeResult solve_level(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
+                            double share, Stages& stages);
+
 // The winding gradient at `points` of the solution on a quarter of them, or nothing when there are too few.
 std::vector<Vec3> coarse_gradient(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
-                                  Stages& stages) {
+                                  double share, Stages& stages) {
   if (!starts_coarse(settings, points.size())) return {};
   std::vector<Vec3> some;
   std::vector<std::uint64_t> codes;
@@ -43,25 +46,20 @@ std::vector<Vec3> coarse_gradient(const std::vector<Vec3>& points, const std::ve
     codes.push_back(morton[i]);
   }
   const Settings coarse = coarser(settings);
-  const std::vector<Vec3> eta = solve_coarse_to_fine(some, codes, coarse, stages).eta;
+  const std::vector<Vec3> eta = solve_level(some, codes, coarse, kCoarseShare * share, stages).eta;
   const FastSum sum(some, codes, Widths(coarse.refinement_width), coarse.sums, stages.cancel());
   return sum.winding_gradient_at(eta, points, stages.cancel());
 }
 
 double unsure_share_of(FastSum& field, const std::vector<Vec3>& eta) {
   const Refinement refined = refine_normals(field, eta);
-  return unsure_share(side_confidence(eta, refined.normals, refined.strength));
+  return unsure_share(side_confidence(eta, refined.normals, refined.strength, {}));
 }
 
-}  // namespace
-
-bool starts_coarse(const Settings& settings, std::size_t points) {
-  return settings.coarse_to_fine && points / kThinning >= kFewestCoarsePoints;
-}
-
-IterativeResult solve_coarse_to_fine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
-                                     Stages& stages) {
-  std::vector<Vec3> start = coarse_gradient(points, morton, settings, stages);
+// `share`: of all progress, where this level ends; the coarser ones take kCoarseShare of it.
+IterativeResult solve_level(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
+                            double share, Stages& stages) {
+  std::vector<Vec3> start = coarse_gradient(points, morton, settings, share, stages);
   const bool coarsest = start.empty();
   FastSum sum(points, morton, Widths(coarsest ? settings.coarsest_epsilon : settings.epsilon),
               coarsest ? settings.first_sums : settings.sums, stages.cancel());
@@ -74,23 +72,34 @@ IterativeResult solve_coarse_to_fine(const std::vector<Vec3>& points, const std:
   }
   if (coarsest) {
     return solve_iteratively(*system, settings.schedule, settings.tolerance, {},
-                             [&](int step, int steps, double) { stages.progress(static_cast<double>(step) / steps); });
+                             [&](int step, int steps, double) { stages.progress(share * step / steps); });
   }
   const double tolerance = settings.continued_tolerance;
   IterativeResult result =
       solve_iteratively(*system, settings.continued_schedule, tolerance, std::move(start),
-                        [&](int step, int steps, double) { stages.progress(kCoarseShare + (1 - kCoarseShare) * step / steps); });
+                        [&](int step, int steps, double) { stages.progress(share * (kCoarseShare + (1 - kCoarseShare) * step / steps)); });
   if (result.converged || settings.doubtful_schedule.empty()) return result;
   FastSum field(points, morton, Widths(settings.refinement_width), settings.sums, stages.cancel());
   const double unsure = unsure_share_of(field, result.eta);
   if (unsure < kDoubtfulShare + settings.unsure_of_noise) return result;
   FastSum wider(points, morton, Widths(settings.coarsest_epsilon), settings.first_sums, stages.cancel());
   EnergySystem heavier(wider, settings.damping, settings.doubtful_winding_weight);
-  IterativeResult more = solve_iteratively(heavier, settings.doubtful_schedule, settings.doubtful_tolerance, result.eta);
+  IterativeResult more = solve_iteratively(heavier, settings.doubtful_schedule, settings.doubtful_tolerance, result.eta,
+                                           [&](int, int, double) { stages.still_going(); });
   if (settings.unsure_of_noise == 0 && unsure_share_of(field, more.eta) > kWorse * unsure) return result;
   more.kinds.insert(more.kinds.begin(), result.kinds.begin(), result.kinds.end());
   more.residuals.insert(more.residuals.begin(), result.residuals.begin(), result.residuals.end());
   return more;
+}
+}  // namespace
+
+bool starts_coarse(const Settings& settings, std::size_t points) {
+  return settings.coarse_to_fine && points / kThinning >= kFewestCoarsePoints;
+}
+
+IterativeResult solve_coarse_to_fine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
+                                     Stages& stages) {
+  return solve_level(points, morton, settings, 1, stages);
 }
 
 }  // namespace g3r

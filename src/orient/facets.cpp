@@ -151,8 +151,9 @@ void choose_facet_sides(const std::vector<Vec3>& points, const std::vector<std::
   EnergySystem free(sum, settings.damping, kWindingWeight * h * h * h);
   OnFacets system(free, facets, areas, turned);
   SettledSides settled(facets, turned);
-  const std::vector<Vec3> solved =
-      solve_iteratively(system, {kSteps}, kTolerance, system.project(eta), {}, [&](const IterativeResult& r) { return settled(r); }).eta;
+  const auto still_going = [&stages](int, int, double) { stages.still_going(); };
+  const auto enough = [&settled](const IterativeResult& r) { return settled(r); };
+  const std::vector<Vec3> solved = solve_iteratively(system, {kSteps}, kTolerance, system.project(eta), still_going, enough).eta;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (facets.of[i] == Facets::kNone) continue;
     normals[i] = vector::scale(turned[i], vector::dot(solved[i], turned[i]) < 0 ? -1 : 1);

@@ -57,8 +57,9 @@ Polished polish(const std::vector<Vec3>& points, const std::vector<std::uint64_t
   }
   gradient_to_areas(sum, areas_of(settings, spacing, multiplicity), start);
   const std::vector<Steps> schedule{{settings.polish_steps, StepKind::kConjugateGradient}};
+  const auto still_going = [&stages](int, int, double) { stages.still_going(); };
   Polished polished;
-  polished.eta = system.to_areas(solve_iteratively(system, schedule, 0, system.from_areas(std::move(start))).eta);
+  polished.eta = system.to_areas(solve_iteratively(system, schedule, 0, system.from_areas(std::move(start)), still_going).eta);
   FastSum narrow(points, morton, local_widths(settings.polish_width, settings, spacing), settings.sums, stages.cancel());
   polished.refinement = refine_normals(narrow, polished.eta);
   return polished;

@@ -44,17 +44,23 @@ Refinement unit_normals(std::vector<Vec3> gradients, const std::vector<Vec3>& et
   return refined;
 }
 
-std::vector<float> side_confidence(const std::vector<Vec3>& eta, const std::vector<Vec3>& normals, const std::vector<double>& strength) {
-  std::vector<double> sizes(eta.size());
-  for (std::size_t i = 0; i < eta.size(); ++i) sizes[i] = length(eta[i]);
-  const double full_size = kFullSize * median(sizes);
-  const double full_strength = strength.empty() ? 0 : kFullSize * median(strength);
+std::vector<float> side_confidence(const std::vector<Vec3>& eta, const std::vector<Vec3>& normals, const std::vector<double>& strength,
+                                   const std::vector<double>& spacing) {
+  const auto h = [&spacing](std::size_t i) { return spacing.empty() ? 1 : spacing[i]; };
+  std::vector<double> sizes(eta.size()), areas(eta.size()), jumps(strength.size());
+  for (std::size_t i = 0; i < eta.size(); ++i) {
+    sizes[i] = length(eta[i]);
+    areas[i] = sizes[i] / (h(i) * h(i));
+    if (!strength.empty()) jumps[i] = strength[i] * h(i);
+  }
+  const double full_area = kFullSize * median(areas);
+  const double full_jump = jumps.empty() ? 0 : kFullSize * median(jumps);
   std::vector<float> confidence(eta.size(), 0.0F);
   for (std::size_t i = 0; i < eta.size(); ++i) {
     if (!(sizes[i] > 0)) continue;
     const double cosine = (eta[i][0] * normals[i][0] + eta[i][1] * normals[i][1] + eta[i][2] * normals[i][2]) / sizes[i];
-    double c = std::clamp((1 + cosine) / 2, 0.0, 1.0) * std::min(1.0, sizes[i] / full_size);
-    if (full_strength > 0) c *= std::min(1.0, strength[i] / full_strength);
+    double c = std::clamp((1 + cosine) / 2, 0.0, 1.0) * std::min(1.0, areas[i] / full_area);
+    if (full_jump > 0) c *= std::min(1.0, jumps[i] / full_jump);
     confidence[i] = static_cast<float>(c);
   }
   return confidence;

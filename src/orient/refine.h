@@ -26,11 +26,12 @@ struct Refinement {
 
 /// Confidence in the side of each normal, in [0, 1]: c = a m f with
 ///   a = (1 + cos angle(eta_i, n_i)) / 2              solved and refined directions agree
-///   m = min(1, 2 |eta_i| / median |eta|)             wrong points have small areas: about 0.2 of the median
-///   f = min(1, 2 |grad w_i| / median |grad w|)       and lie where the field is weak; 1 without a refinement (empty `strength`)
+///   m = min(1, 2 A_i / median A), A = |eta| / h^2    wrong points have small areas: about 0.2 of the median
+///   f = min(1, 2 G_i / median G), G = |grad w| h     and lie where the field is weak; 1 without a refinement (empty `strength`)
+/// with h the local `spacing`, in proportion to the widths that |grad w| is for; empty: the same everywhere.
 /// It must rank wrong sides on noisy data with AUC > 0.85 (tests/orient_test).
 [[nodiscard]] std::vector<float> side_confidence(const std::vector<Vec3>& eta, const std::vector<Vec3>& normals,
-                                                 const std::vector<double>& strength);
+                                                 const std::vector<double>& strength, const std::vector<double>& spacing);
 
 /// Share of the points, of at least one, whose side_confidence() is below a half. O(N).
 [[nodiscard]] double unsure_share(const std::vector<float>& confidence);

@@ -67,28 +67,31 @@ std::vector<Vec3> stokes_single_layer(const std::vector<Vec3>& points, const Wid
   return out;
 }
 
-std::vector<double> winding(const std::vector<Vec3>& points, double width, const std::vector<Vec3>& eta, const std::vector<Vec3>& targets) {
+std::vector<double> winding(const std::vector<Vec3>& points, double width, const std::vector<Vec3>& eta, const std::vector<Vec3>& targets,
+                            const std::atomic<bool>* cancel) {
   std::vector<double> out(targets.size(), 0.0);
-  parallel::for_each(targets.size(), [&](std::size_t j) {
+  const auto sum_at = [&](std::size_t j) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Vec3 r = minus(points[i], targets[j]);
       out[j] += mollified_kernels(dot(r, r), width).double_layer * dot(r, eta[i]);
     }
-  });
+  };
+  parallel::for_each(targets.size(), sum_at, cancel);
   return out;
 }
 
 std::vector<Vec3> winding_gradient(const std::vector<Vec3>& points, double width, const std::vector<Vec3>& eta,
-                                   const std::vector<Vec3>& targets) {
+                                   const std::vector<Vec3>& targets, const std::atomic<bool>* cancel) {
   std::vector<Vec3> out(targets.size(), Vec3{0, 0, 0});
-  parallel::for_each(targets.size(), [&](std::size_t j) {
+  const auto sum_at = [&](std::size_t j) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Vec3 r = minus(points[i], targets[j]);
       const KernelValues kernel = mollified_kernels(dot(r, r), width);
       add_scaled(out[j], kernel.double_layer, eta[i]);
       add_scaled(out[j], -kernel.gradient * dot(r, eta[i]), r);
     }
-  });
+  };
+  parallel::for_each(targets.size(), sum_at, cancel);
   return out;
 }
 

@@ -6,6 +6,7 @@
 
 #include <g3r/points.h>
 
+#include <atomic>
 #include <cstddef>
 #include <vector>
 
@@ -32,10 +33,10 @@ namespace direct_sum {
 [[nodiscard]] std::vector<Vec3> stokes_single_layer(const std::vector<Vec3>& points, const Widths& widths, const std::vector<Vec3>& eta);
 /// w(x) = sum_i g_e (y_i - x) . eta_i at any targets (uniform width). Q values.
 [[nodiscard]] std::vector<double> winding(const std::vector<Vec3>& points, double width, const std::vector<Vec3>& eta,
-                                          const std::vector<Vec3>& targets);
+                                          const std::vector<Vec3>& targets, const std::atomic<bool>* cancel = nullptr);
 /// -grad w(x) = sum_i [g_e eta_i - b_e r (r . eta_i)] at any targets (uniform width). Q vectors.
 [[nodiscard]] std::vector<Vec3> winding_gradient(const std::vector<Vec3>& points, double width, const std::vector<Vec3>& eta,
-                                                 const std::vector<Vec3>& targets);
+                                                 const std::vector<Vec3>& targets, const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace direct_sum
 }  // namespace g3r

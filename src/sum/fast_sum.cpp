@@ -137,7 +137,7 @@ HarmonicValues constant_harmonic(std::size_t n) {
   return u;
 }
 
-bool in_cube(const Vec3& p) { return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])}) <= 1; }
+bool in_cube(const Vec3& p) { return std::abs(p[0]) <= 1 && std::abs(p[1]) <= 1 && std::abs(p[2]) <= 1; }  // not if any is NaN
 
 }  // namespace
 
@@ -235,7 +235,7 @@ std::vector<double> FastSum::winding_at(const std::vector<Vec3>& eta, const std:
         for (std::size_t i = 0; i < index.size(); ++i) out[index[i]] = sorted[i];
       },
       [&](const std::vector<Vec3>& far, const std::vector<std::uint32_t>& index) {
-        const std::vector<double> w = direct_sum::winding(impl_->points, impl_->widths[0], eta, far);
+        const std::vector<double> w = direct_sum::winding(impl_->points, impl_->widths[0], eta, far, cancel);
         for (std::size_t i = 0; i < index.size(); ++i) out[index[i]] = w[i];
       });
   return out;
@@ -252,7 +252,7 @@ std::vector<Vec3> FastSum::winding_gradient_at(const std::vector<Vec3>& eta, con
         for (std::size_t i = 0; i < index.size(); ++i) out[index[i]] = sorted[i];
       },
       [&](const std::vector<Vec3>& far, const std::vector<std::uint32_t>& index) {
-        const std::vector<Vec3> g = direct_sum::winding_gradient(impl_->points, impl_->widths[0], eta, far);
+        const std::vector<Vec3> g = direct_sum::winding_gradient(impl_->points, impl_->widths[0], eta, far, cancel);
         for (std::size_t i = 0; i < index.size(); ++i) out[index[i]] = g[i];
       });
   return out;
