@@ -10,7 +10,9 @@ namespace g3r::cli {
 int run_reconstruct(const Settings& settings, Session& session) {
   const Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, settings.read_options); });
   Reconstruction result = reconstruct(cloud.positions, settings.options, settings.mesh_options, session.monitor());
-  session.stage("carry", [&] { carry_attributes(result.mesh, cloud.positions, cloud.colors, result.orientation.confidence); });
+  if (!cloud.colors.empty()) {
+    session.stage("carry", [&] { carry_attributes(result.mesh, cloud.positions, cloud.colors, result.orientation.confidence); });
+  }
   session.stage("write", [&] {
     const WriteOptions options = session.cancellable(settings.write_options);
     for (const std::string& output : settings.outputs()) write_mesh(output, result.mesh, options);

@@ -51,12 +51,13 @@ Options read_options(const nb::dict& from) {
   using Unit = Epsilon::Unit;
   Options options;
   take_choice(from, "preset", options.preset, {{"default", Preset::kDefault}, {"paper", Preset::kPaper}});
-  take_choice(from, "method", options.method, {{"auto", Method::kAuto},
-                                                {"green", Method::kGreen},
-                                                {"energy", Method::kEnergy},
-                                                {"wnnc", Method::kWnnc},
-                                                {"agr", Method::kAgr},
-                                                {"pgr", Method::kPgr}});
+  take_choice(from, "method", options.method,
+              {{"auto", Method::kAuto},
+               {"green", Method::kGreen},
+               {"energy", Method::kEnergy},
+               {"wnnc", Method::kWnnc},
+               {"agr", Method::kAgr},
+               {"pgr", Method::kPgr}});
   take(from, "wnnc_widths", options.wnnc_widths);
   take_choice(from, "solver", options.solver, {{"auto", Solver::kAuto}, {"dense", Solver::kDense}, {"cg", Solver::kConjugateGradient}});
   take_choice(from, "epsilon_unit", options.epsilon.unit,
@@ -131,11 +132,10 @@ nb::tuple mesh_points(const PointsArray& array, const PointsArray& normals, cons
   return give_mesh(std::move(mesh));
 }
 
-Field make_field(const PointsArray& array, const Rows<double>& normals, const Values<double>& areas, double spacing, double width) {
+Field make_field(const PointsArray& array, const Rows<double>& normals, const Values<double>& areas, double width) {
   Orientation orientation;
   orientation.normals = copy_rows<double>(normals);
   orientation.areas = copy_values<double>(areas);
-  orientation.stats.spacing = spacing;
   const PointsView points = points_view(array);
   const nb::gil_scoped_release release;
   return Field(points, orientation, width);
@@ -261,7 +261,7 @@ void bind(nb::module_& m) {
   m.def("orient", &orient_points, nb::arg("points"), nb::arg("options"), nb::arg("progress").none());
   m.def("reconstruct", &reconstruct_points, nb::arg("points"), nb::arg("colors").none(), nb::arg("options"), nb::arg("progress").none());
   m.def("mesh", &mesh_points, nb::arg("points"), nb::arg("normals"), nb::arg("options"), nb::arg("progress").none());
-  m.def("field", &make_field, nb::arg("points"), nb::arg("normals"), nb::arg("areas"), nb::arg("spacing"), nb::arg("width"));
+  m.def("field", &make_field, nb::arg("points"), nb::arg("normals"), nb::arg("areas"), nb::arg("width"));
   m.def("read_cloud", &read_points, nb::arg("path"), nb::arg("min_opacity"));
   m.def("write_cloud", &write_points, nb::arg("path"), nb::arg("source").none(), nb::arg("positions").none(), nb::arg("normals").none(),
         nb::arg("colors").none(), nb::arg("confidence").none(), nb::arg("ascii"), nb::arg("cloud_compare_names"));

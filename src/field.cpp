@@ -17,8 +17,6 @@ namespace {
 constexpr double kDefaultWidth = 0.55;  // spacings; the width of the refinement
 constexpr double kAccuracy = 1e-3;      // of the sums
 
-constexpr std::size_t kNear = 17;  // neighbours, of which areas need 16
-
 }  // namespace
 
 OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& normals, const std::vector<double>& areas) {
@@ -52,7 +50,7 @@ OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& 
     if (p == kNoPoint) continue;
     for (std::size_t a = 0; a < 3; ++a) merged[p][a] += normals[i][a] / out.cloud.multiplicity[p];
   }
-  const std::vector<std::uint32_t> near = Neighbours(out.cloud.points).of_all(kNear);
+  const std::vector<std::uint32_t> near = Neighbours(out.cloud.points).of_all(kSpacingNeighbours);
   out.eta = area_vectors(out.cloud.points, out.cloud.morton, near, merged, {}, nullptr);
   out.spacing = typical_spacing(local_spacing(out.cloud.points, near));
   return out;

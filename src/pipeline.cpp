@@ -3,6 +3,7 @@
 #include "baselines/baseline.h"
 #include "cloud/neighbours.h"
 #include "cloud/noise.h"
+#include "cloud/spacing.h"
 #include "cpu/parallel.h"
 #include "orient/coarse_to_fine.h"
 #include "orient/refine.h"
@@ -18,7 +19,6 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kNear = 17;    // neighbours, of which areas need 16
 constexpr double kManyUnsure = 0.2;  // share of unsure points above which the orientation is called inconsistent
 
 const char* name_of(Method method) {
@@ -68,6 +68,11 @@ void describe(const Problem& problem, const PointsView& points, const Options& o
   if (stats.dropped_non_finite > 0) {
     stats.warnings.push_back(std::to_string(stats.dropped_non_finite) + " points with a non-finite coordinate were left out");
   }
+  if (problem.spacing <= kLeastSpacing) {
+    stats.warnings.emplace_back(
+        "the points are closer together than a millionth of the cloud's width, too close for the solver: "
+        "treat parts that are far apart one by one");
+  }
   if (is_flat(cloud)) stats.warnings.emplace_back("the cloud is flat (all points in one plane): which side is outside is a choice");
 }
 
@@ -96,7 +101,7 @@ void add_outliers(const Problem& problem, Stages& stages, Solution& solution, st
 void settle_areas(const Problem& problem, Stages& stages, Solution& solution) {
   if (problem.settings.method != Method::kEnergy) return;
   const std::vector<Vec3>& points = problem.cloud.points;
-  const std::vector<std::uint32_t> near = problem.near.empty() ? Neighbours(points).of_all(kNear) : problem.near;
+  const std::vector<std::uint32_t> near = problem.near.empty() ? Neighbours(points).of_all(kSpacingNeighbours) : problem.near;
   solution.eta = area_vectors(points, problem.cloud.morton, near, solution.refinement.normals, solution.sheets, stages.cancel());
 }
 

@@ -13,9 +13,7 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kNear = 17;  // a point and its 16 nearest
-
-// What the steps after noise and outliers need. `near`: kNear nearest of every point; `local`: local_spacing().
+// What the steps after noise and outliers need. `near`: kSpacingNeighbours nearest of every point; `local`: local_spacing().
 void choose_scales(Problem& problem, const Options& options, std::vector<std::uint32_t> near, const std::vector<double>& local) {
   problem.settings = choose_settings(options, problem.cloud, problem.spacing, problem.noise, problem.outliers.size());
   if (problem.noise > 0 || problem.settings.polish_steps == 0) return;
@@ -36,7 +34,7 @@ Problem prepare(const PointsView& points, const Options& options, Stages& stages
   std::vector<double> local;
   const auto look_around = [&] {
     neighbours = std::make_unique<Neighbours>(cloud);
-    near = neighbours->of_all(kNear);
+    near = neighbours->of_all(kSpacingNeighbours);
     local = local_spacing(cloud, near);
   };
   look_around();
@@ -67,11 +65,15 @@ Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, 
     part.cloud.points.push_back(problem.cloud.points[i]);
     part.cloud.morton.push_back(problem.cloud.morton[i]);
   }
-  std::vector<std::uint32_t> near = Neighbours(part.cloud.points).of_all(kNear);
+  std::vector<std::uint32_t> near = Neighbours(part.cloud.points).of_all(kSpacingNeighbours);
   const std::vector<double> local = local_spacing(part.cloud.points, near);
   part.spacing = typical_spacing(local);
   part.noise = problem.noise;
-  choose_scales(part, options, std::move(near), local);
+  Options same = options;
+  if (options.epsilon.unit == Epsilon::Unit::kPercent) {  // of the whole cloud's box
+    same.epsilon = {Epsilon::Unit::kInput, problem.cloud.frame.length_to_world(problem.settings.epsilon)};
+  }
+  choose_scales(part, same, std::move(near), local);
   return part;
 }
 

@@ -22,6 +22,7 @@ constexpr double kFieldWidth = 0.35;     // of the winding field in spacings
 constexpr double kFieldAccuracy = 1e-2;  // of its sums; only its side of a level counts, with a margin of 0.2
 constexpr double kFarSpacings = 4;       // surface farther than this from every point is a guess;
 constexpr double kFarShare = 0.05;       // more of it is worth a warning
+constexpr double kWidest = 8e5;          // spacings; the octree has at most 2^20 cells of 0.8 spacings
 constexpr int kPaperDepth = 10;
 
 // The winding field in normalised units as the field mesher sees it.
@@ -146,6 +147,10 @@ Reconstruction reconstruct(const PointsView& points, const Options& options, con
     out.orientation.stats.warnings.push_back(
         std::to_string(std::lround(100 * far)) +
         " % of the surface is farther than 4 spacings from any point: the cloud looks open; trim the mesh");
+  }
+  if (chosen.mesher == Mesher::kField && chosen.depth == 0 && out.orientation.stats.box_side > kWidest * out.orientation.stats.spacing) {
+    out.orientation.stats.warnings.emplace_back(
+        "the cloud is more than 800,000 spacings wide, so the mesh is coarser than the points: mesh parts that are far apart one by one");
   }
   const bool trimmed = chosen.trim != MeshOptions::Trim::kOff;
   if ((!out.check.closed && !trimmed) || !out.check.manifold) {

@@ -43,6 +43,7 @@ Solution solve_by_baseline(const Problem& problem, Stages& stages, Stats& stats)
 }
 
 std::vector<Vec3> solve_equations(const Problem& problem, const Settings& s, const Options& options, Stages& stages, Stats& stats) {
+  stages.begin("solve");
   if (s.dense) {
     const HarmonicValues u = weighted_harmonics(s.harmonics, problem.cloud.points, s.constant_weight);
     DenseResult dense = solve_dense(problem.cloud.points, s.epsilon, u, options.condition_number, stages.cancel());
@@ -50,7 +51,6 @@ std::vector<Vec3> solve_equations(const Problem& problem, const Settings& s, con
     stats.condition_number = dense.condition_number;
     return std::move(dense.eta);
   }
-  stages.begin("solve");
   IterativeResult result = solve_coarse_to_fine(problem.cloud.points, problem.cloud.morton, s, stages);
   record(s, result, stats);
   return std::move(result.eta);

@@ -12,6 +12,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 
 namespace g3r {
 namespace {
@@ -227,6 +228,30 @@ TEST(FastSum, QueriesSeeTheSameFieldAsThePoints) {
   for (int i = 0; i < 300; ++i) queries.push_back({random.uniform(-1.3, 1.3), random.uniform(-1, 1), random.uniform(-0.5, 0.5)});
   EXPECT_LE(relative_error(sum.winding_at(eta, queries), direct_sum::winding(points, 0.01, eta, queries)), 1e-3);
   EXPECT_LE(relative_error(sum.winding_gradient_at(eta, queries), direct_sum::winding_gradient(points, 0.01, eta, queries)), 1e-3);
+}
+
+TEST(FastSum, QueriesMayBeFarAway) {
+  const double width = 0.01;
+  const std::vector<Vec3> points = unit_points(shapes::torus(4000, 0.6, 0.25, 3).points);
+  std::vector<Vec3> eta = random_vectors(points.size(), 1);
+  for (Vec3& v : eta) v = {1 + 0.2 * v[0], 0.5 + 0.2 * v[1], 0.2 * v[2]};  // far away random ones cancel to less than the error allowed
+  for (const bool double_precision : {false, true}) {
+    SumPlan plan = sum_plan(1e-3, 1000000);
+    plan.double_precision = double_precision;
+    const FastSum sum(points, codes(points), Widths(width), plan);
+    for (const double far : {1.01, 2.0, 5.0, 1e2, 1e4, 1e8}) {
+      Random random(2);
+      std::vector<Vec3> queries;
+      for (int i = 0; i < 300; ++i) {
+        queries.push_back({far * random.uniform(0.9, 1.0), far * random.uniform(-1, 1), random.uniform(-0.5, 0.5)});
+      }
+      EXPECT_LE(relative_error(sum.winding_at(eta, queries), direct_sum::winding(points, width, eta, queries)), 1e-3) << far;
+      EXPECT_LE(relative_error(sum.winding_gradient_at(eta, queries), direct_sum::winding_gradient(points, width, eta, queries)), 1e-3)
+          << far;
+    }
+    const double nothing = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_TRUE(std::isnan(sum.winding_at(eta, {{0, nothing, 0}})[0]));
+  }
 }
 
 }  // namespace

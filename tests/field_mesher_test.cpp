@@ -64,6 +64,21 @@ TEST(FieldMesher, ATightClusterAmongSparsePointsCostsLittle) {
   EXPECT_LT(mesh.triangles.size(), 200000U);
 }
 
+TEST(FieldMesher, SpheresFarApartAreAsFineAsOne) {
+  const double far = 3e4;
+  OrientedSample s = sphere_sample(1000, 1, 4);
+  const std::size_t alone =
+      field_mesh(s.points, s.normals, DistanceSampler([](const Vec3& p) { return norm(p) - 1; }, 0.1)).triangles.size();
+  for (std::size_t i = 0; i < 1000; ++i) {
+    s.points.push_back({s.points[i][0] + far, s.points[i][1], s.points[i][2]});
+    s.normals.push_back(s.normals[i]);
+  }
+  const auto distance = [&](const Vec3& p) { return std::min(norm(p), norm({p[0] - far, p[1], p[2]})) - 1; };
+  const Mesh mesh = field_mesh(s.points, s.normals, DistanceSampler(distance, 0.1));
+  EXPECT_EQ(topology(mesh).components, 2U);
+  EXPECT_NEAR(static_cast<double>(mesh.triangles.size()), 2.0 * static_cast<double>(alone), 0.5 * static_cast<double>(alone));
+}
+
 TEST(FieldMesher, CubeKeepsItsEdgesAndMostCorners) {
   const OrientedSample s = cube_sample(6000, 0.5, 3);
   const double h = std::sqrt(6.0 / 6000);

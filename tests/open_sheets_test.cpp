@@ -115,6 +115,19 @@ TEST(OpenSheets, DoNotDisturbTheSolidsBesideThem) {
   EXPECT_NEAR(o.stats.open_share, 2.0 / 3, 1e-12);
 }
 
+// A sphere of radius 1 in the corner of a ground 12 wide, which is solved for alone: with a percentage of its own box, normals turn.
+TEST(OpenSheets, ThePartsTakeTheEpsilonOfTheWhole) {
+  Surface ground = terrain(8000, flat);
+  for (Vec3& p : ground.points) p = {6 * p[0] + 4, 6 * p[1] + 4, -1.6};
+  const Surface scene = shapes::join(ground, shapes::sphere(2000));
+  Options percent;
+  percent.epsilon = {Epsilon::Unit::kPercent, 1};
+  const Orientation o = orient(scene.points, percent);
+  Options same;
+  same.epsilon = {Epsilon::Unit::kInput, o.stats.epsilon};
+  EXPECT_LT(shapes::angle_error(o.normals, orient(scene.points, same).normals), 1e-9);
+}
+
 TEST(OpenSheets, TurnWithTheCloudButForTheChoiceOfSide) {
   const Surface s = terrain(3000, waves);
   Surface turned = s;

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <numeric>
+#include <string>
 
 namespace g3r {
 namespace {
@@ -330,6 +332,21 @@ TEST(Orient, PointsOfEveryMagnitudeGiveNumbers) {
     EXPECT_TRUE(std::isfinite(o.areas[i]) && o.areas[i] >= 0) << i;
     EXPECT_NEAR(std::hypot(o.normals[i][0], o.normals[i][1], o.normals[i][2]), 1, 1e-6) << i;
   }
+}
+
+TEST(Orient, ScalesOutOfReachAreSaid) {
+  const std::vector<Vec3> sphere = shapes::sphere(1000).points;
+  const auto two = [&](double apart) {
+    std::vector<Vec3> points = sphere;
+    for (const Vec3& p : sphere) points.push_back({p[0] + apart, p[1], p[2]});
+    return points;
+  };
+  const auto text = [](const std::vector<std::string>& warnings) {
+    return std::accumulate(warnings.begin(), warnings.end(), std::string());
+  };
+  EXPECT_EQ(text(reconstruct(two(1e4)).orientation.stats.warnings), "");
+  EXPECT_NE(text(reconstruct(two(1e6)).orientation.stats.warnings).find("800,000 spacings"), std::string::npos);
+  EXPECT_NE(text(orient(two(1e7)).stats.warnings).find("a millionth of the cloud's width"), std::string::npos);
 }
 
 TEST(Orient, SmallestCloudsWork) {

@@ -215,8 +215,7 @@ class Field {
   Field(Field&&) noexcept;
   Field& operator=(Field&&) noexcept;
 
-  /// w at Q query points, finite: Q values. O(N + Q log N) after a build of O(N log N); queries farther from the centre of the points' box
-  /// than 0.55 of its longest side, on any axis, O(N) each.
+  /// w at Q query points, finite: Q values. O(N + Q log N) after a build of O(N log N), anywhere up to millions of widths from the points.
   [[nodiscard]] std::vector<double> value(const PointsView& queries, const Monitor& monitor = {}) const;
   /// Gradient of w at Q query points, in 1 / input units; points inward.
   [[nodiscard]] std::vector<Vec3> gradient(const PointsView& queries, const Monitor& monitor = {}) const;

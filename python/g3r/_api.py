@@ -75,13 +75,13 @@ def _trim(trim: Union[None, str, float]) -> Dict[str, Any]:
 class Field:
     """The winding field of oriented points: about 1 inside, 0 outside, 1/2 on the surface. Call it with query points."""
 
-    def __init__(self, points: Any, normals: Any, areas: Any, *, spacing: float = 0.0, width: float = 0.0) -> None:
+    def __init__(self, points: Any, normals: Any, areas: Any, *, width: float = 0.0) -> None:
         """`points`, `normals` (unit, outward): (n, 3); `areas`: (n,) in squared input units. `width` of the smoothing in input units,
         0: 0.55 spacings."""
         import numpy as np
 
         self._field = _g3r.field(as_points(points), np.ascontiguousarray(as_points(normals, "normals"), dtype=np.float64),
-                                 np.ascontiguousarray(areas, dtype=np.float64), float(spacing), float(width))
+                                 np.ascontiguousarray(areas, dtype=np.float64), float(width))
 
     def __call__(self, queries: Any) -> Floats:
         """The field at (q, 3) query points: (q,) values."""
@@ -123,7 +123,7 @@ class Result:
     def field(self) -> Field:
         """The winding field: r.field(Q), r.field.gradient(Q). Built on first use."""
         if self._field is None:
-            self._field = Field(self.points, self.normals, self.areas, spacing=self.stats["scales"]["spacing"] or 0.0)
+            self._field = Field(self.points, self.normals, self.areas)
         return self._field
 
     def __repr__(self) -> str:

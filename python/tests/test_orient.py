@@ -102,7 +102,7 @@ def test_field_tells_inside_from_outside(result, sphere):
     gradient = result.field.gradient([[0, 0, 1.05], [1.05, 0, 0]])
     assert gradient[0, 2] < 0 and gradient[1, 0] < 0, "the gradient points inward"
     assert result.field is result.field, "built once"
-    same = g3r.Field(sphere, result.normals, result.areas, spacing=result.stats["scales"]["spacing"])
+    same = g3r.Field(sphere, result.normals, result.areas)
     np.testing.assert_array_equal(same(queries), result.field(queries))
 
 

@@ -3,6 +3,7 @@
 
 #include <g3r/points.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -11,6 +12,9 @@ namespace g3r {
 /// Of the unit frame, whose box has side 2 / 1.1. A surface sampled so finely has 1e12 points; the sums take 1 / width to the fifth power,
 /// which leaves the range of float not far below.
 inline constexpr double kLeastSpacing = 1e-6;
+
+/// Length of the lists of near points: a point itself and its 16 nearest, enough for both kinds of spacing.
+inline constexpr std::size_t kSpacingNeighbours = 17;
 
 /// h_i = d_k sqrt(pi / k), d_k the distance of point i to its k-th neighbour, k = 8: the square root of the area per point of a surface
 /// sample (docs/math.md, "Spacing"). Fewer than 9 points: k = N - 1. N values in the units of the points, all > 0 for distinct points. O(N

@@ -18,7 +18,6 @@ namespace g3r::cpu {
 inline constexpr std::size_t kStokesMultipoles = 8;
 inline constexpr std::size_t kStokesLocals = 9;
 inline constexpr std::size_t kTransposedWinding = 8;
-inline constexpr std::size_t kMaxChannels = 10;
 
 /// Length of one expansion in memory: the coefficients padded to whole vectors.
 constexpr std::size_t padded_count(std::size_t coefficients) { return (coefficients + kLanes - 1) / kLanes * kLanes; }

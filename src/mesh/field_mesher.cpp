@@ -150,7 +150,7 @@ Octree make_octree(const OrientedPoints& points, const std::vector<double>& thic
   double side = box.longest() * kMargin + 8 * h;
   int level = options.depth;
   if (level == 0) {
-    level = std::clamp(static_cast<int>(std::ceil(std::log2(side / (kCell * h)))), kBaseLevel, mesh::kMaxOctreeLevel - kMaxSpread);
+    level = std::clamp(static_cast<int>(std::ceil(std::log2(side / (kCell * h)))), kBaseLevel, mesh::kMaxOctreeLevel);
     side = std::max(side, kCell * h * std::exp2(level));
   }
   Vec3 corner{};
@@ -162,7 +162,8 @@ Octree make_octree(const OrientedPoints& points, const std::vector<double>& thic
     const int spread = static_cast<int>(std::lround(std::log2(h / size)));
     const int wanted = level + std::clamp(spread, -kMaxSpread, options.depth == 0 ? kMaxSpread : 0);
     const double reach = std::min(points.spacing[i], h * std::exp2(kMaxSpread));  // its leaves are no larger
-    requests[i] = {points.positions[i], points.normals[i], kDisc * reach, kDiscHalf * reach, std::max(wanted, kBaseLevel)};
+    requests[i] = {points.positions[i], points.normals[i], kDisc * reach, kDiscHalf * reach,
+                   std::clamp(wanted, kBaseLevel, mesh::kMaxOctreeLevel)};
   }
   return Octree(corner, side, requests, std::min(kBaseLevel, level), monitor.cancel);
 }

@@ -158,7 +158,6 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
             (options.solver == Solver::kAuto && paper && green && options.schedule.empty() && cloud.size() <= kPaperDensePoints);
   s.schedule_text = !options.schedule.empty() ? options.schedule : paper ? kPaperSchedule : green ? kGreenSchedule : kEnergySchedule;
   s.schedule = parse_schedule(s.schedule_text);
-  s.accepted_residual = options.tolerance >= 0 ? options.tolerance : std::max(s.tolerance, kAcceptedResidual);
   s.coarse_to_fine = !paper && !green && options.schedule.empty();
   const bool among_outliers = static_cast<double>(outliers) > kFewOutliers * static_cast<double>(cloud.size());
   s.continued_schedule = {kContinued};
@@ -166,6 +165,7 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   const bool light = starts_coarse(s, cloud.size()) || among_outliers;
   s.winding_weight = (light ? kContinuedWindingWeight : kWindingWeight) * cube(spacing);
   s.tolerance = options.tolerance >= 0 ? options.tolerance : paper ? 0 : green ? kGreenTolerance : kEnergyTolerance;
+  s.accepted_residual = options.tolerance >= 0 ? options.tolerance : std::max(s.tolerance, kAcceptedResidual);
   s.continued_tolerance = options.tolerance >= 0 ? options.tolerance : kContinuedTolerance;
   s.doubtful_winding_weight = kDoubtfulWindingWeight * cube(spacing);
   s.doubtful_tolerance = options.tolerance >= 0 ? options.tolerance : kDoubtfulTolerance;

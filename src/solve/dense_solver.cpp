@@ -19,6 +19,34 @@ constexpr Eigen::Index kTile = 192;     // columns per tile of the normal matrix
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+// The lower triangle of M becomes L with M = L L^T, a panel of kTile columns at a time (right-looking). False: M is singular to rounding.
+bool factorise(Eigen::MatrixXd& m, const std::atomic<bool>* cancel) {
+  const Eigen::Index size = m.rows();
+  for (Eigen::Index begin = 0; begin < size; begin += kTile) {
+    const Eigen::Index width = std::min(kTile, size - begin);
+    const Eigen::Index end = begin + width;
+    Eigen::Ref<Eigen::MatrixXd> corner = m.block(begin, begin, width, width);
+    if (const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(corner); factor.info() != Eigen::Success) return false;
+    const auto tiles = static_cast<std::size_t>((size - end + kTile - 1) / kTile);
+    const auto tile_begin = [&](std::size_t tile) { return end + static_cast<Eigen::Index>(tile) * kTile; };
+    parallel::for_each(tiles, [&](std::size_t tile) {  // L21 = M21 L11^-T
+      const Eigen::Index row = tile_begin(tile);
+      auto below = m.block(row, begin, std::min(kTile, size - row), width);
+      corner.transpose().triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(below);
+    });
+    parallel::for_each(  // M22 -= L21 L21^T
+        tiles,
+        [&](std::size_t tile) {
+          const Eigen::Index column = tile_begin(tile);
+          const Eigen::Index columns = std::min(kTile, size - column);
+          m.block(column, column, size - column, columns).noalias() -=
+              m.block(column, begin, size - column, width) * m.block(column, begin, columns, width).transpose();
+        },
+        cancel);
+  }
+  return true;
+}
+
 }  // namespace
 
 std::vector<double> assemble_rows(const std::vector<Vec3>& points, double epsilon, const HarmonicValues& u, std::size_t first_point,
@@ -73,14 +101,14 @@ DenseResult solve_dense(const std::vector<Vec3>& points, double epsilon, const H
     const Eigen::VectorXd eigenvalues = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(normal, Eigen::EigenvaluesOnly).eigenvalues();
     result.condition_number = eigenvalues.maxCoeff() / eigenvalues.minCoeff();
   }
-  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(normal);
-  if (factor.info() != Eigen::Success) {
+  if (!factorise(normal, cancel)) {
     throw InvalidInput("the normal matrix is singular with these harmonics; add more of them, for example degree:0-2");
   }
-  const Eigen::VectorXd eta = factor.solve(right);
+  normal.triangularView<Eigen::Lower>().solveInPlace(right);
+  normal.transpose().triangularView<Eigen::Upper>().solveInPlace(right);  // right is eta now
   result.eta.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t a = 0; a < 3; ++a) result.eta[i][a] = eta[static_cast<Eigen::Index>(3 * i + a)];
+    for (std::size_t a = 0; a < 3; ++a) result.eta[i][a] = right[static_cast<Eigen::Index>(3 * i + a)];
   }
   return result;
 }

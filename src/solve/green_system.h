@@ -16,8 +16,7 @@ namespace g3r {
 /// M = sum_k w_k^2 A[u_k]^T A[u_k], b = sum_k w_k^2 A[u_k]^T u_k / 2. Two sweeps per product, fused over k.
 class GreenSystem : public LinearSystem {
  public:
-  /// `constant_weight`: w of u = 1; all other weights are 1. `sum` must outlive the system. Throws InvalidInput when every u vanishes on
-  /// the points.
+  /// `constant_weight`: w of u = 1; all other weights are 1. `sum` must outlive the system.
   GreenSystem(FastSum& sum, const std::vector<Vec3>& points, const std::vector<Harmonic>& harmonics, double constant_weight = 1);
 
   std::vector<Vec3> apply(const std::vector<Vec3>& eta) override;

@@ -137,7 +137,27 @@ HarmonicValues constant_harmonic(std::size_t n) {
   return u;
 }
 
-bool in_cube(const Vec3& p) { return std::abs(p[0]) <= 1 && std::abs(p[1]) <= 1 && std::abs(p[2]) <= 1; }  // not if any is NaN
+constexpr double kShellAccuracy = 1e-5;  // with fewer terms their derivatives err by percents: nothing near outweighs what was cut off
+// Targets outside the cube belong to the shell of the smallest power of two, times the cube, that holds them: 2^shell.
+constexpr int kShells = 21;           // shells with a sum of their own; the grid has no more levels
+constexpr double kLeastWidth = 2e-7;  // of a shell's kernels: the derivative takes 1 / width to the fifth power, which is a float
+constexpr int kNoShell = kShells;     // farther, or no number
+
+int shell_of(const Vec3& p) {
+  const double far = std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
+  if (far <= 1) return std::isnan(p[0] + p[1] + p[2]) ? kNoShell : 0;
+  if (!(far < std::ldexp(1.0, kShells - 1))) return kNoShell;
+  int shell = 0;
+  std::frexp(far, &shell);
+  return shell;
+}
+
+std::vector<Vec3> scaled(std::vector<Vec3> points, double factor) {
+  for (Vec3& p : points) {
+    for (double& c : p) c *= factor;
+  }
+  return points;
+}
 
 }  // namespace
 
@@ -155,32 +175,53 @@ struct FastSum::Impl {
     return Engine(std::in_place_type<SumEngine<float>>, points, morton, widths, plan, cancel);
   }
 
-  // Runs `inside(engine for these targets, their canonical order)` on targets in the cube, `outside(targets)` on the others.
-  template <class Inside, class Outside>
-  void at(const std::vector<Vec3>& targets, const std::atomic<bool>* stop, const Inside& inside, const Outside& outside) const {
-    std::vector<std::uint32_t> index_in;
-    std::vector<std::uint32_t> index_out;
-    for (std::uint32_t i = 0; i < targets.size(); ++i) (in_cube(targets[i]) ? index_in : index_out).push_back(i);
-    if (!index_in.empty()) {
-      std::vector<Vec3> sorted(index_in.size());
-      for (std::size_t i = 0; i < sorted.size(); ++i) sorted[i] = targets[index_in[i]];
-      const MortonOrder order = morton_order(sorted);
-      std::vector<std::uint32_t> index(sorted.size());
-      for (std::size_t i = 0; i < sorted.size(); ++i) {
-        index[i] = index_in[order.index[i]];
-        sorted[i] = targets[index[i]];
-      }
-      std::visit(
-          [&](const auto& own) {
-            std::decay_t<decltype(own)> engine_at(own, sorted, order.code, stop);
-            inside(engine_at, index);
-          },
-          engine);
+  // The sources with all lengths times `factor`, a power of two: their order stays.
+  [[nodiscard]] Engine shrunk(double factor, const std::atomic<bool>* stop) const {
+    const std::vector<Vec3> sources = scaled(points, factor);
+    std::vector<std::uint64_t> codes(sources.size());
+    std::transform(sources.begin(), sources.end(), codes.begin(), morton_code);
+    const SumPlan finer = sum_plan(kShellAccuracy, sources.size());
+    return make(sources, codes, Widths(factor * widths[0]), plan.order < finer.order ? finer : plan, stop);
+  }
+
+  // Sums at any targets. Everything is shrunk until the targets are in the cube: one sum for every shell that has some.
+  // `fast(engine for these targets, their order, factor)`: lengths are `factor` times as long as the caller's. `direct(targets, their
+  // order)`: outside the cube where sums are direct anyway, or a shell's kernels would be too narrow.
+  template <class Fast, class Direct>
+  void at(const std::vector<Vec3>& targets, const std::atomic<bool>* stop, const Fast& fast, const Direct& direct) const {
+    std::array<std::vector<std::uint32_t>, kShells + 1> members;
+    for (std::uint32_t i = 0; i < targets.size(); ++i) {
+      const int shell = shell_of(targets[i]);
+      const bool shrinks = !plan.direct && std::ldexp(widths[0], -shell) >= kLeastWidth;
+      members[static_cast<std::size_t>(shell == 0 || shrinks ? shell : kNoShell)].push_back(i);
     }
-    if (!index_out.empty()) {
-      std::vector<Vec3> far(index_out.size());
-      for (std::size_t i = 0; i < far.size(); ++i) far[i] = targets[index_out[i]];
-      outside(far, index_out);
+    for (int shell = 0; shell <= kNoShell; ++shell) {
+      std::vector<std::uint32_t>& index = members[static_cast<std::size_t>(shell)];
+      if (index.empty()) continue;
+      std::vector<Vec3> some(index.size());
+      for (std::size_t i = 0; i < some.size(); ++i) some[i] = targets[index[i]];
+      if (shell == kNoShell) {
+        direct(some, index);
+        continue;
+      }
+      const double factor = std::ldexp(1.0, -shell);
+      some = scaled(std::move(some), factor);
+      const MortonOrder order = morton_order(some);
+      std::vector<Vec3> sorted(some.size());
+      std::vector<std::uint32_t> sorted_index(some.size());
+      for (std::size_t i = 0; i < some.size(); ++i) {
+        sorted[i] = some[order.index[i]];
+        sorted_index[i] = index[order.index[i]];
+      }
+      const auto sum_on = [&](const auto& sources) {
+        std::decay_t<decltype(sources)> engine_at(sources, sorted, order.code, stop);
+        fast(engine_at, sorted_index, factor);
+      };
+      if (shell == 0) {
+        std::visit(sum_on, engine);
+      } else {
+        std::visit(sum_on, shrunk(factor, stop));
+      }
     }
   }
 };
@@ -194,7 +235,6 @@ FastSum::FastSum(FastSum&&) noexcept = default;
 FastSum& FastSum::operator=(FastSum&&) noexcept = default;
 
 std::size_t FastSum::size() const { return impl_->points.size(); }
-const SumPlan& FastSum::plan() const { return impl_->plan; }
 
 std::vector<double> FastSum::green(const HarmonicValues& u, const std::vector<Vec3>& eta) {
   std::vector<double> out(size() * u.count);
@@ -229,10 +269,10 @@ std::vector<double> FastSum::winding_at(const std::vector<Vec3>& eta, const std:
   std::vector<double> out(targets.size());
   impl_->at(
       targets, cancel,
-      [&](auto& engine, const std::vector<std::uint32_t>& index) {
+      [&](auto& engine, const std::vector<std::uint32_t>& index, double factor) {
         std::vector<double> sorted(index.size());
         green_into(engine, constant_harmonic(size()), eta, sorted);
-        for (std::size_t i = 0; i < index.size(); ++i) out[index[i]] = sorted[i];
+        for (std::size_t i = 0; i < index.size(); ++i) out[index[i]] = factor * factor * sorted[i];
       },
       [&](const std::vector<Vec3>& far, const std::vector<std::uint32_t>& index) {
         const std::vector<double> w = direct_sum::winding(impl_->points, impl_->widths[0], eta, far, cancel);
@@ -246,9 +286,10 @@ std::vector<Vec3> FastSum::winding_gradient_at(const std::vector<Vec3>& eta, con
   std::vector<Vec3> out(targets.size());
   impl_->at(
       targets, cancel,
-      [&](auto& engine, const std::vector<std::uint32_t>& index) {
+      [&](auto& engine, const std::vector<std::uint32_t>& index, double factor) {
         std::vector<Vec3> sorted(index.size());
         winding_gradient_into(engine, eta, sorted);
+        sorted = scaled(std::move(sorted), factor * factor * factor);
         for (std::size_t i = 0; i < index.size(); ++i) out[index[i]] = sorted[i];
       },
       [&](const std::vector<Vec3>& far, const std::vector<std::uint32_t>& index) {

@@ -28,7 +28,6 @@ class FastSum {
   FastSum& operator=(FastSum&&) noexcept;
 
   [[nodiscard]] std::size_t size() const;
-  [[nodiscard]] const SumPlan& plan() const;
 
   /// A[u_k] eta at every point, all k in one sweep: N x K row-major. See direct_sum::green.
   std::vector<double> green(const HarmonicValues& u, const std::vector<Vec3>& eta);
@@ -43,7 +42,8 @@ class FastSum {
   /// -grad w at the points: N vectors, along the outward normals.
   std::vector<Vec3> winding_gradient(const std::vector<Vec3>& eta);
 
-  /// w and -grad w at other targets of [-1, 1]^3 (uniform width): any order, Q values. Targets outside the cube are summed directly.
+  /// w and -grad w at other targets (uniform width): any order, Q values. O(Q log N); for targets outside [-1, 1]^3 O(N) more for every
+  /// power of two between them and the cube that has some. Farther than 2e6 widths, or 2^20 cubes, O(N) each.
   /// The value at a target depends on that target alone, not on the others of the call.
   [[nodiscard]] std::vector<double> winding_at(const std::vector<Vec3>& eta, const std::vector<Vec3>& targets,
                                                const std::atomic<bool>* cancel = nullptr) const;
