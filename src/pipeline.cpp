@@ -98,11 +98,10 @@ void add_outliers(const Problem& problem, Stages& stages, Solution& solution, st
 }
 
 // The solve is for normals; the lengths of its vectors follow the luck of the sample. Earlier methods keep theirs.
-void settle_areas(const Problem& problem, Stages& stages, Solution& solution) {
+void settle_areas(const Problem& problem, const std::vector<std::uint32_t>& near, Stages& stages, Solution& solution) {
   if (problem.settings.method != Method::kEnergy) return;
-  const std::vector<Vec3>& points = problem.cloud.points;
-  const std::vector<std::uint32_t> near = problem.near.empty() ? Neighbours(points).of_all(kSpacingNeighbours) : problem.near;
-  solution.eta = area_vectors(points, problem.cloud.morton, near, solution.refinement.normals, solution.sheets, stages.cancel());
+  solution.eta =
+      area_vectors(problem.cloud.points, problem.cloud.morton, near, solution.refinement.normals, solution.sheets, stages.cancel());
 }
 
 // From the canonical order back to the caller's. A duplicate gets its twin's normal and its share of the area.
@@ -168,11 +167,13 @@ Orientation orient_in_arena(const PointsView& points, const Options& options, St
   Solution solution = solve(problem, options, stages, out.stats);
   solve_sheets_apart(problem, options, stages, out.stats, solution);
   std::vector<Vec3>& normals = solution.refinement.normals;
-  std::vector<float> confidence = side_confidence(solution.eta, normals, solution.refinement.strength, problem.local_spacing);
+  const std::vector<std::uint32_t> near = problem.near.empty() ? Neighbours(problem.cloud.points).of_all(kSpacingNeighbours) : problem.near;
+  const std::vector<Vec3> vectors = problem.noise > 0 ? sums_over(near, solution.eta) : solution.eta;
+  std::vector<float> confidence = side_confidence(vectors, normals, solution.refinement.strength, problem.local_spacing);
   add_sheets(solution.sheets, confidence, out.stats);
   judge(problem.cloud, confidence, out.stats);
   warn_of_volume(problem, out.stats);
-  settle_areas(problem, stages, solution);
+  settle_areas(problem, near, stages, solution);
   add_outliers(problem, stages, solution, confidence);
   hand_out(problem.cloud, solution.eta, normals, confidence, out);
   stages.finish(out.stats);

@@ -56,6 +56,21 @@ Surface upper_part(const Surface& whole, double least_z) {
   return part;
 }
 
+// The votes of a valley on a grid say "down" for one in twelve of its points, no more than chance: the convention says up.
+TEST(OpenSheets, ValleyOfAHeightMapFacesUp) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 60; ++i) {
+    for (int j = 0; j < 60; ++j) {
+      const double x = i - 29.5;
+      const double y = j - 29.5;
+      points.push_back({x, y, -8 * std::exp(-(x * x + y * y) / 200)});
+    }
+  }
+  const Orientation o = orient(points);
+  EXPECT_TRUE(std::all_of(o.normals.begin(), o.normals.end(), [](const Vec3& n) { return n[2] > 0; }));
+  EXPECT_EQ(o.stats.undecided_share, 1);
+}
+
 // The equations alone leave 49 to 51 % of these on the right side, and turn directions by up to 90 degrees.
 TEST(OpenSheets, TerrainFacesUp) {
   for (const auto& height : {flat, saddle, hill, waves}) {

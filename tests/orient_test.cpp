@@ -395,6 +395,21 @@ TEST(Confidence, RanksWrongSidesOnNoisyData) {
   EXPECT_GT(area / (wrong * right), 0.85) << wrong << " of " << wrong + right << " wrong";
 }
 
+// Vectors of single points follow the noise: from them a third of these points is unsure.
+TEST(Confidence, TrustsASphereUnderNoise) {
+  shapes::Random random(6);
+  Surface s = shapes::sphere(8000, 1);
+  const double spacing = std::sqrt(4 * 3.14159265 / 8000);
+  for (Vec3& p : s.points) {
+    for (double& c : p) c += 0.7 * spacing * random.gaussian();
+  }
+  const Orientation o = orient(s.points);
+  EXPECT_TRUE(o.stats.consistent);
+  const auto unsure = std::count_if(o.confidence.begin(), o.confidence.end(), [](float c) { return c < 0.5F; });
+  EXPECT_LT(static_cast<double>(unsure), 0.1 * 8000);
+  EXPECT_GT(shapes::share_correct(o.normals, s.normals), 0.99);
+}
+
 TEST(Field, IsOneInsideZeroOutsideWithTheRightGradient) {
   const Surface s = shapes::sphere(8000, 2, {10, 20, 30});
   Orientation o;

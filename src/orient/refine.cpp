@@ -66,6 +66,17 @@ std::vector<float> side_confidence(const std::vector<Vec3>& eta, const std::vect
   return confidence;
 }
 
+std::vector<Vec3> sums_over(const std::vector<std::uint32_t>& near, const std::vector<Vec3>& vectors) {
+  const std::size_t stride = near.size() / vectors.size();
+  std::vector<Vec3> sums(vectors.size(), Vec3{0, 0, 0});
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    for (std::size_t k = 0; k < stride; ++k) {
+      for (std::size_t a = 0; a < 3; ++a) sums[i][a] += vectors[near[i * stride + k]][a];
+    }
+  }
+  return sums;
+}
+
 double unsure_share(const std::vector<float>& confidence) {
   const auto unsure = std::count_if(confidence.begin(), confidence.end(), [](float c) { return c < kUnsure; });
   return static_cast<double>(unsure) / static_cast<double>(confidence.size());

@@ -5,6 +5,7 @@
 
 #include <g3r/points.h>
 
+#include <cstdint>
 #include <vector>
 
 namespace g3r {
@@ -32,6 +33,10 @@ struct Refinement {
 /// It must rank wrong sides on noisy data with AUC > 0.85 (tests/orient_test).
 [[nodiscard]] std::vector<float> side_confidence(const std::vector<Vec3>& eta, const std::vector<Vec3>& normals,
                                                  const std::vector<double>& strength, const std::vector<double>& spacing);
+
+/// Of every point the sum of the vectors of its near points, `near`: Neighbours::of_all(k). O(N k). Under noise the vectors of single
+/// points fit the noise; those of a place together tell its side.
+[[nodiscard]] std::vector<Vec3> sums_over(const std::vector<std::uint32_t>& near, const std::vector<Vec3>& vectors);
 
 /// Share of the points, of at least one, whose side_confidence() is below a half. O(N).
 [[nodiscard]] double unsure_share(const std::vector<float>& confidence);
