@@ -141,6 +141,26 @@ TEST(Xyz, AHeaderNamesTheColumns) {
   EXPECT_EQ(read("//X Y Z Nx Ny Nz\n1 2 3 0 0 5\n").normals[0], (Vec3{0, 0, 5}));
 }
 
+TEST(Xyz, SurveyorsNamesAreAxes) {
+  const Cloud cloud = read("id,Easting (m),Northing (m),Height (m)\n7,1,2,3\n");
+  EXPECT_EQ(cloud.positions[0], (Vec3{1, 2, 3}));
+  EXPECT_EQ(cloud.property_names, (std::vector<std::string>{"id", "x", "y", "z"}));
+  EXPECT_TRUE(cloud.warnings.empty());
+  EXPECT_EQ(read("x y height z\n1 2 9 3\n").positions[0], (Vec3{1, 2, 3}));  // z is named: a height is a height
+}
+
+TEST(Xyz, AHeaderWithoutAxesIsSaid) {
+  const Cloud cloud = read("lon;lat;alti;time;time\n1;2;3;4;5\n");
+  EXPECT_EQ(cloud.positions[0], (Vec3{1, 2, 3}));
+  EXPECT_EQ(cloud.property_names, (std::vector<std::string>{"x", "y", "z", "time", "time_2"}));
+  ASSERT_EQ(cloud.warnings.size(), 1U);
+  EXPECT_NE(cloud.warnings[0].find("the first three, \"lon\", \"lat\" and \"alti\""), std::string::npos);
+}
+
+TEST(Xyz, ColoursOf16BitsAreScaled) {
+  EXPECT_EQ(read("x y z red green blue\n0 0 0 65535 257 0\n").colors[0], (std::array<std::uint8_t, 3>{255, 1, 0}));
+}
+
 TEST(Xyz, TheErrorNamesFileLineAndFind) {
   const std::string message = message_of("0 0 0\n1 1 1\n0,5 0,25 0,1\n", "a\nb.xyz");
   EXPECT_EQ(message, "a\\x0ab.xyz: line 3: expected a number, found \"0,5\" (a decimal comma? write numbers with a point)");

@@ -40,7 +40,7 @@ void require_positions(const Source& source, const Element& points) {
   }
 }
 
-// What brings a colour channel to 0..255: floats may mean 0..1, 16 bits may be in full use.
+// What brings a colour channel to 0..255: floats may mean 0..1, floats and 16 bits 0..65535.
 double color_scale(const Element& points, RecordLayout& layout, std::size_t property) {
   const Type type = points.properties[property].type;
   if (!is_float(type) && type != Type::kUint16) return 1;
@@ -51,8 +51,8 @@ double color_scale(const Element& points, RecordLayout& layout, std::size_t prop
     const double value = load_as_double(type, record + layout.offset(property));
     if (std::isfinite(value)) largest = std::max(largest, value);
   }
-  if (type == Type::kUint16) return largest > 255 ? 1.0 / 257 : 1;
-  return largest > 1 ? 1 : 255;
+  if (largest > 255) return 1.0 / 257;
+  return largest > 1 || type == Type::kUint16 ? 1 : 255;
 }
 
 }  // namespace

@@ -8,12 +8,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <utility>
 
 namespace g3r::io {
 
 namespace {
 
+constexpr const char* kAxes[] = {"x", "y", "z"};
 constexpr std::size_t kMostColumns = 1000;  // more means that the file has no line ends
 
 // Comments start a line; CloudCompare's "//X Y Z" is one that names columns.
@@ -66,7 +68,7 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
-// The name of a column; known names in our spelling.
+// The name of a column without quotes; known names in our spelling. Units in brackets do not count: "X [m]" is x.
 std::string column_name(std::string_view text) {
   while (!text.empty() && (text.front() == '"' || text.front() == '\'')) text.remove_prefix(1);
   while (!text.empty() && (text.back() == '"' || text.back() == '\'')) text.remove_suffix(1);
@@ -75,11 +77,36 @@ std::string column_name(std::string_view text) {
       {"ny", "ny"},       {"nz", "nz"},       {"normal_x", "nx"}, {"normal_y", "ny"},
       {"normal_z", "nz"}, {"r", "red"},       {"g", "green"},     {"b", "blue"},
       {"red", "red"},     {"green", "green"}, {"blue", "blue"},   {"confidence", "confidence"}};
-  const std::string lower = lower_case(text);
+  const std::string lower = lower_case(trim(text.substr(0, text.find_first_of("[("))));
   for (const auto& [name, ours] : kNames) {
     if (lower == name) return std::string(ours);
   }
   return std::string(text);
+}
+
+bool has_name(const std::vector<std::string>& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+// Surveyors' names become x, y and z where those are missing.
+void name_axes(std::vector<std::string>& names) {
+  constexpr std::pair<std::string_view, std::string_view> kTheirs[] = {
+      {"easting", "x"}, {"east", "x"}, {"northing", "y"}, {"north", "y"}, {"height", "z"}, {"elevation", "z"}, {"altitude", "z"}};
+  for (const auto& [theirs, ours] : kTheirs) {
+    if (has_name(names, ours)) continue;
+    const auto is_theirs = [&](const std::string& name) { return lower_case(trim(name.substr(0, name.find_first_of("[(")))) == theirs; };
+    const auto found = std::find_if(names.begin(), names.end(), is_theirs);
+    if (found != names.end()) *found = ours;
+  }
+}
+
+// A name that occurred before gets a number: a, a_2.
+void make_distinct(std::vector<std::string>& names) {
+  std::set<std::string> used;
+  for (std::string& name : names) {
+    const std::string first = name;
+    for (int k = 2; !used.insert(name).second; ++k) name = first + "_" + std::to_string(k);
+  }
 }
 
 // What the first pass finds out.
@@ -89,6 +116,7 @@ struct Shape {
   std::size_t points = 0;
   bool counted = false;  // PTS
   std::vector<std::string> names;
+  bool axes_named = false;      // x, y and z are among the names
   bool header_differs = false;  // a header line with another number of columns
   bool overflow = false;
   bool open_end = false;  // the last line has no line end
@@ -130,8 +158,8 @@ void for_each_line(const Source& source, Shape& shape, const Visit& visit) {
   check_block();
 }
 
-// The names of a header line or of a comment such as "//X Y Z", if they are as many as the columns and hold x, y and z.
-std::vector<std::string> find_names(const Source& source, std::size_t columns, bool& header_differs) {
+// The names in a header line or in a comment such as "//X Y Z", one per column of the points. A comment must name x, y and z.
+void find_names(const Source& source, Shape& shape) {
   Lines lines(source.bytes);
   std::string_view line;
   while (lines.next_filled(line)) {
@@ -142,22 +170,22 @@ std::vector<std::string> find_names(const Source& source, std::size_t columns, b
     const std::size_t begin = line.find_first_not_of("#/ \t");
     if (begin == std::string_view::npos) continue;
     line.remove_prefix(begin);
-    const char separator = separator_of(line);
-    if (count_values(line, separator) != columns) {
-      header_differs = header_differs || !comment;
+    const char separator = count_values(line, shape.separator) == shape.columns ? shape.separator : separator_of(line);
+    if (count_values(line, separator) != shape.columns) {
+      shape.header_differs = shape.header_differs || !comment;
       continue;
     }
     std::vector<std::string> names;
-    names.reserve(columns);
+    names.reserve(shape.columns);
     Values values(line, separator);
     std::string_view token;
     while (values.next(token)) names.push_back(column_name(token));
-    std::vector<std::string> sorted = names;
-    std::sort(sorted.begin(), sorted.end());
-    const auto has = [&](const char* name) { return std::binary_search(sorted.begin(), sorted.end(), name); };
-    if (has("x") && has("y") && has("z") && std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end()) return names;
+    name_axes(names);
+    shape.axes_named = has_name(names, "x") && has_name(names, "y") && has_name(names, "z");
+    if (comment && !shape.axes_named) continue;
+    shape.names = std::move(names);
+    return;
   }
-  return {};
 }
 
 Shape measure(const Source& source) {
@@ -179,7 +207,7 @@ Shape measure(const Source& source) {
       fail_at_line(source, number, std::to_string(shape.columns) + " columns on one line: expected one point per line");
     }
   });
-  if (shape.points != 0) shape.names = find_names(source, shape.columns, shape.header_differs);
+  if (shape.points != 0) find_names(source, shape);
   return shape;
 }
 
@@ -277,7 +305,10 @@ std::shared_ptr<Attributes> read_columns(const Source& source, Shape& shape) {
   if (shape.names.empty()) {
     guess_names(points);
   } else {
-    for (std::size_t c = 0; c < shape.columns; ++c) points.properties[c].name = shape.names[c];
+    std::vector<std::string> names = shape.names;
+    if (!shape.axes_named) std::copy_n(kAxes, 3, names.begin());
+    make_distinct(names);
+    for (std::size_t c = 0; c < shape.columns; ++c) points.properties[c].name = names[c];
   }
   return table;
 }
@@ -294,6 +325,10 @@ Cloud read_xyz(const Source& source) {
     cloud.positions.reserve(shape.points);
     parse_points(source, shape, [&](const std::vector<double>& row) { cloud.positions.push_back({row[0], row[1], row[2]}); });
     cloud.property_names = {"x", "y", "z"};
+  }
+  if (!shape.names.empty() && !shape.axes_named) {
+    cloud.warnings.push_back("the header names no columns x, y and z: the first three, " + quote(shape.names[0]) + ", " +
+                             quote(shape.names[1]) + " and " + quote(shape.names[2]) + ", are taken for them");
   }
   if (shape.header_differs) cloud.warnings.emplace_back("the header line has not as many columns as the points: it is not used");
   if (shape.overflow) cloud.warnings.emplace_back("a number is out of double's range: it is taken as infinite (not finite)");
