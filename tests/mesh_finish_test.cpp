@@ -40,7 +40,8 @@ TEST(MeshFinish, ComponentsBelowTheAreaAreDropped) {
   TwoSpheres two;
   EXPECT_EQ(topology(two.mesh).components, 2U);
   Mesh one = two.mesh;
-  mesh::remove_components(one, 2.0, 0);  // the small sphere has area 1.13
+  mesh::remove_components(
+      one, 20, [](const Vec3&) { return 0.1; }, 0);  // the small sphere has area 1.13
   EXPECT_EQ(topology(one).components, 1U);
   EXPECT_EQ(topology(one).bad_edges, 0U);
   EXPECT_NEAR(topology(one).volume, 4.0 / 3.0 * M_PI, 0.02);
@@ -65,6 +66,19 @@ TEST(MeshFinish, SpecksMayBeLargerUnderNoise) {
   EXPECT_EQ(components(1.1, {}), 1U);
   EXPECT_EQ(components(1.1, 8), 2U);
   EXPECT_EQ(components(0, 1.1 * points), 1U);
+}
+
+// A small thing with many points is no speck, however large the others' spacing is.
+TEST(MeshFinish, ComponentsAreMeasuredByTheirOwnSpacing) {
+  TwoSpheres two;
+  std::vector<double> spacing(two.sample.points.size(), 1.0);  // 1.13 is the area of one such point
+  const MeshOptions options;
+  Mesh mesh = two.mesh;
+  mesh::finish_mesh(mesh, two.sample.points, spacing, 0, options);
+  EXPECT_EQ(topology(mesh).components, 1U);
+  std::fill(spacing.begin() + 2000, spacing.end(), 0.1);
+  mesh::finish_mesh(two.mesh, two.sample.points, spacing, 0, options);
+  EXPECT_EQ(topology(two.mesh).components, 2U);
 }
 
 TEST(MeshFinish, LargestComponentsAreKept) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
@@ -17,7 +18,7 @@ namespace {
 
 constexpr double kFarSpacings = 4;     // surface farther from every point than this is a guess
 constexpr double kLeastComponent = 8;  // points: smaller ones are specks of the sign
-constexpr double kLeastPerNoise = 4;   // noise leaves larger ones: a sphere of 1.7 standard deviations
+constexpr double kLeastPerNoise = 4;   // squared noise for which one point more is asked: it leaves spheres of 1.7 standard deviations
 constexpr int kEarPasses = 2;          // of removing triangles that hang on by one edge, for a smoother boundary
 
 // Distance of each place to the nearest point, in units of `unit(nearest point)`.
@@ -97,12 +98,20 @@ void finish_mesh(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<
                  const MeshOptions& options) {
   const bool by_distance = options.trim == MeshOptions::Trim::kDistance;
   if (by_distance && !(options.trim_distance > 0)) throw InvalidInput("the trim distance must be positive");
-  const double least = options.min_component.value_or(kLeastComponent * (1 + kLeastPerNoise * noise * noise));
+  const double least = options.min_component.value_or(kLeastComponent);
   if (!(least >= 0)) throw InvalidInput("the smallest component must not be negative");
   if (mesh.triangles.empty()) return;
   if (options.trim != MeshOptions::Trim::kOff) trim(mesh, points, spacing, options);
-  const double typical = median(spacing);
-  remove_components(mesh, least * typical * typical, options.keep_largest);
+  const double scatter = options.min_component ? 0 : noise * median(spacing);
+  std::optional<Neighbours> neighbours;  // most meshes have one component and do not ask
+  std::vector<std::uint32_t> index;
+  std::vector<double> squared;
+  const auto per_point = [&](const Vec3& place) {
+    if (!neighbours) neighbours.emplace(points);
+    neighbours->nearest(place, 1, index, squared);
+    return spacing[index[0]] * spacing[index[0]] + kLeastPerNoise * scatter * scatter;
+  };
+  remove_components(mesh, least, per_point, options.keep_largest);
   if (options.faces > 0) simplify(mesh, options.faces);
 }
 

@@ -107,7 +107,7 @@ void remove_triangles(Mesh& mesh, const std::vector<std::uint8_t>& keep) {
   gather(mesh.confidence, source);
 }
 
-void remove_components(Mesh& mesh, double min_area, std::size_t keep_largest) {
+void remove_components(Mesh& mesh, double least, const std::function<double(const Vec3&)>& per_point, std::size_t keep_largest) {
   DisjointSets groups(mesh.vertices.size());
   for (const auto& t : mesh.triangles) {
     groups.join(t[0], t[1]);
@@ -121,12 +121,20 @@ void remove_components(Mesh& mesh, double min_area, std::size_t keep_largest) {
     area[root] += std::max(area_of(mesh, t), std::numeric_limits<double>::min());
   }
   std::stable_sort(roots.begin(), roots.end(), [&](std::uint32_t a, std::uint32_t b) { return area[a] > area[b]; });
-  std::vector<std::uint8_t> stays(mesh.vertices.size(), 0);
-  for (std::size_t r = 0; r < roots.size(); ++r) {
-    stays[roots[r]] = r == 0 || ((keep_largest == 0 || r < keep_largest) && area[roots[r]] >= min_area) ? 1 : 0;
+  std::vector<std::uint8_t> listed(mesh.vertices.size(), 0);  // roots that keep_largest leaves
+  std::vector<double> points(mesh.vertices.size(), 0.0);      // of each root, counted until they are enough
+  const std::size_t most = keep_largest == 0 ? roots.size() : std::min(keep_largest, roots.size());
+  for (std::size_t r = 0; r < most; ++r) listed[roots[r]] = 1;
+  if (!roots.empty()) points[roots[0]] = least;
+  for (const auto& t : mesh.triangles) {
+    const std::size_t root = groups.find(t[0]);
+    if (listed[root] != 0 && points[root] < least) points[root] += area_of(mesh, t) / per_point(mesh.vertices[t[0]]);
   }
   std::vector<std::uint8_t> keep(mesh.triangles.size());
-  for (std::size_t t = 0; t < keep.size(); ++t) keep[t] = stays[groups.find(mesh.triangles[t][0])];
+  for (std::size_t t = 0; t < keep.size(); ++t) {
+    const std::size_t root = groups.find(mesh.triangles[t][0]);
+    keep[t] = listed[root] != 0 && points[root] >= least ? 1 : 0;
+  }
   if (keep_triangles(mesh, keep)) drop_unused_vertices(mesh);  // no vertex keeps some of its triangles only
 }
 

@@ -22,6 +22,7 @@ constexpr double kDoubtfulWindingWeight = 35;   // more leaves walls wrong as a 
 constexpr double kPolishWindingWeight = 100;    // 30 to 750 give the same normals within 2 %
 constexpr double kEnergyTolerance = 2.5e-3;     // slats and spokes need this residual; smooth shapes get there in half the steps
 constexpr double kAcceptedResidual = 2e-2;      // from here on normals change little; all clean models get below
+constexpr double kAcceptedContinued = 0.1;  // after a coarse start; random points on spheres end at 0.05, their normals are right to 1e-4
 constexpr const char* kEnergySchedule = "45 cg";
 constexpr double kStartTolerance = 8e-3;  // of a coarse solution that is only a start
 // After a coarse start smooth shapes are there in 2 to 10 steps. More are right for thin walls and narrow gaps only: on open surfaces, of
@@ -165,7 +166,9 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   const bool light = starts_coarse(s, cloud.size()) || among_outliers;
   s.winding_weight = (light ? kContinuedWindingWeight : kWindingWeight) * cube(spacing);
   s.tolerance = options.tolerance >= 0 ? options.tolerance : paper ? 0 : green ? kGreenTolerance : kEnergyTolerance;
-  s.accepted_residual = options.tolerance >= 0 ? options.tolerance : std::max(s.tolerance, kAcceptedResidual);
+  s.accepted_residual = options.tolerance >= 0           ? options.tolerance
+                        : starts_coarse(s, cloud.size()) ? kAcceptedContinued
+                                                         : std::max(s.tolerance, kAcceptedResidual);
   s.continued_tolerance = options.tolerance >= 0 ? options.tolerance : kContinuedTolerance;
   s.doubtful_winding_weight = kDoubtfulWindingWeight * cube(spacing);
   s.doubtful_tolerance = options.tolerance >= 0 ? options.tolerance : kDoubtfulTolerance;
