@@ -1,16 +1,23 @@
 #include "settings.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
 #include <filesystem>
 #include <iostream>
+#include <limits>
 #include <map>
 #include <memory>
+#include <numeric>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "exit_code.h"
 #include "help.h"
+#include "text.h"
 
 namespace g3r::cli {
 namespace {
@@ -21,10 +28,19 @@ constexpr int kMinDepth = 4, kMaxDepth = 12;  // MeshOptions::depth
 constexpr std::size_t kMaxSamples = 1'000'000'000;
 constexpr std::size_t kEvalSamples = 200'000;  // per mesh, as in the paper
 
-/// A range check that leaves the help text alone: the descriptions say the range in words.
+/// A number of type T from `low` to `high`. It says what it expects, and leaves the help text alone: the descriptions say the range.
 template <class T>
-CLI::Validator range(T low, T high) {
-  return CLI::Range(low, high).description("");
+CLI::Validator range(T low, T high = std::numeric_limits<T>::max()) {
+  const auto check = [low, high](const std::string& text) -> std::string {
+    T value{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error == std::errc() && end == text.data() + text.size() && value >= low && value <= high) return {};
+    const auto number = [](T bound) { return short_number(static_cast<double>(bound), 10); };
+    const std::string bounds =
+        high == std::numeric_limits<T>::max() ? number(low) + " or more" : "from " + number(low) + " to " + number(high);
+    return std::string("expected a ") + (std::is_integral_v<T> ? "whole number, " : "number, ") + bounds + ", found '" + text + "'";
+  };
+  return {check, ""};
 }
 
 // Headings of --help.
@@ -78,18 +94,23 @@ void add_run_options(CLI::App& app, Settings& s) {
       ->type_name("N");
   app.add_flag("-q,--quiet", s.quiet, "Say nothing but errors");
   app.add_flag_callback(
-      "--no-progress", [&s] { s.progress = false; }, "No progress bar");
+         "--no-progress", [&s] { s.progress = false; }, "No progress bar")
+      ->disable_flag_override();
   app.add_flag("-v,--verbose", s.verbosity, "Say more");
 }
 
 void add_report_options(CLI::App& app, Settings& s) {
   app.option_defaults()->group(kResultGroup);
   app.add_option("--report", s.report, "Write what was done as JSON (docs/report.md); - for standard output")->type_name("FILE");
-  app.add_flag("--strict", s.strict, "Exit with 65 when the result is doubtful: not converged, inconsistent, or a mesh that is not closed");
+  app.add_flag("--strict", s.strict,
+               "Exit with 65 when the result is doubtful: not converged, sides inconsistent, or a mesh not closed that was not trimmed");
 }
 
 void add_seed_option(CLI::App& app, Settings& s) {
-  app.add_option("--seed", s.options.seed, "Seed of random steps")->type_name("S")->group(kRunGroup);
+  app.add_option("--seed", s.options.seed, "Seed of random steps (default 0)")
+      ->check(range(std::uint64_t{0}))
+      ->type_name("S")
+      ->group(kRunGroup);
 }
 
 void add_read_options(CLI::App& app, Settings& s) {
@@ -131,29 +152,33 @@ void add_mesh_options(CLI::App& app, Settings& s) {
 void add_finish_options(CLI::App& app, Settings& s) {
   app.option_defaults()->group(kMeshGroup);
   MeshOptions& o = s.mesh_options;
-  app.add_option_function<std::string>(
-         "--trim",
-         [&o](const std::string& text) {
-           const auto distance = parse_length(text);
-           if (text == "off" || text == "auto") {
-             o.trim = text == "off" ? MeshOptions::Trim::kOff : MeshOptions::Trim::kAuto;
-           } else if (distance && !distance->is_percent && distance->value > 0) {
-             o.trim = MeshOptions::Trim::kDistance;
-             o.trim_distance = distance->value;
-           } else {
-             reject("--trim", text, "off, auto or a distance above 0");
-           }
-         },
-         "Cut away surface that is farther than X (input units) from every point; auto: 4 spacings; off is the default")
-      ->type_name("off|auto|X");
+  CLI::Option* trim = app.add_option_function<std::string>(
+                             "--trim",
+                             [&o](const std::string& text) {
+                               const auto distance = parse_length(text);
+                               if (text == "off" || text == "auto") {
+                                 o.trim = text == "off" ? MeshOptions::Trim::kOff : MeshOptions::Trim::kAuto;
+                               } else if (distance && !distance->is_percent && distance->value > 0) {
+                                 o.trim = MeshOptions::Trim::kDistance;
+                                 o.trim_distance = distance->value;
+                               } else {
+                                 reject("--trim", text, "off, auto or a distance above 0");
+                               }
+                             },
+                             "Cut away surface that is farther than X (input units) from every point; auto: 4 spacings; off is the default")
+                          ->type_name("off|auto|X");
   app.add_flag_callback(
-      "--open", [&o] { o.trim = MeshOptions::Trim::kAuto; }, "For open scans: the same as --trim auto");
-  app.add_option("--keep-largest", o.keep_largest, "Keep only the N largest components (default: all)")->type_name("N");
+         "--open", [&o] { o.trim = MeshOptions::Trim::kAuto; }, "For open scans: the same as --trim auto")
+      ->disable_flag_override()
+      ->excludes(trim);
+  app.add_option("--keep-largest", o.keep_largest, "Keep only the N largest components (default, or 0: all)")
+      ->check(range(std::size_t{0}))
+      ->type_name("N");
   app.add_option("--min-component", o.min_component,
                  "Drop components of less area than N points stand for (default 8, more under noise; 0 keeps all)")
       ->check(range(0.0, 1e15))
       ->type_name("N");
-  app.add_option("--faces", o.faces, "Simplify to about N triangles")->type_name("N");
+  app.add_option("--faces", o.faces, "Simplify to about N triangles (default, or 0: off)")->check(range(std::size_t{0}))->type_name("N");
 }
 
 void add_method_options(CLI::App& app, Settings& s) {
@@ -310,7 +335,8 @@ void add_view(CLI::App& app, Settings& s) {
   sub->add_option("--truth", s.truth, "Cloud with true normals in the same order: adds the map of errors")->type_name("GT");
   sub->add_option("--figures", s.figures, "Page: report of the run, to show beside the view")->type_name("FILE.json");
   sub->add_flag_callback(
-      "--z-up", [&s] { s.page.up = s.picture.up = Up::kZ; }, "The z axis points up instead of the y axis");
+         "--z-up", [&s] { s.page.up = s.picture.up = Up::kZ; }, "The z axis points up instead of the y axis")
+      ->disable_flag_override();
   sub->add_option_function<std::vector<std::string>>(
          "--layers",
          [&s](const std::vector<std::string>& names) {
@@ -343,15 +369,59 @@ Command parsed_command(const CLI::App& app) {
   return parsed.empty() ? Command::kReconstruct : commands.at(parsed.front()->get_name());
 }
 
+/// Letters to change, add or leave out to get from one word to the other (Levenshtein 1966). O(|a| |b|).
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t change = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({change, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+/// "; did you mean WORD?" if one of the words is near, else nothing.
+std::string suggestion(const std::string& found, const std::vector<std::string>& words) {
+  constexpr std::size_t kNear = 2;
+  std::string nearest;
+  std::size_t least = kNear + 1;
+  for (const std::string& word : words) {
+    const std::size_t distance = edit_distance(found, word);
+    if (distance < std::min(least, word.size() - 1)) {
+      least = distance;
+      nearest = word;
+    }
+  }
+  return nearest.empty() ? "" : "; did you mean " + nearest + "?";
+}
+
 /// The first argument that nothing takes, and what could have been meant.
 std::string about_extras(const CLI::App& app) {
   const std::string first = app.remaining(true).front();
-  if (first.size() > 1 && first.front() == '-') return "unknown option " + first;
   const auto parsed = app.get_subcommands();
-  if (!parsed.empty()) return "one file too many for g3r " + parsed.front()->get_name() + ": " + first;
-  std::string names;
-  for (const CLI::App* command : app.get_subcommands({})) names += (names.empty() ? "" : ", ") + command->get_name();
-  return "one file too many: " + first + "; expected IN and OUT, or one of the commands " + names + " first";
+  const CLI::App& command = parsed.empty() ? app : *parsed.front();
+  if (first == "-o" || first == "--out" || first == "--output")
+    return "unknown option " + first + ": the output stands after the input, without an option";
+  if (first.size() > 1 && first.front() == '-') {
+    std::vector<std::string> options;
+    for (const CLI::Option* option : command.get_options()) {
+      for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+    }
+    return "unknown option " + first + suggestion(first.substr(0, first.find('=')), options);
+  }
+  if (!parsed.empty()) return "one file too many for g3r " + command.get_name() + ": " + first;
+  std::vector<std::string> names;
+  std::string list;
+  for (const CLI::App* other : app.get_subcommands({})) {
+    names.push_back(other->get_name());
+    list += (list.empty() ? "" : ", ") + other->get_name();
+  }
+  const std::string meant = suggestion(app.get_option("IN")->as<std::string>(), names);
+  return "one file too many: " + first + "; expected IN and OUT, or one of the commands " + list + " first" + meant;
 }
 
 /// What CLI11 cannot check: rules over several arguments.
@@ -369,6 +439,12 @@ void complete(const CLI::App& app, Settings& s) {
     if (s.output != "-" && extension != ".html" && extension != ".htm" && extension != ".png") {
       throw UsageError("unknown extension '" + extension + "' of " + s.output + ": view writes .html or .png");
     }
+    const CLI::App& view = *app.get_subcommands().front();
+    const bool picture = extension == ".png";
+    for (const char* option : {"--layers", "--tile", "--views", "--dark"}) {
+      if (!picture && view.count(option) > 0) throw UsageError(std::string(option) + " is for pictures (.png), not for pages");
+    }
+    if (picture && view.count("--figures") > 0) throw UsageError("--figures is for pages (.html), not for pictures");
   }
   if (s.command == Command::kEval && s.sample_count == 0) s.sample_count = kEvalSamples;
   std::vector<std::string> written = s.outputs();

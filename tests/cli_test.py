@@ -77,7 +77,13 @@ class ExitCodes(ProgramTest):
                 (USAGE, ["ball.ply", "--epsilon", "wide"], "--epsilon: expected auto, X, X%, Xh or Xn with X > 0, found 'wide'"),
                 (USAGE, ["ball.ply", "a.docx"], 'unknown extension ".docx": expected .ply, .obj'),
                 (USAGE, ["ball.ply", "a.xyz"], "a.xyz: .xyz is for points"), (USAGE, ["orient", "ball.ply", "a.stl"], "a.stl: .stl is for meshes"),
-                (USAGE, ["oriend", "ball.ply"], "no file and no command named oriend"), (USAGE, ["ball.ply", "--opne"], "unknown option --opne"),
+                (USAGE, ["oriend", "ball.ply"], "no file and no command named oriend"), (USAGE, ["ball.ply", "--treads", "2"], "unknown option --treads; did you mean --threads?"),
+                (USAGE, ["ball.ply", "--bogus"], "unknown option --bogus (see"), (USAGE, ["ball.ply", "-o", "a.ply"], "the output stands after the input"),
+                (USAGE, ["oreint", "ball.ply", "a.ply"], "did you mean orient?"), (USAGE, ["ball.ply", "--open", "--trim", "3"], "excludes --open"),
+                (USAGE, ["ball.ply", "--faces", "-5"], "--faces: expected a whole number, 0 or more, found '-5'"),
+                (USAGE, ["ball.ply", "--seed", "9" * 30], "--seed: expected a whole number, 0 or more"),
+                (USAGE, ["ball.ply", "--depth", "3"], "--depth: expected a whole number, from 4 to 12, found '3'"),
+                (USAGE, ["view", "ball.ply", "-o", "a.html", "--tile", "40"], "--tile is for pictures"),
                 (USAGE, ["ball.ply", "a.ply", "b.ply"], "one file too many: b.ply"),
                 (BAD_DATA, ["mesh", "ball.ply", "a.ply"], "ball.ply has no normals")):
             with self.subTest(arguments):

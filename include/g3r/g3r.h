@@ -82,7 +82,7 @@ struct Options {
   std::string schedule;   ///< iterations, for example "20 sd 60 cg"
   double tolerance = -1;  ///< stop when the relative residual of the normal equations falls below; 0: never; -1: preset's
   double accuracy = -1;   ///< relative l2 error allowed in the sums, 1e-6..1e-1; 0: direct sums; -1: 1e-2, or 2e-2 where that is enough
-  bool condition_number = false;  ///< dense solver only: also compute the condition number
+  bool condition_number = false;  ///< also compute the condition number; throws InvalidInput unless the solver is dense
   int threads = 0;                ///< 0: all cores. The result does not depend on it
   std::uint64_t seed = 0;         ///< reserved for steps that sample; the present method draws no random number
   std::size_t max_memory =

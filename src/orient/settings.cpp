@@ -157,6 +157,7 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   require(options.solver != Solver::kDense || green, "the dense solver belongs to the method green");
   s.dense = options.solver == Solver::kDense ||
             (options.solver == Solver::kAuto && paper && green && options.schedule.empty() && cloud.size() <= kPaperDensePoints);
+  require(!options.condition_number || s.dense, "the condition number is that of the dense system: set the solver to dense");
   s.schedule_text = !options.schedule.empty() ? options.schedule : paper ? kPaperSchedule : green ? kGreenSchedule : kEnergySchedule;
   s.schedule = parse_schedule(s.schedule_text);
   s.coarse_to_fine = !paper && !green && options.schedule.empty();
