@@ -97,6 +97,9 @@ int run_info(const Settings& settings, Session& session) {
   try {
     stats = session.stage("plan", [&] { return plan(cloud.positions, settings.options, settings.mesh_options); });
     text += plan_text(stats);
+    if (settings.options.max_memory > 0 && stats.planned_memory_bytes > settings.options.max_memory) {
+      stats.warnings.push_back("more than the " + bytes(settings.options.max_memory) + " of --max-memory: g3r would refuse");
+    }
   } catch (const InvalidInput& error) {
     stats.points = cloud.positions.size();
     stats.warnings.emplace_back(error.what());

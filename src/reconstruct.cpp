@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace g3r {
@@ -24,6 +25,8 @@ constexpr double kFarSpacings = 4;       // surface farther than this from every
 constexpr double kFarShare = 0.05;       // more of it is worth a warning
 constexpr double kWidest = 8e5;          // spacings; the octree has at most 2^20 cells of 0.8 spacings
 constexpr int kPaperDepth = 10;
+constexpr double kLargestCoordinate = 1e50;  // areas, volumes and their products of a mesh stay finite,
+constexpr double kLeastExtent = 1e-140;      // and greater than 0
 
 // The winding field in normalised units as the field mesher sees it.
 class WindingSampler : public FieldSampler {
@@ -48,6 +51,27 @@ class WindingSampler : public FieldSampler {
   const std::atomic<bool>* cancel_;
   FastSum sum_;
 };
+
+// Throws before the work what the mesh could not be measured with. O(N).
+void require_meshable(const PointsView& points) {
+  double largest = 0;
+  double extent = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (std::size_t i = 0; i < points.count; ++i) {
+      const double x = points[i][a];
+      if (!std::isfinite(x)) continue;
+      low = std::min(low, x);
+      high = std::max(high, x);
+    }
+    if (low > high) return;
+    largest = std::max({largest, -low, high});
+    extent = std::max(extent, high - low);
+  }
+  if (largest > kLargestCoordinate) throw InvalidInput("coordinates beyond 1e50 cannot be meshed; scale them down");
+  if (extent > 0 && extent < kLeastExtent) throw InvalidInput("an extent below 1e-140 cannot be meshed; scale the coordinates up");
+}
 
 Mesh mesh_with_poisson(const OrientedCloud& oriented, const std::vector<Vec3>& normals, int depth) {
   const int chosen = depth > 0 ? depth : automatic_depth(oriented.spacing, 2.0 / 1.1);
@@ -114,6 +138,7 @@ Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const Me
     throw InvalidInput(std::to_string(points.count) + " points but " + std::to_string(normals.count) + " normals");
   }
   if (options.threads < 0) throw InvalidInput("threads must be 0 (all cores) or positive");
+  require_meshable(points);
   std::vector<Vec3> kept;
   std::vector<Vec3> directions;
   for (std::size_t i = 0; i < points.count; ++i) {
@@ -129,6 +154,7 @@ Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const Me
 
 Reconstruction reconstruct(const PointsView& points, const Options& options, const MeshOptions& mesh_options, const Monitor& monitor) {
   if (mesh_options.mesher == Mesher::kPoisson) require_screened_poisson();
+  require_meshable(points);
   const MeshOptions chosen = choose(mesh_options, options);
   if (options.max_memory > 0) require_memory(plan(points, options, mesh_options).planned_memory_bytes, options);
   Reconstruction out;

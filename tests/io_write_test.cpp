@@ -229,6 +229,17 @@ TEST(WriteMesh, EveryFormatGivesTheMeshBack) {
   }
 }
 
+TEST(WriteMesh, StlIsTextWhereFloatsWouldCollapseTriangles) {
+  Mesh mesh = samples::tetrahedron();
+  EXPECT_EQ(samples::written(mesh, "a.stl").size(), 84U + 4 * 50);
+  for (Vec3& v : mesh.vertices) v = {v[0] + 497233.125, v[1] + 5412345.5, v[2] + 311};
+  const std::string bytes = samples::written(mesh, "a.stl");
+  EXPECT_EQ(bytes.substr(0, 6), "solid ");
+  const Mesh again = read_mesh_bytes(bytes.data(), bytes.size(), "a.stl");
+  ASSERT_EQ(again.vertices.size(), 4U);
+  for (const Vec3& v : mesh.vertices) EXPECT_EQ(std::count(again.vertices.begin(), again.vertices.end(), v), 1);
+}
+
 TEST(WriteMesh, GlbKeepsGeoreferencedPositions) {
   Mesh mesh = samples::tetrahedron();
   for (Vec3& v : mesh.vertices) v = {v[0] + 497233.125, v[1] + 5412345.5, v[2] + 311};

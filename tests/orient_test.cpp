@@ -3,6 +3,7 @@
 
 #include "sanitized.h"
 #include "shapes.h"
+#include "vector.h"
 
 #include <gtest/gtest.h>
 
@@ -393,6 +394,31 @@ TEST(Confidence, RanksWrongSidesOnNoisyData) {
   }
   ASSERT_GT(wrong, 50);
   EXPECT_GT(area / (wrong * right), 0.85) << wrong << " of " << wrong + right << " wrong";
+}
+
+// Normals are told at any scale; a mesh is refused before the work where its area and volume could not be.
+TEST(Reconstruct, RefusesWhatCannotBeMeasured) {
+  const Surface s = shapes::sphere(500, 1);
+  for (const double scale : {1e60, 1e-150}) {
+    std::vector<Vec3> points = s.points;
+    for (Vec3& p : points) p = vector::scale(p, scale);
+    EXPECT_THROW((void)reconstruct(points), InvalidInput);
+    EXPECT_THROW((void)mesh_oriented(points, s.normals), InvalidInput);
+    EXPECT_EQ(shapes::share_correct(orient(points).normals, s.normals), 1);
+  }
+}
+
+// After a coarse start random points leave a residual that the normals do not show.
+TEST(Orient, ASphereOfManyRandomPointsConverges) {
+  shapes::Random random(3);
+  std::vector<Vec3> points(40000);
+  for (Vec3& p : points) {
+    for (double& c : p) c = random.gaussian();
+    p = vector::scale(p, 1 / std::sqrt(vector::dot(p, p)));
+  }
+  const Orientation o = orient(points);
+  EXPECT_TRUE(o.stats.converged);
+  EXPECT_LT(shapes::angle_error(o.normals, points), 1e-3);
 }
 
 // Vectors of single points follow the noise: from them a third of these points is unsure.

@@ -179,7 +179,8 @@ struct Reconstruction {
   MeshCheck check;
 };
 
-/// Orients a cloud and meshes it. Throws like orient(), and Unavailable when built without a mesher.
+/// Orients a cloud and meshes it. Throws like orient(), InvalidInput for coordinates beyond 1e50 or an extent below 1e-140, of which areas
+/// and volumes cannot be told, and Unavailable when built without a mesher.
 [[nodiscard]] Reconstruction reconstruct(const PointsView& points, const Options& options = {}, const MeshOptions& mesh_options = {},
                                          const Monitor& monitor = {});
 

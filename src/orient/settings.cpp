@@ -225,7 +225,7 @@ std::size_t planned_memory(const Settings& settings, std::size_t given, std::siz
 void require_memory(std::size_t planned_bytes, const Options& options) {
   if (options.max_memory == 0 || planned_bytes <= options.max_memory) return;
   throw Unavailable("the plan needs " + std::to_string(planned_bytes >> 20) + " MiB, the limit is " +
-                    std::to_string(options.max_memory >> 20) + " MiB; raise the limit or thin the cloud");
+                    std::to_string(options.max_memory >> 20) + " MiB; raise the limit, thin the cloud, or lower the depth of the mesh");
 }
 
 }  // namespace g3r
