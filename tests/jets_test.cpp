@@ -5,6 +5,8 @@
 
 #include "shapes.h"
 
+#include <g3r/g3r.h>
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -54,6 +56,23 @@ TEST(Jets, AreExactOnAPlane) {
   std::size_t exact = 0;
   for (const Vec3& n : normals) exact += n[2] > 1 - 1e-12 ? 1 : 0;
   EXPECT_GT(exact, kCount * 95 / 100);
+}
+
+// Points of one ring prove its plane, not the surface's slope across it: before the test of breadth they got the plane's normal.
+TEST(Jets, LeaveScanLinesAlone) {
+  Surface sphere;
+  for (int ring = 1; ring < 40; ++ring) {
+    const double theta = ring * std::numbers::pi / 40;
+    const int count = static_cast<int>(800 * std::sin(theta));  // ten times as dense as the rings
+    for (int k = 0; k < count; ++k) {
+      const double phi = 2 * std::numbers::pi * k / count;
+      sphere.points.push_back({std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
+    }
+  }
+  std::vector<Vec3> normals = shapes::disturbed(sphere.points, 0.02);
+  fit_jets(sphere.points, near(sphere.points), std::vector<double>(normals.size(), std::numbers::pi / 400), normals);
+  EXPECT_LT(shapes::angle_error(normals, sphere.points), 3e-4);  // 2e-4 were there
+  EXPECT_LT(shapes::angle_error(orient(sphere.points).normals, sphere.points), 1e-3);
 }
 
 TEST(Jets, LeaveNoisyPointsAlone) {

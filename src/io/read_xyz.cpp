@@ -92,11 +92,13 @@ bool has_name(const std::vector<std::string>& names, std::string_view name) {
 void name_axes(std::vector<std::string>& names) {
   constexpr std::pair<std::string_view, std::string_view> kTheirs[] = {
       {"easting", "x"}, {"east", "x"}, {"northing", "y"}, {"north", "y"}, {"height", "z"}, {"elevation", "z"}, {"altitude", "z"}};
-  for (const auto& [theirs, ours] : kTheirs) {
-    if (has_name(names, ours)) continue;
-    const auto is_theirs = [&](const std::string& name) { return lower_case(trim(name.substr(0, name.find_first_of("[(")))) == theirs; };
+  for (const auto& axis : kTheirs) {
+    if (has_name(names, axis.second)) continue;
+    const auto is_theirs = [&](const std::string& name) {
+      return lower_case(trim(name.substr(0, name.find_first_of("[(")))) == axis.first;
+    };
     const auto found = std::find_if(names.begin(), names.end(), is_theirs);
-    if (found != names.end()) *found = ours;
+    if (found != names.end()) *found = axis.second;
   }
 }
 

@@ -19,6 +19,25 @@ constexpr double kSameSheet = 0.9;       // cosine between normals
 constexpr double kSteepest = 0.5145;     // height above the tangent plane over distance
 constexpr double kRadius = 1.5;          // spacings
 constexpr double kScatter = 0.007;       // spacings, standard deviation of the heights
+constexpr double kNarrowest = 0.15;      // second principal spread over the first: along one scan line any slope across it fits
+
+bool spread_out(const std::vector<FitPoint>& members, const Vector3d& normal) {
+  const Eigen::Matrix3d frame = tangent_frame(normal);
+  Vector3d mean = Vector3d::Zero();
+  for (const FitPoint& m : members) mean += m.p / static_cast<double>(members.size());
+  double uu = 0;
+  double uv = 0;
+  double vv = 0;
+  for (const FitPoint& m : members) {
+    const Vector3d d = frame * (m.p - mean);
+    uu += d[0] * d[0];
+    uv += d[0] * d[1];
+    vv += d[1] * d[1];
+  }
+  const double middle = (uu + vv) / 2;
+  const double swing = std::hypot((uu - vv) / 2, uv);
+  return middle - swing >= kNarrowest * kNarrowest * (middle + swing);
+}
 
 }  // namespace
 
@@ -43,7 +62,7 @@ std::vector<std::uint8_t> fit_jets(const std::vector<Vec3>& points, const std::v
         if (n.dot(normal) <= kSameSheet || height * height > kSteepest * kSteepest * d.squaredNorm()) continue;
         members.push_back({d, n, std::exp(-d.squaredNorm() * scale), 0});
       }
-      if (members.size() < kFewest) continue;
+      if (members.size() < kFewest || !spread_out(members, normal)) continue;
       const Sheet sheet = fit_sheet(members, 0, spacing[i], 0);
       double misfit = 0;
       double total = 0;
