@@ -3,6 +3,8 @@
 
 #include "shapes.h"
 
+#include <g3r/g3r.h>
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -73,6 +75,30 @@ TEST(Planes, AreNotFoundAmongRoughPoints) {
   const double spacing = 0.9 * std::sqrt(4 * std::numbers::pi / 8000);
   shapes::scatter(rough, 0.2 * spacing);
   EXPECT_LT(turned(fitted(rough, spacing, rough.normals), rough.normals, 0.1), 80);
+}
+
+// Contours of a rough body in 60 parallel slices, four times as dense along as across: their planes are across the surface.
+TEST(Planes, AreNotThoseOfSlices) {
+  constexpr int kSlices = 60;
+  Surface body;
+  for (int slice = 0; slice < kSlices; ++slice) {
+    const double z = (slice + 0.5) * 2 / kSlices - 1;
+    const auto radius = [z](double phi) { return std::sqrt(1 - z * z) * (1 + 0.15 * std::cos(9 * phi + 4 * z)); };
+    const int count = static_cast<int>(2 * std::numbers::pi * 4 * kSlices / 2 * std::sqrt(1 - z * z));
+    for (int k = 0; k < count; ++k) {
+      const double phi = 2 * std::numbers::pi * k / count;
+      const double r = radius(phi);
+      const double r_phi = -std::sqrt(1 - z * z) * 0.15 * 9 * std::sin(9 * phi + 4 * z);
+      const double r_z = -z / (1 - z * z) * r - std::sqrt(1 - z * z) * 0.15 * 4 * std::sin(9 * phi + 4 * z);
+      const Vec3 n{r * std::cos(phi) + r_phi * std::sin(phi), r * std::sin(phi) - r_phi * std::cos(phi), -r * r_z};
+      const double size = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+      body.points.push_back({r * std::cos(phi), r * std::sin(phi), z});
+      body.normals.push_back({n[0] / size, n[1] / size, n[2] / size});
+    }
+  }
+  const Orientation o = orient(body.points);
+  EXPECT_GT(shapes::share_correct(o.normals, body.normals), 0.999);
+  EXPECT_LT(shapes::angle_error(o.normals, body.normals), 5e-3);
 }
 
 // Rows five times as dense along as across, as scanners make them: every row lies in a plane across the surface.
