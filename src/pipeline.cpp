@@ -20,6 +20,21 @@ namespace g3r {
 namespace {
 
 constexpr double kManyUnsure = 0.2;  // share of unsure points above which the orientation is called inconsistent
+// Another noise than the estimate.
+constexpr std::size_t kFewestTried = 8000;  // points; detail of fewer looks like noise
+constexpr double kDoubtful = 0.03;          // share of sides in doubt from which one is tried,
+constexpr double kScattered = 0.05;         // and of the spacing, the scatter,
+constexpr double kFarMore = 2;              // over the estimate
+constexpr double kAboveScatter = 1.4;       // times the scatter: the first one tried
+constexpr double kFarLess = 0.5;            // of the doubt with the estimate, up to which it is taken,
+constexpr double kLess = 0.6;               // or up to this
+constexpr double kLittleDoubt = 0.04;       // where there is little
+constexpr double kStep = 1.4;               // from one noise to the next
+constexpr double kMostTried = 0.5;          // of the spacing, below which more is tried while there is more than little doubt,
+constexpr double kGain = 0.75;              // and taken up to this share of the doubt
+constexpr double kLeastTried = 0.3;         // of the spacing, above which less is tried
+constexpr double kLoss = 1.25;              // and taken up to this share of the doubt
+constexpr double kSlightLoss = 0.01;        // and this
 
 const char* name_of(Method method) {
   switch (method) {
@@ -159,23 +174,89 @@ void judge(const CanonicalCloud& cloud, const std::vector<float>& confidence, St
   }
 }
 
-Orientation orient_in_arena(const PointsView& points, const Options& options, Stages& stages) {
-  Orientation out;
-  const Problem problem = prepare(points, options, stages);
-  describe(problem, points, options, out.stats);
+struct Oriented {
+  Solution solution;
+  std::vector<float> confidence;
+  std::vector<std::uint32_t> near;  // kSpacingNeighbours nearest of every point
+};
+
+Oriented orient_problem(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
+  Oriented out;
+  out.solution = solve(problem, options, stages, stats);
+  solve_sheets_apart(problem, options, stages, stats, out.solution);
+  out.near = problem.near.empty() ? Neighbours(problem.cloud.points).of_all(kSpacingNeighbours) : problem.near;
+  const Refinement& refined = out.solution.refinement;
+  const std::vector<Vec3> vectors = problem.noise > 0 ? sums_over(out.near, out.solution.eta) : out.solution.eta;
+  out.confidence = side_confidence(vectors, refined.normals, refined.strength, problem.local_spacing);
+  add_sheets(out.solution.sheets, out.confidence, stats);
+  judge(problem.cloud, out.confidence, stats);
+  return out;
+}
+
+double doubt(const Stats& stats) { return stats.confidence_below_half + stats.undecided_share; }
+
+// The noise to try instead of the estimate, 0 for none: the sides of many points are in doubt, and most points scatter far more than those
+// that scatter least, which the estimate goes by.
+double other_noise(const Problem& problem, const Options& options, const Stats& stats) {
+  const bool automatic = problem.settings.method == Method::kEnergy && options.preset != Preset::kPaper &&
+                         options.epsilon.unit == Epsilon::Unit::kAuto && options.schedule.empty();
+  const std::vector<Vec3>& points = problem.cloud.points;
+  if (!automatic || points.size() < kFewestTried || doubt(stats) < kDoubtful) return 0;
+  const double scatter = largest_scatter(points, Neighbours(points), problem.spacing);
+  return scatter > kScattered * problem.spacing && scatter > kFarMore * problem.noise ? scatter : 0;
+}
+
+// A problem, its solution and what there is to say of them.
+struct Attempt {
+  Problem problem;
+  Oriented oriented;
+  Stats stats;
+};
+
+Attempt attempt(Problem problem, const PointsView& points, const Options& options, Stages& stages) {
+  Attempt out{std::move(problem), {}, {}};
+  describe(out.problem, points, options, out.stats);
   require_memory(out.stats.planned_memory_bytes, options);
-  Solution solution = solve(problem, options, stages, out.stats);
-  solve_sheets_apart(problem, options, stages, out.stats, solution);
-  std::vector<Vec3>& normals = solution.refinement.normals;
-  const std::vector<std::uint32_t> near = problem.near.empty() ? Neighbours(problem.cloud.points).of_all(kSpacingNeighbours) : problem.near;
-  const std::vector<Vec3> vectors = problem.noise > 0 ? sums_over(near, solution.eta) : solution.eta;
-  std::vector<float> confidence = side_confidence(vectors, normals, solution.refinement.strength, problem.local_spacing);
-  add_sheets(solution.sheets, confidence, out.stats);
-  judge(problem.cloud, confidence, out.stats);
-  warn_of_volume(problem, out.stats);
-  settle_areas(problem, near, stages, solution);
-  add_outliers(problem, stages, solution, confidence);
-  hand_out(problem.cloud, solution.eta, normals, confidence, out);
+  out.oriented = orient_problem(out.problem, options, stages, out.stats);
+  return out;
+}
+
+// Thin walls and layers of scans that do not fit onto each other look alike from near. But few sides of walls are in doubt when they are
+// solved for as what they are, of layers when they are solved for as noise. Then, as too large a noise hides everything, the least one
+// counts that leaves no more in doubt.
+Attempt orient_with_best_noise(const PointsView& points, const Options& options, Stages& stages) {
+  Attempt best = attempt(prepare(points, options, stages), points, options, stages);
+  const double noise = kAboveScatter * other_noise(best.problem, options, best.stats);
+  if (noise == 0) return best;
+  Attempt other = attempt(with_noise(best.problem, noise, options), points, options, stages);
+  const double before = doubt(best.stats);
+  const double after = doubt(other.stats);
+  if (after > kFarLess * before && (after > kLittleDoubt || after > kLess * before)) return best;
+  best = std::move(other);
+  const auto better_with = [&](double factor, double times, double plus) {
+    other = attempt(with_noise(best.problem, factor * best.problem.noise, options), points, options, stages);
+    if (doubt(other.stats) > times * doubt(best.stats) + plus) return false;
+    best = std::move(other);
+    return true;
+  };
+  bool raised = false;
+  while (doubt(best.stats) > kLittleDoubt && best.problem.noise < kMostTried * best.problem.spacing && better_with(kStep, kGain, 0)) {
+    raised = true;
+  }
+  while (!raised && best.problem.noise > kLeastTried * best.problem.spacing && better_with(1 / kStep, kLoss, kSlightLoss)) {
+  }
+  return best;
+}
+
+Orientation orient_in_arena(const PointsView& points, const Options& options, Stages& stages) {
+  Attempt best = orient_with_best_noise(points, options, stages);
+  auto& [solution, confidence, near] = best.oriented;
+  Orientation out;
+  out.stats = std::move(best.stats);
+  warn_of_volume(best.problem, out.stats);
+  settle_areas(best.problem, near, stages, solution);
+  add_outliers(best.problem, stages, solution, confidence);
+  hand_out(best.problem.cloud, solution.eta, solution.refinement.normals, confidence, out);
   stages.finish(out.stats);
   return out;
 }

@@ -58,6 +58,16 @@ Problem prepare(const PointsView& points, const Options& options, Stages& stages
   return problem;
 }
 
+Problem with_noise(const Problem& problem, double noise, const Options& options) {
+  Problem noisy;
+  noisy.cloud = problem.cloud;
+  noisy.outliers = problem.outliers;
+  noisy.spacing = problem.spacing;
+  noisy.noise = noise;
+  choose_scales(noisy, options, {}, {});
+  return noisy;
+}
+
 Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, const Options& options) {
   Problem part;
   part.cloud.frame = problem.cloud.frame;

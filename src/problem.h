@@ -29,6 +29,9 @@ struct Problem {
 /// O(N log N).
 [[nodiscard]] Problem prepare(const PointsView& points, const Options& options, Stages& stages);
 
+/// The same problem with this noise instead of the estimate.
+[[nodiscard]] Problem with_noise(const Problem& problem, double noise, const Options& options);
+
 /// The same problem on some of its points (ascending indices), with a spacing and settings of their own.
 [[nodiscard]] Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, const Options& options);
 

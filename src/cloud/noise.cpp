@@ -39,6 +39,8 @@ constexpr double kFewApart = 0.08;         // of the gap, the deviation from she
 constexpr double kApart = 0.12;            // and through kSheets
 constexpr double kOnSheet = 0.05;          // in spacings, that deviation
 constexpr double kRounded = 0.05;          // in spacings, steps of coordinates that put noisy points on planes
+constexpr double kLeastRounding = 0.04;    // spacings, of the deviation that rounding leaves; less is no noise
+constexpr double kTerraces = 0.5;          // of the deviation that rounding leaves, the median residual of height fields from which it does
 constexpr double kSameCoordinate = 1e-4;   // in spacings, between coordinates that differ by rounding only
 constexpr double kSmallToLarge = 1.27;     // residual of 32 neighbours to that of 16 on a noisy plane, while both are small
 constexpr double kSmallSaturation = 0.47;  // residual of 16 neighbours, in spacings, when noise fills the ball
@@ -51,10 +53,16 @@ constexpr std::size_t kLayerProbes = 500;      // neighbourhoods that may hold s
 constexpr std::size_t kLayerNeighbours = 256;  // of each
 constexpr double kLayerShare = 0.1;            // share of these neighbourhoods that decides: at the others are folds, edges, a third wall
 constexpr double kLayerBias = 0.92;            // sigma at that share, of smooth surfaces, over the true one
+constexpr double kMostScattered = 0.75;        // quantile of the neighbourhoods that stands for those with the largest noise
+constexpr double kQuadraticToSigma = 1.12;     // that quantile of the residuals of height fields over sigma, while both are small
+constexpr double kQuadraticSaturation = 0.64;  // in spacings, that quantile when noise fills the balls
+constexpr double kLargestQuadratic = 0.62;     // beyond, it tells no more
 constexpr double kResolved = 1.0;              // in spacings: larger noise fills these neighbourhoods, too
 constexpr std::size_t kThinning = 4;           // then every fourth point has neighbourhoods twice as large
 constexpr std::size_t kFewestThinned = 4000;   // left by it; of fewer, 256 points are no small part of the shape
 constexpr std::size_t kFewestPoints = 200;     // below, neighbourhoods are a large part of the shape
+
+double share_of(std::size_t some, std::size_t all) { return static_cast<double>(some) / static_cast<double>(all); }
 
 double quantile(std::vector<double> values, double share) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
@@ -71,6 +79,26 @@ void for_some(const std::vector<Vec3>& points, const Neighbours& neighbours, std
     neighbours.nearest(points[i], count, index, squared);
     visit(points[i], index, squared);
   }
+}
+
+// Of some neighbourhoods, how far their points are from simple surfaces.
+struct Residuals {
+  std::vector<double> clean, small, large;  // planes through kClean, kSmall, kNeighbours points
+  std::vector<double> quadratic;            // height fields through kClean
+  std::vector<double> kurtosis;             // about the planes through kSheets
+};
+
+Residuals residuals_of(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing) {
+  Residuals r;
+  for_some(points, neighbours, kProbes, kNeighbours, [&](const Vec3&, const auto& index, const auto&) {
+    const PlaneFit plane = fit_plane(points, index.data(), kClean);
+    r.clean.push_back(plane.residual);
+    r.quadratic.push_back(quadratic_residual(points, index.data(), kClean, plane.normal, spacing));
+    r.small.push_back(fit_plane(points, index.data(), kSmall).residual);
+    r.kurtosis.push_back(fit_plane(points, index.data(), kSheets).kurtosis);
+    r.large.push_back(fit_plane(points, index.data(), kNeighbours).residual);
+  });
+  return r;
 }
 
 // Standard deviation about sheets, of which a neighbourhood may hold up to three.
@@ -94,8 +122,9 @@ double small_noise(double x16, double x32) {
   return x > kLargestResidual ? std::numeric_limits<double>::infinity() : x / (kSigmaIntercept - kSigmaSlope * x);
 }
 
-// Whether the coordinates along some axis are multiples of a step.
-bool rounded(const std::vector<Vec3>& points, double spacing) {
+// The steps of which the coordinates along each axis are multiples; 0 where there is none above kRounded spacings.
+Vec3 rounding_steps(const std::vector<Vec3>& points, double spacing) {
+  Vec3 steps{0, 0, 0};
   std::vector<double> sorted(points.size());
   for (std::size_t a = 0; a < 3; ++a) {
     std::transform(points.begin(), points.end(), sorted.begin(), [&](const Vec3& p) { return p[a]; });
@@ -105,9 +134,14 @@ bool rounded(const std::vector<Vec3>& points, double spacing) {
       const double step = sorted[i] - sorted[i - 1];
       if (step > kSameCoordinate * spacing) least = std::min(least, step);
     }
-    if (least > kRounded * spacing && std::isfinite(least)) return true;
+    if (least > kRounded * spacing && std::isfinite(least)) steps[a] = least;
   }
-  return false;
+  return steps;
+}
+
+bool rounded(const std::vector<Vec3>& points, double spacing) {
+  const Vec3 steps = rounding_steps(points, spacing);
+  return std::max({steps[0], steps[1], steps[2]}) > 0;
 }
 
 // The facet that the first of the points is on; none, of breadth 0, where the points may be those of rows: the lines of a raster or a
@@ -129,50 +163,66 @@ bool between_sheets(const std::vector<Vec3>& points, const std::vector<std::uint
   return sheets.deviation < std::min(share * sheets.gap, kOnSheet * spacing);
 }
 
-// Whether the points lie on several sheets without scatter, as those of thin walls and narrow gaps do: on planes, or on two curved sheets.
-bool on_exact_sheets(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing) {
-  std::size_t looked = 0, on_facets = 0, along = 0, between = 0;
+// Whether many of the points lie on exact planes along the surface.
+bool on_exact_planes(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing) {
+  std::size_t looked = 0, on_facets = 0, along = 0;
   std::vector<std::uint32_t> wide;
   std::vector<double> squared;
   for_some(points, neighbours, kProbes, kPlaneNeighbours, [&](const Vec3& point, const auto& index, const auto&) {
     ++looked;
     const ExactPlane facet = find_facet(points, index, spacing);
-    if (facet.breadth > 0) {
-      neighbours.nearest(point, kWide, wide, squared);
-      ++on_facets;
-      along += std::abs(vector::dot(facet.normal, fit_plane(points, wide.data(), wide.size()).normal)) > kAlong ? 1 : 0;
-    }
+    if (facet.breadth == 0) return;
+    neighbours.nearest(point, kWide, wide, squared);
+    ++on_facets;
+    along += std::abs(vector::dot(facet.normal, fit_plane(points, wide.data(), wide.size()).normal)) > kAlong ? 1 : 0;
+  });
+  return share_of(on_facets, looked) >= kOnPlanes && share_of(along, on_facets) >= kMostlyAlong;
+}
+
+// Whether some of the points lie on two curved sheets without scatter, as those of thin walls and narrow gaps do.
+bool on_exact_sheets(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing) {
+  std::size_t looked = 0, between = 0;
+  for_some(points, neighbours, kProbes, kSheets, [&](const Vec3&, const auto& index, const auto&) {
+    ++looked;
     if (between_sheets(points, index, kFewSheets, kFewApart, spacing) || between_sheets(points, index, kSheets, kApart, spacing)) ++between;
   });
-  const auto share = [](std::size_t some, std::size_t all) { return static_cast<double>(some) / static_cast<double>(all); };
-  const bool flat = share(on_facets, looked) >= kOnPlanes && share(along, on_facets) >= kMostlyAlong;
-  const bool sheets = between >= kFewestBetween && share(between, looked) >= kBetweenSheets;
-  return (flat || sheets) && !rounded(points, spacing);
+  return between >= kFewestBetween && share_of(between, looked) >= kBetweenSheets;
+}
+
+// Standard deviation of what rounding all three coordinates leaves, 0 if it leaves none: a box may well have integer coordinates.
+double rounding_noise(const std::vector<Vec3>& points, double spacing, const Residuals& residuals) {
+  const Vec3 steps = rounding_steps(points, spacing);
+  if (std::min({steps[0], steps[1], steps[2]}) == 0) return 0;
+  const double sigma = std::hypot(steps[0], steps[1], steps[2]) / std::sqrt(3 * 12);
+  return sigma > kLeastRounding * spacing && quantile(residuals.quadratic, 0.5) > kTerraces * sigma ? sigma : 0;
+}
+
+// By the flattest neighbourhoods, 0 where these or exact surfaces show that there is none.
+double scattered_noise(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing, const Residuals& residuals) {
+  const double curved = quantile(residuals.quadratic, kFlattest);
+  const bool uneven = curved < kUnevenQuadratic * spacing && curved < kUneven * quantile(residuals.quadratic, 0.5);
+  if (quantile(residuals.clean, kFlattest) < kCleanResidual * spacing || curved < kCleanQuadratic * spacing || uneven) return 0;
+  if (quantile(residuals.kurtosis, kFlatKurtosis) < kSheetKurtosis) return 0;
+  const bool exact = on_exact_planes(points, neighbours, spacing) || on_exact_sheets(points, neighbours, spacing);
+  if (exact && !rounded(points, spacing)) return 0;
+  const double x16 = quantile(residuals.small, kFlattest) / spacing;
+  const double x32 = quantile(residuals.large, kFlattest) / spacing;
+  return std::min(spacing * small_noise(x16, x32), layered_noise(points, neighbours, spacing));
 }
 
 }  // namespace
 
 double estimate_noise(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing) {
   if (points.size() < kFewestPoints) return 0;
-  std::vector<double> clean;
-  std::vector<double> small;
-  std::vector<double> large;
-  std::vector<double> quadratic;
-  std::vector<double> kurtosis;
-  for_some(points, neighbours, kProbes, kNeighbours, [&](const Vec3&, const auto& index, const auto&) {
-    const PlaneFit plane = fit_plane(points, index.data(), kClean);
-    clean.push_back(plane.residual);
-    quadratic.push_back(quadratic_residual(points, index.data(), kClean, plane.normal, spacing));
-    small.push_back(fit_plane(points, index.data(), kSmall).residual);
-    kurtosis.push_back(fit_plane(points, index.data(), kSheets).kurtosis);
-    large.push_back(fit_plane(points, index.data(), kNeighbours).residual);
-  });
-  const double curved = quantile(quadratic, kFlattest);
-  const bool uneven = curved < kUnevenQuadratic * spacing && curved < kUneven * quantile(quadratic, 0.5);
-  if (quantile(clean, kFlattest) < kCleanResidual * spacing || curved < kCleanQuadratic * spacing || uneven) return 0;
-  if (quantile(kurtosis, kFlatKurtosis) < kSheetKurtosis || on_exact_sheets(points, neighbours, spacing)) return 0;
-  const double resolved = spacing * small_noise(quantile(small, kFlattest) / spacing, quantile(large, kFlattest) / spacing);
-  return std::min(resolved, layered_noise(points, neighbours, spacing));
+  const Residuals residuals = residuals_of(points, neighbours, spacing);
+  return std::max(scattered_noise(points, neighbours, spacing, residuals), rounding_noise(points, spacing, residuals));
+}
+
+double largest_scatter(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing) {
+  if (points.size() < kFewestPoints || (on_exact_planes(points, neighbours, spacing) && !rounded(points, spacing))) return 0;
+  const double x = quantile(residuals_of(points, neighbours, spacing).quadratic, kMostScattered) / spacing;
+  const double filled = std::min(x, kLargestQuadratic) / kQuadraticSaturation;
+  return spacing * x / (kQuadraticToSigma * std::sqrt(1 - filled * filled * filled * filled));
 }
 
 double dimension(const std::vector<Vec3>& points, const Neighbours& neighbours) {
