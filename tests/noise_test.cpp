@@ -263,6 +263,7 @@ TEST(Scatter, IsNoneOnExactPlanes) { EXPECT_EQ(scatter_of(shapes::plates(6, 0.9,
 
 // The least noise is what the estimate goes by; with it 84 % of the sides were right.
 TEST(Noise, ThatDiffersFromPlaceToPlaceIsSeen) {
+  if (kSanitized) GTEST_SKIP() << "the code of the next test, for minutes";
   shapes::Random random(2);
   Surface s = shapes::torus(20000, 0.6, 0.25, 6);
   const double h = plan(s.points).spacing;
