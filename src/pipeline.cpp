@@ -15,26 +15,28 @@
 #include <g3r/g3r.h>
 
 #include <cmath>
+#include <optional>
 
 namespace g3r {
 namespace {
 
 constexpr double kManyUnsure = 0.2;  // share of unsure points above which the orientation is called inconsistent
 // Another noise than the estimate.
-constexpr std::size_t kFewestTried = 8000;  // points; detail of fewer looks like noise
-constexpr double kDoubtful = 0.03;          // share of sides in doubt from which one is tried,
-constexpr double kScattered = 0.05;         // and of the spacing, the scatter,
-constexpr double kFarMore = 2;              // over the estimate
-constexpr double kAboveScatter = 1.4;       // times the scatter: the first one tried
-constexpr double kFarLess = 0.5;            // of the doubt with the estimate, up to which it is taken,
-constexpr double kLess = 0.6;               // or up to this
-constexpr double kLittleDoubt = 0.04;       // where there is little
-constexpr double kStep = 1.4;               // from one noise to the next
-constexpr double kMostTried = 0.5;          // of the spacing, below which more is tried while there is more than little doubt,
-constexpr double kGain = 0.75;              // and taken up to this share of the doubt
-constexpr double kLeastTried = 0.3;         // of the spacing, above which less is tried
-constexpr double kLoss = 1.25;              // and taken up to this share of the doubt
-constexpr double kSlightLoss = 0.01;        // and this
+constexpr std::size_t kFewPoints = 2500;   // up to which what looks like noise is often shape
+constexpr std::size_t kManyPoints = 8000;  // from which what looks like shape is sometimes noise
+constexpr double kDoubtful = 0.03;         // share of sides in doubt from which one is tried,
+constexpr double kScattered = 0.05;        // and of the spacing, the scatter,
+constexpr double kFarMore = 2;             // over the estimate
+constexpr double kAboveScatter = 1.4;      // times the scatter: the first one tried
+constexpr double kFarLess = 0.5;           // of the doubt with the estimate, up to which it is taken,
+constexpr double kLess = 0.6;              // or up to this
+constexpr double kLittleDoubt = 0.04;      // where there is little
+constexpr double kStep = 1.4;              // from one noise to the next
+constexpr double kMostTried = 0.5;         // of the spacing, below which more is tried while there is more than little doubt,
+constexpr double kGain = 0.75;             // and taken up to this share of the doubt
+constexpr double kLeastTried = 0.3;        // of the spacing, above which less is tried
+constexpr double kLoss = 1.25;             // and taken up to this share of the doubt
+constexpr double kSlightLoss = 0.01;       // and this
 
 const char* name_of(Method method) {
   switch (method) {
@@ -195,15 +197,18 @@ Oriented orient_problem(const Problem& problem, const Options& options, Stages& 
 
 double doubt(const Stats& stats) { return stats.confidence_below_half + stats.undecided_share; }
 
-// The noise to try instead of the estimate, 0 for none: the sides of many points are in doubt, and most points scatter far more than those
-// that scatter least, which the estimate goes by.
-double other_noise(const Problem& problem, const Options& options, const Stats& stats) {
+// The noise to try instead of the estimate where the sides of many points are in doubt: none if the points are so few that it may be shape;
+// more if most of many points scatter far more than those that scatter least, which the estimate goes by.
+std::optional<double> other_noise(const Problem& problem, const Options& options, const Stats& stats) {
   const bool automatic = problem.settings.method == Method::kEnergy && options.preset != Preset::kPaper &&
                          options.epsilon.unit == Epsilon::Unit::kAuto && options.schedule.empty();
+  if (!automatic || doubt(stats) < kDoubtful) return std::nullopt;
   const std::vector<Vec3>& points = problem.cloud.points;
-  if (!automatic || points.size() < kFewestTried || doubt(stats) < kDoubtful) return 0;
+  if (points.size() <= kFewPoints && problem.noise > 0) return 0;
+  if (points.size() < kManyPoints) return std::nullopt;
   const double scatter = largest_scatter(points, Neighbours(points), problem.spacing);
-  return scatter > kScattered * problem.spacing && scatter > kFarMore * problem.noise ? scatter : 0;
+  if (scatter < kScattered * problem.spacing || scatter < kFarMore * problem.noise) return std::nullopt;
+  return kAboveScatter * scatter;
 }
 
 // A problem, its solution and what there is to say of them.
@@ -226,13 +231,14 @@ Attempt attempt(Problem problem, const PointsView& points, const Options& option
 // counts that leaves no more in doubt.
 Attempt orient_with_best_noise(const PointsView& points, const Options& options, Stages& stages) {
   Attempt best = attempt(prepare(points, options, stages), points, options, stages);
-  const double noise = kAboveScatter * other_noise(best.problem, options, best.stats);
-  if (noise == 0) return best;
-  Attempt other = attempt(with_noise(best.problem, noise, options), points, options, stages);
+  const std::optional<double> noise = other_noise(best.problem, options, best.stats);
+  if (!noise) return best;
+  Attempt other = attempt(with_noise(best.problem, *noise, options), points, options, stages);
   const double before = doubt(best.stats);
   const double after = doubt(other.stats);
-  if (after > kFarLess * before && (after > kLittleDoubt || after > kLess * before)) return best;
+  if (after > kFarLess * before && (*noise == 0 || after > kLittleDoubt || after > kLess * before)) return best;
   best = std::move(other);
+  if (*noise == 0) return best;
   const auto better_with = [&](double factor, double times, double plus) {
     other = attempt(with_noise(best.problem, factor * best.problem.noise, options), points, options, stages);
     if (doubt(other.stats) > times * doubt(best.stats) + plus) return false;

@@ -59,13 +59,15 @@ Problem prepare(const PointsView& points, const Options& options, Stages& stages
 }
 
 Problem with_noise(const Problem& problem, double noise, const Options& options) {
-  Problem noisy;
-  noisy.cloud = problem.cloud;
-  noisy.outliers = problem.outliers;
-  noisy.spacing = problem.spacing;
-  noisy.noise = noise;
-  choose_scales(noisy, options, {}, {});
-  return noisy;
+  Problem same;
+  same.cloud = problem.cloud;
+  same.outliers = problem.outliers;
+  same.spacing = problem.spacing;
+  same.noise = noise;
+  std::vector<std::uint32_t> near = Neighbours(same.cloud.points).of_all(kSpacingNeighbours);
+  const std::vector<double> local = local_spacing(same.cloud.points, near);
+  choose_scales(same, options, std::move(near), local);
+  return same;
 }
 
 Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, const Options& options) {

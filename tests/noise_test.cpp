@@ -340,5 +340,42 @@ TEST(Noise, IntegerCoordinatesAreNoNoiseByThemselves) {
   EXPECT_EQ(estimate(cube), 0);
 }
 
+// Menger's sponge of second order: 9^3 cells, random points on the faces between full and empty ones.
+Surface sponge(int count) {
+  const auto full = [](int x, int y, int z) {
+    if (std::min({x, y, z}) < 0 || std::max({x, y, z}) > 8) return false;
+    const auto hole = [](int a, int b, int c) { return (a == 1) + (b == 1) + (c == 1) >= 2; };
+    return !hole(x / 3, y / 3, z / 3) && !hole(x % 3, y % 3, z % 3);
+  };
+  shapes::Random random(1);
+  Surface s;
+  while (static_cast<int>(s.points.size()) < count) {
+    const std::array<int, 3> cell{static_cast<int>(random.uniform(0, 9)), static_cast<int>(random.uniform(0, 9)),
+                                  static_cast<int>(random.uniform(0, 9))};
+    const auto axis = static_cast<std::size_t>(random.uniform(0, 3));
+    const int side = random.uniform() < 0.5 ? -1 : 1;
+    std::array<int, 3> other = cell;
+    other[axis] += side;
+    if (!full(cell[0], cell[1], cell[2]) || full(other[0], other[1], other[2])) continue;
+    Vec3 p{};
+    Vec3 n{};
+    for (std::size_t a = 0; a < 3; ++a) p[a] = cell[a] + random.uniform();
+    p[axis] = cell[axis] + (side > 0 ? 1 : 0);
+    n[axis] = side;
+    s.points.push_back(p);
+    s.normals.push_back(n);
+  }
+  return s;
+}
+
+// So few points on so much shape look like noise, and solved as such half of the sides was wrong.
+TEST(Noise, OfFewPointsMayBeShape) {
+  const Surface s = sponge(550);
+  EXPECT_GT(estimate(s), 0);
+  const Orientation o = orient(s.points);
+  EXPECT_EQ(o.stats.noise, 0);
+  EXPECT_GE(shapes::share_correct(o.normals, s.normals), 0.85);
+}
+
 }  // namespace
 }  // namespace g3r
