@@ -34,7 +34,7 @@ constexpr double kLittleDoubt = 0.04;      // where there is little
 constexpr double kStep = 1.4;              // from one noise to the next
 constexpr double kMostTried = 0.5;         // of the spacing, below which more is tried while there is more than little doubt,
 constexpr double kGain = 0.75;             // and taken up to this share of the doubt
-constexpr double kLeastTried = 0.3;        // of the spacing, above which less is tried
+constexpr double kLeastTried = 0.7;        // of the spacing, above which less is tried
 constexpr double kLoss = 1.25;             // and taken up to this share of the doubt
 constexpr double kSlightLoss = 0.01;       // and this
 
