@@ -18,8 +18,8 @@ Number number(const std::string& key, const std::string& text) {
   return value;
 }
 
-Epsilon parse_epsilon(std::string text) {
-  using Unit = Epsilon::Unit;
+Length parse_length(const std::string& key, std::string text) {
+  using Unit = Length::Unit;
   if (text == "auto" || text.empty()) return {};
   Unit unit = Unit::kInput;
   const char last = text.back();
@@ -27,7 +27,7 @@ Epsilon parse_epsilon(std::string text) {
   if (last == 'h') unit = Unit::kSpacing;
   if (last == 'n') unit = Unit::kNormalised;
   if (unit != Unit::kInput) text.pop_back();
-  return {unit, number<double>("epsilon", text)};
+  return {unit, number<double>(key, text)};
 }
 
 Solver parse_solver(const std::string& text) {
@@ -54,7 +54,9 @@ Mesher parse_mesher(const std::string& text) {
 
 void set_option(Variant& variant, const std::string& key, const std::string& value) {
   if (key == "epsilon") {
-    variant.options.epsilon = parse_epsilon(value);
+    variant.options.epsilon = parse_length(key, value);
+  } else if (key == "noise") {
+    variant.options.noise = parse_length(key, value);
   } else if (key == "method") {
     variant.options.method = parse_equations(value);
   } else if (key == "widths") {
@@ -76,8 +78,9 @@ void set_option(Variant& variant, const std::string& key, const std::string& val
   } else if (key == "depth") {
     variant.mesh.depth = number<int>(key, value);
   } else {
-    throw InvalidInput("method option '" + key +
-                       "' is none of method, widths, epsilon, degree, harmonics, solver, schedule, tolerance, accuracy, mesher, depth");
+    throw InvalidInput(
+        "method option '" + key +
+        "' is none of method, widths, epsilon, noise, degree, harmonics, solver, schedule, tolerance, accuracy, mesher, depth");
   }
 }
 

@@ -26,7 +26,8 @@ double box_diagonal(const std::vector<Vec3>& points) {
 
 int run_sample(const Settings& settings, Session& session) {
   const Mesh mesh = session.stage("read", [&] { return read_mesh(settings.input); });
-  const double noise = settings.noise.in_units(box_diagonal(mesh.vertices));
+  const bool percent = settings.noise.unit == Length::Unit::kPercent;
+  const double noise = settings.noise.value * (percent ? box_diagonal(mesh.vertices) / 100 : 1);
   Samples samples = session.stage("sample", [&] { return sample_mesh(mesh, settings.sample_count, settings.options.seed, noise); });
   Cloud cloud;
   cloud.positions = std::move(samples.points);

@@ -158,7 +158,7 @@ void add_finish_options(CLI::App& app, Settings& s) {
                                const auto distance = parse_length(text);
                                if (text == "off" || text == "auto") {
                                  o.trim = text == "off" ? MeshOptions::Trim::kOff : MeshOptions::Trim::kAuto;
-                               } else if (distance && !distance->is_percent && distance->value > 0) {
+                               } else if (distance && distance->unit == Length::Unit::kInput && distance->value > 0) {
                                  o.trim = MeshOptions::Trim::kDistance;
                                  o.trim_distance = distance->value;
                                } else {
@@ -181,6 +181,19 @@ void add_finish_options(CLI::App& app, Settings& s) {
   app.add_option("--faces", o.faces, "Simplify to about N triangles (default, or 0: off)")->check(range(std::size_t{0}))->type_name("N");
 }
 
+void add_length(CLI::App& app, const std::string& name, Length& into, bool may_be_zero, const std::string& help) {
+  app.add_option_function<std::string>(
+         name,
+         [&into, name, may_be_zero](const std::string& text) {
+           const auto length = parse_length(text);
+           const bool good = length && (length->value > 0 || may_be_zero || length->unit == Length::Unit::kAuto);
+           if (!good) reject(name, text, "auto, X, X%, Xh or Xn with X " + std::string(may_be_zero ? ">= 0" : "> 0"));
+           into = *length;
+         },
+         help)
+      ->type_name("auto|X[%|h|n]");
+}
+
 void add_method_options(CLI::App& app, Settings& s) {
   app.option_defaults()->group(kMethodGroup);
   Options& o = s.options;
@@ -196,15 +209,10 @@ void add_method_options(CLI::App& app, Settings& s) {
              "Equations to solve: energy, green (as published), auto: the preset's; wnnc, agr, pgr: earlier methods, to compare with");
   app.add_option("--wnnc-widths", o.wnnc_widths, "Of wnnc: density (default), clean, scan, noise-0.25, noise-0.5, noise-1 or sparse")
       ->type_name("NAME");
-  app.add_option_function<std::string>(
-         "--epsilon",
-         [&o](const std::string& text) {
-           const auto epsilon = parse_epsilon(text);
-           if (!epsilon) reject("--epsilon", text, "auto, X, X%, Xh or Xn with X > 0");
-           o.epsilon = *epsilon;
-         },
-         "Width of the smoothing: X input units, X% of the box diagonal, Xh point spacings, Xn in the paper's unit box")
-      ->type_name("auto|X[%|h|n]");
+  add_length(app, "--epsilon", o.epsilon, false,
+             "Width of the smoothing: X input units, X% of the box diagonal, Xh point spacings, Xn in the paper's unit box");
+  add_length(app, "--noise", o.noise, true,
+             "Standard deviation of the points from their surface, in the units of --epsilon; 0: clean (default: estimated)");
   CLI::Option* degree = app.add_option("--degree", o.degree, "Of green: highest degree of the harmonic polynomials, 0 to 8")
                             ->check(range(0, kMaxDegree))
                             ->type_name("L");
@@ -304,7 +312,8 @@ void add_sample(CLI::App& app, Settings& s) {
          "--noise",
          [&s](const std::string& text) {
            const auto noise = parse_length(text);
-           if (!noise) reject("--noise", text, "X or X% with X >= 0");
+           const bool known = noise && (noise->unit == Length::Unit::kInput || noise->unit == Length::Unit::kPercent);
+           if (!known) reject("--noise", text, "X or X% with X >= 0");
            s.noise = *noise;
          },
          "Standard deviation of Gaussian noise: X (mesh units) or X% (of the box diagonal)")

@@ -79,22 +79,14 @@ std::optional<std::size_t> parse_bytes(const std::string& text) {
   return static_cast<std::size_t>(value);
 }
 
-std::optional<Epsilon> parse_epsilon(const std::string& text) {
-  if (text == "auto") return Epsilon{};
-  const auto parsed = leading_number(text);
-  if (!parsed || parsed->number <= 0) return std::nullopt;
-  if (parsed->rest.empty()) return Epsilon{Epsilon::Unit::kInput, parsed->number};
-  if (parsed->rest == "%") return Epsilon{Epsilon::Unit::kPercent, parsed->number};
-  if (parsed->rest == "h") return Epsilon{Epsilon::Unit::kSpacing, parsed->number};
-  if (parsed->rest == "n") return Epsilon{Epsilon::Unit::kNormalised, parsed->number};
-  return std::nullopt;
-}
-
 std::optional<Length> parse_length(const std::string& text) {
+  if (text == "auto") return Length{};
   const auto parsed = leading_number(text);
   if (!parsed || parsed->number < 0) return std::nullopt;
-  if (parsed->rest.empty()) return Length{parsed->number, false};
-  if (parsed->rest == "%") return Length{parsed->number, true};
+  if (parsed->rest.empty()) return Length{Length::Unit::kInput, parsed->number};
+  if (parsed->rest == "%") return Length{Length::Unit::kPercent, parsed->number};
+  if (parsed->rest == "h") return Length{Length::Unit::kSpacing, parsed->number};
+  if (parsed->rest == "n") return Length{Length::Unit::kNormalised, parsed->number};
   return std::nullopt;
 }
 

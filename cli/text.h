@@ -30,17 +30,7 @@ namespace g3r::cli {
 /// "8G", "512M", "1.5GiB", "1000": bytes, powers of 1024. Empty if it is not that.
 [[nodiscard]] std::optional<std::size_t> parse_bytes(const std::string& text);
 
-/// "auto", "X" (input units), "X%" (of the bounding box diagonal), "Xh" (spacings), "Xn" (normalised box); X > 0. Empty if it is not that.
-[[nodiscard]] std::optional<Epsilon> parse_epsilon(const std::string& text);
-
-/// A length given absolutely or in percent of something that is only known later.
-struct Length {
-  double value = 0;
-  bool is_percent = false;
-  [[nodiscard]] double in_units(double whole) const { return is_percent ? value / 100 * whole : value; }
-};
-
-/// "X" or "X%", X >= 0. Empty if it is not that.
+/// "auto", "X" (input units), "X%" (of the bounding box diagonal), "Xh" (spacings), "Xn" (normalised box); X >= 0. Empty if it is not that.
 [[nodiscard]] std::optional<Length> parse_length(const std::string& text);
 
 }  // namespace g3r::cli

@@ -38,13 +38,15 @@ class Bytes {
 };
 
 g3r::Options options_from(Bytes& bytes) {
-  using Unit = g3r::Epsilon::Unit;
+  using Unit = g3r::Length::Unit;
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   g3r::Options o;
   o.preset = bytes.pick({g3r::Preset::kDefault, g3r::Preset::kPaper});
   o.method = bytes.pick({g3r::Method::kAuto, g3r::Method::kGreen, g3r::Method::kEnergy});
   o.epsilon.unit = bytes.pick({Unit::kAuto, Unit::kInput, Unit::kPercent, Unit::kSpacing, Unit::kNormalised});
   o.epsilon.value = bytes.pick({0.3, 1e-12, 1.0, 100.0, 1e300, 0.0, -1.0, kNan});
+  o.noise.unit = bytes.pick({Unit::kAuto, Unit::kInput, Unit::kPercent, Unit::kSpacing, Unit::kNormalised});
+  o.noise.value = bytes.pick({0.0, 0.3, 1e-12, 3.0, 1e300, -1.0, kNan});
   o.degree = bytes.pick({-1, 0, 1, 2, 8, 9});
   o.harmonics = bytes.pick<const char*>({"", "1", "1,x,y,z", "degree:0-2", "xy,yz", "degree:3-1", "q"});
   o.solver = bytes.pick({g3r::Solver::kAuto, g3r::Solver::kDense, g3r::Solver::kConjugateGradient});

@@ -47,8 +47,14 @@ void take_choice(const nb::dict& from, const char* name, T& into, std::initializ
   throw InvalidInput(Text(name) + " must be one of " + words + ", not '" + word + "'");
 }
 
+void take_length(const nb::dict& from, const char* name, const char* unit, Length& into) {
+  using Unit = Length::Unit;
+  take_choice(from, unit, into.unit,
+              {{"input", Unit::kInput}, {"percent", Unit::kPercent}, {"spacing", Unit::kSpacing}, {"normalised", Unit::kNormalised}});
+  take(from, name, into.value);
+}
+
 Options read_options(const nb::dict& from) {
-  using Unit = Epsilon::Unit;
   Options options;
   take_choice(from, "preset", options.preset, {{"default", Preset::kDefault}, {"paper", Preset::kPaper}});
   take_choice(from, "method", options.method,
@@ -60,9 +66,8 @@ Options read_options(const nb::dict& from) {
                {"pgr", Method::kPgr}});
   take(from, "wnnc_widths", options.wnnc_widths);
   take_choice(from, "solver", options.solver, {{"auto", Solver::kAuto}, {"dense", Solver::kDense}, {"cg", Solver::kConjugateGradient}});
-  take_choice(from, "epsilon_unit", options.epsilon.unit,
-              {{"input", Unit::kInput}, {"percent", Unit::kPercent}, {"spacing", Unit::kSpacing}, {"normalised", Unit::kNormalised}});
-  take(from, "epsilon", options.epsilon.value);
+  take_length(from, "epsilon", "epsilon_unit", options.epsilon);
+  take_length(from, "noise", "noise_unit", options.noise);
   take(from, "degree", options.degree);
   take(from, "harmonics", options.harmonics);
   take(from, "schedule", options.schedule);

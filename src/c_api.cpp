@@ -51,6 +51,13 @@ struct Request {
   g3r::Monitor monitor;
 };
 
+g3r::Length read_length(double value, g3r_unit unit, const char* name) {
+  using Unit = g3r::Length::Unit;
+  constexpr Unit kUnits[] = {Unit::kAuto, Unit::kInput, Unit::kPercent, Unit::kSpacing};
+  if (unit < G3R_UNIT_AUTO || unit > G3R_UNIT_SPACING) throw g3r::InvalidInput(std::string(name) + " is not a g3r_unit");
+  return {kUnits[unit], value};
+}
+
 Request read_options(const g3r_options* given) {
   g3r_options o;
   g3r_options_init(&o, sizeof o);
@@ -58,12 +65,10 @@ Request read_options(const g3r_options* given) {
     if (given->size < sizeof given->size) throw g3r::InvalidInput("the options were not initialised with g3r_options_init()");
     std::memcpy(&o, given, std::min(given->size, sizeof o));  // an older caller leaves the newer members at their defaults
   }
-  if (o.epsilon_unit < G3R_UNIT_AUTO || o.epsilon_unit > G3R_UNIT_SPACING) throw g3r::InvalidInput("epsilon_unit is not a g3r_unit");
-  using Unit = g3r::Epsilon::Unit;
-  constexpr Unit kUnits[] = {Unit::kAuto, Unit::kInput, Unit::kPercent, Unit::kSpacing};
   Request request;
   request.options.preset = o.paper != 0 ? g3r::Preset::kPaper : g3r::Preset::kDefault;
-  request.options.epsilon = {kUnits[o.epsilon_unit], o.epsilon};
+  request.options.epsilon = read_length(o.epsilon, o.epsilon_unit, "epsilon_unit");
+  request.options.noise = read_length(o.noise, o.noise_unit, "noise_unit");
   request.options.degree = o.degree;
   request.options.threads = o.threads;
   request.options.seed = o.seed;

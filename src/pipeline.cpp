@@ -201,7 +201,8 @@ double doubt(const Stats& stats) { return stats.confidence_below_half + stats.un
 // more if most of many points scatter far more than those that scatter least, which the estimate goes by.
 std::optional<double> other_noise(const Problem& problem, const Options& options, const Stats& stats) {
   const bool automatic = problem.settings.method == Method::kEnergy && options.preset != Preset::kPaper &&
-                         options.epsilon.unit == Epsilon::Unit::kAuto && options.schedule.empty();
+                         options.epsilon.unit == Length::Unit::kAuto && options.noise.unit == Length::Unit::kAuto &&
+                         options.schedule.empty();
   if (!automatic || doubt(stats) < kDoubtful) return std::nullopt;
   const std::vector<Vec3>& points = problem.cloud.points;
   if (points.size() <= kFewPoints && problem.noise > 0) return 0;

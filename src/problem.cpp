@@ -8,6 +8,7 @@
 #include <g3r/error.h>
 
 #include <memory>
+#include <optional>
 #include <utility>
 
 namespace g3r {
@@ -48,11 +49,15 @@ Problem prepare(const PointsView& points, const Options& options, Stages& stages
     look_around();
     if (outliers_wanted) problem.spacing = typical_spacing(local);
   }
-  problem.noise = options.preset == Preset::kPaper ? 0 : estimate_noise(cloud, *neighbours, problem.spacing);
+  if (const std::optional<double> given = given_noise(options, problem.cloud, problem.spacing)) {
+    problem.noise = *given;
+  } else if (options.preset != Preset::kPaper) {
+    problem.noise = estimate_noise(cloud, *neighbours, problem.spacing);
+  }
   choose_scales(problem, options, std::move(near), local);
   if (!options.wnnc_widths.empty() && options.method != Method::kWnnc) throw InvalidInput("wnnc_widths belong to the method wnnc");
   if (is_baseline(options.method)) {
-    const double epsilon = options.epsilon.unit == Epsilon::Unit::kAuto ? 0 : problem.settings.epsilon;
+    const double epsilon = options.epsilon.unit == Length::Unit::kAuto ? 0 : problem.settings.epsilon;
     problem.baseline = choose_baseline(options, epsilon, problem.spacing, problem.settings.sums);
   }
   return problem;
@@ -82,8 +87,8 @@ Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, 
   part.spacing = typical_spacing(local);
   part.noise = problem.noise;
   Options same = options;
-  if (options.epsilon.unit == Epsilon::Unit::kPercent) {  // of the whole cloud's box
-    same.epsilon = {Epsilon::Unit::kInput, problem.cloud.frame.length_to_world(problem.settings.epsilon)};
+  if (options.epsilon.unit == Length::Unit::kPercent) {  // of the whole cloud's box
+    same.epsilon = {Length::Unit::kInput, problem.cloud.frame.length_to_world(problem.settings.epsilon)};
   }
   choose_scales(part, same, std::move(near), local);
   return part;

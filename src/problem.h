@@ -20,7 +20,7 @@ struct Problem {
   std::vector<std::uint32_t> near;    ///< 17 nearest of every point, itself included; with local_spacing only
   std::vector<double> local_spacing;  ///< smoothed, per point; of clean clouds only
   double spacing = 0;                 ///< typical_spacing()
-  double noise = 0;                   ///< estimate_noise()
+  double noise = 0;                   ///< given_noise() or estimate_noise()
   Settings settings;
   std::optional<BaselineSettings> baseline;  ///< with the methods wnnc, agr and pgr
 };

@@ -177,7 +177,7 @@ TEST(Baselines, OptionsOfOtherMethodsAreRefused) {
   const auto refused = [&](const Options& options) { EXPECT_THROW((void)orient(s.points, options), InvalidInput); };
   Options options;
   options.method = Method::kWnnc;
-  options.epsilon = {Epsilon::Unit::kSpacing, 1};
+  options.epsilon = {Length::Unit::kSpacing, 1};
   refused(options);
   options.epsilon = {};
   options.schedule = "10 cg";

@@ -102,11 +102,12 @@ TEST(BenchInputs, UnknownKindsAreRefused) {
 
 TEST(BenchVariant, PresetAndOptionsAreRead) {
   const Variant variant = parse_variant(
-      "paper;method=energy;epsilon=0.4h;schedule=20 cg;degree=1;harmonics=1,x,y,z;solver=cg;tolerance=1e-3;mesher=field;depth=8");
+      "paper;method=energy;epsilon=0.4h;noise=0;schedule=20 cg;degree=1;harmonics=1,x,y,z;solver=cg;tolerance=1e-3;mesher=field;depth=8");
   EXPECT_EQ(variant.options.preset, Preset::kPaper);
   EXPECT_EQ(variant.options.method, g3r::Method::kEnergy);
-  EXPECT_EQ(variant.options.epsilon.unit, Epsilon::Unit::kSpacing);
+  EXPECT_EQ(variant.options.epsilon.unit, Length::Unit::kSpacing);
   EXPECT_EQ(variant.options.epsilon.value, 0.4);
+  EXPECT_EQ(variant.options.noise.unit, Length::Unit::kInput);
   EXPECT_EQ(variant.options.schedule, "20 cg");
   EXPECT_EQ(variant.options.degree, 1);
   EXPECT_EQ(variant.options.harmonics, "1,x,y,z");

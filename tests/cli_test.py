@@ -290,6 +290,13 @@ class Streams(ProgramTest):
         self.expect(OK, "orient", "ball.ply", "out.ply", "--epsilon", "0.4h", "--accuracy", "0.01", env=german)
 
 
+    def test_the_noise_that_is_given_is_used(self):
+        for given, spacings in (("0", 0), ("0.25h", 0.25)):
+            scales = json.loads(self.expect(OK, "orient", "ball.ply", "out.ply", "--noise", given, "--report", "-").out)["scales"]
+            self.assertAlmostEqual(scales["noise"], spacings * scales["spacing"], delta=1e-12)
+        self.expect(USAGE, "orient", "ball.ply", "out.ply", "--noise", "-1")
+
+
 class Report(ProgramTest):
     def assert_schema(self, value, schema, where=""):
         for key, kind in schema.items():
@@ -465,7 +472,8 @@ class Measuring(ProgramTest):
         a, b = ([float(word) for line in self.bytes_of(name).splitlines() if not line.startswith(b"//") for word in line.split()]
                 for name in ("a.xyz", "b.xyz"))
         self.assertLess(max(abs(x - y) for x, y in zip(a, b)), 1e-9)
-        self.expect(USAGE, "sample", "cube.obj", "c.xyz", "--count", "100", "--noise", "-1%")
+        for wrong in ("-1%", "2h", "auto"):
+            self.expect(USAGE, "sample", "cube.obj", "c.xyz", "--count", "100", "--noise", wrong)
 
     def test_the_truth_scores_perfectly(self):
         self.expect(OK, "sample", "cube.obj", "a.ply", "--count", "500")

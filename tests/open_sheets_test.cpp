@@ -136,10 +136,10 @@ TEST(OpenSheets, ThePartsTakeTheEpsilonOfTheWhole) {
   for (Vec3& p : ground.points) p = {6 * p[0] + 4, 6 * p[1] + 4, -1.6};
   const Surface scene = shapes::join(ground, shapes::sphere(2000));
   Options percent;
-  percent.epsilon = {Epsilon::Unit::kPercent, 1};
+  percent.epsilon = {Length::Unit::kPercent, 1};
   const Orientation o = orient(scene.points, percent);
   Options same;
-  same.epsilon = {Epsilon::Unit::kInput, o.stats.epsilon};
+  same.epsilon = {Length::Unit::kInput, o.stats.epsilon};
   EXPECT_LT(shapes::angle_error(o.normals, orient(scene.points, same).normals), 1e-9);
 }
 

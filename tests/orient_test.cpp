@@ -271,8 +271,14 @@ TEST(Orient, ErrorsSayWhatIsWrong) {
   options.degree = 9;
   EXPECT_NE(message(good, options).find("degree"), std::string::npos);
   options = {};
-  options.epsilon = {Epsilon::Unit::kInput, -1};
+  options.epsilon = {Length::Unit::kInput, -1};
   EXPECT_NE(message(good, options).find("epsilon"), std::string::npos);
+  options = {};
+  options.noise = {Length::Unit::kSpacing, -0.5};
+  EXPECT_NE(message(good, options).find("noise"), std::string::npos);
+  options.noise.value = 0.5;
+  options.preset = Preset::kPaper;
+  EXPECT_NE(message(good, options).find("noise"), std::string::npos);
   options = {};
   options.schedule = "ten cg";
   EXPECT_NE(message(good, options).find("schedule"), std::string::npos);
@@ -286,6 +292,34 @@ TEST(Orient, ErrorsSayWhatIsWrong) {
   options = {};
   options.max_memory = 1000;
   EXPECT_THROW(static_cast<void>(orient(good, options)), Unavailable);
+}
+
+TEST(Noise, TheGivenOneStandsForTheEstimate) {
+  Surface sphere = shapes::sphere(3000, 1);
+  shapes::scatter(sphere, 0.03);
+  const Orientation automatic = orient(sphere.points);
+  ASSERT_GT(automatic.stats.noise, 0);
+  Options options;
+  options.noise = {Length::Unit::kInput, automatic.stats.noise};
+  EXPECT_LT(shapes::angle_error(orient(sphere.points, options).normals, automatic.normals), 1e-6);
+  options.noise = {Length::Unit::kSpacing, 0.2};
+  EXPECT_NEAR(orient(sphere.points, options).stats.noise, 0.2 * automatic.stats.spacing, 1e-12);
+  options.noise = {Length::Unit::kPercent, 1};
+  EXPECT_NEAR(orient(sphere.points, options).stats.noise, 0.01 * std::sqrt(12.0), 2e-3);
+  options.noise = {Length::Unit::kSpacing, 0};
+  const Orientation clean = orient(sphere.points, options);
+  EXPECT_EQ(clean.stats.noise, 0);
+  EXPECT_GT(shapes::angle_error(clean.normals, sphere.normals), 2 * shapes::angle_error(automatic.normals, sphere.normals));
+}
+
+// However large: what comes out are unit vectors.
+TEST(Noise, AnySizeIsTaken) {
+  const Surface sphere = shapes::sphere(2000);
+  for (const double spacings : {1e-12, 3.0, 1e3, 1e9}) {
+    Options options;
+    options.noise = {Length::Unit::kSpacing, spacings};
+    for (const Vec3& n : orient(sphere.points, options).normals) ASSERT_NEAR(std::hypot(n[0], n[1], n[2]), 1, 1e-9) << spacings;
+  }
 }
 
 TEST(Plan, HasTheMeshInIt) {

@@ -49,8 +49,8 @@ enum class Solver {
   kConjugateGradient  ///< matrix-free iterations
 };
 
-/// Width of the Gaussian mollifier of the Laplace kernel.
-struct Epsilon {
+/// A length in one of several units, or the automatic one.
+struct Length {
   enum class Unit {
     kAuto,       ///< chosen from the cloud
     kInput,      ///< units of the input coordinates
@@ -59,7 +59,7 @@ struct Epsilon {
     kNormalised  ///< units of the normalised box, whose longest side is 2/1.1 (the paper's units)
   };
   Unit unit = Unit::kAuto;
-  double value = 0;  ///< > 0 unless automatic
+  double value = 0;  ///< of no account when automatic
 };
 
 /// Progress and cancellation. Both are optional; both may be used from another thread.
@@ -74,7 +74,8 @@ struct Monitor {
 struct Options {
   Preset preset = Preset::kDefault;
   Method method = Method::kAuto;
-  Epsilon epsilon;
+  Length epsilon;           ///< width of the Gaussian mollifier of the Laplace kernel, > 0
+  Length noise;             ///< standard deviation of the points from their surface, of each coordinate; 0: clean. Method energy only
   int degree = -1;          ///< highest degree of the harmonic polynomials, 0..8; -1: preset's (2)
   std::string harmonics;    ///< subset instead of a degree: "1,x,y,z", "degree:0-2", "x,y,z,xy"
   std::string wnnc_widths;  ///< method wnnc: "density", or the authors' "clean", "scan", "noise-0.25", "noise-0.5", "noise-1", "sparse"
@@ -105,7 +106,7 @@ struct Stats {
   Vec3 box_centre{0, 0, 0};
   double box_side = 0;  ///< longest side of the bounding box
   double spacing = 0;   ///< typical distance between neighbours, square root of area per point
-  double noise = 0;     ///< estimated standard deviation of the points from their surface, 0: clean
+  double noise = 0;     ///< standard deviation of the points from their surface, estimated unless given; 0: clean
   double epsilon = 0;
   int depth = 0;  ///< octree depth asked of the mesher; 0: the automatic one, or no mesh
   std::string preset;

@@ -42,7 +42,9 @@ typedef struct g3r_options {
   uint64_t seed;
   uint64_t max_memory; /* bytes; 0: no limit */
   g3r_progress progress;
-  void* user; /* handed to progress */
+  void* user;   /* handed to progress */
+  double noise; /* standard deviation of the points from their surface; 0: clean */
+  g3r_unit noise_unit;
 } g3r_options;
 
 /* A mesh owned by the library until g3r_mesh_free(). Triangles are counter-clockwise seen from outside. */

@@ -19,7 +19,7 @@ Progress = Callable[[str, float], Optional[bool]]
 _UNITS = {"%": "percent", "h": "spacing", "n": "normalised"}
 
 
-def _epsilon(value: Union[str, float]) -> Dict[str, Any]:
+def _length(name: str, value: Union[str, float], least: str) -> Dict[str, Any]:
     if isinstance(value, str):
         if value == "auto":
             return {}
@@ -31,12 +31,12 @@ def _epsilon(value: Union[str, float]) -> Dict[str, Any]:
         number = float(text)
     except ValueError:
         number = math.nan
-    if not (number > 0 and math.isfinite(number)):
-        raise InputError(f"epsilon must be 'auto', a number above 0, 'X%', 'Xh' (point spacings) or 'Xn' (normalised), not {value!r}")
-    return {"epsilon": number, "epsilon_unit": unit}
+    if not ((number > 0 or (number == 0 and least == "0 or more")) and math.isfinite(number)):
+        raise InputError(f"{name} must be 'auto', a number {least}, 'X%', 'Xh' (point spacings) or 'Xn' (normalised), not {value!r}")
+    return {name: number, f"{name}_unit": unit}
 
 
-_METHOD_OPTIONS = {"method", "wnnc_widths", "harmonics", "solver", "schedule", "tolerance", "accuracy", "max_memory"}
+_METHOD_OPTIONS = {"noise", "method", "wnnc_widths", "harmonics", "solver", "schedule", "tolerance", "accuracy", "max_memory"}
 _MESH_OPTIONS = {"mesher", "keep_largest", "min_component", "faces"}
 
 
@@ -48,7 +48,9 @@ def _options(epsilon: Union[str, float], degree: Optional[int], preset: str, thr
     for name in ("keep_largest", "faces", "max_memory"):
         if name in more and (int(more[name]) != more[name] or more[name] < 0):
             raise InputError(f"{name} must be an integer, 0 or more, not {more[name]!r}")
-    options = {**_epsilon(epsilon), "preset": preset, "threads": int(threads), "seed": int(seed), **more}
+    noise = more.pop("noise", "auto")
+    options = {**_length("epsilon", epsilon, "above 0"), **_length("noise", noise, "0 or more"), "preset": preset, "threads": int(threads),
+               "seed": int(seed), **more}
     if degree is not None:
         options["degree"] = int(degree)
     return options
@@ -179,6 +181,7 @@ def run(points: Any, *, colors: Any = None, epsilon: Union[str, float] = "auto",
     threads: 0 for all cores; the result does not depend on it.
     progress: called as progress(stage, fraction) on this thread; returning False cancels.
     faces: simplify the mesh to about this many triangles. keep_largest: keep only so many components.
+    noise: standard deviation of the points from their surface, in the units of epsilon; 0: clean. Estimated unless given.
     Further options: mesher, min_component, method, wnnc_widths, harmonics, solver, schedule, tolerance, accuracy, max_memory, as in C++.
 
     The interpreter lock is released; Ctrl-C works. Raises InputError, UnavailableError, Cancelled, MemoryError.

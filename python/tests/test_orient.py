@@ -107,7 +107,7 @@ def test_field_tells_inside_from_outside(result, sphere):
 
 
 @pytest.mark.parametrize("options", [
-    {"epsilon": 0.05}, {"epsilon": "0.5%"}, {"epsilon": "0.8h"}, {"epsilon": "0.03n"}, {"degree": 1}, {"preset": "paper"}, {"solver": "cg"}, {"method": "energy"},
+    {"epsilon": 0.05}, {"epsilon": "0.5%"}, {"epsilon": "0.8h"}, {"epsilon": "0.03n"}, {"noise": 0}, {"noise": "0.2h"}, {"noise": "auto"}, {"degree": 1}, {"preset": "paper"}, {"solver": "cg"}, {"method": "energy"},
     {"method": "wnnc", "wnnc_widths": "sparse"}, {"method": "agr"}, {"method": "pgr"},
     {"threads": 1}, {"seed": 7}, {"tolerance": 1e-2}, {"accuracy": 1e-2}, {"harmonics": "1,x,y,z"},
 ])
@@ -129,7 +129,7 @@ def test_unusable_points_are_refused(points):
 
 
 @pytest.mark.parametrize("options", [
-    {"epsilon": "big"}, {"epsilon": -1}, {"epsilon": "0%"}, {"epsilon": float("nan")}, {"degree": 99}, {"preset": "best"}, {"solver": "magic"}, {"mesher": "magic"}, {"method": "magic"},
+    {"epsilon": "big"}, {"epsilon": -1}, {"epsilon": "0%"}, {"epsilon": float("nan")}, {"noise": -1}, {"noise": "much"}, {"noise": 0.1, "preset": "paper"}, {"degree": 99}, {"preset": "best"}, {"solver": "magic"}, {"mesher": "magic"}, {"method": "magic"},
     {"harmonics": "w"}, {"schedule": "20 xx"}, {"depth": 99}, {"depth": "deep"}, {"depth": 7.5}, {"trim": -1}, {"trim": "much"}, {"faces": -1}, {"faces": 1.5},
     {"colors": [[1, 2, 3]]},
 ])

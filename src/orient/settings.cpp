@@ -79,12 +79,12 @@ constexpr std::size_t kPaperDensePoints = 500;  // "small N": seconds, not minut
 constexpr int kDefaultDegree = 2;
 constexpr int kGridLevels = 21;
 
-double checked_epsilon(const Epsilon& epsilon, const CanonicalCloud& cloud, double spacing) {
-  if (!(epsilon.value > 0) || !std::isfinite(epsilon.value)) throw InvalidInput("epsilon must be a positive number");
-  switch (epsilon.unit) {
-    case Epsilon::Unit::kInput:
-      return cloud.frame.length_to_unit(epsilon.value);
-    case Epsilon::Unit::kPercent: {
+// Not automatic, in the cloud's frame.
+double in_frame(const Length& length, const CanonicalCloud& cloud, double spacing) {
+  switch (length.unit) {
+    case Length::Unit::kInput:
+      return cloud.frame.length_to_unit(length.value);
+    case Length::Unit::kPercent: {
       Vec3 low = cloud.points.front();
       Vec3 high = low;
       for (const Vec3& p : cloud.points) {
@@ -93,12 +93,12 @@ double checked_epsilon(const Epsilon& epsilon, const CanonicalCloud& cloud, doub
           high[a] = std::max(high[a], p[a]);
         }
       }
-      return epsilon.value / 100 * std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
+      return length.value / 100 * std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
     }
-    case Epsilon::Unit::kSpacing:
-      return epsilon.value * spacing;
+    case Length::Unit::kSpacing:
+      return length.value * spacing;
     default:
-      return epsilon.value;
+      return length.value;
   }
 }
 
@@ -115,6 +115,12 @@ void require(bool good, const std::string& message) {
 }
 
 }  // namespace
+
+std::optional<double> given_noise(const Options& options, const CanonicalCloud& cloud, double spacing) {
+  if (options.noise.unit == Length::Unit::kAuto) return std::nullopt;
+  require(options.noise.value >= 0 && std::isfinite(options.noise.value), "noise must be 0 or a positive number");
+  return in_frame(options.noise, cloud, spacing);
+}
 
 // Two points share a leaf of level L when their codes agree in the first 3 L bits; neighbours in Morton order share the most.
 double paper_epsilon(const CanonicalCloud& cloud) {
@@ -145,9 +151,14 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   s.constant_weight = paper ? 1 : kGreenConstantWeight;
   s.epsilon = (green ? kGreenEpsilon : kEnergyEpsilon) * spacing;
   if (paper) s.epsilon = std::max(paper_epsilon(cloud), kPaperLeastEpsilon * spacing);
-  if (options.epsilon.unit != Epsilon::Unit::kAuto) s.epsilon = checked_epsilon(options.epsilon, cloud, spacing);
+  if (options.epsilon.unit != Length::Unit::kAuto) {
+    require(options.epsilon.value > 0 && std::isfinite(options.epsilon.value), "epsilon must be a positive number");
+    s.epsilon = in_frame(options.epsilon, cloud, spacing);
+  }
+  require(options.noise.unit == Length::Unit::kAuto || (s.method == Method::kEnergy && !paper),
+          "noise belongs to the method energy of the default preset");
   s.spacing = spacing;
-  s.coarsest_epsilon = green || options.epsilon.unit != Epsilon::Unit::kAuto ? s.epsilon : kCoarsestEpsilon * spacing;
+  s.coarsest_epsilon = green || options.epsilon.unit != Length::Unit::kAuto ? s.epsilon : kCoarsestEpsilon * spacing;
   s.refinement_width = paper ? 0 : kRefinementWidth * spacing;
   s.polish_steps = paper ? 0 : kPolishSteps;
   s.polish_epsilon = std::min(s.epsilon, kPolishEpsilon * spacing);
@@ -174,7 +185,7 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   s.doubtful_winding_weight = kDoubtfulWindingWeight * cube(spacing);
   s.doubtful_tolerance = options.tolerance >= 0 ? options.tolerance : kDoubtfulTolerance;
   s.start_tolerance = std::max(s.tolerance, kStartTolerance);
-  const bool wide = s.epsilon > kWideEpsilon * spacing;
+  const bool wide = s.epsilon > kWideEpsilon * spacing && options.noise.unit == Length::Unit::kAuto;
   if (!paper && !green && (noise > 0 || wide)) {
     const double sigma = wide ? s.epsilon / kNoisyWidth : widened(noise, spacing);
     s.noise = sigma;
@@ -194,7 +205,7 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
     } else {
       s.damping = s.polish_damping;
       s.winding_weight = kNoisyWindingWeight * believed;
-      if (options.epsilon.unit == Epsilon::Unit::kAuto) s.epsilon = width;
+      if (options.epsilon.unit == Length::Unit::kAuto) s.epsilon = width;
       s.coarsest_epsilon = s.epsilon;
       s.coarse_to_fine = false;
       if (s.epsilon > kWideEpsilon * spacing) s.cluster_side = kClusterSide * s.epsilon;

@@ -8,6 +8,7 @@
 
 #include <g3r/g3r.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,8 +50,11 @@ struct Settings {
   SumPlan sums;                    ///< of everything after it
 };
 
-/// `noise`: estimate_noise(); `outliers`: points that find_outliers() took out. Throws InvalidInput for an option out of range, naming it
-/// and the range.
+/// Options::noise in the cloud's frame, if it is given. Throws InvalidInput below 0.
+[[nodiscard]] std::optional<double> given_noise(const Options& options, const CanonicalCloud& cloud, double spacing);
+
+/// `noise`: given_noise() or estimate_noise(); `outliers`: points that find_outliers() took out. Throws InvalidInput for an option out of
+/// range, naming it and the range.
 [[nodiscard]] Settings choose_settings(const Options& options, const CanonicalCloud& cloud, double spacing, double noise,
                                        std::size_t outliers);
 
