@@ -1,5 +1,5 @@
 // Time, throughput and error of the sums, and how many pairs they consist of. One JSON object per line on stdout.
-//   g3r_bench_fast_sum [--points N] [--accuracy A] [--epsilon E (in spacings)] [--threads T] [--order P] [--opening O] [--leaf L]
+//   g3r_bench_fast_sum [--points N] [--accuracy A] [--epsilon E (in spacings)] [--threads T] [--order P] [--opening O] [--leaf L] [--cut C]
 #include "sum/fast_sum.h"
 #include "cloud/canonical_cloud.h"
 #include "cpu/near_field.h"
@@ -102,6 +102,7 @@ int main(int argc, char** argv) {
   int order = -1;
   double opening = -1;
   int leaf = -1;
+  double cut = -1;
   for (int i = 1; i + 1 < argc; i += 2) {
     const std::string flag = argv[i];
     const double value = std::atof(argv[i + 1]);
@@ -111,6 +112,7 @@ int main(int argc, char** argv) {
     if (flag == "--threads") threads = static_cast<int>(value);
     if (flag == "--order") order = static_cast<int>(value);
     if (flag == "--opening") opening = value;
+    if (flag == "--cut") cut = value;
     if (flag == "--leaf") leaf = static_cast<int>(value);
   }
   const shapes::Surface surface = shapes::torus(n, 0.6, 0.25, 5);
@@ -122,6 +124,7 @@ int main(int argc, char** argv) {
     SumPlan plan = sum_plan(accuracy, n);
     if (order >= 0) plan.order = order;
     if (opening >= 0) plan.opening = opening;
+    if (cut >= 0) plan.cut = cut;
     if (leaf >= 0) plan.leaf_points = static_cast<std::size_t>(leaf);
     std::unique_ptr<FastSum> sum;
     const Seconds build = seconds_of([&] { sum = std::make_unique<FastSum>(cloud.points, cloud.morton, Widths(epsilon * h), plan); });
@@ -154,6 +157,7 @@ int main(int argc, char** argv) {
                        {"accuracy", accuracy},
                        {"order", plan.order},
                        {"opening", plan.opening},
+                       {"cut", plan.cut},
                        {"leaf", plan.leaf_points},
                        {"isa", cpu::instruction_set()},
                        {"seconds", seconds(&Seconds::cpu)},

@@ -1,8 +1,8 @@
 // Throughput of the inner loops on one thread, and their share of the machine's fused multiply-add rate. One JSON object on stdout.
 //   g3r_bench_kernels [--seconds S (of every measurement, default 0.5)]
 #include "cpu/aligned_vector.h"
-#include "cpu/far_field.h"
 #include "cpu/near_field.h"
+#include "cpu/translations.h"
 
 #include "peak.h"
 #include "shapes.h"
@@ -57,7 +57,7 @@ struct Form {
 };
 constexpr Form kForms[] = {{"green_9", NearForm::kGreen, 9, 21, 9, 0, 59},
                            {"green_adjoint_9", NearForm::kGreenAdjoint, 9, 9, 12, 9, 60},
-                           {"winding_adjoint", NearForm::kGreenAdjoint, 1, 1, 4, 1, 28},
+                           {"winding_adjoint", NearForm::kWindingAdjoint, 1, 1, 3, 0, 24},
                            {"stokes_winding", NearForm::kStokesWinding, 1, 3, 4, 0, 42},
                            {"winding_gradient", NearForm::kWindingGradient, 1, 3, 3, 0, 37}};
 
@@ -102,10 +102,12 @@ double m2l_operations_per_second(double seconds) {
   AlignedVector<float> matrix(kOrder7 * kOrder7, 0.01F);
   AlignedVector<float> in(kOrder7 * kColumns, 1.0F);
   AlignedVector<float> out(kOrder7 * kColumns, 0.0F);
+  const AlignedVector<float> signs(kOrder7, 1.0F);
+  const std::vector<cpu::ColumnRange> all(kOrder7 / kLanes, {0, kOrder7});
   std::vector<cpu::Translation<float>> moves;
-  for (std::size_t c = 0; c < kColumns; ++c) moves.push_back({in.data() + c * kOrder7, out.data() + c * kOrder7, {}});
+  for (std::size_t c = 0; c < kColumns; ++c) moves.push_back({in.data() + c * kOrder7, out.data() + c * kOrder7, signs.data(), {}});
   return rate(seconds, [&] {
-    cpu::translate({matrix.data(), kOrder7, kOrder7, kOrder7}, moves.data(), kColumns, 1, kOrder7, cpu::Moved::kAll);
+    cpu::translate({matrix.data(), all.data(), all.size(), kOrder7}, moves.data(), kColumns, 1, kOrder7, cpu::Moved::kAll);
     return 2.0 * kOrder7 * kOrder7 * kColumns;
   });
 }

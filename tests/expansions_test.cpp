@@ -1,5 +1,6 @@
 // Expansion identities one by one, and the completeness of the interaction lists.
 #include "sum/expansions.h"
+#include "sum/m2l_matrices.h"
 
 #include "cloud/canonical_cloud.h"
 #include "shapes.h"
@@ -79,6 +80,86 @@ TEST(Expansions, OppositeOffsetsAreTransposes) {
   }
 }
 
+// K(s d) = D_s K(d) D_s
+TEST(Expansions, MirrorImagesDifferBySigns) {
+  const int order = 5;
+  const std::size_t n = coefficient_count(order);
+  const MultipoleToLocal make(order);
+  for (const Offset& offset : {Offset{0, {3, 4, 2}}, Offset{-1, {5, 0, 9}}}) {
+    const Coefficients plain = make.matrix(offset);
+    const M2lMatrices<double> matrices({offset}, {order, 0.6, 0});
+    for (int mirror = 1; mirror < 8; ++mirror) {
+      Offset image = offset;
+      for (std::size_t a = 0; a < 3; ++a) {
+        if (mirror >> a & 1) image.displacement[a] *= -1;
+      }
+      const Coefficients mirrored = make.matrix(image);
+      const double* signs = matrices.signs(image);
+      for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t j = 0; j < n; ++j) EXPECT_NEAR(mirrored[i * n + j], signs[i] * plain[i * n + j] * signs[j], 1e-13);
+      }
+    }
+  }
+}
+
+std::vector<int> degree_of_coefficients(int order) {
+  std::vector<int> out;
+  for (int l = 0; l <= order; ++l) out.insert(out.end(), static_cast<std::size_t>(2 * l + 1), l);
+  return out;
+}
+
+// What is stored, padded and cut is K where degrees are kept and 0 elsewhere.
+TEST(M2lMatrices, AreThoseOfTheKeptDegrees) {
+  const M2lTerms terms{7, 0.7, 8};
+  const std::size_t n = coefficient_count(terms.order);
+  const std::vector<int> degree = degree_of_coefficients(terms.order);
+  std::vector<Offset> offsets{{0, {4, 2, -2}}, {0, {-4, 2, 2}}, {0, {4, 14, -2}}, {1, {5, 1, -3}}, {-2, {-11, 7, 13}}};
+  std::sort(offsets.begin(), offsets.end());
+  const M2lMatrices<double> matrices(offsets, terms);
+  AlignedVector<double> made;
+  std::size_t kept_terms = 0;
+  for (std::size_t o = 0; o < offsets.size(); ++o) {
+    if (o > 0) {
+      EXPECT_EQ(matrices.index(o) == matrices.index(o - 1), offsets[o].magnitude() == offsets[o - 1].magnitude());
+    }
+    const Coefficients dense = MultipoleToLocal(terms.order).matrix(offsets[o]);
+    const std::vector<int> kept = kept_degrees(offsets[o], terms);
+    Coefficients stored(n * n, 0.0);
+    const cpu::TranslationMatrix<double> matrix = matrices.matrix(matrices.index(o), made);
+    const double* at = matrix.data;
+    for (std::size_t g = 0; g < matrix.groups; ++g) {
+      for (std::size_t j = matrix.columns[g].first; j < matrix.columns[g].last; ++j, at += cpu::kLanes) {
+        for (std::size_t row = g * cpu::kLanes; row < std::min((g + 1) * cpu::kLanes, n); ++row)
+          stored[row * n + j] = at[row % cpu::kLanes];
+      }
+    }
+    const double* signs = matrices.signs(offsets[o]);
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j) {
+        const bool counts = degree[j] <= kept[static_cast<std::size_t>(degree[i])];
+        kept_terms += counts ? 1 : 0;
+        EXPECT_NEAR(signs[i] * stored[i * n + j] * signs[j], counts ? dense[i * n + j] : 0, 1e-12 * std::abs(dense[i * n + j]) + 1e-30);
+      }
+    }
+  }
+  EXPECT_LT(kept_terms, offsets.size() * n * n / 2);  // or the test proves little
+}
+
+TEST(M2lMatrices, OppositeOffsetsKeepTransposedTerms) {
+  const M2lTerms terms{7, 0.7, 8};
+  for (const Offset& offset : {Offset{0, {4, 2, -2}}, Offset{2, {9, -7, 11}}, Offset{-3, {25, 3, 5}}}) {
+    Offset back{-offset.level_difference, offset.displacement};
+    for (std::int32_t& d : back.displacement) d = -d;
+    const std::vector<int> there = kept_degrees(offset, terms);
+    const std::vector<int> here = kept_degrees(back, terms);
+    for (int j = 0; j <= terms.order; ++j) {
+      for (int n = 0; n <= terms.order; ++n) {
+        EXPECT_EQ(n <= there[static_cast<std::size_t>(j)], j <= here[static_cast<std::size_t>(n)]) << j << " " << n;
+      }
+    }
+  }
+}
+
 TEST(Expansions, RegularAndIrregularHarmonicsExpandTheKernel) {
   const Vec3 y{0.2, -0.1, 0.3};
   const Vec3 x{1.5, 0.8, -1.1};
@@ -108,7 +189,8 @@ TEST(InteractionLists, EveryPairOccursExactlyOnce) {
       for (std::size_t i = 1; i < tree.nodes.size(); ++i) met[i] += met[tree.nodes[i].parent];
       for (std::size_t i = 0; i < tree.leaves.size(); ++i) {
         std::size_t sources = met[tree.leaves[i]];
-        for (std::size_t k = lists.near_begin[i]; k < lists.near_begin[i + 1]; ++k) sources += tree.nodes[tree.leaves[lists.near[k]]].count();
+        for (std::size_t k = lists.near_begin[i]; k < lists.near_begin[i + 1]; ++k)
+          sources += tree.nodes[tree.leaves[lists.near[k]]].count();
         ASSERT_EQ(sources, cloud.size()) << "leaf " << i << " opening " << opening;
       }
       std::vector<std::pair<std::uint32_t, std::uint32_t>> forward;

@@ -5,9 +5,7 @@
 
 #include "sum/expansions.h"
 
-#include <array>
 #include <cstring>
-#include <type_traits>
 
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
@@ -101,6 +99,51 @@ void LoadSources(const LeafTask<T>& task, std::size_t begin, T* HWY_RESTRICT fie
 }
 
 template <class T>
+HWY_INLINE Vec<T> AllLanes(const T* HWY_RESTRICT acc) {  // of kLanes, added up to one vector
+  const Tag<T> d;
+  Vec<T> sum = hn::Load(d, acc);
+  for (std::size_t lane = hn::Lanes(d); lane < kLanes; lane += hn::Lanes(d)) sum = hn::Add(sum, hn::Load(d, acc + lane));
+  return sum;
+}
+
+#if HWY_TARGET != HWY_SCALAR
+// The sum of the 128-bit blocks of a vector.
+template <class D>
+HWY_INLINE auto SumBlocks(D d, hn::Vec<D> v) {
+  if constexpr (hn::MaxLanes(d) <= 4) {
+    return v;
+  } else {
+    const hn::Half<D> half;
+    return SumBlocks(half, hn::Add(hn::LowerHalf(half, v), hn::UpperHalf(half, v)));
+  }
+}
+#endif
+
+// out[a] = sum over the lanes of acc[a], for a < n; float: and for the rest of a multiple of four.
+template <class T>
+HWY_INLINE void SumLanes(const T* HWY_RESTRICT acc, std::size_t n, T* HWY_RESTRICT out) {
+  const Tag<T> d;
+#if HWY_TARGET != HWY_SCALAR
+  if constexpr (sizeof(T) == 4) {  // four at a time: transposed within blocks of four
+    const hn::Repartition<double, Tag<T>> pairs;
+    for (std::size_t a = 0; a < n; a += 4) {
+      const Vec<T> v0 = AllLanes(acc + a * kLanes);
+      const Vec<T> v1 = AllLanes(acc + (a + 1) * kLanes);
+      const Vec<T> v2 = AllLanes(acc + (a + 2) * kLanes);
+      const Vec<T> v3 = AllLanes(acc + (a + 3) * kLanes);
+      const auto low = hn::BitCast(pairs, hn::Add(hn::InterleaveLower(d, v0, v1), hn::InterleaveUpper(d, v0, v1)));
+      const auto high = hn::BitCast(pairs, hn::Add(hn::InterleaveLower(d, v2, v3), hn::InterleaveUpper(d, v2, v3)));
+      const Vec<T> blocks =
+          hn::Add(hn::BitCast(d, hn::InterleaveLower(pairs, low, high)), hn::BitCast(d, hn::InterleaveUpper(pairs, low, high)));
+      hn::StoreU(SumBlocks(d, blocks), hn::FixedTag<T, 4>(), out + a);
+    }
+    return;
+  }
+#endif
+  for (std::size_t a = 0; a < n; ++a) out[a] = hn::GetLane(hn::SumOfLanes(d, AllLanes(acc + a * kLanes)));
+}
+
+template <class T>
 void PointsToMultipole(const LeafTask<T>& task) {
   const Tag<T> d;
   const std::size_t lanes = hn::Lanes(d);
@@ -123,7 +166,7 @@ void PointsToMultipole(const LeafTask<T>& task) {
       RegularHarmonics<T>(hn::Mul(x, unit), hn::Mul(y, unit), hn::Mul(z, unit), task.order, basis + lane);
       const auto field = [&](std::size_t k) HWY_ATTR { return hn::Load(d, f + k * kLanes + lane); };
       const auto target = [&](std::size_t channel, std::size_t a) HWY_ATTR { return acc + (channel * n + a) * kLanes + lane; };
-      if (task.form == NearForm::kGreenAdjoint) {
+      if (task.form == NearForm::kGreenAdjoint || task.form == NearForm::kWindingAdjoint) {
         for (std::size_t a = 0; a < n; ++a) {
           const Vec<T> b = hn::Load(d, basis + a * kLanes + lane);
           for (std::size_t k = 0; k < batch; ++k) Accumulate<T>(target(k, a), field(k), b);
@@ -143,10 +186,7 @@ void PointsToMultipole(const LeafTask<T>& task) {
         const Vec<T> along = hn::MulAdd(x, field(0), hn::MulAdd(y, field(1), hn::Mul(z, field(2))));
         for (std::size_t a = 0; a < n; ++a) {
           const Vec<T> b = hn::Load(d, basis + a * kLanes + lane);
-          for (std::size_t k = 0; k < 3; ++k) {
-            Accumulate<T>(target(1 + k, a), field(k), b);
-            Accumulate<T>(target(4 + k, a), field(k), b);
-          }
+          for (std::size_t k = 0; k < 3; ++k) Accumulate<T>(target(4 + k, a), field(k), b);
           Accumulate<T>(target(7, a), along, b);
         }
       }
@@ -156,7 +196,7 @@ void PointsToMultipole(const LeafTask<T>& task) {
           for (std::size_t k = 0; k < batch; ++k) Accumulate<T>(target(k, a), field(4 + 2 * k), dipole);
         } else {
           hn::Store(hn::Add(dipole, hn::Load(d, target(0, a))), d, target(0, a));
-          if (stokes) {
+          if (stokes) {  // E less P, which is added at the end
             Accumulate<T>(target(1, a), x, dipole);
             Accumulate<T>(target(2, a), y, dipole);
             Accumulate<T>(target(3, a), z, dipole);
@@ -167,12 +207,12 @@ void PointsToMultipole(const LeafTask<T>& task) {
     }
   }
   for (std::size_t c = 0; c < task.channels; ++c) {
-    for (std::size_t a = 0; a < n; ++a) {
-      Vec<T> sum = hn::Load(d, acc + (c * n + a) * kLanes);
-      for (std::size_t lane = lanes; lane < kLanes; lane += lanes) sum = hn::Add(sum, hn::Load(d, acc + (c * n + a) * kLanes + lane));
-      task.multipole[c * task.stride + a] = hn::GetLane(hn::SumOfLanes(d, sum));
-    }
-    for (std::size_t a = n; a < task.stride; ++a) task.multipole[c * task.stride + a] = T{0};
+    T* multipole = task.multipole + c * task.stride;
+    SumLanes<T>(acc + c * n * kLanes, n, multipole);
+    for (std::size_t a = n; a < task.stride; ++a) multipole[a] = T{0};
+  }
+  if (task.form == NearForm::kStokesWinding) {
+    for (std::size_t i = 0; i < 3 * task.stride; ++i) task.multipole[task.stride + i] += task.multipole[4 * task.stride + i];
   }
 }
 
@@ -206,21 +246,79 @@ struct Gradient {
   Vec<T> z;
 };
 
-template <class T>
-HWY_INLINE Gradient<T> EvaluateGradient(const T* local, const T* basis, int order, Vec<T> scale) {
+// The gradients of kCount expansions, times scale.
+template <class T, std::size_t kCount>
+HWY_INLINE void EvaluateGradients(const T* const (&locals)[kCount], const T* basis, int order, Vec<T> scale, Gradient<T> (&g)[kCount]) {
   const Tag<T> d;
-  Gradient<T> g{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+  for (Gradient<T>& one : g) one = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
   ForEachGradient<T>(basis, order, [&](std::size_t a, Vec<T> gx, Vec<T> gy, Vec<T> gz) HWY_ATTR {
-    const Vec<T> l = hn::Set(d, local[a]);
-    g.x = hn::MulAdd(l, gx, g.x);
-    g.y = hn::MulAdd(l, gy, g.y);
-    g.z = hn::MulAdd(l, gz, g.z);
+    for (std::size_t c = 0; c < kCount; ++c) {
+      const Vec<T> l = hn::Set(d, locals[c][a]);
+      g[c].x = hn::MulAdd(l, gx, g[c].x);
+      g[c].y = hn::MulAdd(l, gy, g[c].y);
+      g[c].z = hn::MulAdd(l, gz, g[c].z);
+    }
   });
-  return {hn::Mul(g.x, scale), hn::Mul(g.y, scale), hn::Mul(g.z, scale)};
+  for (Gradient<T>& one : g) one = {hn::Mul(one.x, scale), hn::Mul(one.y, scale), hn::Mul(one.z, scale)};
+}
+
+// The locals of kStokesWinding at the points of a leaf, put together: docs/math.md, "The Stokes far field".
+template <class T>
+struct StokesLocals {
+  static constexpr std::size_t kValues = 5;  // W of all pairs, W of those with E, E + P
+  const T* values[kValues];
+  const T* gradients[4];  // Q - e^2 W (local widths: Q - half of the W of e^2 eta), P
+  const T* winding;       // W of all pairs
+
+  StokesLocals() = default;
+  // `memory`: 5 n elements.
+  StokesLocals(const LeafTask<T>& task, std::size_t n, T* memory) {
+    const auto local = [&](std::size_t channel) { return task.local + channel * task.stride; };
+    const T width2 = task.local_widths ? T{0.5} : task.uniform_width_squared;
+    const T* weighted = task.local_widths ? local(kStokesLocals) : memory;
+    for (std::size_t a = 0; a < n; ++a) memory[a] = local(0)[a] + local(kTransposedWinding)[a];
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t a = 0; a < n; ++a) memory[(1 + k) * n + a] = local(1 + k)[a] + local(4 + k)[a];
+      values[2 + k] = memory + (1 + k) * n;
+      gradients[1 + k] = local(4 + k);
+    }
+    for (std::size_t a = 0; a < n; ++a) memory[4 * n + a] = local(7)[a] - width2 * weighted[a];
+    winding = values[0] = memory;
+    values[1] = local(0);
+    gradients[0] = memory + 4 * n;
+  }
+};
+
+// One vector of points: S in s, W in w; `width_squared` of the points, only with local widths.
+template <class T>
+HWY_INLINE void StokesAtPoints(const LeafTask<T>& task, const StokesLocals<T>& locals, const T* basis, std::size_t n, const Vec<T> (&at)[3],
+                               Vec<T> width_squared, Vec<T> (&s)[3], Vec<T>& w) {
+  const Tag<T> d;
+  const Vec<T> unit = hn::Set(d, T{1} / task.half_side);
+  Vec<T> value[StokesLocals<T>::kValues];
+  for (Vec<T>& v : value) v = hn::Zero(d);
+  for (std::size_t a = 0; a < n; ++a) {
+    const Vec<T> b = hn::Load(d, basis + a * kLanes);
+    for (std::size_t c = 0; c < StokesLocals<T>::kValues; ++c) value[c] = hn::MulAdd(hn::Set(d, locals.values[c][a]), b, value[c]);
+  }
+  w = hn::Mul(unit, value[0]);
+  Gradient<T> g[4];
+  EvaluateGradients<T, 4>(locals.gradients, basis, task.order, hn::Mul(unit, unit), g);
+  if (task.local_widths) {
+    Gradient<T> of_w[1];
+    EvaluateGradients<T, 1>({locals.winding}, basis, task.order, hn::Mul(unit, unit), of_w);
+    const Vec<T> half = hn::Mul(hn::Set(d, T{0.5}), width_squared);
+    g[0] = {hn::NegMulAdd(half, of_w[0].x, g[0].x), hn::NegMulAdd(half, of_w[0].y, g[0].y), hn::NegMulAdd(half, of_w[0].z, g[0].z)};
+  }
+  for (std::size_t b = 0; b < 3; ++b) {
+    g[0] = {hn::NegMulAdd(at[b], g[1 + b].x, g[0].x), hn::NegMulAdd(at[b], g[1 + b].y, g[0].y), hn::NegMulAdd(at[b], g[1 + b].z, g[0].z)};
+  }
+  const Vec<T> side[3] = {g[0].x, g[0].y, g[0].z};
+  for (std::size_t k = 0; k < 3; ++k) s[k] = hn::Add(side[k], hn::Mul(unit, hn::NegMulAdd(at[k], value[1], value[2 + k])));
 }
 
 template <class T>
-void LocalToPoints(const LeafTask<T>& task) {
+void LocalToPoints(const LeafTask<T>& task, const StokesLocals<T>& stokes) {
   const Tag<T> d;
   const std::size_t lanes = hn::Lanes(d);
   const std::size_t n = coefficient_count(task.order);
@@ -230,10 +328,6 @@ void LocalToPoints(const LeafTask<T>& task) {
   const Vec<T> unit = hn::Set(d, inverse_half);
   const Vec<T> unit2 = hn::Set(d, inverse_half * inverse_half);
   const auto local = [&](std::size_t channel) { return task.local + channel * task.stride; };
-  T* winding = basis + n * kLanes;  // of all pairs
-  if (task.form == NearForm::kStokesWinding) {
-    for (std::size_t a = 0; a < n; ++a) winding[a] = local(0)[a] + local(kTransposedWinding)[a];
-  }
   for (std::size_t block = 0; block < task.block_count; ++block) {
     for (std::size_t lane = 0; lane < kLanes; lane += lanes) {
       const std::size_t at = block * kLanes + lane;
@@ -266,43 +360,32 @@ void LocalToPoints(const LeafTask<T>& task) {
         }
         case NearForm::kWindingGradient: {
           double* out = task.out + block * 3 * kLanes + lane;
-          const Gradient<T> g = EvaluateGradient<T>(local(0), basis, task.order, unit2);
-          AddTo<T>(out, hn::Neg(g.x));
-          AddTo<T>(out + kLanes, hn::Neg(g.y));
-          AddTo<T>(out + 2 * kLanes, hn::Neg(g.z));
+          Gradient<T> g[1];
+          EvaluateGradients<T, 1>({local(0)}, basis, task.order, unit2, g);
+          AddTo<T>(out, hn::Neg(g[0].x));
+          AddTo<T>(out + kLanes, hn::Neg(g[0].y));
+          AddTo<T>(out + 2 * kLanes, hn::Neg(g[0].z));
           break;
         }
+        case NearForm::kWindingAdjoint: {
+          double* out = task.out + block * 3 * kLanes + lane;
+          Gradient<T> g[1];
+          EvaluateGradients<T, 1>({local(0)}, basis, task.order, unit2, g);
+          AddTo<T>(out, g[0].x);
+          AddTo<T>(out + kLanes, g[0].y);
+          AddTo<T>(out + 2 * kLanes, g[0].z);
+          break;
+        }
+        case NearForm::kWinding:
+          AddTo<T>(task.out + block * kLanes + lane, hn::Mul(unit, Evaluate<T>(local(0), basis, n)));
+          break;
         case NearForm::kStokesWinding: {
           double* out = task.out + block * 4 * kLanes + lane;
-          const Vec<T> forward_w = hn::Mul(unit, Evaluate<T>(local(0), basis, n));
-          const Vec<T> w = hn::Mul(unit, Evaluate<T>(winding, basis, n));
-          const Gradient<T> grad_w = EvaluateGradient<T>(winding, basis, task.order, unit2);
-          Vec<T> width2 = hn::Set(d, task.uniform_width_squared);
-          Gradient<T> mollified{hn::Mul(width2, grad_w.x), hn::Mul(width2, grad_w.y), hn::Mul(width2, grad_w.z)};
-          if (task.local_widths) {  // the mean of both squared widths
-            width2 = hn::Load(d, task.width_squared + at);
-            const Vec<T> half = hn::Set(d, T{0.5});
-            const Gradient<T> weighted = EvaluateGradient<T>(local(kStokesLocals), basis, task.order, unit2);
-            mollified.x = hn::Mul(half, hn::MulAdd(width2, grad_w.x, weighted.x));
-            mollified.y = hn::Mul(half, hn::MulAdd(width2, grad_w.y, weighted.y));
-            mollified.z = hn::Mul(half, hn::MulAdd(width2, grad_w.z, weighted.z));
-          }
-          Gradient<T> transposed = EvaluateGradient<T>(local(7), basis, task.order, unit2);
-          const Vec<T> at_point[3] = {x, y, z};
-          for (std::size_t k = 0; k < 3; ++k) {
-            const Gradient<T> p = EvaluateGradient<T>(local(4 + k), basis, task.order, unit2);
-            transposed.x = hn::NegMulAdd(at_point[k], p.x, transposed.x);
-            transposed.y = hn::NegMulAdd(at_point[k], p.y, transposed.y);
-            transposed.z = hn::NegMulAdd(at_point[k], p.z, transposed.z);
-          }
-          const Vec<T> side[3] = {transposed.x, transposed.y, transposed.z};
-          const Vec<T> extra[3] = {mollified.x, mollified.y, mollified.z};
-          for (std::size_t k = 0; k < 3; ++k) {
-            const Vec<T> e = hn::Mul(unit, Evaluate<T>(local(1 + k), basis, n));
-            const Vec<T> p = hn::Mul(unit, Evaluate<T>(local(4 + k), basis, n));
-            const Vec<T> forward = hn::NegMulAdd(at_point[k], forward_w, e);
-            AddTo<T>(out + k * kLanes, hn::Sub(hn::Add(forward, hn::Add(p, side[k])), extra[k]));
-          }
+          Vec<T> s[3];
+          Vec<T> w;
+          StokesAtPoints<T>(task, stokes, basis, n, {x, y, z}, task.local_widths ? hn::Load(d, task.width_squared + at) : hn::Zero(d), s,
+                            w);
+          for (std::size_t k = 0; k < 3; ++k) AddTo<T>(out + k * kLanes, s[k]);
           AddTo<T>(out + 3 * kLanes, w);
           break;
         }
@@ -311,195 +394,19 @@ void LocalToPoints(const LeafTask<T>& task) {
   }
 }
 
-constexpr std::size_t kTile = 8;  // expansions per pass: 2 x 8 accumulators and their operands fit 32 registers
-
-// Rows [row, row + kVectors vectors) of the matrix times kCount expansions.
-template <class T, std::size_t kVectors, std::size_t kCount>
-HWY_INLINE void MultiplyTile(const TranslationMatrix<T>& matrix, std::size_t row, const T* const* from, Vec<T> (&sum)[kVectors][kCount]) {
-  const Tag<T> d;
-  const std::size_t lanes = hn::Lanes(d);
-  for (std::size_t v = 0; v < kVectors; ++v) {
-    for (std::size_t c = 0; c < kCount; ++c) sum[v][c] = hn::Zero(d);
-  }
-  const T* column = matrix.data + row;
-  for (std::size_t j = 0; j < matrix.columns; ++j, column += matrix.stride) {
-    Vec<T> m[kVectors];
-    for (std::size_t v = 0; v < kVectors; ++v) m[v] = hn::Load(d, column + v * lanes);
-    for (std::size_t c = 0; c < kCount; ++c) {
-      const Vec<T> value = hn::Set(d, from[c][j]);
-      for (std::size_t v = 0; v < kVectors; ++v) sum[v][c] = hn::MulAdd(m[v], value, sum[v][c]);
-    }
-  }
-}
-
-template <class T, std::size_t kVectors, std::size_t kCount>
-HWY_INLINE void TranslateTile(const TranslationMatrix<T>& matrix, std::size_t row, const T* const* from, T* const* to) {
-  const Tag<T> d;
-  const std::size_t lanes = hn::Lanes(d);
-  Vec<T> sum[kVectors][kCount];
-  MultiplyTile<T, kVectors, kCount>(matrix, row, from, sum);
-  for (std::size_t c = 0; c < kCount; ++c) {
-    for (std::size_t v = 0; v < kVectors; ++v) {
-      T* at = to[c] + row + v * lanes;
-      hn::Store(hn::Add(sum[v][c], hn::Load(d, at)), d, at);
-    }
-  }
-}
-
-// The matrix does not mix expansions, so moments are moved after it, where that is a few operations per vector.
-template <class T, std::size_t kVectors, std::size_t kCount>
-HWY_INLINE void TranslateStokesTile(const TranslationMatrix<T>& matrix, std::size_t row, const T* const* from, T* const* to,
-                                    const std::array<T, 3>& move) {
-  const Tag<T> d;
-  const std::size_t lanes = hn::Lanes(d);
-  Vec<T> sum[kVectors][kCount];
-  MultiplyTile<T, kVectors, kCount>(matrix, row, from, sum);
-  for (std::size_t v = 0; v < kVectors; ++v) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      const Vec<T> shift = hn::Set(d, move[a]);
-      sum[v][1 + a] = hn::MulAdd(shift, sum[v][0], sum[v][1 + a]);
-      sum[v][7] = hn::MulAdd(shift, sum[v][4 + a], sum[v][7]);
-    }
-    for (std::size_t c = 0; c < kCount; ++c) {
-      T* at = to[c] + row + v * lanes;
-      hn::Store(hn::Add(sum[v][c], hn::Load(d, at)), d, at);
-    }
-  }
-}
-
-template <class T, std::size_t kVectors>
-HWY_INLINE void TranslateRows(const TranslationMatrix<T>& matrix, std::size_t row, const T* const* from, T* const* to, std::size_t count) {
-  std::size_t c = 0;
-  for (; c + kTile <= count; c += kTile) TranslateTile<T, kVectors, kTile>(matrix, row, from + c, to + c);
-  for (; c + 4 <= count; c += 4) TranslateTile<T, kVectors, 4>(matrix, row, from + c, to + c);
-  for (; c + 2 <= count; c += 2) TranslateTile<T, kVectors, 2>(matrix, row, from + c, to + c);
-  for (; c < count; ++c) TranslateTile<T, kVectors, 1>(matrix, row, from + c, to + c);
-}
-
-// Calls use(vectors (as a type), first row) for all rows.
-template <class T, class Use>
-HWY_INLINE void ForRows(std::size_t rows, const Use& use) {
-  const std::size_t lanes = hn::Lanes(Tag<T>());
-  std::size_t row = 0;
-  for (; row + 2 * lanes <= rows; row += 2 * lanes) use(std::integral_constant<std::size_t, 2>(), row);
-  for (; row < rows; row += lanes) use(std::integral_constant<std::size_t, 1>(), row);
-}
-
-template <class T, std::size_t kChannels>
-void TranslateStokes(const TranslationMatrix<T>& matrix, const Translation<T>* translations, std::size_t count, std::size_t distance) {
-  const T* from[kChannels];
-  T* to[kChannels];
-  for (std::size_t i = 0; i < count; ++i) {
-    const Translation<T>& t = translations[i];
-    for (std::size_t c = 0; c < kChannels; ++c) {
-      from[c] = t.from + c * distance;
-      to[c] = t.to + c * distance;
-    }
-    ForRows<T>(matrix.rows,
-               [&](auto vectors, std::size_t row) HWY_ATTR { TranslateStokesTile<T, vectors, kChannels>(matrix, row, from, to, t.move); });
-  }
-}
-
-// M2L of one form of S: the expansions taken from a source, and where they go at the target.
-template <bool kTransposed, bool kWeighted>
-struct StokesRoute {
-  static constexpr std::size_t kCount = (kTransposed ? 5 : 4) + (kWeighted ? 1 : 0);
-  static constexpr std::size_t from(std::size_t c) {
-    if (c == 0) return 0;
-    return kWeighted && c == kCount - 1 ? kStokesMultipoles : c + (kTransposed ? 3 : 0);
-  }
-  static constexpr std::size_t to(std::size_t c) {
-    if (c == 0) return kTransposed ? kTransposedWinding : 0;
-    return kWeighted && c == kCount - 1 ? kStokesLocals : from(c);
-  }
-};
-
-template <class T, std::size_t kVectors, std::size_t kPairs, bool kTransposed, bool kWeighted>
-HWY_INLINE void StokesPairsTile(const TranslationMatrix<T>& matrix, std::size_t row, const Translation<T>* pairs, std::size_t distance) {
-  using Route = StokesRoute<kTransposed, kWeighted>;
-  constexpr std::size_t kCount = Route::kCount;
-  const Tag<T> d;
-  const T* from[kPairs * kCount];
-  for (std::size_t p = 0; p < kPairs; ++p) {
-    for (std::size_t c = 0; c < kCount; ++c) from[p * kCount + c] = pairs[p].from + Route::from(c) * distance;
-  }
-  Vec<T> sum[kVectors][kPairs * kCount];
-  MultiplyTile<T, kVectors, kPairs * kCount>(matrix, row, from, sum);
-  for (std::size_t p = 0; p < kPairs; ++p) {
-    for (std::size_t v = 0; v < kVectors; ++v) {
-      Vec<T>* one = sum[v] + p * kCount;  // W, E_a; or W, P_a, Q
-      for (std::size_t a = 0; a < 3; ++a) {
-        const Vec<T> shift = hn::Set(d, pairs[p].move[a]);
-        Vec<T>& moment = one[kTransposed ? 4 : 1 + a];
-        moment = hn::MulAdd(shift, one[kTransposed ? 1 + a : 0], moment);
-      }
-      for (std::size_t c = 0; c < kCount; ++c) {
-        T* at = pairs[p].to + Route::to(c) * distance + row + v * hn::Lanes(d);
-        hn::Store(hn::Add(one[c], hn::Load(d, at)), d, at);
-      }
-    }
-  }
-}
-
-template <class T, bool kTransposed, bool kWeighted>
-void TranslateStokesPairs(const TranslationMatrix<T>& matrix, const Translation<T>* pairs, std::size_t count, std::size_t distance) {
-  ForRows<T>(matrix.rows, [&](auto vectors, std::size_t row) HWY_ATTR {
-    std::size_t i = 0;
-    for (; i + 2 <= count; i += 2) StokesPairsTile<T, vectors, 2, kTransposed, kWeighted>(matrix, row, pairs + i, distance);
-    if (i < count) StokesPairsTile<T, vectors, 1, kTransposed, kWeighted>(matrix, row, pairs + i, distance);
-  });
-}
-
-template <class T, bool kTransposed>
-void TranslateStokesPairs(const TranslationMatrix<T>& matrix, const Translation<T>* pairs, std::size_t count, std::size_t channels,
-                          std::size_t distance) {
-  if (channels == kStokesMultipoles) return TranslateStokesPairs<T, kTransposed, false>(matrix, pairs, count, distance);
-  TranslateStokesPairs<T, kTransposed, true>(matrix, pairs, count, distance);
-}
-
 template <class T>
-void Translate(const TranslationMatrix<T>& matrix, const Translation<T>* translations, std::size_t count, std::size_t channels,
-               std::size_t distance, Moved moved) {
-  switch (moved) {
-    case Moved::kStokes:
-      static_assert(kStokesLocals == kStokesMultipoles + 1);
-      if (channels == kStokesMultipoles) return TranslateStokes<T, kStokesMultipoles>(matrix, translations, count, distance);
-      if (channels == kStokesLocals) return TranslateStokes<T, kStokesLocals>(matrix, translations, count, distance);
-      return TranslateStokes<T, kStokesLocals + 1>(matrix, translations, count, distance);
-    case Moved::kStokesForward:
-      return TranslateStokesPairs<T, false>(matrix, translations, count, channels, distance);
-    case Moved::kStokesTransposed:
-      return TranslateStokesPairs<T, true>(matrix, translations, count, channels, distance);
-    case Moved::kAll:
-      break;
+void LocalToPoints(const LeafTask<T>& task) {
+  if (task.form == NearForm::kStokesWinding) {
+    const std::size_t n = coefficient_count(task.order);
+    return LocalToPoints(task, StokesLocals<T>(task, n, task.workspace + n * kLanes));
   }
-  constexpr std::size_t kBatch = 64;  // expansions; all channels of a translation, whatever their number
-  const T* from[kBatch];
-  T* to[kBatch];
-  for (std::size_t i = 0; i < count;) {
-    std::size_t size = 0;
-    for (; i < count && size + channels <= kBatch; ++i) {
-      for (std::size_t c = 0; c < channels; ++c, ++size) {
-        from[size] = translations[i].from + c * distance;
-        to[size] = translations[i].to + c * distance;
-      }
-    }
-    ForRows<T>(matrix.rows, [&](auto vectors, std::size_t row) HWY_ATTR { TranslateRows<T, vectors>(matrix, row, from, to, size); });
-  }
+  LocalToPoints(task, StokesLocals<T>());
 }
 
 void PointsToMultipoleFloat(const LeafTask<float>& task) { PointsToMultipole(task); }
 void PointsToMultipoleDouble(const LeafTask<double>& task) { PointsToMultipole(task); }
 void LocalToPointsFloat(const LeafTask<float>& task) { LocalToPoints(task); }
 void LocalToPointsDouble(const LeafTask<double>& task) { LocalToPoints(task); }
-void TranslateFloat(const TranslationMatrix<float>& matrix, const Translation<float>* translations, std::size_t count, std::size_t channels,
-                    std::size_t distance, Moved moved) {
-  Translate(matrix, translations, count, channels, distance, moved);
-}
-void TranslateDouble(const TranslationMatrix<double>& matrix, const Translation<double>* translations, std::size_t count,
-                     std::size_t channels, std::size_t distance, Moved moved) {
-  Translate(matrix, translations, count, channels, distance, moved);
-}
 
 }  // namespace g3r::cpu::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -511,8 +418,6 @@ HWY_EXPORT(PointsToMultipoleFloat);
 HWY_EXPORT(PointsToMultipoleDouble);
 HWY_EXPORT(LocalToPointsFloat);
 HWY_EXPORT(LocalToPointsDouble);
-HWY_EXPORT(TranslateFloat);
-HWY_EXPORT(TranslateDouble);
 
 // P2M: basis, accumulators and fields of one vector of sources. L2P (channels = 1): basis and one expansion.
 std::size_t leaf_workspace(std::size_t coefficients, std::size_t channels) {
@@ -523,14 +428,6 @@ void points_to_multipole(const LeafTask<float>& task) { HWY_DYNAMIC_DISPATCH(Poi
 void points_to_multipole(const LeafTask<double>& task) { HWY_DYNAMIC_DISPATCH(PointsToMultipoleDouble)(task); }
 void local_to_points(const LeafTask<float>& task) { HWY_DYNAMIC_DISPATCH(LocalToPointsFloat)(task); }
 void local_to_points(const LeafTask<double>& task) { HWY_DYNAMIC_DISPATCH(LocalToPointsDouble)(task); }
-void translate(const TranslationMatrix<float>& matrix, const Translation<float>* translations, std::size_t count, std::size_t channels,
-               std::size_t distance, Moved moved) {
-  HWY_DYNAMIC_DISPATCH(TranslateFloat)(matrix, translations, count, channels, distance, moved);
-}
-void translate(const TranslationMatrix<double>& matrix, const Translation<double>* translations, std::size_t count, std::size_t channels,
-               std::size_t distance, Moved moved) {
-  HWY_DYNAMIC_DISPATCH(TranslateDouble)(matrix, translations, count, channels, distance, moved);
-}
 
 }  // namespace g3r::cpu
 #endif

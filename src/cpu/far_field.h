@@ -1,16 +1,14 @@
-// Expansions by SIMD: points to multipoles, multipoles and locals through matrices, locals to points. docs/math.md, "Expansions".
+// Expansions by SIMD: points to multipoles, locals to points. docs/math.md, "Expansions".
 // The same forms as in cpu/near_field.h; unnormalised kernels (without 1/(4 pi)); T is float or double.
 #pragma once
 
 #include "cpu/near_field.h"
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
 
 namespace g3r::cpu {
 
-/// Expansions a form carries: K for kGreen and kGreenAdjoint, 1 for kWindingGradient. The multipoles of kStokesWinding are
+/// Expansions a form carries: K for kGreen and kGreenAdjoint, 1 for the winding forms. The multipoles of kStokesWinding are
 ///   0: W   1..3: E_a = eta_a + (y-c)_a dipole   4..6: P_a = eta_a   7: Q = (y-c) . eta   8: W of width^2 eta (only with local widths)
 /// S can be had from W and E or, transposed, from P and Q. Every pair of nodes uses one of the two and the pair turned round the other, so
 /// that S is symmetric to rounding although expansions are truncated. Its locals therefore are
@@ -58,37 +56,5 @@ void points_to_multipole(const LeafTask<float>& task);
 void points_to_multipole(const LeafTask<double>& task);
 void local_to_points(const LeafTask<float>& task);
 void local_to_points(const LeafTask<double>& task);
-
-/// A square matrix acting on the first coefficients of expansions, column after column, every column zero padded to `stride`.
-template <class T>
-struct TranslationMatrix {
-  const T* data;
-  std::size_t columns;
-  std::size_t rows;  ///< that are used, whole vectors, at most `stride`
-  std::size_t stride;
-};
-
-/// The expansions of one node and those of another that they are added to: each node's one after the other.
-template <class T>
-struct Translation {
-  const T* from;
-  T* to;
-  std::array<T, 3> move;  ///< old centre - new centre; of kStokesWinding only
-};
-
-/// Which expansions are moved.
-enum class Moved : std::uint8_t {
-  kAll,               ///< each to its own place
-  kStokes,            ///< M2M and L2L of kStokesWinding: as kAll, and the moments move with their centre: E_a += move_a W, Q += move . P
-  kStokesForward,     ///< M2L of kStokesWinding: W and E,
-  kStokesTransposed,  ///< or W, P and Q
-};
-
-/// to += matrix from, for `channels` expansions (of the source) of `count` translations. `distance`: from one expansion of a node to its
-/// next. Every result is the same whatever other translations go with it.
-void translate(const TranslationMatrix<float>& matrix, const Translation<float>* translations, std::size_t count, std::size_t channels,
-               std::size_t distance, Moved moved);
-void translate(const TranslationMatrix<double>& matrix, const Translation<double>* translations, std::size_t count, std::size_t channels,
-               std::size_t distance, Moved moved);
 
 }  // namespace g3r::cpu

@@ -246,6 +246,31 @@ struct StokesWindingForm {
 };
 
 template <class T>
+struct WindingForm {
+  static constexpr bool kValue = false;
+  static constexpr Third kThird = Third::kNone;
+  static constexpr int kChannels = 1;
+  static constexpr int kTargetData = 0;
+  static HWY_INLINE void Add(Fields<T> f, Vec<T> dx, Vec<T> dy, Vec<T> dz, const Kernel<T>& k, const Vec<T>* /*u*/, Vec<T>* sum) {
+    sum[0] = hn::MulAdd(k.flux, hn::MulAdd(dx, f(0), hn::MulAdd(dy, f(1), hn::Mul(dz, f(2)))), sum[0]);
+  }
+};
+
+template <class T>
+struct WindingAdjointForm {
+  static constexpr bool kValue = false;
+  static constexpr Third kThird = Third::kNone;
+  static constexpr int kChannels = 3;
+  static constexpr int kTargetData = 0;
+  static HWY_INLINE void Add(Fields<T> f, Vec<T> dx, Vec<T> dy, Vec<T> dz, const Kernel<T>& k, const Vec<T>* /*u*/, Vec<T>* sum) {
+    const Vec<T> flux = hn::Mul(k.flux, f(0));
+    sum[0] = hn::MulAdd(flux, dx, sum[0]);
+    sum[1] = hn::MulAdd(flux, dy, sum[1]);
+    sum[2] = hn::MulAdd(flux, dz, sum[2]);
+  }
+};
+
+template <class T>
 struct WindingGradientForm {
   static constexpr bool kValue = false;
   static constexpr Third kThird = Third::kGradient;
@@ -389,6 +414,10 @@ void RunForm(const NearTask<T>& task) {
       return RunBatch<T, GreenAdjointForm>(task);
     case NearForm::kStokesWinding:
       return RunWidths<T, StokesWindingForm<T>>(task);
+    case NearForm::kWinding:
+      return RunWidths<T, WindingForm<T>>(task);
+    case NearForm::kWindingAdjoint:
+      return RunWidths<T, WindingAdjointForm<T>>(task);
     case NearForm::kWindingGradient:
       return RunWidths<T, WindingGradientForm<T>>(task);
   }

@@ -18,6 +18,8 @@ enum class NearForm {
   kGreen,            ///< eta, then (q_k, u_k) for k < K     F = 3 + 2K  C = K      Phi q_k + u_k g (r.eta)
   kGreenAdjoint,     ///< Q_k for k < K                      F = K       C = K + 3  Phi Q_k, and g r sum_k u_k(target) Q_k; U = K
   kStokesWinding,    ///< eta                                F = 3       C = 4      S eta (3), W eta
+  kWinding,          ///< eta                                F = 3       C = 1      g (r.eta)
+  kWindingAdjoint,   ///< Q                                  F = 1       C = 3      g r Q
   kWindingGradient,  ///< eta                                F = 3       C = 3      g eta - b r (r.eta)
 };
 

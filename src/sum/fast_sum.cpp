@@ -128,13 +128,22 @@ void winding_gradient_into(SumEngine<T>& engine, const std::vector<Vec3>& eta, s
   });
 }
 
-// The harmonic u = 1 at n points.
-HarmonicValues constant_harmonic(std::size_t n) {
-  HarmonicValues u;
-  u.count = 1;
-  u.value.assign(n, 1.0);
-  u.gradient.assign(n, Vec3{0, 0, 0});
-  return u;
+template <class T>
+void winding_into(SumEngine<T>& engine, const std::vector<Vec3>& eta, std::vector<double>& out) {
+  fill_eta(engine, eta, 3);
+  const auto& sums = engine.run(NearForm::kWinding, 1, 1);
+  for_targets(engine.targets(), sums, 1, [&](std::size_t p, const double* value) { out[p] = kInv4Pi * value[0]; });
+}
+
+template <class T>
+void winding_adjoint_into(SumEngine<T>& engine, const std::vector<double>& q, std::vector<Vec3>& out) {
+  engine.begin_values(1);
+  T* charge = engine.value(0);
+  std::transform(q.begin(), q.end(), charge, [](double v) { return static_cast<T>(v); });
+  const auto& sums = engine.run(NearForm::kWindingAdjoint, 1, 3);
+  for_targets(engine.targets(), sums, 3, [&](std::size_t p, const double* value) {
+    for (std::size_t a = 0; a < 3; ++a) out[p][a] = -kInv4Pi * value[a * kLanes];  // the kernel sums g (x - y), the formula wants g (y - x)
+  });
 }
 
 constexpr double kShellAccuracy = 1e-5;  // with fewer terms their derivatives err by percents: nothing near outweighs what was cut off
@@ -254,9 +263,17 @@ void FastSum::stokes_winding(const std::vector<Vec3>& eta, std::vector<Vec3>& s,
   std::visit([&](auto& engine) { stokes_winding_into(engine, eta, s, w); }, impl_->engine);
 }
 
-std::vector<Vec3> FastSum::winding_adjoint(const std::vector<double>& q) { return green_adjoint(constant_harmonic(size()), q); }
+std::vector<Vec3> FastSum::winding_adjoint(const std::vector<double>& q) {
+  std::vector<Vec3> out(size());
+  std::visit([&](auto& engine) { winding_adjoint_into(engine, q, out); }, impl_->engine);
+  return out;
+}
 
-std::vector<double> FastSum::winding(const std::vector<Vec3>& eta) { return green(constant_harmonic(size()), eta); }
+std::vector<double> FastSum::winding(const std::vector<Vec3>& eta) {
+  std::vector<double> out(size());
+  std::visit([&](auto& engine) { winding_into(engine, eta, out); }, impl_->engine);
+  return out;
+}
 
 std::vector<Vec3> FastSum::winding_gradient(const std::vector<Vec3>& eta) {
   std::vector<Vec3> out(size());
@@ -271,7 +288,7 @@ std::vector<double> FastSum::winding_at(const std::vector<Vec3>& eta, const std:
       targets, cancel,
       [&](auto& engine, const std::vector<std::uint32_t>& index, double factor) {
         std::vector<double> sorted(index.size());
-        green_into(engine, constant_harmonic(size()), eta, sorted);
+        winding_into(engine, eta, sorted);
         for (std::size_t i = 0; i < index.size(); ++i) out[index[i]] = factor * factor * sorted[i];
       },
       [&](const std::vector<Vec3>& far, const std::vector<std::uint32_t>& index) {

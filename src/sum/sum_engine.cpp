@@ -11,9 +11,8 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kLeafBlock = 4;                 // leaves per parallel block
-constexpr std::size_t kNodeBlock = 32;                // nodes per parallel block
-constexpr std::size_t kKeptMatrixBytes = 128u << 20;  // M2L matrices kept in memory up to this; beyond, made when needed
+constexpr std::size_t kLeafBlock = 4;   // leaves per parallel block
+constexpr std::size_t kNodeBlock = 32;  // nodes per parallel block
 
 std::size_t multipole_channels(cpu::NearForm form, int batch, bool local_widths) {
   switch (form) {
@@ -22,19 +21,12 @@ std::size_t multipole_channels(cpu::NearForm form, int batch, bool local_widths)
       return static_cast<std::size_t>(batch);
     case cpu::NearForm::kStokesWinding:
       return cpu::kStokesMultipoles + (local_widths ? 1 : 0);
+    case cpu::NearForm::kWinding:
+    case cpu::NearForm::kWindingAdjoint:
     case cpu::NearForm::kWindingGradient:
       return 1;
   }
   return 0;
-}
-
-// A row-major n x n matrix as padded columns of T; `transposed` swaps rows and columns, `scale` multiplies.
-template <class T>
-void store_columns(const std::vector<double>& matrix, std::size_t n, std::size_t stride, bool transposed, double scale, T* out) {
-  for (std::size_t j = 0; j < n; ++j) {
-    for (std::size_t i = 0; i < n; ++i) out[j * stride + i] = static_cast<T>(scale * (transposed ? matrix[j * n + i] : matrix[i * n + j]));
-    for (std::size_t i = n; i < stride; ++i) out[j * stride + i] = T{0};
-  }
 }
 
 Vec3 difference(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
@@ -43,29 +35,14 @@ std::size_t octant(const OctreeNode& node) {
   return static_cast<std::size_t>((node.cell[0] & 1) * 4 + (node.cell[1] & 1) * 2 + (node.cell[2] & 1));
 }
 
-// Mean distance of a patch's points from the centre of its cube, in half sides; and of the farthest, on which the opening is based.
-constexpr double kMeanRadius = 0.8;
-constexpr double kFarthestRadius = 1.3;
-
-// Distant nodes need fewer terms for the same error: the order that brings q^(order + 1) to what plan.order reaches at the opening, q the
-// ratio of mean radii to distance. Symmetric in target and source, so adjoints stay exact.
-int order_of(const Offset& offset, const SumPlan& plan) {
-  const double distance = std::hypot(offset.displacement[0], offset.displacement[1], offset.displacement[2]);
-  const double half_sides = 1 + std::ldexp(1.0, std::abs(offset.level_difference));
-  const double nearest = kMeanRadius / kFarthestRadius * plan.opening;
-  const double q = std::min(kMeanRadius * half_sides / distance, nearest);
-  const double terms = (plan.order + 1) * std::log(nearest) / std::log(q);
-  return std::clamp(static_cast<int>(std::ceil(terms)) - 1, 1, plan.order);
-}
-
-// The forms need different orders for the same error: the gradient of the winding field comes from dipoles alone and is sharply
-// near-sighted, Stokeslets multiply potentials by coordinates. Measured over the clouds of fast_sum_test. An operator and its adjoint share
-// the order: kGreenAdjoint of one harmonic is also the adjoint of the W in kStokesWinding.
-int order_for(cpu::NearForm form, int batch, int order) {
-  constexpr int kLeast = 2;
-  if (form == cpu::NearForm::kWindingGradient) return std::min(order, std::max(kLeast, order - 2));
+// Stokeslets multiply potentials by coordinates and need more terms than the other forms for the same error; measured over the clouds of
+// fast_sum_test. An operator and its adjoint share the terms: kWindingAdjoint is that of the W in kStokesWinding too.
+M2lTerms terms_for(cpu::NearForm form, int batch, const SumPlan& plan) {
   const bool green = form == cpu::NearForm::kGreen || form == cpu::NearForm::kGreenAdjoint;
-  return green && batch > 1 ? std::min(order, std::max(kLeast, order - 1)) : order;
+  const bool fewer = form == cpu::NearForm::kWindingGradient || (green && batch > 1);
+  constexpr int kLeast = 2;
+  if (!fewer || plan.order <= kLeast) return {plan.order, plan.opening, plan.cut};
+  return {plan.order - 1, plan.opening, plan.cut / 2};
 }
 
 template <class T>
@@ -99,10 +76,8 @@ SumEngine<T>::SumEngine(const std::vector<Vec3>& points, const std::vector<std::
   for (std::size_t o = 0; o < 8 && !plan_.direct; ++o) {
     const Vec3 shift{o & 4 ? 0.5 : -0.5, o & 2 ? 0.5 : -0.5, o & 1 ? 0.5 : -0.5};
     const std::vector<double> matrix = multipole_translation(shift, plan_.order);
-    s.child_to_parent[o].resize(coefficients_ * stride_);
-    s.parent_to_child[o].resize(coefficients_ * stride_);
-    store_columns(matrix, coefficients_, stride_, false, 1.0, s.child_to_parent[o].data());
-    store_columns(matrix, coefficients_, stride_, true, 0.5, s.parent_to_child[o].data());
+    s.child_to_parent[o] = StoredTranslation<T>(matrix, coefficients_, false, 1.0);
+    s.parent_to_child[o] = StoredTranslation<T>(matrix, coefficients_, true, 0.5);
   }
   target_tree_ = std::shared_ptr<Octree>(sources_, &s.tree);
   prepare(points, s.widths);
@@ -155,30 +130,14 @@ void SumEngine<T>::prepare(const std::vector<Vec3>& targets, const std::vector<d
     }
   });
   lists_ = build_interaction_lists(tree, sources_->tree, plan_.direct ? 0.0 : plan_.opening, plan_.reach);
-  make_matrices();
+  matrices_.resize(static_cast<std::size_t>(plan_.order) + 1);
 }
 
 template <class T>
-void SumEngine<T>::make_matrices() {
-  const std::size_t offsets = lists_.offsets.size();
-  offset_order_.resize(offsets);
-  matrix_begin_.assign(offsets + 1, 0);
-  for (std::size_t i = 0; i < offsets; ++i) {
-    offset_order_[i] = order_of(lists_.offsets[i], plan_);
-    const std::size_t n = coefficient_count(offset_order_[i]);
-    matrix_begin_[i + 1] = matrix_begin_[i] + n * cpu::padded_count(n);
-  }
-  if (matrix_begin_.back() * sizeof(T) > kKeptMatrixBytes) return;
-  matrices_.resize(matrix_begin_.back());
-  std::vector<MultipoleToLocal> make;
-  for (int order = 0; order <= plan_.order; ++order) make.emplace_back(order);
-  parallel::for_blocks(offsets, kNodeBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t n = coefficient_count(offset_order_[i]);
-      store_columns(make[static_cast<std::size_t>(offset_order_[i])].matrix(lists_.offsets[i]), n, cpu::padded_count(n), false, 1.0,
-                    matrices_.data() + matrix_begin_[i]);
-    }
-  });
+const M2lMatrices<T>& SumEngine<T>::matrices() {
+  std::unique_ptr<M2lMatrices<T>>& of_order = matrices_[static_cast<std::size_t>(order_)];
+  if (!of_order) of_order = std::make_unique<M2lMatrices<T>>(lists_.offsets, terms_);
+  return *of_order;
 }
 
 template <class T>
@@ -231,7 +190,7 @@ void SumEngine<T>::upward(cpu::NearForm form, int batch) {
       },
       cancel_);
   const cpu::Moved moving = form == cpu::NearForm::kStokesWinding ? cpu::Moved::kStokes : cpu::Moved::kAll;
-  const std::size_t full_stride = cpu::padded_count(coefficient_count(plan_.order));
+  const T* unchanged = matrices().signs(Offset());
   for (std::size_t level = tree.levels(); level-- > 0;) {
     const std::size_t first = tree.level_begin[level];
     parallel::for_blocks(tree.level_begin[level + 1] - first, kNodeBlock, [&](std::size_t begin, std::size_t end) {
@@ -240,10 +199,9 @@ void SumEngine<T>::upward(cpu::NearForm form, int batch) {
         if (node.leaf()) continue;
         std::fill_n(multipole(i), multipole_channels_ * stride_, T{0});
         for (std::uint32_t c = node.first_child; c < node.first_child + node.child_count; ++c) {
-          const cpu::TranslationMatrix<T> matrix{sources_->child_to_parent[octant(tree.nodes[c])].data(), coefficients_, stride_,
-                                                 full_stride};
+          const cpu::TranslationMatrix<T> matrix = sources_->child_to_parent[octant(tree.nodes[c])].first(coefficients_);
           const Vec3 move = difference(tree.nodes[c].centre(), node.centre());
-          const cpu::Translation<T> up{multipole(c), multipole(i), moved<T>(move)};
+          const cpu::Translation<T> up{multipole(c), multipole(i), unchanged, moved<T>(move)};
           cpu::translate(matrix, &up, 1, multipole_channels_, stride_, moving);
         }
       }
@@ -255,60 +213,70 @@ template <class T>
 void SumEngine<T>::across(cpu::NearForm form) {
   const Octree& tree = *target_tree_;
   locals_.resize(tree.nodes.size() * local_channels_ * stride_);
-  const bool stokes = form == cpu::NearForm::kStokesWinding;
-  const bool kept = !matrices_.empty();
+  const M2lMatrices<T>& matrices = this->matrices();
   parallel::for_each(
       lists_.chunk_begin.size() - 1,
       [&](std::size_t chunk) {
         const std::size_t first = chunk * kTargetChunk;
         const std::size_t last = std::min(first + kTargetChunk, tree.nodes.size());
         std::fill(local(first), local(last - 1) + local_channels_ * stride_, T{0});
-        std::vector<cpu::Translation<T>> moves;
-        const std::size_t full = coefficient_count(plan_.order);
-        AlignedVector<T> made(kept ? 0 : full * cpu::padded_count(full));
+        AlignedVector<T> made;
+        Moves moves;
         for (std::size_t i = lists_.chunk_begin[chunk]; i < lists_.chunk_begin[chunk + 1];) {
-          const std::uint32_t offset = lists_.far[i].offset;
-          const std::size_t n = coefficient_count(offset_order_[offset]);
-          const std::size_t used = std::min(n, coefficients_);
-          const cpu::TranslationMatrix<T> matrix{kept ? matrices_.data() + matrix_begin_[offset] : made.data(), used,
-                                                 cpu::padded_count(used), cpu::padded_count(n)};
-          if (!kept) {
-            store_columns(MultipoleToLocal(offset_order_[offset]).matrix(lists_.offsets[offset]), n, matrix.stride, false, 1.0,
-                          made.data());
+          const std::size_t index = matrices.index(lists_.far[i].offset);
+          i = gather(form, matrices, i, lists_.chunk_begin[chunk + 1], moves);
+          const cpu::TranslationMatrix<T> matrix = matrices.matrix(index, made);
+          for (const auto& [moving, some] : {std::pair{cpu::Moved::kAll, &moves.all}, std::pair{cpu::Moved::kStokesForward, &moves.forward},
+                                             std::pair{cpu::Moved::kStokesTransposed, &moves.transposed}}) {
+            if (!some->empty()) cpu::translate(matrix, some->data(), some->size(), multipole_channels_, stride_, moving);
           }
-          const Offset& displaced = lists_.offsets[offset];
-          std::size_t level = 0;  // of the target; a group's targets ascend, and nodes are numbered level by level
-          std::array<T, 3> move = moved<T>(displaced.to_source(level));
-          cpu::Moved moving = cpu::Moved::kAll;
-          if (stokes) moving = displaced.positive() ? cpu::Moved::kStokesForward : cpu::Moved::kStokesTransposed;
-          moves.clear();
-          for (; i < lists_.chunk_begin[chunk + 1] && lists_.far[i].offset == offset; ++i) {
-            const FarPair& pair = lists_.far[i];
-            if (pair.target >= tree.level_begin[level + 1]) {
-              while (pair.target >= tree.level_begin[level + 1]) ++level;
-              move = moved<T>(displaced.to_source(level));
-            }
-            moves.push_back({multipole(pair.source), local(pair.target), move});
-          }
-          cpu::translate(matrix, moves.data(), moves.size(), multipole_channels_, stride_, moving);
         }
       },
       cancel_);
+}
+
+// The far pairs from `begin` on that share its matrix. Returns the end of them.
+template <class T>
+std::size_t SumEngine<T>::gather(cpu::NearForm form, const M2lMatrices<T>& matrices, std::size_t begin, std::size_t end, Moves& moves) {
+  moves.all.clear();
+  moves.forward.clear();
+  moves.transposed.clear();
+  const std::vector<std::uint32_t>& level_begin = target_tree_->level_begin;
+  const std::size_t index = matrices.index(lists_.far[begin].offset);
+  std::size_t i = begin;
+  while (i < end && matrices.index(lists_.far[i].offset) == index) {
+    const std::uint32_t number = lists_.far[i].offset;
+    const Offset& offset = lists_.offsets[number];
+    const T* signs = matrices.signs(offset);
+    std::vector<cpu::Translation<T>>& to =
+        form != cpu::NearForm::kStokesWinding ? moves.all : (offset.positive() ? moves.forward : moves.transposed);
+    std::size_t level = 0;  // of the target; an offset's targets ascend, and nodes are numbered level by level
+    std::array<T, 3> move = moved<T>(offset.to_source(level));
+    for (; i < end && lists_.far[i].offset == number; ++i) {
+      const FarPair& pair = lists_.far[i];
+      if (pair.target >= level_begin[level + 1]) {
+        while (pair.target >= level_begin[level + 1]) ++level;
+        move = moved<T>(offset.to_source(level));
+      }
+      to.push_back({multipole(pair.source), local(pair.target), signs, move});
+    }
+  }
+  return i;
 }
 
 template <class T>
 void SumEngine<T>::downward(cpu::NearForm form) {
   const Octree& tree = *target_tree_;
   const cpu::Moved moving = form == cpu::NearForm::kStokesWinding ? cpu::Moved::kStokes : cpu::Moved::kAll;
-  const std::size_t full_stride = cpu::padded_count(coefficient_count(plan_.order));
+  const T* unchanged = matrices().signs(Offset());
   for (std::size_t level = 1; level < tree.levels(); ++level) {
     const std::size_t first = tree.level_begin[level];
     parallel::for_blocks(tree.level_begin[level + 1] - first, kNodeBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = first + begin; i < first + end; ++i) {
         const OctreeNode& node = tree.nodes[i];
-        const cpu::TranslationMatrix<T> matrix{sources_->parent_to_child[octant(node)].data(), coefficients_, stride_, full_stride};
+        const cpu::TranslationMatrix<T> matrix = sources_->parent_to_child[octant(node)].first(coefficients_);
         const Vec3 move = difference(tree.nodes[node.parent].centre(), node.centre());
-        const cpu::Translation<T> down{local(node.parent), local(i), moved<T>(move)};
+        const cpu::Translation<T> down{local(node.parent), local(i), unchanged, moved<T>(move)};
         cpu::translate(matrix, &down, 1, local_channels_, stride_, moving);
       }
     });
@@ -377,7 +345,8 @@ template <class T>
 const std::vector<double>& SumEngine<T>::run(cpu::NearForm form, int batch, std::size_t out_channels) {
   multipole_channels_ = multipole_channels(form, batch, local_widths_);
   local_channels_ = multipole_channels_ + (form == cpu::NearForm::kStokesWinding ? 1 : 0);
-  set_order(order_for(form, batch, plan_.order));
+  terms_ = terms_for(form, batch, plan_);
+  set_order(terms_.order);
   out_.resize(targets_->x.size() * out_channels);
   if (!plan_.direct) {
     upward(form, batch);

@@ -5,6 +5,7 @@
 #include "cpu/far_field.h"
 #include "cpu/near_field.h"
 #include "sum/direct_sum.h"
+#include "sum/m2l_matrices.h"
 #include "sum/sum_plan.h"
 #include "tree/interaction_lists.h"
 #include "tree/octree.h"
@@ -56,18 +57,23 @@ class SumEngine {
     Octree tree;
     std::vector<double> widths;
     AlignedVector<T> geometry;  // x, y, z relative to the leaf's centre, and the squared width with local widths: fields as in fields_
-    std::array<AlignedVector<T>, 8> child_to_parent;  // M2M by octant, column after column
-    std::array<AlignedVector<T>, 8> parent_to_child;  // L2L by octant
+    std::array<StoredTranslation<T>, 8> child_to_parent;  // M2M by octant
+    std::array<StoredTranslation<T>, 8> parent_to_child;  // L2L by octant
   };
 
   void set_order(int order);
+  const M2lMatrices<T>& matrices();  // of the current order
   void prepare(const std::vector<Vec3>& targets, const std::vector<double>& target_widths);
-  void make_matrices();
   // x, y, z and, with local widths, the squared width.
   [[nodiscard]] std::size_t geometry_fields() const { return local_widths_ ? 4 : 3; }
   [[nodiscard]] std::size_t field_stride() const { return cpu::padded_count(sources_->points.size()) + cpu::kLanes; }
   void upward(cpu::NearForm form, int batch);
+  // Far pairs that share a matrix, by how their expansions move.
+  struct Moves {
+    std::vector<cpu::Translation<T>> all, forward, transposed;
+  };
   void across(cpu::NearForm form);
+  std::size_t gather(cpu::NearForm form, const M2lMatrices<T>& matrices, std::size_t begin, std::size_t end, Moves& moves);
   void downward(cpu::NearForm form);
   void leaves(cpu::NearForm form, int batch, std::size_t out_channels);
   cpu::LeafTask<T> leaf_task(cpu::NearForm form, int batch, double half_side) const;
@@ -81,10 +87,9 @@ class SumEngine {
   std::shared_ptr<Octree> target_tree_;  // the sources' tree when they are the targets
   std::shared_ptr<TargetBlocks<T>> targets_;
   InteractionLists lists_;
-  std::vector<int> offset_order_;          // order at which an offset's M2L is cut off
-  std::vector<std::size_t> matrix_begin_;  // of every offset in matrices_
-  AlignedVector<T> matrices_;              // M2L, one per offset, column after column; empty when too large to keep
+  std::vector<std::unique_ptr<M2lMatrices<T>>> matrices_;  // of every order, made when it is needed
   // Of the current run:
+  M2lTerms terms_;
   int order_ = 0;
   std::size_t coefficients_ = 0;
   std::size_t stride_ = 0;              // of one expansion

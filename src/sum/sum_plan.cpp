@@ -11,20 +11,21 @@ struct Setting {
   double accuracy;
   int order;
   double opening;
+  double cut;
   double reach;
   std::size_t leaf_points;
   bool double_precision;
 };
 
 // Cheapest first. The measured error of each row, over all test clouds and all four sums, is below its accuracy.
-constexpr std::array<Setting, 8> kSettings{{{2e-2, 4, 0.8, 4, 48, false},
-                                            {1e-2, 5, 0.78, 4, 64, false},
-                                            {3e-3, 6, 0.68, 4, 96, false},
-                                            {1e-3, 6, 0.6, 5, 64, false},
-                                            {3e-4, 8, 0.6, 5, 96, false},
-                                            {1e-4, 10, 0.62, 5, 128, false},
-                                            {1e-5, 13, 0.55, 7, 128, true},
-                                            {1e-6, 17, 0.5, 7, 128, true}}};
+constexpr std::array<Setting, 8> kSettings{{{2e-2, 4, 0.8, 4, 4, 48, false},
+                                            {1e-2, 5, 0.8, 4, 4, 64, false},
+                                            {3e-3, 7, 0.73, 8, 4, 64, false},
+                                            {1e-3, 7, 0.7, 7, 5, 64, false},
+                                            {3e-4, 8, 0.65, 5, 5, 96, false},
+                                            {1e-4, 10, 0.65, 7, 5, 128, false},
+                                            {1e-5, 13, 0.55, 7, 7, 128, true},
+                                            {1e-6, 14, 0.5, 5, 7, 128, true}}};
 constexpr double kLoosest = 1e-1;
 constexpr std::size_t kDirectBelow = 2000;      // measured crossover of the direct and the hierarchical sum
 constexpr std::size_t kDirectLeafPoints = 256;  // direct sums: leaves only bound the rounding of local coordinates
@@ -44,6 +45,7 @@ SumPlan sum_plan(double accuracy, std::size_t points) {
   plan.double_precision = setting->double_precision;
   plan.order = setting->order;
   plan.opening = setting->opening;
+  plan.cut = setting->cut;
   plan.reach = setting->reach;
   plan.leaf_points = setting->leaf_points;
   plan.direct = accuracy == 0 || points < kDirectBelow;

@@ -4,17 +4,34 @@
 #include "tree/octree.h"
 
 #include <algorithm>
+#include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
+#include <tuple>
 #include <vector>
 
 namespace g3r {
 
-/// Position of a source node relative to a target node, shared by all pairs that need the same M2L matrix.
+/// Position of a source node relative to a target node, shared by all pairs that need the same M2L matrix; its mirror images need it too,
+/// up to signs.
 struct Offset {
   std::int32_t level_difference = 0;                  ///< source level - target level
   std::array<std::int32_t, 3> displacement{0, 0, 0};  ///< target centre - source centre, in half sides of the smaller node
-  auto operator<=>(const Offset&) const = default;
+  bool operator==(const Offset&) const = default;
+
+  [[nodiscard]] std::array<std::int32_t, 3> magnitude() const {
+    return {std::abs(displacement[0]), std::abs(displacement[1]), std::abs(displacement[2])};
+  }
+  /// Bit a is set where displacement[a] is negative.
+  [[nodiscard]] unsigned mirror() const {
+    return (displacement[0] < 0 ? 1U : 0U) | (displacement[1] < 0 ? 2U : 0U) | (displacement[2] < 0 ? 4U : 0U);
+  }
+  /// Mirror images side by side.
+  std::strong_ordering operator<=>(const Offset& other) const {
+    return std::tuple(level_difference, magnitude(), mirror()) <=> std::tuple(other.level_difference, other.magnitude(), other.mirror());
+  }
 
   /// True for one of an offset and its opposite. No offset of far nodes is 0.
   [[nodiscard]] bool positive() const { return displacement > std::array<std::int32_t, 3>{0, 0, 0}; }
@@ -37,7 +54,7 @@ struct FarPair {
 /// Every (target point, source point) pair is in exactly one near list or under exactly one far pair. With the same tree on both sides the
 /// lists are symmetric: (a, b) is there if and only if (b, a) is, which makes the fast sum's adjoint exact.
 struct InteractionLists {
-  std::vector<Offset> offsets;  ///< distinct, sorted
+  std::vector<Offset> offsets;  ///< distinct, sorted: mirror images side by side
   std::vector<FarPair> far;     ///< sorted by target chunk, then offset, target, source
   std::vector<std::size_t>
       chunk_begin;  ///< far pairs of target chunk c (kTargetChunk consecutive nodes): [chunk_begin[c], chunk_begin[c + 1])
@@ -46,7 +63,7 @@ struct InteractionLists {
 };
 
 /// Target nodes whose far pairs are done together, so that one M2L matrix serves many of them.
-inline constexpr std::size_t kTargetChunk = 512;
+inline constexpr std::size_t kTargetChunk = 256;
 
 /// Dual traversal. A pair of nodes is far if radius_t + radius_s <= opening * distance, the gap between them is at least
 /// `reach` mollifier widths, and their levels differ by at most 3. opening in (0, 1); opening = 0: everything is near (direct sum).
