@@ -24,7 +24,8 @@ namespace g3r {
 /// fewer than 40 % of the points have a fit. Sides are kept but for normals that were all but in the surface.
 ///
 /// `points`: in canonical order, blocks of which share fields; `noise`: s > 0; `spacing`: h > 0; `normals`: N unit vectors, consistent
-/// sides. Returns whether they changed. Throws Cancelled. docs/math.md, "Fits of noisy points". O(N).
+/// sides. Returns whether they changed. Throws Cancelled. docs/math.md and docs/study.md,
+/// "Fits of noisy points". O(N).
 bool fit_noisy_jets(const std::vector<Vec3>& points, const Neighbours& neighbours, double noise, double spacing, std::vector<Vec3>& normals,
                     const std::atomic<bool>* cancel = nullptr);
 
