@@ -261,6 +261,7 @@ Orientation orient_in_arena(const PointsView& points, const Options& options, St
   Orientation out;
   out.stats = std::move(best.stats);
   warn_of_volume(best.problem, out.stats);
+  fit_noisy_surface(best.problem, stages, solution);
   settle_areas(best.problem, near, stages, solution);
   add_outliers(best.problem, stages, solution, confidence);
   hand_out(best.problem.cloud, solution.eta, solution.refinement.normals, confidence, out);

@@ -8,6 +8,7 @@
 #include "orient/creases.h"
 #include "orient/facets.h"
 #include "orient/jets.h"
+#include "orient/noisy_jets.h"
 #include "orient/planes.h"
 #include "orient/polish.h"
 #include "solve/dense_solver.h"
@@ -221,6 +222,12 @@ void solve_sheets_apart(const Problem& problem, const Options& options, Stages& 
   if (parts.size() > 1 && parts.count(OpenSheets::kNone) > 0) {
     solve_apart(problem, parts[OpenSheets::kNone], options, stages, stats, solution);
   }
+}
+
+void fit_noisy_surface(const Problem& problem, Stages& stages, Solution& solution) {
+  if (problem.baseline || problem.noise == 0 || problem.settings.polish_steps == 0) return;
+  const std::vector<Vec3>& points = problem.cloud.points;
+  fit_noisy_jets(points, Neighbours(points), problem.noise, problem.spacing, solution.refinement.normals, stages.cancel());
 }
 
 }  // namespace g3r

@@ -27,4 +27,8 @@ struct Solution {
 /// and then everything else without the sheets. Nothing happens without a sheet, or with one that is all there is.
 void solve_sheets_apart(const Problem& problem, const Options& options, Stages& stages, Stats& stats, Solution& solution);
 
+/// The last word on the directions of a noisy cloud (fit_noisy_jets). Nothing happens without noise, and to earlier methods and the
+/// paper's.
+void fit_noisy_surface(const Problem& problem, Stages& stages, Solution& solution);
+
 }  // namespace g3r

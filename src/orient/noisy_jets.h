@@ -1,0 +1,32 @@
+// Normals of noisy points from quadratic fits, as wide as the points allow.
+#pragma once
+
+#include "cloud/neighbours.h"
+
+#include <g3r/points.h>
+
+#include <atomic>
+#include <vector>
+
+namespace g3r {
+
+/// The winding gradient of a noisy cloud has one width for all points: it blurs what is narrower and leaves noise where the surface is
+/// smooth. n_i becomes the normal above p_i of a quadratic height field fitted to the points on its side (n_j . n_i > 0.5) within a reach
+/// R along the tangent plane, weights 1 - r^2 / R^2 (Epanechnikov), and, with weight 0.3 (R/2)^2, to their normals. Noise of standard
+/// deviation s disturbs its slope by t = s sqrt(6 / sum of the weights) / R, the wider the less; a field wider than the surface is
+/// smooth is bent. So R grows, 4.2, 7.1 and 12 sqrt(s h), while the normal stays within 0.85 t of that of each smaller reach (Lepski, "On a
+/// problem of adaptive estimation in Gaussian white noise", Theory of Probability and its Applications 1991; for point clouds: Wang et
+/// al., "Bandwidth selection and reconstruction quality in point-based surfaces", IEEE TVCG 2009). One field serves all points of the
+/// side within R/4: three to five of them where it is smooth.
+///
+/// Where more than 5 % of the points about the field, up to 8 s beside it, face the other way, a wall is as thin as the noise, and the side
+/// of a normal says more than its direction: n_i stays, as it does where the fitted normal is more than 37 degrees off. All stay where
+/// fewer than 40 % of the points have a fit. Sides are kept but for normals that were all but in the surface.
+///
+/// `points`: in canonical order, blocks of which share fields; `noise`: s > 0; `spacing`: h > 0; `normals`: N unit vectors, consistent
+/// sides. Returns whether they changed. Throws Cancelled. docs/math.md and docs/study.md,
+/// "Fits of noisy points". O(N).
+bool fit_noisy_jets(const std::vector<Vec3>& points, const Neighbours& neighbours, double noise, double spacing, std::vector<Vec3>& normals,
+                    const std::atomic<bool>* cancel = nullptr);
+
+}  // namespace g3r
