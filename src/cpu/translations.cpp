@@ -26,7 +26,7 @@ using Vec = hn::Vec<Tag<T>>;
 constexpr std::size_t kTile = 9;  // expansions of one tile: 2 x 9 sums and their operands fit 32 registers
 constexpr std::size_t kPackedStride = padded_count(coefficient_count(kMaxExpansionOrder));
 
-// One vector of rows: column j at data + j * kLanes, from first to before last.
+// One vector of rows: column j, from first to before last, at data + (j - first) * kLanes.
 template <class T>
 struct Rows {
   const T* data;
@@ -36,10 +36,11 @@ struct Rows {
 
 // sum[c] += columns [first, last) of one vector of rows times expansion c.
 template <class T, std::size_t kCount>
-HWY_INLINE void MultiplyColumns(const T* data, std::size_t first, std::size_t last, const T* HWY_RESTRICT packed, Vec<T> (&sum)[kCount]) {
+HWY_INLINE void MultiplyColumns(const Rows<T>& rows, std::size_t first, std::size_t last, const T* HWY_RESTRICT packed,
+                                Vec<T> (&sum)[kCount]) {
   const Tag<T> d;
   for (std::size_t j = first; j < last; ++j) {
-    const Vec<T> m = hn::Load(d, data + j * kLanes);
+    const Vec<T> m = hn::Load(d, rows.data + (j - rows.first) * kLanes);
     for (std::size_t c = 0; c < kCount; ++c) sum[c] = hn::MulAdd(m, hn::Set(d, packed[c * kPackedStride + j]), sum[c]);
   }
 }
@@ -55,15 +56,15 @@ HWY_INLINE void MultiplyRows(const Rows<T>* rows, const T* HWY_RESTRICT packed, 
   const std::size_t last = HWY_MAX(first, HWY_MIN(rows[0].last, rows[kVectors - 1].last));
   for (std::size_t j = first; j < last; ++j) {
     Vec<T> m[kVectors];
-    for (std::size_t v = 0; v < kVectors; ++v) m[v] = hn::Load(d, rows[v].data + j * kLanes);
+    for (std::size_t v = 0; v < kVectors; ++v) m[v] = hn::Load(d, rows[v].data + (j - rows[v].first) * kLanes);
     for (std::size_t c = 0; c < kCount; ++c) {
       const Vec<T> value = hn::Set(d, packed[c * kPackedStride + j]);
       for (std::size_t v = 0; v < kVectors; ++v) sum[v][c] = hn::MulAdd(m[v], value, sum[v][c]);
     }
   }
   for (std::size_t v = 0; v < kVectors; ++v) {
-    MultiplyColumns<T, kCount>(rows[v].data, rows[v].first, first, packed, sum[v]);
-    MultiplyColumns<T, kCount>(rows[v].data, last, rows[v].last, packed, sum[v]);
+    MultiplyColumns<T, kCount>(rows[v], rows[v].first, first, packed, sum[v]);
+    MultiplyColumns<T, kCount>(rows[v], last, rows[v].last, packed, sum[v]);
   }
 }
 
@@ -77,7 +78,7 @@ HWY_INLINE void ForRows(const TranslationMatrix<T>& matrix, const Use& use) {
   for (std::size_t g = 0; g < matrix.groups; ++g) {
     const ColumnRange& range = matrix.columns[g];
     for (std::size_t lane = 0; lane < kLanes; lane += lanes) {
-      rows[waiting++] = {group + lane - range.first * kLanes, range.first, HWY_MIN(range.last, matrix.most_columns)};
+      rows[waiting++] = {group + lane, range.first, HWY_MIN(range.last, matrix.most_columns)};
       if (waiting < 2) continue;
       use(std::integral_constant<std::size_t, 2>(), rows, g * kLanes + lane - lanes);
       waiting = 0;
