@@ -17,7 +17,7 @@ constexpr double kFarthestRadius = 1.3;
 
 std::vector<int> degrees(std::size_t coefficients) {
   std::vector<int> out;
-  for (int l = 0; out.size() < coefficients; ++l) out.insert(out.end(), static_cast<std::size_t>(2 * l + 1), l);
+  for (int l = 0; out.size() < coefficients; ++l) out.insert(out.end(), 2 * static_cast<std::size_t>(l) + 1, l);
   return out;
 }
 
