@@ -268,7 +268,6 @@ struct StokesLocals {
   static constexpr std::size_t kValues = 5;  // W of all pairs, W of those with E, E + P
   const T* values[kValues];
   const T* gradients[4];  // Q - e^2 W (local widths: Q - half of the W of e^2 eta), P
-  const T* winding;       // W of all pairs
 
   StokesLocals() = default;
   // `memory`: 5 n elements.
@@ -283,7 +282,7 @@ struct StokesLocals {
       gradients[1 + k] = local(4 + k);
     }
     for (std::size_t a = 0; a < n; ++a) memory[4 * n + a] = local(7)[a] - width2 * weighted[a];
-    winding = values[0] = memory;
+    values[0] = memory;
     values[1] = local(0);
     gradients[0] = memory + 4 * n;
   }
@@ -306,7 +305,7 @@ HWY_INLINE void StokesAtPoints(const LeafTask<T>& task, const StokesLocals<T>& l
   EvaluateGradients<T, 4>(locals.gradients, basis, task.order, hn::Mul(unit, unit), g);
   if (task.local_widths) {
     Gradient<T> of_w[1];
-    EvaluateGradients<T, 1>({locals.winding}, basis, task.order, hn::Mul(unit, unit), of_w);
+    EvaluateGradients<T, 1>({locals.values[0]}, basis, task.order, hn::Mul(unit, unit), of_w);
     const Vec<T> half = hn::Mul(hn::Set(d, T{0.5}), width_squared);
     g[0] = {hn::NegMulAdd(half, of_w[0].x, g[0].x), hn::NegMulAdd(half, of_w[0].y, g[0].y), hn::NegMulAdd(half, of_w[0].z, g[0].z)};
   }

@@ -13,6 +13,8 @@ namespace {
 
 constexpr std::size_t kLeafBlock = 4;   // leaves per parallel block
 constexpr std::size_t kNodeBlock = 32;  // nodes per parallel block
+constexpr int kLeastOrder = 2;          // with order 1 gradients would be constant in a cube
+constexpr double kFewerTermsCut = 0.5;  // of the forms of one order less: at 1 they err by half more than the Stokeslets
 
 std::size_t multipole_channels(cpu::NearForm form, int batch, bool local_widths) {
   switch (form) {
@@ -40,9 +42,8 @@ std::size_t octant(const OctreeNode& node) {
 M2lTerms terms_for(cpu::NearForm form, int batch, const SumPlan& plan) {
   const bool green = form == cpu::NearForm::kGreen || form == cpu::NearForm::kGreenAdjoint;
   const bool fewer = form == cpu::NearForm::kWindingGradient || (green && batch > 1);
-  constexpr int kLeast = 2;
-  if (!fewer || plan.order <= kLeast) return {plan.order, plan.opening, plan.cut};
-  return {plan.order - 1, plan.opening, plan.cut / 2};
+  if (!fewer || plan.order <= kLeastOrder) return {plan.order, plan.opening, plan.cut};
+  return {plan.order - 1, plan.opening, kFewerTermsCut * plan.cut};
 }
 
 template <class T>
@@ -56,7 +57,7 @@ template <class T>
 SumEngine<T>::SumEngine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Widths& widths,
                         const SumPlan& plan, const std::atomic<bool>* cancel)
     : plan_(plan), local_widths_(!widths.uniform()), cancel_(cancel), sources_(std::make_shared<Sources>()) {
-  set_order(plan.order);
+  set_terms({plan.order, plan.opening, plan.cut});
   Sources& s = *sources_;
   s.points = points;
   s.widths = widths.values;
@@ -87,15 +88,15 @@ template <class T>
 SumEngine<T>::SumEngine(const SumEngine& other, const std::vector<Vec3>& targets, const std::vector<std::uint64_t>& morton,
                         const std::atomic<bool>* cancel)
     : plan_(other.plan_), local_widths_(other.local_widths_), cancel_(cancel), sources_(other.sources_) {
-  set_order(plan_.order);
+  set_terms({plan_.order, plan_.opening, plan_.cut});
   target_tree_ = std::make_shared<Octree>(build_query_octree(targets, morton, sources_->tree));
   prepare(targets, {sources_->widths[0]});
 }
 
 template <class T>
-void SumEngine<T>::set_order(int order) {
-  order_ = order;
-  coefficients_ = coefficient_count(order);
+void SumEngine<T>::set_terms(const M2lTerms& terms) {
+  terms_ = terms;
+  coefficients_ = coefficient_count(terms.order);
   stride_ = cpu::padded_count(coefficients_);
 }
 
@@ -135,7 +136,7 @@ void SumEngine<T>::prepare(const std::vector<Vec3>& targets, const std::vector<d
 
 template <class T>
 const M2lMatrices<T>& SumEngine<T>::matrices() {
-  std::unique_ptr<M2lMatrices<T>>& of_order = matrices_[static_cast<std::size_t>(order_)];
+  std::unique_ptr<M2lMatrices<T>>& of_order = matrices_[static_cast<std::size_t>(terms_.order)];
   if (!of_order) of_order = std::make_unique<M2lMatrices<T>>(lists_.offsets, terms_);
   return *of_order;
 }
@@ -159,7 +160,7 @@ cpu::LeafTask<T> SumEngine<T>::leaf_task(cpu::NearForm form, int batch, double h
   cpu::LeafTask<T> task{};
   task.form = form;
   task.batch = batch;
-  task.order = order_;
+  task.order = terms_.order;
   task.half_side = static_cast<T>(half_side);
   task.local_widths = local_widths_;
   task.uniform_width_squared = static_cast<T>(sources_->widths[0] * sources_->widths[0]);
@@ -345,8 +346,7 @@ template <class T>
 const std::vector<double>& SumEngine<T>::run(cpu::NearForm form, int batch, std::size_t out_channels) {
   multipole_channels_ = multipole_channels(form, batch, local_widths_);
   local_channels_ = multipole_channels_ + (form == cpu::NearForm::kStokesWinding ? 1 : 0);
-  terms_ = terms_for(form, batch, plan_);
-  set_order(terms_.order);
+  set_terms(terms_for(form, batch, plan_));
   out_.resize(targets_->x.size() * out_channels);
   if (!plan_.direct) {
     upward(form, batch);

@@ -61,7 +61,7 @@ class SumEngine {
     std::array<StoredTranslation<T>, 8> parent_to_child;  // L2L by octant
   };
 
-  void set_order(int order);
+  void set_terms(const M2lTerms& terms);
   const M2lMatrices<T>& matrices();  // of the current order
   void prepare(const std::vector<Vec3>& targets, const std::vector<double>& target_widths);
   // x, y, z and, with local widths, the squared width.
@@ -90,7 +90,6 @@ class SumEngine {
   std::vector<std::unique_ptr<M2lMatrices<T>>> matrices_;  // of every order, made when it is needed
   // Of the current run:
   M2lTerms terms_;
-  int order_ = 0;
   std::size_t coefficients_ = 0;
   std::size_t stride_ = 0;              // of one expansion
   std::size_t multipole_channels_ = 0;  // expansions per node
