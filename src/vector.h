@@ -47,12 +47,4 @@ struct Box {
   [[nodiscard]] double longest_side() const { return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]}); }
 };
 
-/// Whether two closed boxes have a point in common.
-inline bool meet(const Box& a, const Box& b) {
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (a.high[k] < b.low[k] || b.high[k] < a.low[k]) return false;
-  }
-  return true;
-}
-
 }  // namespace g3r::vector

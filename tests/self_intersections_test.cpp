@@ -2,9 +2,11 @@
 #include <g3r/mesh.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "mesh/box_tree.h"
 #include "mesh/exact_orientation.h"
 #include "mesh_shapes.h"
 
@@ -42,6 +44,52 @@ TEST(ExactOrientation, SeesTheLastBit) {
   EXPECT_EQ(above * below, -1);
   EXPECT_EQ(orientation_along(1, a, b, {z, 5, z}), 0);
   EXPECT_EQ(orientation_along(1, a, b, {z, 5, std::nextafter(z, 1)}) * orientation_along(1, a, b, {z, 5, std::nextafter(z, 0)}), -1);
+}
+
+// Every pair once, for numbers around the sizes of leaves and above; many boxes have equal centres.
+TEST(BoxTree, FindsThePairsThatMeet) {
+  std::mt19937_64 rng(1);
+  for (const std::size_t count : {1, 2, 5, 6, 7, 12, 13, 100, 1000}) {
+    std::uniform_int_distribution<int> place(0, 9), size(0, 2);
+    std::vector<mesh::FloatBox> boxes(count);
+    for (mesh::FloatBox& box : boxes) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        box.low[k] = static_cast<float>(place(rng));
+        box.high[k] = box.low[k] + static_cast<float>(size(rng));
+      }
+    }
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> expected, found;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      for (std::uint32_t j = i + 1; j < count; ++j) {
+        bool common = true;
+        for (std::size_t k = 0; k < 3; ++k) {
+          common = common && std::max(boxes[i].low[k], boxes[j].low[k]) <= std::min(boxes[i].high[k], boxes[j].high[k]);
+        }
+        if (common) expected.emplace_back(i, j);
+      }
+    }
+    const mesh::BoxTree tree(boxes);
+    for (const mesh::BoxTree::PairJob& job : tree.pair_jobs()) {
+      tree.visit_pairs(job, [&](std::uint32_t i, std::uint32_t j) { found.emplace_back(i, j); });
+    }
+    std::sort(found.begin(), found.end());
+    EXPECT_EQ(found, expected) << count;
+  }
+}
+
+// Rounding to float must not hide a pair: neighbours on a fine grid far from the origin.
+TEST(SelfIntersections, FoundFarFromTheOrigin) {
+  Mesh m;
+  for (int i = 0; i < 20; ++i) {
+    const double x = 1e6 + i * 1e-6;
+    const auto first = static_cast<std::uint32_t>(m.vertices.size());
+    for (const Vec3& p : {Vec3{x, 0, 0}, Vec3{x, 1, 0}, Vec3{x, 0, 1}, Vec3{x - 2e-7, 0.2, 0.2}, Vec3{x + 2e-7, 0.2, 0.2}, Vec3{x, 2, 2}}) {
+      m.vertices.push_back(p);
+    }
+    m.triangles.push_back({first, first + 1, first + 2});
+    m.triangles.push_back({first + 3, first + 4, first + 5});
+  }
+  EXPECT_EQ(count_self_intersections(m), 20U);
 }
 
 TEST(SelfIntersections, CleanShapesHaveNone) {

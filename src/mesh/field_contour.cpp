@@ -187,25 +187,29 @@ std::vector<Out> find_edges(const Octree& octree, std::vector<std::uint8_t> mark
 
 // ---- arcs: on every octree face the crossings of its rim are joined in pairs ----
 
-// Place `slot` of an edge and the next one are different leaves, and so share a face with the edge on its rim.
+// Places 4 e to 4 e + 3 are those of the leaves around edge e. If the leaf at a place and the next one around the edge are different, they
+// share a face with the edge on its rim.
 struct FaceRecord {
   std::uint64_t face = 0;  // the two leaves, which share at most one face
-  std::uint32_t edge = 0;
-  std::uint8_t slot = 0;
-  bool operator<(const FaceRecord& o) const { return face != o.face ? face < o.face : edge != o.edge ? edge < o.edge : slot < o.slot; }
+  std::uint32_t place = 0;
+  [[nodiscard]] std::uint32_t edge() const { return place / 4; }
+  bool operator<(const FaceRecord& o) const { return face != o.face ? face < o.face : place < o.place; }
 };
 
+// Two crossings on the rim of a face.
 struct Arc {
-  FaceRecord a, b;
+  std::uint64_t face = 0;
+  std::uint32_t a = 0, b = 0;  // places
 };
 
 // In ascending order.
 std::vector<FaceRecord> face_records(const Octree& octree, const std::vector<ActiveEdge>& edges) {
+  if (edges.size() > (std::size_t{1} << 30U)) throw std::bad_alloc();
   const auto for_each_record = [&](const auto& use) {
-    for (std::size_t e = 0; e < edges.size(); ++e) {
-      for (std::uint8_t k = 0; k < 4; ++k) {
+    for (std::uint32_t e = 0; e < edges.size(); ++e) {
+      for (std::uint32_t k = 0; k < 4; ++k) {
         const std::uint64_t a = edges[e].leaf[k], b = edges[e].leaf[(k + 1U) % 4U];
-        if (a != b) use(FaceRecord{(std::min(a, b) << 32U) | std::max(a, b), static_cast<std::uint32_t>(e), k});
+        if (a != b) use(FaceRecord{(std::min(a, b) << 32U) | std::max(a, b), 4 * e + k});
       }
     }
   };
@@ -233,9 +237,9 @@ std::vector<FaceRecord> face_records(const Octree& octree, const std::vector<Act
 class AmbiguousFace {
  public:
   AmbiguousFace(const Octree& octree, const std::vector<ActiveEdge>& edges, std::vector<FaceRecord> rim) : rim_(std::move(rim)) {
-    const ActiveEdge& first = edges[rim_[0].edge];
+    const ActiveEdge& first = edges[rim_[0].edge()];
     const std::uint32_t u = (first.axis + 1U) % 3U, v = (first.axis + 2U) % 3U;
-    const std::uint32_t normal = rim_[0].slot % 2 == 0 ? u : v;
+    const std::uint32_t normal = rim_[0].place % 2 == 0 ? u : v;
     p_ = (normal + 1U) % 3U;
     q_ = (normal + 2U) % 3U;
     const auto node = [&](std::uint64_t leaf) { return octree.nodes()[octree.leaf_nodes()[leaf]]; };
@@ -249,13 +253,13 @@ class AmbiguousFace {
     centre_ = octree.world(centre[0], centre[1], centre[2]);
 
     std::vector<std::pair<double, std::size_t>> order;
-    for (std::size_t i = 0; i < rim_.size(); ++i) order.emplace_back(place(octree, edges[rim_[i].edge]), i);
+    for (std::size_t i = 0; i < rim_.size(); ++i) order.emplace_back(along_rim(octree, edges[rim_[i].edge()]), i);
     std::sort(order.begin(), order.end());
     std::vector<FaceRecord> sorted;
     for (const auto& [s, i] : order) sorted.push_back(rim_[i]);
     rim_ = std::move(sorted);
     // Is the run of corners after the first crossing, going round, inside?
-    const ActiveEdge& e = edges[rim_[0].edge];
+    const ActiveEdge& e = edges[rim_[0].edge()];
     const bool forward = order[0].first < 2.0 * extent_;
     run_inside_ = forward != e.inside_low;
   }
@@ -266,12 +270,12 @@ class AmbiguousFace {
   void join(bool centre_inside, std::vector<Arc>& arcs) const {
     const std::size_t n = rim_.size();
     const std::size_t shift = run_inside_ != centre_inside ? 0 : 1;
-    for (std::size_t i = 0; i < n; i += 2) arcs.push_back({rim_[(i + shift) % n], rim_[(i + shift + 1) % n]});
+    for (std::size_t i = 0; i < n; i += 2) arcs.push_back({rim_[0].face, rim_[(i + shift) % n].place, rim_[(i + shift + 1) % n].place});
   }
 
  private:
   // Position of an edge's middle along the rim, counter-clockwise from the lower corner.
-  double place(const Octree& octree, const ActiveEdge& e) const {
+  double along_rim(const Octree& octree, const ActiveEdge& e) const {
     const auto lo = octree.corner_grid(e.low), hi = octree.corner_grid(e.high);
     const double s = extent_;
     const double x = 0.5 * (lo[p_] + hi[p_]) - low_[p_], y = 0.5 * (lo[q_] + hi[q_]) - low_[q_];
@@ -308,7 +312,7 @@ Arcs join_arcs(const Octree& octree, const std::vector<ActiveEdge>& edges, const
       continue;
     }
     if (j - i == 2) {
-      out.arcs.push_back({records[i], records[i + 1]});
+      out.arcs.push_back({records[i].face, records[i].place, records[i + 1].place});
     } else {
       ambiguous.emplace_back(
           octree, edges,
@@ -331,7 +335,6 @@ Arcs join_arcs(const Octree& octree, const std::vector<ActiveEdge>& edges, const
 template <class Complete>
 std::vector<std::uint32_t> label_sheets(const std::vector<ActiveEdge>& edges, const std::vector<Arc>& arcs, const Complete& complete,
                                         DualSurface& surface) {
-  if (edges.size() > (std::size_t{1} << 30U)) throw std::bad_alloc();
   DisjointSets groups(edges.size() * 4);
   for (std::uint32_t e = 0; e < edges.size(); ++e) {
     for (std::uint32_t k = 0; k < 4; ++k) {
@@ -344,8 +347,8 @@ std::vector<std::uint32_t> label_sheets(const std::vector<ActiveEdge>& edges, co
     return 4 * e + k;
   };
   for (const Arc& arc : arcs) {
-    for (const std::uint32_t leaf : {static_cast<std::uint32_t>(arc.a.face >> 32U), static_cast<std::uint32_t>(arc.a.face)}) {
-      groups.join(place_of(arc.a.edge, leaf), place_of(arc.b.edge, leaf));
+    for (const std::uint32_t leaf : {static_cast<std::uint32_t>(arc.face >> 32U), static_cast<std::uint32_t>(arc.face)}) {
+      groups.join(place_of(arc.a / 4, leaf), place_of(arc.b / 4, leaf));
     }
   }
   std::vector<std::uint32_t> sheet(edges.size() * 4, kNone);
@@ -378,24 +381,24 @@ std::vector<std::uint32_t> label_sheets(const std::vector<ActiveEdge>& edges, co
 }
 
 // Two sheets joined by several arcs of one face would share several mesh edges: each of these gets a vertex in its middle.
-std::unordered_map<std::uint64_t, std::uint32_t> split_double_edges(const Arcs& arcs, const std::vector<std::uint32_t>& sheet,
+std::unordered_map<std::uint32_t, std::uint32_t> split_double_edges(const Arcs& arcs, const std::vector<std::uint32_t>& sheet,
                                                                     DualSurface& surface) {
-  std::unordered_map<std::uint64_t, std::uint32_t> middle;  // (edge, slot) -> vertex
-  const auto pair_of = [&](const FaceRecord& r) {
-    const std::uint64_t a = sheet[4 * std::size_t{r.edge} + r.slot], b = sheet[4 * std::size_t{r.edge} + (r.slot + 1U) % 4U];
+  std::unordered_map<std::uint32_t, std::uint32_t> middle;  // place -> vertex
+  const auto pair_of = [&](const Arc& arc) {
+    const std::uint64_t a = sheet[arc.a], b = sheet[arc.a / 4 * 4 + (arc.a + 1) % 4];
     return (std::min(a, b) << 32U) | std::max(a, b);
   };
   for (std::size_t i = arcs.first_multiple; i < arcs.arcs.size();) {
     std::size_t j = i;
-    while (j < arcs.arcs.size() && arcs.arcs[j].a.face == arcs.arcs[i].a.face) ++j;
+    while (j < arcs.arcs.size() && arcs.arcs[j].face == arcs.arcs[i].face) ++j;
     for (std::size_t k = i; k < j; ++k) {
-      const std::uint64_t pair = pair_of(arcs.arcs[k].a);
+      const std::uint64_t pair = pair_of(arcs.arcs[k]);
       bool repeated = false;
-      for (std::size_t l = i; l < j; ++l) repeated = repeated || (l != k && pair_of(arcs.arcs[l].a) == pair);
+      for (std::size_t l = i; l < j; ++l) repeated = repeated || (l != k && pair_of(arcs.arcs[l]) == pair);
       if (!repeated) continue;
       const auto vertex = static_cast<std::uint32_t>(surface.patch_count() + surface.midpoints.size());
       surface.midpoints.push_back({static_cast<std::uint32_t>(pair >> 32U), static_cast<std::uint32_t>(pair)});
-      for (const FaceRecord& r : {arcs.arcs[k].a, arcs.arcs[k].b}) middle[4 * std::uint64_t{r.edge} + r.slot] = vertex;
+      for (const std::uint32_t place : {arcs.arcs[k].a, arcs.arcs[k].b}) middle[place] = vertex;
     }
     i = j;
   }
@@ -412,7 +415,7 @@ bool touch_only_here(const Octree& octree, const ActiveEdge& e, std::uint32_t le
 }
 
 void make_polygons(const Octree& octree, const std::vector<ActiveEdge>& edges, const std::vector<std::uint32_t>& sheet,
-                   const std::unordered_map<std::uint64_t, std::uint32_t>& middle, DualSurface& surface) {
+                   const std::unordered_map<std::uint32_t, std::uint32_t>& middle, DualSurface& surface) {
   surface.polygon_begin.assign(1, 0);
   surface.polygon_vertices.reserve(edges.size() * 4);
   surface.safe_diagonals.reserve(edges.size());
@@ -422,7 +425,7 @@ void make_polygons(const Octree& octree, const std::vector<ActiveEdge>& edges, c
     std::vector<std::uint32_t>& polygon = surface.polygon_vertices;
     for (std::size_t k = 0; k < 4; ++k) {
       if (e.leaf[k] != e.leaf[(k + 3) % 4]) polygon.push_back(sheet[4 * i + k]);
-      const auto found = middle.empty() ? middle.end() : middle.find(4 * i + k);
+      const auto found = middle.empty() ? middle.end() : middle.find(static_cast<std::uint32_t>(4 * i + k));
       if (found != middle.end()) polygon.push_back(found->second);
     }
     if (!e.inside_low) std::reverse(polygon.begin() + first, polygon.end());

@@ -50,6 +50,9 @@ constexpr double kFieldSure = 0.2;           // |w - level| from which the field
 constexpr double kBeyond = 0.05;             // of the longest side: so far from the box of the points
 constexpr double kBeyondSpacings = 2;        // (and so many spacings) all is outside; fast sums end there, single ones are slow
 
+constexpr std::size_t kCornersAtOnce = std::size_t{1} << 18;  // for which more than a side is kept in memory,
+constexpr std::size_t kAskedAtOnce = std::size_t{1} << 20;    // and that the field is evaluated at
+
 constexpr double kFitSay = 2 * kFieldSure;  // in opinions the field counts 2 (w - level), the fitted surface at most this,
 constexpr double kFitFar = 0.3;             // and that from so many spacings away
 constexpr double kFlipped = 0.1;            // spacings: distance from the surface of corners that were flipped to remove a handle
@@ -168,12 +171,6 @@ Octree make_octree(const OrientedPoints& points, const std::vector<double>& thic
   return Octree(corner, side, requests, std::min(kBaseLevel, level), monitor.cancel);
 }
 
-std::vector<Vec3> corner_positions(const Octree& octree) {
-  std::vector<Vec3> out(octree.corner_count());
-  for (std::size_t c = 0; c < out.size(); ++c) out[c] = octree.corner_position(c);
-  return out;
-}
-
 void require_memory_for(std::size_t points, const Octree& octree, int depth, std::size_t max_memory) {
   const std::size_t needed = memory_for(points, static_cast<double>(octree.leaf_count()), depth);
   if (max_memory == 0 || needed <= max_memory) return;
@@ -181,38 +178,51 @@ void require_memory_for(std::size_t points, const Octree& octree, int depth, std
                     " MiB; raise the limit, lower the depth or thin the cloud");
 }
 
+// The corners of an octree.
+struct Corners {
+  std::vector<float> value;  // of each: positive inside, about minus the distance to the surface
+  Opinions opinions;         // of those that could be on either side
+};
+
 // Which side of the surface places are on: a positive value inside. Near the points it is minus the distance to the fitted surface,
 // unless the field is sure of the contrary; elsewhere it is the field, scaled to a length.
 class Side {
  public:
   Side(const LocalFit& local, const FieldSampler& sampler, const OrientedPoints& points)
-      : local_(local), sampler_(sampler), points_(points), spacing_(median(points.spacing)), box_(box_of(points.positions)) {
+      : local_(local), sampler_(sampler), spacing_(median(points.spacing)), box_(box_of(points.positions)) {
     reach_ = 0.5 * box_.longest() + std::max(kBeyond * box_.longest(), kBeyondSpacings * spacing_);
+    std::vector<double> field;
+    sampler_.sample(level_places(points.positions), field, nullptr);
+    level_ = median(std::move(field));
   }
 
-  // `opinions`: filled in for all places.
-  std::vector<double> operator()(const std::vector<Vec3>& places, Opinions& opinions, const std::atomic<bool>* cancel) const {
-    const double unknown = std::numeric_limits<double>::quiet_NaN();
-    std::vector<double> value(places.size(), unknown);
-    std::vector<std::uint8_t> sure(places.size(), 0);
-    opinions = {std::vector<double>(places.size(), 0), sure, std::vector<std::array<float, 3>>(places.size())};
-    parallel::for_blocks(
-        places.size(), 256,
-        [&](std::size_t begin, std::size_t end) {
-          for (std::size_t i = begin; i < end; ++i) {
-            const Eigen::Vector3d x(places[i][0], places[i][1], places[i][2]);
-            const LocalSurface fit = local_.fit(x, kLocalReach, nullptr, LocalFit::Detail::kSide);
-            if (fit.count == 0) continue;
-            value[i] = -fit.distance(x);
-            sure[i] = fit.simple ? 1 : 0;
-            opinions.open[i] = fit.simple ? 0 : 1;
-            for (int a = 0; a < 3; ++a) opinions.axis[i][static_cast<std::size_t>(a)] = static_cast<float>(fit.sheet[0].frame(2, a));
-            opinions.side[i] = fit.simple ? (value[i] > 0 ? 1 : -1) : kFitSay * std::clamp(value[i] / (kFitFar * fit.spacing), -1.0, 1.0);
-          }
-        },
-        cancel);
-    ask_field(places, sure, value, opinions);
-    return value;
+  [[nodiscard]] Corners of(const Octree& octree, const std::atomic<bool>* cancel) const {
+    Corners corners;
+    corners.value.resize(octree.corner_count());
+    std::vector<Place> places;
+    std::vector<Asked> asked;
+    for (std::size_t first = 0; first < corners.value.size(); first += kCornersAtOnce) {
+      places.resize(std::min(corners.value.size() - first, kCornersAtOnce));
+      parallel::for_blocks(
+          places.size(), 256,
+          [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) places[i] = fit_at(octree.corner_position(first + i));
+          },
+          cancel);
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        const auto c = static_cast<std::uint32_t>(first + i);
+        const Place& place = places[i];
+        corners.value[c] = place.value;
+        if (place.kind == Place::kDoubtful) corners.opinions.add(c, place.opinion, place.axis);
+        if (place.kind == Place::kDoubtful || place.kind == Place::kUnknown) {
+          asked.push_back({c, place.kind == Place::kDoubtful ? corners.opinions.corner.size() : 0});
+        }
+      }
+      if (asked.size() < kAskedAtOnce && first + kCornersAtOnce < corners.value.size()) continue;
+      ask_field(octree, asked, corners);
+      asked.clear();
+    }
+    return corners;
   }
 
   // By the fitted surface alone; outside where there is none.
@@ -229,31 +239,50 @@ class Side {
   }
 
  private:
-  void ask_field(const std::vector<Vec3>& places, const std::vector<std::uint8_t>& sure, std::vector<double>& value,
-                 Opinions& opinions) const {
-    std::vector<std::size_t> ask;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      if (sure[i] != 0) continue;
-      if (std::isnan(value[i]) && is_beyond(places[i])) {
-        value[i] = -spacing_;
-        opinions.side[i] = -1;
-        continue;
-      }
-      ask.push_back(i);
+  struct Place {
+    enum Kind : std::uint8_t { kSure, kDoubtful, kUnknown };
+    Kind kind = kSure;
+    float value = 0;
+    float opinion = 0;
+    std::array<float, 3> axis{};
+  };
+  // A corner, and one more than its place among the opinions, 0 if it has none.
+  struct Asked {
+    std::uint32_t corner;
+    std::size_t opinion;
+  };
+
+  [[nodiscard]] Place fit_at(const Vec3& at) const {
+    const Eigen::Vector3d x(at[0], at[1], at[2]);
+    const LocalSurface fit = local_.fit(x, kLocalReach, nullptr, LocalFit::Detail::kSide);
+    Place place;
+    if (fit.count == 0) {
+      place.kind = is_beyond(at) ? Place::kSure : Place::kUnknown;
+      place.value = static_cast<float>(-spacing_);
+      return place;
     }
-    std::vector<Vec3> queries = level_places(points_.positions);
-    const auto levels = static_cast<std::ptrdiff_t>(queries.size());
-    for (const std::size_t i : ask) queries.push_back(places[i]);
+    const double value = -fit.distance(x);
+    place.value = static_cast<float>(value);
+    if (fit.simple) return place;
+    place.kind = Place::kDoubtful;
+    place.opinion = static_cast<float>(kFitSay * std::clamp(value / (kFitFar * fit.spacing), -1.0, 1.0));
+    for (std::size_t a = 0; a < 3; ++a) place.axis[a] = static_cast<float>(fit.sheet[0].frame(2, static_cast<Eigen::Index>(a)));
+    return place;
+  }
+
+  void ask_field(const Octree& octree, const std::vector<Asked>& asked, Corners& corners) const {
+    std::vector<Vec3> queries(asked.size());
+    for (std::size_t k = 0; k < asked.size(); ++k) queries[k] = octree.corner_position(asked[k].corner);
     std::vector<double> field;
     sampler_.sample(queries, field, nullptr);
-    const double level = median({field.begin(), field.begin() + levels});
-    field.erase(field.begin(), field.begin() + levels);
-    for (std::size_t k = 0; k < ask.size(); ++k) {
-      const double f = field[k] - level;
-      double& v = value[ask[k]];
-      double& opinion = opinions.side[ask[k]];
-      opinion = opinions.open[ask[k]] != 0 ? std::clamp(2 * f + opinion, -1.0, 1.0) : f > 0 ? 1 : -1;
-      if (std::isnan(v) || (std::abs(f) >= kFieldSure && (v > 0) != (f > 0))) v = f * spacing_;
+    for (std::size_t k = 0; k < asked.size(); ++k) {
+      const double f = field[k] - level_;
+      float& value = corners.value[asked[k].corner];
+      const bool known = asked[k].opinion > 0;
+      if (!known || (std::abs(f) >= kFieldSure && (value > 0) != (f > 0))) value = static_cast<float>(f * spacing_);
+      if (!known) continue;
+      float& opinion = corners.opinions.side[asked[k].opinion - 1];
+      opinion = static_cast<float>(std::clamp(2 * f + opinion, -1.0, 1.0));
     }
   }
 
@@ -266,28 +295,29 @@ class Side {
 
   const LocalFit& local_;
   const FieldSampler& sampler_;
-  const OrientedPoints& points_;
   double spacing_;
   Box box_;
   double reach_ = 0;  // half the side of the cube that everything inside is in
+  double level_ = 0;  // of the field on the surface
 };
 
 // Reads the doubtful signs in other ways where that leaves fewer handles. Returns whether any was changed.
 bool remove_handles(const Octree& octree, const Opinions& opinions, const mesh::InsideTest& centre_inside,
                     std::vector<std::uint8_t>& inside, const mesh::DualSurface& surface, const std::atomic<bool>* cancel) {
   if (mesh::count_handles(surface) == 0) return false;
-  const std::vector<std::vector<double>> averages = mesh::smooth_sides(octree, opinions, 2, cancel);
-  const auto sign = [&](const Reading& reading, std::size_t c) -> std::uint8_t {
-    const std::vector<double>& side = reading.averagings == 0 ? opinions.side : averages[reading.averagings - 1];
-    return side[c] > reading.level ? 1 : 0;
+  const std::vector<std::vector<float>> averages = mesh::smooth_sides(octree, opinions, inside, 2, cancel);
+  const auto sign = [&](const Reading& reading, std::uint32_t place) -> std::uint8_t {
+    const std::vector<float>& side = reading.averagings == 0 ? opinions.side : averages[reading.averagings - 1];
+    return side[place] > reading.level ? 1 : 0;
   };
   std::vector<std::uint8_t> in_doubt(inside.size(), 0);
-  std::vector<std::uint32_t> corners;
-  for (std::uint32_t c = 0; c < inside.size(); ++c) {
-    if (opinions.open[c] == 0 || octree.on_boundary(c)) continue;
-    if (std::all_of(kReadings.begin(), kReadings.end(), [&](const Reading& r) { return sign(r, c) == inside[c]; })) continue;
+  std::vector<std::uint32_t> doubtful;  // places among the opinions
+  for (std::uint32_t k = 0; k < opinions.corner.size(); ++k) {
+    const std::uint32_t c = opinions.corner[k];
+    if (octree.on_boundary(c)) continue;
+    if (std::all_of(kReadings.begin(), kReadings.end(), [&](const Reading& r) { return sign(r, k) == inside[c]; })) continue;
     in_doubt[c] = 1;
-    corners.push_back(c);
+    doubtful.push_back(k);
   }
   mesh::HandleRemoval removal(octree, in_doubt, inside, surface, centre_inside, cancel);
   bool changed = false;
@@ -295,9 +325,9 @@ bool remove_handles(const Octree& octree, const Opinions& opinions, const mesh::
     for (const Way way : {Way::kBoth, Way::kFill, Way::kCut}) {
       if (removal.handles() == 0) return changed;
       std::vector<std::uint8_t> proposal = inside;
-      for (const std::uint32_t c : corners) {
-        const std::uint8_t now = sign(reading, c);
-        if (way == Way::kBoth || (now != 0) == (way == Way::kFill)) proposal[c] = now;
+      for (const std::uint32_t k : doubtful) {
+        const std::uint8_t now = sign(reading, k);
+        if (way == Way::kBoth || (now != 0) == (way == Way::kFill)) proposal[opinions.corner[k]] = now;
       }
       changed = removal.propose(proposal, inside) || changed;
     }
@@ -316,21 +346,22 @@ Mesh raw_mesh(const Prepared& prepared, const FieldSampler& sampler, const MeshO
   require_memory_for(oriented.positions.size(), octree, options.depth, max_memory);
   report(monitor, 0.3);
   const Side side(local, sampler, oriented);
-  Opinions opinions;
-  std::vector<double> value = side(corner_positions(octree), opinions, monitor.cancel);
+  Corners corners = side.of(octree, monitor.cancel);
+  std::vector<float>& value = corners.value;
   std::vector<std::uint8_t> inside(value.size());
   for (std::size_t c = 0; c < value.size(); ++c) inside[c] = value[c] > 0 && !octree.on_boundary(c) ? 1 : 0;
   report(monitor, 0.6);
 
   const auto centre_inside = [&](const std::vector<Vec3>& centres) { return side.by_fit(centres); };
   mesh::DualSurface surface = mesh::contour(octree, inside, centre_inside, monitor.cancel);
-  if (remove_handles(octree, opinions, centre_inside, inside, surface, monitor.cancel)) {
+  if (remove_handles(octree, corners.opinions, centre_inside, inside, surface, monitor.cancel)) {
     surface = {};
     surface = mesh::contour(octree, inside, centre_inside, monitor.cancel);
   }
-  opinions = {};
+  corners.opinions = {};
   for (std::size_t c = 0; c < inside.size(); ++c) {
-    if ((value[c] > 0) != (inside[c] != 0) && !octree.on_boundary(c)) value[c] = (inside[c] != 0 ? kFlipped : -kFlipped) * spacing;
+    if ((value[c] > 0) != (inside[c] != 0) && !octree.on_boundary(c))
+      value[c] = static_cast<float>((inside[c] != 0 ? kFlipped : -kFlipped) * spacing);
   }
   report(monitor, 0.7);
   mesh::PlacedVertices placed = mesh::place_vertices(octree, surface, value, local, monitor.cancel);

@@ -128,7 +128,7 @@ class Placer {
 // Where the dual surface's vertices go, one by one.
 class Placement {
  public:
-  Placement(const Octree& octree, const DualSurface& surface, const std::vector<double>& value, const LocalFit& local)
+  Placement(const Octree& octree, const DualSurface& surface, const std::vector<float>& value, const LocalFit& local)
       : octree_(octree), surface_(surface), value_(value), local_(local) {}
 
   // The i-th patch's vertex; on a crease or corner only with `features`.
@@ -137,7 +137,7 @@ class Placement {
     for (std::size_t k = surface_.patch_begin[i]; k < surface_.patch_begin[i + 1]; ++k) {
       const Crossing& c = surface_.crossings[surface_.patch_crossings[k]];
       const Vector3d a = to_eigen(octree_.corner_position(c.inside)), b = to_eigen(octree_.corner_position(c.outside));
-      const double va = std::max(value_[c.inside], 0.0), vb = std::max(-value_[c.outside], 0.0);
+      const double va = std::max(static_cast<double>(value_[c.inside]), 0.0), vb = std::max(-static_cast<double>(value_[c.outside]), 0.0);
       const double t = va + vb > 0 ? std::clamp(va / (va + vb), 0.01, 0.99) : 0.5;
       start += a + t * (b - a);
       outward += (b - a).normalized();
@@ -170,7 +170,7 @@ class Placement {
  private:
   const Octree& octree_;
   const DualSurface& surface_;
-  const std::vector<double>& value_;
+  const std::vector<float>& value_;
   const LocalFit& local_;
 };
 
@@ -201,7 +201,7 @@ std::vector<std::uint32_t> taken_twice(const std::vector<Placed>& placed, double
 
 }  // namespace
 
-PlacedVertices place_vertices(const Octree& octree, const DualSurface& surface, const std::vector<double>& value, const LocalFit& local,
+PlacedVertices place_vertices(const Octree& octree, const DualSurface& surface, const std::vector<float>& value, const LocalFit& local,
                               const std::atomic<bool>* cancel) {
   const std::size_t sheets = surface.patch_count();
   const Placement placement(octree, surface, value, local);

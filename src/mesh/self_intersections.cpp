@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "cpu/parallel.h"
+#include "mesh/box_tree.h"
 #include "mesh/exact_orientation.h"
 #include "mesh/used_vertices.h"
-#include "metrics/triangle_tree.h"
+#include "vector.h"
 
 namespace g3r {
 namespace {
@@ -49,7 +51,7 @@ bool segment_meets_triangle(const Vec3& p, const Vec3& q, const Corners& t) {
 }
 
 // Two triangles have a point in common if and only if an edge of one meets the other.
-bool meet(const Corners& s, const Corners& t) {
+bool triangles_meet(const Corners& s, const Corners& t) {
   for (std::size_t k = 0; k < 3; ++k) {
     if (segment_meets_triangle(s[k], s[(k + 1) % 3], t) || segment_meets_triangle(t[k], t[(k + 1) % 3], s)) return true;
   }
@@ -90,6 +92,20 @@ bool touch_at_a_corner(const Corners& s, const Corners& t) {
   return std::any_of(s.begin(), s.end(), [&](const Vec3& p) { return std::find(t.begin(), t.end(), p) != t.end(); });
 }
 
+bool has_no_area(const Corners& t) { return vector::cross(vector::subtract(t[1], t[0]), vector::subtract(t[2], t[0])) == Vec3{0, 0, 0}; }
+
+// Rounded outward: the boxes of triangles that meet do too.
+mesh::FloatBox box_of(const Corners& t) {
+  vector::Box exact;
+  for (const Vec3& p : t) exact.extend(p);
+  mesh::FloatBox box;
+  for (std::size_t k = 0; k < 3; ++k) {
+    box.low[k] = std::nextafter(static_cast<float>(exact.low[k]), -std::numeric_limits<float>::infinity());
+    box.high[k] = std::nextafter(static_cast<float>(exact.high[k]), std::numeric_limits<float>::infinity());
+  }
+  return box;
+}
+
 }  // namespace
 
 namespace mesh {
@@ -101,23 +117,34 @@ std::vector<TrianglePair> self_intersections(const Mesh& mesh) {
   double largest = 0;
   for (std::size_t k = 0; k < 3; ++k) largest = std::max({largest, std::fabs(box.low[k]), std::fabs(box.high[k])});
   const int exponent = -std::ilogb(largest);
-  Mesh scaled = mesh;
-  for (Vec3& v : scaled.vertices) {
+  std::vector<Vec3> vertices = mesh.vertices;
+  for (Vec3& v : vertices) {
     for (double& c : v) c = std::ldexp(c, exponent);
   }
   const auto corners = [&](std::size_t f) {
-    const auto& t = scaled.triangles[f];
-    return Corners{scaled.vertices[t[0]], scaled.vertices[t[1]], scaled.vertices[t[2]]};
+    const auto& t = mesh.triangles[f];
+    return Corners{vertices[t[0]], vertices[t[1]], vertices[t[2]]};
   };
-  const TriangleTree tree(scaled);
-  const std::vector<TriangleTree::PairJob> jobs = tree.pair_jobs();
+  std::vector<std::uint32_t> with_area;
+  std::vector<FloatBox> boxes;
+  with_area.reserve(mesh.triangles.size());
+  boxes.reserve(mesh.triangles.size());
+  for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f) {
+    const Corners t = corners(f);
+    if (has_no_area(t)) continue;
+    with_area.push_back(f);
+    boxes.push_back(box_of(t));
+  }
+  const BoxTree tree(std::exchange(boxes, {}));
+  const std::vector<BoxTree::PairJob> jobs = tree.pair_jobs();
   std::vector<std::vector<TrianglePair>> found(jobs.size());
   parallel::for_each(jobs.size(), [&](std::size_t job) {
-    tree.visit_pairs(jobs[job], [&](std::uint32_t f, std::uint32_t g) {
+    tree.visit_pairs(jobs[job], [&](std::uint32_t i, std::uint32_t j) {
+      const std::uint32_t f = with_area[i], g = with_area[j];
       if (share_a_corner(mesh.triangles[f], mesh.triangles[g])) return;
       const Corners mine = corners(f), theirs = corners(g);
       if (surely_apart(mine, theirs) || surely_apart(theirs, mine) || touch_at_a_corner(mine, theirs)) return;
-      if (meet(mine, theirs)) found[job].push_back({f, g});
+      if (triangles_meet(mine, theirs)) found[job].push_back({f, g});
     });
   });
   std::vector<TrianglePair> all;

@@ -14,22 +14,16 @@ constexpr double kAcross = 0.25;  // leaves: standard deviation, across the shee
 constexpr std::size_t kBlock = 4096;
 constexpr std::uint32_t kStands = std::numeric_limits<std::uint32_t>::max();
 
-// The leaves around an open corner: 8 at most, each with the corner's place in it.
+// The leaves around a corner: 8 at most, each with the corner's place in it.
 struct Around {
-  std::uint32_t corner = 0;
   std::array<std::uint32_t, 8> leaf{};
   std::array<std::uint8_t, 8> place{};
   std::uint8_t count = 0;
 };
 
-std::vector<Around> open_corners(const Octree& octree, const std::vector<std::uint8_t>& open) {
-  std::vector<std::uint32_t> number(open.size(), kStands);
-  std::vector<Around> out;
-  for (std::uint32_t c = 0; c < number.size(); ++c) {
-    if (open[c] == 0) continue;
-    number[c] = static_cast<std::uint32_t>(out.size());
-    out.emplace_back().corner = c;
-  }
+// `number`: of the corners, among the opinions.
+std::vector<Around> leaves_around(const Octree& octree, const std::vector<std::uint32_t>& number, std::size_t opinions) {
+  std::vector<Around> out(opinions);
   for (std::uint32_t leaf = 0; leaf < octree.leaf_count(); ++leaf) {
     for (std::uint8_t place = 0; place < 8; ++place) {
       const std::uint32_t k = number[octree.corners(leaf)[place]];
@@ -59,30 +53,34 @@ std::size_t grid_of(std::uint32_t place) { return (place & 1U) + 3 * ((place >> 
 
 }  // namespace
 
-std::vector<std::vector<double>> smooth_sides(const Octree& octree, const Opinions& opinions, std::size_t times,
-                                              const std::atomic<bool>* cancel) {
-  const std::vector<Around> open = open_corners(octree, opinions.open);
-  const auto average = [&](const Around& a, const std::vector<double>& side) {
-    const std::array<double, 27> along = weights(opinions.axis[a.corner]);
+std::vector<std::vector<float>> smooth_sides(const Octree& octree, const Opinions& opinions, const std::vector<std::uint8_t>& inside,
+                                             std::size_t times, const std::atomic<bool>* cancel) {
+  std::vector<std::uint32_t> number(octree.corner_count(), kStands);
+  for (std::uint32_t k = 0; k < opinions.corner.size(); ++k) number[opinions.corner[k]] = k;
+  const std::vector<Around> around = leaves_around(octree, number, opinions.corner.size());
+  const auto average = [&](std::size_t k, const std::vector<float>& side) {
+    const Around& a = around[k];
+    const std::array<double, 27> along = weights(opinions.axis[k]);
     double sum = 0, total = 0;
     for (std::size_t i = 0; i < a.count; ++i) {
       for (std::uint32_t other = 0; other < 8; ++other) {
         if (other == a.place[i]) continue;
+        const std::uint32_t c = octree.corners(a.leaf[i])[other];
         const double weight = along[13 + grid_of(other) - grid_of(a.place[i])];
-        sum += weight * side[octree.corners(a.leaf[i])[other]];
+        sum += weight * (number[c] != kStands ? static_cast<double>(side[number[c]]) : inside[c] != 0 ? 1.0 : -1.0);
         total += weight;
       }
     }
-    const double own = opinions.side[a.corner];
-    return total > 0 ? (kOwn * own + sum / total) / (kOwn + 1) : own;
+    const double own = static_cast<double>(opinions.side[k]);
+    return static_cast<float>(total > 0 ? (kOwn * own + sum / total) / (kOwn + 1) : own);
   };
-  std::vector<std::vector<double>> out(times, opinions.side);
+  std::vector<std::vector<float>> out(times, opinions.side);
   for (std::size_t t = 0; t < times; ++t) {
-    const std::vector<double>& side = t == 0 ? opinions.side : out[t - 1];
+    const std::vector<float>& side = t == 0 ? opinions.side : out[t - 1];
     parallel::for_blocks(
-        open.size(), kBlock,
+        around.size(), kBlock,
         [&](std::size_t begin, std::size_t end) {
-          for (std::size_t k = begin; k < end; ++k) out[t][open[k].corner] = average(open[k], side);
+          for (std::size_t k = begin; k < end; ++k) out[t][k] = average(k, side);
         },
         cancel);
   }

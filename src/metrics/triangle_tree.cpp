@@ -18,8 +18,6 @@ using vector::dot;
 using vector::scale;
 using vector::subtract;
 
-constexpr std::size_t kPairJobs = 256;  // about as many jobs, whatever the number of threads
-
 double squared_distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 ab = subtract(b, a);
   const Vec3 ap = subtract(p, a);
@@ -112,25 +110,6 @@ void TriangleTree::build(std::vector<Item>& items, std::uint32_t begin, std::uin
   build(items, begin, middle);
   nodes_[index].right = static_cast<std::uint32_t>(nodes_.size());
   build(items, middle, end);
-}
-
-std::vector<TriangleTree::PairJob> TriangleTree::pair_jobs() const {
-  std::vector<PairJob> jobs{{0, 0}};
-  bool split = true;
-  while (split && jobs.size() < kPairJobs) {
-    std::vector<PairJob> next;
-    split = false;
-    for (const PairJob& job : jobs) {
-      if (is_leaf(job.a) && is_leaf(job.b)) {
-        next.push_back(job);
-        continue;
-      }
-      split = true;
-      for_each_part(job, [&](const PairJob& part) { next.push_back(part); });
-    }
-    jobs = std::move(next);
-  }
-  return jobs;
 }
 
 TriangleTree::Closest TriangleTree::closest(const Vec3& point) const {

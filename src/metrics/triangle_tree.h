@@ -27,18 +27,6 @@ class TriangleTree {
   /// The triangle nearest to p, and how far it is. p must be finite.
   [[nodiscard]] Closest closest(const Vec3& p) const;
 
-  /// All pairs of triangles of the tree whose boxes meet, and perhaps some whose boxes nearly do, as jobs that can be done at the same
-  /// time: visit_pairs(job, visit) calls visit(first, second), first < second, for the pairs of one job. O(F log F) if few overlap.
-  struct PairJob {
-    std::uint32_t a, b;  ///< nodes
-  };
-  [[nodiscard]] std::vector<PairJob> pair_jobs() const;
-  template <class Visit>
-  void visit_pairs(const PairJob& job, const Visit& visit) const {
-    if (is_leaf(job.a) && is_leaf(job.b)) return visit_leaves(nodes_[job.a], nodes_[job.b], visit);
-    for_each_part(job, [&](const PairJob& part) { visit_pairs(part, visit); });
-  }
-
   /// Unit normal of a triangle that closest() returned.
   [[nodiscard]] Vec3 normal(std::uint32_t triangle) const { return normals_[triangle]; }
 
@@ -66,48 +54,10 @@ class TriangleTree {
     std::uint32_t triangle;
   };
   void build(std::vector<Item>& items, std::uint32_t begin, std::uint32_t end);
-  [[nodiscard]] bool is_leaf(std::uint32_t node) const { return nodes_[node].right == 0; }
   [[nodiscard]] static vector::Box box_of(const Triangle& t) {
     vector::Box box;
     for (const Vec3& p : {t.a, t.b, t.c}) box.extend(p);
     return box;
-  }
-
-  // The pairs of children of a job's nodes whose boxes meet.
-  template <class Use>
-  void for_each_part(const PairJob& job, const Use& use) const {
-    const auto [a, b] = job;
-    if (a == b) {
-      use({a + 1, a + 1});
-      use({nodes_[a].right, nodes_[a].right});
-      if (vector::meet(nodes_[a + 1].box, nodes_[nodes_[a].right].box)) use({a + 1, nodes_[a].right});
-      return;
-    }
-    const bool first = !is_leaf(a) && (is_leaf(b) || nodes_[a].end - nodes_[a].begin >= nodes_[b].end - nodes_[b].begin);
-    const std::uint32_t split = first ? a : b, other = first ? b : a;
-    for (const std::uint32_t child : {split + 1, nodes_[split].right}) {
-      if (vector::meet(nodes_[child].box, nodes_[other].box)) use({child, other});
-    }
-  }
-
-  template <class Visit>
-  void visit_leaves(const Node& a, const Node& b, const Visit& visit) const {
-    std::array<vector::Box, kLeafSize> boxes;
-    std::array<bool, kLeafSize> near{};
-    for (std::uint32_t j = b.begin; j < b.end; ++j) {
-      boxes[j - b.begin] = box_of(triangles_[j]);
-      near[j - b.begin] = &a == &b || vector::meet(a.box, boxes[j - b.begin]);
-    }
-    for (std::uint32_t i = a.begin; i < a.end; ++i) {
-      const vector::Box own = &a == &b ? boxes[i - a.begin] : box_of(triangles_[i]);
-      if (&a != &b && !vector::meet(own, b.box)) continue;
-      const std::uint32_t f = triangles_[i].index;
-      for (std::uint32_t j = &a == &b ? i + 1 : b.begin; j < b.end; ++j) {
-        if (!near[j - b.begin] || !vector::meet(own, boxes[j - b.begin])) continue;
-        const std::uint32_t g = triangles_[j].index;
-        visit(std::min(f, g), std::max(f, g));
-      }
-    }
   }
 
   // Coordinates inside are (p - centre_) / side_, in units of the longest side of the box: no product overflows or vanishes.
