@@ -149,7 +149,12 @@ Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const Me
     kept.push_back(p);
     directions.push_back({n[0] / size, n[1] / size, n[2] / size});
   }
-  return parallel::with_threads(options.threads, [&] { return make_mesh(oriented_cloud(kept, directions), options, monitor); });
+  return parallel::with_threads(options.threads, [&] {
+    const OrientedCloud oriented = oriented_cloud(kept, directions);
+    std::vector<Vec3>().swap(kept);  // their memory is wanted
+    std::vector<Vec3>().swap(directions);
+    return make_mesh(oriented, options, monitor);
+  });
 }
 
 Reconstruction reconstruct(const PointsView& points, const Options& options, const MeshOptions& mesh_options, const Monitor& monitor) {

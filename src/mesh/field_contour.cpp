@@ -192,24 +192,19 @@ std::vector<Out> find_edges(const Octree& octree, std::vector<std::uint8_t> mark
 struct FaceRecord {
   std::uint64_t face = 0;  // the two leaves, which share at most one face
   std::uint32_t place = 0;
+  std::uint32_t other = 0;  // of an arc: where its other end is
   [[nodiscard]] std::uint32_t edge() const { return place / 4; }
   bool operator<(const FaceRecord& o) const { return face != o.face ? face < o.face : place < o.place; }
 };
 
-// Two crossings on the rim of a face.
-struct Arc {
-  std::uint64_t face = 0;
-  std::uint32_t a = 0, b = 0;  // places
-};
-
 // In ascending order.
 std::vector<FaceRecord> face_records(const Octree& octree, const std::vector<ActiveEdge>& edges) {
-  if (edges.size() > (std::size_t{1} << 30U)) throw std::bad_alloc();
+  if (edges.size() >= std::size_t{1} << 30U) throw std::bad_alloc();
   const auto for_each_record = [&](const auto& use) {
     for (std::uint32_t e = 0; e < edges.size(); ++e) {
       for (std::uint32_t k = 0; k < 4; ++k) {
         const std::uint64_t a = edges[e].leaf[k], b = edges[e].leaf[(k + 1U) % 4U];
-        if (a != b) use(FaceRecord{(std::min(a, b) << 32U) | std::max(a, b), 4 * e + k});
+        if (a != b) use(FaceRecord{(std::min(a, b) << 32U) | std::max(a, b), 4 * e + k, 0});
       }
     }
   };
@@ -220,7 +215,7 @@ std::vector<FaceRecord> face_records(const Octree& octree, const std::vector<Act
     return few;
   }
   // By the first leaf of the face, then each leaf's few.
-  std::vector<std::size_t> begin(octree.leaf_count() + 2, 0);
+  std::vector<std::uint32_t> begin(octree.leaf_count() + 2, 0);
   for_each_record([&](const FaceRecord& r) { ++begin[(r.face >> 32U) + 2]; });
   for (std::size_t l = 2; l < begin.size(); ++l) begin[l] += begin[l - 1];
   std::vector<FaceRecord> records(begin.back());
@@ -267,7 +262,7 @@ class AmbiguousFace {
   [[nodiscard]] const Vec3& centre() const { return centre_; }
 
   // If the centre is inside, the runs of outside corners are cut off, and the other way round.
-  void join(bool centre_inside, std::vector<Arc>& arcs) const {
+  void join(bool centre_inside, std::vector<FaceRecord>& arcs) const {
     const std::size_t n = rim_.size();
     const std::size_t shift = run_inside_ != centre_inside ? 0 : 1;
     for (std::size_t i = 0; i < n; i += 2) arcs.push_back({rim_[0].face, rim_[(i + shift) % n].place, rim_[(i + shift + 1) % n].place});
@@ -293,16 +288,16 @@ class AmbiguousFace {
 
 // Arcs of all faces; those from `first_multiple` on come from faces with more than one.
 struct Arcs {
-  std::vector<Arc> arcs;
+  std::vector<FaceRecord> arcs;
   std::size_t first_multiple = 0;
 };
 
 // `complete(leaf)`: whether `edges` has all crossings on the boundary of the leaf; faces between two that are not complete have no arcs.
 template <class Complete>
 Arcs join_arcs(const Octree& octree, const std::vector<ActiveEdge>& edges, const Complete& complete, const InsideTest& centre_inside) {
-  const std::vector<FaceRecord> records = face_records(octree, edges);
   Arcs out;
-  out.arcs.reserve(records.size() / 2);
+  std::vector<FaceRecord>& records = out.arcs;  // arcs take the place of those already looked at
+  records = face_records(octree, edges);
   std::vector<AmbiguousFace> ambiguous;
   for (std::size_t i = 0; i < records.size();) {
     std::size_t j = i;
@@ -312,7 +307,7 @@ Arcs join_arcs(const Octree& octree, const std::vector<ActiveEdge>& edges, const
       continue;
     }
     if (j - i == 2) {
-      out.arcs.push_back({records[i].face, records[i].place, records[i + 1].place});
+      records[out.first_multiple++] = {records[i].face, records[i].place, records[i + 1].place};
     } else {
       ambiguous.emplace_back(
           octree, edges,
@@ -320,7 +315,7 @@ Arcs join_arcs(const Octree& octree, const std::vector<ActiveEdge>& edges, const
     }
     i = j;
   }
-  out.first_multiple = out.arcs.size();
+  records.resize(out.first_multiple);
   if (ambiguous.empty()) return out;
   std::vector<Vec3> centres;
   for (const AmbiguousFace& face : ambiguous) centres.push_back(face.centre());
@@ -333,7 +328,7 @@ Arcs join_arcs(const Octree& octree, const std::vector<ActiveEdge>& edges, const
 
 // Sheet of every (edge, place), 4 per edge; kNone in leaves that are not complete.
 template <class Complete>
-std::vector<std::uint32_t> label_sheets(const std::vector<ActiveEdge>& edges, const std::vector<Arc>& arcs, const Complete& complete,
+std::vector<std::uint32_t> label_sheets(const std::vector<ActiveEdge>& edges, const std::vector<FaceRecord>& arcs, const Complete& complete,
                                         DualSurface& surface) {
   DisjointSets groups(edges.size() * 4);
   for (std::uint32_t e = 0; e < edges.size(); ++e) {
@@ -346,9 +341,9 @@ std::vector<std::uint32_t> label_sheets(const std::vector<ActiveEdge>& edges, co
     while (edges[e].leaf[k] != leaf) ++k;
     return 4 * e + k;
   };
-  for (const Arc& arc : arcs) {
+  for (const FaceRecord& arc : arcs) {
     for (const std::uint32_t leaf : {static_cast<std::uint32_t>(arc.face >> 32U), static_cast<std::uint32_t>(arc.face)}) {
-      groups.join(place_of(arc.a / 4, leaf), place_of(arc.b / 4, leaf));
+      groups.join(place_of(arc.place / 4, leaf), place_of(arc.other / 4, leaf));
     }
   }
   std::vector<std::uint32_t> sheet(edges.size() * 4, kNone);
@@ -384,8 +379,8 @@ std::vector<std::uint32_t> label_sheets(const std::vector<ActiveEdge>& edges, co
 std::unordered_map<std::uint32_t, std::uint32_t> split_double_edges(const Arcs& arcs, const std::vector<std::uint32_t>& sheet,
                                                                     DualSurface& surface) {
   std::unordered_map<std::uint32_t, std::uint32_t> middle;  // place -> vertex
-  const auto pair_of = [&](const Arc& arc) {
-    const std::uint64_t a = sheet[arc.a], b = sheet[arc.a / 4 * 4 + (arc.a + 1) % 4];
+  const auto pair_of = [&](const FaceRecord& arc) {
+    const std::uint64_t a = sheet[arc.place], b = sheet[arc.place / 4 * 4 + (arc.place + 1) % 4];
     return (std::min(a, b) << 32U) | std::max(a, b);
   };
   for (std::size_t i = arcs.first_multiple; i < arcs.arcs.size();) {
@@ -398,7 +393,7 @@ std::unordered_map<std::uint32_t, std::uint32_t> split_double_edges(const Arcs& 
       if (!repeated) continue;
       const auto vertex = static_cast<std::uint32_t>(surface.patch_count() + surface.midpoints.size());
       surface.midpoints.push_back({static_cast<std::uint32_t>(pair >> 32U), static_cast<std::uint32_t>(pair)});
-      for (const std::uint32_t place : {arcs.arcs[k].a, arcs.arcs[k].b}) middle[place] = vertex;
+      for (const std::uint32_t place : {arcs.arcs[k].place, arcs.arcs[k].other}) middle[place] = vertex;
     }
     i = j;
   }

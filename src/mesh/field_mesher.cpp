@@ -50,8 +50,8 @@ constexpr double kFieldSure = 0.2;           // |w - level| from which the field
 constexpr double kBeyond = 0.05;             // of the longest side: so far from the box of the points
 constexpr double kBeyondSpacings = 2;        // (and so many spacings) all is outside; fast sums end there, single ones are slow
 
-constexpr std::size_t kCornersAtOnce = std::size_t{1} << 18;  // for which more than a side is kept in memory,
-constexpr std::size_t kAskedAtOnce = std::size_t{1} << 20;    // and that the field is evaluated at
+constexpr std::size_t kCornersAtOnce = std::size_t{1} << 17;  // of which more than the side is kept in memory,
+constexpr std::size_t kAskedPerPoint = 2;  // and of whose field is asked at once: few, and the points are summed anew each time
 
 constexpr double kFitSay = 2 * kFieldSure;  // in opinions the field counts 2 (w - level), the fitted surface at most this,
 constexpr double kFitFar = 0.3;             // and that from so many spacings away
@@ -59,9 +59,9 @@ constexpr double kFlipped = 0.1;            // spacings: distance from the surfa
 
 constexpr double kBaseBytes = 16 << 20;  // code, libraries, thread stacks;
 constexpr double kBytesPerPoint = 500;   // with those of the winding field;
-constexpr double kBytesPerLeaf = 260;    // measured, docs/meshing.md,
-constexpr double kBytesPerThin = 500;    // for those that thin walls and gaps add: most of their corners are in doubt
-constexpr double kBytesPerAsked = 320;   // and for all where the depth is given;
+constexpr double kBytesPerLeaf = 210;    // measured, docs/meshing.md,
+constexpr double kBytesPerThin = 430;    // for those that thin walls and gaps add: most of their corners are in doubt
+constexpr double kBytesPerAsked = 200;   // and for all where the depth is given;
 constexpr double kPlainLeaves = 8.5;     // per point of a shape without thin walls: 5.7 to 8.6 measured,
 constexpr double kLeavesPerPoint = 9.5;  // and what is planned
 constexpr double kThickness = 0.75;      // of the refined layer, in cells of the automatic depth,
@@ -189,7 +189,11 @@ struct Corners {
 class Side {
  public:
   Side(const LocalFit& local, const FieldSampler& sampler, const OrientedPoints& points)
-      : local_(local), sampler_(sampler), spacing_(median(points.spacing)), box_(box_of(points.positions)) {
+      : local_(local),
+        sampler_(sampler),
+        spacing_(median(points.spacing)),
+        box_(box_of(points.positions)),
+        asked_at_once_(std::max(kCornersAtOnce, kAskedPerPoint * points.positions.size())) {
     reach_ = 0.5 * box_.longest() + std::max(kBeyond * box_.longest(), kBeyondSpacings * spacing_);
     std::vector<double> field;
     sampler_.sample(level_places(points.positions), field, nullptr);
@@ -218,10 +222,11 @@ class Side {
           asked.push_back({c, place.kind == Place::kDoubtful ? corners.opinions.corner.size() : 0});
         }
       }
-      if (asked.size() < kAskedAtOnce && first + kCornersAtOnce < corners.value.size()) continue;
+      if (asked.size() < asked_at_once_) continue;
       ask_field(octree, asked, corners);
       asked.clear();
     }
+    ask_field(octree, asked, corners);
     return corners;
   }
 
@@ -297,6 +302,7 @@ class Side {
   const FieldSampler& sampler_;
   double spacing_;
   Box box_;
+  std::size_t asked_at_once_;
   double reach_ = 0;  // half the side of the cube that everything inside is in
   double level_ = 0;  // of the field on the surface
 };
@@ -391,7 +397,7 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
   report(monitor, 0.2);
   Mesh mesh = raw_mesh(prepared, sampler, options, monitor, max_memory);
   prepared.neighbours.reset();
-  prepared.near = {};
+  std::vector<std::uint32_t>().swap(prepared.near);  // not only emptied
   mesh::untangle(mesh, monitor.cancel);
   mesh::finish_mesh(mesh, prepared.points.positions, prepared.points.spacing, prepared.noise, options);
   report(monitor, 1);

@@ -106,9 +106,12 @@ HandleRemoval::HandleRemoval(const Octree& octree, const std::vector<std::uint8_
     if (open[e.low] == 0 && open[e.high] == 0) continue;
     for (const std::uint32_t leaf : e.leaf) around[leaf] = 1, larger[leaf] = own[leaf] == 0 ? 1 : 0;
   }
-  for (const MinimalEdge& e : edges_around(octree, larger, cancel)) {
-    if (std::all_of(e.leaf.begin(), e.leaf.end(), [&](std::uint32_t leaf) { return own[leaf] == 0; })) edges_.push_back(e);
-  }
+  std::vector<MinimalEdge> further = edges_around(octree, larger, cancel);
+  std::erase_if(further, [&](const MinimalEdge& e) {
+    return std::any_of(e.leaf.begin(), e.leaf.end(), [&](std::uint32_t leaf) { return own[leaf] != 0; });
+  });
+  edges_.insert(edges_.end(), further.begin(), further.end());
+  std::vector<MinimalEdge>().swap(further);
   list_edges(open, around);
   std::vector<std::uint32_t> crossing;
   for (std::uint32_t k = 0; k < edges_.size(); ++k) {

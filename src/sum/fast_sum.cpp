@@ -222,6 +222,7 @@ struct FastSum::Impl {
         sorted[i] = some[order.index[i]];
         sorted_index[i] = index[order.index[i]];
       }
+      std::vector<Vec3>().swap(some);  // not twice in memory
       const auto sum_on = [&](const auto& sources) {
         std::decay_t<decltype(sources)> engine_at(sources, sorted, order.code, stop);
         fast(engine_at, sorted_index, factor);
