@@ -14,9 +14,9 @@ namespace g3r {
 /// smooth. n_i becomes the normal above p_i of a quadratic height field fitted to the points on its side (n_j . n_i > 0.5) within a reach
 /// R along the tangent plane, weights 1 - r^2 / R^2 (Epanechnikov), and, with weight 0.3 (R/2)^2, to their normals. Noise of standard
 /// deviation s disturbs its slope by t = s sqrt(6 / sum of the weights) / R, the wider the less; a field wider than the surface is
-/// smooth is bent. So R grows, 4.2, 7.1 and 12 sqrt(s h), while the normal stays within 0.85 t of that of each smaller reach (Lepski, "On a
-/// problem of adaptive estimation in Gaussian white noise", Theory of Probability and its Applications 1991; for point clouds: Wang et
-/// al., "Bandwidth selection and reconstruction quality in point-based surfaces", IEEE TVCG 2009). One field serves all points of the
+/// smooth is bent. So R grows, 4.2, 5.9, 8.4 and 12 sqrt(s h), while the normal stays within 0.85 t of that of each smaller reach (Lepski,
+/// "On a problem of adaptive estimation in Gaussian white noise", Theory of Probability and its Applications 1991; for point clouds: Wang
+/// et al., "Bandwidth selection and reconstruction quality in point-based surfaces", IEEE TVCG 2009). One field serves all points of the
 /// side within R/4: three to five of them where it is smooth.
 ///
 /// Where more than 5 % of the points about the field, up to 8 s beside it, face the other way, a wall is as thin as the noise, and the side
