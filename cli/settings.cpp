@@ -288,6 +288,9 @@ void add_mesh(CLI::App& app, Settings& s) {
   add_report_options(*sub, s);
   add_finish_options(*sub, s);
   add_mesh_options(*sub, s);
+  add_length(*sub, "--noise", s.mesh_options.noise, true,
+             "Standard deviation of the points from their surface: X input units, X% of the box diagonal, Xh point spacings; 0: clean "
+             "(default: estimated)");
   add_run_options(*sub, s);
   add_read_options(*sub, s);
 }

@@ -49,7 +49,7 @@ Problem prepare(const PointsView& points, const Options& options, Stages& stages
     look_around();
     if (outliers_wanted) problem.spacing = typical_spacing(local);
   }
-  if (const std::optional<double> given = given_noise(options, problem.cloud, problem.spacing)) {
+  if (const std::optional<double> given = given_noise(options.noise, problem.cloud, problem.spacing)) {
     problem.noise = *given;
   } else if (options.preset != Preset::kPaper) {
     problem.noise = estimate_noise(cloud, *neighbours, problem.spacing);

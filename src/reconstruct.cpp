@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
 namespace g3r {
@@ -91,6 +92,8 @@ Mesh make_mesh(const OrientedCloud& oriented, const MeshOptions& options, const 
   const Frame& frame = oriented.cloud.frame;
   MeshOptions normalised = options;
   normalised.trim_distance *= frame.scale;
+  const std::optional<double> noise = given_noise(options.noise, oriented.cloud, oriented.spacing);
+  if (noise) normalised.noise = {Length::Unit::kInput, *noise};
   Mesh mesh;
   if (options.mesher == Mesher::kPoisson) {
     mesh = mesh_with_poisson(oriented, directions, options.depth);
@@ -109,6 +112,7 @@ Mesh make_mesh(const OrientedCloud& oriented, const MeshOptions& options, const 
 
 MeshOptions choose(const MeshOptions& given, const Options& options) {
   MeshOptions chosen = given;
+  chosen.noise = options.noise;
   if (chosen.mesher == Mesher::kAuto) {
     const bool poisson = options.preset == Preset::kPaper && screened_poisson_available();
     chosen.mesher = poisson ? Mesher::kPoisson : Mesher::kField;

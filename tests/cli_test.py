@@ -295,6 +295,11 @@ class Streams(ProgramTest):
             scales = json.loads(self.expect(OK, "orient", "ball.ply", "out.ply", "--noise", given, "--report", "-").out)["scales"]
             self.assertAlmostEqual(scales["noise"], spacings * scales["spacing"], delta=1e-12)
         self.expect(USAGE, "orient", "ball.ply", "out.ply", "--noise", "-1")
+        self.expect(OK, "orient", "ball.ply", "oriented.ply")
+        for given, name in (("auto", "auto.ply"), ("0", "clean.ply"), ("0.5h", "noisy.ply")):
+            self.expect(OK, "mesh", "oriented.ply", name, "--noise", given)
+        self.assertTrue(self.bytes_of("auto.ply") == self.bytes_of("clean.ply") != self.bytes_of("noisy.ply"))
+        self.expect(USAGE, "mesh", "oriented.ply", "out.ply", "--noise", "-1")
 
 
 class Report(ProgramTest):

@@ -312,6 +312,33 @@ TEST(Noise, TheGivenOneStandsForTheEstimate) {
   EXPECT_GT(shapes::angle_error(clean.normals, sphere.normals), 2 * shapes::angle_error(automatic.normals, sphere.normals));
 }
 
+// Mean distance of the vertices from the unit sphere.
+double roughness(const Mesh& mesh) {
+  double sum = 0;
+  for (const Vec3& v : mesh.vertices) sum += std::abs(std::hypot(v[0], v[1], v[2]) - 1);
+  return sum / static_cast<double>(mesh.vertices.size());
+}
+
+// Clean points stay where they are, noisy ones are moved onto the surface that they scatter about.
+TEST(Noise, TheGivenOneReachesTheMesher) {
+  Surface sphere = shapes::sphere(3000, 1);
+  shapes::scatter(sphere, 0.03);
+  MeshOptions mesh;
+  const double estimated = roughness(mesh_oriented(sphere.points, sphere.normals));
+  mesh.noise = {Length::Unit::kInput, 0.03};
+  EXPECT_NEAR(roughness(mesh_oriented(sphere.points, sphere.normals, mesh)), estimated, 0.1 * estimated);
+  mesh.noise.value = 0;
+  EXPECT_GT(roughness(mesh_oriented(sphere.points, sphere.normals, mesh)), 2 * estimated);
+  mesh.noise.value = -1;
+  EXPECT_THROW((void)mesh_oriented(sphere.points, sphere.normals, mesh), InvalidInput);
+  Options options;
+  options.noise = {Length::Unit::kSpacing, 0};
+  const Reconstruction clean = reconstruct(sphere.points, options);
+  mesh.noise = options.noise;
+  const double same = roughness(mesh_oriented(sphere.points, clean.orientation.normals, mesh));
+  EXPECT_NEAR(roughness(clean.mesh), same, 0.01 * same);  // with its own estimate a quarter more
+}
+
 // However large: what comes out are unit vectors.
 TEST(Noise, AnySizeIsTaken) {
   const Surface sphere = shapes::sphere(2000);

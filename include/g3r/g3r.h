@@ -74,8 +74,10 @@ struct Monitor {
 struct Options {
   Preset preset = Preset::kDefault;
   Method method = Method::kAuto;
-  Length epsilon;           ///< width of the Gaussian mollifier of the Laplace kernel, > 0
-  Length noise;             ///< standard deviation of the points from their surface, of each coordinate; 0: clean. Method energy only
+  Length epsilon;  ///< width of the Gaussian mollifier of the Laplace kernel, > 0
+  /// Standard deviation of the points from their surface, of each coordinate; 0: clean. Method energy only. If it is given, reconstruct()
+  /// hands it to the field mesher.
+  Length noise;
   int degree = -1;          ///< highest degree of the harmonic polynomials, 0..8; -1: preset's (2)
   std::string harmonics;    ///< subset instead of a degree: "1,x,y,z", "degree:0-2", "x,y,z,xy"
   std::string wnnc_widths;  ///< method wnnc: "density", or the authors' "clean", "scan", "noise-0.25", "noise-0.5", "noise-1", "sparse"
@@ -170,7 +172,10 @@ struct MeshOptions {
   /// scatter by s spacings 8 (1 + 4 s^2).
   std::optional<double> min_component;
   std::size_t faces = 0;  ///< simplify to about this many triangles; 0: off
-  int threads = 0;        ///< of mesh_oriented(), 0: all cores; reconstruct() takes Options::threads. The result does not depend on it
+  /// Standard deviation of the points from their surface, for the field mesher; 0: clean. Automatic: it makes its own estimate. Of
+  /// mesh_oriented(); reconstruct() takes Options::noise.
+  Length noise;
+  int threads = 0;  ///< of mesh_oriented(), 0: all cores; reconstruct() takes Options::threads. The result does not depend on it
 };
 
 /// A mesh together with the normals it was made from.

@@ -200,14 +200,17 @@ def run(points: Any, *, colors: Any = None, epsilon: Union[str, float] = "auto",
 
 
 def mesh_oriented(points: Any, normals: Any = None, *, depth: Union[str, int] = "auto", mesher: str = "auto",
-                  threads: int = 0, progress: Optional[Progress] = None) -> Tuple[Floats, Indices]:
+                  noise: Union[str, float] = "auto", threads: int = 0,
+                  progress: Optional[Progress] = None) -> Tuple[Floats, Indices]:
     """A mesh of points that already have outward normals: V (v, 3) and F (m, 3). `normals` may be left out if `points` has them.
 
+    noise: standard deviation of the points from their surface, a number in input units, "X%" of the box diagonal or "Xh" point spacings;
+    0: clean. Estimated unless given.
     threads: 0 for all cores; the result does not depend on it."""
     if normals is None:
         normals = member(points, "normals", "point_normals", "vertex_normals")
         if normals is None:
             raise InputError("there are no normals; g3r.reconstruct() takes points without them")
-    options = {"mesher": mesher, "threads": int(threads), **_depth(depth)}
+    options = {"mesher": mesher, "threads": int(threads), **_depth(depth), **_length("noise", noise, "0 or more")}
     vertices, faces, _, _ = _g3r.mesh(as_points(points), as_points(normals, "normals"), options, progress)
     return vertices, faces

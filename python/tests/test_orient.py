@@ -86,6 +86,9 @@ def test_mesh_options_are_taken(sphere, result):
 def test_mesh_oriented(sphere):
     vertices, faces = g3r.mesh_oriented(sphere, sphere)
     assert vertices.shape[1] == faces.shape[1] == 3
+    assert len(g3r.mesh_oriented(sphere, sphere, noise="0.5h")[0]) > 0
+    with pytest.raises(g3r.InputError, match="noise"):
+        g3r.mesh_oriented(sphere, sphere, noise=-1)
 
     class Oriented:
         points = sphere

@@ -91,7 +91,8 @@ struct Prepared {
 };
 
 // In place: the neighbours refer to the positions.
-void prepare(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const Monitor& monitor, Prepared& prepared) {
+void prepare(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const Length& given_noise, const Monitor& monitor,
+             Prepared& prepared) {
   OrientedPoints& out = prepared.points;
   out = {points, normals, {}};
   const auto find_neighbours = [&] {
@@ -108,7 +109,8 @@ void prepare(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, 
   const double typical = median(out.spacing);
   if (!(typical > 0)) throw InvalidInput("all points are at one place");
   for (double& h : out.spacing) h = std::max(h, kLeastSpacing * typical);
-  const mesh::Noise noise = mesh::estimate_noise(out, *prepared.neighbours);
+  mesh::Noise noise = mesh::estimate_noise(out, *prepared.neighbours);
+  if (given_noise.unit != Length::Unit::kAuto) noise.position = given_noise.value / typical;
   report(monitor, 0.05);
   if (noise.position > kNoisy) {
     prepared.noise = noise.position;
@@ -393,7 +395,7 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
   if (options.depth != 0 && (options.depth < 4 || options.depth > 12)) throw InvalidInput("mesh depth must be 4 to 12");
   report(monitor, 0);
   Prepared prepared;
-  prepare(points, normals, monitor, prepared);
+  prepare(points, normals, options.noise, monitor, prepared);
   report(monitor, 0.2);
   Mesh mesh = raw_mesh(prepared, sampler, options, monitor, max_memory);
   prepared.neighbours.reset();

@@ -17,8 +17,8 @@ constexpr std::size_t kBlock = 256;    // points per parallel block, among which
 constexpr std::size_t kFewest = 9;     // points in a fit, of six numbers
 constexpr std::size_t kMost = 2000;    // points in a fit; of more, evenly picked ones: bounds the work where many lie close together
 constexpr double kNarrowest = 4.2;     // first reach over sqrt(s h): 3.6 leaves 5 % more of the error, 4.8 blurs detail
-constexpr double kWider = 1.7;         // from one reach to the next: four in steps of 1.4 take 1 to 2 % off the error, 2 leaves 1 % more
-constexpr int kReaches = 3;            // a fourth takes a fifth longer for 1.5 % less error at 0.25 % noise and none at 0.5 %
+constexpr double kWider = 1.41;        // from one reach to the next: three in steps of 1.7 leave up to 3 % more of the error
+constexpr int kReaches = 4;            // as far as 12 sqrt(s h)
 constexpr double kDepth = 3;           // standard deviations that neighbours lie beside the tangent plane
 constexpr double kNormalWeight = 0.3;  // the normals are those of a smooth field already: less leaves noise, more blurs
 constexpr double kAgreement = 0.85;    // standard deviations between the normals of two reaches: less leaves noise, more blurs
@@ -31,6 +31,12 @@ constexpr double kSharedDepth = 4;     // standard deviations of points that it 
 constexpr double kUnfitted = 0.3;      // of the first reach: how far a point without a fit speaks for others,
 constexpr double kAlike = 0.5;         // at this cosine between their normals
 constexpr double kEnough = 0.4;        // share of points with a fit: of clouds with fewer the sides are in doubt
+constexpr std::size_t kEvery = 16;     // of the points of a block, one tells of the noise there,
+constexpr std::size_t kLeastTold = 5;  // if so many do
+constexpr double kTellingReach = 3;    // spacings, of the fits that do: 4 takes detail for noise
+constexpr double kLeastFreedom = 2;    // effective points of such a fit beyond its six numbers
+constexpr double kOfFound = 1.1;       // times the noise found: what is within a tenth of the cloud's is chance
+constexpr double kLeastNoise = 0.15;   // of the cloud's
 
 struct Field {
   Sheet sheet;       // relative to the point it was fitted at
@@ -41,9 +47,22 @@ struct Field {
 class Fitter {
  public:
   Fitter(const std::vector<Vec3>& points, const Neighbours& neighbours, const std::vector<Vec3>& normals, double noise, double spacing)
-      : points_(points), neighbours_(neighbours), normals_(normals), noise_(noise), first_reach_(kNarrowest * std::sqrt(noise * spacing)) {}
+      : points_(points), neighbours_(neighbours), normals_(normals), noise_(noise), spacing_(spacing) {}
 
-  [[nodiscard]] double first_reach() const { return first_reach_; }
+  [[nodiscard]] double noise() const { return noise_; }
+  [[nodiscard]] double first_reach() const { return kNarrowest * std::sqrt(noise_ * spacing_); }
+
+  // From now on, fits with the noise of points [begin, end) where it is less than the cloud's: what is more may be detail.
+  void follow_noise(std::size_t begin, std::size_t end) {
+    scatter_.clear();
+    for (std::size_t i = begin; i < end; i += kEvery) {
+      if (gather(i, to_eigen(normals_[i]), kTellingReach * spacing_)) add_scatter();
+    }
+    if (scatter_.size() < kLeastTold) return;
+    const auto middle = scatter_.begin() + static_cast<std::ptrdiff_t>(scatter_.size() / 2);
+    std::nth_element(scatter_.begin(), middle, scatter_.end());
+    noise_ = std::clamp(kOfFound * *middle, kLeastNoise * noise_, noise_);
+  }
 
   // The widest field at point i whose normal agrees with those of the narrower ones.
   Field widest(std::size_t i) {
@@ -51,7 +70,7 @@ class Fitter {
     Vector3d axis = normal;
     Field best;
     narrower_.clear();
-    double reach = first_reach_;
+    double reach = first_reach();
     for (int k = 0; k < kReaches; ++k, reach *= kWider) {
       if (!gather(i, axis, reach)) break;
       if (members_.size() < kFewest) continue;
@@ -100,15 +119,32 @@ class Fitter {
     return opposed <= kOpposed * (opposed + total_);
   }
 
+  // s^2 = sum w d^2 / sum w  *  n / (n - 6),  n = (sum w)^2 / sum w^2, over the distances d of the members from their own field.
+  void add_scatter() {
+    double squares = 0;
+    for (const FitPoint& m : members_) squares += m.weight * m.weight;
+    const double effective = total_ * total_ / squares;
+    const double freedom = effective - 6;
+    if (!(freedom >= kLeastFreedom)) return;
+    const Sheet sheet = fit_sheet(members_, 0, kTellingReach * spacing_ / 2, 0);
+    double misfit = 0;
+    for (const FitPoint& m : members_) {
+      const double d = sheet.distance(m.p);
+      misfit += m.weight * d * d;
+    }
+    scatter_.push_back(std::sqrt(misfit / total_ * effective / freedom));
+  }
+
   const std::vector<Vec3>& points_;
   const Neighbours& neighbours_;
   const std::vector<Vec3>& normals_;
-  const double noise_;
-  const double first_reach_;
+  double noise_;
+  const double spacing_;
   std::vector<std::uint32_t> index_;
   std::vector<FitPoint> members_;
   double total_ = 0;  // weight of the members
   std::vector<Estimate> narrower_;
+  std::vector<double> scatter_;
 };
 
 }  // namespace
@@ -119,6 +155,8 @@ bool fit_noisy_jets(const std::vector<Vec3>& points, const Neighbours& neighbour
   std::vector<std::size_t> fitted((points.size() + kBlock - 1) / kBlock, 0);
   const auto fit_block = [&](std::size_t begin, std::size_t end) {
     Fitter fitter(points, neighbours, normals, noise, spacing);
+    fitter.follow_noise(begin, end);
+    const double depth = kDepth * fitter.noise();
     std::vector<std::uint8_t> done(end - begin, 0);
     for (std::size_t i = begin; i < end; ++i) {
       if (done[i - begin] != 0) continue;
@@ -128,16 +166,16 @@ bool fit_noisy_jets(const std::vector<Vec3>& points, const Neighbours& neighbour
       const double shared = field.reach > 0 ? kShared * field.reach : kUnfitted * fitter.first_reach();
       for (std::size_t j = i; j < end; ++j) {
         const Vector3d d = to_eigen(points[j]) - centre;
-        if (done[j - begin] != 0 || d.squaredNorm() > shared * shared + kDepth * kDepth * noise * noise) continue;
+        if (done[j - begin] != 0 || d.squaredNorm() > shared * shared + depth * depth) continue;
         const Vector3d n = to_eigen(normals[j]);
         if (field.reach == 0) {
           done[j - begin] = d.squaredNorm() <= shared * shared && n.dot(normal) >= kAlike ? 1 : 0;
           continue;
         }
         Vector3d above;
-        const double depth = std::abs(field.sheet.distance(d, &above));
+        const double beside = std::abs(field.sheet.distance(d, &above));
         const bool served =
-            depth <= kSharedDepth * noise && d.squaredNorm() - depth * depth <= shared * shared && n.dot(above) > kLargestTurn;
+            beside <= kSharedDepth * fitter.noise() && d.squaredNorm() - beside * beside <= shared * shared && n.dot(above) > kLargestTurn;
         if (j != i && !served) continue;
         out[j] = {above[0], above[1], above[2]};
         done[j - begin] = 1;

@@ -116,10 +116,10 @@ void require(bool good, const std::string& message) {
 
 }  // namespace
 
-std::optional<double> given_noise(const Options& options, const CanonicalCloud& cloud, double spacing) {
-  if (options.noise.unit == Length::Unit::kAuto) return std::nullopt;
-  require(options.noise.value >= 0 && std::isfinite(options.noise.value), "noise must be 0 or a positive number");
-  return in_frame(options.noise, cloud, spacing);
+std::optional<double> given_noise(const Length& noise, const CanonicalCloud& cloud, double spacing) {
+  if (noise.unit == Length::Unit::kAuto) return std::nullopt;
+  require(noise.value >= 0 && std::isfinite(noise.value), "noise must be 0 or a positive number");
+  return in_frame(noise, cloud, spacing);
 }
 
 // Two points share a leaf of level L when their codes agree in the first 3 L bits; neighbours in Morton order share the most.

@@ -50,8 +50,8 @@ struct Settings {
   SumPlan sums;                    ///< of everything after it
 };
 
-/// Options::noise in the cloud's frame, if it is given. Throws InvalidInput below 0.
-[[nodiscard]] std::optional<double> given_noise(const Options& options, const CanonicalCloud& cloud, double spacing);
+/// The noise of options in the cloud's frame, if it is given. Throws InvalidInput below 0.
+[[nodiscard]] std::optional<double> given_noise(const Length& noise, const CanonicalCloud& cloud, double spacing);
 
 /// `noise`: given_noise() or estimate_noise(); `outliers`: points that find_outliers() took out. Throws InvalidInput for an option out of
 /// range, naming it and the range.
