@@ -350,7 +350,7 @@ TEST(Noise, AnySizeIsTaken) {
 }
 
 TEST(Plan, HasTheMeshInIt) {
-  const std::vector<Vec3> points = shapes::torus(5000, 0.6, 0.25, 1).points;
+  const std::vector<Vec3> points = shapes::torus(20000, 0.6, 0.25, 1).points;
   const std::size_t orient_only = plan(points).planned_memory_bytes;
   MeshOptions mesh;
   const std::size_t automatic = plan(points, {}, mesh).planned_memory_bytes;
