@@ -37,6 +37,10 @@ constexpr double kGain = 0.75;             // and taken up to this share of the 
 constexpr double kLeastTried = 0.7;        // of the spacing, above which less is tried
 constexpr double kLoss = 1.25;             // and taken up to this share of the doubt
 constexpr double kSlightLoss = 0.01;       // and this
+// A little more than the estimate, where scatter does not say that it is wrong.
+constexpr double kManyDoubtful = 0.15;  // share of sides in doubt from which it is tried,
+constexpr double kLargeNoise = 0.5;     // from so many spacings of noise on,
+constexpr double kHardlyAny = 0.1;      // and taken up to this share of the doubt
 
 const char* name_of(Method method) {
   switch (method) {
@@ -197,13 +201,15 @@ Oriented orient_problem(const Problem& problem, const Options& options, Stages& 
 
 double doubt(const Stats& stats) { return stats.confidence_below_half + stats.undecided_share; }
 
+bool may_try_noises(const Problem& problem, const Options& options) {
+  return problem.settings.method == Method::kEnergy && options.preset != Preset::kPaper && options.epsilon.unit == Length::Unit::kAuto &&
+         options.noise.unit == Length::Unit::kAuto && options.schedule.empty();
+}
+
 // The noise to try instead of the estimate where the sides of many points are in doubt: none if the points are so few that it may be shape;
 // more if most of many points scatter far more than those that scatter least, which the estimate goes by.
 std::optional<double> other_noise(const Problem& problem, const Options& options, const Stats& stats) {
-  const bool automatic = problem.settings.method == Method::kEnergy && options.preset != Preset::kPaper &&
-                         options.epsilon.unit == Length::Unit::kAuto && options.noise.unit == Length::Unit::kAuto &&
-                         options.schedule.empty();
-  if (!automatic || doubt(stats) < kDoubtful) return std::nullopt;
+  if (!may_try_noises(problem, options) || doubt(stats) < kDoubtful) return std::nullopt;
   const std::vector<Vec3>& points = problem.cloud.points;
   if (points.size() <= kFewPoints && problem.noise > 0) return 0;
   if (points.size() < kManyPoints) return std::nullopt;
@@ -227,13 +233,23 @@ Attempt attempt(Problem problem, const PointsView& points, const Options& option
   return out;
 }
 
+// Noise of more than a spacing or so can turn whole shells, of cavities for example, in the narrow polish. Kernels a little wider tell all
+// sides then; of thin walls, where doubt is in place, they leave about as many in doubt.
+Attempt settle_with_more_noise(Attempt best, const PointsView& points, const Options& options, Stages& stages) {
+  const Problem& problem = best.problem;
+  if (!may_try_noises(problem, options) || problem.noise < kLargeNoise * problem.spacing) return best;
+  if (best.stats.confidence_below_half < kManyDoubtful) return best;
+  Attempt other = attempt(with_noise(problem, kStep * problem.noise, options), points, options, stages);
+  return doubt(other.stats) <= kHardlyAny * doubt(best.stats) ? std::move(other) : std::move(best);
+}
+
 // Thin walls and layers of scans that do not fit onto each other look alike from near. But few sides of walls are in doubt when they are
 // solved for as what they are, of layers when they are solved for as noise. Then, as too large a noise hides everything, the least one
 // counts that leaves no more in doubt.
 Attempt orient_with_best_noise(const PointsView& points, const Options& options, Stages& stages) {
   Attempt best = attempt(prepare(points, options, stages), points, options, stages);
   const std::optional<double> noise = other_noise(best.problem, options, best.stats);
-  if (!noise) return best;
+  if (!noise) return settle_with_more_noise(std::move(best), points, options, stages);
   Attempt other = attempt(with_noise(best.problem, *noise, options), points, options, stages);
   const double before = doubt(best.stats);
   const double after = doubt(other.stats);

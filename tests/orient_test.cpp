@@ -349,6 +349,17 @@ TEST(Noise, AnySizeIsTaken) {
   }
 }
 
+// The wall of a cavity, a dozen standard deviations from all else, under noise of more than a spacing.
+TEST(Noise, CavitiesKeepTheirSides) {
+  for (const double sigma : {1.2, 1.4, 1.6}) {
+    Surface shells = shapes::join(shapes::sphere(16000, 0.8), shapes::sphere(4000, 0.4), true);
+    shapes::scatter(shells, sigma * 0.0225);  // of the spacing
+    const Orientation o = orient(shells.points);
+    EXPECT_GT(shapes::share_correct(o.normals, shells.normals), 0.999) << sigma;
+    EXPECT_LT(o.stats.confidence_below_half, 0.05) << sigma;
+  }
+}
+
 TEST(Plan, HasTheMeshInIt) {
   const std::vector<Vec3> points = shapes::torus(20000, 0.6, 0.25, 1).points;
   const std::size_t orient_only = plan(points).planned_memory_bytes;
