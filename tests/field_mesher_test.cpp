@@ -106,7 +106,7 @@ TEST(FieldMesher, CubeKeepsItsEdgesAndMostCorners) {
 
 // The cube is centred like its octree, so that edges run between cells, which must not both take them.
 TEST(FieldMesher, CreasesBetweenCellsMakeNoTwoVerticesAtOnePlace) {
-  for (const std::size_t n : {3000, 6000, 12000}) {
+  for (const std::size_t n : {std::size_t{3000}, std::size_t{6000}, std::size_t{12000}}) {
     const OrientedSample s = cube_sample(n, 0.5, 3);
     const DistanceSampler field([](const Vec3& p) { return cube_distance(p, 0.5); }, 1.0 / std::sqrt(static_cast<double>(n) / 6));
     std::vector<Vec3> at = field_mesh(s.points, s.normals, field).vertices;

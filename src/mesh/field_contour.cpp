@@ -248,6 +248,7 @@ class AmbiguousFace {
     centre_ = octree.world(centre[0], centre[1], centre[2]);
 
     std::vector<std::pair<double, std::size_t>> order;
+    order.reserve(rim_.size());
     for (std::size_t i = 0; i < rim_.size(); ++i) order.emplace_back(along_rim(octree, edges[rim_[i].edge()]), i);
     std::sort(order.begin(), order.end());
     std::vector<FaceRecord> sorted;
@@ -318,6 +319,7 @@ Arcs join_arcs(const Octree& octree, const std::vector<ActiveEdge>& edges, const
   records.resize(out.first_multiple);
   if (ambiguous.empty()) return out;
   std::vector<Vec3> centres;
+  centres.reserve(ambiguous.size());
   for (const AmbiguousFace& face : ambiguous) centres.push_back(face.centre());
   const std::vector<std::uint8_t> inside = centre_inside(centres);
   for (std::size_t f = 0; f < ambiguous.size(); ++f) ambiguous[f].join(inside[f] != 0, out.arcs);

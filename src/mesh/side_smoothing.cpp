@@ -41,8 +41,9 @@ std::vector<Around> leaves_around(const Octree& octree, const std::vector<std::u
 std::array<double, 27> weights(const std::array<float, 3>& n) {
   std::array<double, 27> out{};
   for (std::size_t i = 0; i <= 13; ++i) {
+    const std::size_t y = i / 3 % 3, z = i / 9;
     const double across =
-        n[0] * (static_cast<double>(i % 3) - 1) + n[1] * (static_cast<double>(i / 3 % 3) - 1) + n[2] * (static_cast<double>(i / 9) - 1);
+        n[0] * (static_cast<double>(i % 3) - 1) + n[1] * (static_cast<double>(y) - 1) + n[2] * (static_cast<double>(z) - 1);
     out[i] = out[26 - i] = std::exp(-across * across / (2 * kAcross * kAcross));
   }
   return out;
