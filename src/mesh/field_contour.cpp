@@ -252,6 +252,7 @@ class AmbiguousFace {
     for (std::size_t i = 0; i < rim_.size(); ++i) order.emplace_back(along_rim(octree, edges[rim_[i].edge()]), i);
     std::sort(order.begin(), order.end());
     std::vector<FaceRecord> sorted;
+    sorted.reserve(rim_.size());
     for (const auto& [s, i] : order) sorted.push_back(rim_[i]);
     rim_ = std::move(sorted);
     // Is the run of corners after the first crossing, going round, inside?
