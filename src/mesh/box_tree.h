@@ -35,7 +35,7 @@ inline bool meet(const FloatBox& a, const FloatBox& b) {
 }
 
 /// All boxes are halved at the median along the longest side again and again, into equal parts, so a node's number says which boxes are its
-/// own and nothing but its box is stored. 40 bytes a box. The boxes are finite.
+/// own and nothing but its box is stored. About 40 bytes a box. Fewer than 2^31 boxes, finite.
 class BoxTree {
  public:
   /// O(n log n), on all threads.

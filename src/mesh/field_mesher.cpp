@@ -219,10 +219,10 @@ class Side {
         const auto c = static_cast<std::uint32_t>(first + i);
         const Place& place = places[i];
         corners.value[c] = place.value;
-        if (place.kind == Place::kDoubtful) corners.opinions.add(c, place.opinion, place.axis);
-        if (place.kind == Place::kDoubtful || place.kind == Place::kUnknown) {
-          asked.push_back({c, place.kind == Place::kDoubtful ? corners.opinions.corner.size() : 0});
-        }
+        if (place.kind == Place::kUnknown) asked.push_back({c, kNoOpinion});
+        if (place.kind != Place::kDoubtful) continue;
+        asked.push_back({c, static_cast<std::uint32_t>(corners.opinions.corner.size())});
+        corners.opinions.add(c, place.opinion, place.axis);
       }
       if (asked.size() < asked_at_once_) continue;
       ask_field(octree, asked, corners);
@@ -253,10 +253,10 @@ class Side {
     float opinion = 0;
     std::array<float, 3> axis{};
   };
-  // A corner, and one more than its place among the opinions, 0 if it has none.
+  static constexpr std::uint32_t kNoOpinion = std::numeric_limits<std::uint32_t>::max();
   struct Asked {
     std::uint32_t corner;
-    std::size_t opinion;
+    std::uint32_t opinion;  // its place among the opinions, or kNoOpinion
   };
 
   [[nodiscard]] Place fit_at(const Vec3& at) const {
@@ -285,10 +285,10 @@ class Side {
     for (std::size_t k = 0; k < asked.size(); ++k) {
       const double f = field[k] - level_;
       float& value = corners.value[asked[k].corner];
-      const bool known = asked[k].opinion > 0;
+      const bool known = asked[k].opinion != kNoOpinion;
       if (!known || (std::abs(f) >= kFieldSure && (value > 0) != (f > 0))) value = static_cast<float>(f * spacing_);
       if (!known) continue;
-      float& opinion = corners.opinions.side[asked[k].opinion - 1];
+      float& opinion = corners.opinions.side[asked[k].opinion];
       opinion = static_cast<float>(std::clamp(2 * f + opinion, -1.0, 1.0));
     }
   }
