@@ -28,10 +28,11 @@ template <class T>
 constexpr double kMapScale = 2 * (kReachSquared<T> + kMapPole) / kReachSquared<T>;  // w = 1 at the reach
 constexpr int kMaxBatch = 9;
 
-template <class T>
+enum class Precision { kFull, kRough };  // relative error of the kernels: rounding; or kRoughError, float only
+template <class T, Precision>
 struct Polynomials;
 template <>
-struct Polynomials<float> {
+struct Polynomials<float, Precision::kFull> {
   static constexpr int kDegree = 10;
   static constexpr float kSingleLayer[kDegree + 1] = {3.356490651e-01F,  -2.109202984e-01F, 1.247985877e-01F, -7.579804802e-02F,
                                                       3.640737097e-02F,  -1.235096975e-02F, 2.213220652e-03F, 1.248106875e-04F,
@@ -47,7 +48,19 @@ struct Polynomials<float> {
                                                    -1.164463099e-04F, 6.002793598e-06F,  5.251592353e-06F};  // NOLINT
 };
 template <>
-struct Polynomials<double> {
+struct Polynomials<float, Precision::kRough> {
+  static constexpr int kDegree = 6;
+  static constexpr float kSingleLayer[kDegree + 1] = {3.356495015e-01F, -2.109081309e-01F, 1.247781530e-01F, -7.590229464e-02F,
+                                                      3.653216159e-02F, -1.213443340e-02F, 1.983917535e-03F};  // NOLINT
+  static constexpr float kDoubleLayer[kDegree + 1] = {3.694297296e-02F, -6.544209353e-02F, 6.873089493e-02F, -5.278002403e-02F,
+                                                      2.935656107e-02F, -1.075966528e-02F, 1.951396708e-03F};  // NOLINT
+  static constexpr float kStokeslet[kDegree + 1] = {2.547918280e-02F, -3.462336711e-02F, 2.589185070e-02F, -1.385958507e-02F,
+                                                    5.245499760e-03F, -1.190390083e-03F, 9.668971928e-05F};  // NOLINT
+  static constexpr float kGradient[kDegree + 1] = {1.146295533e-02F, -3.081146008e-02F, 4.284231299e-02F, -3.897412776e-02F,
+                                                   2.414597246e-02F, -9.512777300e-03F, 1.807112071e-03F};  // NOLINT
+};
+template <>
+struct Polynomials<double, Precision::kFull> {
   static constexpr int kDegree = 24;
   static constexpr double kSingleLayer[kDegree + 1] = {
       2.72238911498497105e-01,  -1.96628995570388543e-01, 1.22041552220679431e-01,  -9.38767211879213276e-02,
@@ -96,22 +109,33 @@ using Tag = hn::CappedTag<T, kLanes>;
 template <class T>
 using Vec = hn::Vec<Tag<T>>;
 
-template <class T>
+// Five times the error of an estimate of 1/sqrt: of the fifth power, the highest in the kernels.
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
+constexpr double kRoughError = 5 * 6.2e-5;
+#elif HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR
+constexpr double kRoughError = 5 * 3.7e-4;
+#else
+constexpr double kRoughError = 1;
+#endif
+
+template <class T, Precision kPrecision>
 HWY_INLINE Vec<T> Reciprocal(Vec<T> a) {
   const Tag<T> d;
   if constexpr (sizeof(T) == 4) {
     const Vec<T> x = hn::ApproximateReciprocal(a);
+    if constexpr (kPrecision == Precision::kRough) return x;
     return hn::Mul(x, hn::NegMulAdd(a, x, hn::Set(d, T{2})));
   } else {
     return hn::Div(hn::Set(d, T{1}), a);
   }
 }
 
-template <class T>
+template <class T, Precision kPrecision>
 HWY_INLINE Vec<T> ReciprocalSqrt(Vec<T> a) {
   const Tag<T> d;
   if constexpr (sizeof(T) == 4) {  // one Newton step after the estimate
     const Vec<T> x = hn::ApproximateReciprocalSqrt(a);
+    if constexpr (kPrecision == Precision::kRough) return x;
     const Vec<T> half_ax = hn::Mul(hn::Mul(a, hn::Set(d, T{0.5})), x);
     return hn::Mul(x, hn::NegMulAdd(half_ax, x, hn::Set(d, T{1.5})));
   } else {
@@ -119,10 +143,9 @@ HWY_INLINE Vec<T> ReciprocalSqrt(Vec<T> a) {
   }
 }
 
-template <class T>
-HWY_INLINE Vec<T> Horner(const T* coefficients, Vec<T> w) {
+template <class T, int kDegree>
+HWY_INLINE Vec<T> Horner(const T (&coefficients)[kDegree + 1], Vec<T> w) {
   const Tag<T> d;
-  constexpr int kDegree = Polynomials<T>::kDegree;
   Vec<T> sum = hn::Set(d, coefficients[kDegree]);
   HWY_UNROLL(32)
   for (int k = kDegree - 1; k >= 0; --k) sum = hn::MulAdd(sum, w, hn::Set(d, coefficients[k]));
@@ -155,26 +178,25 @@ HWY_INLINE Kernel<T> PlainKernel(Vec<T> inverse, Vec<T> width_squared) {
   return k;
 }
 
-template <class T, bool kValue, Third kThird>
-HWY_INLINE Kernel<T> MollifiedKernel(Vec<T> r2, Vec<T> width_squared) {
+template <class T, Precision kPrecision, bool kValue, Third kThird>
+HWY_INLINE Kernel<T> MollifiedKernel(Vec<T> r2, Vec<T> width_squared, Vec<T> inverse_width) {
   const Tag<T> d;
-  using P = Polynomials<T>;
-  const Vec<T> inverse_width = ReciprocalSqrt<T>(width_squared);
+  using P = Polynomials<T, kPrecision>;
   const Vec<T> inverse_width2 = hn::Mul(inverse_width, inverse_width);
   const Vec<T> s = hn::Mul(r2, inverse_width2);
-  const Vec<T> mapped = hn::Mul(s, Reciprocal<T>(hn::Add(s, hn::Set(d, static_cast<T>(kMapPole)))));
+  const Vec<T> mapped = hn::Mul(s, Reciprocal<T, kPrecision>(hn::Add(s, hn::Set(d, static_cast<T>(kMapPole)))));
   const Vec<T> w = hn::MulSub(mapped, hn::Set(d, static_cast<T>(kMapScale<T>)), hn::Set(d, T{1}));
   const Vec<T> cube = hn::Mul(inverse_width, inverse_width2);
   Kernel<T> k;
-  k.flux = hn::Mul(cube, Horner<T>(P::kDoubleLayer, w));
+  k.flux = hn::Mul(cube, Horner<T, P::kDegree>(P::kDoubleLayer, w));
   k.value = k.flux;
-  if constexpr (kValue) k.value = hn::Mul(inverse_width, Horner<T>(P::kSingleLayer, w));
+  if constexpr (kValue) k.value = hn::Mul(inverse_width, Horner<T, P::kDegree>(P::kSingleLayer, w));
   k.third = k.flux;
   if constexpr (kThird == Third::kStokeslet) {
-    k.third = hn::Mul(cube, Horner<T>(P::kStokeslet, w));
+    k.third = hn::Mul(cube, Horner<T, P::kDegree>(P::kStokeslet, w));
     k.value = hn::MulAdd(width_squared, k.flux, k.value);
   }
-  if constexpr (kThird == Third::kGradient) k.third = hn::Mul(hn::Mul(cube, inverse_width2), Horner<T>(P::kGradient, w));
+  if constexpr (kThird == Third::kGradient) k.third = hn::Mul(hn::Mul(cube, inverse_width2), Horner<T, P::kDegree>(P::kGradient, w));
   return k;
 }
 
@@ -334,7 +356,7 @@ class Gathering {
   std::size_t done_ = 0;  // sources of that run
 };
 
-template <class T, class Form, bool kLocalWidths>
+template <class T, class Form, bool kLocalWidths, Precision kPrecision>
 void Run(const NearTask<T>& task) {
   const Tag<T> d;
   const std::size_t lanes = hn::Lanes(d);
@@ -343,6 +365,7 @@ void Run(const NearTask<T>& task) {
   constexpr std::size_t kFirstField = kLocalWidths ? 4 : 3;
   const T* source = task.workspace;
   const Vec<T> reach2 = hn::Set(d, task.reach * task.reach);
+  Vec<T> inverse_width = ReciprocalSqrt<T, Precision::kFull>(hn::Set(d, task.uniform_width_squared));
   const std::size_t blocks = (task.count + kLanes - 1) / kLanes;
   for (std::size_t i = 0; i < blocks * kChannels * kLanes; ++i) task.out[i] = 0;
   Gathering<T> gathering(task);
@@ -368,10 +391,11 @@ void Run(const NearTask<T>& task) {
         if constexpr (kLocalWidths) {
           width_squared = hn::MulAdd(hn::Set(d, T{0.5}), hn::Load(d, source + 3 * stride + s), half_width_squared);
         }
-        Kernel<T> k = PlainKernel<T, Form::kValue, Form::kThird>(ReciprocalSqrt<T>(r2), width_squared);
+        Kernel<T> k = PlainKernel<T, Form::kValue, Form::kThird>(ReciprocalSqrt<T, kPrecision>(r2), width_squared);
         const auto near = hn::Lt(r2, hn::Mul(reach2, width_squared));
         if (HWY_UNLIKELY(!hn::AllFalse(d, near))) {
-          const Kernel<T> m = MollifiedKernel<T, Form::kValue, Form::kThird>(r2, width_squared);
+          if constexpr (kLocalWidths) inverse_width = ReciprocalSqrt<T, Precision::kFull>(width_squared);
+          const Kernel<T> m = MollifiedKernel<T, kPrecision, Form::kValue, Form::kThird>(r2, width_squared, inverse_width);
           k.flux = hn::IfThenElse(near, m.flux, k.flux);
           if constexpr (Form::kValue) k.value = hn::IfThenElse(near, m.value, k.value);
           if constexpr (Form::kThird != Third::kNone) k.third = hn::IfThenElse(near, m.third, k.third);
@@ -384,12 +408,20 @@ void Run(const NearTask<T>& task) {
   }
 }
 
+template <class T, class Form, bool kLocalWidths>
+void RunPrecision(const NearTask<T>& task) {
+  if constexpr (sizeof(T) == 4) {
+    if (task.kernel_error >= kRoughError) return Run<T, Form, kLocalWidths, Precision::kRough>(task);
+  }
+  Run<T, Form, kLocalWidths, Precision::kFull>(task);
+}
+
 template <class T, class Form>
 void RunWidths(const NearTask<T>& task) {
   if (task.local_widths) {
-    Run<T, Form, true>(task);
+    RunPrecision<T, Form, true>(task);
   } else {
-    Run<T, Form, false>(task);
+    RunPrecision<T, Form, false>(task);
   }
 }
 

@@ -50,6 +50,7 @@ struct NearTask {
   T uniform_width_squared;  ///< without local_widths
   bool local_widths;        ///< pairs use the mean of both squared widths
   T reach;                  ///< widths from which on the kernels are plain powers; at most kMollifierReach<T>
+  double kernel_error;      ///< relative error that an evaluation of the kernels may have
   double* out;              ///< blocks x C x kLanes, overwritten
   T* workspace;             ///< near_workspace(field_count) elements, aligned
 };

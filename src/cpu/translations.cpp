@@ -9,6 +9,7 @@
 #include "sum/expansions.h"
 
 #include <type_traits>
+#include <utility>
 
 #include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
@@ -33,6 +34,14 @@ struct Rows {
   std::size_t first;
   std::size_t last;
 };
+
+// Calls use(v) for v = 0 .. kCount - 1, each a constant: arrays stay in registers where their index is one.
+template <std::size_t kCount, class Use>
+HWY_INLINE void Each(const Use& use) {
+  [&]<std::size_t... kIndex>(std::index_sequence<kIndex...>) HWY_ATTR {
+    (use(std::integral_constant<std::size_t, kIndex>()), ...);
+  }(std::make_index_sequence<kCount>());
+}
 
 // sum[c] += columns [first, last) of one vector of rows times expansion c.
 template <class T, std::size_t kCount>
@@ -62,9 +71,11 @@ HWY_INLINE void MultiplyRows(const Rows<T>* rows, const T* HWY_RESTRICT packed, 
       for (std::size_t v = 0; v < kVectors; ++v) sum[v][c] = hn::MulAdd(m[v], value, sum[v][c]);
     }
   }
-  for (std::size_t v = 0; v < kVectors; ++v) {
-    MultiplyColumns<T, kCount>(rows[v], rows[v].first, first, packed, sum[v]);
-    MultiplyColumns<T, kCount>(rows[v], last, rows[v].last, packed, sum[v]);
+  if constexpr (kVectors > 1) {
+    Each<kVectors>([&](auto v) HWY_ATTR {
+      MultiplyColumns<T, kCount>(rows[v], rows[v].first, first, packed, sum[v]);
+      MultiplyColumns<T, kCount>(rows[v], last, rows[v].last, packed, sum[v]);
+    });
   }
 }
 
@@ -88,27 +99,37 @@ HWY_INLINE void ForRows(const TranslationMatrix<T>& matrix, const Use& use) {
   if (waiting > 0) use(std::integral_constant<std::size_t, 1>(), rows, matrix.groups * kLanes - lanes);
 }
 
-// One tile: expansion c goes from from[c] to to[c]. `finish` changes the products of one vector of rows.
-template <class T, std::size_t kCount, class Finish>
+// One tile: expansion c goes from from[c] to to[c]; kCount / kMoves of them after one another share signs. `finish` changes the products of
+// one vector of rows.
+template <class T, std::size_t kCount, std::size_t kMoves, class Finish>
 HWY_INLINE void TranslateTile(const TranslationMatrix<T>& matrix, const T* const* from, T* const* to, const T* const* signs,
                               const Finish& finish) {
   const Tag<T> d;
   const std::size_t lanes = hn::Lanes(d);
+  constexpr std::size_t kChannels = kCount / kMoves;
   HWY_ALIGN T packed[kCount * kPackedStride];
-  for (std::size_t c = 0; c < kCount; ++c) {
-    for (std::size_t j = 0; j < matrix.most_columns; j += lanes) {
-      hn::Store(hn::Mul(hn::Load(d, signs[c] + j), hn::Load(d, from[c] + j)), d, packed + c * kPackedStride + j);
+  for (std::size_t j = 0; j < matrix.most_columns; j += lanes) {
+    for (std::size_t m = 0; m < kMoves; ++m) {
+      const Vec<T> sign = hn::Load(d, signs[m] + j);
+      for (std::size_t c = m * kChannels; c < (m + 1) * kChannels; ++c) {
+        hn::Store(hn::Mul(sign, hn::Load(d, from[c] + j)), d, packed + c * kPackedStride + j);
+      }
     }
   }
   ForRows<T>(matrix, [&](auto vectors, const Rows<T>* rows, std::size_t row) HWY_ATTR {
     Vec<T> sum[vectors][kCount];
     MultiplyRows<T, vectors, kCount>(rows, packed, sum);
-    for (std::size_t v = 0; v < vectors; ++v, row += lanes) {
+    Each<vectors>([&](auto v) HWY_ATTR {
       finish(sum[v]);
-      for (std::size_t c = 0; c < kCount; ++c) {
-        hn::Store(hn::MulAdd(hn::Load(d, signs[c] + row), sum[v][c], hn::Load(d, to[c] + row)), d, to[c] + row);
-      }
-    }
+      const std::size_t at = row + v * lanes;
+      Each<kMoves>([&](auto m) HWY_ATTR {
+        const Vec<T> sign = hn::Load(d, signs[m] + at);
+        Each<kChannels>([&](auto k) HWY_ATTR {
+          constexpr std::size_t c = m * kChannels + k;
+          hn::Store(hn::MulAdd(sign, sum[v][c], hn::Load(d, to[c] + at)), d, to[c] + at);
+        });
+      });
+    });
   });
 }
 
@@ -142,11 +163,11 @@ void TranslateAll(const TranslationMatrix<T>& matrix, const Translation<T>* tran
     std::size_t c = 0;
     for (; c + kTile <= size; c += kTile) {
       for (std::size_t next = c + kTile; next < HWY_MIN(c + 2 * kTile, size); ++next) Prefetch(from[next], to[next], matrix.most_columns);
-      TranslateTile<T, kTile>(matrix, from + c, to + c, signs + c, keep);
+      TranslateTile<T, kTile, kTile>(matrix, from + c, to + c, signs + c, keep);
     }
-    for (; c + 4 <= size; c += 4) TranslateTile<T, 4>(matrix, from + c, to + c, signs + c, keep);
-    for (; c + 2 <= size; c += 2) TranslateTile<T, 2>(matrix, from + c, to + c, signs + c, keep);
-    for (; c < size; ++c) TranslateTile<T, 1>(matrix, from + c, to + c, signs + c, keep);
+    for (; c + 4 <= size; c += 4) TranslateTile<T, 4, 4>(matrix, from + c, to + c, signs + c, keep);
+    for (; c + 2 <= size; c += 2) TranslateTile<T, 2, 2>(matrix, from + c, to + c, signs + c, keep);
+    for (; c < size; ++c) TranslateTile<T, 1, 1>(matrix, from + c, to + c, signs + c, keep);
   }
 }
 
@@ -155,16 +176,14 @@ template <class T, std::size_t kChannels>
 void TranslateStokes(const TranslationMatrix<T>& matrix, const Translation<T>* translations, std::size_t count, std::size_t distance) {
   const Tag<T> d;
   const T* from[kChannels];
-  const T* signs[kChannels];
   T* to[kChannels];
   for (std::size_t i = 0; i < count; ++i) {
     const Translation<T>& t = translations[i];
     for (std::size_t c = 0; c < kChannels; ++c) {
       from[c] = t.from + c * distance;
       to[c] = t.to + c * distance;
-      signs[c] = t.signs;
     }
-    TranslateTile<T, kChannels>(matrix, from, to, signs, [&](Vec<T>* sum) HWY_ATTR {
+    TranslateTile<T, kChannels, 1>(matrix, from, to, &t.signs, [&](Vec<T>* sum) HWY_ATTR {
       for (std::size_t a = 0; a < 3; ++a) {
         const Vec<T> shift = hn::Set(d, t.move[a]);
         sum[1 + a] = hn::MulAdd(shift, sum[0], sum[1 + a]);
@@ -194,16 +213,16 @@ HWY_INLINE void StokesPairsTile(const TranslationMatrix<T>& matrix, const Transl
   constexpr std::size_t kCount = Route::kCount;
   const Tag<T> d;
   const T* from[kPairs * kCount];
-  const T* signs[kPairs * kCount];
+  const T* signs[kPairs];
   T* to[kPairs * kCount];
   for (std::size_t p = 0; p < kPairs; ++p) {
+    signs[p] = pairs[p].signs;
     for (std::size_t c = 0; c < kCount; ++c) {
       from[p * kCount + c] = pairs[p].from + Route::from(c) * distance;
       to[p * kCount + c] = pairs[p].to + Route::to(c) * distance;
-      signs[p * kCount + c] = pairs[p].signs;
     }
   }
-  TranslateTile<T, kPairs * kCount>(matrix, from, to, signs, [&](Vec<T>* sum) HWY_ATTR {
+  TranslateTile<T, kPairs * kCount, kPairs>(matrix, from, to, signs, [&](Vec<T>* sum) HWY_ATTR {
     for (std::size_t p = 0; p < kPairs; ++p) {
       Vec<T>* one = sum + p * kCount;  // W, E_a; or W, P_a, Q
       for (std::size_t a = 0; a < 3; ++a) {

@@ -322,6 +322,7 @@ void SumEngine<T>::leaves(cpu::NearForm form, int batch, std::size_t out_channel
           near.uniform_width_squared = static_cast<T>(sources_->widths[0] * sources_->widths[0]);
           near.local_widths = local_widths_;
           near.reach = static_cast<T>(std::min(plan_.reach, kMollifierReach<T>));
+          near.kernel_error = plan_.kernel_error;
           near.out = out_.data() + lane * out_channels;
           near.workspace = workspace.data();
           cpu::near_field(near);
