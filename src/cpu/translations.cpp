@@ -120,7 +120,7 @@ template <class T, std::size_t kChannels>
 void TranslateStokes(const TranslationMatrix<T>& matrix, const Translation<T>* moves, std::size_t count, std::size_t distance) {
   Route<kChannels> route;
   for (std::size_t k = 0; k < kChannels; ++k) route.from[k] = route.to[k] = k * distance;
-  TranslateTiles<T, 1, kChannels>(matrix, moves, count, route, [](const Translation<T>& t, Vec<T>* sum) HWY_ATTR {
+  TranslateTiles<T, kTile / kChannels, kChannels>(matrix, moves, count, route, [](const Translation<T>& t, Vec<T>* sum) HWY_ATTR {
     for (std::size_t a = 0; a < 3; ++a) {
       const Vec<T> shift = hn::Set(Tag<T>(), t.move[a]);
       sum[1 + a] = hn::MulAdd(shift, sum[0], sum[1 + a]);

@@ -190,23 +190,34 @@ void SumEngine<T>::upward(cpu::NearForm form, int batch) {
         }
       },
       cancel_);
-  const cpu::Moved moving = form == cpu::NearForm::kStokesWinding ? cpu::Moved::kStokes : cpu::Moved::kAll;
   const T* unchanged = matrices().signs(Offset());
   for (std::size_t level = tree.levels(); level-- > 0;) {
     const std::size_t first = tree.level_begin[level];
     parallel::for_blocks(tree.level_begin[level + 1] - first, kNodeBlock, [&](std::size_t begin, std::size_t end) {
+      MovesByOctant up;
       for (std::size_t i = first + begin; i < first + end; ++i) {
         const OctreeNode& node = tree.nodes[i];
         if (node.leaf()) continue;
         std::fill_n(multipole(i), multipole_channels_ * stride_, T{0});
         for (std::uint32_t c = node.first_child; c < node.first_child + node.child_count; ++c) {
-          const cpu::TranslationMatrix<T> matrix = sources_->child_to_parent[octant(tree.nodes[c])].first(coefficients_);
           const Vec3 move = difference(tree.nodes[c].centre(), node.centre());
-          const cpu::Translation<T> up{multipole(c), multipole(i), unchanged, moved<T>(move)};
-          cpu::translate(matrix, &up, 1, multipole_channels_, stride_, moving);
+          up[octant(tree.nodes[c])].push_back({multipole(c), multipole(i), unchanged, moved<T>(move)});
         }
       }
+      translate_levels(form, sources_->child_to_parent, up, multipole_channels_);
     });
+  }
+}
+
+// Children ascend by octant, so each parent is added to in the order of its children.
+template <class T>
+void SumEngine<T>::translate_levels(cpu::NearForm form, const std::array<StoredTranslation<T>, 8>& matrices, const MovesByOctant& moves,
+                                    std::size_t channels) const {
+  const cpu::Moved moving = form == cpu::NearForm::kStokesWinding ? cpu::Moved::kStokes : cpu::Moved::kAll;
+  for (std::size_t o = 0; o < moves.size(); ++o) {
+    if (!moves[o].empty()) {
+      cpu::translate(matrices[o].first(coefficients_), moves[o].data(), moves[o].size(), channels, stride_, moving);
+    }
   }
 }
 
@@ -268,18 +279,17 @@ std::size_t SumEngine<T>::gather(cpu::NearForm form, const M2lMatrices<T>& matri
 template <class T>
 void SumEngine<T>::downward(cpu::NearForm form) {
   const Octree& tree = *target_tree_;
-  const cpu::Moved moving = form == cpu::NearForm::kStokesWinding ? cpu::Moved::kStokes : cpu::Moved::kAll;
   const T* unchanged = matrices().signs(Offset());
   for (std::size_t level = 1; level < tree.levels(); ++level) {
     const std::size_t first = tree.level_begin[level];
     parallel::for_blocks(tree.level_begin[level + 1] - first, kNodeBlock, [&](std::size_t begin, std::size_t end) {
+      MovesByOctant down;
       for (std::size_t i = first + begin; i < first + end; ++i) {
         const OctreeNode& node = tree.nodes[i];
-        const cpu::TranslationMatrix<T> matrix = sources_->parent_to_child[octant(node)].first(coefficients_);
         const Vec3 move = difference(tree.nodes[node.parent].centre(), node.centre());
-        const cpu::Translation<T> down{local(node.parent), local(i), unchanged, moved<T>(move)};
-        cpu::translate(matrix, &down, 1, local_channels_, stride_, moving);
+        down[octant(node)].push_back({local(node.parent), local(i), unchanged, moved<T>(move)});
       }
+      translate_levels(form, sources_->parent_to_child, down, local_channels_);
     });
   }
 }

@@ -68,6 +68,10 @@ class SumEngine {
   [[nodiscard]] std::size_t geometry_fields() const { return local_widths_ ? 4 : 3; }
   [[nodiscard]] std::size_t field_stride() const { return cpu::padded_count(sources_->points.size()) + cpu::kLanes; }
   void upward(cpu::NearForm form, int batch);
+  // Moves between a node and its parent, by the node's octant.
+  using MovesByOctant = std::array<std::vector<cpu::Translation<T>>, 8>;
+  void translate_levels(cpu::NearForm form, const std::array<StoredTranslation<T>, 8>& matrices, const MovesByOctant& moves,
+                        std::size_t channels) const;
   // Far pairs that share a matrix, by how their expansions move.
   struct Moves {
     std::vector<cpu::Translation<T>> all, forward, transposed;
