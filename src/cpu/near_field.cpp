@@ -213,6 +213,7 @@ template <class T, int K>
 struct GreenForm {
   static constexpr bool kValue = true;
   static constexpr Third kThird = Third::kNone;
+  static constexpr int kFields = 3 + 2 * K;
   static constexpr int kChannels = K;
   static constexpr int kTargetData = 0;
   static HWY_INLINE void Add(Fields<T> f, Vec<T> dx, Vec<T> dy, Vec<T> dz, const Kernel<T>& k, const Vec<T>* /*u*/, Vec<T>* sum) {
@@ -230,6 +231,7 @@ template <class T, int K>
 struct GreenAdjointForm {
   static constexpr bool kValue = true;
   static constexpr Third kThird = Third::kNone;
+  static constexpr int kFields = K;
   static constexpr int kChannels = K + 3;
   static constexpr int kTargetData = K;
   static HWY_INLINE void Add(Fields<T> f, Vec<T> dx, Vec<T> dy, Vec<T> dz, const Kernel<T>& k, const Vec<T>* u, Vec<T>* sum) {
@@ -252,6 +254,7 @@ template <class T>
 struct StokesWindingForm {
   static constexpr bool kValue = true;
   static constexpr Third kThird = Third::kStokeslet;
+  static constexpr int kFields = 3;
   static constexpr int kChannels = 4;
   static constexpr int kTargetData = 0;
   static HWY_INLINE void Add(Fields<T> f, Vec<T> dx, Vec<T> dy, Vec<T> dz, const Kernel<T>& k, const Vec<T>* /*u*/, Vec<T>* sum) {
@@ -271,6 +274,7 @@ template <class T>
 struct WindingForm {
   static constexpr bool kValue = false;
   static constexpr Third kThird = Third::kNone;
+  static constexpr int kFields = 3;
   static constexpr int kChannels = 1;
   static constexpr int kTargetData = 0;
   static HWY_INLINE void Add(Fields<T> f, Vec<T> dx, Vec<T> dy, Vec<T> dz, const Kernel<T>& k, const Vec<T>* /*u*/, Vec<T>* sum) {
@@ -282,6 +286,7 @@ template <class T>
 struct WindingAdjointForm {
   static constexpr bool kValue = false;
   static constexpr Third kThird = Third::kNone;
+  static constexpr int kFields = 1;
   static constexpr int kChannels = 3;
   static constexpr int kTargetData = 0;
   static HWY_INLINE void Add(Fields<T> f, Vec<T> dx, Vec<T> dy, Vec<T> dz, const Kernel<T>& k, const Vec<T>* /*u*/, Vec<T>* sum) {
@@ -296,6 +301,7 @@ template <class T>
 struct WindingGradientForm {
   static constexpr bool kValue = false;
   static constexpr Third kThird = Third::kGradient;
+  static constexpr int kFields = 3;
   static constexpr int kChannels = 3;
   static constexpr int kTargetData = 0;
   static HWY_INLINE void Add(Fields<T> f, Vec<T> dx, Vec<T> dy, Vec<T> dz, const Kernel<T>& k, const Vec<T>* /*u*/, Vec<T>* sum) {
@@ -310,27 +316,32 @@ struct WindingGradientForm {
   }
 };
 
-// The sources of a task, run after run, in pieces of gathered_sources(): field f of the i-th at workspace[f * stride() + i].
-template <class T>
+// The sources of a task, run after run, in pieces of gathered_sources(): field f of the i-th at workspace[f * kStride + i]. The first
+// kGeometry fields say where and how wide they are.
+template <class T, std::size_t kGeometry, std::size_t kFields>
 class Gathering {
  public:
-  explicit Gathering(const NearTask<T>& task) : task_(task), most_(gathered_sources(task.field_count)) {}
+  static constexpr std::size_t kMost = gathered_sources(kFields);
+  static constexpr std::size_t kStride = kMost + kLanes;
 
-  [[nodiscard]] std::size_t stride() const { return most_ + kLanes; }
+  explicit Gathering(const NearTask<T>& task) : task_(task) {}
 
   // Gathers the next piece, padded to whole vectors by sources without any value. Returns its padded size, 0 when there are none left.
   std::size_t next() {
     const Tag<T> d;
     const std::size_t lanes = hn::Lanes(d);
     std::size_t size = 0;
-    while (run_ < task_.run_count && size < most_) {
+    while (run_ < task_.run_count && size < kMost) {
       const SourceRun<T>& run = task_.runs[run_];
-      const std::size_t count = HWY_MIN(run.count - done_, most_ - size);
+      const std::size_t count = HWY_MIN(run.count - done_, kMost - size);
       const T* from = task_.fields + run.begin + done_;
       T* to = task_.workspace + size;
-      for (std::size_t f = 0; f < task_.field_count; ++f, from += task_.stride, to += stride()) {
-        const Vec<T> shift = hn::Set(d, f < 3 ? run.shift[f] : T{0});
-        for (std::size_t i = 0; i < count; i += lanes) hn::StoreU(hn::Add(hn::LoadU(d, from + i), shift), d, to + i);
+      const Vec<T> shift[3] = {hn::Set(d, run.shift[0]), hn::Set(d, run.shift[1]), hn::Set(d, run.shift[2])};
+      for (std::size_t i = 0; i < count; i += lanes) {
+        HWY_UNROLL(3)
+        for (std::size_t f = 0; f < 3; ++f) hn::StoreU(hn::Add(hn::LoadU(d, from + f * task_.stride + i), shift[f]), d, to + f * kStride + i);
+        HWY_UNROLL(kMostFields)
+        for (std::size_t f = 3; f < kFields; ++f) hn::StoreU(hn::LoadU(d, from + f * task_.stride + i), d, to + f * kStride + i);
       }
       size += count;
       done_ += count;
@@ -340,10 +351,9 @@ class Gathering {
     }
     if (size == 0) return 0;
     const std::size_t padded = (size + lanes - 1) / lanes * lanes;
-    const std::size_t geometry = task_.local_widths ? 4 : 3;
-    for (std::size_t f = 0; f < task_.field_count; ++f) {
-      T* field = task_.workspace + f * stride();
-      const T pad = f < geometry ? field[size - 1] : T{0};
+    for (std::size_t f = 0; f < kFields; ++f) {
+      T* field = task_.workspace + f * kStride;
+      const T pad = f < kGeometry ? field[size - 1] : T{0};
       for (std::size_t i = size; i < padded; ++i) field[i] = pad;
     }
     return padded;
@@ -351,7 +361,6 @@ class Gathering {
 
  private:
   const NearTask<T>& task_;
-  std::size_t most_;
   std::size_t run_ = 0;
   std::size_t done_ = 0;  // sources of that run
 };
@@ -363,13 +372,14 @@ void Run(const NearTask<T>& task) {
   constexpr std::size_t kChannels = Form::kChannels;
   constexpr std::size_t kTargetData = Form::kTargetData;
   constexpr std::size_t kFirstField = kLocalWidths ? 4 : 3;
+  using Sources = Gathering<T, kFirstField, kFirstField + Form::kFields>;
+  constexpr std::size_t stride = Sources::kStride;
   const T* source = task.workspace;
   const Vec<T> reach2 = hn::Set(d, task.reach * task.reach);
   Vec<T> inverse_width = ReciprocalSqrt<T, Precision::kFull>(hn::Set(d, task.uniform_width_squared));
   const std::size_t blocks = (task.count + kLanes - 1) / kLanes;
   for (std::size_t i = 0; i < blocks * kChannels * kLanes; ++i) task.out[i] = 0;
-  Gathering<T> gathering(task);
-  const std::size_t stride = gathering.stride();
+  Sources gathering(task);
   for (std::size_t size = gathering.next(); size > 0; size = gathering.next()) {
     for (std::size_t t = 0; t < task.count; ++t) {
       const std::size_t block = t / kLanes;
