@@ -4,9 +4,10 @@
 #include "cpu/parallel.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
+#include <span>
 #include <unordered_map>
 
 namespace g3r {
@@ -172,6 +173,15 @@ class OffsetNumbers {
   std::vector<std::uint32_t> slots_;  // a power of two of them
 };
 
+// Copies `in` to `out` in ascending order of key(element) < keys, equal ones in their order. O(in + keys).
+template <class T, class Key>
+void counting_sort(std::span<const T> in, std::span<T> out, std::size_t keys, const Key& key) {
+  std::vector<std::uint32_t> next(keys + 1, 0);
+  for (const T& element : in) ++next[key(element) + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  for (const T& element : in) out[next[key(element)]++] = element;
+}
+
 // Gives every far pair the index of its offset in the sorted list of distinct offsets.
 void index_offsets(const Octree& targets, const Octree& sources, InteractionLists& lists) {
   const std::size_t chunks = lists.chunk_begin.size() - 1;
@@ -192,22 +202,17 @@ void index_offsets(const Octree& targets, const Octree& sources, InteractionList
       global[k] =
           static_cast<std::uint32_t>(std::lower_bound(lists.offsets.begin(), lists.offsets.end(), local[k]) - lists.offsets.begin());
     }
-    // Offset, target within the chunk and source as one number: sorted several times faster than three.
-    const auto source_bits = static_cast<unsigned>(std::bit_width(sources.nodes.size()));  // leaves 2^31 offsets for 2^24 nodes
-    constexpr unsigned kTargetBits = std::bit_width(kTargetChunk - 1);
-    const auto begin = lists.far.begin() + static_cast<std::ptrdiff_t>(lists.chunk_begin[c]);
-    const auto end = lists.far.begin() + static_cast<std::ptrdiff_t>(lists.chunk_begin[c + 1]);
-    std::vector<std::uint64_t> keys(static_cast<std::size_t>(end - begin));
-    std::transform(begin, end, keys.begin(), [&](const FarPair& pair) {
-      return (std::uint64_t{global[pair.offset]} << kTargetBits | pair.target % kTargetChunk) << source_bits | pair.source;
-    });
-    std::sort(keys.begin(), keys.end());
-    std::transform(keys.begin(), keys.end(), begin, [&](std::uint64_t key) {
-      const std::uint64_t target = key >> source_bits;
-      return FarPair{static_cast<std::uint32_t>(target >> kTargetBits),
-                     static_cast<std::uint32_t>(c * kTargetChunk + target % kTargetChunk),
-                     static_cast<std::uint32_t>(key & ((std::uint64_t{1} << source_bits) - 1))};
-    });
+    // An offset and a target have one source.
+    const std::span<FarPair> pairs(lists.far.data() + lists.chunk_begin[c], lists.chunk_begin[c + 1] - lists.chunk_begin[c]);
+    std::vector<FarPair> by_target(pairs.size());
+    counting_sort<FarPair>(pairs, by_target, kTargetChunk, [](const FarPair& pair) { return pair.target % kTargetChunk; });
+    std::vector<std::uint32_t> rank(local.size());
+    std::vector<std::uint32_t> order(local.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) { return global[i] < global[j]; });
+    for (std::uint32_t k = 0; k < order.size(); ++k) rank[order[k]] = k;
+    counting_sort<FarPair>(by_target, pairs, local.size(), [&](const FarPair& pair) { return rank[pair.offset]; });
+    for (FarPair& pair : pairs) pair.offset = global[pair.offset];
   });
 }
 
