@@ -10,6 +10,34 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
+#ifndef G3R_FAR_FIELD_ONCE
+#define G3R_FAR_FIELD_ONCE
+namespace g3r::cpu {
+namespace {
+
+// R_{l+1}^m = up z R_l^m - down r^2 R_{l-1}^m, by l and m <= l.
+template <class T>
+struct Recurrence {
+  T up[kMaxExpansionOrder + 1][kMaxExpansionOrder + 1] = {};
+  T down[kMaxExpansionOrder + 1][kMaxExpansionOrder + 1] = {};
+
+  constexpr Recurrence() {
+    for (int l = 0; l <= kMaxExpansionOrder; ++l) {
+      for (int m = 0; m <= l; ++m) {
+        const double divisor = (l + 1 + m) * (l + 1 - m);
+        up[l][m] = static_cast<T>((2.0 * l + 1) / divisor);
+        down[l][m] = static_cast<T>(1 / divisor);
+      }
+    }
+  }
+};
+template <class T>
+constexpr Recurrence<T> kRecurrence;
+
+}  // namespace
+}  // namespace g3r::cpu
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace g3r::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
@@ -40,9 +68,8 @@ void RegularHarmonics(Vec<T> x, Vec<T> y, Vec<T> z, int order, T* HWY_RESTRICT b
     for (int l = m; l <= order; ++l) {
       hn::Store(re, d, basis + real_index(l, m) * kLanes);
       if (m > 0) hn::Store(im, d, basis + imaginary_index(l, m) * kLanes);
-      const double divisor = static_cast<double>((l + 1 + m) * (l + 1 - m));
-      const Vec<T> up = hn::Mul(hn::Set(d, static_cast<T>((2.0 * l + 1) / divisor)), z);
-      const Vec<T> down = hn::Mul(hn::Set(d, static_cast<T>(1 / divisor)), r2);
+      const Vec<T> up = hn::Mul(hn::Set(d, kRecurrence<T>.up[l][m]), z);
+      const Vec<T> down = hn::Mul(hn::Set(d, kRecurrence<T>.down[l][m]), r2);
       const Vec<T> re_next = hn::NegMulAdd(down, re_below, hn::Mul(up, re));
       const Vec<T> im_next = hn::NegMulAdd(down, im_below, hn::Mul(up, im));
       re_below = re;
