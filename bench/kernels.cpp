@@ -80,7 +80,6 @@ double pairs_per_second(const Form& form, double seconds) {
   task.form = form.form;
   task.batch = form.batch;
   task.fields = values.data();
-  task.field_count = fields;
   task.stride = stride;
   task.runs = runs.data();
   task.run_count = runs.size();

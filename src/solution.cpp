@@ -43,18 +43,27 @@ Solution solve_by_baseline(const Problem& problem, Stages& stages, Stats& stats)
   return {std::move(result.eta), {std::move(result.normals), std::move(result.strength)}, {}};
 }
 
-std::vector<Vec3> solve_equations(const Problem& problem, const Settings& s, const Options& options, Stages& stages, Stats& stats) {
+// Area vectors, and their refinement unless its width is 0.
+Solution solve_equations(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
+  const Settings& s = problem.settings;
+  const std::vector<Vec3>& points = problem.cloud.points;
   stages.begin("solve");
-  if (s.dense) {
-    const HarmonicValues u = weighted_harmonics(s.harmonics, problem.cloud.points, s.constant_weight);
-    DenseResult dense = solve_dense(problem.cloud.points, s.epsilon, u, options.condition_number, stages.cancel());
-    stats.converged = true;
-    stats.condition_number = dense.condition_number;
-    return std::move(dense.eta);
+  if (!s.dense) {
+    Solved solved = solve_coarse_to_fine(points, problem.cloud.morton, s, stages);
+    record(s, solved.result, stats);
+    return {std::move(solved.result.eta), std::move(solved.refinement), {}};
   }
-  IterativeResult result = solve_coarse_to_fine(problem.cloud.points, problem.cloud.morton, s, stages);
-  record(s, result, stats);
-  return std::move(result.eta);
+  const HarmonicValues u = weighted_harmonics(s.harmonics, points, s.constant_weight);
+  DenseResult dense = solve_dense(points, s.epsilon, u, options.condition_number, stages.cancel());
+  stats.converged = true;
+  stats.condition_number = dense.condition_number;
+  Solution solution;
+  solution.eta = std::move(dense.eta);
+  stages.begin("refine");
+  if (s.refinement_width == 0) return solution;
+  FastSum sum(points, problem.cloud.morton, Widths(s.refinement_width), s.sums, stages.cancel());
+  solution.refinement = refine_normals(sum, solution.eta);
+  return solution;
 }
 
 // Points on open sheets get area vectors along the normals found for them.
@@ -104,17 +113,8 @@ void fit_surface(const Problem& problem, std::vector<Vec3>& eta, std::vector<Vec
 Solution solve_on_points(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
   const Settings& s = problem.settings;
   const std::vector<Vec3>& points = problem.cloud.points;
-  Solution solution;
-  solution.eta = solve_equations(problem, s, options, stages, stats);
-  stages.begin("refine");
-  if (s.refinement_width == 0) {
-    solution.refinement.normals = normalised(solution.eta);
-    return solution;
-  }
-  {
-    FastSum sum(points, problem.cloud.morton, Widths(s.refinement_width), s.sums, stages.cancel());
-    solution.refinement = refine_normals(sum, solution.eta);
-  }
+  Solution solution = solve_equations(problem, options, stages, stats);
+  if (s.refinement_width == 0) solution.refinement.normals = normalised(solution.eta);
   if (s.polish_steps == 0) return solution;
   Polished polished = polish(points, problem.cloud.morton, s, problem.local_spacing, {}, solution.refinement, stages);
   std::vector<Vec3>& normals = polished.refinement.normals;

@@ -13,6 +13,8 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
+#include <stdexcept>
 
 namespace g3r {
 namespace {
@@ -217,6 +219,36 @@ TEST(FastSum, PointsMayHaveTheirOwnWidths) {
   for (double& w : widths) w = random.uniform(0.005, 0.03);
   const Inputs in(points, Widths(widths));
   EXPECT_LE(worst_error(fast_sums(in, sum_plan(1e-3, 1000000)), direct_sums(in)), 1e-3);
+}
+
+TEST(FastSum, NarrowerWidthsMayShareATree) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(2500, 0.6, 0.25, 3).points);
+  const std::vector<Vec3> eta = random_vectors(points.size(), 1);
+  const std::vector<double> q = random_values(points.size(), 2);
+  Random random(5);
+  std::vector<double> local(points.size());
+  for (double& w : local) w = random.uniform(0.005, 0.03);
+  std::vector<double> half = local;
+  for (double& w : half) w *= 0.5;
+  const double accuracy = 1e-3;
+  const auto fresh = [&](const Widths& widths) { return FastSum(points, codes(points), widths, sum_plan(accuracy, 1000000)); };
+  const auto check = [&](FastSum sum, const Widths& widths) {
+    std::vector<Vec3> s;
+    std::vector<double> w;
+    sum.stokes_winding(eta, s, w);
+    EXPECT_LE(relative_error(s, direct_sum::stokes_single_layer(points, widths, eta)), accuracy);
+    const std::vector<double> adjoint = flat(sum.winding_adjoint(q));
+    EXPECT_NEAR(std::inner_product(w.begin(), w.end(), q.begin(), 0.0),
+                std::inner_product(adjoint.begin(), adjoint.end(), flat(eta).begin(), 0.0), 1e-6 * norm(w) * norm(q));
+  };
+  const FastSum uniform = fresh(Widths(0.03));
+  check(FastSum(uniform, Widths(0.01)), Widths(0.01));
+  check(FastSum(uniform, Widths(local)), Widths(local));
+  const FastSum varied = fresh(Widths(local));
+  check(FastSum(varied, Widths(half)), Widths(half));
+  check(FastSum(varied, Widths(0.004)), Widths(0.004));
+  EXPECT_THROW(FastSum(varied, Widths(0.01)), std::invalid_argument);
+  EXPECT_THROW(FastSum(uniform, Widths(0.031)), std::invalid_argument);
 }
 
 TEST(FastSum, QueriesSeeTheSameFieldAsThePoints) {

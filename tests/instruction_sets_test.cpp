@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
@@ -48,23 +49,24 @@ class InstructionSets : public testing::TestWithParam<double> {
   void TearDown() override { hwy::SetSupportedTargetsForTest(0); }
 };
 
-TEST_P(InstructionSets, AgreeToRounding) {
+TEST_P(InstructionSets, Agree) {
   const CanonicalCloud cloud = canonical_cloud(shapes::torus(3000, 0.6, 0.25, 3).points);
   const Sums best = sums_of(cloud, GetParam());
-  const double rounding = GetParam() < 1e-4 ? 1e-11 : 1e-4;  // double or float sums of 3000 terms that nearly cancel
+  // Rounding of double or float sums of 3000 terms that nearly cancel; from 1e-3 on the estimates of 1 / sqrt, which differ.
+  const double most = GetParam() < 1e-4 ? 1e-11 : std::max(1e-4, 0.1 * GetParam());
   std::set<std::string> tried;
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     hwy::SetSupportedTargetsForTest(target);
     tried.insert(cpu::instruction_set());
     const Sums sums = sums_of(cloud, GetParam());
-    EXPECT_LE(relative_difference(sums.stokes, best.stokes), rounding) << cpu::instruction_set();
-    EXPECT_LE(relative_difference(sums.gradient, best.gradient), rounding) << cpu::instruction_set();
+    EXPECT_LE(relative_difference(sums.stokes, best.stokes), most) << cpu::instruction_set();
+    EXPECT_LE(relative_difference(sums.gradient, best.gradient), most) << cpu::instruction_set();
     hwy::SetSupportedTargetsForTest(0);
   }
   EXPECT_EQ(tried.size(), hwy::SupportedAndGeneratedTargets().size());
 }
 
-INSTANTIATE_TEST_SUITE_P(Accuracies, InstructionSets, testing::Values(1e-3, 1e-5));
+INSTANTIATE_TEST_SUITE_P(Accuracies, InstructionSets, testing::Values(1e-2, 1e-3, 3e-4, 1e-5));
 
 }  // namespace
 }  // namespace g3r

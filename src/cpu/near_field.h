@@ -37,7 +37,6 @@ struct NearTask {
   NearForm form;
   int batch;                ///< K: 1, 4 or 9; ignored by forms without K
   const T* fields;          ///< of the sources: x y z [squared width if local_widths] F values; field f of source i at [f * stride + i]
-  std::size_t field_count;  ///< at most kMostFields
   std::size_t stride;
   const SourceRun<T>* runs;
   std::size_t run_count;
@@ -52,17 +51,17 @@ struct NearTask {
   T reach;                  ///< widths from which on the kernels are plain powers; at most kMollifierReach<T>
   double kernel_error;      ///< relative error that an evaluation of the kernels may have
   double* out;              ///< blocks x C x kLanes, overwritten
-  T* workspace;             ///< near_workspace(field_count) elements, aligned
+  T* workspace;             ///< near_workspace(fields) elements, aligned
 };
 
 inline constexpr std::size_t kMostFields = 4 + 3 + 2 * 9;  ///< geometry with widths, and kGreen of 9 harmonics
 inline constexpr std::size_t kGatheredValues = 6144;       ///< at a time: 24 KiB of floats, which stay in the first cache
 
 /// Sources gathered at a time: what sums in T are added up over, which bounds their rounding. A multiple of kLanes.
-constexpr std::size_t gathered_sources(std::size_t field_count) { return kGatheredValues / field_count / kLanes * kLanes; }
+constexpr std::size_t gathered_sources(std::size_t fields) { return kGatheredValues / fields / kLanes * kLanes; }
 
-/// Elements of T that a NearTask's workspace needs.
-constexpr std::size_t near_workspace(std::size_t field_count) { return field_count * (gathered_sources(field_count) + kLanes); }
+/// Elements of T that a NearTask's workspace needs. `fields`: of a source, geometry included.
+constexpr std::size_t near_workspace(std::size_t fields) { return fields * (gathered_sources(fields) + kLanes); }
 
 /// Evaluates a task. Thread safe; the result does not depend on anything but the task.
 void near_field(const NearTask<float>& task);

@@ -32,23 +32,26 @@ Settings coarser(Settings settings) {
   return settings;
 }
 
-IterativeResult solve_level(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
-                            double share, Stages& stages);
+// A solution and the sum, of width settings.refinement_width, that evaluates its field.
+struct Level {
+  IterativeResult result;
+  std::unique_ptr<FastSum> field;
+};
 
-// The winding gradient at `points` of the solution on a quarter of them, or nothing when there are too few.
+Level solve_level(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings, double share,
+                  Stages& stages);
+
+// The winding gradient at `points` of the solution on a quarter of them.
 std::vector<Vec3> coarse_gradient(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
                                   double share, Stages& stages) {
-  if (!starts_coarse(settings, points.size())) return {};
   std::vector<Vec3> some;
   std::vector<std::uint64_t> codes;
   for (std::size_t i = kThinning / 2; i < points.size(); i += kThinning) {
     some.push_back(points[i]);
     codes.push_back(morton[i]);
   }
-  const Settings coarse = coarser(settings);
-  const std::vector<Vec3> eta = solve_level(some, codes, coarse, kCoarseShare * share, stages).eta;
-  const FastSum sum(some, codes, Widths(coarse.refinement_width), coarse.sums, stages.cancel());
-  return sum.winding_gradient_at(eta, points, stages.cancel());
+  const Level coarse = solve_level(some, codes, coarser(settings), kCoarseShare * share, stages);
+  return coarse.field->winding_gradient_at(coarse.result.eta, points, stages.cancel());
 }
 
 double unsure_share_of(FastSum& field, const std::vector<Vec3>& eta) {
@@ -56,50 +59,82 @@ double unsure_share_of(FastSum& field, const std::vector<Vec3>& eta) {
   return unsure_share(side_confidence(eta, refined.normals, refined.strength, {}));
 }
 
-// `share`: of all progress, where this level ends; the coarser ones take kCoarseShare of it.
-IterativeResult solve_level(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
-                            double share, Stages& stages) {
-  std::vector<Vec3> start = coarse_gradient(points, morton, settings, share, stages);
-  const bool coarsest = start.empty();
-  FastSum sum(points, morton, Widths(coarsest ? settings.coarsest_epsilon : settings.epsilon),
-              coarsest ? settings.first_sums : settings.sums, stages.cancel());
-  if (!coarsest) gradient_to_areas(sum, {settings.spacing * settings.spacing}, start);
-  std::unique_ptr<LinearSystem> system;
+std::unique_ptr<LinearSystem> system_of(FastSum& sum, const std::vector<Vec3>& points, const Settings& settings) {
   if (settings.method == Method::kGreen) {
-    system = std::make_unique<GreenSystem>(sum, points, settings.harmonics, settings.constant_weight);
-  } else {
-    system = std::make_unique<EnergySystem>(sum, settings.damping, settings.winding_weight);
+    return std::make_unique<GreenSystem>(sum, points, settings.harmonics, settings.constant_weight);
   }
-  if (coarsest) {
-    return solve_iteratively(*system, settings.schedule, settings.tolerance, {},
-                             [&](int step, int steps, double) { stages.progress(share * step / steps); });
-  }
-  const double tolerance = settings.continued_tolerance;
-  IterativeResult result =
-      solve_iteratively(*system, settings.continued_schedule, tolerance, std::move(start),
-                        [&](int step, int steps, double) { stages.progress(share * (kCoarseShare + (1 - kCoarseShare) * step / steps)); });
-  if (result.converged || settings.doubtful_schedule.empty()) return result;
-  FastSum field(points, morton, Widths(settings.refinement_width), settings.sums, stages.cancel());
+  return std::make_unique<EnergySystem>(sum, settings.damping, settings.winding_weight);
+}
+
+// From eta = 0.
+IterativeResult solve_from_zero(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
+                                double share, Stages& stages) {
+  FastSum sum(points, morton, Widths(settings.coarsest_epsilon), settings.first_sums, stages.cancel());
+  return solve_iteratively(*system_of(sum, points, settings), settings.schedule, settings.tolerance, {},
+                           [&](int step, int steps, double) { stages.progress(share * step / steps); });
+}
+
+// From the solution on fewer points.
+IterativeResult solve_on(FastSum& field, const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton,
+                         const Settings& settings, double share, Stages& stages) {
+  std::vector<Vec3> start = coarse_gradient(points, morton, settings, share, stages);
+  FastSum sum = settings.epsilon <= settings.refinement_width
+                    ? FastSum(field, Widths(settings.epsilon))
+                    : FastSum(points, morton, Widths(settings.epsilon), settings.sums, stages.cancel());
+  gradient_to_areas(sum, {settings.spacing * settings.spacing}, start);
+  return solve_iteratively(
+      *system_of(sum, points, settings), settings.continued_schedule, settings.continued_tolerance, std::move(start),
+      [&](int step, int steps, double) { stages.progress(share * (kCoarseShare + (1 - kCoarseShare) * step / steps)); });
+}
+
+// More steps where the sides of many points are unsure.
+void settle_doubtful(FastSum& field, const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
+                     Stages& stages, IterativeResult& result) {
   const double unsure = unsure_share_of(field, result.eta);
-  if (unsure < kDoubtfulShare + settings.unsure_of_noise) return result;
+  if (unsure < kDoubtfulShare + settings.unsure_of_noise) return;
   FastSum wider(points, morton, Widths(settings.coarsest_epsilon), settings.first_sums, stages.cancel());
   EnergySystem heavier(wider, settings.damping, settings.doubtful_winding_weight);
   IterativeResult more = solve_iteratively(heavier, settings.doubtful_schedule, settings.doubtful_tolerance, result.eta,
                                            [&](int, int, double) { stages.still_going(); });
-  if (settings.unsure_of_noise == 0 && unsure_share_of(field, more.eta) > kWorse * unsure) return result;
+  if (settings.unsure_of_noise == 0 && unsure_share_of(field, more.eta) > kWorse * unsure) return;
   more.kinds.insert(more.kinds.begin(), result.kinds.begin(), result.kinds.end());
   more.residuals.insert(more.residuals.begin(), result.residuals.begin(), result.residuals.end());
-  return more;
+  result = std::move(more);
 }
+
+// `share`: of all progress, where this level ends; the coarser ones take kCoarseShare of it.
+Level solve_level(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings, double share,
+                  Stages& stages) {
+  Level level;
+  const auto make_field = [&] {
+    level.field = std::make_unique<FastSum>(points, morton, Widths(settings.refinement_width), settings.sums, stages.cancel());
+  };
+  if (!starts_coarse(settings, points.size())) {
+    level.result = solve_from_zero(points, morton, settings, share, stages);
+    if (settings.refinement_width > 0) make_field();
+    return level;
+  }
+  make_field();
+  level.result = solve_on(*level.field, points, morton, settings, share, stages);
+  if (!level.result.converged && !settings.doubtful_schedule.empty()) {
+    settle_doubtful(*level.field, points, morton, settings, stages, level.result);
+  }
+  return level;
+}
+
 }  // namespace
 
 bool starts_coarse(const Settings& settings, std::size_t points) {
   return settings.coarse_to_fine && points / kThinning >= kFewestCoarsePoints;
 }
 
-IterativeResult solve_coarse_to_fine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
-                                     Stages& stages) {
-  return solve_level(points, morton, settings, 1, stages);
+Solved solve_coarse_to_fine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
+                            Stages& stages) {
+  Level level = solve_level(points, morton, settings, 1, stages);
+  if (settings.refinement_width == 0) return {std::move(level.result), {}};
+  stages.begin("refine");
+  Refinement refinement = refine_normals(*level.field, level.result.eta);
+  return {std::move(level.result), std::move(refinement)};
 }
 
 }  // namespace g3r

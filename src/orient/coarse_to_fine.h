@@ -1,6 +1,7 @@
 // Conjugate gradients started from the solution on fewer points.
 #pragma once
 
+#include "orient/refine.h"
 #include "orient/settings.h"
 #include "solve/iterative_solver.h"
 #include "stages.h"
@@ -15,6 +16,12 @@ namespace g3r {
 /// Whether solve_coarse_to_fine() begins with fewer points.
 [[nodiscard]] bool starts_coarse(const Settings& settings, std::size_t points);
 
+/// Area vectors, and their refinement at settings.refinement_width (empty if that is 0).
+struct Solved {
+  IterativeResult result;
+  Refinement refinement;
+};
+
 /// Solves settings.method on N points in canonical order. With settings.coarse_to_fine and enough points, every 4th point is solved first
 /// (recursively, all lengths doubled), and the start is that solution's winding gradient as area vectors (gradient_to_areas()).
 /// The smooth part of the error, which conjugate gradients reduce slowest, is gone from the start, so the tolerances of starts and of
@@ -22,8 +29,8 @@ namespace g3r {
 /// Where the sides of many points are unsure in the end (thin walls, narrow gaps), more steps are tried, wider and with more weight on the
 /// winding number, which turns parts that are wrong as a whole. They are undone if a quarter more points are unsure then; not under noise,
 /// of which every step makes more of them unsure, right or wrong.
-/// The returned residuals are those of the finest level. Throws like solve_iteratively().
-[[nodiscard]] IterativeResult solve_coarse_to_fine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton,
-                                                   const Settings& settings, Stages& stages);
+/// The returned residuals are those of the finest level. Begins the stage "refine" after the solve. Throws like solve_iteratively().
+[[nodiscard]] Solved solve_coarse_to_fine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton,
+                                          const Settings& settings, Stages& stages);
 
 }  // namespace g3r

@@ -49,7 +49,8 @@ void gradient_to_areas(FastSum& sum, const std::vector<double>& areas, std::vect
 
 Polished polish(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
                 const std::vector<double>& spacing, const std::vector<double>& multiplicity, const Refinement& refined, Stages& stages) {
-  FastSum sum(points, morton, local_widths(settings.polish_epsilon, settings, spacing), settings.sums, stages.cancel());
+  FastSum wider(points, morton, local_widths(settings.polish_width, settings, spacing), settings.sums, stages.cancel());
+  FastSum sum(wider, local_widths(settings.polish_epsilon, settings, spacing));
   EnergySystem system(sum, settings.polish_damping, settings.polish_winding_weight, multiplicity);
   std::vector<Vec3> start = refined.normals;
   for (std::size_t i = 0; i < start.size(); ++i) {
@@ -60,8 +61,7 @@ Polished polish(const std::vector<Vec3>& points, const std::vector<std::uint64_t
   const auto still_going = [&stages](int, int, double) { stages.still_going(); };
   Polished polished;
   polished.eta = system.to_areas(solve_iteratively(system, schedule, 0, system.from_areas(std::move(start)), still_going).eta);
-  FastSum narrow(points, morton, local_widths(settings.polish_width, settings, spacing), settings.sums, stages.cancel());
-  polished.refinement = refine_normals(narrow, polished.eta);
+  polished.refinement = refine_normals(wider, polished.eta);
   return polished;
 }
 

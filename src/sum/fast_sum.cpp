@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <variant>
 
 namespace g3r {
@@ -239,6 +240,16 @@ struct FastSum::Impl {
 FastSum::FastSum(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, Widths widths, const SumPlan& plan,
                  const std::atomic<bool>* cancel)
     : impl_(new Impl{points, widths, plan, cancel, Impl::make(points, morton, widths, plan, cancel)}) {}
+
+FastSum::FastSum(const FastSum& other, Widths narrower) {
+  const Impl& from = *other.impl_;
+  for (std::size_t i = 0; i < (narrower.uniform() && from.widths.uniform() ? 1 : from.points.size()); ++i) {
+    if (!(narrower[i] <= from.widths[i])) throw std::invalid_argument("a sum that shares a tree has a larger width");
+  }
+  impl_.reset(new Impl{from.points, narrower, from.plan, from.cancel,
+                       std::visit([&](const auto& engine) { return Impl::Engine(std::decay_t<decltype(engine)>(engine, narrower)); },
+                                  from.engine)});
+}
 
 FastSum::~FastSum() = default;
 FastSum::FastSum(FastSum&&) noexcept = default;

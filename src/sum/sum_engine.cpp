@@ -60,20 +60,7 @@ SumEngine<T>::SumEngine(const std::vector<Vec3>& points, const std::vector<std::
   set_terms({plan.order, plan.opening, plan.cut});
   Sources& s = *sources_;
   s.points = points;
-  s.widths = widths.values;
-  s.tree = build_octree(points, morton, s.widths, plan_.leaf_points);
-  const std::size_t stride = field_stride();
-  s.geometry.resize(geometry_fields() * stride);
-  parallel::for_blocks(s.tree.leaves.size(), kNodeBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const OctreeNode& leaf = s.tree.nodes[s.tree.leaves[i]];
-      const Vec3 centre = leaf.centre();
-      for (std::size_t p = leaf.begin; p < leaf.end; ++p) {
-        for (std::size_t a = 0; a < 3; ++a) s.geometry[a * stride + p] = static_cast<T>(points[p][a] - centre[a]);
-        if (local_widths_) s.geometry[3 * stride + p] = static_cast<T>(s.widths[p] * s.widths[p]);
-      }
-    }
-  });
+  s.tree = build_octree(points, morton, widths.values, plan_.leaf_points);
   for (std::size_t o = 0; o < 8 && !plan_.direct; ++o) {
     const Vec3 shift{o & 4 ? 0.5 : -0.5, o & 2 ? 0.5 : -0.5, o & 1 ? 0.5 : -0.5};
     const std::vector<double> matrix = multipole_translation(shift, plan_.order);
@@ -81,16 +68,36 @@ SumEngine<T>::SumEngine(const std::vector<Vec3>& points, const std::vector<std::
     s.parent_to_child[o] = StoredTranslation<T>(matrix, coefficients_, true, 0.5);
   }
   target_tree_ = std::shared_ptr<Octree>(sources_, &s.tree);
-  prepare(points, s.widths);
+  locate_sources(widths.values);
+  locate_targets(points, widths.values);
+  find_interactions();
+}
+
+template <class T>
+SumEngine<T>::SumEngine(const SumEngine& other, const Widths& narrower)
+    : plan_(other.plan_),
+      local_widths_(!narrower.uniform()),
+      cancel_(other.cancel_),
+      sources_(other.sources_),
+      target_tree_(other.target_tree_),
+      interactions_(other.interactions_) {
+  set_terms({plan_.order, plan_.opening, plan_.cut});
+  locate_sources(narrower.values);
+  locate_targets(sources_->points, narrower.values);
 }
 
 template <class T>
 SumEngine<T>::SumEngine(const SumEngine& other, const std::vector<Vec3>& targets, const std::vector<std::uint64_t>& morton,
                         const std::atomic<bool>* cancel)
-    : plan_(other.plan_), local_widths_(other.local_widths_), cancel_(cancel), sources_(other.sources_) {
+    : plan_(other.plan_),
+      local_widths_(other.local_widths_),
+      cancel_(cancel),
+      sources_(other.sources_),
+      source_fields_(other.source_fields_) {
   set_terms({plan_.order, plan_.opening, plan_.cut});
   target_tree_ = std::make_shared<Octree>(build_query_octree(targets, morton, sources_->tree));
-  prepare(targets, {sources_->widths[0]});
+  locate_targets(targets, {source_fields_->widths[0]});
+  find_interactions();
 }
 
 template <class T>
@@ -101,7 +108,27 @@ void SumEngine<T>::set_terms(const M2lTerms& terms) {
 }
 
 template <class T>
-void SumEngine<T>::prepare(const std::vector<Vec3>& targets, const std::vector<double>& target_widths) {
+void SumEngine<T>::locate_sources(const std::vector<double>& widths) {
+  const Sources& s = *sources_;
+  source_fields_ = std::make_shared<SourceFields>();
+  source_fields_->widths = widths;
+  AlignedVector<T>& geometry = source_fields_->geometry;
+  const std::size_t stride = field_stride();
+  geometry.resize(geometry_fields() * stride);
+  parallel::for_blocks(s.tree.leaves.size(), kNodeBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const OctreeNode& leaf = s.tree.nodes[s.tree.leaves[i]];
+      const Vec3 centre = leaf.centre();
+      for (std::size_t p = leaf.begin; p < leaf.end; ++p) {
+        for (std::size_t a = 0; a < 3; ++a) geometry[a * stride + p] = static_cast<T>(s.points[p][a] - centre[a]);
+        if (local_widths_) geometry[3 * stride + p] = static_cast<T>(widths[p] * widths[p]);
+      }
+    }
+  });
+}
+
+template <class T>
+void SumEngine<T>::locate_targets(const std::vector<Vec3>& targets, const std::vector<double>& target_widths) {
   const Octree& tree = *target_tree_;
   targets_ = std::make_shared<TargetBlocks<T>>();
   TargetBlocks<T>& blocks = *targets_;
@@ -130,14 +157,19 @@ void SumEngine<T>::prepare(const std::vector<Vec3>& targets, const std::vector<d
       }
     }
   });
-  lists_ = build_interaction_lists(tree, sources_->tree, plan_.direct ? 0.0 : plan_.opening, plan_.reach);
-  matrices_.resize(static_cast<std::size_t>(plan_.order) + 1);
+}
+
+template <class T>
+void SumEngine<T>::find_interactions() {
+  interactions_ = std::make_shared<Interactions>();
+  interactions_->lists = build_interaction_lists(*target_tree_, sources_->tree, plan_.direct ? 0.0 : plan_.opening, plan_.reach);
+  interactions_->matrices.resize(static_cast<std::size_t>(plan_.order) + 1);
 }
 
 template <class T>
 const M2lMatrices<T>& SumEngine<T>::matrices() {
-  std::unique_ptr<M2lMatrices<T>>& of_order = matrices_[static_cast<std::size_t>(terms_.order)];
-  if (!of_order) of_order = std::make_unique<M2lMatrices<T>>(lists_.offsets, terms_);
+  std::unique_ptr<M2lMatrices<T>>& of_order = interactions_->matrices[static_cast<std::size_t>(terms_.order)];
+  if (!of_order) of_order = std::make_unique<M2lMatrices<T>>(interactions_->lists.offsets, terms_);
   return *of_order;
 }
 
@@ -146,7 +178,7 @@ void SumEngine<T>::begin_values(std::size_t values) {
   const bool fresh = fields_.empty();
   field_count_ = geometry_fields() + values;
   if (fields_.size() < field_count_ * field_stride()) fields_.resize(field_count_ * field_stride());
-  if (fresh) std::copy(sources_->geometry.begin(), sources_->geometry.end(), fields_.begin());
+  if (fresh) std::copy(source_fields_->geometry.begin(), source_fields_->geometry.end(), fields_.begin());
 }
 
 template <class T>
@@ -163,7 +195,7 @@ cpu::LeafTask<T> SumEngine<T>::leaf_task(cpu::NearForm form, int batch, double h
   task.order = terms_.order;
   task.half_side = static_cast<T>(half_side);
   task.local_widths = local_widths_;
-  task.uniform_width_squared = static_cast<T>(sources_->widths[0] * sources_->widths[0]);
+  task.uniform_width_squared = static_cast<T>(source_fields_->widths[0] * source_fields_->widths[0]);
   task.stride = stride_;
   return task;
 }
@@ -223,20 +255,21 @@ void SumEngine<T>::translate_levels(cpu::NearForm form, const std::array<StoredT
 
 template <class T>
 void SumEngine<T>::across(cpu::NearForm form) {
+  const InteractionLists& lists = interactions_->lists;
   const Octree& tree = *target_tree_;
   locals_.resize(tree.nodes.size() * local_channels_ * stride_);
   const M2lMatrices<T>& matrices = this->matrices();
   parallel::for_each(
-      lists_.chunk_begin.size() - 1,
+      lists.chunk_begin.size() - 1,
       [&](std::size_t chunk) {
         const std::size_t first = chunk * kTargetChunk;
         const std::size_t last = std::min(first + kTargetChunk, tree.nodes.size());
         std::fill(local(first), local(last - 1) + local_channels_ * stride_, T{0});
         AlignedVector<T> made;
         Moves moves;
-        for (std::size_t i = lists_.chunk_begin[chunk]; i < lists_.chunk_begin[chunk + 1];) {
-          const std::size_t index = matrices.index(lists_.far[i].offset);
-          i = gather(form, matrices, i, lists_.chunk_begin[chunk + 1], moves);
+        for (std::size_t i = lists.chunk_begin[chunk]; i < lists.chunk_begin[chunk + 1];) {
+          const std::size_t index = matrices.index(lists.far[i].offset);
+          i = gather(form, matrices, i, lists.chunk_begin[chunk + 1], moves);
           const cpu::TranslationMatrix<T> matrix = matrices.matrix(index, made);
           for (const auto& [moving, some] : {std::pair{cpu::Moved::kAll, &moves.all}, std::pair{cpu::Moved::kStokesForward, &moves.forward},
                                              std::pair{cpu::Moved::kStokesTransposed, &moves.transposed}}) {
@@ -250,22 +283,23 @@ void SumEngine<T>::across(cpu::NearForm form) {
 // The far pairs from `begin` on that share its matrix. Returns the end of them.
 template <class T>
 std::size_t SumEngine<T>::gather(cpu::NearForm form, const M2lMatrices<T>& matrices, std::size_t begin, std::size_t end, Moves& moves) {
+  const InteractionLists& lists = interactions_->lists;
   moves.all.clear();
   moves.forward.clear();
   moves.transposed.clear();
   const std::vector<std::uint32_t>& level_begin = target_tree_->level_begin;
-  const std::size_t index = matrices.index(lists_.far[begin].offset);
+  const std::size_t index = matrices.index(lists.far[begin].offset);
   std::size_t i = begin;
-  while (i < end && matrices.index(lists_.far[i].offset) == index) {
-    const std::uint32_t number = lists_.far[i].offset;
-    const Offset& offset = lists_.offsets[number];
+  while (i < end && matrices.index(lists.far[i].offset) == index) {
+    const std::uint32_t number = lists.far[i].offset;
+    const Offset& offset = lists.offsets[number];
     const T* signs = matrices.signs(offset);
     std::vector<cpu::Translation<T>>& to =
         form != cpu::NearForm::kStokesWinding ? moves.all : (offset.positive() ? moves.forward : moves.transposed);
     std::size_t level = 0;  // of the target; an offset's targets ascend, and nodes are numbered level by level
     std::array<T, 3> move = moved<T>(offset.to_source(level));
-    for (; i < end && lists_.far[i].offset == number; ++i) {
-      const FarPair& pair = lists_.far[i];
+    for (; i < end && lists.far[i].offset == number; ++i) {
+      const FarPair& pair = lists.far[i];
       if (pair.target >= level_begin[level + 1]) {
         while (pair.target >= level_begin[level + 1]) ++level;
         move = moved<T>(offset.to_source(level));
@@ -296,6 +330,7 @@ void SumEngine<T>::downward(cpu::NearForm form) {
 
 template <class T>
 void SumEngine<T>::leaves(cpu::NearForm form, int batch, std::size_t out_channels) {
+  const InteractionLists& lists = interactions_->lists;
   const Octree& tree = *target_tree_;
   const Octree& source_tree = sources_->tree;
   const std::size_t data_channels = form == cpu::NearForm::kGreenAdjoint ? static_cast<std::size_t>(batch) : 0;
@@ -308,8 +343,8 @@ void SumEngine<T>::leaves(cpu::NearForm form, int batch, std::size_t out_channel
           const OctreeNode& leaf = tree.nodes[tree.leaves[i]];
           const Vec3 centre = leaf.centre();
           runs.clear();
-          for (std::size_t k = lists_.near_begin[i]; k < lists_.near_begin[i + 1]; ++k) {
-            const OctreeNode& source = source_tree.nodes[source_tree.leaves[lists_.near[k]]];
+          for (std::size_t k = lists.near_begin[i]; k < lists.near_begin[i + 1]; ++k) {
+            const OctreeNode& source = source_tree.nodes[source_tree.leaves[lists.near[k]]];
             const Vec3 shift = difference(source.centre(), centre);
             runs.push_back({source.begin, source.count(), {static_cast<T>(shift[0]), static_cast<T>(shift[1]), static_cast<T>(shift[2])}});
           }
@@ -319,7 +354,6 @@ void SumEngine<T>::leaves(cpu::NearForm form, int batch, std::size_t out_channel
           near.form = form;
           near.batch = batch;
           near.fields = fields_.data();
-          near.field_count = field_count_;
           near.stride = field_stride();
           near.runs = runs.data();
           near.run_count = runs.size();
@@ -329,7 +363,7 @@ void SumEngine<T>::leaves(cpu::NearForm form, int batch, std::size_t out_channel
           near.z = targets_->z.data() + lane;
           near.width_squared = local_widths_ ? targets_->width_squared.data() + lane : nullptr;
           near.u = target_data_.data() + lane * data_channels;
-          near.uniform_width_squared = static_cast<T>(sources_->widths[0] * sources_->widths[0]);
+          near.uniform_width_squared = static_cast<T>(source_fields_->widths[0] * source_fields_->widths[0]);
           near.local_widths = local_widths_;
           near.reach = static_cast<T>(std::min(plan_.reach, kMollifierReach<T>));
           near.kernel_error = plan_.kernel_error;

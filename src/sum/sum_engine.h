@@ -34,6 +34,8 @@ class SumEngine {
   /// Points in canonical order with their Morton codes; the sources are also the targets.
   SumEngine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Widths& widths, const SumPlan& plan,
             const std::atomic<bool>* cancel);
+  /// The same points with widths that are nowhere larger, in the tree and the lists of `other`, whose own targets are its sources.
+  SumEngine(const SumEngine& other, const Widths& narrower);
   /// Another set of targets for the sources of `other` (uniform width), canonical order.
   SumEngine(const SumEngine& other, const std::vector<Vec3>& targets, const std::vector<std::uint64_t>& morton,
             const std::atomic<bool>* cancel);
@@ -51,19 +53,29 @@ class SumEngine {
   const std::vector<double>& run(cpu::NearForm form, int batch, std::size_t out_channels);
 
  private:
-  // What belongs to the sources, shared by engines with other targets.
+  // What belongs to the sources, shared by engines with other targets or widths.
   struct Sources {
     std::vector<Vec3> points;
-    Octree tree;
-    std::vector<double> widths;
-    AlignedVector<T> geometry;  // x, y, z relative to the leaf's centre, and the squared width with local widths: fields as in fields_
+    Octree tree;                                          // its nodes know the widest widths
     std::array<StoredTranslation<T>, 8> child_to_parent;  // M2M by octant
     std::array<StoredTranslation<T>, 8> parent_to_child;  // L2L by octant
+  };
+  // Shared by engines with other targets.
+  struct SourceFields {
+    std::vector<double> widths;
+    AlignedVector<T> geometry;  // x, y, z relative to the leaf's centre, and the squared width with local widths: fields as in fields_
+  };
+  // Which nodes of the targets and sources interact, and how; shared by engines with other widths.
+  struct Interactions {
+    InteractionLists lists;
+    std::vector<std::unique_ptr<M2lMatrices<T>>> matrices;  // of every order, made when it is needed
   };
 
   void set_terms(const M2lTerms& terms);
   const M2lMatrices<T>& matrices();  // of the current order
-  void prepare(const std::vector<Vec3>& targets, const std::vector<double>& target_widths);
+  void locate_sources(const std::vector<double>& widths);
+  void locate_targets(const std::vector<Vec3>& targets, const std::vector<double>& target_widths);
+  void find_interactions();
   // x, y, z and, with local widths, the squared width.
   [[nodiscard]] std::size_t geometry_fields() const { return local_widths_ ? 4 : 3; }
   [[nodiscard]] std::size_t field_stride() const { return cpu::padded_count(sources_->points.size()) + cpu::kLanes; }
@@ -88,10 +100,10 @@ class SumEngine {
   bool local_widths_;
   const std::atomic<bool>* cancel_;
   std::shared_ptr<Sources> sources_;
+  std::shared_ptr<SourceFields> source_fields_;
   std::shared_ptr<Octree> target_tree_;  // the sources' tree when they are the targets
   std::shared_ptr<TargetBlocks<T>> targets_;
-  InteractionLists lists_;
-  std::vector<std::unique_ptr<M2lMatrices<T>>> matrices_;  // of every order, made when it is needed
+  std::shared_ptr<Interactions> interactions_;
   // Of the current run:
   M2lTerms terms_;
   std::size_t coefficients_ = 0;
