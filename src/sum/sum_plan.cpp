@@ -18,12 +18,12 @@ struct Setting {
 };
 
 // Cheapest first. The measured error of each row, over all test clouds and all four sums, is below its accuracy.
-constexpr std::array<Setting, 8> kSettings{{{2e-2, 4, 0.8, 4, 4, 48, false},
-                                            {1e-2, 5, 0.8, 4, 4, 64, false},
-                                            {3e-3, 7, 0.73, 8, 4, 64, false},
-                                            {1e-3, 7, 0.7, 7, 5, 72, false},
-                                            {3e-4, 8, 0.65, 5, 5, 96, false},
-                                            {1e-4, 10, 0.65, 7, 5, 128, false},
+constexpr std::array<Setting, 8> kSettings{{{2e-2, 4, 0.8, 3, 4, 48, false},
+                                            {1e-2, 5, 0.8, 3, 4, 64, false},
+                                            {3e-3, 7, 0.73, 6, 4, 64, false},
+                                            {1e-3, 7, 0.68, 7, 5, 72, false},
+                                            {3e-4, 8, 0.65, 4, 5, 96, false},
+                                            {1e-4, 10, 0.65, 5, 5, 128, false},
                                             {1e-5, 13, 0.55, 7, 7, 128, true},
                                             {1e-6, 14, 0.5, 5, 7, 128, true}}};
 constexpr double kLoosest = 1e-1;

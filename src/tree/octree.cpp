@@ -8,13 +8,8 @@
 namespace g3r {
 namespace {
 
-constexpr int kMaxLevel = 21;            // bits per axis of a Morton code
-constexpr std::size_t kNodeBlock = 256;  // nodes per parallel block
-
-struct Box {
-  Vec3 low;
-  Vec3 high;
-};
+constexpr int kMaxLevel = 21;           // bits per axis of a Morton code
+constexpr std::size_t kNodeBlock = 16;  // nodes per parallel block
 
 // Cuts a node into its non-empty octants and appends them.
 void split(const std::vector<std::uint64_t>& morton, std::uint32_t index, std::vector<OctreeNode>& nodes) {
@@ -42,44 +37,21 @@ void split(const std::vector<std::uint64_t>& morton, std::uint32_t index, std::v
   }
 }
 
-// Tight bounding boxes from the leaves up; a node's radius reaches their farthest corner.
+// Radius and width of every node. Each level looks at all points.
 void measure(const std::vector<Vec3>& points, const std::vector<double>& widths, Octree& tree) {
-  std::vector<Box> boxes(tree.nodes.size());
-  for (std::size_t level = tree.levels(); level-- > 0;) {
-    const std::size_t first = tree.level_begin[level];
-    parallel::for_blocks(tree.level_begin[level + 1] - first, kNodeBlock, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = first + begin; i < first + end; ++i) {
-        OctreeNode& node = tree.nodes[i];
-        Box box{points[node.begin], points[node.begin]};
-        const auto include = [&box](const Vec3& low, const Vec3& high) {
-          for (std::size_t a = 0; a < 3; ++a) {
-            box.low[a] = std::min(box.low[a], low[a]);
-            box.high[a] = std::max(box.high[a], high[a]);
-          }
-        };
-        node.width = widths.size() == 1 ? widths[0] : 0;
-        if (node.leaf()) {
-          for (std::uint32_t p = node.begin; p < node.end; ++p) {
-            include(points[p], points[p]);
-            if (widths.size() > 1) node.width = std::max(node.width, widths[p]);
-          }
-        } else {
-          for (std::uint32_t c = node.first_child; c < node.first_child + node.child_count; ++c) {
-            include(boxes[c].low, boxes[c].high);
-            node.width = std::max(node.width, tree.nodes[c].width);
-          }
-        }
-        boxes[i] = box;
-        const Vec3 centre = node.centre();
-        double squared = 0;
-        for (std::size_t a = 0; a < 3; ++a) {
-          const double reach = std::max(std::abs(box.low[a] - centre[a]), std::abs(box.high[a] - centre[a]));
-          squared += reach * reach;
-        }
-        node.radius = std::sqrt(squared);
+  parallel::for_blocks(tree.nodes.size(), kNodeBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      OctreeNode& node = tree.nodes[i];
+      const Vec3 centre = node.centre();
+      double squared = 0;
+      for (std::uint32_t p = node.begin; p < node.end; ++p) {
+        const Vec3 d{points[p][0] - centre[0], points[p][1] - centre[1], points[p][2] - centre[2]};
+        squared = std::max(squared, d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
       }
-    });
-  }
+      node.radius = std::sqrt(squared);
+      node.width = widths.size() == 1 ? widths[0] : *std::max_element(widths.begin() + node.begin, widths.begin() + node.end);
+    }
+  });
 }
 
 // Splits level by level every node that `wanted(node)` names; children start as `split` makes them.

@@ -18,7 +18,7 @@ struct OctreeNode {
   std::uint32_t parent = 0;       ///< the root is its own parent
   std::int32_t level = 0;
   std::array<std::int32_t, 3> cell{0, 0, 0};  ///< integer position of the cube at its level
-  double radius = 0;                          ///< all points lie within this distance of the centre
+  double radius = 0;                          ///< distance of its farthest point from the centre
   double width = 0;                           ///< largest mollifier width of its points
 
   [[nodiscard]] bool leaf() const { return child_count == 0; }
@@ -33,7 +33,7 @@ struct OctreeNode {
 };
 
 /// Octree over points in canonical order (cloud/canonical_cloud.h). Leaves hold at most `leaf_points`, except at the deepest level (21),
-/// where the grid of the codes ends. Empty cubes have no node. O(N + nodes log N).
+/// where the grid of the codes ends. Empty cubes have no node. O(N levels).
 struct Octree {
   std::vector<OctreeNode> nodes;           ///< breadth first
   std::vector<std::uint32_t> level_begin;  ///< nodes of level l: [level_begin[l], level_begin[l + 1])
