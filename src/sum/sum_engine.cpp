@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kLeafBlock = 4;   // leaves per parallel block
 constexpr std::size_t kNodeBlock = 32;  // nodes per parallel block
 constexpr int kLeastOrder = 2;          // with order 1 gradients would be constant in a cube
-constexpr double kFewerTermsCut = 0.5;  // of the forms of one order less: at 1 they err by half more than the Stokeslets
+constexpr double kFewerTermsCut = 0.3;  // of the forms of one order less: at 1 they err by half more than the Stokeslets
 
 std::size_t multipole_channels(cpu::NearForm form, int batch, bool local_widths) {
   switch (form) {
