@@ -5,7 +5,8 @@
 // Beyond the reach of a task, at most kMollifierReach<T> widths R, the kernels are plain powers of 1/rho. Within, they are polynomials in
 // w = 2 (R^2 + 30) / R^2 * s / (s + 30) - 1 in [-1, 1], s = (rho / e)^2 in [0, R^2], fitted by Lawson iteration for the least relative
 // error (float: 6e-8, double: 1e-15 before rounding). The mapping spreads the bell of exp(-s/2), so degree 10 and 24 suffice where a
-// polynomial in s would need twice that. A vector of sources takes the mollified path when any lane is near; the lanes that are not keep
+// polynomial in s would need twice that. Where a task allows kRoughError, floats go without the Newton step of 1/rho, and degree 6 (1.3e-4)
+// will do. A vector of sources takes the mollified path when any lane is near; the lanes that are not keep
 // the plain value.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cpu/near_field.cpp"
@@ -109,14 +110,15 @@ using Tag = hn::CappedTag<T, kLanes>;
 template <class T>
 using Vec = hn::Vec<Tag<T>>;
 
-// Five times the error of an estimate of 1/sqrt: of the fifth power, the highest in the kernels.
+// Relative error of the processor's estimate of 1/sqrt: 2^-14 of VRSQRT14PS, 1.5 * 2^-12 of RSQRTPS; others need the Newton step.
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
-constexpr double kRoughError = 5 * 6.2e-5;
+constexpr double kEstimateError = 6.2e-5;
 #elif HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR
-constexpr double kRoughError = 5 * 3.7e-4;
+constexpr double kEstimateError = 3.7e-4;
 #else
-constexpr double kRoughError = 1;
+constexpr double kEstimateError = 1;
 #endif
+constexpr double kRoughError = 5 * kEstimateError;  // of 1/rho to the fifth power, the highest in the kernels; the polynomials err less
 
 template <class T, Precision kPrecision>
 HWY_INLINE Vec<T> Reciprocal(Vec<T> a) {
@@ -339,7 +341,8 @@ class Gathering {
       const Vec<T> shift[3] = {hn::Set(d, run.shift[0]), hn::Set(d, run.shift[1]), hn::Set(d, run.shift[2])};
       for (std::size_t i = 0; i < count; i += lanes) {
         HWY_UNROLL(3)
-        for (std::size_t f = 0; f < 3; ++f) hn::StoreU(hn::Add(hn::LoadU(d, from + f * task_.stride + i), shift[f]), d, to + f * kStride + i);
+        for (std::size_t f = 0; f < 3; ++f)
+          hn::StoreU(hn::Add(hn::LoadU(d, from + f * task_.stride + i), shift[f]), d, to + f * kStride + i);
         HWY_UNROLL(kMostFields)
         for (std::size_t f = 3; f < kFields; ++f) hn::StoreU(hn::LoadU(d, from + f * task_.stride + i), d, to + f * kStride + i);
       }

@@ -1,7 +1,8 @@
 // Pair sums by SIMD: sources in the lanes, targets one by one. One instruction set per machine, chosen at run time (Highway).
 //
 // All kernels are unnormalised (without 1/(4 pi)). Precision T: float, added in double every 1536 sources or fewer, or double throughout.
-// Relative error of one kernel evaluation: 1e-6 (float), 1e-14 (double), see docs/math.md, "Mollified kernels by polynomials".
+// Relative error of one kernel evaluation: 1e-6 (float), 1e-14 (double), or up to NearTask::kernel_error (float), see docs/math.md,
+// "Mollified kernels by polynomials".
 #pragma once
 
 #include <cstddef>
@@ -35,8 +36,8 @@ struct SourceRun {
 template <class T>
 struct NearTask {
   NearForm form;
-  int batch;                ///< K: 1, 4 or 9; ignored by forms without K
-  const T* fields;          ///< of the sources: x y z [squared width if local_widths] F values; field f of source i at [f * stride + i]
+  int batch;        ///< K: 1, 4 or 9; ignored by forms without K
+  const T* fields;  ///< of the sources: x y z [squared width if local_widths] F values; field f of source i at [f * stride + i]
   std::size_t stride;
   const SourceRun<T>* runs;
   std::size_t run_count;

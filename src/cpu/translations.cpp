@@ -36,6 +36,14 @@ struct Route {
   std::size_t to[kChannels];
 };
 
+// Each to its own place; `distance`: from one to the next.
+template <std::size_t kChannels>
+Route<kChannels> InPlace(std::size_t distance) {
+  Route<kChannels> route;
+  for (std::size_t k = 0; k < kChannels; ++k) route.from[k] = route.to[k] = k * distance;
+  return route;
+}
+
 // One tile: kChannels expansions of each of kMoves translations. `finish` changes the products of one translation and vector of rows.
 template <class T, std::size_t kMoves, std::size_t kChannels, class Finish>
 HWY_INLINE void TranslateTile(const TranslationMatrix<T>& matrix, const Translation<T>* moves, const Route<kChannels>& route,
@@ -45,10 +53,10 @@ HWY_INLINE void TranslateTile(const TranslationMatrix<T>& matrix, const Translat
   constexpr std::size_t kCount = kMoves * kChannels;
   HWY_ALIGN T packed[kCount * kPackedStride];
   for (std::size_t j = 0; j < matrix.most_columns; j += lanes) {
-    HWY_UNROLL(20)
+    HWY_UNROLL(kTile)
     for (std::size_t m = 0; m < kMoves; ++m) {
       const Vec<T> sign = hn::Load(d, moves[m].signs + j);
-      HWY_UNROLL(20)
+      HWY_UNROLL(kTile)
       for (std::size_t k = 0; k < kChannels; ++k) {
         hn::Store(hn::Mul(sign, hn::Load(d, moves[m].from + route.from[k] + j)), d, packed + (m * kChannels + k) * kPackedStride + j);
       }
@@ -59,20 +67,20 @@ HWY_INLINE void TranslateTile(const TranslationMatrix<T>& matrix, const Translat
     const ColumnRange range{matrix.columns[g].first, HWY_MIN(matrix.columns[g].last, matrix.most_columns)};
     for (std::size_t lane = 0; lane < kLanes; lane += lanes) {
       Vec<T> sum[kCount];
-      HWY_UNROLL(20)
+      HWY_UNROLL(kTile)
       for (std::size_t c = 0; c < kCount; ++c) sum[c] = hn::Zero(d);
       const T* column = rows + lane;
       for (std::size_t j = range.first; j < range.last; ++j, column += kLanes) {
         const Vec<T> entries = hn::Load(d, column);
-        HWY_UNROLL(20)
+        HWY_UNROLL(kTile)
         for (std::size_t c = 0; c < kCount; ++c) sum[c] = hn::MulAdd(entries, hn::Set(d, packed[c * kPackedStride + j]), sum[c]);
       }
       const std::size_t row = g * kLanes + lane;
-      HWY_UNROLL(20)
+      HWY_UNROLL(kTile)
       for (std::size_t m = 0; m < kMoves; ++m) {
         finish(moves[m], sum + m * kChannels);
         const Vec<T> sign = hn::Load(d, moves[m].signs + row);
-        HWY_UNROLL(20)
+        HWY_UNROLL(kTile)
         for (std::size_t k = 0; k < kChannels; ++k) {
           T* to = moves[m].to + route.to[k] + row;
           hn::Store(hn::MulAdd(sign, sum[m * kChannels + k], hn::Load(d, to)), d, to);
@@ -109,24 +117,22 @@ HWY_INLINE void TranslateTiles(const TranslationMatrix<T>& matrix, const Transla
 
 template <class T, std::size_t kChannels>
 void TranslateAll(const TranslationMatrix<T>& matrix, const Translation<T>* moves, std::size_t count, std::size_t distance) {
-  Route<kChannels> route;
-  for (std::size_t k = 0; k < kChannels; ++k) route.from[k] = route.to[k] = k * distance;
-  TranslateTiles<T, kTile / kChannels, kChannels>(matrix, moves, count, route, [](const Translation<T>&, Vec<T>* /*sum*/) HWY_ATTR {});
+  TranslateTiles<T, kTile / kChannels, kChannels>(matrix, moves, count, InPlace<kChannels>(distance),
+                                                  [](const Translation<T>&, Vec<T>* /*sum*/) HWY_ATTR {});
 }
 
 // M2M and L2L of the Stokeslets. The matrix does not mix expansions, so moments are moved after it, where that is a few operations per
 // vector.
 template <class T, std::size_t kChannels>
 void TranslateStokes(const TranslationMatrix<T>& matrix, const Translation<T>* moves, std::size_t count, std::size_t distance) {
-  Route<kChannels> route;
-  for (std::size_t k = 0; k < kChannels; ++k) route.from[k] = route.to[k] = k * distance;
-  TranslateTiles<T, kTile / kChannels, kChannels>(matrix, moves, count, route, [](const Translation<T>& t, Vec<T>* sum) HWY_ATTR {
-    for (std::size_t a = 0; a < 3; ++a) {
-      const Vec<T> shift = hn::Set(Tag<T>(), t.move[a]);
-      sum[1 + a] = hn::MulAdd(shift, sum[0], sum[1 + a]);
-      sum[7] = hn::MulAdd(shift, sum[4 + a], sum[7]);
-    }
-  });
+  TranslateTiles<T, kTile / kChannels, kChannels>(matrix, moves, count, InPlace<kChannels>(distance),
+                                                  [](const Translation<T>& t, Vec<T>* sum) HWY_ATTR {
+                                                    for (std::size_t a = 0; a < 3; ++a) {
+                                                      const Vec<T> shift = hn::Set(Tag<T>(), t.move[a]);
+                                                      sum[1 + a] = hn::MulAdd(shift, sum[0], sum[1 + a]);
+                                                      sum[7] = hn::MulAdd(shift, sum[4 + a], sum[7]);
+                                                    }
+                                                  });
 }
 
 // M2L of one form of S: W, E_a; or W, P_a, Q; and at last the weighted expansion of local widths.

@@ -131,8 +131,8 @@ bool starts_coarse(const Settings& settings, std::size_t points) {
 Solved solve_coarse_to_fine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
                             Stages& stages) {
   Level level = solve_level(points, morton, settings, 1, stages);
-  if (settings.refinement_width == 0) return {std::move(level.result), {}};
   stages.begin("refine");
+  if (settings.refinement_width == 0) return {std::move(level.result), {}};
   Refinement refinement = refine_normals(*level.field, level.result.eta);
   return {std::move(level.result), std::move(refinement)};
 }

@@ -246,9 +246,9 @@ FastSum::FastSum(const FastSum& other, Widths narrower) {
   for (std::size_t i = 0; i < (narrower.uniform() && from.widths.uniform() ? 1 : from.points.size()); ++i) {
     if (!(narrower[i] <= from.widths[i])) throw std::invalid_argument("a sum that shares a tree has a larger width");
   }
-  impl_.reset(new Impl{from.points, narrower, from.plan, from.cancel,
-                       std::visit([&](const auto& engine) { return Impl::Engine(std::decay_t<decltype(engine)>(engine, narrower)); },
-                                  from.engine)});
+  impl_.reset(new Impl{
+      from.points, narrower, from.plan, from.cancel,
+      std::visit([&](const auto& engine) { return Impl::Engine(std::decay_t<decltype(engine)>(engine, narrower)); }, from.engine)});
 }
 
 FastSum::~FastSum() = default;

@@ -27,7 +27,7 @@ constexpr std::array<Setting, 8> kSettings{{{2e-2, 4, 0.8, 3, 4, 48, false},
                                             {1e-5, 13, 0.55, 7, 7, 128, true},
                                             {1e-6, 14, 0.5, 5, 7, 128, true}}};
 constexpr double kLoosest = 1e-1;
-constexpr double kKernelShare = 0.4;  // of the accuracy: what the kernels of near pairs may err by
+constexpr double kKernelShare = 0.4;            // of the accuracy: what the kernels of near pairs may err by
 constexpr std::size_t kDirectBelow = 2000;      // measured crossover of the direct and the hierarchical sum
 constexpr std::size_t kDirectLeafPoints = 256;  // direct sums: leaves only bound the rounding of local coordinates
 
