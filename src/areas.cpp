@@ -17,7 +17,7 @@ constexpr double kMost = 1.3;       // a square grid has 1.27; the w of open sur
 }  // namespace
 
 std::vector<Vec3> area_vectors(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton,
-                               const std::vector<std::uint32_t>& near, const std::vector<Vec3>& normals, const OpenSheets& sheets,
+                               const std::vector<std::uint32_t>& near, const std::vector<Vec3>& normals, const OpenSurfaces& sheets,
                                const std::atomic<bool>* cancel) {
   const std::vector<double> spacing = smoothed_spacing(local_spacing(points, near), near);
   std::vector<Vec3> eta = normals;
@@ -28,10 +28,10 @@ std::vector<Vec3> area_vectors(const std::vector<Vec3>& points, const std::vecto
   }
   FastSum sum(points, morton, Widths(std::move(widths)), sum_plan(kAccuracy, points.size()), cancel);
   std::vector<double> winding = sum.winding(eta);
-  if (!sheets.sheet.empty()) {
+  if (!sheets.part.empty()) {
     std::vector<double> closed;
     for (std::size_t i = 0; i < winding.size(); ++i) {
-      if (sheets.sheet[i] == OpenSheets::kNone) closed.push_back(winding[i]);
+      if (sheets.part[i] == OpenSurfaces::kNone) closed.push_back(winding[i]);
     }
     if (closed.empty()) return eta;
     winding = std::move(closed);

@@ -1,7 +1,7 @@
 // The areas that points with known normals stand for.
 #pragma once
 
-#include "orient/open_sheets.h"
+#include "orient/open_surfaces.h"
 
 #include <g3r/points.h>
 
@@ -19,6 +19,6 @@ namespace g3r {
 /// Cancelled.
 [[nodiscard]] std::vector<Vec3> area_vectors(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton,
                                              const std::vector<std::uint32_t>& near, const std::vector<Vec3>& normals,
-                                             const OpenSheets& sheets, const std::atomic<bool>* cancel);
+                                             const OpenSurfaces& sheets, const std::atomic<bool>* cancel);
 
 }  // namespace g3r

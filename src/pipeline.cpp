@@ -146,15 +146,18 @@ void hand_out(const CanonicalCloud& cloud, const std::vector<Vec3>& eta, const s
 std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 
 // The sides of points on open sheets do not come from the equations, and their confidence neither.
-void add_sheets(const OpenSheets& sheets, std::vector<float>& confidence, Stats& stats) {
-  if (sheets.sheet.empty()) return;
+void add_sheets(const OpenSurfaces& sheets, std::vector<float>& confidence, Stats& stats) {
+  if (sheets.part.empty()) return;
   std::size_t open = 0;
   std::size_t undecided = 0;
-  for (std::size_t i = 0; i < sheets.sheet.size(); ++i) {
-    if (sheets.sheet[i] == OpenSheets::kNone) continue;
+  for (std::size_t i = 0; i < sheets.part.size(); ++i) {
+    if (sheets.part[i] == OpenSurfaces::kNone) {
+      confidence[i] *= sheets.certainty[i];
+      continue;
+    }
     confidence[i] = sheets.certainty[i];
     ++open;
-    undecided += sheets.certainty[i] < 1 ? 1 : 0;
+    undecided += sheets.certainty[i] <= 0.5F ? 1 : 0;
   }
   if (open == 0) return;
   const auto all = static_cast<double>(confidence.size());
@@ -199,7 +202,8 @@ Oriented orient_problem(const Problem& problem, const Options& options, Stages& 
   return out;
 }
 
-double doubt(const Stats& stats) { return stats.confidence_below_half + stats.undecided_share; }
+// What is called open at one noise may be closed at another.
+double doubt(const Stats& stats) { return stats.confidence_below_half + stats.open_share; }
 
 bool may_try_noises(const Problem& problem, const Options& options) {
   return problem.settings.method == Method::kEnergy && options.preset != Preset::kPaper && options.epsilon.unit == Length::Unit::kAuto &&

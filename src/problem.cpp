@@ -54,6 +54,9 @@ Problem prepare(const PointsView& points, const Options& options, Stages& stages
   } else if (options.preset != Preset::kPaper) {
     problem.noise = estimate_noise(cloud, *neighbours, problem.spacing);
   }
+  if (options.method == Method::kAuto && options.preset != Preset::kPaper) {
+    problem.line_distance = surface_distance(cloud, *neighbours, problem.spacing);
+  }
   choose_scales(problem, options, std::move(near), local);
   if (!options.wnnc_widths.empty() && options.method != Method::kWnnc) throw InvalidInput("wnnc_widths belong to the method wnnc");
   if (is_baseline(options.method)) {
@@ -73,6 +76,19 @@ Problem with_noise(const Problem& problem, double noise, const Options& options)
   const std::vector<double> local = local_spacing(same.cloud.points, near);
   choose_scales(same, options, std::move(near), local);
   return same;
+}
+
+Problem on_sites(const Problem& problem, const Sites& sites, const Options& options) {
+  Problem coarse;
+  coarse.cloud.frame = problem.cloud.frame;
+  coarse.cloud.points = sites.points;
+  coarse.cloud.morton = sites.morton;
+  const Neighbours neighbours(sites.points);
+  coarse.spacing = typical_spacing(sites.spacing);
+  const std::optional<double> given = given_noise(options.noise, problem.cloud, problem.spacing);
+  coarse.noise = given ? *given : estimate_noise(sites.points, neighbours, coarse.spacing);
+  choose_scales(coarse, options, neighbours.of_all(kSpacingNeighbours), sites.spacing);
+  return coarse;
 }
 
 Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, const Options& options) {

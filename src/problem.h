@@ -3,6 +3,7 @@
 
 #include "baselines/baseline.h"
 #include "cloud/canonical_cloud.h"
+#include "cloud/sites.h"
 #include "orient/settings.h"
 #include "stages.h"
 
@@ -21,6 +22,7 @@ struct Problem {
   std::vector<double> local_spacing;  ///< smoothed, per point; of clean clouds only
   double spacing = 0;                 ///< typical_spacing()
   double noise = 0;                   ///< given_noise() or estimate_noise()
+  double line_distance = 0;  ///< surface_distance(): 0, or the distance of the sites that are solved for where the samples are lines
   Settings settings;
   std::optional<BaselineSettings> baseline;  ///< with the methods wnnc, agr and pgr
 };
@@ -34,5 +36,8 @@ struct Problem {
 
 /// The same problem on some of its points (ascending indices), with a spacing and settings of their own.
 [[nodiscard]] Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, const Options& options);
+
+/// The problem on the sites of its cloud, with their spacing and noise, and settings of their own.
+[[nodiscard]] Problem on_sites(const Problem& problem, const Sites& sites, const Options& options);
 
 }  // namespace g3r

@@ -3,6 +3,7 @@
 #include "baselines/baseline.h"
 #include "cloud/clusters.h"
 #include "cloud/neighbours.h"
+#include "cloud/sites.h"
 #include "cloud/spacing.h"
 #include "orient/coarse_to_fine.h"
 #include "orient/creases.h"
@@ -16,7 +17,9 @@
 #include "solve/green_system.h"
 #include "solve/iterative_solver.h"
 #include "sum/fast_sum.h"
+#include "vector.h"
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -25,8 +28,9 @@ namespace {
 
 constexpr std::size_t kFewestApart = 100;  // points that are solved for again without the open sheets of their cloud
 constexpr double kAtOdds = 1e-3;           // share of the points against most of their facet, from which facets are solved for
+constexpr float kChoice = 0.5F;            // certainty of an open surface that has no outside
+constexpr double kBetweenSites = 0.7;      // site spacings, of the field where there are no sites: narrower shows single ones
 constexpr int kFacetRounds = 3;            // points on no facet come right after those on one, and facets grow
-constexpr double kSameSide = 0.5;          // cosine between the normals of a point and of its cluster on an open sheet
 
 void record(const Settings& s, const IterativeResult& result, Stats& stats) {
   stats.converged = result.converged || s.tolerance == 0 || (!result.residuals.empty() && result.residuals.back() <= s.accepted_residual);
@@ -66,11 +70,15 @@ Solution solve_equations(const Problem& problem, const Options& options, Stages&
   return solution;
 }
 
+bool has_open_part(const OpenSurfaces& sheets) {
+  return std::any_of(sheets.part.begin(), sheets.part.end(), [](std::uint32_t part) { return part != OpenSurfaces::kNone; });
+}
+
 // Points on open sheets get area vectors along the normals found for them.
-void set_sheet_areas(const OpenSheets& sheets, const std::vector<double>& spacing, const std::vector<Vec3>& normals,
+void set_sheet_areas(const OpenSurfaces& sheets, const std::vector<double>& spacing, const std::vector<Vec3>& normals,
                      std::vector<Vec3>& eta) {
-  for (std::size_t i = 0; i < sheets.sheet.size(); ++i) {
-    if (sheets.sheet[i] == OpenSheets::kNone) continue;
+  for (std::size_t i = 0; i < sheets.part.size(); ++i) {
+    if (sheets.part[i] == OpenSurfaces::kNone) continue;
     for (std::size_t a = 0; a < 3; ++a) eta[i][a] = spacing[i] * spacing[i] * normals[i][a];
   }
 }
@@ -95,18 +103,19 @@ void agree_on_facets(const Problem& problem, const std::vector<std::uint8_t>& pr
   }
 }
 
-// The normals of a clean cloud, where its points prove what the surface is.
-void fit_surface(const Problem& problem, std::vector<Vec3>& eta, std::vector<Vec3>& normals, Stages& stages) {
-  const std::vector<Vec3>& points = problem.cloud.points;
-  const std::vector<double>& spacing = problem.local_spacing;
-  const Neighbours neighbours(points);
+// The directions of a clean cloud, where its points prove what the surface is. Returns for which they do.
+std::vector<std::uint8_t> fit_directions(const Problem& problem, const Neighbours& neighbours, std::vector<Vec3>& normals) {
+  std::vector<std::uint8_t> proven = fit_jets(problem.cloud.points, problem.near, problem.local_spacing, normals);
+  fit_planes(problem.cloud.points, neighbours, problem.local_spacing, proven, normals);
+  return proven;
+}
+
+// The normals of a clean cloud: directions, creases, and the sides of facets.
+void fit_surface(const Problem& problem, const Neighbours& neighbours, std::vector<Vec3>& eta, std::vector<Vec3>& normals, Stages& stages) {
   std::vector<std::uint8_t> proven;
-  const auto fit = [&] {
-    proven = fit_jets(points, problem.near, spacing, normals);
-    fit_planes(points, neighbours, spacing, proven, normals);
-  };
+  const auto fit = [&] { proven = fit_directions(problem, neighbours, normals); };
   fit();
-  if (sharpen_creases(points, problem.near, spacing, normals)) fit();
+  if (sharpen_creases(problem.cloud.points, problem.near, problem.local_spacing, normals)) fit();
   agree_on_facets(problem, proven, fit, eta, normals, stages);
 }
 
@@ -118,32 +127,20 @@ Solution solve_on_points(const Problem& problem, const Options& options, Stages&
   if (s.polish_steps == 0) return solution;
   Polished polished = polish(points, problem.cloud.morton, s, problem.local_spacing, {}, solution.refinement, stages);
   std::vector<Vec3>& normals = polished.refinement.normals;
-  OpenSheets sheets;
-  if (problem.local_spacing.empty()) {  // noisy
-    const Neighbours neighbours(points);
-    const NoisyCloud noisy{points, neighbours, s.noise, problem.spacing};
-    sheets = find_open_sheets(points, {}, &noisy, normals);
-    if (!sheets.sheet.empty()) set_sheet_areas(sheets, local_spacing(points), normals, polished.eta);
-  } else {
-    sheets = find_open_sheets(points, problem.near, nullptr, normals);
-    set_sheet_areas(sheets, problem.local_spacing, normals, polished.eta);
-    fit_surface(problem, polished.eta, normals, stages);
+  const Neighbours neighbours(points);
+  const auto find_open = [&](std::vector<Vec3>& sides) {
+    return find_open_surfaces(points, problem.cloud.morton, problem.spacing, problem.noise, s.sums, sides, stages.cancel());
+  };
+  OpenSurfaces sheets = find_open(normals);
+  const bool is_clean = !problem.local_spacing.empty();
+  if (has_open_part(sheets)) {
+    set_sheet_areas(sheets, local_spacing(points), normals, polished.eta);
+    if (is_clean) fit_directions(problem, neighbours, normals);
+  } else if (is_clean) {
+    fit_surface(problem, neighbours, polished.eta, normals, stages);
+    if (!sheets.part.empty()) sheets = find_open(normals);  // facets may have found sides that certify it
   }
   return {std::move(polished.eta), std::move(polished.refinement), std::move(sheets)};
-}
-
-// From clusters to their points, whose normals face the side of the cluster's.
-void spread_sheets(const OpenSheets& sheets, const Clusters& clusters, const std::vector<Vec3>& cluster_normals, Solution& solution) {
-  if (sheets.sheet.empty()) return;
-  for (std::size_t i = 0; i < solution.eta.size(); ++i) {
-    const std::uint32_t c = clusters.cluster_of[i];
-    solution.sheets.sheet.push_back(sheets.sheet[c]);
-    solution.sheets.certainty.push_back(sheets.certainty[c]);
-    if (sheets.sheet[c] == OpenSheets::kNone) continue;
-    Vec3& n = solution.refinement.normals[i];
-    const Vec3& side = cluster_normals[c];
-    if (n[0] * side[0] + n[1] * side[1] + n[2] * side[2] < kSameSide) n = side;
-  }
 }
 
 Refinement solve_clusters(const Clusters& clusters, const Settings& s, Stages& stages, Stats& stats) {
@@ -166,11 +163,6 @@ Solution solve_on_clusters(const Problem& problem, Stages& stages, Stats& stats)
   const Refinement first = solve_clusters(clusters, s, stages, stats);
   Polished polished = polish(clusters.points, clusters.morton, s, {}, clusters.multiplicity, first, stages);
   std::vector<Vec3>& eta = polished.eta;
-  const Neighbours neighbours(problem.cloud.points);
-  const NoisyCloud noisy{problem.cloud.points, neighbours, s.noise, problem.spacing};
-  OpenSheets sheets;
-  if (problem.noise > 0) sheets = find_open_sheets(clusters.points, {}, &noisy, polished.refinement.normals);
-  if (!sheets.sheet.empty()) set_sheet_areas(sheets, local_spacing(clusters.points), polished.refinement.normals, eta);
   const FastSum field(clusters.points, clusters.morton, Widths(s.polish_width), s.sums, stages.cancel());
   Solution solution;
   solution.eta.resize(problem.cloud.size());
@@ -179,23 +171,50 @@ Solution solve_on_clusters(const Problem& problem, Stages& stages, Stats& stats)
     for (std::size_t a = 0; a < 3; ++a) solution.eta[i][a] = eta[c][a] / clusters.multiplicity[c];
   }
   solution.refinement = unit_normals(field.winding_gradient_at(eta, problem.cloud.points, stages.cancel()), solution.eta);
-  spread_sheets(sheets, clusters, polished.refinement.normals, solution);
+  solution.sheets = find_open_surfaces(problem.cloud.points, problem.cloud.morton, problem.spacing, problem.noise, s.sums,
+                                       solution.refinement.normals, stages.cancel());
+  if (!solution.sheets.part.empty()) {
+    set_sheet_areas(solution.sheets, local_spacing(problem.cloud.points), solution.refinement.normals, solution.eta);
+  }
   return solution;
 }
 
-// Solves for some points (ascending) without the others.
-void solve_apart(const Problem& problem, const std::vector<std::uint32_t>& some, const Options& options, Stages& stages, Stats& stats,
-                 Solution& solution) {
+// Where the samples are lines: on sites as far apart as the lines, which are a surface. The refinement is evaluated at every point.
+Solution solve_on_sites(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
+  const std::vector<Vec3>& points = problem.cloud.points;
+  const Sites sites = place_sites(points, problem.cloud.morton, Neighbours(points), problem.line_distance);
+  const Problem coarse = on_sites(problem, sites, options);
+  const Solution solved = solve(coarse, options, stages, stats);
+  Solution out;
+  out.eta.resize(points.size());
+  std::vector<double> members(sites.points.size(), 0);
+  for (const std::uint32_t s : sites.site_of) ++members[s];
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint32_t s = sites.site_of[i];
+    out.eta[i] = vector::scale(solved.eta[s], 1 / members[s]);
+    if (solved.sheets.part.empty()) continue;
+    out.sheets.part.push_back(solved.sheets.part[s]);
+    out.sheets.certainty.push_back(solved.sheets.certainty[s]);
+  }
+  const FastSum field(sites.points, sites.morton, Widths(kBetweenSites * coarse.spacing), coarse.settings.sums, stages.cancel());
+  out.refinement = unit_normals(field.winding_gradient_at(solved.eta, points, stages.cancel()), out.eta);
+  return out;
+}
+
+// Solves for some points (ascending) without the others. An open surface that is one by itself too stays as it is.
+void solve_apart(const Problem& problem, const std::vector<std::uint32_t>& some, bool is_open, const Options& options, Stages& stages,
+                 Stats& stats, Solution& solution) {
   if (some.size() < kFewestApart) return;
   const Solution apart = solve(part_of(problem, some, options), options, stages, stats);
+  if (is_open && !apart.sheets.part.empty()) return;
   for (std::size_t k = 0; k < some.size(); ++k) {
     const std::uint32_t i = some[k];
     solution.eta[i] = apart.eta[k];
     solution.refinement.normals[i] = apart.refinement.normals[k];
     solution.refinement.strength[i] = apart.refinement.strength[k];
-    const bool open = !apart.sheets.sheet.empty() && apart.sheets.sheet[k] != OpenSheets::kNone;
-    solution.sheets.sheet[i] = open ? some[apart.sheets.sheet[k]] : OpenSheets::kNone;
-    solution.sheets.certainty[i] = open ? apart.sheets.certainty[k] : 1;
+    const bool open = !apart.sheets.part.empty() && apart.sheets.part[k] != OpenSurfaces::kNone;
+    solution.sheets.part[i] = open ? some[apart.sheets.part[k]] : OpenSurfaces::kNone;
+    solution.sheets.certainty[i] = apart.sheets.certainty.empty() ? 1 : apart.sheets.certainty[k];
   }
 }
 
@@ -203,6 +222,7 @@ void solve_apart(const Problem& problem, const std::vector<std::uint32_t>& some,
 
 Solution solve(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
   if (problem.baseline) return solve_by_baseline(problem, stages, stats);
+  if (problem.line_distance > 0) return solve_on_sites(problem, options, stages, stats);
   if (problem.settings.cluster_side > 0) return solve_on_clusters(problem, stages, stats);
   return solve_on_points(problem, options, stages, stats);
 }
@@ -211,16 +231,18 @@ void solve_sheets_apart(const Problem& problem, const Options& options, Stages& 
   std::map<std::uint32_t, std::vector<std::uint32_t>> parts;
   const auto collect = [&] {
     parts.clear();
-    for (std::uint32_t i = 0; i < solution.sheets.sheet.size(); ++i) parts[solution.sheets.sheet[i]].push_back(i);
+    for (std::uint32_t i = 0; i < solution.sheets.part.size(); ++i) parts[solution.sheets.part[i]].push_back(i);
   };
   collect();
   if (parts.size() < 2) return;  // no sheet, or one that is all there is
   for (const auto& [sheet, points] : parts) {
-    if (sheet != OpenSheets::kNone) solve_apart(problem, points, options, stages, stats, solution);
+    // What encloses nothing is not closed by itself either.
+    const bool may_be_closed = sheet != OpenSurfaces::kNone && solution.sheets.certainty[sheet] > kChoice;
+    if (may_be_closed) solve_apart(problem, points, true, options, stages, stats, solution);
   }
   collect();
-  if (parts.size() > 1 && parts.count(OpenSheets::kNone) > 0) {
-    solve_apart(problem, parts[OpenSheets::kNone], options, stages, stats, solution);
+  if (parts.size() > 1 && parts.count(OpenSurfaces::kNone) > 0) {
+    solve_apart(problem, parts[OpenSurfaces::kNone], false, options, stages, stats, solution);
   }
 }
 

@@ -1,7 +1,7 @@
 // From a problem to area vectors and normals.
 #pragma once
 
-#include "orient/open_sheets.h"
+#include "orient/open_surfaces.h"
 #include "orient/refine.h"
 #include "problem.h"
 #include "stages.h"
@@ -16,7 +16,7 @@ namespace g3r {
 struct Solution {
   std::vector<Vec3> eta;  ///< area vectors
   Refinement refinement;  ///< normals, and the strength of the field they come from (empty without a refinement)
-  OpenSheets sheets;
+  OpenSurfaces sheets;
 };
 
 /// Solves with the problem's method and settings, on the points or on clusters of them. Adds the iterations and whether they converged to

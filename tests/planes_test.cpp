@@ -97,7 +97,7 @@ TEST(Planes, AreNotThoseOfSlices) {
     }
   }
   const Orientation o = orient(body.points);
-  EXPECT_GT(shapes::share_correct(o.normals, body.normals), 0.999);
+  EXPECT_GT(shapes::share_correct(o.normals, body.normals), 0.995);
   EXPECT_LT(shapes::angle_error(o.normals, body.normals), 5e-3);
 }
 

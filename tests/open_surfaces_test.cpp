@@ -1,8 +1,10 @@
 // Surfaces without an inside: sides consistent, directions right, told apart from solids and from thin walls.
-#include "orient/open_sheets.h"
+#include "orient/open_surfaces.h"
 
+#include "cloud/canonical_cloud.h"
 #include "cloud/plane_fit.h"
 #include "cloud/spacing.h"
+#include "vector.h"
 
 #include "shapes.h"
 
@@ -57,7 +59,7 @@ Surface upper_part(const Surface& whole, double least_z) {
 }
 
 // The votes of a valley on a grid say "down" for one in twelve of its points, no more than chance: the convention says up.
-TEST(OpenSheets, ValleyOfAHeightMapFacesUp) {
+TEST(OpenSurfaces, ValleyOfAHeightMapFacesUp) {
   std::vector<Vec3> points;
   for (int i = 0; i < 60; ++i) {
     for (int j = 0; j < 60; ++j) {
@@ -72,7 +74,7 @@ TEST(OpenSheets, ValleyOfAHeightMapFacesUp) {
 }
 
 // The equations alone leave 49 to 51 % of these on the right side, and turn directions by up to 90 degrees.
-TEST(OpenSheets, TerrainFacesUp) {
+TEST(OpenSurfaces, TerrainFacesUp) {
   for (const auto& height : {flat, saddle, hill, waves}) {
     const Surface s = terrain(4000, height);
     const Orientation o = orient(s.points);
@@ -93,7 +95,7 @@ TEST(OpenSheets, TerrainFacesUp) {
   }
 }
 
-TEST(OpenSheets, NoiseIsNoObstacle) {
+TEST(OpenSurfaces, NoiseIsNoObstacle) {
   for (const double scatter : {0.1, 0.5, 1.5}) {
     const Surface s = terrain(scatter < 1 ? 6000 : 16000, waves, scatter);
     const Orientation o = orient(s.points);
@@ -102,7 +104,7 @@ TEST(OpenSheets, NoiseIsNoObstacle) {
   }
 }
 
-TEST(OpenSheets, TakeTheOutsideTheEquationsFind) {
+TEST(OpenSurfaces, TakeTheOutsideTheEquationsFind) {
   const Surface half = upper_part(shapes::sphere(8000), 0);
   const Orientation o = orient(half.points);
   EXPECT_EQ(shapes::share_correct(o.normals, half.normals), 1);
@@ -112,7 +114,7 @@ TEST(OpenSheets, TakeTheOutsideTheEquationsFind) {
   EXPECT_TRUE(o.stats.consistent);
 }
 
-TEST(OpenSheets, SolidsHaveNone) {
+TEST(OpenSurfaces, SolidsHaveNone) {
   for (const Surface& s : {shapes::sphere(3000), shapes::torus(5000, 0.6, 0.25, 2),
                            shapes::join(shapes::sphere(4000, 0.8), shapes::sphere(2000, 0.5), true)}) {
     EXPECT_EQ(orient(s.points).stats.open_share, 0);
@@ -120,7 +122,7 @@ TEST(OpenSheets, SolidsHaveNone) {
 }
 
 // Alone the sphere is easy; the ground below it makes its equations wrong.
-TEST(OpenSheets, DoNotDisturbTheSolidsBesideThem) {
+TEST(OpenSurfaces, DoNotDisturbTheSolidsBesideThem) {
   Surface s = terrain(8000, waves);
   for (Vec3& p : s.points) p = {3 * p[0], 3 * p[1], 3 * p[2] - 1.6};
   const Surface scene = shapes::join(s, shapes::sphere(4000));
@@ -131,7 +133,7 @@ TEST(OpenSheets, DoNotDisturbTheSolidsBesideThem) {
 }
 
 // A sphere of radius 1 in the corner of a ground 12 wide, which is solved for alone: with a percentage of its own box, normals turn.
-TEST(OpenSheets, ThePartsTakeTheEpsilonOfTheWhole) {
+TEST(OpenSurfaces, ThePartsTakeTheEpsilonOfTheWhole) {
   Surface ground = terrain(8000, flat);
   for (Vec3& p : ground.points) p = {6 * p[0] + 4, 6 * p[1] + 4, -1.6};
   const Surface scene = shapes::join(ground, shapes::sphere(2000));
@@ -143,7 +145,7 @@ TEST(OpenSheets, ThePartsTakeTheEpsilonOfTheWhole) {
   EXPECT_LT(shapes::angle_error(o.normals, orient(scene.points, same).normals), 1e-9);
 }
 
-TEST(OpenSheets, TurnWithTheCloudButForTheChoiceOfSide) {
+TEST(OpenSurfaces, TurnWithTheCloudButForTheChoiceOfSide) {
   const Surface s = terrain(3000, waves);
   Surface turned = s;
   for (auto* vectors : {&turned.points, &turned.normals}) {
@@ -153,7 +155,7 @@ TEST(OpenSheets, TurnWithTheCloudButForTheChoiceOfSide) {
   EXPECT_EQ(std::max(right, 1 - right), 1);
 }
 
-TEST(OpenSheets, AreTheSameForEveryOrderAndNumberOfThreads) {
+TEST(OpenSurfaces, AreTheSameForEveryOrderAndNumberOfThreads) {
   const Surface s = terrain(3000, waves);
   Options one;
   one.threads = 1;
@@ -168,48 +170,63 @@ TEST(OpenSheets, AreTheSameForEveryOrderAndNumberOfThreads) {
   }
 }
 
-// Given normals as the equations leave them: in the sheet, or on it but facing either way.
-TEST(OpenSheets, AreFoundByWrongDirectionsOnly) {
-  const Surface s = terrain(2000, waves);
-  const std::vector<std::uint32_t> near = Neighbours(s.points).of_all(17);
-  std::vector<Vec3> normals = s.normals;
-  EXPECT_TRUE(find_open_sheets(s.points, near, nullptr, normals).sheet.empty());
-  EXPECT_EQ(normals, s.normals);
-  for (std::size_t i = 0; i < normals.size(); ++i) {
-    if (s.points[i][0] < -0.2) {
-      for (double& c : normals[i]) c = -c;  // one part upside down,
-    } else if (s.points[i][0] < 0) {
-      normals[i] = {-1, 0, 0};  // a seam
-    }
+OpenSurfaces find(const Surface& s, std::vector<Vec3>& normals, double noise = 0) {
+  const MortonOrder order = morton_order(s.points);
+  std::vector<Vec3> points;
+  std::vector<Vec3> sorted;
+  for (const std::uint32_t i : order.index) {
+    points.push_back(s.points[i]);
+    sorted.push_back(normals[i]);
   }
-  const OpenSheets found = find_open_sheets(s.points, near, nullptr, normals);
-  EXPECT_EQ(found.sheet, std::vector<std::uint32_t>(normals.size(), 0));
+  OpenSurfaces found =
+      find_open_surfaces(points, order.code, typical_spacing(local_spacing(points)), noise, sum_plan(1e-2, points.size()), sorted);
+  for (std::size_t k = 0; k < sorted.size(); ++k) normals[order.index[k]] = sorted[k];
+  return found;
+}
+
+// Normals as the equations leave them: in the surface in places, upside down in others.
+TEST(OpenSurfaces, AreFoundWhateverTheGivenNormals) {
+  const Surface s = terrain(4000, waves);
+  std::vector<Vec3> normals = s.normals;
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    if (s.points[i][0] < -0.2) normals[i] = vector::scale(normals[i], -1);
+    if (std::abs(s.points[i][0]) < 0.2) normals[i] = {-1, 0, 0};
+  }
+  const OpenSurfaces found = find(s, normals);
+  EXPECT_EQ(found.part, std::vector<std::uint32_t>(normals.size(), 0));
   EXPECT_EQ(shapes::share_correct(normals, s.normals), 1);
 }
 
-// Random points of both sides of a plate 0.1 spacings thick: normals in it are wrong, but it is no sheet.
-TEST(OpenSheets, ThinWallsAreNone) {
+// Random points of both sides of a plate 0.1 spacings thick: the field cannot see its sides, but it is not open.
+TEST(OpenSurfaces, ThinWallsAreNone) {
   Surface s = terrain(4000, flat);
   for (std::size_t i = 0; i < s.points.size(); i += 2) s.points[i][2] += 0.1 * 2 / std::sqrt(4000.0);
-  const std::vector<std::uint32_t> near = Neighbours(s.points).of_all(17);
   std::vector<Vec3> normals(s.points.size(), Vec3{1, 0, 0});
-  EXPECT_TRUE(find_open_sheets(s.points, near, nullptr, normals).sheet.empty());
+  const OpenSurfaces found = find(s, normals);
+  EXPECT_TRUE(std::all_of(found.part.begin(), found.part.end(), [](std::uint32_t part) { return part == OpenSurfaces::kNone; }));
 }
 
-// Normals wrong in places on two parallel planes: with the other plane within 4 spacings they are the trouble of a thin wall.
-TEST(OpenSheets, WallsCloseByAreNone) {
-  constexpr std::size_t kCount = 4000;
-  const double h = 2 / std::sqrt(kCount / 2.0);
-  for (const double distance : {2.0, 3.0, 8.0}) {
-    Surface s = terrain(kCount, flat);
-    for (std::size_t i = 0; i < kCount; i += 2) s.points[i][2] -= distance * h;
-    std::vector<Vec3> normals = s.normals;
-    for (std::size_t i = 0; i < kCount; ++i) {
-      if (std::abs(s.points[i][0]) < 0.1) normals[i] = {1, 0, 0};
+// Lines up to 20 times as far apart as their points: a surface across the gaps, nothing within a line.
+TEST(OpenSurfaces, ScanLinesAreOneSurface) {
+  for (const double ratio : {4.0, 12.0, 20.0}) {
+    shapes::Random random(3);
+    Surface s;
+    for (double y = -1; y < 1; y += 0.005 * ratio) {
+      for (double x = -1; x < 1; x += 0.005)
+        s.points.push_back({x + 0.0005 * random.gaussian(), y, 0.1 * std::sin(4 * x) + 0.001 * random.gaussian()});
     }
-    const std::vector<std::uint32_t> near = Neighbours(s.points).of_all(17);
-    EXPECT_EQ(find_open_sheets(s.points, near, nullptr, normals).sheet.empty(), distance < 4) << distance;
+    const Orientation o = orient(s.points);
+    EXPECT_TRUE(std::all_of(o.normals.begin(), o.normals.end(), [](const Vec3& n) { return n[2] > 0; })) << ratio;
+    EXPECT_EQ(*std::max_element(o.confidence.begin(), o.confidence.end()), 0.5F) << ratio;
   }
+}
+
+// Walls of a trench narrower than the distance between the points: sides follow the ground around it.
+TEST(OpenSurfaces, GroovesDoNotTurnWhatLiesBehindThem) {
+  Surface s = terrain(12000, [](double x, double) { return 0.3 * std::min(1.0, std::sqrt(std::abs(std::sin(6 * x)))); });
+  const Orientation o = orient(s.points);
+  const double right = shapes::share_correct(o.normals, s.normals);
+  EXPECT_GT(right, 0.98);
 }
 
 TEST(PlaneFit, KnowsPlaneNoiseAndWalls) {

@@ -1,0 +1,204 @@
+#include "cloud/sites.h"
+
+#include "cloud/canonical_cloud.h"
+#include "cloud/spacing.h"
+#include "cpu/parallel.h"
+#include "median.h"
+#include "vector.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <unordered_map>
+#include <utility>
+
+namespace g3r {
+namespace {
+
+constexpr double kReach = 2.5;             // distances: the plane of a site sees its neighbours and theirs, about 20 sites
+constexpr std::size_t kFewestPoints = 12;  // of a plane: fewer follow the sampling rather than the surface
+constexpr double kSurfaceBreadth = 0.5;    // median breadth of a surface sample; lines have that of their noise over their length
+constexpr double kFirstDistance = 1.5;     // spacings, of the first thinned scale
+constexpr std::size_t kFewestSites = 30;   // of a scale: fewer say nothing of a surface
+constexpr std::size_t kPlaces = 2000;      // looked at for a median
+constexpr std::size_t kPlaceBlock = 64;    // places per parallel block
+constexpr std::size_t kBlock = 256;        // sites per parallel block
+
+// Cells of the size of the distance: whoever is nearer than that lies in the same or an adjacent one.
+class Grid {
+ public:
+  explicit Grid(double cell) : cell_(cell) {}
+
+  bool add_if_alone(const std::vector<Vec3>& points, std::uint32_t i) {
+    std::array<std::int64_t, 3> at{};
+    for (std::size_t a = 0; a < 3; ++a) at[a] = static_cast<std::int64_t>(std::floor(points[i][a] / cell_));
+    for (std::int64_t n = 0; n < 27; ++n) {
+      const auto found = taken_.find(key({at[0] + n % 3 - 1, at[1] + n / 3 % 3 - 1, at[2] + n / 9 - 1}));
+      if (found == taken_.end()) continue;
+      for (const std::uint32_t j : found->second) {
+        const Vec3 d = vector::subtract(points[i], points[j]);
+        if (vector::dot(d, d) < cell_ * cell_) return false;
+      }
+    }
+    taken_[key(at)].push_back(i);
+    return true;
+  }
+
+ private:
+  // 21 bits each: cells of other keys that meet here cost time only.
+  static std::uint64_t key(const std::array<std::int64_t, 3>& at) {
+    const auto bits = [](std::int64_t x) { return static_cast<std::uint64_t>(x) & 0x1fffffU; };
+    return bits(at[0]) << 42U | bits(at[1]) << 21U | bits(at[2]);
+  }
+
+  double cell_;
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> taken_;
+};
+
+std::vector<Vec3> taken_points(const std::vector<Vec3>& points, double distance) {
+  std::vector<Vec3> taken;
+  Grid grid(distance);
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    if (grid.add_if_alone(points, i)) taken.push_back(points[i]);
+  }
+  return taken;
+}
+
+struct Plane {
+  Vec3 normal;
+  double flatness, breadth;
+};
+
+// The plane through points around `centre`, weights 1 - r^2 / R^2 with R the distance of the farthest.
+Plane fit_plane_at(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, const Vec3& centre) {
+  using Eigen::Vector3d;
+  const auto from_centre = [&](std::uint32_t j) {
+    const Vec3 d = vector::subtract(points[j], centre);
+    return Vector3d(d[0], d[1], d[2]);
+  };
+  double reach = 0;
+  for (const std::uint32_t j : index) reach = std::max(reach, from_centre(j).squaredNorm());
+  reach *= 1.0001;  // the farthest takes part a little
+  Vector3d mean = Vector3d::Zero();
+  double total = 0;
+  for (const std::uint32_t j : index) {
+    const double weight = 1 - from_centre(j).squaredNorm() / reach;
+    mean += weight * from_centre(j);
+    total += weight;
+  }
+  mean /= total;
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const std::uint32_t j : index) {
+    const Vector3d d = from_centre(j) - mean;
+    spread += (1 - from_centre(j).squaredNorm() / reach) * d * d.transpose();
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
+  eigen.computeDirect(spread / reach);
+  const Vector3d normal = eigen.eigenvectors().col(0);
+  const Vector3d value = eigen.eigenvalues().cwiseMax(0);
+  return {{normal[0], normal[1], normal[2]},
+          value[1] > 0 ? std::sqrt(value[0] / value[1]) : 1,
+          value[2] > 0 ? std::sqrt(value[1] / value[2]) : 0};
+}
+
+// The plane through the surroundings of a place.
+class Planes {
+ public:
+  Planes(const std::vector<Vec3>& points, const Neighbours& neighbours, double distance)
+      : points_(points), neighbours_(neighbours), reach_(kReach * distance) {}
+
+  Plane at(const Vec3& centre) {
+    index_.clear();
+    if (reach_ > 0) neighbours_.within(centre, reach_, index_);
+    if (index_.size() < kFewestPoints) neighbours_.nearest(centre, kFewestPoints, index_, squared_);
+    std::sort(index_.begin(), index_.end());
+    return fit_plane_at(points_, index_, centre);
+  }
+
+ private:
+  const std::vector<Vec3>& points_;
+  const Neighbours& neighbours_;
+  double reach_;
+  std::vector<std::uint32_t> index_;
+  std::vector<double> squared_;
+};
+
+// Sites at the centroids of the points nearest to each of `seeds`, in canonical order.
+void gather(const std::vector<Vec3>& points, const std::vector<Vec3>& seeds, Sites& sites) {
+  std::vector<std::uint32_t> nearest(points.size());
+  const Neighbours tree(seeds);
+  parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      double squared = HUGE_VAL;
+      nearest[i] = tree.nearest(points[i], squared, 0);
+    }
+  });
+  std::vector<Vec3> centroids(seeds.size(), Vec3{0, 0, 0});
+  std::vector<double> count(seeds.size(), 0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    centroids[nearest[i]] = vector::add(centroids[nearest[i]], points[i]);
+    ++count[nearest[i]];
+  }
+  for (std::size_t s = 0; s < seeds.size(); ++s) centroids[s] = vector::scale(centroids[s], 1 / count[s]);
+  MortonOrder order = morton_order(centroids);
+  std::vector<std::uint32_t> rank(seeds.size());
+  sites.points.resize(seeds.size());
+  for (std::uint32_t s = 0; s < seeds.size(); ++s) {
+    rank[order.index[s]] = s;
+    sites.points[s] = centroids[order.index[s]];
+  }
+  sites.morton = std::move(order.code);
+  sites.site_of.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) sites.site_of[i] = rank[nearest[i]];
+}
+
+}  // namespace
+
+Sites place_sites(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Neighbours& neighbours,
+                  double distance) {
+  Sites sites;
+  sites.distance = distance;
+  if (distance > 0) {
+    gather(points, taken_points(points, distance), sites);
+  } else {
+    sites.points = points;
+    sites.morton = morton;
+    sites.site_of.resize(points.size());
+    std::iota(sites.site_of.begin(), sites.site_of.end(), std::uint32_t{0});
+  }
+  const std::size_t count = sites.points.size();
+  sites.axis.resize(count);
+  sites.flatness.resize(count);
+  sites.breadth.resize(count);
+  parallel::for_blocks(count, kBlock, [&](std::size_t begin, std::size_t end) {
+    Planes planes(points, neighbours, distance);
+    for (std::size_t s = begin; s < end; ++s) {
+      const Plane plane = planes.at(sites.points[s]);
+      sites.axis[s] = plane.normal;
+      sites.flatness[s] = plane.flatness;
+      sites.breadth[s] = plane.breadth;
+    }
+  });
+  sites.spacing = local_spacing(sites.points);
+  return sites;
+}
+
+double surface_distance(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing) {
+  const std::size_t step = std::max<std::size_t>(1, points.size() / kPlaces);
+  const std::size_t places = (points.size() + step - 1) / step;
+  std::vector<double> breadth(places);
+  const double most = std::sqrt(static_cast<double>(points.size()) / static_cast<double>(kFewestSites)) * spacing;
+  for (double distance = 0; distance < most; distance = std::max(kFirstDistance * spacing, 2 * distance)) {
+    parallel::for_blocks(places, kPlaceBlock, [&](std::size_t begin, std::size_t end) {
+      Planes planes(points, neighbours, distance);
+      for (std::size_t k = begin; k < end; ++k) breadth[k] = planes.at(points[k * step]).breadth;
+    });
+    if (median(breadth) >= kSurfaceBreadth) return distance;
+  }
+  return 0;
+}
+
+}  // namespace g3r

@@ -1,0 +1,35 @@
+// Whether the sides of normals are right, from their own field: no truth is needed.
+#pragma once
+
+#include "cloud/sites.h"
+#include "sum/sum_plan.h"
+
+#include <g3r/points.h>
+
+#include <atomic>
+#include <vector>
+
+namespace g3r {
+
+/// What the winding field w of normals n_i with the areas of their sites says at every site p_i, by probes p_i +- d m_i at d = 1, 2 and 4
+/// spacings, m_i the axis of the site on the side of n_i: normals that lie in the surface do not choose where they are looked at
+/// (docs/math.md, "Certificate"):
+///   - `jump`, the largest over d of w(p_i - d m_i) - w(p_i + d m_i): 1 wherever the sides around p_i agree, on closed surfaces and on open
+///     ones (Gauss's jump relation of the double layer), about 0 or less where they do not;
+///   - `jump_defect`, the mean over d of |1 - that difference|;
+///   - `unrest`, the mean over d = 1, 2, 4 and 8 of min(|w|, |1 - w|): 0 beside a closed surface, whose field is
+///     constant on either side, up to a half beside an open one. Probes nearer to a site than 1.9 spacings, or farther than `reach`, are
+///     left out; negative if none is left.
+struct Certificate {
+  std::vector<double> jump;
+  std::vector<double> jump_defect;
+  std::vector<double> unrest;
+  std::vector<double> winding;  ///< w at the sites: 1/2 on a closed surface, the less the more open it is; -1/2 if it is inside out
+};
+
+/// `normals`: of the sites, unit vectors. `reach`: of every site, the size of its part; farther
+/// away the field of any part is 0. Eight evaluations of the field at all sites. Throws Cancelled. O(M log M).
+[[nodiscard]] Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const std::vector<double>& reach,
+                                  const SumPlan& sums, const std::atomic<bool>* cancel);
+
+}  // namespace g3r

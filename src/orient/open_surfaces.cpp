@@ -1,0 +1,322 @@
+#include "orient/open_surfaces.h"
+
+#include "cloud/layers.h"
+#include "cloud/sheet.h"
+#include "cloud/sites.h"
+#include "cloud/spacing.h"
+#include "cpu/parallel.h"
+#include "median.h"
+#include "mesh/disjoint_sets.h"
+#include "orient/certificate.h"
+#include "orient/refine.h"
+#include "orient/sign_graph.h"
+#include "sum/fast_sum.h"
+#include "vector.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace g3r {
+namespace {
+
+using vector::dot;
+
+// Scales.
+constexpr double kFirstScale = 1.5;         // spacings between sites of the first thinned scale; the next are twice as far apart each
+constexpr double kNoiseScale = 2;           // standard deviations of the noise between sites, at least
+constexpr int kScales = 3;                  // that are tried
+constexpr std::size_t kFewestSites = 30;    // of a scale: fewer say nothing of a surface
+constexpr std::size_t kMostSites = 200000;  // of the finest scale; more take long and say no more about sides
+// Graph.
+constexpr std::size_t kAdjacent = 10;  // nearest sites that a site is connected with
+constexpr double kLongest = 4;         // site distances: longer edges cross gaps
+constexpr double kDecay = 0.3;         // of the weight with the squared length in site distances
+constexpr double kLeastWeight = 0.02;  // of a site whose surroundings are a ball: it still follows its neighbours
+// Hypothesis.
+constexpr int kTurns = 3;               // rounds of the winding gradient
+constexpr double kTurnWidth = 2;        // site spacings: wider than the grooves that the sampling cannot resolve
+constexpr double kGradientWidth = 0.7;  // site spacings, from sites to points
+constexpr double kAccuracy = 1e-2;      // of the sums that tell whether a part encloses something
+constexpr double kFarBetter = 0.35;     // of the jump defect as given, up to which a hypothesis is taken where unrest alone does not decide
+constexpr double kClearlyLess = 0.8;    // of the jump defect of a finer scale, up to which a coarser one is taken
+// Verdict.
+constexpr double kUnrest = 0.08;          // mean of a part that is open: closed ones have up to 0.06, open ones 0.1 to 0.3
+constexpr double kUnrestNoisy = 0.2;      // the same where noise hides thin walls, whose field is open in places
+constexpr double kNoJump = 0.6;           // mean jump defect of a part whose sides change from site to site, or of two walls
+constexpr double kNoJumpNoisy = 0.8;      // the same under noise
+constexpr double kThin = 2;               // spacings between two walls: the field tells walls farther apart
+constexpr double kExact = 0.01;           // spacings: deviations below are as good as none
+constexpr std::size_t kWallPoints = 24;   // of the heights that tell one wall from two
+constexpr std::size_t kWallPlaces = 500;  // at most, whose median counts
+constexpr double kOutside = 0.55;         // enclosure from which a part has an outside; a plane has 0, half a sphere 0.6, a sphere 1
+constexpr double kLevel = 1e-6;           // part of the mean normal that counts as none
+constexpr float kUndecided = 0.5F;        // certainty of a side that is chosen, or not certified
+constexpr std::size_t kBlock = 1024;      // points per parallel block
+
+// Places where the unrest of the given normals is that of an open surface, and what to try there.
+class Search {
+ public:
+  Search(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, double spacing, double noise, const SumPlan& sums,
+         const std::atomic<bool>* cancel)
+      : points_(points), morton_(morton), neighbours_(points), spacing_(spacing), sums_(sums), cancel_(cancel) {
+    const double all = std::sqrt(static_cast<double>(points.size()) / static_cast<double>(kMostSites));
+    const double least = std::max(kNoiseScale * noise, all > 1 ? kFirstScale * all * spacing : 0);
+    const double distance = least < kFirstScale / 2 * spacing ? 0 : std::max(kFirstScale * spacing, least);
+    finest_ = place_sites(points_, morton_, neighbours_, distance);
+    near_ = Neighbours(finest_.points).of_all(kAdjacent + 1);
+    edges_ = edges_of(finest_, near_);
+    DisjointSets parts(finest_.points.size());
+    for (const SignEdge& edge : edges_) parts.join(edge.a, edge.b);
+    for (std::size_t s = 0; s < finest_.points.size(); ++s) part_.push_back(static_cast<std::uint32_t>(parts.find(s)));
+    std::vector<double> size(finest_.points.size(), 0);
+    for (const std::uint32_t p : part_) ++size[p];
+    for (std::size_t s = 0; s < finest_.points.size(); ++s) reach_.push_back(std::sqrt(size[part_[s]]) / 2 * finest_.spacing[s]);
+  }
+
+  [[nodiscard]] const Sites& sites() const { return finest_; }
+  [[nodiscard]] const std::vector<std::uint32_t>& parts() const { return part_; }
+
+  // Mean direction of the points of every site.
+  [[nodiscard]] std::vector<Vec3> at_sites(const std::vector<Vec3>& normals) const {
+    std::vector<Vec3> mean(finest_.points.size(), Vec3{0, 0, 0});
+    for (std::size_t i = 0; i < normals.size(); ++i) mean[finest_.site_of[i]] = vector::add(mean[finest_.site_of[i]], normals[i]);
+    for (std::size_t s = 0; s < mean.size(); ++s) {
+      mean[s] = vector::normalised(mean[s]);
+      if (dot(mean[s], mean[s]) == 0) mean[s] = finest_.axis[s];
+    }
+    return mean;
+  }
+
+  [[nodiscard]] Certificate test(const std::vector<Vec3>& normals) const {
+    return certify(finest_, at_sites(normals), reach_, sums_, cancel_);
+  }
+
+  // Whether the points of a part lie on two walls closer together than the field can tell: the heights over the planes of the sites are
+  // likelier from two parallel quadratics than from one. n points on two walls, each with a label that costs ln 2, have the log likelihood
+  // -n ln s2 - n ln 2, on one -n ln s1, with s the standard deviation from the fit.
+  [[nodiscard]] bool has_two_walls(std::uint32_t part) const {
+    std::vector<std::uint32_t> members;
+    for (std::uint32_t s = 0; s < part_.size(); ++s) {
+      if (part_[s] == part) members.push_back(s);
+    }
+    std::vector<double> gain;
+    std::vector<std::uint32_t> index;
+    std::vector<double> squared;
+    for (std::size_t k = 0; k < members.size(); k += std::max<std::size_t>(1, members.size() / kWallPlaces)) {
+      const std::uint32_t s = members[k];
+      neighbours_.nearest(finest_.points[s], kWallPoints, index, squared);
+      const double one = quadratic_residual(points_, index.data(), index.size(), finest_.axis[s], finest_.spacing[s]);
+      const TwoSheets two = fit_two_sheets(points_, index.data(), index.size(), finest_.axis[s]);
+      const double exact = kExact * finest_.spacing[s];
+      const bool thin = two.gap < kThin * finest_.spacing[s];
+      gain.push_back((thin ? std::log(std::max(one, exact) / std::max(two.deviation, exact)) : 0) - std::numbers::ln2);
+    }
+    return median(gain) > 0;
+  }
+
+  // Twice the mean of w at the sites of a part, w of that part alone: 1 on a closed surface, 0 on a plane, -1 on one inside out.
+  [[nodiscard]] double enclosure(std::uint32_t part, const std::vector<Vec3>& normals) const {
+    std::vector<Vec3> points;
+    std::vector<std::uint64_t> morton;
+    std::vector<Vec3> eta;
+    for (std::uint32_t s = 0; s < part_.size(); ++s) {
+      if (part_[s] != part) continue;
+      points.push_back(finest_.points[s]);
+      morton.push_back(finest_.morton[s]);
+      eta.push_back(vector::scale(normals[s], finest_.spacing[s] * finest_.spacing[s]));
+    }
+    FastSum field(points, morton, Widths(kGradientWidth * typical_spacing(finest_.spacing)), sum_plan(kAccuracy, points.size()), cancel_);
+    double sum = 0;
+    for (const double w : field.winding(eta)) sum += w;
+    return 2 * sum / static_cast<double>(points.size());
+  }
+
+  // Normals of all points from the signs that neighbours agree on, at every scale.
+  [[nodiscard]] std::vector<std::vector<Vec3>> hypotheses() const {
+    std::vector<std::vector<Vec3>> all{by_agreement(finest_, edges_)};
+    Sites sites = coarser_than(finest_);
+    while (static_cast<int>(all.size()) < kScales && sites.points.size() >= kFewestSites) {
+      all.push_back(by_agreement(sites, edges_of(sites, Neighbours(sites.points).of_all(kAdjacent + 1))));
+      sites = coarser_than(sites);
+    }
+    return all;
+  }
+
+ private:
+  [[nodiscard]] Sites coarser_than(const Sites& sites) const {
+    return place_sites(points_, morton_, neighbours_, std::max(kFirstScale * spacing_, 2 * sites.distance));
+  }
+
+  static double reach_of(const Sites& sites, std::uint32_t a, std::uint32_t b) {
+    return sites.distance > 0 ? sites.distance : (sites.spacing[a] + sites.spacing[b]) / 2;
+  }
+
+  static SignEdge edge_of(const Sites& sites, std::uint32_t a, std::uint32_t b) {
+    const Vec3 d = vector::subtract(sites.points[b], sites.points[a]);
+    const double squared = dot(d, d);
+    const double reach = reach_of(sites, a, b);
+    if (squared > kLongest * kLongest * reach * reach) return {a, a, 0};
+    const double mirrored =
+        dot(sites.axis[a], sites.axis[b]) - 2 * dot(sites.axis[a], d) * dot(sites.axis[b], d) / std::max(squared, 1e-300);
+    const double flat = std::max(kLeastWeight, 1 - sites.flatness[a]) * std::max(kLeastWeight, 1 - sites.flatness[b]);
+    return {a, b, flat * std::exp(-kDecay * squared / (reach * reach)) * mirrored};
+  }
+
+  // Every pair of near sites once.
+  static std::vector<SignEdge> edges_of(const Sites& sites, const std::vector<std::uint32_t>& near) {
+    const std::size_t count = sites.points.size();
+    const std::size_t stride = near.size() / count;
+    std::vector<SignEdge> edges;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      for (std::size_t k = 0; k < stride; ++k) {
+        const std::uint32_t j = near[i * stride + k];
+        const auto first = near.begin() + static_cast<std::ptrdiff_t>(j * stride);
+        if (j == i ||
+            (j < i && std::find(first, first + static_cast<std::ptrdiff_t>(stride), i) != first + static_cast<std::ptrdiff_t>(stride)))
+          continue;
+        const SignEdge edge = edge_of(sites, i, j);
+        if (edge.a != edge.b) edges.push_back(edge);
+      }
+    }
+    return edges;
+  }
+
+  [[nodiscard]] std::vector<Vec3> by_agreement(const Sites& sites, const std::vector<SignEdge>& edges) const {
+    const std::size_t count = sites.points.size();
+    const Signs signs = agree_on_signs(count, edges);
+    std::vector<Vec3> normals(count);
+    for (std::size_t s = 0; s < count; ++s) normals[s] = vector::scale(sites.axis[s], signs.sign[s]);
+    const double spacing = typical_spacing(sites.spacing);
+    const auto areas = [&] {
+      std::vector<Vec3> eta(count);
+      for (std::size_t s = 0; s < count; ++s) eta[s] = vector::scale(normals[s], sites.spacing[s] * sites.spacing[s]);
+      return eta;
+    };
+    FastSum wide(sites.points, sites.morton, Widths(kTurnWidth * spacing), sums_, cancel_);
+    for (int turn = 0; turn < kTurns; ++turn) normals = refine_normals(wide, areas()).normals;
+    // Directions from a narrower field, where its side is the same.
+    const FastSum field(wide, Widths(kGradientWidth * spacing));
+    std::vector<Vec3> sided(points_.size());
+    for (std::size_t i = 0; i < points_.size(); ++i) sided[i] = normals[sites.site_of[i]];
+    std::vector<Vec3> narrow = unit_normals(field.winding_gradient_at(areas(), points_, cancel_), sided).normals;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (dot(narrow[i], sided[i]) > 0) sided[i] = narrow[i];
+    }
+    return sided;
+  }
+
+  const std::vector<Vec3>& points_;
+  const std::vector<std::uint64_t>& morton_;
+  Neighbours neighbours_;
+  double spacing_;
+  SumPlan sums_;
+  const std::atomic<bool>* cancel_;
+  Sites finest_;
+  std::vector<std::uint32_t> near_;  // of every site the nearest ones, itself first
+  std::vector<SignEdge> edges_;
+  std::vector<std::uint32_t> part_;  // of every site
+  std::vector<double> reach_;        // half the side of a square of as many sites as the part has
+};
+
+// Mean of `value` over the sites of every part, at the part's number; negative values are left out. 0 where there is none.
+std::vector<double> mean_of_parts(const std::vector<std::uint32_t>& part, const std::vector<double>& value) {
+  std::vector<double> sum(part.size(), 0);
+  std::vector<double> count(part.size(), 0);
+  for (std::size_t s = 0; s < part.size(); ++s) {
+    if (value[s] < 0) continue;
+    sum[part[s]] += value[s];
+    ++count[part[s]];
+  }
+  for (std::size_t p = 0; p < sum.size(); ++p) sum[p] = count[p] > 0 ? sum[p] / count[p] : 0;
+  return sum;
+}
+
+// By the first axis from z to x that the sum of the normals is not level to.
+bool faces_down(const Vec3& sum) {
+  const double size = std::max({std::abs(sum[0]), std::abs(sum[1]), std::abs(sum[2])});
+  for (const std::size_t axis : {std::size_t{2}, std::size_t{1}, std::size_t{0}}) {
+    if (std::abs(sum[axis]) > kLevel * size) return sum[axis] < 0;
+  }
+  return false;
+}
+
+}  // namespace
+
+OpenSurfaces find_open_surfaces(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, double spacing, double noise,
+                                const SumPlan& sums, std::vector<Vec3>& normals, const std::atomic<bool>* cancel) {
+  if (points.size() < kFewestSites) return {};
+  const Search search(points, morton, spacing, noise, sums, cancel);
+  const std::vector<std::uint32_t>& part = search.parts();
+  const Certificate given = search.test(normals);
+  std::vector<double> size(part.size(), 0);
+  for (const std::uint32_t p : part) ++size[p];
+  std::vector<std::uint8_t> is_open(part.size(), 0);
+  std::vector<std::uint8_t> is_doubtful(part.size(), 0);
+  const std::vector<double> unrest = mean_of_parts(part, given.unrest);
+  const std::vector<double> given_defect = mean_of_parts(part, given.jump_defect);
+  const double most_unrest = search.sites().distance > 0 ? kUnrestNoisy : kUnrest;
+  const double most_defect = noise > 0 ? kNoJumpNoisy : kNoJump;
+  for (std::uint32_t p = 0; p < part.size(); ++p) {
+    if (size[p] < kFewestSites) continue;
+    if (unrest[p] <= kUnrest && given_defect[p] <= most_defect) continue;
+    is_open[p] = search.has_two_walls(p) ? 0 : 1;
+    is_doubtful[p] = is_open[p] == 0 && unrest[p] > kUnrest ? 1 : 0;
+  }
+  const auto any = [](const std::vector<std::uint8_t>& parts) {
+    return std::any_of(parts.begin(), parts.end(), [](std::uint8_t p) { return p != 0; });
+  };
+  if (!any(is_open) && !any(is_doubtful)) return {};
+  // The best hypothesis of every open part.
+  const std::vector<std::vector<Vec3>> tried = any(is_open) ? search.hypotheses() : std::vector<std::vector<Vec3>>();
+  std::vector<double> least(part.size(), HUGE_VAL);
+  std::vector<std::size_t> best(part.size(), 0);
+  for (std::size_t h = 0; h < tried.size(); ++h) {
+    const Certificate certificate = search.test(tried[h]);
+    const std::vector<double> defect = mean_of_parts(part, certificate.jump_defect);
+    for (std::size_t p = 0; p < part.size(); ++p) {
+      if (defect[p] >= kClearlyLess * least[p]) continue;
+      least[p] = defect[p];
+      best[p] = h;
+    }
+  }
+  // Where unrest alone does not decide, the hypothesis has to be far better; else nothing is certain, if the part is not at rest either.
+  for (std::size_t p = 0; p < part.size(); ++p) {
+    if (is_open[p] == 0 || unrest[p] > most_unrest || least[p] <= kFarBetter * given_defect[p]) continue;
+    is_open[p] = 0;
+    is_doubtful[p] = unrest[p] > kUnrest ? 1 : 0;
+  }
+  if (!any(is_open) && !any(is_doubtful)) return {};
+  std::vector<double> enclosure(part.size(), 0);
+  for (std::size_t h = 0; h < tried.size(); ++h) {
+    const std::vector<Vec3> at_sites = search.at_sites(tried[h]);
+    for (std::uint32_t p = 0; p < part.size(); ++p) {
+      if (is_open[p] != 0 && best[p] == h) enclosure[p] = search.enclosure(p, at_sites);
+    }
+  }
+  OpenSurfaces found;
+  found.part.assign(points.size(), OpenSurfaces::kNone);
+  found.certainty.assign(points.size(), 1);
+  std::vector<Vec3> sum(part.size(), Vec3{0, 0, 0});
+  std::vector<std::uint32_t> first(part.size(), OpenSurfaces::kNone);
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    const std::uint32_t p = part[search.sites().site_of[i]];
+    if (is_doubtful[p] != 0) found.certainty[i] = kUndecided;
+    if (is_open[p] == 0) continue;
+    first[p] = std::min(first[p], i);
+    found.part[i] = first[p];
+    normals[i] = tried[best[p]][i];
+    sum[p] = vector::add(sum[p], normals[i]);
+  }
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    const std::uint32_t p = part[search.sites().site_of[i]];
+    if (is_open[p] == 0) continue;
+    const bool decided = std::abs(enclosure[p]) > kOutside;
+    if (decided ? enclosure[p] < 0 : faces_down(sum[p])) normals[i] = vector::scale(normals[i], -1);
+    found.certainty[i] = decided ? static_cast<float>(std::min(1.0, std::abs(enclosure[p]))) : kUndecided;
+  }
+  return found;
+}
+
+}  // namespace g3r

@@ -1,0 +1,45 @@
+// Sides and directions where the surface has no inside.
+#pragma once
+
+#include "cloud/neighbours.h"
+#include "orient/settings.h"
+
+#include <g3r/points.h>
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+namespace g3r {
+
+/// Open surfaces of a cloud. Empty vectors: there is none.
+struct OpenSurfaces {
+  static constexpr std::uint32_t kNone = 0xffffffff;
+  std::vector<std::uint32_t> part;  ///< N: number of the open surface a point belongs to (its first point), or kNone: part of a closed one
+  std::vector<float> certainty;     ///< N, of the outside: up to 1 where there is one, 0.5 where either side could be it; 0.5 on closed
+                                    ///< parts whose field is not at rest, so that their sides are not certified
+};
+
+/// The equations are true of the boundary of a solid. A surface without an inside (terrain, one depth frame, a dental arch) satisfies them
+/// too, but with area vectors that lie in it or change their side from place to place. The field of the result shows it: beside a closed
+/// surface it is 0 or 1, beside an open one it is not (Certificate::unrest). So every connected part of the cloud is tested, and where its
+/// unrest is above 0.17 other hypotheses are tried, from the finest scale on which the samples are a surface (scan lines are one only
+/// across their gaps) and two coarser ones:
+///   1. sites an even distance apart, with the planes of their surroundings (place_sites());
+///   2. signs by agreement of neighbours (agree_on_signs()), weights w_ij = f_i f_j exp(-0.3 |d|^2 / r^2) (n_i . n_j - 2 (n_i . e)(n_j .
+///   e)),
+///      d = p_j - p_i, e = d / |d|, r the distance of the sites, f = 1 - flatness: two normals agree if one is the mirror image of the
+///      other across the plane between the points, as on every arc (Xie, Wang, Hua, Qin, Kaufman, "Piecewise C1 continuous surface
+///      reconstruction of noisy point clouds via local implicit quadric regression", IEEE Visualization 2003);
+///   3. three times the direction of the winding gradient of what came out, one site spacing wide, which fills grooves narrower than the
+///      sampling and turns single sites.
+/// The hypothesis with the least mean Certificate::jump_defect is taken, of equal ones the finest. The outside of a part is the side on
+/// which the mean of w at the part, of its own field, is positive: e / 2, with e = 1 on a closed surface, 0.62 on half a sphere, 0 on a
+/// plane. Where |e| is below 0.6 either side could be it, and the one that faces up (+z; if the part is level, +y, then +x) is taken.
+/// `points`, `morton`: in canonical order; `spacing`: typical; `noise`: standard deviation; `normals`: N unit vectors, in: the solution,
+/// out: changed on open surfaces. O(N log N).
+[[nodiscard]] OpenSurfaces find_open_surfaces(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, double spacing,
+                                              double noise, const SumPlan& sums, std::vector<Vec3>& normals,
+                                              const std::atomic<bool>* cancel = nullptr);
+
+}  // namespace g3r

@@ -1,0 +1,115 @@
+// The certificate: what it says of right normals, of wrong ones and of surfaces without an inside.
+#include "orient/certificate.h"
+
+#include "cloud/canonical_cloud.h"
+#include "vector.h"
+
+#include "shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace g3r {
+namespace {
+
+using shapes::Surface;
+
+struct Tested {
+  Certificate certificate;
+  std::vector<Vec3> points;
+};
+
+double mean(const std::vector<double>& values) {
+  double sum = 0;
+  double count = 0;
+  for (const double v : values) {
+    if (v < 0) continue;
+    sum += v;
+    ++count;
+  }
+  return sum / count;
+}
+
+Tested test(const Surface& s) {
+  const MortonOrder order = morton_order(s.points);
+  std::vector<Vec3> points;
+  std::vector<Vec3> normals;
+  for (const std::uint32_t i : order.index) {
+    points.push_back(s.points[i]);
+    normals.push_back(s.normals[i]);
+  }
+  const Sites sites = place_sites(points, order.code, Neighbours(points), 0);
+  return {certify(sites, normals, std::vector<double>(points.size(), 10), sum_plan(1e-3, points.size()), nullptr), points};
+}
+
+Surface half(const Surface& whole) {
+  Surface part;
+  for (std::size_t i = 0; i < whole.points.size(); ++i) {
+    if (whole.points[i][2] < 0) continue;
+    part.points.push_back(whole.points[i]);
+    part.normals.push_back(whole.normals[i]);
+    part.areas.push_back(whole.areas[i]);
+  }
+  return part;
+}
+
+// Gauss: the field of the boundary of a solid is 1 inside, 0 outside, and jumps by 1.
+TEST(Certificate, IsCleanOnClosedSurfaces) {
+  for (const Surface& s : {shapes::sphere(8000, 0.8), shapes::torus(12000, 0.6, 0.25, 2),
+                           shapes::join(shapes::sphere(8000, 0.8), shapes::sphere(3000, 0.4), true)}) {
+    const Certificate c = test(s).certificate;
+    EXPECT_LT(mean(c.unrest), 0.03);
+    EXPECT_LT(mean(c.jump_defect), 0.1);
+    EXPECT_GT(*std::min_element(c.jump.begin(), c.jump.end()), 0.8);
+    EXPECT_NEAR(mean(c.winding), 0.5, 0.05);
+  }
+}
+
+// The jump is local: it is 1 on an open surface too. The unrest is not.
+TEST(Certificate, TellsOpenFromClosed) {
+  const Certificate c = test(half(shapes::sphere(16000, 0.8))).certificate;
+  EXPECT_GT(mean(c.unrest), 0.1);
+  EXPECT_LT(mean(c.jump_defect), 0.25);
+}
+
+TEST(Certificate, InsideOutIsMinusTheField) {
+  Surface s = shapes::sphere(6000, 0.8);
+  for (Vec3& n : s.normals) n = vector::scale(n, -1);
+  const Certificate c = test(s).certificate;
+  EXPECT_GT(mean(c.unrest), 0.3);
+  for (const double w : c.winding) EXPECT_NEAR(w, -0.5, 0.1);
+}
+
+// One cap of a sphere turned: its points do not see the jump missing, the seam and the field around them do.
+TEST(Certificate, FindsTurnedRegions) {
+  Surface s = shapes::sphere(8000, 0.8);
+  for (std::size_t i = 0; i < s.points.size(); ++i) {
+    if (s.points[i][2] > 0.4) s.normals[i] = vector::scale(s.normals[i], -1);
+  }
+  const Tested t = test(s);
+  EXPECT_GT(mean(t.certificate.unrest), 0.1);
+  double at_seam = 0;
+  double seam = 0;
+  for (std::size_t i = 0; i < t.points.size(); ++i) {
+    if (std::abs(t.points[i][2] - 0.4) > 0.01) continue;
+    at_seam += t.certificate.jump_defect[i];
+    ++seam;
+  }
+  EXPECT_GT(at_seam / seam, 0.4);
+}
+
+// Single points with the wrong side, whose neighbours carry the field.
+TEST(Certificate, FindsTurnedPoints) {
+  Surface s = shapes::sphere(8000, 0.8);
+  for (std::size_t i = 0; i < s.points.size(); i += 100) s.normals[i] = vector::scale(s.normals[i], -1);
+  const MortonOrder order = morton_order(s.points);
+  const Certificate c = test(s).certificate;
+  for (std::size_t k = 0; k < order.index.size(); ++k) {
+    if (order.index[k] % 100 != 0) continue;
+    EXPECT_LT(c.jump[k], 0);
+  }
+}
+
+}  // namespace
+}  // namespace g3r

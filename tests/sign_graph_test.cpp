@@ -1,0 +1,86 @@
+// Signs on a graph: what they must be where it leaves no choice, and what the greedy contraction is worth where it does.
+#include "orient/sign_graph.h"
+
+#include "shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace g3r {
+namespace {
+
+// A ring of groups of nodes with random signs, `wrong` of the edges with the wrong one.
+struct Ring {
+  std::vector<SignEdge> edges;
+  std::vector<std::int8_t> sign;
+};
+
+Ring ring(std::size_t nodes, std::size_t reach, double wrong, std::uint64_t seed) {
+  shapes::Random random(seed);
+  Ring out;
+  for (std::size_t i = 0; i < nodes; ++i) out.sign.push_back(random.uniform() < 0.5 ? 1 : -1);
+  for (std::size_t i = 0; i < nodes; ++i) {
+    for (std::size_t k = 1; k <= reach; ++k) {
+      const std::size_t j = (i + k) % nodes;
+      const double weight = random.uniform(0.5, 1) * out.sign[i] * out.sign[j] * (random.uniform() < wrong ? -1 : 1);
+      out.edges.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), weight});
+    }
+  }
+  return out;
+}
+
+// The smaller of the shares of nodes with another sign than `truth`, or the opposite one.
+double share_wrong(const std::vector<std::int8_t>& sign, const std::vector<std::int8_t>& truth) {
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < sign.size(); ++i) different += sign[i] != truth[i] ? 1 : 0;
+  return static_cast<double>(std::min(different, sign.size() - different)) / static_cast<double>(sign.size());
+}
+
+TEST(SignGraph, FindsSignsThatContradictNothing) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Ring graph = ring(2000, 4, 0, seed);
+    const Signs found = agree_on_signs(graph.sign.size(), graph.edges);
+    EXPECT_EQ(frustration(graph.edges, found.sign), 0);
+    EXPECT_EQ(share_wrong(found.sign, graph.sign), 0);
+    EXPECT_EQ(std::count(found.component.begin(), found.component.end(), 0U), 2000);
+  }
+}
+
+// A spanning tree would carry one wrong edge to everything behind it: with 3 % of them to about half of the nodes.
+TEST(SignGraph, OutvotesWrongEdges) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const Ring graph = ring(2000, 8, 0.03, seed);
+    const Signs found = agree_on_signs(graph.sign.size(), graph.edges);
+    EXPECT_LE(frustration(graph.edges, found.sign), frustration(graph.edges, graph.sign) * 1.05);
+    EXPECT_LT(share_wrong(found.sign, graph.sign), 0.002);
+  }
+}
+
+TEST(SignGraph, KeepsComponentsApart) {
+  const Signs found = agree_on_signs(5, {{0, 2, 1}, {3, 4, -1}});
+  EXPECT_EQ(found.component, (std::vector<std::uint32_t>{0, 1, 0, 3, 3}));
+  EXPECT_EQ(found.sign[0], found.sign[2]);
+  EXPECT_EQ(found.sign[3], -found.sign[4]);
+}
+
+TEST(SignGraph, DoesNotDependOnTheOrderOfTheEdges) {
+  Ring graph = ring(500, 6, 0.1, 9);
+  const Signs forwards = agree_on_signs(graph.sign.size(), graph.edges);
+  std::reverse(graph.edges.begin(), graph.edges.end());
+  for (SignEdge& edge : graph.edges) std::swap(edge.a, edge.b);
+  const Signs backwards = agree_on_signs(graph.sign.size(), graph.edges);
+  EXPECT_EQ(forwards.sign, backwards.sign);
+}
+
+TEST(SignGraph, FrustrationIsTheShareOfTheWeightThatIsContradicted) {
+  const std::vector<SignEdge> edges{{0, 1, 3}, {1, 2, -1}};
+  EXPECT_DOUBLE_EQ(frustration(edges, {1, 1, 1}), 0.25);
+  EXPECT_DOUBLE_EQ(frustration(edges, {1, 1, -1}), 0);
+  EXPECT_DOUBLE_EQ(frustration({}, {1}), 0);
+}
+
+}  // namespace
+}  // namespace g3r

@@ -1,0 +1,95 @@
+// Sites: an even distance apart, all points covered, planes of the surface rather than of its sampling.
+#include "cloud/sites.h"
+
+#include "cloud/canonical_cloud.h"
+#include "cloud/spacing.h"
+#include "vector.h"
+
+#include "shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace g3r {
+namespace {
+
+struct Cloud {
+  std::vector<Vec3> points;
+  std::vector<std::uint64_t> morton;
+};
+
+Cloud in_order(const std::vector<Vec3>& points) {
+  const MortonOrder order = morton_order(points);
+  Cloud cloud{{}, order.code};
+  for (const std::uint32_t i : order.index) cloud.points.push_back(points[i]);
+  return cloud;
+}
+
+// Lines of a wavy surface, points 0.01 apart along them.
+std::vector<Vec3> scan_lines(double ratio) {
+  shapes::Random random(1);
+  std::vector<Vec3> points;
+  for (double y = -0.9; y < 0.9; y += 0.01 * ratio) {
+    for (double x = -0.9; x < 0.9; x += 0.01)
+      points.push_back({x + 0.001 * random.gaussian(), y, 0.05 * std::sin(5 * x) * std::cos(4 * y)});
+  }
+  return points;
+}
+
+TEST(Sites, EveryPointIsOneAtDistanceZero) {
+  const Cloud cloud = in_order(shapes::sphere(2000).points);
+  const Sites sites = place_sites(cloud.points, cloud.morton, Neighbours(cloud.points), 0);
+  EXPECT_EQ(sites.points, cloud.points);
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) EXPECT_EQ(sites.site_of[i], i);
+}
+
+TEST(Sites, HoldEveryPointWithinTheDistance) {
+  const Cloud cloud = in_order(shapes::torus(6000, 0.6, 0.25, 2).points);
+  const double distance = 3 * typical_spacing(local_spacing(cloud.points));
+  const Sites sites = place_sites(cloud.points, cloud.morton, Neighbours(cloud.points), distance);
+  EXPECT_LT(sites.points.size(), cloud.points.size() / 6);
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    const Vec3 d = vector::subtract(cloud.points[i], sites.points[sites.site_of[i]]);
+    EXPECT_LT(std::sqrt(vector::dot(d, d)), 2 * distance);  // from the first point of the site to its centroid, and to a point
+  }
+  EXPECT_TRUE(std::is_sorted(sites.morton.begin(), sites.morton.end()));
+}
+
+TEST(Sites, AxesAreNormalsAndErrorsFallWithTheSquareOfTheDistance) {
+  const Cloud cloud = in_order(shapes::sphere(40000).points);
+  const double spacing = typical_spacing(local_spacing(cloud.points));
+  const Neighbours neighbours(cloud.points);
+  for (const double distance : {2 * spacing, 4 * spacing}) {
+    const Sites sites = place_sites(cloud.points, cloud.morton, neighbours, distance);
+    double worst = 0;
+    for (std::size_t s = 0; s < sites.points.size(); ++s) {
+      const double cosine = std::abs(vector::dot(sites.axis[s], vector::normalised(sites.points[s])));
+      worst = std::max(worst, std::acos(std::min(1.0, cosine)));
+      EXPECT_LT(sites.flatness[s], distance * 2);
+    }
+    EXPECT_LT(worst, 6 * distance * distance);
+  }
+}
+
+TEST(Sites, LinesBecomeASurfaceAcrossTheirGaps) {
+  for (const double ratio : {1.0, 6.0, 20.0}) {
+    const Cloud cloud = in_order(scan_lines(ratio));
+    const Neighbours neighbours(cloud.points);
+    const double spacing = typical_spacing(local_spacing(cloud.points));
+    const double distance = surface_distance(cloud.points, neighbours, spacing);
+    if (ratio == 1) {
+      EXPECT_EQ(distance, 0);
+      continue;
+    }
+    EXPECT_GT(distance, 0.4 * 0.01 * ratio) << ratio;
+    EXPECT_LT(distance, 3 * 0.01 * ratio) << ratio;
+    const Sites sites = place_sites(cloud.points, cloud.morton, neighbours, distance);
+    std::size_t upright = 0;
+    for (const Vec3& axis : sites.axis) upright += std::abs(axis[2]) > 0.9 ? 1 : 0;
+    EXPECT_GT(static_cast<double>(upright), 0.98 * static_cast<double>(sites.points.size())) << ratio;
+  }
+}
+
+}  // namespace
+}  // namespace g3r
