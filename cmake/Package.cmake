@@ -23,7 +23,7 @@ if(TARGET g3r_cli)
   install(TARGETS g3r_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
 endif()
 
-set(G3R_ARCHIVE_NEEDS TBB PNG Highway meshoptimizer)
+set(G3R_ARCHIVE_NEEDS TBB PNG ZLIB Highway meshoptimizer)
 if(G3R_WITH_OPEN3D)
   list(APPEND G3R_ARCHIVE_NEEDS Open3D)
 endif()

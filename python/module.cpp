@@ -163,7 +163,7 @@ auto field_gradient(const Field& field, const PointsArray& queries) {
 
 std::shared_ptr<Cloud> read_points(const Text& path, double min_opacity) {
   const nb::gil_scoped_release release;
-  return std::make_shared<Cloud>(read_cloud(path, ReadOptions{min_opacity}));
+  return std::make_shared<Cloud>(read_cloud(path, {.min_opacity = min_opacity}));
 }
 
 void write_points(const Text& path, const std::shared_ptr<Cloud>& source, const std::optional<PointsArray>& positions,
@@ -237,6 +237,13 @@ void translate_error(const std::exception_ptr& pointer, void* /*unused*/) {
   }
 }
 
+// A (n,) view of a member of a cloud, kept alive by it; None if it is empty.
+template <class T>
+nb::object values_of(const nb::handle& owner, const std::vector<T>& values) {
+  if (values.empty()) return nb::none();
+  return nb::cast(nb::ndarray<nb::numpy, const T, nb::ndim<1>>(values.data(), {values.size()}, owner));
+}
+
 // A (n, 3) view of a member of a cloud, kept alive by it; None if it is empty.
 template <class T>
 nb::object rows_of(const nb::handle& owner, const std::vector<std::array<T, 3>>& rows) {
@@ -254,12 +261,9 @@ void bind(nb::module_& m) {
       .def_prop_ro("points", [](nb::handle self) { return rows_of(self, nb::cast<const Cloud&>(self).positions); })
       .def_prop_ro("normals", [](nb::handle self) { return rows_of(self, nb::cast<const Cloud&>(self).normals); })
       .def_prop_ro("colors", [](nb::handle self) { return rows_of(self, nb::cast<const Cloud&>(self).colors); })
-      .def_prop_ro("confidence",
-                   [](nb::handle self) -> nb::object {
-                     const auto& values = nb::cast<const Cloud&>(self).confidence;
-                     if (values.empty()) return nb::none();
-                     return nb::cast(nb::ndarray<nb::numpy, const float, nb::ndim<1>>(values.data(), {values.size()}, self));
-                   })
+      .def_prop_ro("confidence", [](nb::handle self) { return values_of(self, nb::cast<const Cloud&>(self).confidence); })
+      .def_prop_ro("sensor_positions", [](nb::handle self) { return rows_of(self, nb::cast<const Cloud&>(self).sensor_positions); })
+      .def_prop_ro("scan_of_point", [](nb::handle self) { return values_of(self, nb::cast<const Cloud&>(self).scan_of_point); })
       .def_ro("format", &Cloud::format)
       .def_ro("property_names", &Cloud::property_names)
       .def_ro("warnings", &Cloud::warnings);

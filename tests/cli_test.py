@@ -498,6 +498,14 @@ class Measuring(ProgramTest):
         write_xyz(self.path("two.xyz"), [(0, 0, 0), (1, 1, 1)])
         result = self.expect(OK, "info", "two.xyz")
         self.assertIn("warning", result.err)
+        pose = "5 6 7.5\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n5 6 7.5 1\n"
+        scan = "1\n4\n" + pose + "".join(f"{x} {y} 0 0.5\n" for x, y in ((1, 0), (2, 0), (1, 1), (2, 1)))
+        with open(self.path("scan.ptx"), "w") as file:
+            file.write(scan)
+        self.assertIn("scanner    at 5, 6, 7.5, as the file says", self.expect(OK, "info", "scan.ptx").out.decode())
+        with open(self.path("scan.ptx"), "w") as file:
+            file.write(scan + scan)
+        self.assertIn("scanner    2 positions in the file", self.expect(OK, "info", "scan.ptx").out.decode())
 
 
 if __name__ == "__main__":

@@ -22,7 +22,7 @@ class Attributes;
 
 /// A point cloud as read from a file. All vectors with a value per point are empty or have one entry per point.
 /// Scanner positions are those that a file states: VIEWPOINT of PCD (the identity, 0 0 0 1 0 0 0, is what writers put who do not know),
-/// the poses of E57 (unknown where all are the identity).
+/// the poses of E57 (unknown where all are the identity) and of PTX.
 struct Cloud {
   std::vector<Vec3> positions;                        ///< N points, file order; non-finite ones are kept (orient() leaves them out)
   std::vector<Vec3> normals;                          ///< normals in the file, not normalised; empty if absent or all zero

@@ -43,6 +43,16 @@ class Cloud:
         return self._native.confidence
 
     @property
+    def sensor_positions(self) -> Optional[Floats]:
+        """(s, 3) float64: where the scanner stood, one row per scan, if the file says so (PCD VIEWPOINT, poses of E57 and PTX)."""
+        return self._native.sensor_positions
+
+    @property
+    def scan_of_point(self) -> Optional[Indices]:
+        """(n,) uint32: row of `sensor_positions`; None if there is one scan, or none is known."""
+        return self._native.scan_of_point
+
+    @property
     def format(self) -> str:
         """For example "ply binary_little_endian"."""
         return self._native.format

@@ -40,10 +40,20 @@ Cloud read_as(Format format, const Source& source, const ReadOptions& options) {
       return read_stl(source, true);
     case Format::kStlText:
       return read_stl(source, false);
+    case Format::kPtx:
+      return read_ptx(source);
+    case Format::kSpz:
+      return read_spz(source, options);
     case Format::kText:
       break;
   }
   return read_xyz(source);
+}
+
+// Colours that are all zero were never set: many writers have the field always.
+void drop_black(Cloud& cloud) {
+  const auto black = [](const std::array<std::uint8_t, 3>& color) { return color == std::array<std::uint8_t, 3>{}; };
+  if (std::all_of(cloud.colors.begin(), cloud.colors.end(), black)) cloud.colors = {};
 }
 
 // Coordinates in float32 far from the origin have lost their last digits before we see them.
@@ -80,6 +90,7 @@ Cloud read_cloud_bytes(const void* bytes, std::size_t size, const std::string& n
   const io::Format format = io::recognise(source);
   source.bytes = io::without_mark(source.bytes);
   Cloud cloud = io::read_as(format, source, options);
+  io::drop_black(cloud);
   io::warn_about_precision(cloud);
   return cloud;
 }

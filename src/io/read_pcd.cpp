@@ -196,6 +196,12 @@ class PcdParser {
   std::optional<std::uint64_t> points_;
 };
 
+// Commas stand between the values if there are as many fields as values; else they are decimal ones, or wrong.
+char separator_of(std::string_view line, std::size_t values) {
+  const auto commas = static_cast<std::size_t>(std::count(line.begin(), line.end(), ','));
+  return commas != 0 && commas + 1 == values ? ',' : ' ';
+}
+
 void read_ascii(const Source& source, const PcdHeader& header, Element& points, std::vector<std::string>& warnings) {
   std::size_t values = 0;
   for (const Property& field : points.properties) values += field.count;
@@ -214,7 +220,7 @@ void read_ascii(const Source& source, const PcdHeader& header, Element& points, 
       fail_at_line(source, lines.number(),
                    "truncated: unexpected end of file after " + std::to_string(i) + " of " + std::to_string(points.count) + " points");
     }
-    Tokens tokens(line);
+    Tokens tokens(line, separator_of(line, values));
     std::string_view token;
     for (const Property& field : points.properties) {
       for (std::uint32_t k = 0; k < field.count; ++k) {
@@ -280,7 +286,9 @@ void read_compressed(const Source& source, const PcdHeader& header, Element& poi
     for (std::size_t i = 0; i < points.count; ++i, from += bytes) std::copy_n(from, bytes, points.data.data() + i * stride + offset);
     offset += bytes;
   }
-  if (body.size() - 8 > compressed) warnings.emplace_back("trailing bytes after the compressed data are not used");
+  const std::string_view rest = body.substr(8 + std::size_t{compressed});
+  if (rest.find_first_not_of('\0') != std::string_view::npos)  // zeros are padding, as PCL writes it
+    warnings.emplace_back("trailing bytes after the compressed data are not used");
 }
 
 }  // namespace
