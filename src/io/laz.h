@@ -1,4 +1,4 @@
-// LAZ, which is LAS with compressed points. Only laz.cpp knows LASzip; without it (no G3R_LASZIP_SOURCE) both functions throw.
+// LAZ, which is LAS with compressed points. Only laz.cpp knows LASzip; in builds without it (laz_not_compiled.cpp) both functions throw.
 #pragma once
 
 #include "io/las.h"
