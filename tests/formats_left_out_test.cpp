@@ -23,5 +23,12 @@ TEST(FormatsLeftOut, AreRefusedWithTheNameOfAConverter) {
   EXPECT_NE(message_of("ASTM-E57 whatever").find("CloudCompare"), std::string::npos) << message_of("ASTM-E57 whatever");
 }
 
+TEST(FormatsLeftOut, LazIsNotWritten) {
+  const samples::Folder folder;
+  EXPECT_THROW(check_output(folder.path("a.laz"), {}, false), Unavailable);
+  EXPECT_THROW(write_cloud(folder.path("a.laz"), samples::helix(5), nullptr, nullptr), Unavailable);
+  EXPECT_EQ(folder.files(), 0U);
+}
+
 }  // namespace
 }  // namespace g3r

@@ -17,6 +17,7 @@ namespace g3r {
 namespace {
 
 using samples::compressed;
+using samples::Folder;
 using samples::kAnyChunks;
 using samples::las_file;
 using samples::put;
@@ -75,6 +76,43 @@ TEST(Laz, ReadsAndIsWrittenLikeLas) {
   EXPECT_TRUE(points.data == wanted.data);
   EXPECT_NE(points.find("range"), io::Element::npos);
   EXPECT_TRUE(samples::written(cloud, "a.las") == samples::written(expected, "a.las"));
+}
+
+TEST(Laz, IsWrittenSoThatItReadsAsTheLasFile) {
+  for (unsigned format = 0; format <= 10; ++format) {
+    for (const std::size_t count : {0U, 1U, 1000U}) {
+      const std::string las = las_file(format, count, true, std::string(60, '\0') + "after the points");
+      const std::string laz = samples::written(samples::read(las), "a.laz");
+      EXPECT_TRUE(unpacked(laz) == samples::written(samples::read(las), "a.las")) << "format " << format << ", " << count << " points";
+      if (count == 1000) {
+        EXPECT_LT(laz.size(), las.size()) << format;
+      }
+    }
+  }
+}
+
+TEST(Laz, ManyChunksAreWritten) {
+  const std::string las = las_file(6, 120000, false);
+  const Cloud cloud = samples::read(las);
+  const std::string laz = samples::written(cloud, "a.laz");
+  EXPECT_TRUE(unpacked(laz) == las);
+  const Folder folder;
+  const std::vector<Vec3> normals(cloud.positions.size(), Vec3{0, 0, 1});
+  write_cloud(folder.path("a.laz"), cloud, &normals, nullptr);
+  const Cloud oriented = read_cloud(folder.path("a.laz"));
+  EXPECT_EQ(oriented.positions, cloud.positions);
+  EXPECT_EQ(oriented.normals[119999], (Vec3{0, 0, 1}));
+}
+
+TEST(Laz, OtherFormatsBecomeLazToo) {
+  const Cloud cloud = samples::helix(200);
+  const Cloud back = samples::read(samples::written(cloud, "a.laz"));
+  EXPECT_EQ(back.format, "laz 1.4, point format 2");
+  EXPECT_EQ(back.colors, cloud.colors);
+  for (std::size_t i = 0; i < 200; ++i) {
+    for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(back.positions[i][a], cloud.positions[i][a], 5.1e-9 * 8);
+    EXPECT_NEAR(back.normals[i][0], cloud.normals[i][0], 1e-6);
+  }
 }
 
 TEST(Laz, CutAnywhereIsAnError) {

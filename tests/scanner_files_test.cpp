@@ -126,6 +126,13 @@ TEST(Capitals, AreAxesToo) {
   EXPECT_NE(message_of(lists).find("list"), std::string::npos);
 }
 
+TEST(Pcd, TakesTheScannerOfOtherFormats) {
+  const std::vector<Vec3> scanner = {{5, 6.5, -7}};
+  Cloud cloud = samples::helix(3);
+  cloud.sensor_positions = scanner;
+  EXPECT_EQ(read(samples::written(cloud, "a.pcd")).sensor_positions, scanner);
+}
+
 TEST(Pcd, CommasBetweenNumbersAreTaken) {
   const std::string head = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 2\nDATA ascii\n";
   EXPECT_EQ(read(head + "1,2,3\n4, 5, 6\n").positions[1], (Vec3{4, 5, 6}));

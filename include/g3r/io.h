@@ -60,7 +60,8 @@ struct WriteOptions {
 
 /// Writes the points with all their properties, and (each may be null) N normals and N confidences, replacing those of the file.
 /// The format follows the extension. Written whole or not at all: temporary file in the same folder, fsync, rename.
-/// "-" writes to standard output. Throws IoError, InvalidInput (unknown extension, sizes that differ, a non-finite normal).
+/// "-" writes to standard output. Throws IoError, InvalidInput (unknown extension, sizes that differ, a non-finite normal), Unavailable (LAZ in
+/// a build without LASzip).
 void write_cloud(const std::string& path, const Cloud& cloud, const std::vector<Vec3>* normals, const std::vector<float>* confidence,
                  const WriteOptions& options = {});
 

@@ -279,9 +279,10 @@ std::string unpack_laz(const Source& source, const LasHeader& header) {
   const Codec codec = read_codec(source, header);
   if (header.count == 0) {
     constexpr std::size_t kEmptyTable = 16;  // its place, version and number of chunks
-    if (find_rest(source, header, header.points_at) - header.points_at >= kEmptyTable + header.record_bytes)
+    const std::size_t rest = find_rest(source, header, header.points_at);
+    if (rest - header.points_at >= kEmptyTable + header.record_bytes)
       fail_at_byte(source, kLegacyCount, "the header has no points (count 0), but compressed points follow it");
-    return plain_header(source, header, source.bytes.size());
+    return plain_header(source, header, rest).append(source.bytes.substr(rest));
   }
   if (header.count > kMostRatio * source.bytes.size() / header.record_bytes) {
     fail_at_byte(

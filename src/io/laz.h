@@ -1,4 +1,4 @@
-// LAZ, which is LAS with compressed points. Only laz.cpp knows LASzip; in builds without it (laz_not_compiled.cpp) both functions throw.
+// LAZ, which is LAS with compressed points. Only laz.cpp and pack_laz.cpp know LASzip; laz_not_compiled.cpp stands in for both.
 #pragma once
 
 #include "io/las.h"
@@ -6,6 +6,9 @@
 #include <string>
 
 namespace g3r::io {
+
+/// Whether LAZ files can be read and written.
+bool laz_is_compiled();
 
 /// Throws InvalidInput, with the name of a converter, if LAZ files cannot be read.
 void require_laz(const Source& source);

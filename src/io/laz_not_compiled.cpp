@@ -1,6 +1,9 @@
+#include "io/las_output.h"
 #include "io/laz.h"
 
 namespace g3r::io {
+
+bool laz_is_compiled() { return false; }
 
 void require_laz(const Source& source) {
   fail_at_byte(source, las::kPointFormat,
@@ -12,5 +15,7 @@ std::string unpack_laz(const Source& source, const LasHeader&) {
   require_laz(source);
   return {};
 }
+
+std::unique_ptr<LasOutput> packed_las(OutputFile&) { throw Unavailable("write_cloud: this build does not write LAZ; write LAS (.las)"); }
 
 }  // namespace g3r::io
