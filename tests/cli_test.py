@@ -69,7 +69,7 @@ class ExitCodes(ProgramTest):
             with open(self.path(name), "w", encoding="ascii") as file:
                 file.write(text)
         for code, arguments, words in (
-                (NO_INPUT, ["no.ply"], "cannot read no.ply: No such file"), (NO_INPUT, ["folder"], "folder: a folder, not a file"),
+                (NO_INPUT, ["no.ply"], "cannot read no.ply: No such file"), (NO_INPUT, ["folder"], "folder: a folder without files of points"),
                 (BAD_DATA, ["empty.ply"], "empty.ply: empty file"), (BAD_DATA, ["none.obj"], "none.obj: no points"),
                 (BAD_DATA, ["flat.xyz"], "flat.xyz: line 1: expected at least three columns (x y z), found 2"),
                 (BAD_DATA, ["nan.xyz"], "nan.xyz: too few points: 0 of 9 are finite"), (BAD_DATA, ["three.xyz"], "too few points: 3 of 3"),
@@ -490,6 +490,22 @@ class Measuring(ProgramTest):
         for name in ("cd", "ae_m", "hd"):
             self.assertAlmostEqual(score[name], 0, delta=1e-6)
         self.expect(BAD_DATA, "eval", "cube.obj", "--truth", "a.ply")
+
+    def test_folders_patterns_and_boxes(self):
+        os.mkdir(self.path("tiles"))
+        write_xyz(self.path("tiles/a.xyz"), [(x, y, 0) for x in range(3) for y in range(3)])
+        write_xyz(self.path("tiles/b.xyz"), [(x, y, 1) for x in range(3) for y in range(3)])
+        for name in ("tiles", "tiles/", "tiles/*.xyz"):
+            text = self.expect(OK, "info", name).out.decode()
+            self.assertIn("2 files of xyz", text)
+            self.assertIn("18", text)
+        text = self.expect(OK, "info", "tiles", "--box", "-1,-1,-1,1,9,0.5").out.decode()
+        self.assertIn("x 0 to 1, y 0 to 2, z 0 to 0", text)
+        self.expect(BAD_DATA, "info", "tiles", "--box", "5,5,5,6,6,6")
+        self.assertIn("all of its points are read", self.expect(OK, "info", "tiles/a.xyz", "--levels", "2").err)
+        self.expect(USAGE, "info", "tiles", "--box", "1,2,3")
+        self.expect(USAGE, "tiles/*.xyz")
+        self.expect(NO_INPUT, "info", "tiles/*.ply")
 
     def test_info_says_what_is_in_a_file(self):
         text = self.expect(OK, "info", "cube.obj").out.decode()

@@ -20,6 +20,7 @@ using samples::compressed;
 using samples::Folder;
 using samples::kAnyChunks;
 using samples::las_file;
+using samples::load_points_at;
 using samples::put;
 
 std::string unpacked(const std::string& laz) {
@@ -113,6 +114,66 @@ TEST(Laz, OtherFormatsBecomeLazToo) {
     for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(back.positions[i][a], cloud.positions[i][a], 5.1e-9 * 8);
     EXPECT_NEAR(back.normals[i][0], cloud.normals[i][0], 1e-6);
   }
+}
+
+Cloud read_part(const std::string& bytes, const ReadOptions& options) {
+  return read_cloud_bytes(bytes.data(), bytes.size(), "part", options);
+}
+
+TEST(Copc, IsReadWholeByLevelsAndByBox) {
+  const std::string file = samples::copc_file();
+  const Cloud whole = samples::read(file);
+  EXPECT_EQ(whole.format, "laz 1.4, point format 6, COPC");
+  ASSERT_EQ(whole.positions.size(), 18U);
+  EXPECT_EQ(whole.positions[12], (Vec3{2, 12, -3}));
+  ReadOptions options;
+  options.levels = 1;
+  const Cloud coarse = read_part(file, options);
+  EXPECT_TRUE(coarse.warnings.empty());  // counts and bounds are those of the part
+  EXPECT_TRUE(coarse.positions == std::vector<Vec3>(whole.positions.begin(), whole.positions.begin() + 5));
+  EXPECT_EQ(samples::read(samples::written(coarse, "a.las")).positions, coarse.positions);
+  options.levels = 2;
+  EXPECT_EQ(read_part(file, options).positions, whole.positions);
+  options.levels = 0;
+  options.box = Box{{-9, -9, -9}, {-0.5, 7, 9}};  // the child at -8, points 5, 6 and 7 of it
+  const Cloud part = read_part(file, options);
+  EXPECT_TRUE(part.positions == std::vector<Vec3>(whole.positions.begin() + 5, whole.positions.begin() + 8));
+  EXPECT_EQ(samples::read(samples::written(part, "a.laz")).positions, part.positions);
+  options.box = Box{{100, 100, 100}, {101, 101, 101}};
+  EXPECT_THROW(read_part(file, options), InvalidInput);
+  options.box = {};
+  options.levels = 1;
+  EXPECT_EQ(read_part(compressed(las_file(6, 18)), options).warnings.size(), 1U);  // no COPC
+}
+
+TEST(Copc, IsWrittenWithoutItsRecord) {
+  const std::string las = samples::written(samples::read(samples::copc_file()), "a.las");
+  EXPECT_EQ(las.substr(0, load_points_at(las)).find("copc"), std::string::npos);
+  EXPECT_EQ(samples::read(samples::written(samples::read(samples::copc_file()), "a.laz")).format, "laz 1.4, point format 6");
+}
+
+TEST(Copc, DamageIsAnErrorOrFewerPoints) {
+  const std::string file = samples::copc_file();
+  ReadOptions options;
+  options.levels = 1;
+  options.box = Box{{-9, -99, -9}, {9, 99, 9}};
+  int refused = 0;
+  for (std::size_t at = 375; at < file.size(); at += at < 640 || at > file.size() - 200 ? 1 : 7) {
+    for (const char byte : {'\0', '\xFF', '\x7F', static_cast<char>(file[at] ^ 1)}) {
+      std::string damaged = file;
+      damaged[at] = byte;
+      try {
+        EXPECT_LE(read_part(damaged, options).positions.size(), 18U) << at;
+      } catch (const InvalidInput&) {
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GT(refused, 100);
+  std::string circle = file;  // the page that refers to itself
+  put(circle, circle.size() - 128 + 32 + 16, std::uint64_t{circle.size() - 128});
+  options.levels = 0;
+  EXPECT_THROW(read_part(circle, options), InvalidInput);
 }
 
 TEST(Laz, CutAnywhereIsAnError) {

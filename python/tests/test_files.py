@@ -59,6 +59,17 @@ def test_scanner_positions_are_kept(tmp_path):
     assert g3r.read(path).sensor_positions is None
 
 
+def test_folders_and_boxes(tmp_path):
+    (tmp_path / "a.xyz").write_text("1 2 3\n")
+    (tmp_path / "b.xyz").write_text("4 5 6\n")
+    np.testing.assert_array_equal(g3r.read(tmp_path).points, [[1, 2, 3], [4, 5, 6]])
+    np.testing.assert_array_equal(g3r.read(tmp_path / "*.xyz", box=((2, 2, 2), (9, 9, 9))).points, [[4, 5, 6]])
+    assert "no COPC" in g3r.read(tmp_path / "a.xyz", levels=2).warnings[0]
+    for options in ({"box": ((7, 7, 7), (9, 9, 9))}, {"box": ((0, 0, 0),)}, {"box": ((1, 1, 1), (0, 0, 0))}, {"levels": 0}):
+        with pytest.raises(g3r.InputError):
+            g3r.read(tmp_path, **options)
+
+
 def test_the_issue_in_four_lines(tmp_path, sphere):
     g3r.write(tmp_path / "scan.ply", sphere)
     cloud = g3r.read(tmp_path / "scan.ply")

@@ -14,7 +14,8 @@ bool laz_is_compiled();
 void require_laz(const Source& source);
 
 /// The LAS file that a LAZ file stands for: the same header, variable length records and records of points, byte for byte, and what follows
-/// the points. `header` is that of `source`. Throws InvalidInput, also if that would be more than 256 times the size of the file.
-std::string unpack_laz(const Source& source, const LasHeader& header);
+/// the points. `header` is that of `source`. Of COPC, whose own record is left out, only the cells that `options` ask for; counts and
+/// bounds are theirs. Throws InvalidInput, also if that would be more than 256 times the size of the file.
+std::string unpack_laz(const Source& source, const LasHeader& header, const ReadOptions& options = {});
 
 }  // namespace g3r::io

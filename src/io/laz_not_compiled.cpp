@@ -11,7 +11,7 @@ void require_laz(const Source& source) {
                "\"pdal translate in.laz out.las\", or build g3r with LASzip (tools/sources.sh)");
 }
 
-std::string unpack_laz(const Source& source, const LasHeader&) {
+std::string unpack_laz(const Source& source, const LasHeader&, const ReadOptions&) {
   require_laz(source);
   return {};
 }

@@ -174,8 +174,6 @@ class PackedLas : public LasOutput {
 
 }  // namespace
 
-bool laz_is_compiled() { return true; }
-
 std::unique_ptr<LasOutput> packed_las(OutputFile& file) { return std::make_unique<PackedLas>(file); }
 
 }  // namespace g3r::io
