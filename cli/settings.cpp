@@ -128,7 +128,7 @@ void add_read_options(CLI::App& app, Settings& s) {
       ->delimiter(',')
       ->expected(6)
       ->type_name("X0,Y0,Z0,X1,Y1,Z1");
-  app.add_option("--levels", s.read_options.levels, "COPC: levels of its octree to read, from the coarsest (default all)")
+  app.add_option("--levels", s.read_options.levels, "COPC, EPT: levels of the octree to read, from the coarsest (default all)")
       ->check(range(1))
       ->type_name("N");
 }

@@ -1,6 +1,7 @@
 // LAZ against LAS: files compressed here with LASzip's encoder.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <random>
 
 #include "counting_allocator.h"
@@ -174,6 +175,22 @@ TEST(Copc, DamageIsAnErrorOrFewerPoints) {
   put(circle, circle.size() - 128 + 32 + 16, std::uint64_t{circle.size() - 128});
   options.levels = 0;
   EXPECT_THROW(read_part(circle, options), InvalidInput);
+}
+
+TEST(Ept, CellsOfLazAreOneCloud) {
+  const Folder folder;
+  for (const char* name : {"ept-hierarchy", "ept-data"}) std::filesystem::create_directories(folder.path(name));
+  samples::spill(folder.path("ept.json"), R"({"bounds":[-1e7,-1e7,-1e7,1e7,1e7,1e7],"dataType":"laszip","schema":[]})");
+  samples::spill(folder.path("ept-hierarchy/0-0-0-0.json"), R"({"0-0-0-0": 20, "1-0-0-0": 30})");
+  samples::spill(folder.path("ept-data/0-0-0-0.laz"), compressed(las_file(7, 20)));
+  samples::spill(folder.path("ept-data/1-0-0-0.laz"), compressed(las_file(7, 30)));
+  const Cloud cloud = read_cloud(folder.path(""));
+  EXPECT_EQ(cloud.format, "ept, 2 cells of LAZ");
+  EXPECT_EQ(cloud.positions.size(), 50U);
+  EXPECT_EQ(cloud.positions[20], samples::read(las_file(7, 30)).positions[0]);
+  EXPECT_EQ(cloud.colors.size(), 50U);
+  samples::spill(folder.path("ept-hierarchy/0-0-0-0.json"), R"({"0-0-0-0": 21})");
+  EXPECT_THROW((void)read_cloud(folder.path("")), InvalidInput);
 }
 
 TEST(Laz, CutAnywhereIsAnError) {

@@ -2,6 +2,8 @@
 #include <g3r/io.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "io/table.h"
 #include "io_samples.h"
 
@@ -119,6 +121,80 @@ TEST(Box, OfSeveralFilesOrWithoutPointsIsSaid) {
   options.box = {};
   options.levels = 3;
   EXPECT_EQ(read_cloud(folder.path("a.xyz"), options).warnings.size(), 1U);
+}
+
+// Records of X Y Z (steps of 0.5 from 10), Red (u16) and GpsTime in two cells, of which the second is in a page of its own.
+void make_ept(const Folder& folder, const std::string& data_type = "binary") {
+  std::filesystem::create_directories(folder.path("ept-hierarchy"));
+  std::filesystem::create_directories(folder.path("ept-data"));
+  std::string schema;
+  for (const char* axis : {"X", "Y", "Z"})
+    schema += std::string(R"({"name":")") + axis + R"(","type":"signed","size":4,"scale":0.5,"offset":10},)";
+  spill(folder.path("ept.json"),
+        R"({"bounds":[0,0,0,32,32,32],"dataType":")" + data_type + R"(","hierarchyType":"json","points":3,"schema":[)" + schema +
+            R"({"name":"Intensity","type":"unsigned","size":2},{"name":"GpsTime","type":"float","size":8}],"version":"1.0.0"})");
+  spill(folder.path("ept-hierarchy/0-0-0-0.json"), R"({"0-0-0-0": 2, "1-1-0-0": -1, "1-0-0-0": 0})");
+  spill(folder.path("ept-hierarchy/1-1-0-0.json"), R"({"1-1-0-0": 1, "0-0-0-0": -1})");
+  const auto record = [](std::int32_t x, std::uint16_t intensity) {
+    return samples::raw(x) + samples::raw(std::int32_t{4}) + samples::raw(std::int32_t{6}) + samples::raw(intensity) +
+           samples::raw(1e8 + x);
+  };
+  spill(folder.path("ept-data/0-0-0-0.bin"), record(0, 7) + record(2, 8));
+  spill(folder.path("ept-data/1-1-0-0.bin"), record(20, 9));
+}
+
+TEST(Ept, CellsAreOneCloud) {
+  const Folder folder;
+  make_ept(folder);
+  for (const char* name : {"", "ept.json"}) {
+    const Cloud cloud = read_cloud(folder.path(name));
+    EXPECT_EQ(cloud.format, "ept, 2 cells of records");
+    EXPECT_EQ(cloud.positions, (std::vector<Vec3>{{10, 12, 13}, {11, 12, 13}, {20, 12, 13}}));
+    EXPECT_EQ(value(cloud, "intensity", 2), 9);
+    EXPECT_EQ(value(cloud, "gpstime", 2), 1e8 + 20);
+  }
+  ReadOptions options;
+  options.levels = 1;
+  EXPECT_EQ(read_cloud(folder.path(""), options).positions.size(), 2U);
+  options.levels = 0;
+  options.box = Box{{15, 0, 0}, {30, 30, 30}};
+  EXPECT_EQ(read_cloud(folder.path(""), options).positions, (std::vector<Vec3>{{20, 12, 13}}));
+  options.box = Box{{0, 0, 20}, {30, 30, 30}};
+  EXPECT_THROW((void)read_cloud(folder.path(""), options), InvalidInput);
+}
+
+TEST(Ept, DamageIsSaid) {
+  const Folder folder;
+  const auto message = [&] {
+    try {
+      (void)read_cloud(folder.path(""));
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  make_ept(folder, "zstandard");
+  EXPECT_NE(message().find("dataType"), std::string::npos) << message();
+  make_ept(folder);
+  spill(folder.path("ept-data/1-1-0-0.bin"), std::string(21, '\0'));
+  EXPECT_NE(message().find("1-1-0-0.bin: truncated"), std::string::npos) << message();
+  std::filesystem::remove(folder.path("ept-data/1-1-0-0.bin"));
+  EXPECT_NE(message().find("No such file"), std::string::npos) << message();
+  for (const char* page : {R"({"0-0-0-0": 2, "../etc": 5})", R"({"1-2-0-0": 5})", R"({"0-0-0-0": -2})", R"({"99-0-0-0": 1})", "[]", "{"}) {
+    make_ept(folder);
+    spill(folder.path("ept-hierarchy/0-0-0-0.json"), page);
+    EXPECT_NE(message().find("ept-hierarchy/0-0-0-0.json: "), std::string::npos) << page << ": " << message();
+  }
+  make_ept(folder);
+  const std::string description = samples::slurp(folder.path("ept.json"));
+  for (std::size_t at = 0; at < description.size(); ++at) {
+    for (const char byte : {'\0', '9', '"', ']', '-'}) {
+      std::string damaged = description;
+      damaged[at] = byte;
+      spill(folder.path("ept.json"), damaged);
+      (void)message();  // an error or a cloud
+    }
+  }
 }
 
 }  // namespace

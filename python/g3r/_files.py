@@ -75,11 +75,12 @@ class Cloud:
 
 
 def read(path: Path, *, min_opacity: float = 0.1, box: Optional[Sequence[Sequence[float]]] = None, levels: Optional[int] = None) -> Cloud:
-    """Reads a cloud; the format is recognised by content. A folder, or a pattern with * or ?, is read as one cloud of all its files of points.
+    """Reads a cloud; the format is recognised by content. A folder, or a pattern with * or ?, is read as one cloud of all its files of points;
+    an EPT folder, or its ept.json, as one of all its cells.
 
     min_opacity: Gaussian splats below it are left out.
-    box: two corners, ((x0, y0, z0), (x1, y1, z1)): points outside are left out; of COPC only the cells that it meets are unpacked.
-    levels: of a COPC file, from the coarsest; None for all.
+    box: two corners, ((x0, y0, z0), (x1, y1, z1)): points outside are left out; of COPC and EPT only the cells that it meets are read.
+    levels: of the octree of COPC or EPT, from the coarsest; None for all.
 
     Raises FileMissingError, FileError, InputError (damaged or unknown; says where and what to do).
     """

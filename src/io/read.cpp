@@ -1,4 +1,5 @@
 // From bytes to a cloud or a mesh: recognise the format, call its reader, check what holds for all formats.
+#include "io/ept.h"
 #include "io/readers.h"
 #include "io/recognise.h"
 #include "io/source.h"
@@ -115,6 +116,7 @@ Cloud read_tiles(const std::vector<std::string>& files, const std::string& path,
     const std::string bytes = read_bytes(file);
     Cloud cloud = read_part({bytes, file}, options);
     if (options.box && cloud.positions.empty()) continue;
+    if (files.size() > 1) forget_las(cloud);
     clouds.push_back(std::move(cloud));
     names.push_back(file);
   }
@@ -164,6 +166,12 @@ Mesh read_mesh_bytes(const void* bytes, std::size_t size, const std::string& nam
 }
 
 Cloud read_cloud(const std::string& path, const ReadOptions& options) {
+  if (const std::string ept = io::find_ept(path); !ept.empty()) {
+    io::check_options(options);
+    Cloud cloud = io::read_ept(ept, options);
+    io::drop_black(cloud);
+    return cloud;
+  }
   if (const std::vector<std::string> files = io::find_tiles(path); !files.empty()) {
     io::check_options(options);
     return io::read_tiles(files, path, options);

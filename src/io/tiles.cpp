@@ -217,6 +217,13 @@ std::vector<std::string> find_tiles(const std::string& path) {
   return files_of_pattern(path);
 }
 
+void forget_las(Cloud& cloud) {
+  if (cloud.attributes == nullptr || cloud.attributes->dialect != Attributes::Dialect::kLas) return;
+  auto table = std::make_shared<Attributes>();
+  table->elements.push_back(cloud.attributes->points());
+  cloud.attributes = std::move(table);
+}
+
 Cloud merge_clouds(std::vector<Cloud>& clouds, const std::vector<std::string>& names, const std::string& path) {
   if (clouds.size() == 1) return std::move(clouds[0]);
   Cloud whole;
