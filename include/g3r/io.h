@@ -47,13 +47,13 @@ struct Box {
 struct ReadOptions {
   double min_opacity = 0.1;  ///< Gaussian splats: leave out splats below this opacity, 0..1
   std::optional<Box> box{};  ///< leave out points outside of it; of COPC and EPT only cells that it meets are unpacked
-  int levels = 0;            ///< COPC, EPT: levels of the octree to read, from the coarsest; 0 for all. Other files are read as they are, with a warning
+  int levels = 0;            ///< COPC, EPT: levels of the octree to read, from the coarsest; 0 for all (as of other files, with a warning)
 };
 
-/// Reads a cloud; the format is recognised by content, not by name. "-" reads standard input. A folder, or a pattern with * or ? that names no
-/// file itself, stands for all files of points in it (LAS, LAZ, PLY, PCD, E57, PTX, PTS, XYZ, CSV, NPY, SPZ; of a pattern, whatever it names),
-/// which become one cloud in the order of their names: properties of numbers that any of them has, 0 where one has not. An ept.json, or the
-/// folder that holds one, stands for the cells of its octree.
+/// Reads a cloud; the format is recognised by content, not by name. "-" reads standard input. A folder, or a pattern with * or ? that
+/// names no file itself, stands for all files of points in it (LAS, LAZ, PLY, PCD, E57, PTX, PTS, XYZ, CSV, NPY, SPZ; of a pattern,
+/// whatever it names), which become one cloud in the order of their names: properties of numbers that any of them has, 0 where one has
+/// not. An ept.json, or the folder that holds one, stands for the cells of its octree.
 /// Throws IoError (not found, read error), InvalidInput (damaged, unknown or unusable; says where and what to do), std::bad_alloc.
 [[nodiscard]] Cloud read_cloud(const std::string& path, const ReadOptions& options = {});
 
@@ -72,8 +72,8 @@ struct WriteOptions {
 
 /// Writes the points with all their properties, and (each may be null) N normals and N confidences, replacing those of the file.
 /// The format follows the extension. Written whole or not at all: temporary file in the same folder, fsync, rename.
-/// "-" writes to standard output. Throws IoError, InvalidInput (unknown extension, sizes that differ, a non-finite normal), Unavailable (LAZ in
-/// a build without LASzip).
+/// "-" writes to standard output. Throws IoError, InvalidInput (unknown extension, sizes that differ, a non-finite normal), Unavailable
+/// (LAZ in a build without LASzip).
 void write_cloud(const std::string& path, const Cloud& cloud, const std::vector<Vec3>* normals, const std::vector<float>* confidence,
                  const WriteOptions& options = {});
 

@@ -78,7 +78,8 @@ Json parse(const Source& source) {
 }
 
 std::optional<Type> type_of(std::string_view kind, std::uint64_t size) {
-  if (kind == "float" || kind == "floating") return size == 4 ? std::optional(Type::kFloat32) : size == 8 ? std::optional(Type::kFloat64) : std::nullopt;
+  if (kind == "float" || kind == "floating")
+    return size == 4 ? std::optional(Type::kFloat32) : size == 8 ? std::optional(Type::kFloat64) : std::nullopt;
   const bool negative = kind == "signed";
   if (!negative && kind != "unsigned") return std::nullopt;
   switch (size) {
