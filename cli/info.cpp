@@ -38,6 +38,14 @@ std::string bounds_text(const std::vector<Vec3>& points) {
   return text;
 }
 
+std::string scanner_text(const std::vector<Vec3>& positions) {
+  if (positions.empty()) return "";
+  if (positions.size() > 1) return line("scanner", std::to_string(positions.size()) + " positions in the file");
+  std::string text;
+  for (std::size_t a = 0; a < 3; ++a) text += (a == 0 ? "at " : ", ") + short_number(positions[0][a], kCoordinateDigits);
+  return line("scanner", text + ", as the file says");
+}
+
 std::string file_text(const Settings& settings, const Cloud& cloud) {
   std::string text = escape_text(settings.input) + "\n";
   const char* precision = cloud.scalar == Scalar::kFloat64 ? "double" : "single";
@@ -47,7 +55,8 @@ std::string file_text(const Settings& settings, const Cloud& cloud) {
   for (const std::string& name : cloud.property_names) names.append(names.empty() ? "" : " ").append(escape_text(name));
   if (!names.empty()) text += line("properties", names);
   text += line("normals", cloud.normals.empty() ? "none" : "in the file");
-  return text + line("bounds", bounds_text(cloud.positions));
+  text += line("bounds", bounds_text(cloud.positions));
+  return text + scanner_text(cloud.sensor_positions);
 }
 
 MeshCheck full_check(const Mesh& mesh) {

@@ -59,9 +59,10 @@ constexpr const char* kIntroduction = R"(g3r: from an unoriented point cloud to 
   g3r view oriented.ply scan.mesh.ply -o look.html   shows both in a browser
 )";
 
-constexpr const char* kFormatHelp = R"(Reads PLY, XYZ/TXT/CSV/PTS, OBJ, OFF, PCD, NPY, LAS, STL, glTF/GLB; the content
-tells which. Writes meshes as .ply .obj .stl .off .glb, points as .ply .xyz .txt
-.csv .pts .pcd .npy .las .obj; the extension tells which.
+constexpr const char* kFormatHelp = R"(Reads PLY, XYZ/TXT/CSV/PTS, OBJ, OFF, PCD, NPY, LAS/LAZ, E57, PTX, SPZ, STL,
+glTF/GLB; the content tells which. Writes meshes as .ply .obj .stl .off .glb,
+points as .ply .xyz .txt .csv .pts .pcd .npy .las .laz .obj; the extension
+tells which.
 
 )";
 
@@ -118,6 +119,18 @@ void add_read_options(CLI::App& app, Settings& s) {
   app.add_option("--min-opacity", s.read_options.min_opacity, "Gaussian splats: leave out those below this opacity, 0 to 1 (default 0.1)")
       ->check(range(0.0, 1.0))
       ->type_name("X");
+  app.add_option_function<std::vector<double>>(
+         "--box",
+         [&s](const std::vector<double>& sides) {
+           s.read_options.box = Box{{sides[0], sides[1], sides[2]}, {sides[3], sides[4], sides[5]}};
+         },
+         "Leave out points outside of this box, in the coordinates of the file")
+      ->delimiter(',')
+      ->expected(6)
+      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+  app.add_option("--levels", s.read_options.levels, "COPC, EPT: levels of the octree to read, from the coarsest (default all)")
+      ->check(range(1))
+      ->type_name("N");
 }
 
 void add_write_options(CLI::App& app, Settings& s) {
@@ -372,7 +385,10 @@ void add_view(CLI::App& app, Settings& s) {
 }
 
 /// scan.ply -> scan.mesh.ply
-std::string default_output(const std::string& input) { return std::filesystem::path(input).replace_extension(".mesh.ply").string(); }
+std::string default_output(const std::string& input) {
+  const std::size_t end = input.find_last_not_of('/');  // of a folder
+  return std::filesystem::path(input.substr(0, end == std::string::npos ? input.size() : end + 1)).replace_extension(".mesh.ply").string();
+}
 
 Command parsed_command(const CLI::App& app) {
   const std::map<std::string, Command> commands = {{"orient", Command::kOrient}, {"mesh", Command::kMesh}, {"eval", Command::kEval},
@@ -442,6 +458,8 @@ void complete(const CLI::App& app, Settings& s) {
   if (s.command == Command::kReconstruct) {
     if (s.input.empty()) throw UsageError("expected a point cloud");
     if (s.output.empty() && s.input == "-") throw UsageError("standard input has no name to derive OUT from: give OUT");
+    if (s.output.empty() && s.input.find_first_of("*?") != std::string::npos)
+      throw UsageError("a pattern has no name to derive OUT from: give OUT");
     if (s.output.empty()) s.output = default_output(s.input);
   } else if (app.count("IN") > 0) {
     throw UsageError("expected the command '" + app.get_subcommands().front()->get_name() + "' before its files");

@@ -19,7 +19,7 @@ function(g3r_laszip_defaults target)
   target_compile_features(${target} PRIVATE cxx_std_17)
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
                                              CXX_CLANG_TIDY "")
-  target_include_directories(${target} PRIVATE "${G3R_LASZIP_SOURCE}/src" "${G3R_LASZIP_SOURCE}/include/laszip")
+  target_include_directories(${target} PRIVATE "${G3R_LASZIP}/src" "${G3R_LASZIP}/include/laszip")
   target_compile_definitions(${target} PRIVATE UNORDERED HAVE_UNORDERED_MAP=1)
   target_compile_options(${target} PRIVATE -w)
   if(G3R_SANITIZE)
@@ -34,7 +34,7 @@ function(g3r_libe57_defaults target)
   target_compile_features(${target} PRIVATE cxx_std_17)
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
                                              CXX_CLANG_TIDY "")
-  target_include_directories(${target} PRIVATE "${G3R_E57_SOURCE}/include" "${G3R_E57_SOURCE}/src" "${G3R_E57_SOURCE}/extern/CRCpp/inc"
+  target_include_directories(${target} PRIVATE "${G3R_E57}/include" "${G3R_E57}/src" "${G3R_E57}/extern/CRCpp/inc"
                                                "${PROJECT_BINARY_DIR}/e57")
   target_compile_definitions(${target} PRIVATE E57_VALIDATION_LEVEL=1 CRCPP_USE_CPP11 CRCPP_BRANCHLESS REVISION_ID="libE57Format")
   target_compile_options(${target} PRIVATE -w)

@@ -29,6 +29,7 @@ Limits limits_of(std::string_view bytes, Format format) {
   constexpr std::size_t kLibrary = std::size_t{16} << 20;
   if (is_laz(bytes)) return {256 * 5, kLibrary, 13};
   if (format == Format::kE57) return {64 * 5, kLibrary, 3};
+  if (format == Format::kSpz) return {32 * 6, std::size_t{1} << 20, 2};
   if (bytes.find("binary_compressed") != std::string_view::npos) return {88 * 6};
   return {};
 }
@@ -43,6 +44,8 @@ void read_points(const char* bytes, std::size_t size, std::size_t most_points) {
     const g3r::Cloud cloud = g3r::read_cloud_bytes(bytes, size, "input");
     const std::size_t count = cloud.positions.size();
     require(fits(cloud.normals, count) && fits(cloud.colors, count) && fits(cloud.confidence, count), "one entry per point");
+    require(fits(cloud.scan_of_point, count), "one scan per point");
+    for (const std::uint32_t scan : cloud.scan_of_point) require(scan < cloud.sensor_positions.size(), "scans have positions");
     require(count <= most_points * size, "no more points than bytes hold");
   } catch (const g3r::InvalidInput&) {
   }

@@ -11,6 +11,7 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
@@ -161,9 +162,13 @@ auto field_gradient(const Field& field, const PointsArray& queries) {
   return give_rows(std::move(gradients));
 }
 
-std::shared_ptr<Cloud> read_points(const Text& path, double min_opacity) {
+std::shared_ptr<Cloud> read_points(const Text& path, double min_opacity, const std::optional<std::array<double, 6>>& box, int levels) {
   const nb::gil_scoped_release release;
-  return std::make_shared<Cloud>(read_cloud(path, ReadOptions{min_opacity}));
+  ReadOptions options;
+  options.min_opacity = min_opacity;
+  if (box) options.box = Box{{(*box)[0], (*box)[1], (*box)[2]}, {(*box)[3], (*box)[4], (*box)[5]}};
+  options.levels = levels;
+  return std::make_shared<Cloud>(read_cloud(path, options));
 }
 
 void write_points(const Text& path, const std::shared_ptr<Cloud>& source, const std::optional<PointsArray>& positions,
@@ -237,6 +242,13 @@ void translate_error(const std::exception_ptr& pointer, void* /*unused*/) {
   }
 }
 
+// A (n,) view of a member of a cloud, kept alive by it; None if it is empty.
+template <class T>
+nb::object values_of(const nb::handle& owner, const std::vector<T>& values) {
+  if (values.empty()) return nb::none();
+  return nb::cast(nb::ndarray<nb::numpy, const T, nb::ndim<1>>(values.data(), {values.size()}, owner));
+}
+
 // A (n, 3) view of a member of a cloud, kept alive by it; None if it is empty.
 template <class T>
 nb::object rows_of(const nb::handle& owner, const std::vector<std::array<T, 3>>& rows) {
@@ -254,12 +266,9 @@ void bind(nb::module_& m) {
       .def_prop_ro("points", [](nb::handle self) { return rows_of(self, nb::cast<const Cloud&>(self).positions); })
       .def_prop_ro("normals", [](nb::handle self) { return rows_of(self, nb::cast<const Cloud&>(self).normals); })
       .def_prop_ro("colors", [](nb::handle self) { return rows_of(self, nb::cast<const Cloud&>(self).colors); })
-      .def_prop_ro("confidence",
-                   [](nb::handle self) -> nb::object {
-                     const auto& values = nb::cast<const Cloud&>(self).confidence;
-                     if (values.empty()) return nb::none();
-                     return nb::cast(nb::ndarray<nb::numpy, const float, nb::ndim<1>>(values.data(), {values.size()}, self));
-                   })
+      .def_prop_ro("confidence", [](nb::handle self) { return values_of(self, nb::cast<const Cloud&>(self).confidence); })
+      .def_prop_ro("sensor_positions", [](nb::handle self) { return rows_of(self, nb::cast<const Cloud&>(self).sensor_positions); })
+      .def_prop_ro("scan_of_point", [](nb::handle self) { return values_of(self, nb::cast<const Cloud&>(self).scan_of_point); })
       .def_ro("format", &Cloud::format)
       .def_ro("property_names", &Cloud::property_names)
       .def_ro("warnings", &Cloud::warnings);
@@ -268,7 +277,7 @@ void bind(nb::module_& m) {
   m.def("reconstruct", &reconstruct_points, nb::arg("points"), nb::arg("colors").none(), nb::arg("options"), nb::arg("progress").none());
   m.def("mesh", &mesh_points, nb::arg("points"), nb::arg("normals"), nb::arg("options"), nb::arg("progress").none());
   m.def("field", &make_field, nb::arg("points"), nb::arg("normals"), nb::arg("areas"), nb::arg("width"));
-  m.def("read_cloud", &read_points, nb::arg("path"), nb::arg("min_opacity"));
+  m.def("read_cloud", &read_points, nb::arg("path"), nb::arg("min_opacity"), nb::arg("box").none(), nb::arg("levels"));
   m.def("write_cloud", &write_points, nb::arg("path"), nb::arg("source").none(), nb::arg("positions").none(), nb::arg("normals").none(),
         nb::arg("colors").none(), nb::arg("confidence").none(), nb::arg("ascii"), nb::arg("cloud_compare_names"));
   m.def("read_mesh", &read_faces, nb::arg("path"));

@@ -69,7 +69,7 @@ class ExitCodes(ProgramTest):
             with open(self.path(name), "w", encoding="ascii") as file:
                 file.write(text)
         for code, arguments, words in (
-                (NO_INPUT, ["no.ply"], "cannot read no.ply: No such file"), (NO_INPUT, ["folder"], "folder: a folder, not a file"),
+                (NO_INPUT, ["no.ply"], "cannot read no.ply: No such file"), (NO_INPUT, ["folder"], "folder: a folder without files of points"),
                 (BAD_DATA, ["empty.ply"], "empty.ply: empty file"), (BAD_DATA, ["none.obj"], "none.obj: no points"),
                 (BAD_DATA, ["flat.xyz"], "flat.xyz: line 1: expected at least three columns (x y z), found 2"),
                 (BAD_DATA, ["nan.xyz"], "nan.xyz: too few points: 0 of 9 are finite"), (BAD_DATA, ["three.xyz"], "too few points: 3 of 3"),
@@ -491,6 +491,22 @@ class Measuring(ProgramTest):
             self.assertAlmostEqual(score[name], 0, delta=1e-6)
         self.expect(BAD_DATA, "eval", "cube.obj", "--truth", "a.ply")
 
+    def test_folders_patterns_and_boxes(self):
+        os.mkdir(self.path("tiles"))
+        write_xyz(self.path("tiles/a.xyz"), [(x, y, 0) for x in range(3) for y in range(3)])
+        write_xyz(self.path("tiles/b.xyz"), [(x, y, 1) for x in range(3) for y in range(3)])
+        for name in ("tiles", "tiles/", "tiles/*.xyz"):
+            text = self.expect(OK, "info", name).out.decode()
+            self.assertIn("2 files of xyz", text)
+            self.assertIn("18", text)
+        text = self.expect(OK, "info", "tiles", "--box", "-1,-1,-1,1,9,0.5").out.decode()
+        self.assertIn("x 0 to 1, y 0 to 2, z 0 to 0", text)
+        self.expect(BAD_DATA, "info", "tiles", "--box", "5,5,5,6,6,6")
+        self.assertIn("all of its points are read", self.expect(OK, "info", "tiles/a.xyz", "--levels", "2").err)
+        self.expect(USAGE, "info", "tiles", "--box", "1,2,3")
+        self.expect(USAGE, "tiles/*.xyz")
+        self.expect(NO_INPUT, "info", "tiles/*.ply")
+
     def test_info_says_what_is_in_a_file(self):
         text = self.expect(OK, "info", "cube.obj").out.decode()
         for words in ("cube.obj", "8", "12 triangles", "closed", "genus 0", "no triangles intersect", "smallest 45 degrees", "x 0 to 2"):
@@ -498,6 +514,14 @@ class Measuring(ProgramTest):
         write_xyz(self.path("two.xyz"), [(0, 0, 0), (1, 1, 1)])
         result = self.expect(OK, "info", "two.xyz")
         self.assertIn("warning", result.err)
+        pose = "5 6 7.5\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n5 6 7.5 1\n"
+        scan = "1\n4\n" + pose + "".join(f"{x} {y} 0 0.5\n" for x, y in ((1, 0), (2, 0), (1, 1), (2, 1)))
+        with open(self.path("scan.ptx"), "w") as file:
+            file.write(scan)
+        self.assertIn("scanner    at 5, 6, 7.5, as the file says", self.expect(OK, "info", "scan.ptx").out.decode())
+        with open(self.path("scan.ptx"), "w") as file:
+            file.write(scan + scan)
+        self.assertIn("scanner    2 positions in the file", self.expect(OK, "info", "scan.ptx").out.decode())
 
 
 if __name__ == "__main__":

@@ -132,6 +132,60 @@ inline std::string text_gltf() {
          R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0,"translation":[10,0,0],"scale":[1,1,2]}],"scenes":[{"nodes":[0]}],"scene":0})";
 }
 
+/// Two scans that turn the helix by 90 degrees about z and shift it; of the first every third beam met nothing.
+inline std::string ptx(std::size_t count) {
+  const Cloud cloud = helix(count);
+  std::string text;
+  for (int scan = 0; scan < 2; ++scan) {
+    text +=
+        std::to_string(count) + "\n1\n5 6 7\n0 1 0\n-1 0 0\n0 0 1\n0 1 0 0\n-1 0 0 0\n0 0 1 0\n5 6 " + std::to_string(7 + scan) + " 1\n";
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3& p = cloud.positions[i];
+      if (scan == 0) {
+        text += i % 3 == 2 ? "0 0 0 0.5\n" : std::to_string(p[0]) + " " + std::to_string(p[1]) + " " + std::to_string(p[2]) + " 0.25\n";
+      } else {
+        text += "1 2 " + std::to_string(i) + " 0.75 10 20 30\n";
+      }
+    }
+  }
+  return text;
+}
+
+/// gzip without compression.
+inline std::string gzip(const std::string& bytes) {
+  std::string stream("\x1f\x8b\x08\0\0\0\0\0\0\xff", 10);
+  constexpr std::size_t kBlock = 65535;
+  for (std::size_t at = 0; at == 0 || at < bytes.size(); at += kBlock) {
+    const std::string block = bytes.substr(at, kBlock);
+    const auto size = static_cast<std::uint16_t>(block.size());
+    stream += static_cast<char>(at + kBlock >= bytes.size() ? 1 : 0);
+    stream += raw(size) + raw(static_cast<std::uint16_t>(~size)) + block;
+  }
+  std::uint32_t crc = 0xFFFFFFFF;
+  for (const char byte : bytes) {
+    crc ^= static_cast<unsigned char>(byte);
+    for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ ((crc & 1) != 0 ? 0xEDB88320 : 0);
+  }
+  return stream + raw(~crc) + raw(static_cast<std::uint32_t>(bytes.size()));
+}
+
+/// Splats at (i, -i, i / 4) with harmonics of degree 1, before gzip; the second one may be `faint`.
+inline std::string unpacked_spz(std::size_t count, std::uint32_t version, bool faint = false) {
+  std::string bytes = "NGSP" + raw(version) + raw(static_cast<std::uint32_t>(count)) + std::string("\1\xc\0\0", 4);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto n = static_cast<std::int32_t>(i);
+    for (const std::int32_t fixed : {n * 4096, -n * 4096, n * 1024}) bytes += raw(fixed).substr(0, 3);
+  }
+  for (std::size_t i = 0; i < count; ++i) bytes += static_cast<char>(faint && i == 1 ? 2 : 255);
+  for (std::size_t i = 0; i < count; ++i) bytes += "\xa0\x80\x60";
+  bytes += std::string(3 * count, '\x70');  // scales: exp(-3)
+  for (std::size_t i = 0; i < count; ++i) {
+    if (version == 2) bytes += std::string("\xff\x7f\x80", 3);
+    if (version == 3) bytes += raw(std::uint32_t{3} << 30 | 0x1FFU << 20 | 0x2FFU);  // w is the largest
+  }
+  return bytes + std::string(9 * count, '\x80');
+}
+
 /// One file for every reader and variant.
 inline std::vector<Sample> all(std::size_t count = 12) {
   const Cloud cloud = helix(count);
@@ -158,6 +212,11 @@ inline std::vector<Sample> all(std::size_t count = 12) {
   samples.push_back(sample("points.pts", written(bare, "a.pts"), "\n", true));
   samples.push_back(sample("points.xyz", written(bare, "a.xyz"), "", false));
   samples.push_back(sample("points.csv", written(cloud, "a.csv"), "\n", false));
+  samples.push_back(sample("scans.ptx", ptx(count), "5 6 7 1\n", false));
+  samples.push_back(sample("splats2.spz", gzip(unpacked_spz(count, 2)), "", true));
+  Sample spz = sample("splats3.spz", gzip(unpacked_spz(count, 3)), "", true);
+  spz.header = 31;  // of gzip, its block, and SPZ
+  samples.push_back(spz);
   samples.push_back(sample("points.obj", written(cloud, "a.obj"), "", false));
   samples.push_back(sample("mesh.obj", written(mesh, "a.obj"), "", false));
   samples.push_back(sample("mesh.off", written(mesh, "a.off"), "\n4 4 0\n", true));

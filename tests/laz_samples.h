@@ -112,8 +112,10 @@ inline std::array<unsigned char, 128> point14(const char* record) {
   return item;
 }
 
-// LASzip's compression of a LAS file. Chunks of `chunk` points, or with kAnyChunks of 5, 6, 7, ... points.
-inline std::string compressed(const std::string& las, std::uint32_t chunk = 50000, unsigned version = 0) {
+// LASzip's compression of a LAS file. Chunks of `chunk` points, or with kAnyChunks of 5, 6, 7, ... points; `ends` gets the places of their
+// ends.
+inline std::string compressed(const std::string& las, std::uint32_t chunk = 50000, unsigned version = 0,
+                              std::vector<std::uint64_t>* ends = nullptr) {
   const io::LasHeader header = io::read_las_header({las, "sample"});
   const bool layered = header.point_format >= 6;
   LASzip how;
@@ -146,6 +148,7 @@ inline std::string compressed(const std::string& las, std::uint32_t chunk = 5000
     require_done(writer.write(items.data()));
     if (chunk == kAnyChunks && i + 1 == chunk_end) {
       require_done(writer.chunk());
+      if (ends != nullptr) ends->push_back(static_cast<std::uint64_t>(stream.getSize()));
       chunk_end += ++length;
     }
   }
@@ -154,6 +157,48 @@ inline std::string compressed(const std::string& las, std::uint32_t chunk = 5000
   laz.assign(reinterpret_cast<const char*>(stream.getData()), static_cast<std::size_t>(stream.getSize()));
   if (!rest.empty()) put(laz, io::las::kEvlrAt, std::uint64_t{laz.size()});
   return laz + rest;
+}
+
+inline std::uint32_t load_points_at(const std::string& las) { return io::load<std::uint32_t>(las.data() + io::las::kPointsAt); }
+
+// A COPC file of three chunks of 5, 6 and 7 points: the root of an octree of the cube -8..8, and its children at -8 and at 0 along x, of
+// which the hierarchy has a page of its own.
+inline std::string copc_file() {
+  constexpr std::size_t kHeader = 375;
+  std::string las = las_file(6, 18);
+  const std::string info = vlr("copc", 1, std::string(160, '\0'));
+  las.insert(kHeader, info);
+  put(las, io::las::kVlrCount, std::uint32_t{2});
+  put(las, io::las::kPointsAt, static_cast<std::uint32_t>(load_points_at(las) + info.size()));
+  const std::array<std::array<std::int32_t, 3>, 18> places = [] {
+    std::array<std::array<std::int32_t, 3>, 18> all{};
+    for (std::int32_t i = 0; i < 18; ++i) all[static_cast<std::size_t>(i)] = {i < 5 ? i : i < 11 ? -i : i - 10, i, -i / 4};
+    return all;
+  }();
+  const std::size_t points_at = load_points_at(las);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    for (std::size_t a = 0; a < 3; ++a) put(las, points_at + i * io::las::kRecordSize[6] + 4 * a, places[i][a] * 1000);
+  }
+  for (std::size_t a = 0; a < 3; ++a) put(las, io::las::kOffset + 8 * a, 0.0);
+  std::vector<std::uint64_t> ends;
+  std::string laz = compressed(las, kAnyChunks, 0, &ends);
+  const std::uint64_t first = load_points_at(laz) + 8;
+  const auto entry = [](std::int32_t level, std::int32_t x, std::uint64_t at, std::uint64_t bytes, std::int32_t count) {
+    return raw(level) + raw(x) + raw(std::int32_t{0}) + raw(std::int32_t{0}) + raw(at) + raw(static_cast<std::int32_t>(bytes)) + raw(count);
+  };
+  const std::uint64_t page = laz.size() + 60;
+  std::string pages = entry(0, 0, first, ends[0] - first, 5) + entry(1, 0, page + 64, 64, -1);
+  pages += entry(1, 0, ends[0], ends[1] - ends[0], 6) + entry(1, 1, ends[1], ends[2] - ends[1], 7);
+  std::string evlr(60, '\0');
+  evlr.replace(2, 4, "copc");
+  put(evlr, 18, std::uint16_t{1000});
+  put(evlr, 20, std::uint64_t{pages.size()});
+  put(laz, io::las::kEvlrAt, std::uint64_t{laz.size()});
+  put(laz, io::las::kEvlrCount, std::uint32_t{1});
+  put(laz, kHeader + 54 + 24, 8.0);  // half side
+  put(laz, kHeader + 54 + 40, page);
+  put(laz, kHeader + 54 + 48, std::uint64_t{64});
+  return laz + evlr + pages;
 }
 
 }  // namespace g3r::samples

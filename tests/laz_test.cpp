@@ -1,6 +1,7 @@
 // LAZ against LAS: files compressed here with LASzip's encoder.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <random>
 
 #include "counting_allocator.h"
@@ -17,8 +18,10 @@ namespace g3r {
 namespace {
 
 using samples::compressed;
+using samples::Folder;
 using samples::kAnyChunks;
 using samples::las_file;
+using samples::load_points_at;
 using samples::put;
 
 std::string unpacked(const std::string& laz) {
@@ -75,6 +78,119 @@ TEST(Laz, ReadsAndIsWrittenLikeLas) {
   EXPECT_TRUE(points.data == wanted.data);
   EXPECT_NE(points.find("range"), io::Element::npos);
   EXPECT_TRUE(samples::written(cloud, "a.las") == samples::written(expected, "a.las"));
+}
+
+TEST(Laz, IsWrittenSoThatItReadsAsTheLasFile) {
+  for (unsigned format = 0; format <= 10; ++format) {
+    for (const std::size_t count : {0U, 1U, 1000U}) {
+      const std::string las = las_file(format, count, true, std::string(60, '\0') + "after the points");
+      const std::string laz = samples::written(samples::read(las), "a.laz");
+      EXPECT_TRUE(unpacked(laz) == samples::written(samples::read(las), "a.las")) << "format " << format << ", " << count << " points";
+      if (count == 1000) {
+        EXPECT_LT(laz.size(), las.size()) << format;
+      }
+    }
+  }
+}
+
+TEST(Laz, ManyChunksAreWritten) {
+  const std::string las = las_file(6, 120000, false);
+  const Cloud cloud = samples::read(las);
+  const std::string laz = samples::written(cloud, "a.laz");
+  EXPECT_TRUE(unpacked(laz) == las);
+  const Folder folder;
+  const std::vector<Vec3> normals(cloud.positions.size(), Vec3{0, 0, 1});
+  write_cloud(folder.path("a.laz"), cloud, &normals, nullptr);
+  const Cloud oriented = read_cloud(folder.path("a.laz"));
+  EXPECT_EQ(oriented.positions, cloud.positions);
+  EXPECT_EQ(oriented.normals[119999], (Vec3{0, 0, 1}));
+}
+
+TEST(Laz, OtherFormatsBecomeLazToo) {
+  const Cloud cloud = samples::helix(200);
+  const Cloud back = samples::read(samples::written(cloud, "a.laz"));
+  EXPECT_EQ(back.format, "laz 1.4, point format 2");
+  EXPECT_EQ(back.colors, cloud.colors);
+  for (std::size_t i = 0; i < 200; ++i) {
+    for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(back.positions[i][a], cloud.positions[i][a], 5.1e-9 * 8);
+    EXPECT_NEAR(back.normals[i][0], cloud.normals[i][0], 1e-6);
+  }
+}
+
+Cloud read_part(const std::string& bytes, const ReadOptions& options) {
+  return read_cloud_bytes(bytes.data(), bytes.size(), "part", options);
+}
+
+TEST(Copc, IsReadWholeByLevelsAndByBox) {
+  const std::string file = samples::copc_file();
+  const Cloud whole = samples::read(file);
+  EXPECT_EQ(whole.format, "laz 1.4, point format 6, COPC");
+  ASSERT_EQ(whole.positions.size(), 18U);
+  EXPECT_EQ(whole.positions[12], (Vec3{2, 12, -3}));
+  ReadOptions options;
+  options.levels = 1;
+  const Cloud coarse = read_part(file, options);
+  EXPECT_TRUE(coarse.warnings.empty());  // counts and bounds are those of the part
+  EXPECT_TRUE(coarse.positions == std::vector<Vec3>(whole.positions.begin(), whole.positions.begin() + 5));
+  EXPECT_EQ(samples::read(samples::written(coarse, "a.las")).positions, coarse.positions);
+  options.levels = 2;
+  EXPECT_EQ(read_part(file, options).positions, whole.positions);
+  options.levels = 0;
+  options.box = Box{{-9, -9, -9}, {-0.5, 7, 9}};  // the child at -8, points 5, 6 and 7 of it
+  const Cloud part = read_part(file, options);
+  EXPECT_TRUE(part.positions == std::vector<Vec3>(whole.positions.begin() + 5, whole.positions.begin() + 8));
+  EXPECT_EQ(samples::read(samples::written(part, "a.laz")).positions, part.positions);
+  options.box = Box{{100, 100, 100}, {101, 101, 101}};
+  EXPECT_THROW(read_part(file, options), InvalidInput);
+  options.box = {};
+  options.levels = 1;
+  EXPECT_EQ(read_part(compressed(las_file(6, 18)), options).warnings.size(), 1U);  // no COPC
+}
+
+TEST(Copc, IsWrittenWithoutItsRecord) {
+  const std::string las = samples::written(samples::read(samples::copc_file()), "a.las");
+  EXPECT_EQ(las.substr(0, load_points_at(las)).find("copc"), std::string::npos);
+  EXPECT_EQ(samples::read(samples::written(samples::read(samples::copc_file()), "a.laz")).format, "laz 1.4, point format 6");
+}
+
+TEST(Copc, DamageIsAnErrorOrFewerPoints) {
+  const std::string file = samples::copc_file();
+  ReadOptions options;
+  options.levels = 1;
+  options.box = Box{{-9, -99, -9}, {9, 99, 9}};
+  int refused = 0;
+  for (std::size_t at = 375; at < file.size(); at += at < 640 || at > file.size() - 200 ? 1 : 7) {
+    for (const char byte : {'\0', '\xFF', '\x7F', static_cast<char>(file[at] ^ 1)}) {
+      std::string damaged = file;
+      damaged[at] = byte;
+      try {
+        EXPECT_LE(read_part(damaged, options).positions.size(), 18U) << at;
+      } catch (const InvalidInput&) {
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GT(refused, 100);
+  std::string circle = file;  // the page that refers to itself
+  put(circle, circle.size() - 128 + 32 + 16, std::uint64_t{circle.size() - 128});
+  options.levels = 0;
+  EXPECT_THROW(read_part(circle, options), InvalidInput);
+}
+
+TEST(Ept, CellsOfLazAreOneCloud) {
+  const Folder folder;
+  for (const char* name : {"ept-hierarchy", "ept-data"}) std::filesystem::create_directories(folder.path(name));
+  samples::spill(folder.path("ept.json"), R"({"bounds":[-1e7,-1e7,-1e7,1e7,1e7,1e7],"dataType":"laszip","schema":[]})");
+  samples::spill(folder.path("ept-hierarchy/0-0-0-0.json"), R"({"0-0-0-0": 20, "1-0-0-0": 30})");
+  samples::spill(folder.path("ept-data/0-0-0-0.laz"), compressed(las_file(7, 20)));
+  samples::spill(folder.path("ept-data/1-0-0-0.laz"), compressed(las_file(7, 30)));
+  const Cloud cloud = read_cloud(folder.path(""));
+  EXPECT_EQ(cloud.format, "ept, 2 cells of LAZ");
+  EXPECT_EQ(cloud.positions.size(), 50U);
+  EXPECT_EQ(cloud.positions[20], samples::read(las_file(7, 30)).positions[0]);
+  EXPECT_EQ(cloud.colors.size(), 50U);
+  samples::spill(folder.path("ept-hierarchy/0-0-0-0.json"), R"({"0-0-0-0": 21})");
+  EXPECT_THROW((void)read_cloud(folder.path("")), InvalidInput);
 }
 
 TEST(Laz, CutAnywhereIsAnError) {

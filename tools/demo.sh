@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 . tools/prepare.sh
 
-install_packages
+prepare
 build release g3r_cli sample_cloud
 
 mkdir -p demo

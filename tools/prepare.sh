@@ -21,6 +21,12 @@ install_packages() {
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"
 }
 
+# prepare: the packages, and the sources of LASzip and libE57Format; a build without these says so and reads no LAZ or E57.
+prepare() {
+  install_packages
+  tools/sources.sh || true
+}
+
 # build PRESET [TARGET...]: configures and builds the targets, all of them by default.
 build() {
   local preset=$1

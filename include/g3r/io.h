@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <iosfwd>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,12 +21,16 @@ namespace G3R_PUBLIC g3r {
 /// What a file holds besides the points: every property, list, comment and element, kept so that write_cloud() can return it untouched.
 class Attributes;
 
-/// A point cloud as read from a file. All vectors are empty or have one entry per point.
+/// A point cloud as read from a file. All vectors with a value per point are empty or have one entry per point.
+/// Scanner positions are those that a file states: VIEWPOINT of PCD (the identity, 0 0 0 1 0 0 0, is what writers put who do not know),
+/// the poses of E57 (unknown where all are the identity) and of PTX.
 struct Cloud {
   std::vector<Vec3> positions;                        ///< N points, file order; non-finite ones are kept (orient() leaves them out)
   std::vector<Vec3> normals;                          ///< normals in the file, not normalised; empty if absent or all zero
   std::vector<std::array<std::uint8_t, 3>> colors;    ///< RGB
   std::vector<float> confidence;                      ///< a property named confidence or quality
+  std::vector<Vec3> sensor_positions;                 ///< where the scanner stood, one per scan, in input coordinates; empty if unknown
+  std::vector<std::uint32_t> scan_of_point;           ///< index into sensor_positions; empty if there is one scan or none is known
   Scalar scalar = Scalar::kFloat64;                   ///< precision of the coordinates in the file
   std::string format;                                 ///< for example "ply binary_little_endian"
   std::vector<std::string> property_names;            ///< as in the file, in its order
@@ -33,11 +38,22 @@ struct Cloud {
   std::vector<std::string> warnings;                  ///< one line each: what was odd and what was done about it
 };
 
-struct ReadOptions {
-  double min_opacity = 0.1;  ///< Gaussian splats: leave out splats below this opacity, 0..1
+/// A box with sides along the axes.
+struct Box {
+  Vec3 low{};
+  Vec3 high{};
 };
 
-/// Reads a cloud; the format is recognised by content, not by name. "-" reads standard input.
+struct ReadOptions {
+  double min_opacity = 0.1;  ///< Gaussian splats: leave out splats below this opacity, 0..1
+  std::optional<Box> box{};  ///< leave out points outside of it; of COPC and EPT only cells that it meets are unpacked
+  int levels = 0;            ///< COPC, EPT: levels of the octree to read, from the coarsest; 0 for all (as of other files, with a warning)
+};
+
+/// Reads a cloud; the format is recognised by content, not by name. "-" reads standard input. A folder, or a pattern with * or ? that
+/// names no file itself, stands for all files of points in it (LAS, LAZ, PLY, PCD, E57, PTX, PTS, XYZ, CSV, NPY, SPZ; of a pattern,
+/// whatever it names), which become one cloud in the order of their names: properties of numbers that any of them has, 0 where one has
+/// not. An ept.json, or the folder that holds one, stands for the cells of its octree.
 /// Throws IoError (not found, read error), InvalidInput (damaged, unknown or unusable; says where and what to do), std::bad_alloc.
 [[nodiscard]] Cloud read_cloud(const std::string& path, const ReadOptions& options = {});
 
@@ -56,7 +72,8 @@ struct WriteOptions {
 
 /// Writes the points with all their properties, and (each may be null) N normals and N confidences, replacing those of the file.
 /// The format follows the extension. Written whole or not at all: temporary file in the same folder, fsync, rename.
-/// "-" writes to standard output. Throws IoError, InvalidInput (unknown extension, sizes that differ, a non-finite normal).
+/// "-" writes to standard output. Throws IoError, InvalidInput (unknown extension, sizes that differ, a non-finite normal), Unavailable
+/// (LAZ in a build without LASzip).
 void write_cloud(const std::string& path, const Cloud& cloud, const std::vector<Vec3>* normals, const std::vector<float>* confidence,
                  const WriteOptions& options = {});
 

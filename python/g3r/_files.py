@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any, List, Optional, Tuple, Union
+from typing import TYPE_CHECKING, Any, List, Optional, Sequence, Tuple, Union
 
 from . import _g3r
 from ._api import Result
@@ -43,6 +43,16 @@ class Cloud:
         return self._native.confidence
 
     @property
+    def sensor_positions(self) -> Optional[Floats]:
+        """(s, 3) float64: where the scanner stood, one row per scan, if the file says so (PCD VIEWPOINT, poses of E57 and PTX)."""
+        return self._native.sensor_positions
+
+    @property
+    def scan_of_point(self) -> Optional[Indices]:
+        """(n,) uint32: row of `sensor_positions`; None if there is one scan, or none is known."""
+        return self._native.scan_of_point
+
+    @property
     def format(self) -> str:
         """For example "ply binary_little_endian"."""
         return self._native.format
@@ -64,12 +74,25 @@ class Cloud:
         return f"<g3r.Cloud: {len(self)} points, {self.format}>"
 
 
-def read(path: Path, *, min_opacity: float = 0.1) -> Cloud:
-    """Reads a cloud; the format is recognised by content. `min_opacity`: Gaussian splats below it are left out.
+def read(path: Path, *, min_opacity: float = 0.1, box: Optional[Sequence[Sequence[float]]] = None, levels: Optional[int] = None) -> Cloud:
+    """Reads a cloud; the format is recognised by content. A folder, or a pattern with * or ?, is read as one cloud of all its files of points;
+    an EPT folder, or its ept.json, as one of all its cells.
+
+    min_opacity: Gaussian splats below it are left out.
+    box: two corners, ((x0, y0, z0), (x1, y1, z1)): points outside are left out; of COPC and EPT only the cells that it meets are read.
+    levels: of the octree of COPC or EPT, from the coarsest; None for all.
 
     Raises FileMissingError, FileError, InputError (damaged or unknown; says where and what to do).
     """
-    return Cloud(_g3r.read_cloud(os.fsdecode(path), float(min_opacity)))
+    sides = None
+    if box is not None:
+        if len(box) != 2 or len(box[0]) != 3 or len(box[1]) != 3:
+            raise InputError("box: expected two corners of three coordinates")
+        low, high = ([float(value) for value in corner] for corner in box)
+        sides = (low[0], low[1], low[2], high[0], high[1], high[2])
+    if levels is not None and levels < 1:
+        raise InputError(f"levels: expected a number from 1, found {levels}")
+    return Cloud(_g3r.read_cloud(os.fsdecode(path), float(min_opacity), sides, 0 if levels is None else int(levels)))
 
 
 def read_mesh(path: Path) -> Tuple[Floats, Indices]:

@@ -43,6 +43,33 @@ def test_other_properties_of_a_file_are_kept(tmp_path, sphere):
     assert "intensity" in back.property_names and "nx" in back.property_names
 
 
+def test_scanner_positions_are_kept(tmp_path):
+    scan = "1\n2\n5 6 {z}\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n5 6 {z} 1\n1 2 3 0.5\n4 5 6 0.5\n"
+    path = tmp_path / "a.ptx"
+    path.write_text(scan.format(z=7))
+    one = g3r.read(path)
+    np.testing.assert_array_equal(one.points, [[6, 8, 10], [9, 11, 13]])
+    np.testing.assert_array_equal(one.sensor_positions, [[5, 6, 7]])
+    assert one.scan_of_point is None
+    path.write_text(scan.format(z=7) + scan.format(z=8))
+    two = g3r.read(path)
+    np.testing.assert_array_equal(two.sensor_positions, [[5, 6, 7], [5, 6, 8]])
+    np.testing.assert_array_equal(two.scan_of_point, [0, 0, 1, 1])
+    path.write_text("1 2 3\n")
+    assert g3r.read(path).sensor_positions is None
+
+
+def test_folders_and_boxes(tmp_path):
+    (tmp_path / "a.xyz").write_text("1 2 3\n")
+    (tmp_path / "b.xyz").write_text("4 5 6\n")
+    np.testing.assert_array_equal(g3r.read(tmp_path).points, [[1, 2, 3], [4, 5, 6]])
+    np.testing.assert_array_equal(g3r.read(tmp_path / "*.xyz", box=((2, 2, 2), (9, 9, 9))).points, [[4, 5, 6]])
+    assert "no COPC" in g3r.read(tmp_path / "a.xyz", levels=2).warnings[0]
+    for options in ({"box": ((7, 7, 7), (9, 9, 9))}, {"box": ((0, 0, 0),)}, {"box": ((1, 1, 1), (0, 0, 0))}, {"levels": 0}):
+        with pytest.raises(g3r.InputError):
+            g3r.read(tmp_path, **options)
+
+
 def test_the_issue_in_four_lines(tmp_path, sphere):
     g3r.write(tmp_path / "scan.ply", sphere)
     cloud = g3r.read(tmp_path / "scan.ply")

@@ -31,12 +31,14 @@ std::uint8_t to_channel(double value, double scale) {
 }
 
 void require_positions(const Source& source, const Element& points) {
-  for (const char* axis : {"x", "y", "z"}) {
-    const std::size_t found = points.find(axis);
-    if (found == kNone)
-      fail(source, std::string("no property \"") + axis + "\" (field " + axis + "): points need the properties x, y and z");
-    if (!is_number(points.properties[found]))
-      fail(source, std::string("the property \"") + axis + "\" is a list: expected one number (count 1)");
+  constexpr const char* kAxes[] = {"x", "y", "z"};
+  constexpr const char* kCapitals[] = {"X", "Y", "Z"};
+  for (int a = 0; a < 3; ++a) {
+    const std::string axis = kAxes[a];
+    const std::size_t found = std::min(points.find(axis), points.find(kCapitals[a]));
+    if (found == kNone) fail(source, "no property \"" + axis + "\" (field " + axis + "): points need the properties x, y and z");
+    if (find_first(points, {axis, kCapitals[a]}) == kNone)
+      fail(source, "the property \"" + axis + "\" is a list: expected one number (count 1)");
   }
 }
 
@@ -59,7 +61,7 @@ double color_scale(const Element& points, RecordLayout& layout, std::size_t prop
 
 Roles find_roles(const Element& points) {
   Roles roles{};
-  const std::initializer_list<std::string_view> position[] = {{"x"}, {"y"}, {"z"}};
+  const std::initializer_list<std::string_view> position[] = {{"x", "X"}, {"y", "Y"}, {"z", "Z"}};
   const std::initializer_list<std::string_view> normal[] = {
       {"nx", "normal_x", "NormalX"}, {"ny", "normal_y", "NormalY"}, {"nz", "normal_z", "NormalZ"}};
   const std::initializer_list<std::string_view> color[] = {

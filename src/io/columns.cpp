@@ -12,6 +12,8 @@ namespace {
 
 using Dialect = Attributes::Dialect;
 
+constexpr const char* kAxes[] = {"x", "y", "z"};
+
 Column make(const char* name, Type type, Column::From from, std::size_t axis = 0) {
   Column column;
   column.property.name = name;
@@ -39,7 +41,6 @@ class Planner {
       from_table(data_.table->points());
     } else {
       const Type type = data_.cloud.scalar == Scalar::kFloat32 ? Type::kFloat32 : Type::kFloat64;
-      constexpr const char* kAxes[] = {"x", "y", "z"};
       for (std::size_t a = 0; a < 3; ++a) add(make(kAxes[a], type, Column::From::kPosition, a));
     }
     if (!data_.cloud.colors.empty() && !has_color_) add_color();
@@ -63,14 +64,15 @@ class Planner {
       column.in_table = i;
       const bool color = is_in(roles.color, i) || i == roles.packed_color;
       if (column.property.list && !lists_) continue;
-      if (color && !same_dialect && !data_.cloud.colors.empty()) {
-        if (!has_color_) add_color();
+      if (color && !same_dialect) {
+        if (!has_color_ && !data_.cloud.colors.empty()) add_color();
         continue;
       }
       has_color_ = has_color_ || color;
       if (is_in(roles.position, i)) {
         column.from = Column::From::kPosition;
         column.axis = static_cast<std::size_t>(std::find(roles.position, roles.position + 3, i) - roles.position);
+        column.property.name = kAxes[column.axis];  // in small letters, which all programs know
       } else if (is_in(roles.normal, i)) {
         has_normal_ = true;
         column.axis = static_cast<std::size_t>(std::find(roles.normal, roles.normal + 3, i) - roles.normal);

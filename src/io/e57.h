@@ -1,5 +1,5 @@
-// E57 (ASTM E2807): scans in binary sections, each with its own pose, described by XML. Only e57.cpp knows libE57Format; without it (no
-// G3R_E57_SOURCE) read_e57() throws. What follows checks what the library would trust.
+// E57 (ASTM E2807): scans in binary sections, each with its own pose, described by XML. Only e57.cpp knows libE57Format; in builds without
+// it (e57_not_compiled.cpp) read_e57() throws. What follows checks what the library would trust.
 #pragma once
 
 #include "io/source.h"

@@ -5,7 +5,7 @@ namespace g3r::io {
 Cloud read_e57(const Source& source) {
   fail(source,
        "an E57 file, which this build does not read; convert it, for example with \"pdal translate in.e57 out.las\" or CloudCompare, or "
-       "build g3r with libE57Format (-DG3R_E57_SOURCE=DIR)");
+       "build g3r with libE57Format (tools/sources.sh)");
 }
 
 }  // namespace g3r::io

@@ -3,6 +3,9 @@
 // Source: M. Isenburg, "LASzip: lossless compression of LiDAR data", Photogrammetric Engineering & Remote Sensing 79(2), 2013, and LASzip.
 #include "io/laz.h"
 
+#include "io/copc.h"
+#include "io/subset.h"
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -258,8 +261,10 @@ std::string plain_header(const Source& source, const LasHeader& header, std::siz
   std::string las(source.bytes.substr(0, header.points_at));
   const std::size_t record = kVlrHeader + load<std::uint16_t>(las.data() + header.laszip_vlr + 20);
   las.erase(header.laszip_vlr, record);
+  const bool copc = is_copc(source, header);  // what its record says of chunks holds no longer
+  if (copc) las.erase(header.header_size, kVlrHeader + load<std::uint16_t>(las.data() + header.header_size + 20));
   las[kPointFormat] = static_cast<char>(header.point_format);
-  put(las, kVlrCount, header.vlr_count - 1);
+  put(las, kVlrCount, header.vlr_count - (copc ? 2 : 1));
   put(las, kPointsAt, static_cast<std::uint32_t>(las.size()));
   const std::uint64_t moved = las.size() + header.count * header.record_bytes - rest;  // modulo 2^64 where it moves back
   const auto shift = [&](std::size_t field) {
@@ -271,17 +276,33 @@ std::string plain_header(const Source& source, const LasHeader& header, std::siz
   return las;
 }
 
+// The chunks that are cells; each cell must be one.
+std::vector<Chunk> chunks_of(const Source& source, const std::vector<Chunk>& chunks, const std::vector<CopcCell>& cells) {
+  std::vector<Chunk> chosen;
+  auto chunk = chunks.begin();
+  for (const CopcCell& cell : cells) {
+    while (chunk != chunks.end() && chunk->begin < cell.begin) ++chunk;
+    if (chunk == chunks.end() || chunk->begin != cell.begin || chunk->bytes != cell.bytes || chunk->points != cell.points)
+      fail_at_byte(source, source.bytes.size(), "damaged: the COPC hierarchy names a chunk that is not in the table of chunks");
+    chosen.push_back(*chunk++);
+  }
+  return chosen;
+}
+
 }  // namespace
+
+bool laz_is_compiled() { return true; }
 
 void require_laz(const Source&) {}
 
-std::string unpack_laz(const Source& source, const LasHeader& header) {
+std::string unpack_laz(const Source& source, const LasHeader& header, const ReadOptions& options) {
   const Codec codec = read_codec(source, header);
   if (header.count == 0) {
     constexpr std::size_t kEmptyTable = 16;  // its place, version and number of chunks
-    if (find_rest(source, header, header.points_at) - header.points_at >= kEmptyTable + header.record_bytes)
+    const std::size_t rest = find_rest(source, header, header.points_at);
+    if (rest - header.points_at >= kEmptyTable + header.record_bytes)
       fail_at_byte(source, kLegacyCount, "the header has no points (count 0), but compressed points follow it");
-    return plain_header(source, header, source.bytes.size());
+    return plain_header(source, header, rest).append(source.bytes.substr(rest));
   }
   if (header.count > kMostRatio * source.bytes.size() / header.record_bytes) {
     fail_at_byte(
@@ -292,11 +313,19 @@ std::string unpack_laz(const Source& source, const LasHeader& header) {
   }
   const std::size_t table = find_table(source, header);
   try {
-    const std::vector<Chunk> chunks = read_table(source, header, codec, table);
+    std::vector<Chunk> chunks = read_table(source, header, codec, table);
     for (const Chunk& chunk : chunks) check_chunk(source, header, codec, chunk);
+    LasHeader part = header;
+    const bool parted = (options.box || options.levels != 0) && is_copc(source, header);
+    if (parted) {
+      chunks = chunks_of(source, chunks, find_copc_cells(source, header, options));
+      part.count = 0;
+      for (const Chunk& chunk : chunks) part.count += chunk.points;
+    }
     const std::size_t rest = find_rest(source, header, table);
-    std::string las = plain_header(source, header, rest);
+    std::string las = plain_header(source, part, rest);
     for (const Chunk& chunk : chunks) unpack_chunk(source, header, codec, chunk, las);
+    if (parted) fit_las_header(las, part.count);
     las += source.bytes.substr(rest);
     return las;
   } catch (int) {  // what LASzip throws

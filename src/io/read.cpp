@@ -1,8 +1,11 @@
 // From bytes to a cloud or a mesh: recognise the format, call its reader, check what holds for all formats.
+#include "io/ept.h"
 #include "io/readers.h"
 #include "io/recognise.h"
 #include "io/source.h"
+#include "io/subset.h"
 #include "io/text.h"
+#include "io/tiles.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +28,7 @@ Cloud read_as(Format format, const Source& source, const ReadOptions& options) {
     case Format::kNpy:
       return read_npy(source);
     case Format::kLas:
-      return read_las(source);
+      return read_las(source, options);
     case Format::kE57:
       return read_e57(source);
     case Format::kGlb:
@@ -40,10 +43,20 @@ Cloud read_as(Format format, const Source& source, const ReadOptions& options) {
       return read_stl(source, true);
     case Format::kStlText:
       return read_stl(source, false);
+    case Format::kPtx:
+      return read_ptx(source);
+    case Format::kSpz:
+      return read_spz(source, options);
     case Format::kText:
       break;
   }
   return read_xyz(source);
+}
+
+// Colours that are all zero were never set: many writers have the field always.
+void drop_black(Cloud& cloud) {
+  const auto black = [](const std::array<std::uint8_t, 3>& color) { return color == std::array<std::uint8_t, 3>{}; };
+  if (std::all_of(cloud.colors.begin(), cloud.colors.end(), black)) cloud.colors = {};
 }
 
 // Coordinates in float32 far from the origin have lost their last digits before we see them.
@@ -71,16 +84,56 @@ void warn_about_precision(Cloud& cloud) {
   }
 }
 
+void check_options(const ReadOptions& options) {
+  if (options.levels < 0) throw InvalidInput("read_cloud: levels: expected a number from 0, found " + std::to_string(options.levels));
+  for (std::size_t a = 0; options.box && a < 3; ++a) {
+    if (!(options.box->low[a] <= options.box->high[a]))
+      throw InvalidInput("read_cloud: the box has a low corner that is not below its high one");
+  }
+}
+
+// A whole file, or what the options leave of it, which may be nothing.
+Cloud read_part(Source source, const ReadOptions& options) {
+  const Format format = recognise(source);
+  source.bytes = without_mark(source.bytes);
+  Cloud cloud = read_as(format, source, options);
+  if (options.levels != 0 && !cloud.format.ends_with("COPC"))
+    cloud.warnings.emplace_back("no COPC file: all of its points are read, not levels of them");
+  if (options.box) keep_box(cloud, *options.box);
+  drop_black(cloud);
+  warn_about_precision(cloud);
+  return cloud;
+}
+
+void require_points(const Cloud& cloud, const std::string& name, const ReadOptions& options) {
+  if (options.box && cloud.positions.empty()) throw InvalidInput(escape_text(name) + ": no points within the box");
+}
+
+Cloud read_tiles(const std::vector<std::string>& files, const std::string& path, const ReadOptions& options) {
+  std::vector<Cloud> clouds;
+  std::vector<std::string> names;
+  for (const std::string& file : files) {
+    const std::string bytes = read_bytes(file);
+    Cloud cloud = read_part({bytes, file}, options);
+    if (options.box && cloud.positions.empty()) continue;
+    if (files.size() > 1) forget_las(cloud);
+    clouds.push_back(std::move(cloud));
+    names.push_back(file);
+  }
+  if (clouds.empty())
+    throw InvalidInput(escape_text(path) + ": no points within the box in any of " + std::to_string(files.size()) + " files");
+  return merge_clouds(clouds, names, path);
+}
+
 }  // namespace
 
 }  // namespace io
 
 Cloud read_cloud_bytes(const void* bytes, std::size_t size, const std::string& name, const ReadOptions& options) {
-  io::Source source{{static_cast<const char*>(bytes), size}, io::display_name(name)};
-  const io::Format format = io::recognise(source);
-  source.bytes = io::without_mark(source.bytes);
-  Cloud cloud = io::read_as(format, source, options);
-  io::warn_about_precision(cloud);
+  io::check_options(options);
+  const io::Source source{{static_cast<const char*>(bytes), size}, io::display_name(name)};
+  Cloud cloud = io::read_part(source, options);
+  io::require_points(cloud, source.name, options);
   return cloud;
 }
 
@@ -113,6 +166,16 @@ Mesh read_mesh_bytes(const void* bytes, std::size_t size, const std::string& nam
 }
 
 Cloud read_cloud(const std::string& path, const ReadOptions& options) {
+  if (const std::string ept = io::find_ept(path); !ept.empty()) {
+    io::check_options(options);
+    Cloud cloud = io::read_ept(ept, options);
+    io::drop_black(cloud);
+    return cloud;
+  }
+  if (const std::vector<std::string> files = io::find_tiles(path); !files.empty()) {
+    io::check_options(options);
+    return io::read_tiles(files, path, options);
+  }
   const std::string bytes = io::read_bytes(path);
   return read_cloud_bytes(bytes.data(), bytes.size(), path, options);
 }

@@ -1,6 +1,7 @@
 // LAS 1.0 to 1.4, all point formats (LAZ through unpack_laz()): coordinates as X scale + offset in double, every other field and described
 // extra byte as a property.
 #include "io/cloud_from_table.h"
+#include "io/copc.h"
 #include "io/las.h"
 #include "io/laz.h"
 #include "io/readers.h"
@@ -58,12 +59,13 @@ void check_against_header(const Source& source, const LasHeader& header, Cloud& 
 
 }  // namespace
 
-Cloud read_las(const Source& source) {
+Cloud read_las(const Source& source, const ReadOptions& options) {
   const LasHeader header = read_las_header(source);
   if (header.compressed) {
-    const std::string unpacked = unpack_laz(source, header);
-    Cloud cloud = read_las({unpacked, source.name});
+    const std::string unpacked = unpack_laz(source, header, options);
+    Cloud cloud = read_las({unpacked, source.name}, options);
     cloud.format.replace(0, 3, "laz");
+    if (is_copc(source, header)) cloud.format += ", COPC";
     return cloud;
   }
   auto table = std::make_shared<Attributes>();

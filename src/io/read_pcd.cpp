@@ -6,6 +6,8 @@
 #include "io/text.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -21,6 +23,7 @@ struct PcdHeader {
   std::size_t body = 0;
   std::size_t lines = 0;
   std::vector<std::string> kept;  // VIEWPOINT, WIDTH, HEIGHT lines
+  std::vector<Vec3> viewpoint;    // position of the sensor, if it is known
 };
 
 class PcdParser {
@@ -75,6 +78,7 @@ class PcdParser {
       points_ = only(words, "POINTS");
     } else if (keyword == "VIEWPOINT") {
       header_.kept.emplace_back(line);
+      find_viewpoint(words);
     } else if (keyword == "DATA") {
       std::string_view word;
       words.next(word);
@@ -85,6 +89,17 @@ class PcdParser {
     } else if (keyword != "VERSION") {
       fail_here("unknown keyword " + quote(keyword) + " in the PCD header");
     }
+  }
+
+  // Position and rotation (w x y z). The identity is written by those who do not know; what is no pose is kept as text alone.
+  void find_viewpoint(Tokens& words) {
+    constexpr std::array<double, 7> kUnknown = {0, 0, 0, 1, 0, 0, 0};
+    std::array<double, 7> pose{};
+    std::string_view word;
+    for (double& value : pose) {
+      if (!words.next(word) || !parse_double(word, value) || !std::isfinite(value)) return;
+    }
+    if (pose != kUnknown) header_.viewpoint.assign(1, {pose[0], pose[1], pose[2]});
   }
 
   std::vector<std::uint64_t> integers(Tokens& words, const char* what) {
@@ -181,6 +196,12 @@ class PcdParser {
   std::optional<std::uint64_t> points_;
 };
 
+// Commas stand between the values if there are as many fields as values; else they are decimal ones, or wrong.
+char separator_of(std::string_view line, std::size_t values) {
+  const auto commas = static_cast<std::size_t>(std::count(line.begin(), line.end(), ','));
+  return commas != 0 && commas + 1 == values ? ',' : ' ';
+}
+
 void read_ascii(const Source& source, const PcdHeader& header, Element& points, std::vector<std::string>& warnings) {
   std::size_t values = 0;
   for (const Property& field : points.properties) values += field.count;
@@ -199,7 +220,7 @@ void read_ascii(const Source& source, const PcdHeader& header, Element& points, 
       fail_at_line(source, lines.number(),
                    "truncated: unexpected end of file after " + std::to_string(i) + " of " + std::to_string(points.count) + " points");
     }
-    Tokens tokens(line);
+    Tokens tokens(line, separator_of(line, values));
     std::string_view token;
     for (const Property& field : points.properties) {
       for (std::uint32_t k = 0; k < field.count; ++k) {
@@ -265,7 +286,9 @@ void read_compressed(const Source& source, const PcdHeader& header, Element& poi
     for (std::size_t i = 0; i < points.count; ++i, from += bytes) std::copy_n(from, bytes, points.data.data() + i * stride + offset);
     offset += bytes;
   }
-  if (body.size() - 8 > compressed) warnings.emplace_back("trailing bytes after the compressed data are not used");
+  const std::string_view rest = body.substr(8 + std::size_t{compressed});
+  if (rest.find_first_not_of('\0') != std::string_view::npos)  // zeros are padding, as PCL writes it
+    warnings.emplace_back("trailing bytes after the compressed data are not used");
 }
 
 }  // namespace
@@ -274,6 +297,7 @@ Cloud read_pcd(const Source& source) {
   PcdHeader header = PcdParser(source).parse();
   Cloud cloud;
   cloud.format = "pcd " + header.encoding;
+  cloud.sensor_positions = std::move(header.viewpoint);
   auto table = std::make_shared<Attributes>();
   table->dialect = Attributes::Dialect::kPcd;
   table->elements.push_back(std::move(header.points));

@@ -292,11 +292,7 @@ Cloud read_ply(const Source& source, const ReadOptions& options) {
   std::shared_ptr<Attributes> table = read_table(source, cloud);
   check_faces(*table, cloud.warnings);
   if (is_splat(table->points())) {
-    filter_splats(*table, options.min_opacity, cloud.warnings);
-    const std::vector<std::array<std::uint8_t, 3>> colors = splat_colors(table->points());
-    fill_cloud(source, std::move(table), cloud);
-    cloud.colors = colors;
-    cloud.format += ", Gaussian splats";
+    fill_splat_cloud(source, std::move(table), options.min_opacity, cloud);
   } else {
     fill_cloud(source, std::move(table), cloud);
   }

@@ -1,14 +1,15 @@
 // Text with one point per line: XYZ, TXT, CSV, PTS. Blanks, commas or semicolons separate the columns; a header line may name them; PTS
-// files start with the number of points. Columns beyond x y z without names are told apart by their values.
+// files start with the number of points. Columns without names are told apart by their values; those that hold text are left out.
 #include "io/cloud_from_table.h"
 #include "io/readers.h"
 #include "io/table.h"
 #include "io/text.h"
+#include "io/text_columns.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <set>
+#include <limits>
+#include <optional>
 #include <utility>
 
 namespace g3r::io {
@@ -18,97 +19,19 @@ namespace {
 constexpr const char* kAxes[] = {"x", "y", "z"};
 constexpr std::size_t kMostColumns = 1000;  // more means that the file has no line ends
 
+// A column with a word in more than one line of so many holds text; fewer words are damage, which is an error.
+constexpr std::uint64_t kLinesPerWord = 100;
+
 // Comments start a line; CloudCompare's "//X Y Z" is one that names columns.
 bool is_comment(std::string_view line) { return line[0] == '#' || line.substr(0, 2) == "//"; }
 
+// A first line that names columns: it starts with a word and is no point whose first column holds text.
 bool is_header(std::string_view line) {
-  double value = 0;
-  return line.find_first_of("+-.0123456789") != 0 && !parse_double(line.substr(0, line.find_first_of(" \t,;")), value);
-}
-
-// ';' where there is one; ',' only if every comma stands between two values: "0,5 0,25" has decimal commas and is cut at blanks.
-char separator_of(std::string_view line) {
-  if (line.find(';') != std::string_view::npos) return ';';
-  if (line.find(',') == std::string_view::npos) return ' ';
-  Tokens fields(line, ',');
-  std::string_view field;
-  while (fields.next(field)) {
-    if (field.find_first_of(" \t") != std::string_view::npos) return ' ';
-  }
-  return ',';
-}
-
-// Values of a line, without an empty one after a final separator.
-class Values {
- public:
-  Values(std::string_view line, char separator) : tokens_(strip(line, separator), separator) {}
-  bool next(std::string_view& token) { return tokens_.next(token); }
-
- private:
-  static std::string_view strip(std::string_view line, char separator) {
-    if (separator != ' ' && !line.empty() && line.back() == separator) line.remove_suffix(1);
-    return line;
-  }
-  Tokens tokens_;
-};
-
-std::size_t count_values(std::string_view line, char separator) {
+  const char separator = separator_of(line);
   Values values(line, separator);
-  std::string_view token;
-  std::size_t count = 0;
-  while (values.next(token)) ++count;
-  return count;
-}
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return lower;
-}
-
-// The name of a column without quotes; known names in our spelling. Units in brackets do not count: "X [m]" is x.
-std::string column_name(std::string_view text) {
-  while (!text.empty() && (text.front() == '"' || text.front() == '\'')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == '"' || text.back() == '\'')) text.remove_suffix(1);
-  constexpr std::pair<std::string_view, std::string_view> kNames[] = {
-      {"x", "x"},         {"y", "y"},         {"z", "z"},         {"nx", "nx"},
-      {"ny", "ny"},       {"nz", "nz"},       {"normal_x", "nx"}, {"normal_y", "ny"},
-      {"normal_z", "nz"}, {"r", "red"},       {"g", "green"},     {"b", "blue"},
-      {"red", "red"},     {"green", "green"}, {"blue", "blue"},   {"confidence", "confidence"}};
-  const std::string lower = lower_case(trim(text.substr(0, text.find_first_of("[("))));
-  for (const auto& [name, ours] : kNames) {
-    if (lower == name) return std::string(ours);
-  }
-  return std::string(text);
-}
-
-bool has_name(const std::vector<std::string>& names, std::string_view name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-// Surveyors' names become x, y and z where those are missing.
-void name_axes(std::vector<std::string>& names) {
-  constexpr std::pair<std::string_view, std::string_view> kTheirs[] = {
-      {"easting", "x"}, {"east", "x"}, {"northing", "y"}, {"north", "y"}, {"height", "z"}, {"elevation", "z"}, {"altitude", "z"}};
-  for (const auto& axis : kTheirs) {
-    if (has_name(names, axis.second)) continue;
-    const auto is_theirs = [&](const std::string& name) {
-      return lower_case(trim(name.substr(0, name.find_first_of("[(")))) == axis.first;
-    };
-    const auto found = std::find_if(names.begin(), names.end(), is_theirs);
-    if (found != names.end()) *found = axis.second;
-  }
-}
-
-// A name that occurred before gets a number: a, a_2.
-void make_distinct(std::vector<std::string>& names) {
-  std::set<std::string> used;
-  for (std::string& name : names) {
-    const std::string first = name;
-    for (int k = 2; !used.insert(name).second; ++k) name = first + "_" + std::to_string(k);
-  }
+  std::string_view first;
+  double number = 0;
+  return values.next(first) && !is_like_number(first) && !parse_double(first, number) && count_numbers(line, separator) < 3;
 }
 
 // What the first pass finds out.
@@ -116,12 +39,20 @@ struct Shape {
   char separator = ' ';
   std::size_t columns = 0;
   std::size_t points = 0;
-  bool counted = false;  // PTS
-  std::vector<std::string> names;
-  bool axes_named = false;      // x, y and z are among the names
+  bool counted = false;                      // PTS
+  std::optional<std::uint64_t> announced{};  // of the first count line that more points follow than it says
+  ColumnNames header;
   bool header_differs = false;  // a header line with another number of columns
   bool overflow = false;
   bool open_end = false;  // the last line has no line end
+};
+
+// Values of a column that are no numbers.
+struct Words {
+  std::uint64_t count = 0;
+  std::size_t line = 0;  // of the first
+  std::string_view first{};
+  bool like_numbers = false;  // some begin like a number
 };
 
 // Calls visit(line, number) for every line of values and checks the counts of a PTS file.
@@ -133,7 +64,8 @@ void for_each_line(const Source& source, Shape& shape, const Visit& visit) {
   std::uint64_t block = 0;  // points that the last count line announced
   std::uint64_t seen = 0;
   const auto check_block = [&] {
-    if (shape.counted && seen != block) {
+    if (shape.counted && seen > block && !shape.announced) shape.announced = block;
+    if (shape.counted && seen < block) {
       fail_at_line(source, lines.number(),
                    "expected " + std::to_string(block) + " points as the count line says, found " + std::to_string(seen) +
                        " lines of columns (truncated?)");
@@ -167,8 +99,8 @@ void find_names(const Source& source, Shape& shape) {
   while (lines.next_filled(line)) {
     std::uint64_t count = 0;
     if (parse_integer(line, count)) continue;
-    if (!is_comment(line) && !is_header(line)) break;
     const bool comment = is_comment(line);
+    if (!comment && !is_header(line)) break;
     const std::size_t begin = line.find_first_not_of("#/ \t");
     if (begin == std::string_view::npos) continue;
     line.remove_prefix(begin);
@@ -177,15 +109,9 @@ void find_names(const Source& source, Shape& shape) {
       shape.header_differs = shape.header_differs || !comment;
       continue;
     }
-    std::vector<std::string> names;
-    names.reserve(shape.columns);
-    Values values(line, separator);
-    std::string_view token;
-    while (values.next(token)) names.push_back(column_name(token));
-    name_axes(names);
-    shape.axes_named = has_name(names, "x") && has_name(names, "y") && has_name(names, "z");
-    if (comment && !shape.axes_named) continue;
-    shape.names = std::move(names);
+    ColumnNames header = column_names(line, separator);
+    if (comment && !header.axes) continue;
+    shape.header = std::move(header);
     return;
   }
 }
@@ -213,9 +139,10 @@ Shape measure(const Source& source) {
   return shape;
 }
 
-// Parses all lines; store(values) gets the columns of one point.
-template <class Store>
-void parse_points(const Source& source, Shape& shape, const Store& store) {
+// Parses all lines; store(values) gets the columns of one point. word(column, line, value) is told of values that are no numbers, which
+// become NaN, and throws where there must be numbers.
+template <class Store, class Word>
+void parse_points(const Source& source, Shape& shape, const Store& store, const Word& word) {
   std::vector<double> row(shape.columns);
   for_each_line(source, shape, [&](std::string_view line, std::size_t number) {
     Values values(line, shape.separator);
@@ -223,7 +150,10 @@ void parse_points(const Source& source, Shape& shape, const Store& store) {
     std::size_t found = 0;
     while (values.next(token)) {
       double value = 0;
-      if (!parse_double(token, value, &shape.overflow)) fail_at_line(source, number, expected_number(token));
+      if (!parse_double(token, value, &shape.overflow)) {
+        value = std::numeric_limits<double>::quiet_NaN();
+        if (found < row.size()) word(found, number, token);
+      }
       if (found < row.size()) row[found] = value;
       ++found;
     }
@@ -235,84 +165,156 @@ void parse_points(const Source& source, Shape& shape, const Store& store) {
   });
 }
 
-bool are_normals(const Element& points, std::size_t column) {
-  constexpr double kSlack = 0.01;  // two decimals are common
-  const std::size_t stride = points.properties.size();
-  bool any = false;
-  for (std::size_t i = 0; i < points.count; ++i) {
-    double n[3];
-    std::copy_n(points.data.data() + (i * stride + column) * sizeof(double), sizeof n, reinterpret_cast<char*>(n));
-    const double square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
-    if (std::abs(square - 1) <= kSlack) {
-      any = true;
-    } else if (square != 0 && !std::isnan(square)) {
-      return false;
-    }
-  }
-  return any;
-}
-
-bool are_colors(const Element& points, std::size_t column) {
-  const std::size_t stride = points.properties.size();
-  for (std::size_t i = 0; i < points.count; ++i) {
-    for (std::size_t c = column; c < column + 3; ++c) {
-      const auto value = load<double>(points.data.data() + (i * stride + c) * sizeof(double));
-      if (!(value >= 0 && value <= 255 && value == std::nearbyint(value))) return false;
-    }
-  }
-  return true;
-}
-
-void name_triple(Element& points, std::size_t first, const std::array<const char*, 3>& names) {
-  for (std::size_t c = 0; c < 3; ++c) points.properties[first + c].name = names[c];
-}
-
-// Names for columns without names: triples that look like normals or colours, "scalar_4" and so on else.
-void guess_names(Element& points) {
-  name_triple(points, 0, {"x", "y", "z"});
-  const std::size_t columns = points.properties.size();
-  bool normals = false;
-  bool colors = false;
-  for (std::size_t c = 3; c < columns;) {
-    const bool triple = c + 3 <= columns;
-    const bool unit = triple && !normals && are_normals(points, c);
-    if (triple && !unit && !colors && are_colors(points, c)) {
-      name_triple(points, c, {"red", "green", "blue"});
-      colors = true;
-      c += 3;
-    } else if (unit || columns == 6) {  // x y z and a triple that is no colour: normals of any length
-      name_triple(points, c, {"nx", "ny", "nz"});
-      normals = true;
-      c += 3;
-    } else {
-      points.properties[c].name = "scalar_" + std::to_string(c + 1);
-      ++c;
-    }
-  }
-}
-
-std::shared_ptr<Attributes> read_columns(const Source& source, Shape& shape) {
-  auto table = std::make_shared<Attributes>();
-  table->dialect = Attributes::Dialect::kText;
-  table->elements.emplace_back();
-  Element& points = table->elements.back();
+// All columns as a table of doubles without names, and what is no number in it.
+Element read_columns(const Source& source, Shape& shape, std::vector<Words>& words) {
+  Element points;
   points.name = "vertex";
   points.count = shape.points;
   points.properties.resize(shape.columns);
   for (Property& property : points.properties) property.type = Type::kFloat64;
   points.data.reserve(shape.points * shape.columns * sizeof(double));  // each value has two bytes of text
-  parse_points(source, shape, [&](const std::vector<double>& row) {
-    points.data.append(reinterpret_cast<const char*>(row.data()), row.size() * sizeof(double));
-  });
-  if (shape.names.empty()) {
-    guess_names(points);
-  } else {
-    std::vector<std::string> names = shape.names;
-    if (!shape.axes_named) std::copy_n(kAxes, 3, names.begin());
-    make_distinct(names);
-    for (std::size_t c = 0; c < shape.columns; ++c) points.properties[c].name = names[c];
+  words.resize(shape.columns);
+  parse_points(
+      source, shape,
+      [&](const std::vector<double>& row) { points.data.append(reinterpret_cast<const char*>(row.data()), row.size() * sizeof(double)); },
+      [&](std::size_t column, std::size_t line, std::string_view value) {
+        Words& here = words[column];
+        if (here.count++ == 0) {
+          here.line = line;
+          here.first = value;
+        }
+        here.like_numbers = here.like_numbers || is_like_number(value);
+      });
+  return points;
+}
+
+[[noreturn]] void fail_at_word(const Source& source, const Words& words) { fail_at_line(source, words.line, expected_number(words.first)); }
+
+// Which columns hold text; a word among numbers is an error.
+std::vector<TextColumn> find_text(const Source& source, const Element& points, const std::vector<Words>& words) {
+  std::vector<TextColumn> text(words.size());
+  const Words* damage = nullptr;
+  for (std::size_t c = 0; c < words.size(); ++c) {
+    text[c].any = words[c].count != 0;
+    text[c].all = words[c].count == points.count && !words[c].like_numbers;
+    if (text[c].any && words[c].count * kLinesPerWord <= points.count && (damage == nullptr || words[c].line < damage->line))
+      damage = &words[c];
   }
+  if (damage != nullptr) fail_at_word(source, *damage);
+  return text;
+}
+
+// Names the columns of a text without names, as far as their order says what they are; returns how many.
+std::size_t name_first_columns(const Source& source, bool counted, Element& points, const std::vector<Words>& words,
+                               const std::vector<TextColumn>& text, std::vector<std::string>& warnings) {
+  const Arrangement arrangement = counted ? Arrangement::kXyz : find_arrangement(points, text);  // PTS is always x y z
+  if (arrangement == Arrangement::kPnezd) {
+    warnings.emplace_back(
+        "the columns look like point number, northing, easting, elevation and description (PNEZD) and are read so; if they are others, "
+        "name "
+        "them in a first line, for example point,x,y,z,description");
+    constexpr const char* kNames[] = {"point", "y", "x", "z", "description"};
+    for (std::size_t c = 0; c < std::size(kNames); ++c) points.properties[c].name = kNames[c];
+    return std::size(kNames);
+  }
+  const std::size_t first = arrangement == Arrangement::kNumberedXyz ? 1 : 0;
+  if (first != 0) {
+    points.properties[0].name = "point";
+    warnings.emplace_back(
+        "the first column names or numbers the points; the next three are taken for x, y and z; if they are others, name the columns in a "
+        "first line, for example point,northing,easting,elevation");
+  }
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (text[first + a].any) fail_at_word(source, words[first + a]);
+    points.properties[first + a].name = kAxes[a];
+  }
+  return first + 3;
+}
+
+// Names the columns by the header. x, y and z must be numbers.
+void name_by_header(const Source& source, const Shape& shape, Element& points, const std::vector<Words>& words,
+                    std::vector<std::string>& warnings) {
+  std::vector<std::string> names = shape.header.names;
+  if (!shape.header.axes) {
+    std::vector<std::size_t> numbers;
+    for (std::size_t c = 0; c < names.size() && numbers.size() < 3; ++c) {
+      if (words[c].count == 0) numbers.push_back(c);
+    }
+    if (numbers.size() < 3) fail(source, "the header names no columns x, y and z, and fewer than three columns are numbers");
+    warnings.push_back("the header names no columns x, y and z: the first three, " + quote(names[numbers[0]]) + ", " +
+                       quote(names[numbers[1]]) + " and " + quote(names[numbers[2]]) + ", are taken for them");
+    for (std::size_t a = 0; a < 3; ++a) names[numbers[a]] = kAxes[a];
+  }
+  make_distinct(names);
+  for (std::size_t c = 0; c < names.size(); ++c) points.properties[c].name = names[c];
+  for (const char* axis : kAxes) {
+    const std::size_t column = points.find(axis);
+    if (words[column].count != 0) fail_at_word(source, words[column]);
+  }
+}
+
+// Takes the columns with text out of the records, and says so. Returns how many of the first `known` columns are left.
+std::size_t leave_out_text(Element& points, const std::vector<Words>& words, std::size_t known, std::vector<std::string>& warnings) {
+  constexpr std::size_t kMostNamed = 8;
+  std::vector<std::size_t> kept;
+  std::string names;
+  for (std::size_t c = 0; c < words.size(); ++c) {
+    if (words[c].count == 0) {
+      kept.push_back(c);
+      continue;
+    }
+    const std::size_t left_out = c + 1 - kept.size();
+    if (left_out > kMostNamed) continue;
+    if (left_out > 1) names += ", ";
+    names += std::to_string(c + 1);
+    if (!points.properties[c].name.empty()) names.append(" ").append(quote(points.properties[c].name));
+    names.append(" (").append(quote(words[c].first)).append(")");
+  }
+  if (kept.size() == words.size()) return known;
+  const std::size_t more = words.size() - kept.size() > kMostNamed ? words.size() - kept.size() - kMostNamed : 0;
+  if (more != 0) names += " and " + std::to_string(more) + " more";
+  warnings.push_back("columns that hold text are not used: " + names);
+  char* to = points.data.data();
+  for (std::size_t i = 0; i < points.count; ++i) {
+    for (const std::size_t c : kept) {
+      const char* from = points.data.data() + (i * words.size() + c) * sizeof(double);
+      to = std::copy_n(from, sizeof(double), to);
+    }
+  }
+  points.data.resize(static_cast<std::size_t>(to - points.data.data()));
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    if (k != kept[k]) points.properties[k] = std::move(points.properties[kept[k]]);
+  }
+  points.properties.resize(kept.size());
+  return static_cast<std::size_t>(std::lower_bound(kept.begin(), kept.end(), known) - kept.begin());
+}
+
+std::shared_ptr<Attributes> read_table(const Source& source, Shape& shape, std::vector<std::string>& warnings) {
+  auto table = std::make_shared<Attributes>();
+  table->dialect = Attributes::Dialect::kText;
+  std::vector<Words> words;
+  table->elements.push_back(read_columns(source, shape, words));
+  Element& points = table->elements.back();
+  const std::vector<TextColumn> text = find_text(source, points, words);
+  std::size_t known = shape.columns;
+  if (shape.header.names.empty()) {
+    known = name_first_columns(source, shape.counted, points, words, text, warnings);
+  } else {
+    name_by_header(source, shape, points, words, warnings);
+  }
+  known = leave_out_text(points, words, known, warnings);
+  guess_names(points, known);
   return table;
+}
+
+// Longitude and latitude beside heights in metres: a shape that nobody wants.
+void warn_about_degrees(Cloud& cloud) {
+  for (const Vec3& p : cloud.positions) {
+    if (std::abs(p[0]) > 360 || std::abs(p[1]) > 90) return;
+  }
+  cloud.warnings.emplace_back(
+      "x and y are longitude and latitude: where they are degrees the shape is distorted; project them first, for example with PDAL or "
+      "PROJ");
 }
 
 }  // namespace
@@ -321,16 +323,21 @@ Cloud read_xyz(const Source& source) {
   Cloud cloud;
   Shape shape = measure(source);
   cloud.format = shape.counted ? "pts" : shape.separator == ' ' ? "xyz" : "csv";
-  if (shape.columns > 3 || !shape.names.empty()) {
-    fill_cloud(source, read_columns(source, shape), cloud);
+  if (shape.columns > 3 || !shape.header.names.empty()) {
+    fill_cloud(source, read_table(source, shape, cloud.warnings), cloud);
   } else {
     cloud.positions.reserve(shape.points);
-    parse_points(source, shape, [&](const std::vector<double>& row) { cloud.positions.push_back({row[0], row[1], row[2]}); });
+    parse_points(
+        source, shape,
+        [&](const std::vector<double>& row) {
+          cloud.positions.push_back({row[0], row[1], row[2]});
+        },
+        [&](std::size_t, std::size_t line, std::string_view value) { fail_at_line(source, line, expected_number(value)); });
     cloud.property_names = {"x", "y", "z"};
   }
-  if (!shape.names.empty() && !shape.axes_named) {
-    cloud.warnings.push_back("the header names no columns x, y and z: the first three, " + quote(shape.names[0]) + ", " +
-                             quote(shape.names[1]) + " and " + quote(shape.names[2]) + ", are taken for them");
+  if (shape.header.geographic) warn_about_degrees(cloud);
+  if (shape.announced) {
+    cloud.warnings.push_back("more points follow than the count line says (" + std::to_string(*shape.announced) + "): all are read");
   }
   if (shape.header_differs) cloud.warnings.emplace_back("the header line has not as many columns as the points: it is not used");
   if (shape.overflow) cloud.warnings.emplace_back("a number is out of double's range: it is taken as infinite (not finite)");

@@ -9,10 +9,12 @@ namespace g3r::io {
 Cloud read_ply(const Source& source, const ReadOptions& options);
 Cloud read_pcd(const Source& source);
 Cloud read_npy(const Source& source);
-Cloud read_las(const Source& source);
+Cloud read_las(const Source& source, const ReadOptions& options);
 Cloud read_e57(const Source& source);
 Cloud read_glb(const Source& source);
 Cloud read_gltf(const Source& source);
+Cloud read_ptx(const Source& source);
+Cloud read_spz(const Source& source, const ReadOptions& options);
 Cloud read_xyz(const Source& source);
 Cloud read_obj(const Source& source);
 Cloud read_off(const Source& source);

@@ -1,7 +1,9 @@
 #include "io/recognise.h"
 
+#include "io/gzip.h"
 #include "io/table.h"
 #include "io/text.h"
+#include "io/text_columns.h"
 
 #include <algorithm>
 #include <array>
@@ -31,6 +33,7 @@ constexpr Signature kStrangers[] = {
     {"x\x5e"sv, "zlib-compressed data; uncompress it first"},
     {"x\x9c"sv, "zlib-compressed data; uncompress it first"},
     {"x\xda"sv, "zlib-compressed data; uncompress it first"},
+    {"NGSP"sv, "an SPZ file of version 4 or later, which g3r does not read; save it as version 3 or as PLY"},
     {"version https://git-lfs"sv, "a git-lfs pointer, not the file itself; run \"git lfs pull\""},
     {"<!DOCTYPE"sv, "an HTML page; the download failed"},
     {"<!doctype"sv, "an HTML page; the download failed"},
@@ -76,6 +79,9 @@ bool is_off_magic(std::string_view word) {
          (after.empty() || after == "BINARY" || after.find_first_not_of("0123456789") == std::string_view::npos);
 }
 
+// A line of a table: three numbers, wherever they stand.
+bool is_row(std::string_view line) { return count_numbers(line, separator_of(line)) >= 3; }
+
 // Whether the line starts with a number, whatever separates it from the next.
 bool starts_with_number(std::string_view line) {
   const std::size_t end = line.find_first_of(" \t,;");
@@ -91,12 +97,42 @@ std::size_t count_fields(std::string_view line) {
   return fields;
 }
 
+// SPZ is told from other gzip files by the first bytes inside.
+bool is_spz(std::string_view bytes) { return bytes.substr(0, 2) == "\x1f\x8b" && Gunzip(bytes).read(4) == "NGSP"; }
+
+std::size_t count_blank_separated(std::string_view line) {
+  Tokens tokens(line);
+  std::string_view token;
+  std::size_t count = 0;
+  while (tokens.next(token)) ++count;
+  return count;
+}
+
+// PTX starts with two whole numbers on lines of their own, of which the first is not 0 (PTS: a number, and as many lines of columns); then
+// come four lines of three numbers and four lines of four. A shorter file is a PTX that is cut.
+bool is_ptx(std::string_view bytes) {
+  constexpr std::array<std::size_t, 8> kColumns = {3, 3, 3, 3, 4, 4, 4, 4};
+  Lines lines(bytes);
+  std::string_view line;
+  std::uint64_t columns = 0;
+  std::uint64_t rows = 0;
+  if (!lines.next_filled(line) || !parse_integer(line, columns) || columns == 0) return false;
+  if (!lines.next_filled(line) || !parse_integer(line, rows)) return false;
+  for (const std::size_t count : kColumns) {
+    if (!lines.next_filled(line)) return true;
+    if (count_blank_separated(line) != count) return !lines.ended();
+  }
+  return true;
+}
+
 std::string magic_of(const std::string& ext) {
   if (ext == "ply") return "the PLY magic \"ply\"";
   if (ext == "npy") return "the NPY magic \"\\x93NUMPY\"";
   if (ext == "las" || ext == "laz") return "the LAS magic \"LASF\"";
   if (ext == "e57") return "the E57 magic \"ASTM-E57\"";
   if (ext == "off") return "the OFF magic \"OFF\"";
+  if (ext == "ptx") return "a PTX header (columns, rows, position, axes and matrix of a scan)";
+  if (ext == "spz") return "SPZ (gzip, with the magic \"NGSP\" inside)";
   if (ext == "pcd") return "a PCD header (\"# .PCD\", VERSION, FIELDS)";
   if (ext == "glb") return "the GLB magic \"glTF\"";
   if (ext == "stl") return "an STL file (\"solid\", or 84 bytes and 50 bytes for each triangle it declares)";
@@ -121,6 +157,7 @@ Format recognise(const Source& source) {
   const std::string ext = extension(source.name);
   const std::string_view bytes = without_mark(source.bytes);
   if (bytes.empty()) fail(source, "empty file (0 bytes): expected " + magic_of(ext));
+  if (is_spz(bytes)) return Format::kSpz;
   for (const Signature& stranger : kStrangers) {
     if (bytes.substr(0, stranger.magic.size()) == stranger.magic) {
       fail(source, std::string("expected ") + magic_of(ext) + ", found " + stranger.what);
@@ -133,6 +170,7 @@ Format recognise(const Source& source) {
   if (bytes.substr(0, 4) == "glTF") return Format::kGlb;
   if (bytes.substr(0, 6) == "# .PCD") return Format::kPcd;
   if (is_binary_stl(bytes)) return Format::kStlBinary;
+  if (is_ptx(bytes)) return Format::kPtx;
 
   Beginning beginning(bytes);
   std::string_view line;
@@ -144,7 +182,8 @@ Format recognise(const Source& source) {
   if (line[0] == '{') return Format::kGltf;
   if (std::find(kObjKeywords.begin(), kObjKeywords.end(), word) != kObjKeywords.end()) return Format::kObj;
   const bool named = count_fields(line) >= 3;  // a header line of a table
-  if (starts_with_number(line) || (named && beginning.next(line) && starts_with_number(line))) {
+  const auto is_data = [&] { return starts_with_number(line) || is_row(line); };
+  if (is_data() || (named && beginning.next(line) && is_data())) {
     if (line.find('\0') == std::string_view::npos) return Format::kText;
   }
   const bool binary = bytes.substr(0, 4096).find('\0') != std::string_view::npos;

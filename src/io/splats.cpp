@@ -1,7 +1,13 @@
 #include "io/splats.h"
 
+#include "io/cloud_from_table.h"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace g3r::io {
 
@@ -13,13 +19,6 @@ constexpr const char* kColorNames[] = {"f_dc_0", "f_dc_1", "f_dc_2"};
 bool is_number(const Element& points, const char* name) {
   const std::size_t found = points.find(name);
   return found != Element::npos && !points.properties[found].list;
-}
-
-}  // namespace
-
-bool is_splat(const Element& points) {
-  return is_number(points, "opacity") && is_number(points, "f_dc_0") && is_number(points, "f_dc_1") && is_number(points, "f_dc_2") &&
-         points.stride() != 0;
 }
 
 void filter_splats(Attributes& table, double least, std::vector<std::string>& warnings) {
@@ -63,6 +62,21 @@ std::vector<std::array<std::uint8_t, 3>> splat_colors(const Element& points) {
     }
   }
   return colors;
+}
+
+}  // namespace
+
+bool is_splat(const Element& points) {
+  return is_number(points, "opacity") && is_number(points, "f_dc_0") && is_number(points, "f_dc_1") && is_number(points, "f_dc_2") &&
+         points.stride() != 0;
+}
+
+void fill_splat_cloud(const Source& source, std::shared_ptr<Attributes> table, double least, Cloud& cloud) {
+  filter_splats(*table, least, cloud.warnings);
+  std::vector<std::array<std::uint8_t, 3>> colors = splat_colors(table->points());
+  fill_cloud(source, std::move(table), cloud);
+  cloud.colors = std::move(colors);
+  cloud.format += ", Gaussian splats";
 }
 
 }  // namespace g3r::io

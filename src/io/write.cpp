@@ -1,4 +1,5 @@
 // From a cloud or a mesh to a file: choose the format by the extension, check, write, commit.
+#include "io/laz.h"
 #include "io/source.h"
 #include "io/writers.h"
 
@@ -13,7 +14,7 @@ namespace g3r {
 
 namespace {
 
-constexpr std::array<std::string_view, 9> kPointFormats = {"ply", "xyz", "txt", "csv", "pts", "pcd", "npy", "las", "obj"};
+constexpr std::array<std::string_view, 10> kPointFormats = {"ply", "xyz", "txt", "csv", "pts", "pcd", "npy", "las", "laz", "obj"};
 constexpr std::array<std::string_view, 5> kMeshFormats = {"ply", "obj", "stl", "off", "glb"};
 
 template <class Formats>
@@ -33,7 +34,11 @@ std::string choose_format(const std::string& path, const char* what, const Forma
   throw InvalidInput(escape_text(path) + ": " + trouble + ": expected " + known + " for " + what);
 }
 
-std::string point_format(const std::string& path) { return choose_format(path, "points", kPointFormats, "meshes", kMeshFormats); }
+std::string point_format(const std::string& path) {
+  const std::string format = choose_format(path, "points", kPointFormats, "meshes", kMeshFormats);
+  if (format == "laz" && !io::laz_is_compiled()) throw Unavailable(escape_text(path) + ": this build does not write LAZ: write LAS (.las)");
+  return format;
+}
 std::string mesh_format(const std::string& path) { return choose_format(path, "a mesh", kMeshFormats, "points", kPointFormats); }
 
 void check_mesh_data(const Mesh& mesh) {
@@ -67,7 +72,9 @@ void write_cloud(const std::string& path, const Cloud& cloud, const std::vector<
   } else if (format == "npy") {
     io::write_npy(data, file);
   } else if (format == "las") {
-    io::write_las(data, file);
+    io::write_las(data, *io::plain_las(file));
+  } else if (format == "laz") {
+    io::write_las(data, *io::packed_las(file));
   } else if (format == "obj") {
     io::write_obj(data, file);
   } else {

@@ -1,7 +1,8 @@
-// LAS out. A cloud read from LAS keeps its header, variable length records and every byte of every record; normals and confidence are added
-// as extra bytes (NormalX, NormalY, NormalZ, confidence). Other clouds become LAS 1.4, point format 0 or 2, all other properties as extra
-// bytes.
+// LAS out, or LAZ. A cloud read from LAS keeps its header, variable length records and every byte of every record; normals and confidence
+// are added as extra bytes (NormalX, NormalY, NormalZ, confidence). Other clouds become LAS 1.4, point format 0 or 2, all other properties
+// as extra bytes.
 #include "io/las.h"
+#include "io/las_output.h"
 #include "io/text.h"
 #include "io/writers.h"
 
@@ -157,13 +158,13 @@ std::string extended_header(std::string_view raw, const LasHeader& header, std::
   return text;
 }
 
-void write_from_las(const PointData& data, OutputFile& file) {
+void write_from_las(const PointData& data, LasOutput& out) {
   const Source source{data.table->raw, "write_cloud"};
   const LasHeader header = read_las_header(source);
   std::size_t record_bytes = header.record_bytes;
   std::string descriptors;
   const std::vector<Added> added = place_added(data, header, record_bytes, descriptors);
-  file.write(extended_header(source.bytes, header, record_bytes, descriptors));
+  out.header(extended_header(source.bytes, header, record_bytes, descriptors));
   const char* from = source.bytes.data() + header.points_at;
   std::string record;
   for (std::size_t i = 0; i < data.size(); ++i, from += header.record_bytes) {
@@ -171,9 +172,9 @@ void write_from_las(const PointData& data, OutputFile& file) {
     record.resize(record_bytes);
     store_position(data, i, header.scale, header.offset, record.data());
     for (const Added& a : added) store_double(a.type, added_value(data, a, i), record.data() + a.offset);
-    file.write(record);
+    out.record(record);
   }
-  file.write(source.bytes.substr(header.points_at + data.size() * header.record_bytes));
+  out.finish(source.bytes.substr(header.points_at + data.size() * header.record_bytes));
 }
 
 // Steps of a power of ten, so small that the extent takes about 30 bits; the offset is a whole number of them.
@@ -248,7 +249,7 @@ std::vector<std::string> extra_names(const std::vector<Column>& columns) {
   return names;
 }
 
-void write_new(const PointData& data, OutputFile& file) {
+void write_new(const PointData& data, LasOutput& out) {
   if (data.size() > std::numeric_limits<std::uint32_t>::max())
     throw InvalidInput("write_cloud: more than 2^32 - 1 points do not fit in LAS point format 0");
   std::vector<Column> columns = plan_columns(data, Attributes::Dialect::kLas, false);
@@ -268,7 +269,7 @@ void write_new(const PointData& data, OutputFile& file) {
     throw InvalidInput("write_cloud: LAS holds at most 341 extra properties");
   Vec3 scale{};
   Vec3 offset{};
-  file.write(new_header(data, colored, descriptors, record_bytes, scale, offset));
+  out.header(new_header(data, colored, descriptors, record_bytes, scale, offset));
   Rows rows(data, columns);
   std::string record;
   constexpr const char* kAxes[] = {"x", "y", "z"};
@@ -281,15 +282,29 @@ void write_new(const PointData& data, OutputFile& file) {
       for (std::size_t c = 0; c < 3; ++c) put(record, 20 + 2 * c, static_cast<std::uint16_t>(data.cloud.colors[i][c] * 257));
     }
     for (std::size_t c = 0; c < columns.size(); ++c) rows.append_bytes(c, record);
-    file.write(record);
+    out.record(record);
   }
+  out.finish({});
 }
+
+class PlainLas : public LasOutput {
+ public:
+  explicit PlainLas(OutputFile& file) : file_(file) {}
+  void header(const std::string& text) override { file_.write(text); }
+  void record(const std::string& bytes) override { file_.write(bytes); }
+  void finish(std::string_view rest) override { file_.write(rest); }
+
+ private:
+  OutputFile& file_;
+};
 
 }  // namespace
 
-void write_las(const PointData& data, OutputFile& file) {
+std::unique_ptr<LasOutput> plain_las(OutputFile& file) { return std::make_unique<PlainLas>(file); }
+
+void write_las(const PointData& data, LasOutput& out) {
   const bool from_las = data.table != nullptr && data.table->dialect == Attributes::Dialect::kLas;
-  from_las ? write_from_las(data, file) : write_new(data, file);
+  from_las ? write_from_las(data, out) : write_new(data, out);
 }
 
 }  // namespace g3r::io

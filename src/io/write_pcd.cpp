@@ -26,6 +26,11 @@ std::string header(const PointData& data, const std::vector<Column>& columns) {
   std::string width = "WIDTH " + std::to_string(data.size()) + "\n";
   std::string height = "HEIGHT 1\n";
   std::string viewpoint = "VIEWPOINT 0 0 0 1 0 0 0\n";
+  if (!from_pcd && data.cloud.sensor_positions.size() == 1) {
+    viewpoint = "VIEWPOINT";
+    for (const double coordinate : data.cloud.sensor_positions[0]) append_number(viewpoint += ' ', coordinate);
+    viewpoint += " 1 0 0 0\n";
+  }
   if (from_pcd) {
     for (const std::string& line : data.table->comments) {
       std::string& place = line.starts_with("WIDTH")       ? width

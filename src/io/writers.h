@@ -2,6 +2,7 @@
 #pragma once
 
 #include "io/columns.h"
+#include "io/las_output.h"
 #include "io/output_file.h"
 
 namespace g3r::io {
@@ -10,7 +11,7 @@ void write_ply(const PointData& data, OutputFile& file);
 void write_xyz(const PointData& data, char separator, bool counted, OutputFile& file);
 void write_pcd(const PointData& data, OutputFile& file);
 void write_npy(const PointData& data, OutputFile& file);
-void write_las(const PointData& data, OutputFile& file);
+void write_las(const PointData& data, LasOutput& out);
 void write_obj(const PointData& data, OutputFile& file);
 
 void write_ply_mesh(const Mesh& mesh, bool ascii, OutputFile& file);
