@@ -87,6 +87,21 @@ TEST(E57, ScansAreMergedEachInItsPose) {
   }
 }
 
+TEST(E57, ScannersStandAtTheOriginsOfTheirScans) {
+  E57Scan turned = e57_scan(3, E57Field::kDouble);
+  turned.rotation = {kHalf, 0, 0, kHalf};
+  turned.translation = {5e5, 5.4e6, 100};
+  E57Scan plain = e57_scan(2, E57Field::kFloat);
+  EXPECT_TRUE(samples::read(e57_file({plain})).sensor_positions.empty());  // no pose: nobody knows
+  const Cloud one = samples::read(e57_file({turned}));
+  EXPECT_EQ(one.sensor_positions, (std::vector<Vec3>{{5e5, 5.4e6, 100}}));
+  EXPECT_TRUE(one.scan_of_point.empty());
+  plain.fields.back().values[0] = 2;  // an invalid point
+  const Cloud two = samples::read(e57_file({turned, e57_scan(0, E57Field::kFloat), plain}));
+  EXPECT_EQ(two.sensor_positions, (std::vector<Vec3>{{5e5, 5.4e6, 100}, {0, 0, 0}}));
+  EXPECT_EQ(two.scan_of_point, (std::vector<std::uint32_t>{0, 0, 0, 1}));
+}
+
 TEST(E57, EveryAllocationMayFail) {
   const std::string bytes = e57_file({e57_scan(40, E57Field::kScaled)});
   samples::read(bytes);  // starts Xerces-C++

@@ -173,6 +173,19 @@ TEST(Obj, NormalsPerPointAreKeptAndPerCornerDropped) {
   EXPECT_TRUE(read(points + "f 1//2 2//1 1//2\n").normals.empty());
 }
 
+TEST(Pcd, TheViewpointIsTheScannerUnlessItIsTheDefault) {
+  const auto sensors = [](const std::string& viewpoint) {
+    return read("VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 1\nHEIGHT 1\nVIEWPOINT" + viewpoint +
+                "\nPOINTS 1\nDATA ascii\n1 2 3\n")
+        .sensor_positions;
+  };
+  EXPECT_EQ(sensors(" 1 -2.5 1e3 1 0 0 0"), (std::vector<Vec3>{{1, -2.5, 1000}}));
+  EXPECT_EQ(sensors(" 0 0 0 0 1 0 0"), (std::vector<Vec3>{{0, 0, 0}}));
+  for (const char* unknown : {" 0 0 0 1 0 0 0", " 0 0 0 1 0 0", "", " 1 2 nan 1 0 0 0", " a b c 1 0 0 0"}) {
+    EXPECT_TRUE(sensors(unknown).empty()) << unknown;
+  }
+}
+
 TEST(Pcd, CompressedIsReadColumnByColumn) {
   const Cloud cloud = read(samples::compressed_pcd(9));
   ASSERT_EQ(cloud.positions.size(), 9U);

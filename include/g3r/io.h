@@ -20,12 +20,16 @@ namespace G3R_PUBLIC g3r {
 /// What a file holds besides the points: every property, list, comment and element, kept so that write_cloud() can return it untouched.
 class Attributes;
 
-/// A point cloud as read from a file. All vectors are empty or have one entry per point.
+/// A point cloud as read from a file. All vectors with a value per point are empty or have one entry per point.
+/// Scanner positions are those that a file states: VIEWPOINT of PCD (the identity, 0 0 0 1 0 0 0, is what writers put who do not know),
+/// the poses of E57 (unknown where all are the identity).
 struct Cloud {
   std::vector<Vec3> positions;                        ///< N points, file order; non-finite ones are kept (orient() leaves them out)
   std::vector<Vec3> normals;                          ///< normals in the file, not normalised; empty if absent or all zero
   std::vector<std::array<std::uint8_t, 3>> colors;    ///< RGB
   std::vector<float> confidence;                      ///< a property named confidence or quality
+  std::vector<Vec3> sensor_positions;                 ///< where the scanner stood, one per scan, in input coordinates; empty if unknown
+  std::vector<std::uint32_t> scan_of_point;           ///< index into sensor_positions; empty if there is one scan or none is known
   Scalar scalar = Scalar::kFloat64;                   ///< precision of the coordinates in the file
   std::string format;                                 ///< for example "ply binary_little_endian"
   std::vector<std::string> property_names;            ///< as in the file, in its order

@@ -50,6 +50,8 @@ struct Pose {
   std::array<double, 4> q{1, 0, 0, 0};
   Vec3 shift{0, 0, 0};
 
+  [[nodiscard]] bool is_identity() const { return q == Pose().q && shift == Pose().shift; }
+
   // v + 2 w (u x v) + 2 u x (u x v), q = (w, u)
   [[nodiscard]] Vec3 rotate(const Vec3& v) const {
     if (q[1] == 0 && q[2] == 0 && q[3] == 0) return v;
@@ -144,7 +146,13 @@ class E57Reader {
     Element& points = table->elements.back();
     points.name = "vertex";
     plan(points);
-    for (Scan& scan : scans_) read_points(file, scan, points);
+    find_sensors();
+    for (std::size_t i = 0; i < scans_.size(); ++i) {
+      read_points(file, scans_[i], points);
+      if (scans_.size() > 1 && !cloud_.sensor_positions.empty()) {
+        cloud_.scan_of_point.resize(static_cast<std::size_t>(points.count), static_cast<std::uint32_t>(i));
+      }
+    }
     if (dropped_ != 0) cloud_.warnings.push_back(std::to_string(dropped_) + " points marked as invalid are left out");
     fill_cloud(source_, std::move(table), cloud_);
   }
@@ -242,6 +250,12 @@ class E57Reader {
       if (!std::isfinite(pose.shift[a])) fail_here("the translation of its pose is not finite");
     }
     return pose;
+  }
+
+  // A scanner stands at the origin of its scan. Where no scan has a pose the points may have been joined and moved before.
+  void find_sensors() {
+    if (std::all_of(scans_.begin(), scans_.end(), [](const Scan& scan) { return scan.pose.is_identity() && !scan.spherical; })) return;
+    for (const Scan& scan : scans_) cloud_.sensor_positions.push_back(scan.pose.shift);
   }
 
   // The properties that the scans have together; a type that holds what is in any of them.

@@ -6,6 +6,8 @@
 #include "io/text.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -21,6 +23,7 @@ struct PcdHeader {
   std::size_t body = 0;
   std::size_t lines = 0;
   std::vector<std::string> kept;  // VIEWPOINT, WIDTH, HEIGHT lines
+  std::vector<Vec3> viewpoint;    // position of the sensor, if it is known
 };
 
 class PcdParser {
@@ -75,6 +78,7 @@ class PcdParser {
       points_ = only(words, "POINTS");
     } else if (keyword == "VIEWPOINT") {
       header_.kept.emplace_back(line);
+      find_viewpoint(words);
     } else if (keyword == "DATA") {
       std::string_view word;
       words.next(word);
@@ -85,6 +89,17 @@ class PcdParser {
     } else if (keyword != "VERSION") {
       fail_here("unknown keyword " + quote(keyword) + " in the PCD header");
     }
+  }
+
+  // Position and rotation (w x y z). The identity is written by those who do not know; what is no pose is kept as text alone.
+  void find_viewpoint(Tokens& words) {
+    constexpr std::array<double, 7> kUnknown = {0, 0, 0, 1, 0, 0, 0};
+    std::array<double, 7> pose{};
+    std::string_view word;
+    for (double& value : pose) {
+      if (!words.next(word) || !parse_double(word, value) || !std::isfinite(value)) return;
+    }
+    if (pose != kUnknown) header_.viewpoint.assign(1, {pose[0], pose[1], pose[2]});
   }
 
   std::vector<std::uint64_t> integers(Tokens& words, const char* what) {
@@ -274,6 +289,7 @@ Cloud read_pcd(const Source& source) {
   PcdHeader header = PcdParser(source).parse();
   Cloud cloud;
   cloud.format = "pcd " + header.encoding;
+  cloud.sensor_positions = std::move(header.viewpoint);
   auto table = std::make_shared<Attributes>();
   table->dialect = Attributes::Dialect::kPcd;
   table->elements.push_back(std::move(header.points));
