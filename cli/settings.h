@@ -29,6 +29,7 @@ struct Settings {
   std::string figures;             ///< view: the JSON report of a run
   PageOptions page;                ///< view
   PictureOptions picture;          ///< view
+  bool sensors_of_file = false;    ///< orient, reconstruct: the hint sensor is what the input file says
   Options options;
   MeshOptions mesh_options;
   ReadOptions read_options;

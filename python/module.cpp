@@ -54,6 +54,25 @@ void take_length(const nb::dict& from, const char* name, const char* unit, Lengt
   take(from, name, into.value);
 }
 
+std::vector<Vec3> take_places(const nb::dict& from, const char* name) {
+  if (!from.contains(name)) return {};
+  return copy_rows<double>(nb::cast<Rows<double>>(from[name]));
+}
+
+Hints read_hints(const nb::dict& from) {
+  Hints hints;
+  const std::vector<Vec3> up = take_places(from, "up");
+  if (!up.empty()) hints.up = up.front();
+  hints.sensors = take_places(from, "sensors");
+  hints.inside = take_places(from, "inside");
+  if (from.contains("sensor_of_point")) {
+    hints.sensor_of_point = copy_values<std::uint32_t>(nb::cast<Values<std::uint32_t>>(from["sensor_of_point"]));
+  }
+  take(from, "seen_from_inside", hints.seen_from_inside);
+  take(from, "flip", hints.flip);
+  return hints;
+}
+
 Options read_options(const nb::dict& from) {
   Options options;
   take_choice(from, "preset", options.preset, {{"default", Preset::kDefault}, {"paper", Preset::kPaper}});
@@ -76,6 +95,7 @@ Options read_options(const nb::dict& from) {
   take(from, "threads", options.threads);
   take(from, "seed", options.seed);
   take(from, "max_memory", options.max_memory);
+  options.hints = read_hints(from);
   return options;
 }
 
@@ -237,7 +257,13 @@ void translate_error(const std::exception_ptr& pointer, void* /*unused*/) {
   }
 }
 
-// A (n, 3) view of a member of a cloud, kept alive by it; None if it is empty.
+// A (n,) or (n, 3) view of a member of a cloud, kept alive by it; None if it is empty.
+template <class T>
+nb::object values_of(const nb::handle& owner, const std::vector<T>& values) {
+  if (values.empty()) return nb::none();
+  return nb::cast(nb::ndarray<nb::numpy, const T, nb::ndim<1>>(values.data(), {values.size()}, owner));
+}
+
 template <class T>
 nb::object rows_of(const nb::handle& owner, const std::vector<std::array<T, 3>>& rows) {
   if (rows.empty()) return nb::none();
@@ -254,12 +280,9 @@ void bind(nb::module_& m) {
       .def_prop_ro("points", [](nb::handle self) { return rows_of(self, nb::cast<const Cloud&>(self).positions); })
       .def_prop_ro("normals", [](nb::handle self) { return rows_of(self, nb::cast<const Cloud&>(self).normals); })
       .def_prop_ro("colors", [](nb::handle self) { return rows_of(self, nb::cast<const Cloud&>(self).colors); })
-      .def_prop_ro("confidence",
-                   [](nb::handle self) -> nb::object {
-                     const auto& values = nb::cast<const Cloud&>(self).confidence;
-                     if (values.empty()) return nb::none();
-                     return nb::cast(nb::ndarray<nb::numpy, const float, nb::ndim<1>>(values.data(), {values.size()}, self));
-                   })
+      .def_prop_ro("confidence", [](nb::handle self) { return values_of(self, nb::cast<const Cloud&>(self).confidence); })
+      .def_prop_ro("sensor_positions", [](nb::handle self) { return rows_of(self, nb::cast<const Cloud&>(self).sensor_positions); })
+      .def_prop_ro("scan_of_point", [](nb::handle self) { return values_of(self, nb::cast<const Cloud&>(self).scan_of_point); })
       .def_ro("format", &Cloud::format)
       .def_ro("property_names", &Cloud::property_names)
       .def_ro("warnings", &Cloud::warnings);

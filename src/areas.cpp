@@ -5,6 +5,7 @@
 #include "sum/fast_sum.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace g3r {
 namespace {
@@ -36,7 +37,7 @@ std::vector<Vec3> area_vectors(const std::vector<Vec3>& points, const std::vecto
     if (closed.empty()) return eta;
     winding = std::move(closed);
   }
-  const double level = median(std::move(winding));
+  const double level = std::abs(median(std::move(winding)));  // normals may face into the solid, as those of a room do
   const double factor = level > 0 ? std::clamp(0.5 / level, kLeast, kMost) : kMost;
   for (Vec3& v : eta) {
     for (double& c : v) c *= factor;

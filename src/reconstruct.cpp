@@ -1,5 +1,6 @@
 // From points, or oriented points, to a mesh.
 #include "cpu/parallel.h"
+#include "median.h"
 #include "mesh/field_mesher.h"
 #include "mesh/mesh_finish.h"
 #include "mesh/screened_poisson.h"
@@ -16,6 +17,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace g3r {
 namespace {
@@ -25,6 +27,8 @@ constexpr double kFieldAccuracy = 1e-2;  // of its sums; only its side of a leve
 constexpr double kFarSpacings = 4;       // surface farther than this from every point is a guess;
 constexpr double kFarShare = 0.05;       // more of it is worth a warning
 constexpr double kWidest = 8e5;          // spacings; the octree has at most 2^20 cells of 0.8 spacings
+constexpr double kInsideOut = -0.25;     // winding number at the points; 1/2 if they face out of a solid, -1/2 into it, 0 on open sheets;
+constexpr std::size_t kProbes = 500;     // points asked for it
 constexpr int kPaperDepth = 10;
 constexpr double kLargestCoordinate = 1e50;  // areas, volumes and their products of a mesh stay finite,
 constexpr double kLeastExtent = 1e-140;      // and greater than 0
@@ -79,10 +83,28 @@ Mesh mesh_with_poisson(const OrientedCloud& oriented, const std::vector<Vec3>& n
   return screened_poisson(oriented.cloud.points, normals, chosen);
 }
 
-// Meshes in normalised units, so that georeferenced coordinates lose nothing, and maps back.
+// Whether the points face into the solid that they surround, as those of a room do that is seen from inside.
+bool is_inside_out(const OrientedCloud& oriented, const WindingSampler& field) {
+  const std::vector<Vec3>& points = oriented.cloud.points;
+  std::vector<Vec3> probes;
+  for (std::size_t i = 0; i < points.size(); i += (points.size() + kProbes - 1) / kProbes) probes.push_back(points[i]);
+  std::vector<double> winding;
+  field.sample(probes, winding, nullptr);
+  return median(std::move(winding)) < kInsideOut;
+}
+
+void turn(std::vector<Vec3>& vectors) {
+  for (Vec3& v : vectors) v = {-v[0], -v[1], -v[2]};
+}
+
+// Meshes in normalised units, so that georeferenced coordinates lose nothing, and maps back. What is inside out is meshed as the solid that
+// it surrounds, and the triangles are turned.
 // `far_share` (may be null): share of the surface farther than kFarSpacings from every point.
-Mesh make_mesh(const OrientedCloud& oriented, const MeshOptions& options, const Monitor& monitor, std::size_t max_memory = 0,
+Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor& monitor, std::size_t max_memory = 0,
                double* far_share = nullptr) {
+  const WindingSampler field(oriented, monitor.cancel);
+  const bool inside_out = is_inside_out(oriented, field);
+  if (inside_out) turn(oriented.eta);
   std::vector<Vec3> directions(oriented.eta.size());
   for (std::size_t i = 0; i < directions.size(); ++i) {
     const Vec3& e = oriented.eta[i];
@@ -100,9 +122,12 @@ Mesh make_mesh(const OrientedCloud& oriented, const MeshOptions& options, const 
     normalised.min_component = 0;  // specks of screened Poisson are part of its result
     mesh::finish_mesh(mesh, oriented.cloud.points, mesh::smooth_spacing(oriented.cloud.points), 0, normalised);
   } else {
-    mesh = field_mesh(oriented.cloud.points, directions, WindingSampler(oriented, monitor.cancel), normalised, monitor, max_memory);
+    mesh = field_mesh(oriented.cloud.points, directions, field, normalised, monitor, max_memory);
   }
   if (mesh.triangles.empty()) throw InvalidInput("no surface found: the oriented points do not enclose a volume");
+  if (inside_out) {
+    for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+  }
   if (far_share != nullptr) *far_share = mesh::far_share(mesh, oriented.cloud.points, kFarSpacings);
   for (Vec3& v : mesh.vertices) {
     for (std::size_t a = 0; a < 3; ++a) v[a] = v[a] / frame.scale + frame.centre[a];
@@ -154,10 +179,10 @@ Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const Me
     directions.push_back({n[0] / size, n[1] / size, n[2] / size});
   }
   return parallel::with_threads(options.threads, [&] {
-    const OrientedCloud oriented = oriented_cloud(kept, directions);
+    OrientedCloud oriented = oriented_cloud(kept, directions);
     std::vector<Vec3>().swap(kept);  // their memory is wanted
     std::vector<Vec3>().swap(directions);
-    return make_mesh(oriented, options, monitor);
+    return make_mesh(std::move(oriented), options, monitor);
   });
 }
 
@@ -173,8 +198,8 @@ Reconstruction reconstruct(const PointsView& points, const Options& options, con
   stages.begin("mesh");
   double far = 0;
   parallel::with_threads(options.threads, [&] {
-    const OrientedCloud oriented = oriented_cloud(points, out.orientation.normals, out.orientation.areas);
-    out.mesh = make_mesh(oriented, chosen, monitor, options.max_memory, &far);
+    OrientedCloud oriented = oriented_cloud(points, out.orientation.normals, out.orientation.areas);
+    out.mesh = make_mesh(std::move(oriented), chosen, monitor, options.max_memory, &far);
     out.check = check_mesh(out.mesh);
     carry_attributes(out.mesh, points, {}, out.orientation.confidence);
   });

@@ -91,6 +91,11 @@ std::string report_json(const Stats& stats, const MeshCheck* mesh) {
   report["consistent"] = stats.consistent;
   report["open_share"] = number(stats.open_share);
   report["undecided_share"] = number(stats.undecided_share);
+  report["hints"] = {{"given", stats.hints.given},
+                     {"settled_share", number(stats.hints.settled_share)},
+                     {"turned_share", number(stats.hints.turned_share)},
+                     {"agreement", number(stats.hints.agreement)},
+                     {"contradicted_share", number(stats.hints.contradicted_share)}};
   report["seconds"] = seconds_json(stats);
   report["planned_memory_bytes"] = stats.planned_memory_bytes;
   report["peak_memory_bytes"] = stats.peak_memory_bytes;

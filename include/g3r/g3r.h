@@ -9,6 +9,7 @@
 
 #include <g3r/error.h>
 #include <g3r/export.h>
+#include <g3r/hints.h>
 #include <g3r/mesh.h>
 #include <g3r/points.h>
 
@@ -90,6 +91,7 @@ struct Options {
   std::uint64_t seed = 0;         ///< reserved for steps that sample; the present method draws no random number
   std::size_t max_memory =
       0;  ///< bytes; refuse before the solve when the plan exceeds it, or before the mesh when that turns out to. 0: no limit
+  Hints hints;
 };
 
 /// One step of the iterative solver.
@@ -122,7 +124,8 @@ struct Stats {
   bool converged = false;
   bool consistent = true;       ///< false: more than a fifth of the points could face either way: there may be no clear inside
   double open_share = 0;        ///< share of the points, 0..1, on open sheets, whose sides follow from neighbour to neighbour
-  double undecided_share = 0;   ///< of all points, those on sheets either side of which could be the outside
+  double undecided_share = 0;   ///< of all points, those on sheets either side of which could be the outside, after the hints
+  HintStats hints;
   double condition_number = 0;  ///< 0 unless asked for
   double confidence_mean = 0;
   double confidence_below_half = 0;                     ///< share of the points, 0..1

@@ -43,6 +43,16 @@ class Cloud:
         return self._native.confidence
 
     @property
+    def sensor_positions(self) -> Optional[Floats]:
+        """(k, 3) float64: where the scanner stood, one place per scan."""
+        return self._native.sensor_positions
+
+    @property
+    def scan_of_point(self) -> Optional[Indices]:
+        """(n,) uint32: the scan of each point, a row of `sensor_positions`; None if there is one scan or none is known."""
+        return self._native.scan_of_point
+
+    @property
     def format(self) -> str:
         """For example "ply binary_little_endian"."""
         return self._native.format
