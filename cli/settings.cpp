@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <numeric>
+#include <sstream>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -347,12 +348,25 @@ void add_mesh(CLI::App& app, Settings& s) {
 }
 
 void add_eval(CLI::App& app, Settings& s) {
-  CLI::App* sub = add_command(app, "eval", "Scores against the truth, as JSON: AE_p, PCO of normals; CD, AE_m, HD of meshes");
+  CLI::App* sub = add_command(app, "eval", "Scores against the truth, as JSON: of normals AE, PCO, RMSE; of meshes CD, HD, F");
   sub->add_option("RESULT", s.input, "Oriented cloud or mesh")->required()->type_name("");
   sub->add_option("--truth", s.truth, "Cloud with true normals in the same order, or true mesh")->required()->type_name("GT");
   sub->add_option("--samples", s.sample_count, "Points sampled on each mesh (default 200000)")
       ->check(range(std::size_t{1}, kMaxSamples))
       ->type_name("N");
+  sub->add_option_function<std::string>(
+         "--distances",
+         [&s](const std::string& text) {
+           std::istringstream words(text);
+           for (std::string word; std::getline(words, word, ',');) {
+             const auto distance = parse_length(word);
+             if (!distance || distance->unit != Length::Unit::kInput || !(distance->value > 0))
+               reject("--distances", text, "X,X,... above 0");
+             s.distances.push_back(distance->value);
+           }
+         },
+         "Meshes: also the F-scores at these distances, in units of the mesh")
+      ->type_name("X,X,...");
   add_seed_option(*sub, s);
   add_run_options(*sub, s);
 }

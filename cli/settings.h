@@ -34,9 +34,10 @@ struct Settings {
   MeshOptions mesh_options;
   ReadOptions read_options;
   WriteOptions write_options;
-  std::size_t sample_count = 0;  ///< sample: points to draw; eval: points per mesh
-  Length noise;                  ///< sample
-  std::string report;            ///< file for the JSON report, "-" for standard output, empty for none
+  std::size_t sample_count = 0;   ///< sample: points to draw; eval: points per mesh
+  std::vector<double> distances;  ///< eval: of the F-scores
+  Length noise;                   ///< sample
+  std::string report;             ///< file for the JSON report, "-" for standard output, empty for none
   bool strict = false;
   bool quiet = false;
   bool progress = true;

@@ -582,10 +582,17 @@ class Measuring(ProgramTest):
         score = json.loads(self.expect(OK, "eval", "a.ply", "--truth", "a.ply").out)
         self.assertEqual((score["kind"], score["points"], score["pco"]), ("points", 500, 1))
         self.assertAlmostEqual(score["ae_p"], 0, delta=1e-12)
+        self.assertEqual((score["pgp5"], score["pgp10"]), (1, 1))
+        self.assertLess(max(score["rmse"], score["rmse_unoriented"]), 1e-5)
         score = json.loads(self.expect(OK, "eval", "cube.obj", "--truth", "cube.obj", "--samples", "2000").out)
         self.assertEqual((score["kind"], score["samples"]), ("mesh", 2000))
         for name in ("cd", "ae_m", "hd"):
             self.assertAlmostEqual(score[name], 0, delta=1e-6)
+        self.assertAlmostEqual(score["normal_consistency"], 1, delta=1e-3)  # samples on edges may find either side
+        self.assertEqual(score["f_scores"], [])
+        score = json.loads(self.expect(OK, "eval", "cube.obj", "--truth", "cube.obj", "--distances", "0.01,1e-3", "--samples", "2000").out)
+        self.assertEqual(score["f_scores"], [{"distance": d, "precision": 1, "recall": 1, "f": 1} for d in (0.01, 0.001)])
+        self.expect(USAGE, "eval", "cube.obj", "--truth", "cube.obj", "--distances", "0")
         self.expect(BAD_DATA, "eval", "cube.obj", "--truth", "a.ply")
 
     def test_info_says_what_is_in_a_file(self):
