@@ -181,6 +181,7 @@ void add_finish_options(CLI::App& app, Settings& s) {
                  "Drop components of less area than N points stand for (default 8, more under noise; 0 keeps all)")
       ->check(range(0.0, 1e15))
       ->type_name("N");
+  app.add_flag("--keep-all", o.keep_all, "Keep what too few points hold: specks, and points that no surface goes through");
   app.add_option("--faces", o.faces, "Simplify to about N triangles (default, or 0: off)")->check(range(std::size_t{0}))->type_name("N");
 }
 

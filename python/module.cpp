@@ -110,6 +110,7 @@ MeshOptions read_mesh_options(const nb::dict& from) {
   take(from, "keep_largest", options.keep_largest);
   take(from, "min_component", options.min_component);
   take(from, "faces", options.faces);
+  take(from, "keep_all", options.keep_all);
   take_length(from, "noise", "noise_unit", options.noise);
   take(from, "threads", options.threads);
   return options;

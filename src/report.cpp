@@ -54,6 +54,7 @@ Json mesh_json(const MeshCheck& check) {
           {"genus", has_genus ? Json(check.genus) : Json(nullptr)},
           {"volume", number(check.volume)},
           {"area", number(check.area)},
+          {"dropped", {{"points", check.dropped.points}, {"components", check.dropped.components}, {"area", number(check.dropped.area)}}},
           {"self_intersections", check.self_intersections ? Json(*check.self_intersections) : Json(nullptr)},
           {"min_angle", number(check.min_angle)},
           {"median_min_angle", number(check.median_min_angle)},

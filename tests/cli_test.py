@@ -33,6 +33,7 @@ REPORT_SCHEMA = {
 }
 MESH_SCHEMA = {"vertices": int, "faces": int, "components": int, "closed": bool, "manifold": bool, "boundary_edges": int,
                "nonmanifold_edges": int, "nonmanifold_vertices": int, "genus": None, "volume": float, "area": float,
+               "dropped": {"points": int, "components": int, "area": float},
                "self_intersections": None, "min_angle": float, "median_min_angle": float, "max_aspect": float}
 
 
@@ -432,6 +433,18 @@ class Points(ProgramTest):
         self.expect(OK, "in.ply", "open.ply", "--open", "--report", "r.json")
         self.assertFalse(self.json_of("r.json")["mesh"]["closed"])
         self.expect(USAGE, "in.ply", "out.ply", "--trim", "-1")
+
+    def test_outliers_leave_no_surface_unless_asked(self):
+        random_ = random.Random(4)
+        outliers = [[3 * random_.random() - 1.5 for _ in range(3)] for _ in range(500)]
+        write_points(self.path("in.ply"), sphere(3000) + outliers)
+        self.expect(OK, "in.ply", "out.ply", "--report", "r.json")
+        report = self.json_of("r.json")
+        self.assertEqual((report["mesh"]["components"], report["mesh"]["closed"]), (1, True))
+        self.assertGreaterEqual(report["mesh"]["dropped"]["points"], max(400, report["input"]["outliers"]))
+        self.expect(OK, "in.ply", "all.ply", "--keep-all", "--report", "r.json")
+        kept = self.json_of("r.json")
+        self.assertEqual((kept["mesh"]["dropped"]["components"], kept["mesh"]["dropped"]["points"]), (0, kept["input"]["outliers"]))
 
     def test_one_run_writes_several_files(self):
         write_points(self.path("in.ply"), sphere(500))

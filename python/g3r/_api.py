@@ -38,7 +38,7 @@ def _length(name: str, value: Union[str, float], least: str) -> Dict[str, Any]:
 
 
 _METHOD_OPTIONS = {"noise", "method", "wnnc_widths", "harmonics", "solver", "schedule", "tolerance", "accuracy", "max_memory"}
-_MESH_OPTIONS = {"mesher", "keep_largest", "min_component", "faces"}
+_MESH_OPTIONS = {"mesher", "keep_largest", "min_component", "faces", "keep_all"}
 
 
 def _options(epsilon: Union[str, float], degree: Optional[int], preset: str, threads: int, seed: int, known: Set[str],
@@ -184,7 +184,8 @@ def run(points: Any, *, colors: Any = None, epsilon: Union[str, float] = "auto",
     colors: (n, 3), carried to the vertices.
     threads: 0 for all cores; the result does not depend on it.
     progress: called as progress(stage, fraction) on this thread; returning False cancels.
-    faces: simplify the mesh to about this many triangles. keep_largest: keep only so many components.
+    faces: simplify the mesh to about this many triangles. keep_largest: keep only so many components. keep_all: True keeps surface that too
+        few points hold; stats["mesh"]["dropped"] says what was left out.
     noise: standard deviation of the points from their surface, in the units of epsilon; 0: clean. Estimated unless given.
     Hints, what you know and the points cannot say; they settle the sides of open sheets, and stats["hints"] says what they did:
     up: the direction that open sheets face, three numbers or an axis such as "+z" or "-y".
