@@ -18,7 +18,7 @@ int run_orient(const Settings& settings, Session& session) {
   });
   Stats& stats = result.stats;
   stats.warnings.insert(stats.warnings.begin(), cloud.warnings.begin(), cloud.warnings.end());
-  mention_sensors(cloud, stats);
+  mention_sensors(cloud, result.normals, stats);
   return finish(settings, session, stats, nullptr);
 }
 

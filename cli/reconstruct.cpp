@@ -23,7 +23,7 @@ int run_reconstruct(const Settings& settings, Session& session) {
   });
   Stats& stats = result.orientation.stats;
   stats.warnings.insert(stats.warnings.begin(), cloud.warnings.begin(), cloud.warnings.end());
-  mention_sensors(cloud, stats);
+  mention_sensors(cloud, result.orientation.normals, stats);
   return finish(settings, session, stats, &result.check);
 }
 

@@ -552,6 +552,12 @@ class Hints(ProgramTest):
         self.assertNotIn("--sensor file", self.expect(OK, "orient", "frame.pcd", "out.ply", "--sensor", "file").err)
         self.assertGreaterEqual(self.facing("out.ply", (1, 2, 3)), 0.995)
         self.assertNotIn("--sensor file", self.expect(OK, "orient", "frame.pcd", "out.ply", "--up", "0,0,-1").err)
+        header = header.replace("%d" % len(points), "%d" % len(self.room())).replace("1 2 3 1", "2 1.5 1 1")
+        with open(self.path("room.pcd"), "w") as file:
+            file.write(header + "".join("%r %r %r\n" % tuple(p) for p in self.room()))
+        self.assertIn("100 % of the points face away", self.expect(OK, "orient", "room.pcd", "out.ply").err)
+        self.assertNotIn("face away,", self.expect(OK, "orient", "room.pcd", "out.ply", "--sensor", "file").err)
+        self.assertGreaterEqual(self.facing("out.ply", (2, 1.5, 1)), 0.995)
         write_points(self.path("frame.ply"), points)
         self.assertIn("frame.ply does not say where the scanner stood",
                       self.expect(BAD_DATA, "orient", "frame.ply", "out.ply", "--sensor", "file").err)

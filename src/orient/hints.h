@@ -38,14 +38,14 @@ struct HintEffect {
 /// Follows the hints, given in the coordinates of the points, `sensor_of_point` in their order. A patch takes the side that most of its
 /// votes are for, a vote of point p being
 ///   sensor s:  n . (s - p) / |s - p|      up u:  n . u / |u|      inside q:  - n . (q - p) / |q - p|
-/// so that a point counts by how squarely it is seen, and not by how near it is; `seen_from_inside` without sensors votes like a sensor in the
-/// median of the points. A patch whose votes are a fiftieth of its points or less keeps its side. Where the side was a choice the confidence
-/// becomes the share of the votes that agree, and two thirds settle it; elsewhere it takes two thirds to turn a patch. Then pieces of a patch
-/// that are not consistent with the rest of it are turned by two thirds of their own votes: what a gap separates has no other way to agree.
-/// Closed parts have one side: they are turned by `seen_from_inside` and by sensors inside them, where the winding number of `eta` is 1/4
-/// and more (outside it is 0, however near or far), or, if the sensor of each point is known, by two thirds of the votes. `near`:
-/// Neighbours::of_all(k), or empty: patches have no pieces; `spacing`: of the points, for the winding number. O(N log(sensors) + N k), and
-/// O(N) for each of at most 32 sensors. Throws Cancelled.
+/// so that a point counts by how squarely it is seen, and not by how near it is; `seen_from_inside` without sensors votes like a sensor in
+/// the median of the points. A patch whose votes are a fiftieth of its points or less keeps its side. Where the side was a choice the
+/// confidence becomes the share of the votes that agree, and two thirds settle it; elsewhere it takes two thirds to turn a patch. Then
+/// pieces of a patch that are not consistent with the rest of it are turned by two thirds of their own votes: what a gap separates has no
+/// other way to agree. Closed parts have one side: they are turned by `seen_from_inside` and by sensors inside them, where the winding
+/// number of `eta` is 1/4 and more (outside it is 0, however near or far), or, if the sensor of each point is known, by two thirds of the
+/// votes. `near`: Neighbours::of_all(k), or empty: patches have no pieces; `spacing`: of the points, for the winding number. O(N
+/// log(sensors) + N k), and O(N) for each of at most 32 sensors. Throws Cancelled.
 [[nodiscard]] HintEffect follow_hints(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near, double spacing,
                                       const Patches& patches, const Hints& hints, const SidedPoints& sided,
                                       const std::atomic<bool>* cancel = nullptr);
