@@ -47,12 +47,21 @@ Json score_points(const Settings& settings, Console& console) {
   }
   warn_if_moved(result, truth, console);
   const NormalScore score = score_normals(result.normals, truth.normals);
-  return {{"kind", "points"}, {"points", score.points}, {"ae_p", score.ae}, {"pco", score.pco}};
+  return {{"kind", "points"},   {"points", score.points}, {"ae_p", score.ae},
+          {"pco", score.pco},   {"rmse", score.rmse},     {"rmse_unoriented", score.rmse_unoriented},
+          {"pgp5", score.pgp5}, {"pgp10", score.pgp10}};
 }
 
 Json score_meshes(const Settings& settings, const Mesh& result, const Mesh& truth) {
-  const MeshScore score = score_mesh(result, truth, settings.sample_count, settings.options.seed);
-  return {{"kind", "mesh"}, {"samples", settings.sample_count}, {"cd", score.chamfer}, {"ae_m", score.ae}, {"hd", score.hausdorff}};
+  const MeshScore score = score_mesh(result, truth, settings.sample_count, settings.options.seed, settings.distances);
+  Json f_scores = Json::array();
+  for (const FScore& f : score.f_scores) {
+    f_scores.push_back({{"distance", f.distance}, {"precision", f.precision}, {"recall", f.recall}, {"f", f.f}});
+  }
+  return {{"kind", "mesh"},        {"samples", settings.sample_count},
+          {"cd", score.chamfer},   {"ae_m", score.ae},
+          {"hd", score.hausdorff}, {"normal_consistency", score.normal_consistency},
+          {"f_scores", f_scores}};
 }
 
 }  // namespace

@@ -14,8 +14,10 @@ int run_mesh(const Settings& settings, Session& session) {
   }
   MeshOptions options = settings.mesh_options;
   options.threads = settings.options.threads;
-  Mesh mesh = session.stage("mesh", [&] { return mesh_oriented(cloud.positions, cloud.normals, options, session.monitor()); });
-  const MeshCheck check = check_mesh(mesh);
+  Dropped dropped;
+  Mesh mesh = session.stage("mesh", [&] { return mesh_oriented(cloud.positions, cloud.normals, options, session.monitor(), &dropped); });
+  MeshCheck check = check_mesh(mesh);
+  check.dropped = dropped;
   session.stage("carry", [&] { carry_attributes(mesh, cloud.positions, cloud.colors, cloud.confidence); });
   session.stage("write", [&] {
     for (const std::string& output : settings.outputs()) write_mesh(output, mesh, session.cancellable(settings.write_options));

@@ -3,13 +3,14 @@
 #include <g3r/io.h>
 
 #include "commands.h"
+#include "sensors.h"
 #include "summary.h"
 
 namespace g3r::cli {
 
 int run_orient(const Settings& settings, Session& session) {
   const Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, settings.read_options); });
-  Orientation result = orient(cloud.positions, settings.options, session.monitor());
+  Orientation result = orient(cloud.positions, with_sensors(settings, cloud), session.monitor());
   session.stage("write", [&] {
     for (const std::string& output : settings.outputs()) {
       write_cloud(output, cloud, &result.normals, &result.confidence, session.cancellable(settings.write_options));
@@ -17,6 +18,7 @@ int run_orient(const Settings& settings, Session& session) {
   });
   Stats& stats = result.stats;
   stats.warnings.insert(stats.warnings.begin(), cloud.warnings.begin(), cloud.warnings.end());
+  mention_sensors(cloud, result.normals, stats);
   return finish(settings, session, stats, nullptr);
 }
 

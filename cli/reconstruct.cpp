@@ -3,13 +3,14 @@
 #include <g3r/io.h>
 
 #include "commands.h"
+#include "sensors.h"
 #include "summary.h"
 
 namespace g3r::cli {
 
 int run_reconstruct(const Settings& settings, Session& session) {
   const Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, settings.read_options); });
-  Reconstruction result = reconstruct(cloud.positions, settings.options, settings.mesh_options, session.monitor());
+  Reconstruction result = reconstruct(cloud.positions, with_sensors(settings, cloud), settings.mesh_options, session.monitor());
   if (!cloud.colors.empty()) {
     session.stage("carry", [&] { carry_attributes(result.mesh, cloud.positions, cloud.colors, result.orientation.confidence); });
   }
@@ -22,6 +23,7 @@ int run_reconstruct(const Settings& settings, Session& session) {
   });
   Stats& stats = result.orientation.stats;
   stats.warnings.insert(stats.warnings.begin(), cloud.warnings.begin(), cloud.warnings.end());
+  mention_sensors(cloud, result.orientation.normals, stats);
   return finish(settings, session, stats, &result.check);
 }
 

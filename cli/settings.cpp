@@ -4,11 +4,13 @@
 #include <charconv>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <limits>
 #include <map>
 #include <memory>
 #include <numeric>
+#include <sstream>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -46,6 +48,7 @@ CLI::Validator range(T low, T high = std::numeric_limits<T>::max()) {
 // Headings of --help.
 constexpr const char* kResultGroup = "Results";
 constexpr const char* kMeshGroup = "Mesh";
+constexpr const char* kHintGroup = "Hints (what you know and the points cannot say)";
 constexpr const char* kRunGroup = "Running";
 constexpr const char* kInputGroup = "Input";
 constexpr const char* kMethodGroup = "Method (none of these has to be set; docs/parameters.md)";
@@ -191,6 +194,7 @@ void add_finish_options(CLI::App& app, Settings& s) {
                  "Drop components of less area than N points stand for (default 8, more under noise; 0 keeps all)")
       ->check(range(0.0, 1e15))
       ->type_name("N");
+  app.add_flag("--keep-all", o.keep_all, "Keep what too few points hold: specks, and points that no surface goes through");
   app.add_option("--faces", o.faces, "Simplify to about N triangles (default, or 0: off)")->check(range(std::size_t{0}))->type_name("N");
 }
 
@@ -255,6 +259,53 @@ void add_method_options(CLI::App& app, Settings& s) {
       ->group(kRunGroup);
 }
 
+/// An option that may be repeated and is handed to `take` word by word.
+void add_repeated(CLI::App& app, const std::string& name, const std::function<void(const std::string&)>& take, const std::string& type,
+                  const std::string& help) {
+  app.add_option_function<std::vector<std::string>>(
+         name,
+         [take](const std::vector<std::string>& words) {
+           for (const std::string& word : words) take(word);
+         },
+         help)
+      ->type_name(type)
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false);
+}
+
+void add_hint_options(CLI::App& app, Settings& s) {
+  app.option_defaults()->group(kHintGroup);
+  Hints& hints = s.options.hints;
+  app.add_option_function<std::string>(
+         "--up",
+         [&hints](const std::string& text) {
+           hints.up = parse_direction(text);
+           if (!hints.up) reject("--up", text, "X,Y,Z, or an axis such as +z or -y");
+         },
+         "Open sheets face this way: a direction, or an axis such as +z or -y")
+      ->type_name("X,Y,Z");
+  const auto take_sensor = [&s, &hints](const std::string& text) {
+    if (text == "file") {
+      s.sensors_of_file = true;
+    } else if (const auto place = parse_vector(text)) {
+      hints.sensors.push_back(*place);
+    } else {
+      reject("--sensor", text, "X,Y,Z, or file");
+    }
+  };
+  add_repeated(app, "--sensor", take_sensor, "X,Y,Z|file",
+               "Open sheets face the scanner, which stood here; may be repeated. file: where IN says that it stood (PCD, E57)");
+  const auto take_inside = [&hints](const std::string& text) {
+    const auto place = parse_vector(text);
+    if (!place) reject("--inside", text, "X,Y,Z");
+    hints.inside.push_back(*place);
+  };
+  add_repeated(app, "--inside", take_inside, "X,Y,Z", "A point inside the solid; may be repeated");
+  app.add_flag("--seen-from-inside", hints.seen_from_inside, "Rooms, tunnels, streets: normals face the side the scanner was on");
+  app.add_flag("--flip", hints.flip, "Turn every normal, after all other hints");
+}
+
 void add_reconstruct(CLI::App& app, Settings& s) {
   app.add_option("IN", s.input, "Point cloud; - for standard input")->type_name("");
   app.add_option("OUT", s.output, "Mesh; scan.mesh.ply for scan.ply if left out; - for standard output")->type_name("");
@@ -263,6 +314,7 @@ void add_reconstruct(CLI::App& app, Settings& s) {
   add_write_options(app, s);
   add_confidence_options(app, s);
   add_report_options(app, s);
+  add_hint_options(app, s);
   add_finish_options(app, s);
   add_mesh_options(app, s);
   add_run_options(app, s);
@@ -286,6 +338,7 @@ void add_orient(CLI::App& app, Settings& s) {
   add_write_options(*sub, s);
   add_confidence_options(*sub, s);
   add_report_options(*sub, s);
+  add_hint_options(*sub, s);
   add_run_options(*sub, s);
   add_seed_option(*sub, s);
   add_read_options(*sub, s);
@@ -309,12 +362,25 @@ void add_mesh(CLI::App& app, Settings& s) {
 }
 
 void add_eval(CLI::App& app, Settings& s) {
-  CLI::App* sub = add_command(app, "eval", "Scores against the truth, as JSON: AE_p, PCO of normals; CD, AE_m, HD of meshes");
+  CLI::App* sub = add_command(app, "eval", "Scores against the truth, as JSON: of normals AE, PCO, RMSE; of meshes CD, HD, F");
   sub->add_option("RESULT", s.input, "Oriented cloud or mesh")->required()->type_name("");
   sub->add_option("--truth", s.truth, "Cloud with true normals in the same order, or true mesh")->required()->type_name("GT");
   sub->add_option("--samples", s.sample_count, "Points sampled on each mesh (default 200000)")
       ->check(range(std::size_t{1}, kMaxSamples))
       ->type_name("N");
+  sub->add_option_function<std::string>(
+         "--distances",
+         [&s](const std::string& text) {
+           std::istringstream words(text);
+           for (std::string word; std::getline(words, word, ',');) {
+             const auto distance = parse_length(word);
+             if (!distance || distance->unit != Length::Unit::kInput || !(distance->value > 0))
+               reject("--distances", text, "X,X,... above 0");
+             s.distances.push_back(distance->value);
+           }
+         },
+         "Meshes: also the F-scores at these distances, in units of the mesh")
+      ->type_name("X,X,...");
   add_seed_option(*sub, s);
   add_run_options(*sub, s);
 }
@@ -475,6 +541,9 @@ void complete(const CLI::App& app, Settings& s) {
       if (!picture && view.count(option) > 0) throw UsageError(std::string(option) + " is for pictures (.png), not for pages");
     }
     if (picture && view.count("--figures") > 0) throw UsageError("--figures is for pages (.html), not for pictures");
+  }
+  if (s.sensors_of_file && !s.options.hints.sensors.empty()) {
+    throw UsageError("--sensor: places and file exclude each other");
   }
   if (s.command == Command::kEval && s.sample_count == 0) s.sample_count = kEvalSamples;
   std::vector<std::string> written = s.outputs();

@@ -29,13 +29,15 @@ struct Settings {
   std::string figures;             ///< view: the JSON report of a run
   PageOptions page;                ///< view
   PictureOptions picture;          ///< view
+  bool sensors_of_file = false;    ///< orient, reconstruct: the hint sensor is what the input file says
   Options options;
   MeshOptions mesh_options;
   ReadOptions read_options;
   WriteOptions write_options;
-  std::size_t sample_count = 0;  ///< sample: points to draw; eval: points per mesh
-  Length noise;                  ///< sample
-  std::string report;            ///< file for the JSON report, "-" for standard output, empty for none
+  std::size_t sample_count = 0;   ///< sample: points to draw; eval: points per mesh
+  std::vector<double> distances;  ///< eval: of the F-scores
+  Length noise;                   ///< sample
+  std::string report;             ///< file for the JSON report, "-" for standard output, empty for none
   bool strict = false;
   bool quiet = false;
   bool progress = true;

@@ -46,6 +46,7 @@ std::string mesh_text(const MeshCheck& check) {
   std::string text = counted(check.triangles, "triangle") + ", " + (check.closed ? "closed" : "not closed") + ", " +
                      (check.manifold ? "manifold" : "not manifold") + ", " + counted(check.components, "component");
   if (check.closed && check.manifold) text += ", genus " + std::to_string(check.genus);
+  if (check.dropped.components > 0) text += "; " + counted(check.dropped.components, "part") + " without support left out";
   return text;
 }
 

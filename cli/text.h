@@ -33,4 +33,10 @@ namespace g3r::cli {
 /// "auto", "X" (input units), "X%" (of the bounding box diagonal), "Xh" (spacings), "Xn" (normalised box); X >= 0. Empty if it is not that.
 [[nodiscard]] std::optional<Length> parse_length(const std::string& text);
 
+/// "1,-2.5,3e2": three finite numbers. Empty if it is not that.
+[[nodiscard]] std::optional<Vec3> parse_vector(const std::string& text);
+
+/// The same, or an axis with an optional sign: "z", "+z", "-y". Empty if it is not that.
+[[nodiscard]] std::optional<Vec3> parse_direction(const std::string& text);
+
 }  // namespace g3r::cli

@@ -2,6 +2,7 @@
 // python/g3r/*.py.
 #include <g3r/g3r.h>
 #include <g3r/io.h>
+#include <g3r/metrics.h>
 #include <g3r/view.h>
 
 #include <initializer_list>
@@ -55,6 +56,25 @@ void take_length(const nb::dict& from, const char* name, const char* unit, Lengt
   take(from, name, into.value);
 }
 
+std::vector<Vec3> take_places(const nb::dict& from, const char* name) {
+  if (!from.contains(name)) return {};
+  return copy_rows<double>(nb::cast<Rows<double>>(from[name]));
+}
+
+Hints read_hints(const nb::dict& from) {
+  Hints hints;
+  const std::vector<Vec3> up = take_places(from, "up");
+  if (!up.empty()) hints.up = up.front();
+  hints.sensors = take_places(from, "sensors");
+  hints.inside = take_places(from, "inside");
+  if (from.contains("sensor_of_point")) {
+    hints.sensor_of_point = copy_values<std::uint32_t>(nb::cast<Values<std::uint32_t>>(from["sensor_of_point"]));
+  }
+  take(from, "seen_from_inside", hints.seen_from_inside);
+  take(from, "flip", hints.flip);
+  return hints;
+}
+
 Options read_options(const nb::dict& from) {
   Options options;
   take_choice(from, "preset", options.preset, {{"default", Preset::kDefault}, {"paper", Preset::kPaper}});
@@ -77,6 +97,7 @@ Options read_options(const nb::dict& from) {
   take(from, "threads", options.threads);
   take(from, "seed", options.seed);
   take(from, "max_memory", options.max_memory);
+  options.hints = read_hints(from);
   return options;
 }
 
@@ -90,6 +111,7 @@ MeshOptions read_mesh_options(const nb::dict& from) {
   take(from, "keep_largest", options.keep_largest);
   take(from, "min_component", options.min_component);
   take(from, "faces", options.faces);
+  take(from, "keep_all", options.keep_all);
   take_length(from, "noise", "noise_unit", options.noise);
   take(from, "threads", options.threads);
   return options;
@@ -209,6 +231,45 @@ nb::tuple read_faces(const Text& path) {
   return give_mesh(std::move(mesh));
 }
 
+nb::dict score_directions(const PointsArray& normals, const PointsArray& truth) {
+  const NormalScore score = score_normals(copy_points(normals), copy_points(truth));
+  nb::dict out;
+  out["ae_p"] = score.ae;
+  out["pco"] = score.pco;
+  out["rmse"] = score.rmse;
+  out["rmse_unoriented"] = score.rmse_unoriented;
+  out["pgp5"] = score.pgp5;
+  out["pgp10"] = score.pgp10;
+  return out;
+}
+
+nb::dict score_faces(const PointsArray& vertices, const Rows<std::uint32_t>& faces, const PointsArray& true_vertices,
+                     const Rows<std::uint32_t>& true_faces, std::size_t samples, std::uint64_t seed, const std::vector<double>& distances) {
+  const Mesh mesh{copy_points(vertices), copy_rows<std::uint32_t>(faces), {}, {}};
+  const Mesh truth{copy_points(true_vertices), copy_rows<std::uint32_t>(true_faces), {}, {}};
+  MeshScore score;
+  {
+    const nb::gil_scoped_release release;
+    score = score_mesh(mesh, truth, samples, seed, distances);
+  }
+  nb::dict out;
+  out["cd"] = score.chamfer;
+  out["ae_m"] = score.ae;
+  out["hd"] = score.hausdorff;
+  out["normal_consistency"] = score.normal_consistency;
+  nb::list f_scores;
+  for (const FScore& f : score.f_scores) {
+    nb::dict at;
+    at["distance"] = f.distance;
+    at["precision"] = f.precision;
+    at["recall"] = f.recall;
+    at["f"] = f.f;
+    f_scores.append(at);
+  }
+  out["f_scores"] = f_scores;
+  return out;
+}
+
 struct PyScene {
   Scene scene;
 };
@@ -280,6 +341,9 @@ void bind(nb::module_& m) {
   m.def("read_cloud", &read_points, nb::arg("path"), nb::arg("min_opacity"), nb::arg("box").none(), nb::arg("levels"));
   m.def("write_cloud", &write_points, nb::arg("path"), nb::arg("source").none(), nb::arg("positions").none(), nb::arg("normals").none(),
         nb::arg("colors").none(), nb::arg("confidence").none(), nb::arg("ascii"), nb::arg("cloud_compare_names"));
+  m.def("score_normals", &score_directions, nb::arg("normals"), nb::arg("truth"));
+  m.def("score_mesh", &score_faces, nb::arg("vertices"), nb::arg("faces"), nb::arg("true_vertices"), nb::arg("true_faces"),
+        nb::arg("samples"), nb::arg("seed"), nb::arg("distances"));
   m.def("read_mesh", &read_faces, nb::arg("path"));
   m.def("write_mesh", &write_faces, nb::arg("path"), nb::arg("vertices"), nb::arg("faces"), nb::arg("colors").none(),
         nb::arg("confidence").none(), nb::arg("ascii"));

@@ -2,9 +2,11 @@
 
 #include "cloud/spacing.h"
 #include "median.h"
+#include "mesh/held_points.h"
 #include "sum/fast_sum.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace g3r {
 namespace {
@@ -19,7 +21,13 @@ constexpr double kMost = 1.3;       // a square grid has 1.27; the w of open sur
 std::vector<Vec3> area_vectors(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton,
                                const std::vector<std::uint32_t>& near, const std::vector<Vec3>& normals, const OpenSurfaces& sheets,
                                const std::atomic<bool>* cancel) {
-  const std::vector<double> spacing = smoothed_spacing(local_spacing(points, near), near);
+  const std::vector<double> local = local_spacing(points, near);
+  std::vector<double> spacing = smoothed_spacing(local, near);
+  const double typical = typical_spacing(local);
+  const std::vector<std::uint8_t> held = mesh::held_points(points, normals, cancel);
+  for (std::size_t i = 0; i < spacing.size(); ++i) {
+    if (held[i] == 0) spacing[i] = std::min(spacing[i], typical);  // the emptiness around a stray is not its surface
+  }
   std::vector<Vec3> eta = normals;
   std::vector<double> widths = spacing;
   for (std::size_t i = 0; i < eta.size(); ++i) {
@@ -36,7 +44,7 @@ std::vector<Vec3> area_vectors(const std::vector<Vec3>& points, const std::vecto
     if (closed.empty()) return eta;
     winding = std::move(closed);
   }
-  const double level = median(std::move(winding));
+  const double level = std::abs(median(std::move(winding)));  // normals may face into the solid, as those of a room do
   const double factor = level > 0 ? std::clamp(0.5 / level, kLeast, kMost) : kMost;
   for (Vec3& v : eta) {
     for (double& c : v) c *= factor;

@@ -8,6 +8,7 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -58,7 +59,25 @@ g3r::Length read_length(double value, g3r_unit unit, const char* name) {
   return {kUnits[unit], value};
 }
 
-Request read_options(const g3r_options* given) {
+std::vector<g3r::Vec3> read_places(const double* from, size_t count, const char* name) {
+  if (from == nullptr && count > 0) throw g3r::InvalidInput(std::string(name) + " must not be NULL");
+  std::vector<g3r::Vec3> places(count);
+  for (size_t i = 0; i < count; ++i) places[i] = {from[3 * i], from[3 * i + 1], from[3 * i + 2]};
+  return places;
+}
+
+g3r::Hints read_hints(const g3r_options& o, size_t points) {
+  g3r::Hints hints;
+  if (o.up != nullptr) hints.up = g3r::Vec3{o.up[0], o.up[1], o.up[2]};
+  hints.sensors = read_places(o.sensors, o.sensor_count, "sensors");
+  if (o.sensor_of_point != nullptr) hints.sensor_of_point.assign(o.sensor_of_point, o.sensor_of_point + points);
+  hints.inside = read_places(o.inside, o.inside_count, "inside");
+  hints.seen_from_inside = o.seen_from_inside != 0;
+  hints.flip = o.flip != 0;
+  return hints;
+}
+
+Request read_options(const g3r_options* given, size_t points) {
   g3r_options o;
   g3r_options_init(&o, sizeof o);
   if (given != nullptr) {
@@ -73,6 +92,7 @@ Request read_options(const g3r_options* given) {
   request.options.threads = o.threads;
   request.options.seed = o.seed;
   request.options.max_memory = o.max_memory;
+  request.options.hints = read_hints(o, points);
   request.mesh_options.depth = o.depth;
   if (o.progress != nullptr) {
     request.monitor.progress = [o](std::string_view stage, double fraction) {
@@ -110,7 +130,7 @@ void g3r_options_init(g3r_options* options, size_t size) {
 g3r_status g3r_orient(const double* points, size_t count, const g3r_options* options, double* normals, double* areas, float* confidence) {
   return guarded([&] {
     if ((points == nullptr && count > 0) || normals == nullptr) throw g3r::InvalidInput("points and normals must not be NULL");
-    const Request request = read_options(options);
+    const Request request = read_options(options, count);
     give(g3r::orient(g3r::PointsView(points, count), request.options, request.monitor), normals, areas, confidence);
   });
 }
@@ -119,7 +139,7 @@ g3r_status g3r_reconstruct(const double* points, size_t count, const g3r_options
                            float* confidence, g3r_mesh** mesh) {
   return guarded([&] {
     if ((points == nullptr && count > 0) || mesh == nullptr) throw g3r::InvalidInput("points and mesh must not be NULL");
-    const Request request = read_options(options);
+    const Request request = read_options(options, count);
     g3r::Reconstruction result = g3r::reconstruct(g3r::PointsView(points, count), request.options, request.mesh_options, request.monitor);
     auto owned = std::make_unique<OwnedMesh>(OwnedMesh{{}, std::move(result.mesh)});
     owned->view = {owned->mesh.vertices.size(), owned->mesh.triangles.size(),

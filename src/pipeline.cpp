@@ -6,8 +6,10 @@
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
 #include "orient/coarse_to_fine.h"
+#include "orient/hints.h"
 #include "orient/refine.h"
 #include "problem.h"
+#include "settle_by_hints.h"
 #include "solution.h"
 #include "stages.h"
 #include "sum/fast_sum.h"
@@ -20,7 +22,7 @@
 namespace g3r {
 namespace {
 
-constexpr double kManyUnsure = 0.2;  // share of unsure points above which the orientation is called inconsistent
+constexpr double kSidesAgree = 0.45;  // mean jump defect of an open surface up to which its sides are called consistent; 1: none agree
 // Another noise than the estimate.
 constexpr std::size_t kFewPoints = 2500;   // up to which what looks like noise is often shape
 constexpr std::size_t kManyPoints = 8000;  // from which what looks like shape is sometimes noise
@@ -163,9 +165,8 @@ void add_sheets(const OpenSurfaces& sheets, std::vector<float>& confidence, Stat
   const auto all = static_cast<double>(confidence.size());
   stats.open_share = static_cast<double>(open) / all;
   stats.undecided_share = static_cast<double>(undecided) / all;
-  std::string warning = "open: " + percent(stats.open_share) + " of the points lie on sheets without an inside; their sides are consistent";
-  if (undecided > 0) warning += ", but which one is the outside is a choice: the one that faces up (+z)";
-  stats.warnings.push_back(warning);
+  stats.warnings.push_back("open: " + percent(stats.open_share) + " of the points lie on surfaces without an inside; " +
+                           (sheets.worst_defect < kSidesAgree ? "their sides are consistent" : "their sides do not agree everywhere"));
 }
 
 void judge(const CanonicalCloud& cloud, const std::vector<float>& confidence, Stats& stats) {
@@ -276,13 +277,15 @@ Attempt orient_with_best_noise(const PointsView& points, const Options& options,
 }
 
 Orientation orient_in_arena(const PointsView& points, const Options& options, Stages& stages) {
+  require_sound(options.hints, points.count);
   Attempt best = orient_with_best_noise(points, options, stages);
   auto& [solution, confidence, near] = best.oriented;
   Orientation out;
   out.stats = std::move(best.stats);
-  warn_of_volume(best.problem, out.stats);
   fit_noisy_surface(best.problem, stages, solution);
   settle_areas(best.problem, near, stages, solution);
+  settle_by_hints(best.problem, options, near, solution, confidence, out.stats, stages.cancel());
+  warn_of_volume(best.problem, out.stats);
   add_outliers(best.problem, stages, solution, confidence);
   hand_out(best.problem.cloud, solution.eta, solution.refinement.normals, confidence, out);
   stages.finish(out.stats);

@@ -1,6 +1,8 @@
 // From points, or oriented points, to a mesh.
 #include "cpu/parallel.h"
+#include "median.h"
 #include "mesh/field_mesher.h"
+#include "mesh/held_points.h"
 #include "mesh/mesh_finish.h"
 #include "mesh/screened_poisson.h"
 #include "mesh/smooth_spacing.h"
@@ -8,6 +10,7 @@
 #include "oriented_cloud.h"
 #include "stages.h"
 #include "sum/fast_sum.h"
+#include "vector.h"
 
 #include <g3r/g3r.h>
 
@@ -16,6 +19,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace g3r {
 namespace {
@@ -25,6 +29,8 @@ constexpr double kFieldAccuracy = 1e-2;  // of its sums; only its side of a leve
 constexpr double kFarSpacings = 4;       // surface farther than this from every point is a guess;
 constexpr double kFarShare = 0.05;       // more of it is worth a warning
 constexpr double kWidest = 8e5;          // spacings; the octree has at most 2^20 cells of 0.8 spacings
+constexpr double kInsideOut = -0.25;     // winding number at the points; 1/2 if they face out of a solid, -1/2 into it, 0 on open sheets;
+constexpr std::size_t kProbes = 500;     // points asked for it
 constexpr int kPaperDepth = 10;
 constexpr double kLargestCoordinate = 1e50;  // areas, volumes and their products of a mesh stay finite,
 constexpr double kLeastExtent = 1e-140;      // and greater than 0
@@ -79,16 +85,59 @@ Mesh mesh_with_poisson(const OrientedCloud& oriented, const std::vector<Vec3>& n
   return screened_poisson(oriented.cloud.points, normals, chosen);
 }
 
-// Meshes in normalised units, so that georeferenced coordinates lose nothing, and maps back.
-// `far_share` (may be null): share of the surface farther than kFarSpacings from every point.
-Mesh make_mesh(const OrientedCloud& oriented, const MeshOptions& options, const Monitor& monitor, std::size_t max_memory = 0,
-               double* far_share = nullptr) {
-  std::vector<Vec3> directions(oriented.eta.size());
+// Whether the points face into the solid that they surround, as those of a room do that is seen from inside.
+bool is_inside_out(const OrientedCloud& oriented, const WindingSampler& field) {
+  const std::vector<Vec3>& points = oriented.cloud.points;
+  std::vector<Vec3> probes;
+  for (std::size_t i = 0; i < points.size(); i += (points.size() + kProbes - 1) / kProbes) probes.push_back(points[i]);
+  std::vector<double> winding;
+  field.sample(probes, winding, nullptr);
+  return median(std::move(winding)) < kInsideOut;
+}
+
+std::vector<Vec3> directions_of(const std::vector<Vec3>& eta) {
+  std::vector<Vec3> directions(eta.size());
   for (std::size_t i = 0; i < directions.size(); ++i) {
-    const Vec3& e = oriented.eta[i];
-    const double size = std::hypot(e[0], e[1], e[2]);
-    directions[i] = size > 0 ? Vec3{e[0] / size, e[1] / size, e[2] / size} : Vec3{0, 0, 1};
+    directions[i] = eta[i] == Vec3{0, 0, 0} ? Vec3{0, 0, 1} : vector::normalised(eta[i]);
   }
+  return directions;
+}
+
+// Leaves out the points that no surface goes through. The numbers of the others do not lead to the input any more.
+void drop_strays(OrientedCloud& oriented, std::vector<Vec3>& strays, const std::atomic<bool>* cancel) {
+  CanonicalCloud& cloud = oriented.cloud;
+  const std::vector<std::uint8_t> held = mesh::held_points(cloud.points, directions_of(oriented.eta), cancel);
+  std::size_t to = 0;
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    if (held[i] == 0) {
+      strays.push_back(cloud.points[i]);
+      continue;
+    }
+    cloud.points[to] = cloud.points[i];
+    cloud.morton[to] = cloud.morton[i];
+    oriented.eta[to++] = oriented.eta[i];
+  }
+  cloud.points.resize(to);
+  cloud.morton.resize(to);
+  oriented.eta.resize(to);
+}
+
+void turn(std::vector<Vec3>& vectors) {
+  for (Vec3& v : vectors) v = {-v[0], -v[1], -v[2]};
+}
+
+// Meshes in normalised units, so that georeferenced coordinates lose nothing, and maps back. What is inside out is meshed as the solid that
+// it surrounds, and the triangles are turned.
+// `far_share` (may be null): share of the surface farther than kFarSpacings from every point.
+Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor& monitor, mesh::LeftOut& left_out,
+               std::size_t max_memory = 0, double* far_share = nullptr) {
+  for (Vec3& p : left_out.strays) p = oriented.cloud.frame.to_unit(p);
+  if (!options.keep_all) drop_strays(oriented, left_out.strays, monitor.cancel);
+  left_out.dropped.points = left_out.strays.size();
+  const WindingSampler field(oriented, monitor.cancel);
+  const bool inside_out = is_inside_out(oriented, field);
+  if (inside_out) turn(oriented.eta);
+  const std::vector<Vec3> directions = directions_of(oriented.eta);
   const Frame& frame = oriented.cloud.frame;
   MeshOptions normalised = options;
   normalised.trim_distance *= frame.scale;
@@ -100,14 +149,27 @@ Mesh make_mesh(const OrientedCloud& oriented, const MeshOptions& options, const 
     normalised.min_component = 0;  // specks of screened Poisson are part of its result
     mesh::finish_mesh(mesh, oriented.cloud.points, mesh::smooth_spacing(oriented.cloud.points), 0, normalised);
   } else {
-    mesh = field_mesh(oriented.cloud.points, directions, WindingSampler(oriented, monitor.cancel), normalised, monitor, max_memory);
+    mesh = field_mesh(oriented.cloud.points, directions, field, normalised, monitor, max_memory, &left_out);
   }
+  left_out.dropped.area /= frame.scale * frame.scale;
   if (mesh.triangles.empty()) throw InvalidInput("no surface found: the oriented points do not enclose a volume");
+  if (inside_out) {
+    for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+  }
   if (far_share != nullptr) *far_share = mesh::far_share(mesh, oriented.cloud.points, kFarSpacings);
   for (Vec3& v : mesh.vertices) {
     for (std::size_t a = 0; a < 3; ++a) v[a] = v[a] / frame.scale + frame.centre[a];
   }
   return mesh;
+}
+
+// The points that the solve left out: they have a place, but no area.
+std::vector<Vec3> outliers_of(const PointsView& points, const Orientation& orientation) {
+  std::vector<Vec3> outliers;
+  for (std::size_t i = 0; i < points.count; ++i) {
+    if (orientation.areas[i] == 0 && vector::is_finite(points[i])) outliers.push_back(points[i]);
+  }
+  return outliers;
 }
 
 MeshOptions choose(const MeshOptions& given, const Options& options) {
@@ -137,7 +199,8 @@ Stats plan(const PointsView& points, const Options& options, const MeshOptions& 
   return stats;
 }
 
-Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const MeshOptions& options, const Monitor& monitor) {
+Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const MeshOptions& options, const Monitor& monitor,
+                   Dropped* dropped) {
   if (points.count != normals.count) {
     throw InvalidInput(std::to_string(points.count) + " points but " + std::to_string(normals.count) + " normals");
   }
@@ -154,10 +217,13 @@ Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const Me
     directions.push_back({n[0] / size, n[1] / size, n[2] / size});
   }
   return parallel::with_threads(options.threads, [&] {
-    const OrientedCloud oriented = oriented_cloud(kept, directions);
+    OrientedCloud oriented = oriented_cloud(kept, directions);
     std::vector<Vec3>().swap(kept);  // their memory is wanted
     std::vector<Vec3>().swap(directions);
-    return make_mesh(oriented, options, monitor);
+    mesh::LeftOut left_out;
+    Mesh mesh = make_mesh(std::move(oriented), options, monitor, left_out);
+    if (dropped != nullptr) *dropped = left_out.dropped;
+    return mesh;
   });
 }
 
@@ -173,9 +239,11 @@ Reconstruction reconstruct(const PointsView& points, const Options& options, con
   stages.begin("mesh");
   double far = 0;
   parallel::with_threads(options.threads, [&] {
-    const OrientedCloud oriented = oriented_cloud(points, out.orientation.normals, out.orientation.areas);
-    out.mesh = make_mesh(oriented, chosen, monitor, options.max_memory, &far);
+    OrientedCloud oriented = oriented_cloud(points, out.orientation.normals, out.orientation.areas);
+    mesh::LeftOut left_out{outliers_of(points, out.orientation), {}};
+    out.mesh = make_mesh(std::move(oriented), chosen, monitor, left_out, options.max_memory, &far);
     out.check = check_mesh(out.mesh);
+    out.check.dropped = left_out.dropped;
     carry_attributes(out.mesh, points, {}, out.orientation.confidence);
   });
   if (far > kFarShare) {

@@ -54,6 +54,7 @@ Json mesh_json(const MeshCheck& check) {
           {"genus", has_genus ? Json(check.genus) : Json(nullptr)},
           {"volume", number(check.volume)},
           {"area", number(check.area)},
+          {"dropped", {{"points", check.dropped.points}, {"components", check.dropped.components}, {"area", number(check.dropped.area)}}},
           {"self_intersections", check.self_intersections ? Json(*check.self_intersections) : Json(nullptr)},
           {"min_angle", number(check.min_angle)},
           {"median_min_angle", number(check.median_min_angle)},
@@ -91,6 +92,11 @@ std::string report_json(const Stats& stats, const MeshCheck* mesh) {
   report["consistent"] = stats.consistent;
   report["open_share"] = number(stats.open_share);
   report["undecided_share"] = number(stats.undecided_share);
+  report["hints"] = {{"given", stats.hints.given},
+                     {"settled_share", number(stats.hints.settled_share)},
+                     {"turned_share", number(stats.hints.turned_share)},
+                     {"agreement", number(stats.hints.agreement)},
+                     {"contradicted_share", number(stats.hints.contradicted_share)}};
   report["seconds"] = seconds_json(stats);
   report["planned_memory_bytes"] = stats.planned_memory_bytes;
   report["peak_memory_bytes"] = stats.peak_memory_bytes;

@@ -36,12 +36,17 @@ struct TwoSpheres {
   }
 };
 
-TEST(MeshFinish, ComponentsBelowTheAreaAreDropped) {
+TEST(MeshFinish, ComponentsAreFoundAndRemoved) {
   TwoSpheres two;
   EXPECT_EQ(topology(two.mesh).components, 2U);
   Mesh one = two.mesh;
-  mesh::remove_components(
-      one, 20, [](const Vec3&) { return 0.1; }, 0);  // the small sphere has area 1.13
+  const mesh::Components components = mesh::find_components(one);
+  ASSERT_EQ(components.count, 2U);
+  std::vector<double> area(2, 0.0);
+  for (std::size_t t = 0; t < one.triangles.size(); ++t) area[components.of[t]] += mesh::area_of(one, one.triangles[t]);
+  EXPECT_NEAR(std::min(area[0], area[1]), 1.13, 0.03);
+  mesh::remove_components(one, components,
+                          {area[0] > 2 ? std::uint8_t{1} : std::uint8_t{0}, area[1] > 2 ? std::uint8_t{1} : std::uint8_t{0}});
   EXPECT_EQ(topology(one).components, 1U);
   EXPECT_EQ(topology(one).bad_edges, 0U);
   EXPECT_NEAR(topology(one).volume, 4.0 / 3.0 * M_PI, 0.02);
@@ -105,6 +110,56 @@ TEST(MeshFinish, TrimmingOpensTheMeshWherePointsAreMissing) {
   EXPECT_TRUE(check.manifold);
   EXPECT_GT(check.boundary_edges, 0U);
   EXPECT_LT(mesh::far_share(two.mesh, half, 4), 0.01);
+}
+
+// At a rim trimmed surface ends with its points, and no place of it is farther from them than four spacings of the cloud, even if a sparse
+// point far away has a larger spacing of its own.
+TEST(MeshFinish, TrimmedSurfaceEndsWithItsPoints) {
+  TwoSpheres two;
+  std::vector<Vec3> half;
+  for (const Vec3& p : two.sample.points) {
+    if (p[2] > 0 && norm(p) < 1.1) half.push_back(p);
+  }
+  std::vector<double> spacing = mesh::smooth_spacing(half);
+  const double h = median(spacing);
+  half.push_back({2, 0, 0.3});  // alone on the small sphere
+  spacing.push_back(20 * h);
+  MeshOptions options;
+  options.trim = MeshOptions::Trim::kAuto;
+  options.keep_largest = 1;
+  mesh::finish_mesh(two.mesh, half, spacing, 0, options);
+  EXPECT_EQ(topology(two.mesh).components, 1U);
+  for (const auto& t : two.mesh.triangles) {
+    double z = 0;
+    for (const std::uint32_t v : t) z += two.mesh.vertices[v][2] / 3;
+    EXPECT_GT(z, -2 * h);  // the points end at 0, a gap below it at the most
+  }
+  EXPECT_NEAR(check_mesh(two.mesh).area, 2 * M_PI, 0.06 * 2 * M_PI);
+}
+
+// The largest component is the one that points hold, not the one that fills emptiness.
+TEST(MeshFinish, LargestIsWhatPointsHold) {
+  TwoSpheres two;
+  const std::vector<Vec3> small(two.sample.points.begin() + 2000, two.sample.points.end());
+  MeshOptions options;
+  options.keep_largest = 1;
+  mesh::finish_mesh(two.mesh, small, mesh::smooth_spacing(small), 0, options);
+  EXPECT_NEAR(check_mesh(two.mesh).area, 1.13, 0.1);
+}
+
+// A part that fewer points hold than strays lie beside is chance; one with few strays beside it is a part.
+TEST(MeshFinish, PartsAmongStraysAreChance) {
+  for (const std::size_t strays : {std::size_t{100}, std::size_t{300}}) {
+    TwoSpheres two;
+    mesh::LeftOut left_out;
+    for (std::size_t i = 0; i < strays; ++i) {
+      const Vec3& p = two.sample.points[2000 + i % 180];
+      left_out.strays.push_back({p[0], p[1], p[2] + 0.02 + 1e-4 * static_cast<double>(i)});
+    }
+    mesh::finish_mesh(two.mesh, two.sample.points, mesh::smooth_spacing(two.sample.points), 0, {}, left_out);
+    EXPECT_EQ(left_out.dropped.components, strays == 300 ? 1U : 0U);
+    EXPECT_NEAR(left_out.dropped.area, strays == 300 ? 1.13 : 0, 0.1);
+  }
 }
 
 TEST(MeshFinish, TrimmingClosedDataChangesNothing) {

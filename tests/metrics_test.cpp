@@ -39,6 +39,21 @@ TEST(ScoreNormals, ZeroNormalCountsAsWrong) {
   EXPECT_EQ(score.pco, 0);
 }
 
+// Angles of 0, 4, 8, 172 and 90 degrees: an inverted normal is on the line of the true one.
+TEST(ScoreNormals, AnglesInDegrees) {
+  std::vector<Vec3> normals;
+  for (const double degrees : {0.0, 4.0, 8.0, 172.0}) {
+    const double a = degrees * M_PI / 180;
+    normals.push_back({3 * std::cos(a), 3 * std::sin(a), 0});
+  }
+  normals.push_back({0, 0, 0});
+  const NormalScore score = score_normals(normals, std::vector<Vec3>(5, Vec3{1, 0, 0}));
+  EXPECT_NEAR(score.rmse, std::sqrt((16 + 64 + 172 * 172 + 8100) / 5.0), 1e-9);
+  EXPECT_NEAR(score.rmse_unoriented, std::sqrt((16 + 64 + 64 + 8100) / 5.0), 1e-9);
+  EXPECT_EQ(score.pgp5, 0.4);
+  EXPECT_EQ(score.pgp10, 0.8);
+}
+
 TEST(ScoreNormals, BadInputIsRefused) {
   EXPECT_THROW((void)score_normals({}, {}), InvalidInput);
   EXPECT_THROW((void)score_normals({{1, 0, 0}}, {}), InvalidInput);
@@ -221,6 +236,30 @@ TEST(TriangleTree, TrianglesWithoutAreaAreNeverTheClosest) {
 
 // ---- meshes
 
+// Spheres of radius 1 and 1.1: every sample is 0.1 from the other, so that nothing is within less and all within more.
+TEST(ScoreMesh, FScoresCountWhatIsWithinADistance) {
+  const MeshScore score = score_mesh(shapes::sphere(1.1, 200), shapes::sphere(1, 200), 5000, 1, {0.09, 0.11});
+  ASSERT_EQ(score.f_scores.size(), 2U);
+  EXPECT_EQ(score.f_scores[0].f, 0);
+  EXPECT_EQ(score.f_scores[1].f, 1);
+  EXPECT_EQ(score.f_scores[1].distance, 0.11);
+}
+
+// One of two spheres far apart: what is there is right, half is missing.
+TEST(ScoreMesh, PrecisionIsOfTheMeshAndRecallOfTheTruth) {
+  const Mesh one = shapes::sphere(1, 60);
+  const FScore score = score_mesh(one, shapes::united(one, shapes::moved(one, {5, 0, 0})), 20000, 1, {0.01}).f_scores[0];
+  EXPECT_EQ(score.precision, 1);
+  EXPECT_NEAR(score.recall, 0.5, 5 * 0.5 / std::sqrt(20000.0));  // five standard deviations
+  EXPECT_NEAR(score.f, 2 * score.recall / (1 + score.recall), kRounding);
+}
+
+// Normals that point the other way are consistent still.
+TEST(ScoreMesh, NormalConsistencyHasNoSides) {
+  const Mesh mesh = shapes::cube();
+  EXPECT_NEAR(score_mesh(shapes::inverted(mesh), mesh, 2000, 1).normal_consistency, 1, 1e-12);
+}
+
 TEST(ScoreMesh, MeshAgainstItselfHasNoError) {
   const Mesh mesh = shapes::torus(1, 0.3, 40, 20);
   const MeshScore score = score_mesh(mesh, mesh, 5000, 1);
@@ -263,6 +302,8 @@ TEST(ScoreMesh, MissingPartShowsInOneDirectionOnly) {
 
 TEST(ScoreMesh, BadInputIsRefused) {
   EXPECT_THROW((void)score_mesh(shapes::cube(), shapes::cube(), 0), InvalidInput);
+  EXPECT_THROW((void)score_mesh(shapes::cube(), shapes::cube(), 10, 0, {0.0}), InvalidInput);
+  EXPECT_THROW((void)score_mesh(shapes::cube(), shapes::cube(), 10, 0, {kNan}), InvalidInput);
   EXPECT_THROW((void)score_mesh({}, shapes::cube()), InvalidInput);
   EXPECT_THROW((void)score_mesh(shapes::cube(), {}), InvalidInput);
 }

@@ -126,7 +126,7 @@ def class_text(node):
 
 
 def header_texts():
-    names = ["g3r", "points", "mesh", "io", "metrics", "view", "error", "eigen"]
+    names = ["g3r", "hints", "points", "mesh", "io", "metrics", "view", "error", "eigen"]
     text = "".join(header_text(f"g3r/{name}.h") for name in names)
     return text + f"\n## g3r/g3r_c.h\n\n```c\n{(ROOT / 'include/g3r/g3r_c.h').read_text().rstrip()}\n```\n"
 

@@ -9,6 +9,7 @@
 
 #include <g3r/error.h>
 #include <g3r/export.h>
+#include <g3r/hints.h>
 #include <g3r/mesh.h>
 #include <g3r/points.h>
 
@@ -90,6 +91,7 @@ struct Options {
   std::uint64_t seed = 0;         ///< reserved for steps that sample; the present method draws no random number
   std::size_t max_memory =
       0;  ///< bytes; refuse before the solve when the plan exceeds it, or before the mesh when that turns out to. 0: no limit
+  Hints hints;
 };
 
 /// One step of the iterative solver.
@@ -120,9 +122,10 @@ struct Stats {
   std::vector<Iteration> iterations;
   double tolerance = 0;
   bool converged = false;
-  bool consistent = true;       ///< false: more than a fifth of the points could face either way: there may be no clear inside
-  double open_share = 0;        ///< share of the points, 0..1, on open sheets, whose sides follow from neighbour to neighbour
-  double undecided_share = 0;   ///< of all points, those on sheets either side of which could be the outside
+  bool consistent = true;      ///< false: more than a fifth of the points could face either way: there may be no clear inside
+  double open_share = 0;       ///< share of the points, 0..1, on open sheets, whose sides follow from neighbour to neighbour
+  double undecided_share = 0;  ///< of all points, those on sheets either side of which could be the outside, after the hints
+  HintStats hints;
   double condition_number = 0;  ///< 0 unless asked for
   double confidence_mean = 0;
   double confidence_below_half = 0;                     ///< share of the points, 0..1
@@ -162,15 +165,19 @@ struct MeshOptions {
   /// Whether surface far from every point is cut away, which leaves an open boundary.
   enum class Trim {
     kOff,      ///< closed
-    kAuto,     ///< farther than 4 local spacings
+    kAuto,     ///< farther than 4 spacings of the cloud, or of the place where that is denser; 1.5 where it is so sparse that this is more
     kDistance  ///< farther than trim_distance
   };
   Trim trim = Trim::kOff;
   double trim_distance = 0;      ///< input units, > 0 with Trim::kDistance
-  std::size_t keep_largest = 0;  ///< keep only this many components, largest first; 0: all
+  std::size_t keep_largest = 0;  ///< keep only this many components, those with most area near points first, after trimming; 0: all
   /// Components of less area than this many points stand for are dropped, 0: none; the largest always stays. Empty: 8, and where points
   /// scatter by s spacings 8 (1 + 4 s^2).
   std::optional<double> min_component;
+  /// Keep surface without support: points that no surface goes through (strays, such as outliers that the solve did not find) shape the
+  /// mesh too, and components stay however few points hold them, unless `min_component` says otherwise. Otherwise strays are left out, and
+  /// with them components that are no larger than clusters of so many strays are by chance.
+  bool keep_all = false;
   std::size_t faces = 0;  ///< simplify to about this many triangles; 0: off
   /// Standard deviation of the points from their surface, for the field mesher; 0: clean. Automatic: it makes its own estimate. Of
   /// mesh_oriented(); reconstruct() takes Options::noise.
@@ -192,9 +199,10 @@ struct Reconstruction {
 
 /// Meshes points that already have outward normals: N points and N normals (any length but zero).
 /// Points with a non-finite coordinate or a zero normal are left out.
-/// The field mesher takes the areas from the spacing of the points. Throws InvalidInput, Cancelled, Unavailable, std::bad_alloc.
+/// The field mesher takes the areas from the spacing of the points. `dropped` (may be null): what was left out for want of support.
+/// Throws InvalidInput, Cancelled, Unavailable, std::bad_alloc.
 [[nodiscard]] Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const MeshOptions& options = {},
-                                 const Monitor& monitor = {});
+                                 const Monitor& monitor = {}, Dropped* dropped = nullptr);
 
 /// Gives every vertex the mean colour and confidence of the 4 points nearest to it, weighed by 1 / distance^2, replacing what it had.
 /// N points, and N colours and confidences (either may be empty); points that are not finite take no part. O(V log N).

@@ -20,6 +20,13 @@ struct Mesh {
   std::vector<float> confidence;                        ///< empty, or V values in [0, 1]
 };
 
+/// What a mesher left out for want of support, see MeshOptions::keep_all.
+struct Dropped {
+  std::size_t points = 0;      ///< outliers and strays: no surface goes through them
+  std::size_t components = 0;  ///< that too few points hold
+  double area = 0;             ///< of these components
+};
+
 /// Topology, size and shape of a mesh, see check_mesh().
 struct MeshCheck {
   std::size_t vertices = 0;  ///< vertices that a triangle uses
@@ -36,6 +43,7 @@ struct MeshCheck {
   double min_angle = 0;         ///< degrees, the smallest of all triangles; 0 if one has no area
   double median_min_angle = 0;  ///< degrees, median over the triangles of their smallest angle
   double max_aspect = 0;  ///< largest ratio of longest side to the height on it, 2/sqrt(3) for equilateral ones; infinite without area
+  Dropped dropped;        ///< by the mesher; check_mesh() leaves it empty
   std::optional<std::size_t> self_intersections;  ///< count_self_intersections(), where that was asked for; check_mesh() leaves it empty
 };
 

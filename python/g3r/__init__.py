@@ -10,9 +10,11 @@ from ._api import Field, Result, mesh_oriented, orient, reconstruct, run
 from ._errors import Cancelled, Error, FileError, FileMissingError, InputError, UnavailableError
 from ._files import Cloud, read, read_mesh, write
 from ._g3r import __version__
+from ._metrics import score_mesh, score_normals
 from ._show import View, show
 
 __all__ = [
     "Cancelled", "Cloud", "Error", "Field", "FileError", "FileMissingError", "InputError", "Result", "UnavailableError", "View",
-    "__version__", "mesh_oriented", "orient", "read", "read_mesh", "reconstruct", "run", "show", "write",
+    "__version__", "mesh_oriented", "orient", "read", "read_mesh", "reconstruct", "run",
+    "score_mesh", "score_normals", "show", "write",
 ]

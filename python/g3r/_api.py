@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Callable, Dict, Optional, Set, Tuple, Uni
 from . import _g3r
 from ._arrays import as_colors, as_points, member
 from ._errors import InputError
+from ._hints import HINTS, checked_numbers, take_hints
 
 if TYPE_CHECKING:
     from ._types import Bytes, Floats, Indices, Points, Singles
@@ -37,14 +38,14 @@ def _length(name: str, value: Union[str, float], least: str) -> Dict[str, Any]:
 
 
 _METHOD_OPTIONS = {"noise", "method", "wnnc_widths", "harmonics", "solver", "schedule", "tolerance", "accuracy", "max_memory"}
-_MESH_OPTIONS = {"mesher", "keep_largest", "min_component", "faces"}
+_MESH_OPTIONS = {"mesher", "keep_largest", "min_component", "faces", "keep_all"}
 
 
 def _options(epsilon: Union[str, float], degree: Optional[int], preset: str, threads: int, seed: int, known: Set[str],
              more: Dict[str, Any]) -> Dict[str, Any]:
     unknown = set(more) - known
     if unknown:
-        raise TypeError(f"unknown option {sorted(unknown)[0]!r}; there are also {', '.join(sorted(known))}")
+        raise TypeError(f"unknown option {sorted(unknown)[0]!r}; there are also {', '.join(sorted(known | HINTS))}")
     for name in ("keep_largest", "faces", "max_memory"):
         if name in more and (int(more[name]) != more[name] or more[name] < 0):
             raise InputError(f"{name} must be an integer, 0 or more, not {more[name]!r}")
@@ -147,8 +148,11 @@ def orient(points: Any, *, epsilon: Union[str, float] = "auto", degree: Optional
 
     Raises InputError (fewer than 4 distinct finite points, all on a line, an option out of range), Cancelled, MemoryError.
     """
+    points, hints = take_hints(points, more)
     options = _options(epsilon, degree, preset, threads, seed, _METHOD_OPTIONS, more)
-    return _g3r.orient(as_points(points), options, progress)[0]
+    array = as_points(points)
+    options.update(checked_numbers(hints, len(array)))
+    return _g3r.orient(array, options, progress)[0]
 
 
 @overload
@@ -180,16 +184,26 @@ def run(points: Any, *, colors: Any = None, epsilon: Union[str, float] = "auto",
     colors: (n, 3), carried to the vertices.
     threads: 0 for all cores; the result does not depend on it.
     progress: called as progress(stage, fraction) on this thread; returning False cancels.
-    faces: simplify the mesh to about this many triangles. keep_largest: keep only so many components.
+    faces: simplify the mesh to about this many triangles. keep_largest: keep only so many components. keep_all: True keeps surface that too
+        few points hold; stats["mesh"]["dropped"] says what was left out.
     noise: standard deviation of the points from their surface, in the units of epsilon; 0: clean. Estimated unless given.
+    Hints, what you know and the points cannot say; they settle the sides of open sheets, and stats["hints"] says what they did:
+    up: the direction that open sheets face, three numbers or an axis such as "+z" or "-y".
+    sensor: where the scanner stood, (3,) or (k, 3), or "file": where the file that the points come from says it. sensor_of_point: (n,) the
+        number of the sensor of each point, negative for none; without it a point faces the nearest.
+    inside: a point inside the solid, (3,), or more of them, (k, 3).
+    seen_from_inside: True for rooms, tunnels, streets: normals face the side the scanner was on.
+    flip: True turns every normal, after all other hints.
     Further options: mesher, min_component, method, wnnc_widths, harmonics, solver, schedule, tolerance, accuracy, max_memory, as in C++.
 
     The interpreter lock is released; Ctrl-C works. Raises InputError, UnavailableError, Cancelled, MemoryError.
     """
+    points, hints = take_hints(points, more)
     options = _options(epsilon, degree, preset, threads, seed, _METHOD_OPTIONS | _MESH_OPTIONS, more)
     options.update(_depth(depth))
     options.update(_trim(trim))
     array = as_points(points)
+    options.update(checked_numbers(hints, len(array)))
     if colors is not None:
         colors = as_colors(colors, len(array))
     if not mesh:

@@ -79,7 +79,7 @@ def test_reconstruct_gives_a_mesh_and_colors(sphere):
 
 def test_mesh_options_are_taken(sphere, result):
     assert len(g3r.run(sphere, faces=200).faces) < len(result.faces)
-    for options in ({"trim": "auto"}, {"trim": 0.5}, {"keep_largest": 1}, {"min_component": 0}, {"depth": 5}, {"mesher": "field"}):
+    for options in ({"trim": "auto"}, {"trim": 0.5}, {"keep_largest": 1}, {"min_component": 0}, {"keep_all": True}, {"depth": 5}, {"mesher": "field"}):
         assert len(g3r.run(sphere, **options).faces) > 0
 
 

@@ -389,7 +389,7 @@ std::size_t field_mesh_memory(std::size_t points, double spacing, double longest
 }
 
 Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const FieldSampler& sampler, const MeshOptions& options,
-                const Monitor& monitor, std::size_t max_memory) {
+                const Monitor& monitor, std::size_t max_memory, mesh::LeftOut* left_out) {
   if (points.size() != normals.size()) throw InvalidInput("points and normals differ in number");
   if (points.size() < 4) throw InvalidInput("a mesh needs at least 4 points");
   if (options.depth != 0 && (options.depth < 4 || options.depth > 12)) throw InvalidInput("mesh depth must be 4 to 12");
@@ -401,7 +401,9 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
   prepared.neighbours.reset();
   std::vector<std::uint32_t>().swap(prepared.near);  // not only emptied
   mesh::untangle(mesh, monitor.cancel);
-  mesh::finish_mesh(mesh, prepared.points.positions, prepared.points.spacing, prepared.noise, options);
+  mesh::LeftOut nothing;
+  mesh::finish_mesh(mesh, prepared.points.positions, prepared.points.spacing, prepared.noise, options,
+                    left_out != nullptr ? *left_out : nothing);
   report(monitor, 1);
   return mesh;
 }

@@ -13,15 +13,6 @@ namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-double area_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
-  std::array<double, 3> e{}, f{};
-  for (std::size_t a = 0; a < 3; ++a) {
-    e[a] = mesh.vertices[t[1]][a] - mesh.vertices[t[0]][a];
-    f[a] = mesh.vertices[t[2]][a] - mesh.vertices[t[0]][a];
-  }
-  return 0.5 * std::hypot(e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]);
-}
-
 template <class T>
 void gather(std::vector<T>& values, const std::vector<std::uint32_t>& from) {
   if (values.empty()) return;
@@ -107,35 +98,35 @@ void remove_triangles(Mesh& mesh, const std::vector<std::uint8_t>& keep) {
   gather(mesh.confidence, source);
 }
 
-void remove_components(Mesh& mesh, double least, const std::function<double(const Vec3&)>& per_point, std::size_t keep_largest) {
+Components find_components(const Mesh& mesh) {
   DisjointSets groups(mesh.vertices.size());
   for (const auto& t : mesh.triangles) {
     groups.join(t[0], t[1]);
     groups.join(t[0], t[2]);
   }
-  std::vector<double> area(mesh.vertices.size(), 0.0);
-  std::vector<std::uint32_t> roots;
+  Components components;
+  std::vector<std::uint32_t> number(mesh.vertices.size(), kNone);
   for (const auto& t : mesh.triangles) {
-    const auto root = static_cast<std::uint32_t>(groups.find(t[0]));
-    if (area[root] == 0) roots.push_back(root);
-    area[root] += std::max(area_of(mesh, t), std::numeric_limits<double>::min());
+    std::uint32_t& n = number[groups.find(t[0])];
+    if (n == kNone) n = static_cast<std::uint32_t>(components.count++);
+    components.of.push_back(n);
   }
-  std::stable_sort(roots.begin(), roots.end(), [&](std::uint32_t a, std::uint32_t b) { return area[a] > area[b]; });
-  std::vector<std::uint8_t> listed(mesh.vertices.size(), 0);  // roots that keep_largest leaves
-  std::vector<double> points(mesh.vertices.size(), 0.0);      // of each root, counted until they are enough
-  const std::size_t most = keep_largest == 0 ? roots.size() : std::min(keep_largest, roots.size());
-  for (std::size_t r = 0; r < most; ++r) listed[roots[r]] = 1;
-  if (!roots.empty()) points[roots[0]] = least;
-  for (const auto& t : mesh.triangles) {
-    const std::size_t root = groups.find(t[0]);
-    if (listed[root] != 0 && points[root] < least) points[root] += area_of(mesh, t) / per_point(mesh.vertices[t[0]]);
+  return components;
+}
+
+double area_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
+  std::array<double, 3> e{}, f{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    e[a] = mesh.vertices[t[1]][a] - mesh.vertices[t[0]][a];
+    f[a] = mesh.vertices[t[2]][a] - mesh.vertices[t[0]][a];
   }
-  std::vector<std::uint8_t> keep(mesh.triangles.size());
-  for (std::size_t t = 0; t < keep.size(); ++t) {
-    const std::size_t root = groups.find(mesh.triangles[t][0]);
-    keep[t] = listed[root] != 0 && points[root] >= least ? 1 : 0;
-  }
-  if (keep_triangles(mesh, keep)) drop_unused_vertices(mesh);  // no vertex keeps some of its triangles only
+  return 0.5 * std::hypot(e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]);
+}
+
+void remove_components(Mesh& mesh, const Components& components, const std::vector<std::uint8_t>& keep) {
+  std::vector<std::uint8_t> keep_triangle(mesh.triangles.size());
+  for (std::size_t t = 0; t < keep_triangle.size(); ++t) keep_triangle[t] = keep[components.of[t]];
+  if (keep_triangles(mesh, keep_triangle)) drop_unused_vertices(mesh);  // no vertex keeps some of its triangles only
 }
 
 }  // namespace g3r::mesh

@@ -3,17 +3,25 @@
 
 #include <g3r/mesh.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 namespace g3r::mesh {
 
-/// Removes the components (connected through shared vertices) that less than `least` points stand for, and all but the `keep_largest`
-/// largest by area (0: no limit; ties: the one that comes first). `per_point`: the area that one point stands for about a place. The
-/// largest component always stays. Vertices that are no longer used go too; order is kept, so a closed manifold stays one. O(V + F).
-void remove_components(Mesh& mesh, double least, const std::function<double(const Vec3&)>& per_point, std::size_t keep_largest);
+/// Components (connected through shared vertices).
+struct Components {
+  std::vector<std::uint32_t> of;  ///< F: component of every triangle, numbered in order of first use
+  std::size_t count = 0;
+};
+[[nodiscard]] Components find_components(const Mesh& mesh);
+
+[[nodiscard]] double area_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle);
+
+/// Removes the components of which keep[component] == 0, and vertices that are no longer used. Order is kept, so a closed manifold stays
+/// one. O(V + F).
+void remove_components(Mesh& mesh, const Components& components, const std::vector<std::uint8_t>& keep);
 
 /// Removes the vertices that no triangle uses; the others are numbered in order of first use. O(V + F).
 void drop_unused_vertices(Mesh& mesh);

@@ -1,8 +1,10 @@
-// CD, AE_m and HD: a mesh against a true mesh.
+// CD, AE_m, HD, normal consistency and F-scores: a mesh against a true mesh.
 #include <g3r/error.h>
 #include <g3r/metrics.h>
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 #include "cpu/parallel.h"
 #include "metrics/triangle_tree.h"
@@ -19,22 +21,32 @@ struct Side {
   double distance = 0;
   double angle_error = 0;
   double farthest = 0;
+  double consistency = 0;
+  std::vector<std::size_t> within;  // of every distance asked for
 
   Side& operator+=(const Side& other) {
     distance += other.distance;
     angle_error += other.angle_error;
     farthest = std::max(farthest, other.farthest);
+    consistency += other.consistency;
+    for (std::size_t d = 0; d < within.size(); ++d) within[d] += other.within[d];
     return *this;
   }
 };
 
-Side compare(const Samples& samples, const TriangleTree& surface) {
-  return parallel::sum_blocks(samples.points.size(), kBlock, Side{}, [&](std::size_t begin, std::size_t end) {
-    Side sum;
+Side compare(const Samples& samples, const TriangleTree& surface, const std::vector<double>& distances) {
+  Side none;
+  none.within.assign(distances.size(), 0);
+  return parallel::sum_blocks(samples.points.size(), kBlock, none, [&](std::size_t begin, std::size_t end) {
+    Side sum = none;
     for (std::size_t i = begin; i < end; ++i) {
       const TriangleTree::Closest closest = surface.closest(samples.points[i]);
-      const double angle_error = (1 - vector::dot(samples.normals[i], surface.normal(closest.triangle))) / 2;
-      sum += {closest.distance, angle_error, closest.distance};
+      const double cosine = vector::dot(samples.normals[i], surface.normal(closest.triangle));
+      sum.distance += closest.distance;
+      sum.angle_error += (1 - cosine) / 2;
+      sum.farthest = std::max(sum.farthest, closest.distance);
+      sum.consistency += std::abs(cosine);
+      for (std::size_t d = 0; d < distances.size(); ++d) sum.within[d] += closest.distance <= distances[d] ? 1 : 0;
     }
     return sum;
   });
@@ -42,15 +54,24 @@ Side compare(const Samples& samples, const TriangleTree& surface) {
 
 }  // namespace
 
-MeshScore score_mesh(const Mesh& mesh, const Mesh& truth, std::size_t samples, std::uint64_t seed) {
+MeshScore score_mesh(const Mesh& mesh, const Mesh& truth, std::size_t samples, std::uint64_t seed, const std::vector<double>& distances) {
+  for (const double d : distances) {
+    if (!(d > 0)) throw InvalidInput("the distance of an F-score must be above 0");
+  }
   if (samples == 0) throw InvalidInput("the number of samples must be positive");
-  const Side to_truth = compare(sample_mesh(mesh, samples, seed), TriangleTree(truth));
-  const Side to_mesh = compare(sample_mesh(truth, samples, seed), TriangleTree(mesh));
+  const Side to_truth = compare(sample_mesh(mesh, samples, seed), TriangleTree(truth), distances);
+  const Side to_mesh = compare(sample_mesh(truth, samples, seed), TriangleTree(mesh), distances);
   const auto count = static_cast<double>(samples);
   MeshScore score;
   score.chamfer = (to_truth.distance + to_mesh.distance) / (2 * count);
   score.ae = (to_truth.angle_error + to_mesh.angle_error) / (2 * count);
   score.hausdorff = std::max(to_truth.farthest, to_mesh.farthest);
+  score.normal_consistency = (to_truth.consistency + to_mesh.consistency) / (2 * count);
+  for (std::size_t d = 0; d < distances.size(); ++d) {
+    const double precision = static_cast<double>(to_truth.within[d]) / count;
+    const double recall = static_cast<double>(to_mesh.within[d]) / count;
+    score.f_scores.push_back({distances[d], precision, recall, precision + recall > 0 ? 2 * precision * recall / (precision + recall) : 0});
+  }
   return score;
 }
 

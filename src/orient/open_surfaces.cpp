@@ -298,6 +298,9 @@ OpenSurfaces find_open_surfaces(const std::vector<Vec3>& points, const std::vect
   OpenSurfaces found;
   found.part.assign(points.size(), OpenSurfaces::kNone);
   found.certainty.assign(points.size(), 1);
+  for (std::size_t p = 0; p < part.size(); ++p) {
+    if (is_open[p] != 0) found.worst_defect = std::max(found.worst_defect, least[p]);
+  }
   std::vector<Vec3> sum(part.size(), Vec3{0, 0, 0});
   std::vector<std::uint32_t> first(part.size(), OpenSurfaces::kNone);
   for (std::uint32_t i = 0; i < points.size(); ++i) {

@@ -18,6 +18,7 @@ struct OpenSurfaces {
   std::vector<std::uint32_t> part;  ///< N: number of the open surface a point belongs to (its first point), or kNone: part of a closed one
   std::vector<float> certainty;     ///< N, of the outside: up to 1 where there is one, 0.5 where either side could be it; 0.5 on closed
                                     ///< parts whose field is not at rest, so that their sides are not certified
+  double worst_defect = 0;          ///< largest mean jump defect of an open part: about 0 where all sides agree, 1 where none do
 };
 
 /// The equations are true of the boundary of a solid. A surface without an inside (terrain, one depth frame, a dental arch) satisfies them

@@ -40,5 +40,6 @@ struct Refinement {
 
 /// Share of the points, of at least one, whose side_confidence() is below a half. O(N).
 [[nodiscard]] double unsure_share(const std::vector<float>& confidence);
+inline constexpr double kManyUnsure = 0.2;  ///< share of unsure points above which the orientation is called inconsistent
 
 }  // namespace g3r

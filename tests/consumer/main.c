@@ -33,6 +33,23 @@ int main(void) {
     const double cosine = points[3 * i] * normals[3 * i] + points[3 * i + 1] * normals[3 * i + 1] + points[3 * i + 2] * normals[3 * i + 2];
     if (cosine < 0.8 || confidence[i] < 0 || confidence[i] > 1) return printf("point %d is wrong\n", i), 1;
   }
+  const double sensors[6] = {0, 0, 0.1, 0, 0, 9};
+  uint32_t sensor_of_point[kCount];
+  for (int i = 0; i < kCount; ++i) sensor_of_point[i] = i % 3 == 0 ? 0 : G3R_NO_SENSOR;
+  options.sensors = sensors;
+  options.sensor_count = 2;
+  options.sensor_of_point = sensor_of_point;
+  status = g3r_orient(points, kCount, &options, normals, NULL, NULL);
+  if (status != G3R_OK || normals[2] > -0.8) return printf("a sensor inside does not turn the sphere: %s\n", g3r_last_error()), 1;
+  options.flip = 1;
+  status = g3r_orient(points, kCount, &options, normals, NULL, NULL);
+  if (status != G3R_OK || normals[2] < 0.8) return printf("flip does not turn it back: %s\n", g3r_last_error()), 1;
+  sensor_of_point[7] = 2;
+  if (g3r_orient(points, kCount, &options, normals, NULL, NULL) != G3R_INVALID_INPUT) return puts("sensor 2 of 2 is taken"), 1;
+  options.sensors = NULL;
+  if (g3r_orient(points, kCount, &options, normals, NULL, NULL) != G3R_INVALID_INPUT) return puts("sensors at NULL are taken"), 1;
+  options.sensor_count = 0;
+  options.sensor_of_point = NULL;
   g3r_mesh* mesh = NULL;
   status = g3r_reconstruct(points, kCount, NULL, NULL, NULL, NULL, &mesh);
   if (status == G3R_OK) {

@@ -1,0 +1,47 @@
+// What people know of a cloud and its points cannot say: which way is up, where the scanner stood, what is inside.
+#pragma once
+
+#include <g3r/export.h>
+#include <g3r/points.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace G3R_PUBLIC g3r {
+
+/// Hints::sensor_of_point of a point that no sensor is known of.
+inline constexpr std::uint32_t kNoSensor = 0xffffffff;
+
+/// Hints for orient(); all are optional. They vote where the points leave the side open - on every open sheet as a whole, each point with
+/// the cosine under which it is seen - and settle it with the share of the votes that agree as its confidence. The sides of closed parts
+/// follow from the points; a hint that contradicts them is a warning with its share. Two hints do turn closed parts: `seen_from_inside`,
+/// and a sensor inside a closed part, from which nobody could have seen its outside; of the latter a warning tells.
+struct Hints {
+  /// Direction, of any length, that open sheets face: terrain, roofs, what lies on a table.
+  std::optional<Vec3> up{};
+  /// Places that the points were seen from. A point faces its own sensor, or the nearest one if `sensor_of_point` is empty.
+  std::vector<Vec3> sensors{};
+  /// Empty, or for every point an index into `sensors`, or kNoSensor.
+  std::vector<std::uint32_t> sensor_of_point{};
+  /// Points inside the solid.
+  std::vector<Vec3> inside{};
+  /// Rooms, tunnels, streets: normals face the side the scanner was on, which is that of `sensors`, or without them the middle of the
+  /// cloud. Closed parts that enclose a sensor, or span half of the cloud along every axis, are turned too; what they surround keeps facing
+  /// it.
+  bool seen_from_inside = false;
+  /// Turns every normal, after all other hints.
+  bool flip = false;
+};
+
+/// What the hints did. Shares of all points that were used, 0..1.
+struct HintStats {
+  std::vector<std::string> given;  ///< of "up", "sensor", "inside", "seen_from_inside", "flip"
+  double settled_share = 0;        ///< their side was a choice and is one no longer
+  double turned_share = 0;         ///< turned by a hint, flip included
+  double agreement = 0;            ///< share of the votes on settled parts that agree with the side they got; 0 if nothing was settled
+  double contradicted_share = 0;   ///< share of the votes on closed parts that were against their side; 0 up to 1/5, which is usual
+};
+
+}  // namespace g3r

@@ -1,0 +1,165 @@
+#include "mesh/held_points.h"
+
+#include "cloud/neighbours.h"
+#include "cpu/parallel.h"
+#include "vector.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace g3r::mesh {
+namespace {
+
+using vector::dot;
+
+constexpr std::size_t kNear = 8;     // nearest points that have a say; more reach across thin walls
+constexpr double kSlope = 0.35;      // height over distance of points on one sheet; random directions have less once in eight times
+constexpr std::size_t kHolding = 3;  // of the nearest, on one sheet with the point; corners of cubes have so many, random points one
+constexpr double kBends = 0.9;       // n_i . (n_j mirrored in the middle between them) where the sheet goes on round a bend or crease
+constexpr double kUsual = 0.9;       // quantile of the heights: up to a tenth of the points may be strays
+constexpr double kTimesUsual = 2;    // four standard deviations of noise
+constexpr double kAlone = 2;         // spacing over that of the nearest; 1.5 is the most in a thousand points of uneven surfaces
+constexpr int kRounds = 4;           // strays that hold each other go one after the other; the fifth finds none
+constexpr std::size_t kFewestPoints = 100;  // below, sparse parts are a matter of chance
+constexpr double kMostStrays = 1.0 / 3;
+constexpr std::size_t kBlock = 256;      // points per parallel block
+constexpr double kLooksLikeSurface = 4;  // one in so many strays seems to be held by the one next to it; measured 1 in 4 to 1 in 50
+constexpr double kRare = 100;            // clouds in which it may happen once
+
+// How a point and its nearest ones see each other.
+struct Look {
+  std::array<double, kNear> height{};    // the greater distance from the plane of the other
+  std::array<bool, kNear> bends{};       // whether the sheet may go on round a bend
+  std::array<double, kNear> distance{};  // between the points
+  std::array<std::uint32_t, kNear> near{};
+};
+
+double upper_median(std::array<double, kNear> values) {
+  std::nth_element(values.begin(), values.begin() + kNear / 2, values.end());
+  return values[kNear / 2];
+}
+
+double quantile(std::vector<double> values, double share) {
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+class Search {
+ public:
+  Search(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const std::atomic<bool>* cancel)
+      : points_(points), normals_(normals), cancel_(cancel), held_(points.size(), 1), looks_(points.size()) {
+    for (std::uint32_t i = 0; i < points.size(); ++i) doubtful_.push_back(i);
+  }
+
+  std::vector<std::uint8_t> run() {
+    std::size_t strays = 0;
+    for (int round = 0; round < kRounds && !doubtful_.empty(); ++round) {
+      look();
+      if (round == 0) usual_ = usual_height();
+      strays += take_strays();
+    }
+    if (static_cast<double>(strays) > kMostStrays * static_cast<double>(points_.size())) std::fill(held_.begin(), held_.end(), 1);
+    return std::move(held_);
+  }
+
+ private:
+  // From every doubtful point at those nearest to it that are still held.
+  void look() {
+    std::vector<Vec3> places;
+    std::vector<std::uint32_t> number;
+    for (std::uint32_t i = 0; i < points_.size(); ++i) {
+      if (held_[i] == 0) continue;
+      places.push_back(points_[i]);
+      number.push_back(i);
+    }
+    if (places.size() <= kNear) {
+      doubtful_.clear();
+      return;
+    }
+    const Neighbours neighbours(places);
+    const auto look_from = [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint32_t> index;
+      std::vector<double> squared;
+      for (std::size_t k = begin; k < end; ++k) {
+        const std::uint32_t i = doubtful_[k];
+        neighbours.nearest(points_[i], kNear + 1, index, squared);
+        Look& look = looks_[i];
+        std::size_t to = 0;
+        for (std::size_t m = 0; m <= kNear && to < kNear; ++m) {
+          const std::uint32_t j = number[index[m]];
+          if (j == i) continue;
+          const Vec3 d = vector::subtract(points_[i], points_[j]);
+          const double a = dot(d, normals_[i]), b = dot(d, normals_[j]);
+          look.bends[to] = dot(normals_[i], normals_[j]) - 2 * a * b / squared[m] > kBends;
+          look.height[to] = std::max(std::abs(a), std::abs(b));
+          look.distance[to] = std::sqrt(squared[m]);
+          look.near[to++] = j;
+        }
+      }
+    };
+    parallel::for_blocks(doubtful_.size(), kBlock, look_from, cancel_);
+  }
+
+  [[nodiscard]] double usual_height() const {
+    std::vector<double> heights(looks_.size());
+    for (std::size_t i = 0; i < looks_.size(); ++i) heights[i] = upper_median(looks_[i].height);
+    return quantile(std::move(heights), kUsual);
+  }
+
+  [[nodiscard]] bool is_stray(std::uint32_t i) const {
+    const Look& look = looks_[i];
+    std::size_t holding = 0;
+    double spacing = 0;  // mean logarithm
+    for (std::size_t m = 0; m < kNear; ++m) {
+      holding += look.bends[m] || look.height[m] <= kSlope * look.distance[m] + kTimesUsual * usual_ ? 1 : 0;
+      spacing += std::log(looks_[look.near[m]].distance[kNear - 1]) / kNear;
+    }
+    return holding < kHolding || std::log(look.distance[kNear - 1]) - spacing > std::log(kAlone);
+  }
+
+  // Returns how many there were; those that had one among their nearest are doubtful after.
+  std::size_t take_strays() {
+    std::vector<std::uint8_t> stray(doubtful_.size(), 0);
+    parallel::for_blocks(
+        doubtful_.size(), kBlock,
+        [&](std::size_t begin, std::size_t end) {
+          for (std::size_t k = begin; k < end; ++k) stray[k] = is_stray(doubtful_[k]) ? 1 : 0;
+        },
+        cancel_);
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < stray.size(); ++k) {
+      if (stray[k] == 0) continue;
+      held_[doubtful_[k]] = 0;
+      ++count;
+    }
+    doubtful_.clear();
+    for (std::uint32_t i = 0; count > 0 && i < points_.size(); ++i) {
+      const auto& near = looks_[i].near;
+      if (held_[i] != 0 && std::any_of(near.begin(), near.end(), [this](std::uint32_t j) { return held_[j] == 0; })) doubtful_.push_back(i);
+    }
+    return count;
+  }
+
+  const std::vector<Vec3>& points_;
+  const std::vector<Vec3>& normals_;
+  const std::atomic<bool>* cancel_;
+  std::vector<std::uint8_t> held_;
+  std::vector<Look> looks_;
+  std::vector<std::uint32_t> doubtful_;  // points whose nearest ones have changed
+  double usual_ = 0;
+};
+
+}  // namespace
+
+std::vector<std::uint8_t> held_points(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const std::atomic<bool>* cancel) {
+  if (points.size() < kFewestPoints) return std::vector<std::uint8_t>(points.size(), 1);
+  return Search(points, normals, cancel).run();
+}
+
+double least_points_of_a_part(std::size_t strays) {
+  return strays == 0 ? 0 : 1 + std::log(kRare * static_cast<double>(strays)) / std::log(kLooksLikeSurface);
+}
+
+}  // namespace g3r::mesh
