@@ -186,6 +186,7 @@ Solution solve_on_sites(const Problem& problem, const Options& options, Stages& 
   const Problem coarse = on_sites(problem, sites, options);
   const Solution solved = solve(coarse, options, stages, stats);
   Solution out;
+  out.sheets.worst_defect = solved.sheets.worst_defect;
   out.eta.resize(points.size());
   std::vector<double> members(sites.points.size(), 0);
   for (const std::uint32_t s : sites.site_of) ++members[s];
