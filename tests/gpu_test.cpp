@@ -1,0 +1,178 @@
+// Sums on a device against those of the processor: every form over shapes, sizes and tolerances; adjoints to rounding; the same bytes from
+// run to run. Skipped (77) where there is no device; a software OpenCL such as PoCL will do.
+#include "cpu/parallel.h"
+#include "gpu/device.h"
+#include "gpu/execution.h"
+#include "sanitized.h"
+#include "shapes.h"
+#include "sum/fast_sum.h"
+#include "sum_cases.h"
+
+#include <g3r/error.h>
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdio>
+#include <numeric>
+
+namespace g3r {
+namespace {
+
+using namespace sum_cases;  // NOLINT(google-build-using-namespace)
+using shapes::Random;
+
+constexpr std::size_t kPoints = 3000;      // hierarchical, some levels
+constexpr double kRoundingFloat = 1e-6;    // of adjoints in float plans, see FastSum
+constexpr double kRoundingDouble = 1e-12;  // in double plans
+
+// One device for all tests: kernels are compiled once.
+const std::shared_ptr<gpu::Execution>& execution() {
+  static const auto opened = std::make_shared<gpu::Execution>(gpu::open_device(gpu::list_devices().at(0)), true);
+  return opened;
+}
+
+SumPlan on_device(SumPlan plan) {
+  plan.execution = execution();
+  return plan;
+}
+
+// Every sum of one plan on the device and on the processor: the same terms, so they differ by the kernels of near pairs at most.
+void expect_equal(const Inputs& in, const SumPlan& plan, double accuracy, const std::string& what) {
+  const Sums processor = fast_sums(in, plan);
+  const Sums device = fast_sums(in, on_device(plan));
+  EXPECT_LE(worst_error(device, processor), 0.5 * accuracy) << what;
+  EXPECT_EQ(execution()->failure(), "");
+}
+
+TEST(Gpu, SumsEqualThoseOfTheProcessor) {
+  for (const Case& c : clouds(kPoints)) {
+    if (kSanitized && c.name != "needle") continue;
+    const Inputs in(c.points, Widths(0.4 * spacing_of(c.points)));
+    for (const double accuracy : {2e-2, 1e-2, 1e-3, 1e-4}) expect_equal(in, sum_plan(accuracy, kPoints), accuracy, c.name);
+  }
+}
+
+TEST(Gpu, DirectSumsEqualThoseOfTheProcessor) {
+  for (const std::size_t n : {1UL, 2UL, 9UL, 100UL, 700UL}) {
+    for (const Case& c : clouds(n)) {
+      if (c.name != "sphere") continue;
+      const Inputs in(c.points, Widths(0.4 * spacing_of(c.points)));
+      expect_equal(in, sum_plan(1e-4, n), 1e-4, "n=" + std::to_string(n));
+    }
+  }
+}
+
+TEST(Gpu, SumsInDoubleEqualThoseOfTheProcessor) {
+  if (!execution()->device().info().doubles) GTEST_SKIP() << "the device has no doubles";
+  if (kSanitized) GTEST_SKIP() << "takes minutes";
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  const Inputs in(points, Widths(0.4 * spacing_of(points)));
+  expect_equal(in, sum_plan(1e-6, kPoints), 1e-8, "hierarchical");
+  expect_equal(in, sum_plan(0, kPoints), 1e-11, "direct");
+}
+
+TEST(Gpu, PointsMayHaveTheirOwnWidths) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  Random random(5);
+  std::vector<double> widths(points.size());
+  for (double& w : widths) w = random.uniform(0.005, 0.03);
+  expect_equal(Inputs(points, Widths(widths)), sum_plan(1e-3, kPoints), 1e-3, "local widths");
+}
+
+TEST(Gpu, WideMollifiersToo) {
+  const std::vector<Vec3> points = unit_points(shapes::sphere(kPoints).points);
+  expect_equal(Inputs(points, Widths(3 * spacing_of(points))), sum_plan(1e-3, kPoints), 1e-3, "wide");
+}
+
+TEST(Gpu, NarrowerWidthsShareATree) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  const std::vector<Vec3> eta = random_vectors(points.size(), 1);
+  const auto winding = [&](const SumPlan& plan) {
+    const FastSum wide(points, codes(points), Widths(0.03), plan);
+    return FastSum(wide, Widths(0.01)).winding(eta);
+  };
+  EXPECT_LE(relative_error(winding(on_device(sum_plan(1e-3, kPoints))), winding(sum_plan(1e-3, kPoints))), 5e-4);
+}
+
+TEST(Gpu, QueriesSeeTheSameField) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  const std::vector<Vec3> eta = random_vectors(points.size(), 1);
+  Random random(2);
+  std::vector<Vec3> queries;
+  for (int i = 0; i < 500; ++i) queries.push_back({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-0.5, 0.5)});
+  const FastSum processor(points, codes(points), Widths(0.01), sum_plan(1e-3, kPoints));
+  const FastSum device(points, codes(points), Widths(0.01), on_device(sum_plan(1e-3, kPoints)));
+  EXPECT_LE(relative_error(device.winding_at(eta, queries), processor.winding_at(eta, queries)), 5e-4);
+  EXPECT_LE(relative_error(device.winding_gradient_at(eta, queries), processor.winding_gradient_at(eta, queries)), 5e-4);
+}
+
+double inner(const std::vector<double>& a, const std::vector<double>& b) { return std::inner_product(a.begin(), a.end(), b.begin(), 0.0); }
+
+// <A x, y> = <x, A^T y> to rounding, relative to |A x| |y|.
+void expect_adjoints(const Inputs& in, const SumPlan& plan, double rounding) {
+  FastSum sum(in.points, codes(in.points), in.widths, on_device(plan));
+  const std::vector<double> eta = flat(in.eta);
+  const std::vector<double> forward = sum.green(in.u, in.eta);
+  EXPECT_NEAR(inner(forward, in.q), inner(eta, flat(sum.green_adjoint(in.u, in.q))), rounding * norm(forward) * norm(in.q));
+  const std::vector<Vec3> other = random_vectors(in.points.size(), 4);
+  std::vector<Vec3> s;
+  std::vector<Vec3> s_other;
+  std::vector<double> w;
+  sum.stokes_winding(other, s_other, w);
+  sum.stokes_winding(in.eta, s, w);
+  EXPECT_NEAR(inner(flat(s), flat(other)), inner(eta, flat(s_other)), rounding * norm(flat(s)) * norm(flat(other)));
+  EXPECT_NEAR(inner(w, in.q1), inner(eta, flat(sum.winding_adjoint(in.q1))), rounding * norm(w) * norm(in.q1));
+}
+
+TEST(Gpu, AdjointsAreExactToRounding) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  const Inputs in(points, Widths(0.4 * spacing_of(points)));
+  expect_adjoints(in, sum_plan(1e-2, kPoints), kRoundingFloat);
+  if (execution()->device().info().doubles && !kSanitized) expect_adjoints(in, sum_plan(1e-6, kPoints), kRoundingDouble);
+}
+
+TEST(Gpu, SameBytesFromRunToRun) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  const Inputs in(points, Widths(0.4 * spacing_of(points)));
+  const Sums first = parallel::with_threads(1, [&] { return fast_sums(in, on_device(sum_plan(1e-2, kPoints))); });
+  const Sums second = fast_sums(in, on_device(sum_plan(1e-2, kPoints)));
+  EXPECT_EQ(first.green, second.green);
+  EXPECT_EQ(first.green_adjoint, second.green_adjoint);
+  EXPECT_EQ(first.stokes, second.stokes);
+  EXPECT_EQ(first.winding, second.winding);
+  EXPECT_EQ(first.winding_adjoint, second.winding_adjoint);
+  EXPECT_EQ(first.gradient, second.gradient);
+}
+
+TEST(Gpu, SumsStopWhenCancelled) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  const std::atomic<bool> cancel{true};
+  FastSum sum(points, codes(points), Widths(0.01), on_device(sum_plan(1e-2, kPoints)), &cancel);
+  EXPECT_THROW(sum.winding(random_vectors(points.size(), 1)), Cancelled);
+}
+
+TEST(Gpu, WhatDoesNotCompileOrFitIsAnErrorThatSaysSo) {
+  gpu::Device& device = execution()->device();
+  const std::unique_lock lock = device.lock();
+  try {
+    (void)device.program("this is no kernel\n");
+    ADD_FAILURE() << "compiled";
+  } catch (const gpu::DeviceError& error) {
+    EXPECT_NE(std::string(error.what()).find("compile"), std::string::npos) << error.what();
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+  }
+  EXPECT_THROW((void)device.allocate(device.info().memory * 64), gpu::DeviceError);
+}
+
+}  // namespace
+}  // namespace g3r
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  if (g3r::gpu::list_devices().empty()) {
+    std::puts("skipped: no OpenCL or CUDA device here; pocl-opencl-icd is one");
+    return 77;
+  }
+  return RUN_ALL_TESTS();
+}
