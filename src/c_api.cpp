@@ -74,6 +74,7 @@ Request read_options(const g3r_options* given) {
   request.options.seed = o.seed;
   request.options.max_memory = o.max_memory;
   request.mesh_options.depth = o.depth;
+  if (o.device != nullptr) request.options.device = o.device;
   if (o.progress != nullptr) {
     request.monitor.progress = [o](std::string_view stage, double fraction) {
       return o.progress(o.user, std::string(stage).c_str(), fraction) != 0;

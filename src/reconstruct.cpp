@@ -1,5 +1,6 @@
 // From points, or oriented points, to a mesh.
 #include "cpu/parallel.h"
+#include "gpu/scope.h"
 #include "mesh/field_mesher.h"
 #include "mesh/mesh_finish.h"
 #include "mesh/screened_poisson.h"
@@ -154,6 +155,7 @@ Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const Me
     directions.push_back({n[0] / size, n[1] / size, n[2] / size});
   }
   return parallel::with_threads(options.threads, [&] {
+    const gpu::Scope device(options.device, kept.size());
     const OrientedCloud oriented = oriented_cloud(kept, directions);
     std::vector<Vec3>().swap(kept);  // their memory is wanted
     std::vector<Vec3>().swap(directions);
@@ -167,17 +169,20 @@ Reconstruction reconstruct(const PointsView& points, const Options& options, con
   const MeshOptions chosen = choose(mesh_options, options);
   if (options.max_memory > 0) require_memory(plan(points, options, mesh_options).planned_memory_bytes, options);
   Reconstruction out;
+  const gpu::Scope device(options.device, points.count);  // one for both steps
   out.orientation = orient(points, options, monitor);
   out.orientation.stats.planned_memory_bytes = planned(out.orientation.stats, chosen);
   Stages stages(monitor);
   stages.begin("mesh");
   double far = 0;
   parallel::with_threads(options.threads, [&] {
+    const gpu::Scope same_device(options.device, points.count);
     const OrientedCloud oriented = oriented_cloud(points, out.orientation.normals, out.orientation.areas);
     out.mesh = make_mesh(oriented, chosen, monitor, options.max_memory, &far);
     out.check = check_mesh(out.mesh);
     carry_attributes(out.mesh, points, {}, out.orientation.confidence);
   });
+  device.describe(out.orientation.stats);
   if (far > kFarShare) {
     out.orientation.stats.warnings.push_back(
         std::to_string(std::lround(100 * far)) +

@@ -8,7 +8,7 @@
 #include "sum/fast_sum.h"
 #include "sum_cases.h"
 
-#include <g3r/error.h>
+#include <g3r/g3r.h>
 
 #include <gtest/gtest.h>
 
@@ -94,6 +94,19 @@ TEST(GpuFailures, ARequiredDeviceThatFailsIsUnavailable) {
     }
   }
   EXPECT_EQ(device->alive, 0U);
+}
+
+TEST(GpuFailures, WordsThatNameNoDeviceAreInvalid) {
+  const std::vector<Vec3> points = shapes::sphere(100).points;
+  Options options;
+  for (const char* word : {"cuda", "gpu:", "gpu:x", "gpu:-1", "gpu:1x", "GPU"}) {
+    options.device = word;
+    EXPECT_THROW((void)orient(points, options), InvalidInput) << word;
+  }
+  for (const char* word : {"", "auto", "cpu"}) {
+    options.device = word;
+    EXPECT_EQ(orient(points, options).stats.device, "cpu") << word;
+  }
 }
 
 TEST(GpuFailures, EveryFarPairIsInOneTileAndTilesDoNotMeetATargetTwice) {

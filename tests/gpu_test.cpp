@@ -3,12 +3,13 @@
 #include "cpu/parallel.h"
 #include "gpu/device.h"
 #include "gpu/execution.h"
+#include "gpu/scope.h"
 #include "sanitized.h"
 #include "shapes.h"
 #include "sum/fast_sum.h"
 #include "sum_cases.h"
 
-#include <g3r/error.h>
+#include <g3r/g3r.h>
 
 #include <gtest/gtest.h>
 
@@ -150,6 +151,52 @@ TEST(Gpu, SumsStopWhenCancelled) {
   const std::atomic<bool> cancel{true};
   FastSum sum(points, codes(points), Widths(0.01), on_device(sum_plan(1e-2, kPoints)), &cancel);
   EXPECT_THROW(sum.winding(random_vectors(points.size(), 1)), Cancelled);
+}
+
+TEST(Gpu, OrientationsAndMeshesEqualThoseOfTheProcessor) {
+  if (kSanitized) GTEST_SKIP() << "takes minutes";
+  constexpr double kSameError = 0.01;  // of the error of the directions, relative
+  for (const shapes::Surface& surface : {shapes::torus(4000, 0.6, 0.25, 3), shapes::ellipsoid(3000, 0.9, 0.5, 0.3)}) {
+    Options options;
+    options.device = "cpu";
+    const Orientation processor = orient(surface.points, options);
+    options.device = "gpu:0";
+    const Orientation device = orient(surface.points, options);
+    EXPECT_EQ(processor.stats.device, "cpu");
+    EXPECT_EQ(device.stats.device, gpu::list_devices()[0].name);
+    EXPECT_FALSE(device.stats.driver.empty());
+    EXPECT_EQ(shapes::share_correct(device.normals, surface.normals), shapes::share_correct(processor.normals, surface.normals));
+    const double error = shapes::angle_error(processor.normals, surface.normals);
+    EXPECT_NEAR(shapes::angle_error(device.normals, surface.normals), error, kSameError * error);
+    EXPECT_EQ(orient(surface.points, options).normals, device.normals) << "not the same bytes";
+  }
+  Options options;
+  options.device = "gpu:0";
+  const Reconstruction made = reconstruct(shapes::sphere(2500).points, options);
+  EXPECT_TRUE(made.check.closed && made.check.manifold);
+  EXPECT_EQ(made.check.genus, 0);
+  EXPECT_TRUE(made.orientation.stats.warnings.empty()) << made.orientation.stats.warnings[0];
+}
+
+TEST(Gpu, AutoTakesNoSoftwareAndAMissingNumberIsUnavailable) {
+  const std::vector<Vec3> points = shapes::sphere(20000).points;
+  const bool software = gpu::list_devices()[0].software;
+  if (software) {
+    EXPECT_EQ(gpu::Scope("auto", points.size()).current(), nullptr);
+    EXPECT_THROW(gpu::Scope("gpu", points.size()), Unavailable);
+  }
+  EXPECT_THROW(gpu::Scope("gpu:" + std::to_string(gpu::list_devices().size()), points.size()), Unavailable);
+  EXPECT_EQ(gpu::Scope::current(), nullptr) << "a failed scope stays";
+  const gpu::Scope outer("gpu:0", 100);
+  const std::shared_ptr<gpu::Execution> shared = gpu::Scope::current();
+  EXPECT_NE(shared, nullptr);
+  {
+    const gpu::Scope inner("gpu:0", 7);
+    EXPECT_EQ(gpu::Scope::current(), shared);
+    const gpu::Scope processor("cpu", 7);
+    EXPECT_EQ(gpu::Scope::current(), nullptr);
+  }
+  EXPECT_EQ(gpu::Scope::current(), shared);
 }
 
 TEST(Gpu, WhatDoesNotCompileOrFitIsAnErrorThatSaysSo) {

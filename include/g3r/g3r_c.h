@@ -45,6 +45,7 @@ typedef struct g3r_options {
   void* user;   /* handed to progress */
   double noise; /* standard deviation of the points from their surface; 0: clean */
   g3r_unit noise_unit;
+  const char* device; /* "auto", "cpu", "gpu", "gpu:N"; NULL: auto */
 } g3r_options;
 
 /* A mesh owned by the library until g3r_mesh_free(). Triangles are counter-clockwise seen from outside. */

@@ -33,6 +33,10 @@ int main(void) {
     const double cosine = points[3 * i] * normals[3 * i] + points[3 * i + 1] * normals[3 * i + 1] + points[3 * i + 2] * normals[3 * i + 2];
     if (cosine < 0.8 || confidence[i] < 0 || confidence[i] > 1) return printf("point %d is wrong\n", i), 1;
   }
+  options.device = "tpu";
+  if (g3r_orient(points, kCount, &options, normals, NULL, NULL) != G3R_INVALID_INPUT) return puts("an unknown device was taken"), 1;
+  options.device = "cpu";
+  if (g3r_orient(points, kCount, &options, normals, NULL, NULL) != G3R_OK) return puts("the processor was not taken"), 1;
   g3r_mesh* mesh = NULL;
   status = g3r_reconstruct(points, kCount, NULL, NULL, NULL, NULL, &mesh);
   if (status == G3R_OK) {
