@@ -92,6 +92,35 @@ MatricesOnDevice upload_matrices(Device& device, const std::vector<Offset>& offs
   return out;
 }
 
+// The tiles of one of the lists' own larger chunks, whose pairs ascend by offset and so by matrix. Numbers of tiles and pairs from 0.
+TiledPairs tile_chunk(const InteractionLists& lists, std::size_t large, std::size_t nodes, const std::vector<std::uint32_t>& matrix_of) {
+  static_assert(kTargetChunk % kChunkNodes == 0);
+  TiledPairs out;
+  std::array<std::vector<FarPair>, kTargetChunk / kChunkNodes> of_chunk;
+  for (std::size_t i = lists.chunk_begin[large]; i < lists.chunk_begin[large + 1]; ++i) {
+    of_chunk[lists.far[i].target % kTargetChunk / kChunkNodes].push_back(lists.far[i]);
+  }
+  for (std::size_t c = 0; c < of_chunk.size() && large * kTargetChunk + c * kChunkNodes < nodes; ++c) {
+    const std::size_t first_tile = out.tiles.size();
+    for (const FarPair& pair : of_chunk[c]) {
+      const Offset& offset = lists.offsets[pair.offset];
+      const std::uint32_t flags = offset.mirror() | (offset.positive() ? kPositive : 0);
+      const auto joins = [&](const Uint4& tile) {
+        if (tile[0] != matrix_of[pair.offset] || tile[2] == kMostTilePairs) return false;
+        if (((out.pairs.back()[2] ^ flags) & kPositive) != 0) return false;
+        return std::none_of(out.pairs.end() - tile[2], out.pairs.end(), [&](const Uint4& other) { return other[0] == pair.target; });
+      };
+      if (out.tiles.size() == first_tile || !joins(out.tiles.back())) {
+        out.tiles.push_back({matrix_of[pair.offset], static_cast<std::uint32_t>(out.pairs.size()), 0, 0});
+      }
+      ++out.tiles.back()[2];
+      out.pairs.push_back({pair.target, pair.source, flags, 0});
+    }
+    out.chunk_tiles.push_back(static_cast<std::uint32_t>(out.tiles.size()));
+  }
+  return out;
+}
+
 }  // namespace
 
 TreeOnDevice::TreeOnDevice(Device& device, const Octree& tree) {
@@ -120,38 +149,24 @@ TreeOnDevice::TreeOnDevice(Device& device, const Octree& tree) {
   leaf_centres = upload(device, leaf_centre_of);
 }
 
-// The lists' pairs ascend by offset, and so by matrix, within their own larger chunks.
 TiledPairs tile_pairs(const InteractionLists& lists, std::size_t nodes, const std::vector<std::uint32_t>& matrix_of) {
-  static_assert(kTargetChunk % kChunkNodes == 0);
+  std::vector<TiledPairs> parts(lists.chunk_begin.size() - 1);
+  parallel::for_each(parts.size(), [&](std::size_t large) { parts[large] = tile_chunk(lists, large, nodes, matrix_of); });
   TiledPairs out;
-  const std::size_t chunks = (nodes + kChunkNodes - 1) / kChunkNodes;
-  std::vector<std::vector<FarPair>> of_chunk(kTargetChunk / kChunkNodes);
-  out.pairs.reserve(lists.far.size());
   out.chunk_tiles.push_back(0);
-  for (std::size_t large = 0; large + 1 < lists.chunk_begin.size(); ++large) {
-    for (std::vector<FarPair>& pairs : of_chunk) pairs.clear();
-    for (std::size_t i = lists.chunk_begin[large]; i < lists.chunk_begin[large + 1]; ++i) {
-      of_chunk[lists.far[i].target % kTargetChunk / kChunkNodes].push_back(lists.far[i]);
+  out.pairs.reserve(lists.far.size());
+  for (TiledPairs& part : parts) {
+    const std::uint32_t first_tile = narrow(out.tiles.size());
+    const std::uint32_t first_pair = narrow(out.pairs.size());
+    for (Uint4 tile : part.tiles) {
+      tile[1] += first_pair;
+      out.tiles.push_back(tile);
     }
-    for (std::size_t c = 0; c < of_chunk.size() && out.chunk_tiles.size() <= chunks; ++c) {
-      const std::size_t first_tile = out.tiles.size();
-      for (const FarPair& pair : of_chunk[c]) {
-        const Offset& offset = lists.offsets[pair.offset];
-        const std::uint32_t flags = offset.mirror() | (offset.positive() ? kPositive : 0);
-        const auto joins = [&](const Uint4& tile) {
-          if (tile[0] != matrix_of[pair.offset] || tile[2] == kMostTilePairs) return false;
-          if (((out.pairs.back()[2] ^ flags) & kPositive) != 0) return false;
-          return std::none_of(out.pairs.end() - tile[2], out.pairs.end(), [&](const Uint4& other) { return other[0] == pair.target; });
-        };
-        if (out.tiles.size() == first_tile || !joins(out.tiles.back())) {
-          out.tiles.push_back({matrix_of[pair.offset], narrow(out.pairs.size()), 0, 0});
-        }
-        ++out.tiles.back()[2];
-        out.pairs.push_back({pair.target, pair.source, flags, 0});
-      }
-      out.chunk_tiles.push_back(narrow(out.tiles.size()));
-    }
+    for (const std::uint32_t end : part.chunk_tiles) out.chunk_tiles.push_back(first_tile + end);
+    out.pairs.insert(out.pairs.end(), part.pairs.begin(), part.pairs.end());
+    part = {};
   }
+  (void)narrow(out.pairs.size());
   return out;
 }
 
