@@ -106,13 +106,13 @@ void SumOnDevice<T>::upward(const SumRequest<T>& request, Program& expansions, P
   const std::size_t stride = cpu::padded_count(n);
   const std::size_t parts = up_parts(request.form, request.batch, t.local_widths);
   Buffer& multipoles = room(multipoles_, source_tree_.nodes.size() * request.multipole_channels * stride);
-  const std::size_t points = that_fit(kMostPoints, t.lanes, 4 * n, n + 7, sizeof(T));
+  const std::size_t points = that_fit(kMostPoints, t.lanes, 6 * n, n + 7, sizeof(T));
   const std::size_t slice = device_.info().software ? kSoftwareSlice : kSlice;
   in_slices(source_tree_.leaves.size(), slice, request.cancel, [&](std::size_t first, std::size_t number) {
     device_.launch(expansions.kernel("points_to_multipoles"), number * parts, far_group(t),
                    {as_int(first), *tree.leaf_points, *tree.leaf_nodes, *tree.leaf_centres, *fields_,
                     static_cast<std::uint32_t>(field_stride_), request.order, as_int(stride), as_int(points), multipoles},
-                   (points * (n + 7) + 4 * n) * sizeof(T));
+                   (points * (n + 7) + 6 * n) * sizeof(T));
   });
   const MatricesOnDevice& shifts = lists_.child_to_parent();
   const std::size_t apart = shifts.groups->bytes() / sizeof(std::array<std::uint32_t, 4>) / 8;
@@ -188,7 +188,7 @@ void SumOnDevice<T>::far_to_points(const SumRequest<T>& request, Program& expans
     device_.launch(expansions.kernel("locals_to_points"), number, far_group(t),
                    {as_int(first), *target_leaves_, *lists_.targets().leaf_nodes, *lists_.targets().leaf_centres, *x_, *y_, *z_,
                     *width_squared_, *target_data_, request.order, as_int(cpu::padded_count(n)), width2, *locals_, *out_},
-                   5 * n * sizeof(T));
+                   7 * n * sizeof(T));
   });
 }
 

@@ -99,8 +99,7 @@ FUNCTION real along_gradient(const LOCAL real* x, const LOCAL real* y, const LOC
 }
 
 // The transposed: coefficient b of the derivative along `axis` of sum_a c_a B_a.
-FUNCTION real derivative(const LOCAL real* c, int order, int axis, int b) {
-  const Place p = place_of(b);
+FUNCTION real derivative(const LOCAL real* c, int order, int axis, Place p) {
   const int l = p.l + 1;
   if (l > order) return 0;
   if (axis == 2) return at(c, l, p.m, p.imaginary);
@@ -111,9 +110,16 @@ FUNCTION real derivative(const LOCAL real* c, int order, int axis, int b) {
   return -a_half * (at(c, l, p.m + 1, 1) + (p.m > 1 ? at(c, l, p.m - 1, 1) : 0));
 }
 
-// R_{l+1}^m = up z R_l^m - down r^2 R_{l-1}^m
-FUNCTION real up_factor(int l, int m) { return (real)(2 * l + 1) / (real)((l + 1 + m) * (l + 1 - m)); }
-FUNCTION real down_factor(int l, int m) { return (real)1 / (real)((l + 1 + m) * (l + 1 - m)); }
+// R_{l+1}^m = up z R_l^m - down r^2 R_{l-1}^m. The numbers up and down are at 2 (l^2 + m) and after it.
+FUNCTION void make_factors(int order, LOCAL real* factors) {
+  for (int l = ITEM; l <= order; l += GROUP) {
+    for (int m = 0; m <= l; ++m) {
+      const real divisor = (real)((l + 1 + m) * (l + 1 - m));
+      factors[2 * (l * l + m)] = (real)(2 * l + 1) / divisor;
+      factors[2 * (l * l + m) + 1] = (real)1 / divisor;
+    }
+  }
+}
 
 // Weights of a source in the four sums of one part of its multipole: w[0] of B, w[1..3] of the gradient (times the half side).
 FUNCTION void source_weights(const GLOBAL real* values, uint stride, int part, real x, real y, real z, real width2, real* w) {
@@ -141,7 +147,7 @@ FUNCTION void source_weights(const GLOBAL real* values, uint stride, int part, r
 }
 
 // Work-group g does part g % UP_PARTS of the multipoles of source leaf first_leaf + g / UP_PARTS. `points`: of a tile, a multiple of LANES.
-// Shared: points * (n + 7) + 4 n numbers, n = (order + 1)^2.
+// Shared: points * (n + 7) + 6 n numbers, n = (order + 1)^2.
 KERNEL points_to_multipoles(int first_leaf, const GLOBAL uint2* leaves, const GLOBAL uint* leaf_nodes, const GLOBAL int4* centres,
                             const GLOBAL real* fields, uint field_stride, int order, int stride, int points,
                             GLOBAL real* multipoles SHARED_ARGUMENT) {
@@ -153,10 +159,12 @@ KERNEL points_to_multipoles(int first_leaf, const GLOBAL uint2* leaves, const GL
   LOCAL real* weights = basis + n * points;    // 4 x points
   LOCAL real* position = weights + 4 * points; // 3 x points, in half sides
   LOCAL real* sums = position + 3 * points;    // 4 x n
+  LOCAL real* factors = sums + 4 * n;          // 2 x n
   const int count = (int)leaves[leaf].y;
   const GLOBAL real* source = fields + leaves[leaf].x;
   const real unit = (real)(1 << centres[leaf].w);  // 1 / half side
   for (int i = ITEM; i < 4 * n; i += GROUP) sums[i] = 0;
+  make_factors(order, factors);
   for (int begin = 0; begin < count; begin += points) {
     BARRIER();
     for (int p = ITEM; p < points; p += GROUP) {
@@ -199,8 +207,8 @@ KERNEL points_to_multipoles(int first_leaf, const GLOBAL uint2* leaves, const GL
       for (int l = m; l <= order; ++l) {
         STORE(re, basis + real_index(l, m) * points + p);
         if (m > 0) STORE(im, basis + imaginary_index(l, m) * points + p);
-        const lanes up = SPLAT(up_factor(l, m)) * z;
-        const lanes down = SPLAT(down_factor(l, m)) * r2;
+        const lanes up = SPLAT(factors[2 * (l * l + m)]) * z;
+        const lanes down = SPLAT(factors[2 * (l * l + m) + 1]) * r2;
         const lanes re_next = FMA(-down, re_below, up * re);
         const lanes im_next = FMA(-down, im_below, up * im);
         re_below = re;
@@ -210,9 +218,10 @@ KERNEL points_to_multipoles(int first_leaf, const GLOBAL uint2* leaves, const GL
       }
     }
     BARRIER();
-    for (int i = ITEM; i < (SUMS - FIRST_SUM) * n; i += GROUP) {
-      const int q = FIRST_SUM + i / n;
-      const int b = i % n;
+    int q = FIRST_SUM;
+    for (int b = ITEM; q < SUMS; b += GROUP) {
+      for (; b >= n; b -= n) ++q;
+      if (q >= SUMS) break;
       lanes sum = SPLAT(0);
       for (int p = 0; p < points; p += LANES) sum = FMA(LOAD(basis + b * points + p), LOAD(weights + q * points + p), sum);
       sums[q * n + b] += sum_of(sum);
@@ -246,7 +255,7 @@ typedef struct {
   lanes value, x, y, z;
 } Evaluated;
 
-FUNCTION Evaluated evaluate(const LOCAL real* c, int n, int order, lanes x, lanes y, lanes z) {
+FUNCTION Evaluated evaluate(const LOCAL real* c, const LOCAL real* factors, int n, int order, lanes x, lanes y, lanes z) {
   Evaluated e;
   e.value = e.x = e.y = e.z = SPLAT(0);
   const lanes r2 = FMA(x, x, FMA(y, y, z * z));
@@ -274,8 +283,8 @@ FUNCTION Evaluated evaluate(const LOCAL real* c, int n, int order, lanes x, lane
       e.y = FMA(SPLAT(at_re[2 * n]), re, FMA(SPLAT(at_im[2 * n]), im, e.y));
       e.z = FMA(SPLAT(at_re[3 * n]), re, FMA(SPLAT(at_im[3 * n]), im, e.z));
 #endif
-      const lanes up = SPLAT(up_factor(l, m)) * z;
-      const lanes down = SPLAT(down_factor(l, m)) * r2;
+      const lanes up = SPLAT(factors[2 * (l * l + m)]) * z;
+      const lanes down = SPLAT(factors[2 * (l * l + m) + 1]) * r2;
       const lanes re_next = FMA(-down, re_below, up * re);
       const lanes im_next = FMA(-down, im_below, up * im);
       re_below = re;
@@ -356,7 +365,7 @@ FUNCTION void add_pass(int pass, Evaluated e, real unit, lanes x, lanes y, lanes
 #endif
 }
 
-// Work-group g does target leaf first_leaf + g and adds to out: blocks x CHANNELS x BLOCK. Leaves: (first block, points). Shared: 5 n.
+// Work-group g does target leaf first_leaf + g and adds to out: blocks x CHANNELS x BLOCK. Leaves: (first block, points). Shared: 7 n numbers.
 KERNEL locals_to_points(int first_leaf, const GLOBAL uint2* leaves, const GLOBAL uint* leaf_nodes, const GLOBAL int4* centres,
                         const GLOBAL real* target_x, const GLOBAL real* target_y, const GLOBAL real* target_z,
                         const GLOBAL real* target_width2, const GLOBAL real* target_data, int order, int stride, real uniform_width2,
@@ -366,9 +375,11 @@ KERNEL locals_to_points(int first_leaf, const GLOBAL uint2* leaves, const GLOBAL
   const int n = (order + 1) * (order + 1);
   LOCAL real* coefficients = shared;    // 4 x n
   LOCAL real* combined = shared + 4 * n;
+  LOCAL real* factors = shared + 5 * n;  // 2 x n
   const int count = (int)leaves[leaf].y;
   const real unit = (real)(1 << centres[leaf].w);
   const GLOBAL real* local_ = locals + (size_t)leaf_nodes[leaf] * LOCALS * (size_t)stride;
+  make_factors(order, factors);
   for (int begin = 0; begin < count; begin += GROUP * LANES) {
     const int target = begin + ITEM * LANES;
     const int last = (count - 1) / LANES * LANES;
@@ -389,10 +400,13 @@ KERNEL locals_to_points(int first_leaf, const GLOBAL uint2* leaves, const GLOBAL
       }
       BARRIER();
 #if HAS_GRADIENT
-      for (int i = ITEM; i < 3 * n; i += GROUP) coefficients[n + i] = derivative(combined, order, i / n, i % n);
+      for (int b = ITEM; b < n; b += GROUP) {
+        const Place p = place_of(b);
+        UNROLL for (int axis = 0; axis < 3; ++axis) coefficients[(1 + axis) * n + b] = derivative(combined, order, axis, p);
+      }
       BARRIER();
 #endif
-      const Evaluated e = evaluate(coefficients, n, order, SPLAT(unit) * x, SPLAT(unit) * y, SPLAT(unit) * z);
+      const Evaluated e = evaluate(coefficients, factors, n, order, SPLAT(unit) * x, SPLAT(unit) * y, SPLAT(unit) * z);
       const GLOBAL real* data = target_data + block * TARGET_DATA * BLOCK + lane;
 #if FORM == GREEN
       lanes one[1];

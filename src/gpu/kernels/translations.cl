@@ -17,6 +17,12 @@
 #define LOCALS 1
 #define MOST_MOVED 1
 #endif
+// Items that copy one expansion together.
+#if LANES == 1
+#define COPIERS 16
+#else
+#define COPIERS 1
+#endif
 #define POSITIVE 8  // flag of a pair, besides the mirror image in bits 0 to 2
 
 // sum[c] = rows of the matrix from `row` on times expansion c of `from`, `stride` apart. Columns from `most` on are left out.
@@ -161,19 +167,22 @@ KERNEL multipoles_to_locals(int first_chunk, int chunk_nodes, int nodes, const G
     for (int first = 0; first < (int)t.z; first += slots) {
       const int some = (int)t.z - first < slots ? (int)t.z - first : slots;
       BARRIER();
-      for (int i = ITEM; i < some * moved * most; i += GROUP) {
-        const int j = i % most;
-        const int c = i / most % moved;
-        const int slot = i / most / moved;
+      for (int e = ITEM / COPIERS; e < some * moved; e += GROUP / COPIERS) {
+        const int slot = e / moved;
+        const int c = e - slot * moved;
         const uint4 pair = pairs[t.y + (uint)(first + slot)];
         const size_t expansion = (size_t)pair.y * MULTIPOLES + (size_t)source_expansion(c, moved, transposed);
-        packed[(slot * MOST_MOVED + c) * stride + j] = signs[(int)(pair.z & 7) * stride + j] * multipoles[expansion * (size_t)stride + (size_t)j];
+        const GLOBAL real* sign = signs + (int)(pair.z & 7) * stride;
+        for (int j = ITEM % COPIERS * LANES; j < most; j += COPIERS * LANES) {
+          const lanes value = LOAD(sign + j) * LOAD(multipoles + expansion * (size_t)stride + j);
+          STORE(value, packed + (slot * MOST_MOVED + c) * stride + j);
+        }
       }
       BARRIER();
-      const int vectors = rows / LANES;
-      for (int i = ITEM; i < some * vectors; i += GROUP) {
-        const int slot = i / vectors;
-        const int row = i % vectors * LANES;
+      int slot = 0;
+      for (int row = ITEM * LANES; slot < some; row += GROUP * LANES) {
+        for (; row >= rows; row -= rows) ++slot;
+        if (slot >= some) break;
         const LOCAL real* from = packed + slot * MOST_MOVED * stride;
         const uint4 pair = pairs[t.y + (uint)(first + slot)];
 #if FORM == STOKES_WINDING
