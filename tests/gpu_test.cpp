@@ -38,11 +38,11 @@ SumPlan on_device(SumPlan plan) {
   return plan;
 }
 
-// The constant alone: kernels of one harmonic compile in less time than those of nine.
-Inputs of_one_harmonic(const std::vector<Vec3>& points, Widths widths) {
+// Harmonics up to this degree: kernels of one or four compile in less time than those of nine.
+Inputs of_harmonics(int degree, const std::vector<Vec3>& points, Widths widths) {
   Inputs in(points, std::move(widths));
-  in.u = evaluate_harmonics(harmonics_of_degrees(0, 0), points);
-  in.q = random_values(points.size(), 2);
+  in.u = evaluate_harmonics(harmonics_of_degrees(0, degree), points);
+  in.q = random_values(points.size() * in.u.count, 2);
   return in;
 }
 
@@ -76,7 +76,7 @@ TEST(Gpu, SumsInDoubleEqualThoseOfTheProcessor) {
   if (!execution()->device().info().doubles) GTEST_SKIP() << "the device has no doubles";
   if (kSanitized) GTEST_SKIP() << "takes minutes";
   const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
-  const Inputs in = of_one_harmonic(points, Widths(0.4 * spacing_of(points)));
+  const Inputs in = of_harmonics(0, points, Widths(0.4 * spacing_of(points)));
   expect_equal(in, sum_plan(0, kPoints), 1e-11, "direct");
   const SumPlan plan = sum_plan(1e-6, kPoints);
   FastSum processor(points, codes(points), in.widths, plan);
@@ -95,7 +95,7 @@ TEST(Gpu, PointsMayHaveTheirOwnWidths) {
   Random random(5);
   std::vector<double> widths(points.size());
   for (double& w : widths) w = random.uniform(0.005, 0.03);
-  expect_equal(of_one_harmonic(points, Widths(widths)), sum_plan(1e-3, kPoints), 1e-3, "local widths");
+  expect_equal(of_harmonics(1, points, Widths(widths)), sum_plan(1e-3, kPoints), 1e-3, "local widths");
 }
 
 TEST(Gpu, WideMollifiersToo) {

@@ -1,6 +1,7 @@
 #include "gpu/scope.h"
 
 #include "cloud/canonical_cloud.h"
+#include "cpu/parallel.h"
 #include "sum/fast_sum.h"
 
 #include <algorithm>
@@ -71,9 +72,10 @@ void try_out(const std::shared_ptr<Execution>& execution) {
   const Widths widths(1 / std::sqrt(static_cast<double>(kTrialPoints)));
   std::vector<std::vector<Vec3>> s(2);
   std::vector<double> w;
-  FastSum(cloud.points, cloud.morton, widths, plan).stokes_winding(cloud.points, s[0], w);
+  const Scope processor("cpu", kTrialPoints);  // for the first of the two
+  parallel::with_threads(1, [&] { FastSum(cloud.points, cloud.morton, widths, plan).stokes_winding(cloud.points, s[0], w); });
   plan.execution = execution;
-  FastSum(cloud.points, cloud.morton, widths, plan).stokes_winding(cloud.points, s[1], w);
+  parallel::with_threads(1, [&] { FastSum(cloud.points, cloud.morton, widths, plan).stokes_winding(cloud.points, s[1], w); });
   double difference = 0;
   double size = 0;
   for (std::size_t i = 0; i < s[0].size(); ++i) {

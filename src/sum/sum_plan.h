@@ -19,8 +19,9 @@ struct SumPlan {
   double cut = 4;           ///< terms of M2L smaller than this times the first that the order leaves out do not count, see kept_degrees()
   double reach = 5;         ///< mollifier widths between far nodes, at least; beyond, the far field's plain kernels are good enough
   double kernel_error = 0;  ///< relative error that the kernel of a near pair may have; rounding otherwise
-  std::size_t leaf_points = 64;               ///< largest leaf
-  std::shared_ptr<gpu::Execution> execution;  ///< the device that sums run on; null: the processor, or the device of the gpu::Scope
+  std::size_t leaf_points = 64;  ///< largest leaf
+  /// The device that sums run on; null: that of the gpu::Scope, or the processor.
+  std::shared_ptr<gpu::Execution> execution = nullptr;
 };
 
 /// The cheapest plan whose relative l2 error stays below `accuracy` in [1e-6, 1e-1], for N points. accuracy 0, or N below the measured

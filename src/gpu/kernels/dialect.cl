@@ -5,7 +5,7 @@
 #if defined(__CUDACC__) || defined(__HIPCC__)
 
 typedef unsigned int uint;
-#define KERNEL extern "C" __global__ void
+#define KERNEL extern "C" __global__ void __launch_bounds__(GROUP)
 #define FUNCTION static __device__ __forceinline__
 #define GLOBAL
 #define LOCAL
