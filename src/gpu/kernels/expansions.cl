@@ -146,6 +146,41 @@ FUNCTION void source_weights(const GLOBAL real* values, uint stride, int part, r
 #endif
 }
 
+// B_a of a tile of points, n x points: an item does one order m for a vector of points.
+FUNCTION void fill_basis(int order, int points, const LOCAL real* position, const LOCAL real* factors, LOCAL real* basis) {
+  const int vectors = points / LANES;
+  for (int i = ITEM; i < (order + 1) * vectors; i += GROUP) {
+    const int m = i / vectors;
+    const int p = i % vectors * LANES;
+    const lanes x = LOAD(position + p);
+    const lanes y = LOAD(position + points + p);
+    const lanes z = LOAD(position + 2 * points + p);
+    const lanes r2 = FMA(x, x, FMA(y, y, z * z));
+    lanes re = SPLAT(1);
+    lanes im = SPLAT(0);
+    for (int k = 1; k <= m; ++k) {  // times -(x + iy) / (2k)
+      const lanes scale = SPLAT((real)-0.5 / (real)k);
+      const lanes next = scale * FMA(-y, im, x * re);
+      im = scale * FMA(x, im, y * re);
+      re = next;
+    }
+    lanes re_below = SPLAT(0);
+    lanes im_below = SPLAT(0);
+    for (int l = m; l <= order; ++l) {
+      STORE(re, basis + real_index(l, m) * points + p);
+      if (m > 0) STORE(im, basis + imaginary_index(l, m) * points + p);
+      const lanes up = SPLAT(factors[2 * (l * l + m)]) * z;
+      const lanes down = SPLAT(factors[2 * (l * l + m) + 1]) * r2;
+      const lanes re_next = FMA(-down, re_below, up * re);
+      const lanes im_next = FMA(-down, im_below, up * im);
+      re_below = re;
+      im_below = im;
+      re = re_next;
+      im = im_next;
+    }
+  }
+}
+
 // Work-group g does part g % UP_PARTS of the multipoles of source leaf first_leaf + g / UP_PARTS. `points`: of a tile, a multiple of LANES.
 // Shared: points * (n + 7) + 6 n numbers, n = (order + 1)^2.
 KERNEL points_to_multipoles(int first_leaf, const GLOBAL uint2* leaves, const GLOBAL uint* leaf_nodes, const GLOBAL int4* centres,
@@ -186,37 +221,7 @@ KERNEL points_to_multipoles(int first_leaf, const GLOBAL uint2* leaves, const GL
       for (int q = 0; q < 4; ++q) weights[q * points + p] = w[q];
     }
     BARRIER();
-    const int vectors = points / LANES;
-    for (int i = ITEM; i < (order + 1) * vectors; i += GROUP) {
-      const int m = i / vectors;
-      const int p = i % vectors * LANES;
-      const lanes x = LOAD(position + p);
-      const lanes y = LOAD(position + points + p);
-      const lanes z = LOAD(position + 2 * points + p);
-      const lanes r2 = FMA(x, x, FMA(y, y, z * z));
-      lanes re = SPLAT(1);
-      lanes im = SPLAT(0);
-      for (int k = 1; k <= m; ++k) {  // times -(x + iy) / (2k)
-        const lanes scale = SPLAT((real)-0.5 / (real)k);
-        const lanes next = scale * FMA(-y, im, x * re);
-        im = scale * FMA(x, im, y * re);
-        re = next;
-      }
-      lanes re_below = SPLAT(0);
-      lanes im_below = SPLAT(0);
-      for (int l = m; l <= order; ++l) {
-        STORE(re, basis + real_index(l, m) * points + p);
-        if (m > 0) STORE(im, basis + imaginary_index(l, m) * points + p);
-        const lanes up = SPLAT(factors[2 * (l * l + m)]) * z;
-        const lanes down = SPLAT(factors[2 * (l * l + m) + 1]) * r2;
-        const lanes re_next = FMA(-down, re_below, up * re);
-        const lanes im_next = FMA(-down, im_below, up * im);
-        re_below = re;
-        im_below = im;
-        re = re_next;
-        im = im_next;
-      }
-    }
+    fill_basis(order, points, position, factors, basis);
     BARRIER();
     int q = FIRST_SUM;
     for (int b = ITEM; q < SUMS; b += GROUP) {
