@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "commands.h"
 #include "files.h"
@@ -87,6 +88,8 @@ std::string plan_text(const Stats& stats) {
                               (stats.spacing > 0 ? " (" + short_number(stats.epsilon / stats.spacing, 2) + " spacings)" : std::string()));
   if (stats.depth > 0) text += line("depth", std::to_string(stats.depth));
   text += line("method", escape_text(stats.method) + ", " + stats.solver + ", harmonics " + escape_text(stats.harmonics));
+  const std::vector<std::string> devices = device_lines();
+  for (const std::string& device : devices) text += line(&device == &devices.front() ? "devices" : "", device);
   return text +
          line("memory", "about " + bytes(stats.planned_memory_bytes) + " to orient and mesh, more if walls are thinner than the spacing");
 }

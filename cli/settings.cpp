@@ -91,11 +91,29 @@ void add_choice(CLI::App& app, const std::string& name, T& target, const std::ma
       ->type_name("NAME");
 }
 
+/// A line for every device.
+std::string device_list() {
+  const std::vector<std::string> lines = device_lines();
+  std::string text = lines.empty() ? "no device: no driver of OpenCL or CUDA was found; the processor does the work" : "";
+  for (const std::string& line : lines) text += (text.empty() ? "" : "\n") + line;
+  return text;
+}
+
 void add_run_options(CLI::App& app, Settings& s) {
   app.option_defaults()->group(kRunGroup);
   app.add_option("--threads", s.options.threads, "Threads, 0 (the default) for all cores; the result is the same for any number")
       ->check(range(0, kMaxThreads))
       ->type_name("N");
+  app.add_option_function<std::string>(
+         "--device",
+         [&s](const std::string& text) {
+           if (text == "list") throw CLI::CallForVersion(device_list(), 0);  // text on standard output, and the end
+           const bool numbered = text.rfind("gpu:", 0) == 0 && text.size() > 4 && text.find_first_not_of("0123456789", 4) == text.npos;
+           if (!numbered && text != "auto" && text != "cpu" && text != "gpu") reject("--device", text, "auto, cpu, gpu, gpu:N or list");
+           s.options.device = s.mesh_options.device = text;
+         },
+         "Where the sums run: cpu, gpu, gpu:N; auto (the default): a GPU if there is one, for many points; list: what there is")
+      ->type_name("NAME");
   app.add_flag("-q,--quiet", s.quiet, "Say nothing but errors");
   app.add_flag_callback(
          "--no-progress", [&s] { s.progress = false; }, "No progress bar")

@@ -61,7 +61,9 @@ std::string time_text(const Stats& stats) {
       parts += (parts.empty() ? "" : ", ") + std::string(stage) + " " + short_number(value, 2);
   }
   if (!parts.empty()) text += " (" + parts + ")";
-  if (stats.threads > 0) text += " on " + counted(static_cast<std::size_t>(stats.threads), "thread");
+  if (!stats.device.empty() && stats.device != "cpu") text += " on " + escape_text(stats.device) + " and";
+  if (stats.threads > 0)
+    text += (stats.device.empty() || stats.device == "cpu" ? " on " : " ") + counted(static_cast<std::size_t>(stats.threads), "thread");
   return text + ", at most " + bytes(stats.peak_memory_bytes) + " of memory";
 }
 

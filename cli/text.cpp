@@ -1,5 +1,7 @@
 #include "text.h"
 
+#include <g3r/io.h>
+
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -51,6 +53,15 @@ std::string bytes(std::size_t count) {
   std::size_t unit = 0;
   for (; value >= 1000 && unit + 1 < kUnits.size(); ++unit) value /= 1024;
   return short_number(value, 3) + " " + kUnits[unit];
+}
+
+std::vector<std::string> device_lines() {
+  std::vector<std::string> lines;
+  for (const ComputeDevice& device : compute_devices()) {
+    lines.push_back("gpu:" + std::to_string(lines.size()) + "  " + escape_text(device.name) + ", " + bytes(device.memory) +
+                    (device.software ? ", software" : "") + " (" + escape_text(device.driver) + ")");
+  }
+  return lines;
 }
 
 std::string duration(double seconds) {

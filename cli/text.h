@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace g3r::cli {
 
@@ -26,6 +27,9 @@ namespace g3r::cli {
 
 /// 0.42 -> "0.42 s", 75 -> "1 min 15 s", 4000 -> "1 h 7 min".
 [[nodiscard]] std::string duration(double seconds);
+
+/// What --device can name, a line each: "gpu:0  NVIDIA H100, 78 GiB (OpenCL 3.0 CUDA, driver 550.54)". Empty without a driver.
+[[nodiscard]] std::vector<std::string> device_lines();
 
 /// "8G", "512M", "1.5GiB", "1000": bytes, powers of 1024. Empty if it is not that.
 [[nodiscard]] std::optional<std::size_t> parse_bytes(const std::string& text);

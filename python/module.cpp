@@ -8,6 +8,7 @@
 #include <initializer_list>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include <nanobind/nanobind.h>
@@ -95,6 +96,7 @@ Options read_options(const nb::dict& from) {
   take(from, "tolerance", options.tolerance);
   take(from, "accuracy", options.accuracy);
   take(from, "threads", options.threads);
+  take(from, "device", options.device);
   take(from, "seed", options.seed);
   take(from, "max_memory", options.max_memory);
   options.hints = read_hints(from);
@@ -114,6 +116,7 @@ MeshOptions read_mesh_options(const nb::dict& from) {
   take(from, "keep_all", options.keep_all);
   take_length(from, "noise", "noise_unit", options.noise);
   take(from, "threads", options.threads);
+  take(from, "device", options.device);
   return options;
 }
 
@@ -317,6 +320,14 @@ nb::object rows_of(const nb::handle& owner, const std::vector<std::array<T, 3>>&
   return nb::cast(nb::ndarray<nb::numpy, const T, nb::ndim<2>>(rows.data(), {rows.size(), 3}, owner));
 }
 
+// (name, driver, software, memory) of every device.
+std::vector<std::tuple<Text, Text, bool, std::size_t>> devices() {
+  const nb::gil_scoped_release release;
+  std::vector<std::tuple<Text, Text, bool, std::size_t>> out;
+  for (const ComputeDevice& d : compute_devices()) out.emplace_back(d.name, d.driver, d.software, d.memory);
+  return out;
+}
+
 void bind(nb::module_& m) {
   m.attr("__version__") = Text(version());
   nb::register_exception_translator(translate_error);
@@ -337,6 +348,7 @@ void bind(nb::module_& m) {
   m.def("orient", &orient_points, nb::arg("points"), nb::arg("options"), nb::arg("progress").none());
   m.def("reconstruct", &reconstruct_points, nb::arg("points"), nb::arg("colors").none(), nb::arg("options"), nb::arg("progress").none());
   m.def("mesh", &mesh_points, nb::arg("points"), nb::arg("normals"), nb::arg("options"), nb::arg("progress").none());
+  m.def("devices", &devices);
   m.def("field", &make_field, nb::arg("points"), nb::arg("normals"), nb::arg("areas"), nb::arg("width"));
   m.def("read_cloud", &read_points, nb::arg("path"), nb::arg("min_opacity"), nb::arg("box").none(), nb::arg("levels"));
   m.def("write_cloud", &write_points, nb::arg("path"), nb::arg("source").none(), nb::arg("positions").none(), nb::arg("normals").none(),

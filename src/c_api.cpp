@@ -94,6 +94,7 @@ Request read_options(const g3r_options* given, size_t points) {
   request.options.max_memory = o.max_memory;
   request.options.hints = read_hints(o, points);
   request.mesh_options.depth = o.depth;
+  if (o.device != nullptr) request.options.device = o.device;
   if (o.progress != nullptr) {
     request.monitor.progress = [o](std::string_view stage, double fraction) {
       return o.progress(o.user, std::string(stage).c_str(), fraction) != 0;

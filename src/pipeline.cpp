@@ -5,6 +5,7 @@
 #include "cloud/noise.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
+#include "gpu/scope.h"
 #include "orient/coarse_to_fine.h"
 #include "orient/hints.h"
 #include "orient/refine.h"
@@ -296,7 +297,12 @@ Orientation orient_in_arena(const PointsView& points, const Options& options, St
 
 Orientation orient(const PointsView& points, const Options& options, const Monitor& monitor) {
   Stages stages(monitor);
-  return parallel::with_threads(options.threads, [&] { return orient_in_arena(points, options, stages); });
+  return parallel::with_threads(options.threads, [&] {
+    const gpu::Scope device(options.device, points.count);
+    Orientation out = orient_in_arena(points, options, stages);
+    device.describe(out.stats);
+    return out;
+  });
 }
 
 Stats plan(const PointsView& points, const Options& options) {

@@ -1,5 +1,6 @@
 // From points, or oriented points, to a mesh.
 #include "cpu/parallel.h"
+#include "gpu/scope.h"
 #include "median.h"
 #include "mesh/field_mesher.h"
 #include "mesh/held_points.h"
@@ -217,6 +218,7 @@ Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const Me
     directions.push_back({n[0] / size, n[1] / size, n[2] / size});
   }
   return parallel::with_threads(options.threads, [&] {
+    const gpu::Scope device(options.device, kept.size());
     OrientedCloud oriented = oriented_cloud(kept, directions);
     std::vector<Vec3>().swap(kept);  // their memory is wanted
     std::vector<Vec3>().swap(directions);
@@ -233,12 +235,14 @@ Reconstruction reconstruct(const PointsView& points, const Options& options, con
   const MeshOptions chosen = choose(mesh_options, options);
   if (options.max_memory > 0) require_memory(plan(points, options, mesh_options).planned_memory_bytes, options);
   Reconstruction out;
+  const gpu::Scope device(options.device, points.count);  // one for both steps
   out.orientation = orient(points, options, monitor);
   out.orientation.stats.planned_memory_bytes = planned(out.orientation.stats, chosen);
   Stages stages(monitor);
   stages.begin("mesh");
   double far = 0;
   parallel::with_threads(options.threads, [&] {
+    const gpu::Scope same_device(options.device, points.count);
     OrientedCloud oriented = oriented_cloud(points, out.orientation.normals, out.orientation.areas);
     mesh::LeftOut left_out{outliers_of(points, out.orientation), {}};
     out.mesh = make_mesh(std::move(oriented), chosen, monitor, left_out, options.max_memory, &far);
@@ -246,6 +250,7 @@ Reconstruction reconstruct(const PointsView& points, const Options& options, con
     out.check.dropped = left_out.dropped;
     carry_attributes(out.mesh, points, {}, out.orientation.confidence);
   });
+  device.describe(out.orientation.stats);
   if (far > kFarShare) {
     out.orientation.stats.warnings.push_back(
         std::to_string(std::lround(100 * far)) +

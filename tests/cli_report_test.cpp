@@ -15,7 +15,7 @@ json report(const g3r::Stats& stats, const g3r::MeshCheck* mesh = nullptr) { ret
 TEST(Report, HasEveryDocumentedField) {
   const json r = report({});
   for (const char* key : {"schema", "schema_version", "g3r_version", "input", "scales", "method", "iterations", "converged", "consistent",
-                          "seconds", "planned_memory_bytes", "peak_memory_bytes", "threads", "confidence", "mesh", "warnings"}) {
+                          "seconds", "planned_memory_bytes", "peak_memory_bytes", "threads", "device", "confidence", "mesh", "warnings"}) {
     EXPECT_TRUE(r.contains(key)) << key;
   }
   for (const char* stage : {"read", "build", "solve", "refine", "mesh", "write", "total"}) EXPECT_EQ(r["seconds"][stage], 0.0) << stage;

@@ -28,6 +28,7 @@ REPORT_SCHEMA = {
     "hints": {"given": list, "settled_share": float, "turned_share": float, "agreement": float, "contradicted_share": float},
     "seconds": {"read": float, "build": float, "solve": float, "refine": float, "mesh": float, "write": float, "total": float},
     "planned_memory_bytes": int, "peak_memory_bytes": int, "threads": int,
+    "device": {"name": str, "driver": str},
     "confidence": {"mean": float, "below_half": float},
     "warnings": list,
 }
@@ -91,10 +92,17 @@ class ExitCodes(ProgramTest):
             with self.subTest(arguments):
                 self.assertIn(words, self.expect(code, *arguments).err)
 
+    def test_devices_are_listed_and_missing_ones_are_69(self):
+        listed = self.expect(OK, "--device", "list").out.decode()
+        self.assertTrue(listed.startswith("gpu:0  ") or listed.startswith("no device: "), listed)
+        self.assertIn("there is no device gpu:999", self.expect(UNAVAILABLE, "orient", "ball.ply", "a.ply", "--device", "gpu:999").err)
+        self.assertFalse(os.path.exists(self.path("a.ply")))
+
     def test_wrong_command_lines_are_64(self):
         for arguments in (
                 [], ["--bogus", "ball.ply"], ["ball.ply", "a.ply", "b.ply"], ["orient", "ball.ply"], ["eval", "ball.ply"],
                 ["sample", "ball.ply", "out.ply"], ["ball.ply", "--threads", "-1"], ["ball.ply", "--threads", "two"],
+                ["ball.ply", "--device", "tpu"], ["ball.ply", "--device", "gpu:"], ["ball.ply", "--device", "gpu:-1"],
                 ["ball.ply", "--epsilon", "0"], ["ball.ply", "--epsilon", "0.5x"], ["ball.ply", "--epsilon", "nan"],
                 ["ball.ply", "--degree", "99"], ["ball.ply", "--depth", "1"], ["ball.ply", "--preset", "best"],
                 ["ball.ply", "--solver", "magic"], ["ball.ply", "--schedule", "many"], ["ball.ply", "--harmonics", "x,q"],
@@ -352,6 +360,7 @@ class Report(ProgramTest):
         report = self.json_of("r.json")
         self.assertEqual(report["input"], {"points": 309, "used": 300, "dropped_non_finite": 2, "outliers": 0, "merged_duplicates": 7})
         self.assertEqual(report["threads"], 1)
+        self.assertEqual(report["device"], {"name": "cpu", "driver": ""})
         self.assertAlmostEqual(report["scales"]["box_side"], 2, delta=0.05)
         seconds = dict(report["seconds"])
         total = seconds.pop("total")

@@ -88,7 +88,11 @@ struct Options {
   double accuracy = -1;   ///< relative l2 error allowed in the sums, 1e-6..1e-1; 0: direct sums; -1: 1e-2, or 2e-2 where that is enough
   bool condition_number = false;  ///< also compute the condition number; throws InvalidInput unless the solver is dense
   int threads = 0;                ///< 0: all cores. The result does not depend on it
-  std::uint64_t seed = 0;         ///< reserved for steps that sample; the present method draws no random number
+  /// Where the sums run: "cpu"; "gpu", the first GPU; "gpu:N", number N of compute_devices(); "auto": the first GPU if there is one and the
+  /// points are many enough, else, or if it fails, the processor. A GPU's result differs in the last digits. Throws Unavailable if the
+  /// device that is asked for is not there or fails.
+  std::string device = "auto";
+  std::uint64_t seed = 0;  ///< reserved for steps that sample; the present method draws no random number
   std::size_t max_memory =
       0;  ///< bytes; refuse before the solve when the plan exceeds it, or before the mesh when that turns out to. 0: no limit
   Hints hints;
@@ -133,6 +137,8 @@ struct Stats {
   std::size_t planned_memory_bytes = 0;                 ///< of reconstruct(): with the field mesher; shapes of thin walls take more
   std::size_t peak_memory_bytes = 0;                    ///< of the whole process
   int threads = 0;
+  std::string device;  ///< "cpu", or the name of the device that the sums ran on; empty: none did
+  std::string driver;  ///< of the device
   std::vector<std::string> warnings;
 };
 
@@ -183,6 +189,7 @@ struct MeshOptions {
   /// mesh_oriented(); reconstruct() takes Options::noise.
   Length noise;
   int threads = 0;  ///< of mesh_oriented(), 0: all cores; reconstruct() takes Options::threads. The result does not depend on it
+  std::string device = "auto";  ///< of mesh_oriented(), see Options::device; reconstruct() takes that
 };
 
 /// A mesh together with the normals it was made from.
@@ -239,6 +246,18 @@ class Field {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// A device that Options::device can name.
+struct ComputeDevice {
+  std::string name;
+  std::string driver;
+  bool software = false;   ///< an OpenCL that runs on the processor: never taken unless it is asked for
+  std::size_t memory = 0;  ///< bytes
+};
+
+/// Devices that drivers of OpenCL and CUDA know of, GPUs first: "gpu:0", "gpu:1", ... Empty without any driver. Takes a fraction of a
+/// second.
+[[nodiscard]] std::vector<ComputeDevice> compute_devices();
 
 /// Version of the library, "major.minor.patch".
 [[nodiscard]] std::string_view version();

@@ -54,6 +54,7 @@ typedef struct g3r_options {
   size_t inside_count;
   int seen_from_inside; /* not 0: normals face the side the scanner was on, as in a room */
   int flip;             /* not 0: turn every normal */
+  const char* device; /* "auto", "cpu", "gpu", "gpu:N"; NULL: auto */
 } g3r_options;
 
 #define G3R_NO_SENSOR UINT32_MAX

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from typing import TYPE_CHECKING, Any, Callable, Dict, Optional, Set, Tuple, Union, overload
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, NamedTuple, Optional, Set, Tuple, Union, overload
 
 from . import _g3r
 from ._arrays import as_colors, as_points, member
@@ -37,8 +37,8 @@ def _length(name: str, value: Union[str, float], least: str) -> Dict[str, Any]:
     return {name: number, f"{name}_unit": unit}
 
 
-_METHOD_OPTIONS = {"noise", "method", "wnnc_widths", "harmonics", "solver", "schedule", "tolerance", "accuracy", "max_memory"}
 _MESH_OPTIONS = {"mesher", "keep_largest", "min_component", "faces", "keep_all"}
+_METHOD_OPTIONS = {"noise", "method", "wnnc_widths", "harmonics", "solver", "schedule", "tolerance", "accuracy", "max_memory", "device"}
 
 
 def _options(epsilon: Union[str, float], degree: Optional[int], preset: str, threads: int, seed: int, known: Set[str],
@@ -139,6 +139,22 @@ class Result:
         return show(self, open=False)._repr_html_()
 
 
+class Device(NamedTuple):
+    """A device that `device="gpu:N"` can name."""
+
+    name: str
+    driver: str
+    software: bool
+    """An OpenCL that runs on the processor: never taken unless it is asked for."""
+    memory: int
+    """Bytes."""
+
+
+def devices() -> List[Device]:
+    """What drivers of OpenCL and CUDA know of, GPUs first: "gpu:0", "gpu:1", ... Empty without any driver."""
+    return [Device(*row) for row in _g3r.devices()]
+
+
 def orient(points: Any, *, epsilon: Union[str, float] = "auto", degree: Optional[int] = None, preset: str = "default", threads: int = 0,
            seed: int = 0, progress: Optional[Progress] = None, **more: Any) -> Floats:
     """Consistent outward normals of an unoriented cloud of a closed surface.
@@ -194,6 +210,7 @@ def run(points: Any, *, colors: Any = None, epsilon: Union[str, float] = "auto",
     inside: a point inside the solid, (3,), or more of them, (k, 3).
     seen_from_inside: True for rooms, tunnels, streets: normals face the side the scanner was on.
     flip: True turns every normal, after all other hints.
+    device: where the sums run: "auto", "cpu", "gpu", or "gpu:N", number N of `devices()`. "auto" takes a GPU for many points.
     Further options: mesher, min_component, method, wnnc_widths, harmonics, solver, schedule, tolerance, accuracy, max_memory, as in C++.
 
     The interpreter lock is released; Ctrl-C works. Raises InputError, UnavailableError, Cancelled, MemoryError.
@@ -214,17 +231,17 @@ def run(points: Any, *, colors: Any = None, epsilon: Union[str, float] = "auto",
 
 
 def mesh_oriented(points: Any, normals: Any = None, *, depth: Union[str, int] = "auto", mesher: str = "auto",
-                  noise: Union[str, float] = "auto", threads: int = 0,
+                  noise: Union[str, float] = "auto", threads: int = 0, device: str = "auto",
                   progress: Optional[Progress] = None) -> Tuple[Floats, Indices]:
     """A mesh of points that already have outward normals: V (v, 3) and F (m, 3). `normals` may be left out if `points` has them.
 
     noise: standard deviation of the points from their surface, a number in input units, "X%" of the box diagonal or "Xh" point spacings;
     0: clean. Estimated unless given.
-    threads: 0 for all cores; the result does not depend on it."""
+    threads: 0 for all cores; the result does not depend on it. device: see `run`."""
     if normals is None:
         normals = member(points, "normals", "point_normals", "vertex_normals")
         if normals is None:
             raise InputError("there are no normals; g3r.reconstruct() takes points without them")
-    options = {"mesher": mesher, "threads": int(threads), **_depth(depth), **_length("noise", noise, "0 or more")}
+    options = {"mesher": mesher, "threads": int(threads), "device": device, **_depth(depth), **_length("noise", noise, "0 or more")}
     vertices, faces, _, _ = _g3r.mesh(as_points(points), as_points(normals, "normals"), options, progress)
     return vertices, faces

@@ -112,10 +112,21 @@ def test_field_tells_inside_from_outside(result, sphere):
 @pytest.mark.parametrize("options", [
     {"epsilon": 0.05}, {"epsilon": "0.5%"}, {"epsilon": "0.8h"}, {"epsilon": "0.03n"}, {"noise": 0}, {"noise": "0.2h"}, {"noise": "auto"}, {"degree": 1}, {"preset": "paper"}, {"solver": "cg"}, {"method": "energy"},
     {"method": "wnnc", "wnnc_widths": "sparse"}, {"method": "agr"}, {"method": "pgr"},
-    {"threads": 1}, {"seed": 7}, {"tolerance": 1e-2}, {"accuracy": 1e-2}, {"harmonics": "1,x,y,z"},
+    {"threads": 1}, {"device": "cpu"}, {"seed": 7}, {"tolerance": 1e-2}, {"accuracy": 1e-2}, {"harmonics": "1,x,y,z"},
 ])
 def test_every_option_is_taken(sphere, options):
     assert is_outward(g3r.orient(sphere, **options), sphere)
+
+
+def test_devices(sphere):
+    for device in g3r.devices():
+        assert device.name and device.memory > 0 and isinstance(device.software, bool)
+    for device in ("tpu", "gpu:"):
+        with pytest.raises(g3r.InputError, match="device must be"):
+            g3r.orient(sphere, device=device)
+    with pytest.raises(g3r.UnavailableError, match="there is no device gpu:999"):
+        g3r.orient(sphere, device="gpu:999")
+    assert g3r.run(sphere, device="cpu", mesh=False).stats["device"] == {"name": "cpu", "driver": ""}
 
 
 def test_threads_do_not_change_the_result(sphere):

@@ -2,6 +2,7 @@
 
 #include "cloud/canonical_cloud.h"
 #include "cpu/parallel.h"
+#include "gpu/scope.h"
 #include "sum/kernels.h"
 #include "sum/sum_engine.h"
 
@@ -53,6 +54,12 @@ void fill_eta(SumEngine<T>& engine, const std::vector<Vec3>& eta, std::size_t va
       for (std::size_t i = begin; i < end; ++i) value[i] = static_cast<T>(eta[i][a]);
     }
   });
+}
+
+// Sums run on the device of their plan, or else of their surroundings.
+SumPlan placed(SumPlan plan) {
+  if (!plan.execution) plan.execution = gpu::Scope::current();
+  return plan;
 }
 
 double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -190,7 +197,8 @@ struct FastSum::Impl {
     const std::vector<Vec3> sources = scaled(points, factor);
     std::vector<std::uint64_t> codes(sources.size());
     std::transform(sources.begin(), sources.end(), codes.begin(), morton_code);
-    const SumPlan finer = sum_plan(kShellAccuracy, sources.size());
+    SumPlan finer = sum_plan(kShellAccuracy, sources.size());
+    finer.execution = plan.execution;
     return make(sources, codes, Widths(factor * widths[0]), plan.order < finer.order ? finer : plan, stop);
   }
 
@@ -239,7 +247,7 @@ struct FastSum::Impl {
 
 FastSum::FastSum(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, Widths widths, const SumPlan& plan,
                  const std::atomic<bool>* cancel)
-    : impl_(new Impl{points, widths, plan, cancel, Impl::make(points, morton, widths, plan, cancel)}) {}
+    : impl_(new Impl{points, widths, placed(plan), cancel, Impl::make(points, morton, widths, placed(plan), cancel)}) {}
 
 FastSum::FastSum(const FastSum& other, Widths narrower) {
   const Impl& from = *other.impl_;

@@ -143,6 +143,12 @@ void M2lMatrices<T>::store(std::size_t index, T* out) const {
 }
 
 template <class T>
+cpu::TranslationMatrix<T> M2lMatrices<T>::shape(std::size_t index) const {
+  const std::size_t first = groups_begin_[index];
+  return {nullptr, columns_.data() + first, groups_begin_[index + 1] - first, columns_[first].last};
+}
+
+template <class T>
 cpu::TranslationMatrix<T> M2lMatrices<T>::matrix(std::size_t index, AlignedVector<T>& made) const {
   const T* data = matrices_.data() + (matrices_.empty() ? 0 : matrix_begin_[index]);
   if (matrices_.empty()) {
@@ -150,8 +156,9 @@ cpu::TranslationMatrix<T> M2lMatrices<T>::matrix(std::size_t index, AlignedVecto
     store(index, made.data());
     data = made.data();
   }
-  const std::size_t first = groups_begin_[index];
-  return {data, columns_.data() + first, groups_begin_[index + 1] - first, columns_[first].last};
+  cpu::TranslationMatrix<T> out = shape(index);
+  out.data = data;
+  return out;
 }
 
 template class StoredTranslation<float>;

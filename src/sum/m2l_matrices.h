@@ -53,6 +53,8 @@ class M2lMatrices {
   [[nodiscard]] std::size_t index(std::size_t offset) const { return index_[offset]; }
   /// D_s of an offset.
   [[nodiscard]] const T* signs(const Offset& offset) const { return signs_.data() + offset.mirror() * signs_.size() / kMirrors; }
+  /// The layout of a matrix, without its data.
+  [[nodiscard]] cpu::TranslationMatrix<T> shape(std::size_t index) const;
   /// `made` holds the matrix where all are too large to be kept.
   [[nodiscard]] cpu::TranslationMatrix<T> matrix(std::size_t index, AlignedVector<T>& made) const;
 

@@ -2,6 +2,8 @@
 #include "sum/sum_engine.h"
 
 #include "cpu/parallel.h"
+#include "gpu/execution.h"
+#include "gpu/sum_on_device.h"
 #include "sum/expansions.h"
 #include "sum/kernels.h"
 
@@ -388,11 +390,49 @@ void SumEngine<T>::leaves(cpu::NearForm form, int batch, std::size_t out_channel
 }
 
 template <class T>
+bool SumEngine<T>::run_on_device(cpu::NearForm form, int batch, std::size_t out_channels) {
+  if (!plan_.execution || !plan_.execution->usable(sizeof(T) == sizeof(double))) return false;
+  gpu::Device& device = plan_.execution->device();
+  try {
+    const std::unique_lock lock = device.lock();
+    std::shared_ptr<gpu::ListsOnDevice<T>>& lists = interactions_->on_device;
+    if (!lists) lists = std::make_shared<gpu::ListsOnDevice<T>>(device, *target_tree_, sources_->tree, interactions_->lists);
+    if (!plan_.direct) {
+      lists->prepare_far(matrices(), terms_.order, {sources_->child_to_parent, sources_->parent_to_child}, coefficient_count(plan_.order));
+    }
+    if (!on_device_) {
+      const gpu::PointsOfSum<T> points{source_fields_->geometry.data(),
+                                       geometry_fields(),
+                                       field_stride(),
+                                       targets_->first_block,
+                                       targets_->x.data(),
+                                       targets_->y.data(),
+                                       targets_->z.data(),
+                                       local_widths_ ? targets_->width_squared.data() : nullptr,
+                                       source_fields_->widths[0]};
+      on_device_ = std::make_shared<gpu::SumOnDevice<T>>(device, *lists, *target_tree_, sources_->tree, points);
+    }
+    const std::size_t data_channels = form == cpu::NearForm::kGreenAdjoint ? static_cast<std::size_t>(batch) : 0;
+    const T reach = static_cast<T>(std::min(plan_.reach, kMollifierReach<T>));
+    on_device_->run({form, batch, plan_.direct, terms_.order, reach, plan_.kernel_error, value(0), field_count_ - geometry_fields(),
+                     target_data_.data(), data_channels, multipole_channels_, local_channels_, out_channels, cancel_},
+                    out_);
+    return true;
+  } catch (const gpu::DeviceError& error) {
+    on_device_.reset();
+    interactions_->on_device.reset();
+    plan_.execution->fail(error.what());
+    return false;
+  }
+}
+
+template <class T>
 const std::vector<double>& SumEngine<T>::run(cpu::NearForm form, int batch, std::size_t out_channels) {
   multipole_channels_ = multipole_channels(form, batch, local_widths_);
   local_channels_ = multipole_channels_ + (form == cpu::NearForm::kStokesWinding ? 1 : 0);
   set_terms(terms_for(form, batch, plan_));
   out_.resize(targets_->x.size() * out_channels);
+  if (run_on_device(form, batch, out_channels)) return out_;
   if (!plan_.direct) {
     upward(form, batch);
     across(form);

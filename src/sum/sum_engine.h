@@ -16,6 +16,13 @@
 #include <memory>
 #include <vector>
 
+namespace g3r::gpu {
+template <class T>
+class ListsOnDevice;
+template <class T>
+class SumOnDevice;
+}  // namespace g3r::gpu
+
 namespace g3r {
 
 /// The targets of a sum in blocks of cpu::kLanes, leaf by leaf; coordinates relative to the leaf's centre.
@@ -69,8 +76,11 @@ class SumEngine {
   struct Interactions {
     InteractionLists lists;
     std::vector<std::unique_ptr<M2lMatrices<T>>> matrices;  // of every order, made when it is needed
+    std::shared_ptr<gpu::ListsOnDevice<T>> on_device;       // made when it is needed
   };
 
+  // The same on the plan's device; false if it failed or there is none, and the processor has to do it.
+  bool run_on_device(cpu::NearForm form, int batch, std::size_t out_channels);
   void set_terms(const M2lTerms& terms);
   const M2lMatrices<T>& matrices();  // of the current order
   void locate_sources(const std::vector<double>& widths);
@@ -113,6 +123,7 @@ class SumEngine {
   AlignedVector<T> fields_;  // geometry and values of the sources, one field after the other, field_stride() apart
   std::size_t field_count_ = 0;
   AlignedVector<T> target_data_;
+  std::shared_ptr<gpu::SumOnDevice<T>> on_device_;  // made when it is needed
   AlignedVector<T> multipoles_;
   AlignedVector<T> locals_;
   std::vector<double> out_;

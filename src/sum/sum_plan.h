@@ -2,8 +2,13 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 
 namespace g3r {
+
+namespace gpu {
+class Execution;
+}
 
 /// Parameters of the hierarchical sums. Measured by bench/fast_sum over clouds of every kind; see docs/design.md.
 struct SumPlan {
@@ -15,6 +20,8 @@ struct SumPlan {
   double reach = 5;         ///< mollifier widths between far nodes, at least; beyond, the far field's plain kernels are good enough
   double kernel_error = 0;  ///< relative error that the kernel of a near pair may have; rounding otherwise
   std::size_t leaf_points = 64;  ///< largest leaf
+  /// The device that sums run on; null: that of the gpu::Scope, or the processor.
+  std::shared_ptr<gpu::Execution> execution = nullptr;
 };
 
 /// The cheapest plan whose relative l2 error stays below `accuracy` in [1e-6, 1e-1], for N points. accuracy 0, or N below the measured

@@ -50,6 +50,10 @@ int main(void) {
   if (g3r_orient(points, kCount, &options, normals, NULL, NULL) != G3R_INVALID_INPUT) return puts("sensors at NULL are taken"), 1;
   options.sensor_count = 0;
   options.sensor_of_point = NULL;
+  options.device = "tpu";
+  if (g3r_orient(points, kCount, &options, normals, NULL, NULL) != G3R_INVALID_INPUT) return puts("an unknown device was taken"), 1;
+  options.device = "cpu";
+  if (g3r_orient(points, kCount, &options, normals, NULL, NULL) != G3R_OK) return puts("the processor was not taken"), 1;
   g3r_mesh* mesh = NULL;
   status = g3r_reconstruct(points, kCount, NULL, NULL, NULL, NULL, &mesh);
   if (status == G3R_OK) {

@@ -1,0 +1,157 @@
+// The sums, and orientation, on a device beside the processor. One JSON object per line on standard output.
+//   g3r_bench_gpu [--device gpu:0] [--points N,N,...] [--accuracy A] [--threads T] [--orient N,N,...]
+// pairs: near field alone, of every form; sums: whole sums, points per second; orient: seconds. Medians of wall clock times of three runs
+// after one that compiles and allocates.
+#include "cloud/canonical_cloud.h"
+#include "cpu/parallel.h"
+#include "gpu/scope.h"
+#include "sum/fast_sum.h"
+#include "sum_cases.h"
+
+#include "shapes.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <iostream>
+#include <sstream>
+#include <string>
+
+namespace {
+
+using namespace g3r;
+
+constexpr std::size_t kPairPoints = 8192;  // all pairs of them: 67 million
+constexpr double kEpsilon = 0.4;           // spacings, as in the default solve
+
+struct Arguments {
+  std::string device = "gpu:0";
+  std::vector<std::size_t> points{50'000, 1'000'000};
+  std::vector<std::size_t> orient{50'000};
+  double accuracy = 1e-2;
+  int threads = 0;
+};
+
+std::vector<std::size_t> numbers(const std::string& text) {
+  std::vector<std::size_t> out;
+  std::istringstream in(text);
+  for (std::string part; std::getline(in, part, ',');) out.push_back(static_cast<std::size_t>(std::atof(part.c_str())));
+  return out;
+}
+
+Arguments parse(int argc, char** argv) {
+  Arguments a;
+  for (int i = 1; i + 1 < argc; i += 2) {
+    const std::string flag = argv[i];
+    if (flag == "--device") a.device = argv[i + 1];
+    if (flag == "--points") a.points = numbers(argv[i + 1]);
+    if (flag == "--orient") a.orient = numbers(argv[i + 1]);
+    if (flag == "--accuracy") a.accuracy = std::atof(argv[i + 1]);
+    if (flag == "--threads") a.threads = std::atoi(argv[i + 1]);
+  }
+  return a;
+}
+
+double seconds_of(const std::function<void()>& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double median_seconds(const std::function<void()>& work) {
+  work();
+  std::array<double, 3> runs{};
+  for (double& run : runs) run = seconds_of(work);
+  std::sort(runs.begin(), runs.end());
+  return runs[1];
+}
+
+// Seconds of every form.
+struct Timed {
+  const char* form;
+  double seconds;
+};
+std::vector<Timed> time_forms(const sum_cases::Inputs& in, const SumPlan& plan) {
+  FastSum sum(in.points, sum_cases::codes(in.points), in.widths, plan);
+  std::vector<Vec3> s;
+  std::vector<double> w;
+  return {{"stokes_winding", median_seconds([&] { sum.stokes_winding(in.eta, s, w); })},
+          {"winding", median_seconds([&] { w = sum.winding(in.eta); })},
+          {"winding_adjoint", median_seconds([&] { s = sum.winding_adjoint(in.q1); })},
+          {"winding_gradient", median_seconds([&] { s = sum.winding_gradient(in.eta); })},
+          {"green_9", median_seconds([&] { w = sum.green(in.u, in.eta); })},
+          {"green_adjoint_9", median_seconds([&] { s = sum.green_adjoint(in.u, in.q); })}};
+}
+
+// A line for every form: `count` things per second on the device and on the processor.
+void compare_forms(const char* what, const sum_cases::Inputs& in, SumPlan plan, const std::shared_ptr<gpu::Execution>& execution,
+                   double count) {
+  const std::vector<Timed> processor = time_forms(in, plan);
+  plan.execution = execution;
+  const std::vector<Timed> device = time_forms(in, plan);
+  for (std::size_t i = 0; i < device.size(); ++i) {
+    std::cout << nlohmann::ordered_json{{"measured", what},
+                                        {"form", device[i].form},
+                                        {"points", in.points.size()},
+                                        {"device_seconds", device[i].seconds},
+                                        {"cpu_seconds", processor[i].seconds},
+                                        {"device_per_second", count / device[i].seconds},
+                                        {"cpu_per_second", count / processor[i].seconds}}
+              << std::endl;
+  }
+}
+
+sum_cases::Inputs inputs(std::size_t n, std::vector<Vec3>& points) {
+  points = canonical_cloud(shapes::torus(n, 0.6, 0.25, 5).points).points;
+  const double h = std::sqrt(4 * std::acos(-1.0) * std::acos(-1.0) * 0.6 * 0.25 / (0.85 * 0.85 * 1.1 * 1.1) / static_cast<double>(n));
+  return {points, Widths(kEpsilon * h)};
+}
+
+void measure_orient(std::size_t n, const Arguments& arguments) {
+  const std::vector<Vec3> points = shapes::torus(n, 0.6, 0.25, 5).points;
+  Options options;
+  options.threads = arguments.threads;
+  options.device = "cpu";
+  const double processor = seconds_of([&] { (void)orient(points, options); });
+  options.device = arguments.device;
+  (void)orient(points, options);  // compiles
+  const double device = seconds_of([&] { (void)orient(points, options); });
+  std::cout << nlohmann::ordered_json{{"measured", "orient"}, {"points", n}, {"device_seconds", device}, {"cpu_seconds", processor}}
+            << std::endl;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const Arguments arguments = parse(argc, argv);
+    parallel::with_threads(arguments.threads, [&] {
+      const gpu::Scope scope(arguments.device, kPairPoints);
+      const std::shared_ptr<gpu::Execution> execution = gpu::Scope::current();
+      Stats stats;
+      scope.describe(stats);
+      std::cout << nlohmann::ordered_json{{"device", stats.device},
+                                          {"driver", stats.driver},
+                                          {"threads", parallel::thread_count(arguments.threads)},
+                                          {"accuracy", arguments.accuracy}}
+                << std::endl;
+      const gpu::Scope processor("cpu", kPairPoints);  // what follows says where it runs
+      std::vector<Vec3> points;
+      SumPlan direct = sum_plan(arguments.accuracy, 1);
+      direct.kernel_error = sum_plan(arguments.accuracy, 1'000'000).kernel_error;
+      compare_forms("pairs", inputs(kPairPoints, points), direct, execution, static_cast<double>(kPairPoints * kPairPoints));
+      for (const std::size_t n : arguments.points) {
+        compare_forms("sums", inputs(n, points), sum_plan(arguments.accuracy, n), execution, static_cast<double>(n));
+      }
+    });
+    for (const std::size_t n : arguments.orient) measure_orient(n, arguments);
+  } catch (const std::exception& error) {
+    std::cerr << "g3r_bench_gpu: " << error.what() << '\n';
+    return 1;
+  }
+}

@@ -1,0 +1,121 @@
+// Devices that kernels run on, found at run time: OpenCL's, and CUDA's where its compiler is installed. Neither is needed to build or run.
+//
+// Internal to src/gpu and its users in src/sum. All functions throw DeviceError; nothing is printed, and no state is shared between devices
+// that are open at the same time.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace g3r::gpu {
+
+/// Whatever a device or its driver complains of, one line: no memory, a kernel that does not compile, a device that is gone.
+class DeviceError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A device, not yet in use.
+struct DeviceInfo {
+  std::string name;                ///< "NVIDIA H100"
+  std::string driver;              ///< "OpenCL 3.0 CUDA, driver 550.54"
+  bool software = false;           ///< an OpenCL that runs on the processor
+  bool doubles = false;            ///< has arithmetic in double
+  std::size_t memory = 0;          ///< bytes
+  std::size_t largest_buffer = 0;  ///< bytes
+  std::size_t local_memory = 0;    ///< bytes per work-group
+  std::size_t lanes_float = 1;     ///< numbers worked on together: more than 1 on processors
+  std::size_t lanes_double = 1;
+  bool cuda = false;
+  std::uint64_t handle[2] = {0, 0};  ///< of the interface
+};
+
+/// Memory of a device, freed with it.
+class Buffer {
+ public:
+  virtual ~Buffer() = default;
+  [[nodiscard]] std::size_t bytes() const { return bytes_; }
+
+ protected:
+  explicit Buffer(std::size_t bytes) : bytes_(bytes) {}
+
+ private:
+  std::size_t bytes_;
+};
+
+/// A compiled function.
+class Kernel {
+ public:
+  virtual ~Kernel() = default;
+};
+
+/// A compiled source: its kernels are valid as long as it lives.
+class Program {
+ public:
+  virtual ~Program() = default;
+  /// A function of the source. Throws DeviceError if there is none.
+  [[nodiscard]] virtual Kernel& kernel(const std::string& name) = 0;
+};
+
+/// An argument of a kernel: a buffer, or a number of the kernel's own type.
+struct Argument {
+  const Buffer* buffer = nullptr;
+  unsigned char value[8] = {};
+  std::size_t bytes = 0;
+
+  Argument(const Buffer& b) : buffer(&b) {}  // NOLINT(google-explicit-constructor): arguments read as in a call
+  template <class T>
+  requires std::is_arithmetic_v<T> Argument(T v) : bytes(sizeof v) {  // NOLINT(google-explicit-constructor)
+    std::memcpy(value, &v, sizeof v);
+  }
+};
+
+/// A device in use. Work is done in the order it was asked for. Calls must not overlap: hold lock().
+class Device {
+ public:
+  virtual ~Device() = default;
+  [[nodiscard]] const DeviceInfo& info() const { return info_; }
+  [[nodiscard]] std::unique_lock<std::mutex> lock() { return std::unique_lock(mutex_); }
+
+  /// Memory that is not set to anything.
+  [[nodiscard]] virtual std::unique_ptr<Buffer> allocate(std::size_t bytes) = 0;
+  virtual void write(const Buffer& to, std::size_t offset, const void* from, std::size_t bytes) = 0;
+  /// Waits for what was asked for before.
+  virtual void read(const Buffer& from, void* to, std::size_t bytes) = 0;
+  virtual void finish() = 0;
+  /// The compiled source, from now on kept by the device.
+  [[nodiscard]] Program& program(const std::string& source);
+  /// `groups` work-groups of `group_size` items, with `shared_bytes` of local memory in the kernel's last argument.
+  virtual void launch(Kernel& kernel, std::size_t groups, std::size_t group_size, const std::vector<Argument>& arguments,
+                      std::size_t shared_bytes) = 0;
+
+ protected:
+  explicit Device(DeviceInfo info) : info_(std::move(info)) {}
+  /// Compiles a source, or takes the result from the user's cache (gpu/kernel_cache.h).
+  [[nodiscard]] virtual std::unique_ptr<Program> compile(const std::string& source) = 0;
+  /// For the destructors of devices: programs go before what they were made in.
+  void forget_programs() { programs_.clear(); }
+
+ private:
+  DeviceInfo info_;
+  std::map<std::string, std::unique_ptr<Program>> programs_;
+  std::mutex mutex_;
+};
+
+/// All devices, in a fixed order: GPUs before software. A GPU that both interfaces know is there once, through OpenCL. Never throws for
+/// want of a driver: the list is empty then.
+[[nodiscard]] std::vector<DeviceInfo> list_devices();
+
+/// Takes a device into use.
+[[nodiscard]] std::shared_ptr<Device> open_device(const DeviceInfo& info);
+
+}  // namespace g3r::gpu

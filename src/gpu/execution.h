@@ -1,0 +1,30 @@
+// Where sums run: a device in use, and what happens when it fails. A SumPlan carries it; null stands for the processor.
+#pragma once
+
+#include "gpu/device.h"
+
+#include <memory>
+#include <string>
+
+namespace g3r::gpu {
+
+class Execution {
+ public:
+  /// `required`: failures throw Unavailable; otherwise the processor takes over.
+  Execution(std::shared_ptr<Device> device, bool required) : device_(std::move(device)), required_(required) {}
+
+  [[nodiscard]] Device& device() const { return *device_; }
+  /// Whether sums of this precision run on the device: it has not failed, and has doubles if they are needed.
+  [[nodiscard]] bool usable(bool doubles) const { return failure_.empty() && (!doubles || device_->info().doubles); }
+  /// Takes note that the device has failed. Throws Unavailable if it was required.
+  void fail(const std::string& why);
+  /// Why the processor took over; empty if it did not.
+  [[nodiscard]] const std::string& failure() const { return failure_; }
+
+ private:
+  std::shared_ptr<Device> device_;
+  bool required_;
+  std::string failure_;
+};
+
+}  // namespace g3r::gpu

@@ -1,0 +1,264 @@
+// The near field: exact pair sums, one work-group per target leaf. The counterpart of cpu/near_field.cpp, which explains the kernels.
+//
+// A tile of sources is gathered into local memory; items take a target each and, where a leaf has few, a share of the sources. Sums of a
+// tile are floats; tiles are added up in pairs of floats, which are as good as the doubles of the processor.
+//
+// The program says: FORM, BATCH (K), LOCAL_WIDTHS, TILE, and the polynomials SINGLE_LAYER(w), DOUBLE_LAYER(w), STOKESLET(w), GRADIENT(w)
+// in w = MAP_SCALE s / (s + MAP_POLE) - 1.
+#define GEOMETRY (3 + LOCAL_WIDTHS)
+#if FORM == GREEN
+#define VALUES (3 + 2 * BATCH)
+#define CHANNELS BATCH
+#define TARGET_DATA 0
+#elif FORM == GREEN_ADJOINT
+#define VALUES BATCH
+#define CHANNELS (BATCH + 3)
+#define TARGET_DATA BATCH
+#elif FORM == STOKES_WINDING
+#define VALUES 3
+#define CHANNELS 4
+#define TARGET_DATA 0
+#elif FORM == WINDING
+#define VALUES 3
+#define CHANNELS 1
+#define TARGET_DATA 0
+#elif FORM == WINDING_ADJOINT
+#define VALUES 1
+#define CHANNELS 3
+#define TARGET_DATA 0
+#else
+#define VALUES 3
+#define CHANNELS 3
+#define TARGET_DATA 0
+#endif
+#define FIELDS (GEOMETRY + VALUES)
+
+// Phi (Stokes: Phi + e^2 g), g, and h or b at one distance, without 1/(4 pi).
+typedef struct {
+  lanes value, flux, third;
+} Kernels;
+
+FUNCTION Kernels plain(lanes r2, lanes width2) {
+  Kernels k;
+  const lanes inverse = RSQRT(r2);
+  const lanes inverse2 = inverse * inverse;
+  k.value = inverse;
+  k.flux = inverse * inverse2;
+  k.third = k.flux;
+#if FORM == STOKES_WINDING
+  k.third = k.flux * FMA(SPLAT(-3) * width2, inverse2, SPLAT(1));
+  k.value = FMA(width2, k.flux, inverse);
+#elif FORM == WINDING_GRADIENT
+  k.third = SPLAT(3) * k.flux * inverse2;
+#endif
+  return k;
+}
+
+FUNCTION Kernels mollified(lanes r2, lanes width2, lanes inverse_width) {
+  Kernels k;
+  const lanes inverse_width2 = inverse_width * inverse_width;
+  const lanes s = r2 * inverse_width2;
+  const lanes w = FMA(DIVIDE(s, s + SPLAT(MAP_POLE)), SPLAT(MAP_SCALE), SPLAT(-1));
+  const lanes cube = inverse_width * inverse_width2;
+  k.flux = cube * DOUBLE_LAYER(w);
+  k.value = k.flux;
+  k.third = k.flux;
+#if FORM == GREEN || FORM == GREEN_ADJOINT || FORM == STOKES_WINDING
+  k.value = inverse_width * SINGLE_LAYER(w);
+#endif
+#if FORM == STOKES_WINDING
+  k.third = cube * STOKESLET(w);
+  k.value = FMA(width2, k.flux, k.value);
+#elif FORM == WINDING_GRADIENT
+  k.third = cube * inverse_width2 * GRADIENT(w);
+#endif
+  return k;
+}
+
+FUNCTION Kernels kernels_at(lanes r2, lanes width2, lanes inverse_width, real reach2) {
+  const lanes end = SPLAT(reach2) * width2;
+#if LANES == 1
+  if (r2 < end) {
+#if LOCAL_WIDTHS
+    inverse_width = RSQRT(width2);
+#endif
+    return mollified(r2, width2, inverse_width);
+  }
+  return plain(r2, width2);
+#else
+  Kernels k = plain(r2, width2);
+  if (ANY_LESS(r2, end)) {
+#if LOCAL_WIDTHS
+    inverse_width = RSQRT(width2);
+#endif
+    const Kernels m = mollified(r2, width2, inverse_width);
+    k.value = r2 < end ? m.value : k.value;
+    k.flux = r2 < end ? m.flux : k.flux;
+    k.third = r2 < end ? m.third : k.third;
+  }
+  return k;
+#endif
+}
+
+// Adds what one vector of sources contributes; `v` points to their first value, values are TILE apart.
+FUNCTION void add_sources(const LOCAL real* v, lanes dx, lanes dy, lanes dz, Kernels k, const real* u, lanes* sum) {
+#if FORM == GREEN_ADJOINT
+  lanes charge = SPLAT(0);
+  UNROLL for (int c = 0; c < BATCH; ++c) {
+    const lanes q = LOAD(v + c * TILE);
+    charge = FMA(SPLAT(u[c]), q, charge);
+    sum[c] = FMA(k.value, q, sum[c]);
+  }
+  const lanes flux = k.flux * charge;
+  sum[BATCH] = FMA(flux, dx, sum[BATCH]);
+  sum[BATCH + 1] = FMA(flux, dy, sum[BATCH + 1]);
+  sum[BATCH + 2] = FMA(flux, dz, sum[BATCH + 2]);
+#elif FORM == WINDING_ADJOINT
+  const lanes flux = k.flux * LOAD(v);
+  sum[0] = FMA(flux, dx, sum[0]);
+  sum[1] = FMA(flux, dy, sum[1]);
+  sum[2] = FMA(flux, dz, sum[2]);
+#else
+  const lanes ex = LOAD(v);
+  const lanes ey = LOAD(v + TILE);
+  const lanes ez = LOAD(v + 2 * TILE);
+  const lanes dot_ = FMA(dx, ex, FMA(dy, ey, dz * ez));
+#if FORM == GREEN
+  const lanes flux = k.flux * dot_;
+  UNROLL for (int c = 0; c < BATCH; ++c) {
+    sum[c] = FMA(k.value, LOAD(v + (3 + 2 * c) * TILE), sum[c]);
+    sum[c] = FMA(flux, LOAD(v + (4 + 2 * c) * TILE), sum[c]);
+  }
+#elif FORM == WINDING
+  sum[0] = FMA(k.flux, dot_, sum[0]);
+#else
+  const lanes along = k.third * dot_;
+#if FORM == STOKES_WINDING
+  sum[0] = FMA(along, dx, FMA(k.value, ex, sum[0]));
+  sum[1] = FMA(along, dy, FMA(k.value, ey, sum[1]));
+  sum[2] = FMA(along, dz, FMA(k.value, ez, sum[2]));
+  sum[3] = FMA(k.flux, dot_, sum[3]);
+#else
+  sum[0] = FMA(-along, dx, FMA(k.flux, ex, sum[0]));
+  sum[1] = FMA(-along, dy, FMA(k.flux, ey, sum[1]));
+  sum[2] = FMA(-along, dz, FMA(k.flux, ez, sum[2]));
+#endif
+#endif
+#endif
+}
+
+// A target and what it has summed: high + low.
+typedef struct {
+  real x, y, z, width2;
+  real u[TARGET_DATA + 1];
+  real high[CHANNELS];
+  real low[CHANNELS];
+} Target;
+
+// high + low += value, exactly but for the rounding of low (Knuth's sum of two).
+FUNCTION void add_exactly(real* high, real* low, real value) {
+  const real sum = *high + value;
+  const real part = sum - *high;
+  *low += (*high - (sum - part)) + (value - part);
+  *high = sum;
+}
+
+// Adds the sources of a tile, vectors of LANES, from `first` on and `step` apart.
+FUNCTION void add_tile(const LOCAL real* tile, int first, int step, int size, real uniform_width2, real inverse_width, real reach2,
+                       Target* t) {
+  lanes sum[CHANNELS];
+  UNROLL for (int c = 0; c < CHANNELS; ++c) sum[c] = SPLAT(0);
+  for (int s = first; s < size; s += step) {
+    const lanes dx = LOAD(tile + s) - SPLAT(t->x);
+    const lanes dy = LOAD(tile + TILE + s) - SPLAT(t->y);
+    const lanes dz = LOAD(tile + 2 * TILE + s) - SPLAT(t->z);
+    const lanes r2 = FMA(dx, dx, FMA(dy, dy, dz * dz));
+#if LOCAL_WIDTHS
+    const lanes width2 = FMA(SPLAT((real)0.5), LOAD(tile + 3 * TILE + s), SPLAT((real)0.5 * t->width2));
+#else
+    const lanes width2 = SPLAT(uniform_width2);
+#endif
+    const Kernels k = kernels_at(r2, width2, SPLAT(inverse_width), reach2);
+    add_sources(tile + GEOMETRY * TILE + s, dx, dy, dz, k, t->u, sum);
+  }
+  UNROLL for (int c = 0; c < CHANNELS; ++c) add_exactly(t->high + c, t->low + c, sum_of(sum[c]));
+}
+
+// Work-group g does target leaf first_leaf + g. Leaves: (first block, points) of the targets, (first point, points) of the sources.
+// Fields of the sources: x y z [squared width] values, `stride` apart. out: blocks x CHANNELS x BLOCK, overwritten.
+KERNEL near_field(int first_leaf, const GLOBAL uint* near_begin, const GLOBAL uint* near_leaves, const GLOBAL uint2* target_leaves,
+                  const GLOBAL int4* target_centres, const GLOBAL uint2* source_leaves, const GLOBAL int4* source_centres,
+                  const GLOBAL real* fields, uint stride, const GLOBAL real* target_x, const GLOBAL real* target_y,
+                  const GLOBAL real* target_z, const GLOBAL real* target_width2, const GLOBAL real* target_data, real uniform_width2,
+                  real inverse_width, real reach2, GLOBAL real* out) {
+  LOCAL_ARRAY(real, tile, FIELDS * TILE);
+  LOCAL_ARRAY(real, parts, 2 * GROUP);
+  const int leaf = first_leaf + GROUP_INDEX;
+  const int count = (int)target_leaves[leaf].y;
+  const size_t first_target = (size_t)target_leaves[leaf].x * BLOCK;
+  const int4 centre = target_centres[leaf];
+  for (int begin = 0; begin < count; begin += GROUP) {
+    const int targets = count - begin < GROUP ? count - begin : GROUP;
+    const int shares = GROUP / targets < TILE / LANES ? GROUP / targets : TILE / LANES;
+    const int item = ITEM;
+    const int share = item / targets;
+    const size_t at = first_target + (size_t)(begin + item % targets);
+    Target t;
+    t.x = target_x[at];
+    t.y = target_y[at];
+    t.z = target_z[at];
+    t.width2 = LOCAL_WIDTHS ? target_width2[at] : 0;
+    UNROLL for (int c = 0; c < TARGET_DATA; ++c) t.u[c] = target_data[(at / BLOCK * TARGET_DATA + (size_t)c) * BLOCK + at % BLOCK];
+    UNROLL for (int c = 0; c < CHANNELS; ++c) t.high[c] = t.low[c] = 0;
+    const uint end = near_begin[leaf + 1];
+    uint run = near_begin[leaf];
+    uint done = 0;  // sources of the run
+    while (run < end) {
+      int size = 0;
+      BARRIER();
+      while (run < end && size < TILE) {
+        const uint2 source = source_leaves[near_leaves[run]];
+        const int4 from = source_centres[near_leaves[run]];
+        const real shift_x = (real)(from.x - centre.x) * CELL;
+        const real shift_y = (real)(from.y - centre.y) * CELL;
+        const real shift_z = (real)(from.z - centre.z) * CELL;
+        const int left = (int)(source.y - done);
+        const int some = left < TILE - size ? left : TILE - size;
+        for (int i = item; i < some; i += GROUP) {
+          const GLOBAL real* p = fields + source.x + done + (uint)i;
+          tile[size + i] = p[0] + shift_x;
+          tile[TILE + size + i] = p[stride] + shift_y;
+          tile[2 * TILE + size + i] = p[2 * (size_t)stride] + shift_z;
+          UNROLL for (int f = 3; f < FIELDS; ++f) tile[f * TILE + size + i] = p[(size_t)f * stride];
+        }
+        size += some;
+        done += (uint)some;
+        if (done == source.y) {
+          done = 0;
+          ++run;
+        }
+      }
+      const int padded = (size + LANES - 1) / LANES * LANES;
+      for (int i = size + item; i < padded; i += GROUP) {
+        UNROLL for (int f = 0; f < FIELDS; ++f) tile[f * TILE + i] = 0;
+      }
+      BARRIER();
+      if (share < shares) add_tile(tile, share * LANES, shares * LANES, padded, uniform_width2, inverse_width, reach2, &t);
+    }
+    UNROLL for (int c = 0; c < CHANNELS; ++c) {
+      BARRIER();
+      parts[item] = t.high[c];
+      parts[GROUP + item] = t.low[c];
+      BARRIER();
+      if (item < targets) {
+        real high = t.high[c];
+        real low = t.low[c];
+        for (int k = 1; k < shares; ++k) {
+          add_exactly(&high, &low, parts[k * targets + item]);
+          low += parts[GROUP + k * targets + item];
+        }
+        out[(at / BLOCK * CHANNELS + (size_t)c) * BLOCK + at % BLOCK] = high + low;
+      }
+    }
+  }
+}

@@ -1,0 +1,208 @@
+#include "gpu/lists_on_device.h"
+
+#include "cpu/parallel.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace g3r::gpu {
+namespace {
+
+constexpr int kFinest = 21;               // level of the grid; centres are multiples of 2^-21
+constexpr std::size_t kMatrixBatch = 64;  // M2L matrices made at a time where the processor does not keep them
+constexpr std::size_t kMirrors = 8;
+
+using Int4 = std::array<std::int32_t, 4>;
+using Uint2 = std::array<std::uint32_t, 2>;
+using Uint4 = std::array<std::uint32_t, 4>;
+
+Int4 centre(const OctreeNode& node) {
+  Int4 out{0, 0, 0, node.level};
+  for (std::size_t a = 0; a < 3; ++a) out[a] = (2 * node.cell[a] + 1) * (1 << (kFinest - node.level)) - (1 << kFinest);
+  return out;
+}
+
+// Sizes of lists are 32-bit numbers on the device.
+std::uint32_t narrow(std::size_t value) {
+  if (value > std::numeric_limits<std::uint32_t>::max()) throw DeviceError("too many points for the device");
+  return static_cast<std::uint32_t>(value);
+}
+
+// Groups and data of a matrix at the end of what is there; `offset` in units of kLanes, moves on.
+template <class T>
+std::size_t add_groups(const cpu::TranslationMatrix<T>& matrix, std::size_t& offset, std::vector<Uint4>& groups) {
+  std::size_t elements = 0;
+  for (std::size_t g = 0; g < matrix.groups; ++g) {
+    groups.push_back({narrow(offset), matrix.columns[g].first, matrix.columns[g].last, 0});
+    const std::size_t columns = matrix.columns[g].last - matrix.columns[g].first;
+    offset += columns;
+    elements += columns * cpu::kLanes;
+  }
+  return elements;
+}
+
+template <class T>
+MatricesOnDevice upload_shifts(Device& device, const std::array<StoredTranslation<T>, 8>& shifts, std::size_t coefficients) {
+  std::vector<Uint4> groups;
+  std::vector<std::uint32_t> begin(1, 0);
+  std::vector<T> data;
+  std::size_t offset = 0;
+  for (const StoredTranslation<T>& shift : shifts) {
+    const cpu::TranslationMatrix<T> matrix = shift.first(coefficients);
+    const std::size_t elements = add_groups(matrix, offset, groups);
+    data.insert(data.end(), matrix.data, matrix.data + elements);
+    begin.push_back(narrow(groups.size()));
+  }
+  return {upload(device, data), upload(device, groups), upload(device, begin), nullptr};
+}
+
+template <class T>
+MatricesOnDevice upload_matrices(Device& device, const std::vector<Offset>& offsets, const M2lMatrices<T>& matrices, std::size_t stride) {
+  MatricesOnDevice out;
+  std::vector<T> signs;
+  for (std::int32_t mirror = 0; mirror < static_cast<std::int32_t>(kMirrors); ++mirror) {
+    const Offset image{0, {mirror & 1 ? -1 : 1, mirror & 2 ? -1 : 1, mirror & 4 ? -1 : 1}};
+    signs.insert(signs.end(), matrices.signs(image), matrices.signs(image) + stride);
+  }
+  const std::size_t count = offsets.empty() ? 0 : matrices.index(offsets.size() - 1) + 1;
+  std::vector<Uint4> groups;
+  std::vector<std::uint32_t> begin(1, 0);
+  std::vector<std::size_t> first_element(1, 0);
+  std::size_t offset = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    first_element.push_back(first_element.back() + add_groups(matrices.shape(k), offset, groups));
+    begin.push_back(narrow(groups.size()));
+  }
+  out.data = device.allocate(first_element.back() * sizeof(T));
+  std::vector<T> batch;
+  for (std::size_t first = 0; first < count; first += kMatrixBatch) {
+    const std::size_t last = std::min(first + kMatrixBatch, count);
+    batch.resize(first_element[last] - first_element[first]);
+    parallel::for_each(last - first, [&](std::size_t i) {
+      AlignedVector<T> made;
+      const cpu::TranslationMatrix<T> matrix = matrices.matrix(first + i, made);
+      const std::size_t elements = first_element[first + i + 1] - first_element[first + i];
+      std::copy_n(matrix.data, elements, batch.data() + (first_element[first + i] - first_element[first]));
+    });
+    device.write(*out.data, first_element[first] * sizeof(T), batch.data(), batch.size() * sizeof(T));
+  }
+  out.groups = upload(device, groups);
+  out.matrix_groups = upload(device, begin);
+  out.signs = upload(device, signs);
+  return out;
+}
+
+// The tiles of one of the lists' own larger chunks, whose pairs ascend by offset and so by matrix. Numbers of tiles and pairs from 0.
+TiledPairs tile_chunk(const InteractionLists& lists, std::size_t large, std::size_t nodes, const std::vector<std::uint32_t>& matrix_of) {
+  static_assert(kTargetChunk % kChunkNodes == 0);
+  TiledPairs out;
+  std::array<std::vector<FarPair>, kTargetChunk / kChunkNodes> of_chunk;
+  for (std::size_t i = lists.chunk_begin[large]; i < lists.chunk_begin[large + 1]; ++i) {
+    of_chunk[lists.far[i].target % kTargetChunk / kChunkNodes].push_back(lists.far[i]);
+  }
+  for (std::size_t c = 0; c < of_chunk.size() && large * kTargetChunk + c * kChunkNodes < nodes; ++c) {
+    const std::size_t first_tile = out.tiles.size();
+    for (const FarPair& pair : of_chunk[c]) {
+      const Offset& offset = lists.offsets[pair.offset];
+      const std::uint32_t flags = offset.mirror() | (offset.positive() ? kPositive : 0);
+      const auto joins = [&](const Uint4& tile) {
+        if (tile[0] != matrix_of[pair.offset] || tile[2] == kMostTilePairs) return false;
+        if (((out.pairs.back()[2] ^ flags) & kPositive) != 0) return false;
+        return std::none_of(out.pairs.end() - tile[2], out.pairs.end(), [&](const Uint4& other) { return other[0] == pair.target; });
+      };
+      if (out.tiles.size() == first_tile || !joins(out.tiles.back())) {
+        out.tiles.push_back({matrix_of[pair.offset], static_cast<std::uint32_t>(out.pairs.size()), 0, 0});
+      }
+      ++out.tiles.back()[2];
+      out.pairs.push_back({pair.target, pair.source, flags, 0});
+    }
+    out.chunk_tiles.push_back(static_cast<std::uint32_t>(out.tiles.size()));
+  }
+  return out;
+}
+
+}  // namespace
+
+TreeOnDevice::TreeOnDevice(Device& device, const Octree& tree) {
+  std::vector<Int4> centre_of;
+  std::vector<Uint2> children_of;
+  std::vector<std::uint32_t> parent_of;
+  std::vector<std::uint32_t> octant_of;
+  for (const OctreeNode& node : tree.nodes) {
+    centre_of.push_back(centre(node));
+    children_of.push_back({node.first_child, node.child_count});
+    parent_of.push_back(node.parent);
+    octant_of.push_back(static_cast<std::uint32_t>((node.cell[0] & 1) * 4 + (node.cell[1] & 1) * 2 + (node.cell[2] & 1)));
+  }
+  std::vector<Uint2> points_of;
+  std::vector<Int4> leaf_centre_of;
+  for (const std::uint32_t leaf : tree.leaves) {
+    points_of.push_back({tree.nodes[leaf].begin, tree.nodes[leaf].count()});
+    leaf_centre_of.push_back(centre_of[leaf]);
+  }
+  centres = upload(device, centre_of);
+  children = upload(device, children_of);
+  parents = upload(device, parent_of);
+  octants = upload(device, octant_of);
+  leaf_nodes = upload(device, tree.leaves);
+  leaf_points = upload(device, points_of);
+  leaf_centres = upload(device, leaf_centre_of);
+}
+
+TiledPairs tile_pairs(const InteractionLists& lists, std::size_t nodes, const std::vector<std::uint32_t>& matrix_of) {
+  std::vector<TiledPairs> parts(lists.chunk_begin.size() - 1);
+  parallel::for_each(parts.size(), [&](std::size_t large) { parts[large] = tile_chunk(lists, large, nodes, matrix_of); });
+  TiledPairs out;
+  out.chunk_tiles.push_back(0);
+  out.pairs.reserve(lists.far.size());
+  for (TiledPairs& part : parts) {
+    const std::uint32_t first_tile = narrow(out.tiles.size());
+    const std::uint32_t first_pair = narrow(out.pairs.size());
+    for (Uint4 tile : part.tiles) {
+      tile[1] += first_pair;
+      out.tiles.push_back(tile);
+    }
+    for (const std::uint32_t end : part.chunk_tiles) out.chunk_tiles.push_back(first_tile + end);
+    out.pairs.insert(out.pairs.end(), part.pairs.begin(), part.pairs.end());
+    part = {};
+  }
+  (void)narrow(out.pairs.size());
+  return out;
+}
+
+template <class T>
+ListsOnDevice<T>::ListsOnDevice(Device& device, const Octree& targets, const Octree& sources, const InteractionLists& lists)
+    : device_(device), lists_(lists), target_nodes_(targets.nodes.size()), source_tree_(device, sources) {
+  if (&targets != &sources) target_tree_ = std::make_unique<TreeOnDevice>(device, targets);
+  std::vector<std::uint32_t> begin;
+  begin.reserve(lists.near_begin.size());
+  for (const std::size_t b : lists.near_begin) begin.push_back(narrow(b));
+  near_begin_ = upload(device, begin);
+  near_leaves_ = upload(device, lists.near);
+}
+
+template <class T>
+void ListsOnDevice<T>::prepare_far(const M2lMatrices<T>& matrices, int order, const Shifts<T>& shifts, std::size_t coefficients) {
+  if (!pairs_) {
+    std::vector<std::uint32_t> matrix_of(lists_.offsets.size());
+    for (std::size_t i = 0; i < matrix_of.size(); ++i) matrix_of[i] = narrow(matrices.index(i));
+    const TiledPairs tiled = tile_pairs(lists_, target_nodes_, matrix_of);
+    chunks_ = tiled.chunk_tiles.size() - 1;
+    chunk_tiles_ = upload(device_, tiled.chunk_tiles);
+    tiles_ = upload(device_, tiled.tiles);
+    pairs_ = upload(device_, tiled.pairs);
+  }
+  if (!up_.data) {
+    up_ = upload_shifts(device_, shifts.child_to_parent, coefficients);
+    down_ = upload_shifts(device_, shifts.parent_to_child, coefficients);
+  }
+  if (matrices_.count(order) == 0) {
+    const std::size_t n = coefficient_count(order);
+    matrices_.emplace(order, upload_matrices(device_, lists_.offsets, matrices, cpu::padded_count(n)));
+  }
+}
+
+template class ListsOnDevice<float>;
+template class ListsOnDevice<double>;
+
+}  // namespace g3r::gpu

@@ -1,0 +1,137 @@
+#include "gpu/scope.h"
+
+#include "cloud/canonical_cloud.h"
+#include "cpu/parallel.h"
+#include "sum/fast_sum.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+namespace g3r::gpu {
+namespace {
+
+// Below, moving the data and starting kernels costs more than the sums: an estimate (docs/gpu.md), not a measurement.
+constexpr std::size_t kFewestPoints = 10'000;
+constexpr std::size_t kTrialPoints = 2'000;  // some levels of a tree
+constexpr double kTrialAccuracy = 1e-2;
+
+thread_local Scope* innermost = nullptr;
+
+enum class Wanted { kAuto, kProcessor, kGpu, kNumber };
+struct Request {
+  Wanted wanted = Wanted::kAuto;
+  std::size_t number = 0;
+};
+
+Request parse(const std::string& text) {
+  if (text.empty() || text == "auto") return {};
+  if (text == "cpu") return {Wanted::kProcessor};
+  if (text == "gpu") return {Wanted::kGpu};
+  Request request{Wanted::kNumber};
+  const char* end = text.data() + text.size();
+  if (text.rfind("gpu:", 0) == 0) {
+    const auto [last, error] = std::from_chars(text.data() + 4, end, request.number);
+    if (error == std::errc() && last == end) return request;
+  }
+  throw InvalidInput("device must be auto, cpu, gpu or gpu:N with N a number of the list of devices, not '" + text + "'");
+}
+
+// The device that is asked for, if there is one.
+std::optional<DeviceInfo> choose(const Request& request) {
+  const std::vector<DeviceInfo> all = list_devices();
+  if (request.wanted == Wanted::kNumber) {
+    if (request.number < all.size()) return all[request.number];
+    throw Unavailable("there is no device gpu:" + std::to_string(request.number) + ": " +
+                      (all.empty() ? "no driver of OpenCL or CUDA was found" : "the last one is gpu:" + std::to_string(all.size() - 1)));
+  }
+  if (!all.empty() && !all[0].software) return all[0];
+  if (request.wanted == Wanted::kAuto) return std::nullopt;
+  throw Unavailable(all.empty() ? "there is no GPU: no driver of OpenCL or CUDA was found"
+                                : "there is no GPU: OpenCL runs on the processor only (--device gpu:0 takes that)");
+}
+
+// Points on a sphere, and a density on them: Fibonacci's lattice.
+std::vector<Vec3> trial_points() {
+  std::vector<Vec3> out(kTrialPoints);
+  const double golden = std::acos(-1.0) * (3 - std::sqrt(5.0));
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const double z = 1 - (2.0 * static_cast<double>(i) + 1) / kTrialPoints;
+    const double r = 0.9 * std::sqrt(1 - z * z);
+    const double angle = golden * static_cast<double>(i);
+    out[i] = {r * std::cos(angle), r * std::sin(angle), 0.9 * z};
+  }
+  return out;
+}
+
+// Drivers have bugs: every pass of a small sum has to agree with the processor before a device is trusted.
+void try_out(const std::shared_ptr<Execution>& execution) {
+  const CanonicalCloud cloud = canonical_cloud(trial_points());
+  SumPlan plan = sum_plan(kTrialAccuracy, kTrialPoints);
+  const Widths widths(1 / std::sqrt(static_cast<double>(kTrialPoints)));
+  std::vector<std::vector<Vec3>> s(2);
+  std::vector<double> w;
+  const Scope processor("cpu", kTrialPoints);  // for the first of the two
+  parallel::with_threads(1, [&] { FastSum(cloud.points, cloud.morton, widths, plan).stokes_winding(cloud.points, s[0], w); });
+  plan.execution = execution;
+  parallel::with_threads(1, [&] { FastSum(cloud.points, cloud.morton, widths, plan).stokes_winding(cloud.points, s[1], w); });
+  double difference = 0;
+  double size = 0;
+  for (std::size_t i = 0; i < s[0].size(); ++i) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      difference += (s[1][i][a] - s[0][i][a]) * (s[1][i][a] - s[0][i][a]);
+      size += s[0][i][a] * s[0][i][a];
+    }
+  }
+  if (!(difference <= kTrialAccuracy * kTrialAccuracy * size)) throw DeviceError("its sums are wrong; a newer driver may help");
+}
+
+}  // namespace
+
+Scope::Scope(const std::string& request, std::size_t points) : request_(request), outer_(innermost) {
+  const Request parsed = parse(request);
+  if (outer_ != nullptr && outer_->request_ == request) {
+    execution_ = outer_->execution_;
+    note_ = outer_->note_;
+  } else if (parsed.wanted != Wanted::kProcessor && (parsed.wanted != Wanted::kAuto || points >= kFewestPoints)) {
+    if (const std::optional<DeviceInfo> info = choose(parsed)) {
+      try {
+        execution_ = std::make_shared<Execution>(open_device(*info), parsed.wanted != Wanted::kAuto);
+        try_out(execution_);
+        if (!execution_->failure().empty()) note_ = execution_->failure();
+      } catch (const DeviceError& error) {
+        note_ = info->name + ": " + error.what();
+        if (parsed.wanted != Wanted::kAuto) throw Unavailable(note_);
+        execution_.reset();
+      }
+    }
+  }
+  innermost = this;
+}
+
+Scope::~Scope() { innermost = outer_; }
+
+std::shared_ptr<Execution> Scope::current() { return innermost != nullptr ? innermost->execution_ : nullptr; }
+
+void Scope::describe(Stats& stats) const {
+  const std::string& failure = execution_ && note_.empty() ? execution_->failure() : note_;
+  const bool used = execution_ && failure.empty();
+  stats.device = used ? execution_->device().info().name : "cpu";
+  stats.driver = used ? execution_->device().info().driver : "";
+  if (failure.empty()) return;
+  const std::string warning = "computed on the processor, not on the GPU: " + failure;
+  if (std::find(stats.warnings.begin(), stats.warnings.end(), warning) == stats.warnings.end()) stats.warnings.push_back(warning);
+}
+
+}  // namespace g3r::gpu
+
+namespace g3r {
+
+std::vector<ComputeDevice> compute_devices() {
+  std::vector<ComputeDevice> out;
+  for (const gpu::DeviceInfo& info : gpu::list_devices()) out.push_back({info.name, info.driver, info.software, info.memory});
+  return out;
+}
+
+}  // namespace g3r

@@ -1,0 +1,225 @@
+#include "gpu/sum_on_device.h"
+
+#include "cpu/parallel.h"
+#include "sum/expansions.h"
+#include "sum/kernel_polynomials.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace g3r::gpu {
+namespace {
+
+constexpr std::size_t kBlock = 1u << 14;  // elements converted per parallel block
+// Leaves and chunks of one launch: between launches a sum can be cancelled, and a screen drawn by the same device refreshed.
+constexpr std::size_t kSlice = 1u << 14;
+constexpr std::size_t kSoftwareSlice = 256;
+constexpr std::size_t kSharedBytes = 32u << 10;  // of local memory, which every device in use has
+constexpr std::size_t kMostSlots = 8;            // pairs of a tile at a time
+constexpr std::size_t kMostPoints = 32;          // of a tile of points_to_multipoles()
+
+int as_int(std::size_t value) { return static_cast<int>(value); }
+
+// Parts of points_to_multipoles(): UP_PARTS there.
+std::size_t up_parts(cpu::NearForm form, int batch, bool local_widths) {
+  if (form == cpu::NearForm::kGreen || form == cpu::NearForm::kGreenAdjoint) return static_cast<std::size_t>(batch);
+  return form == cpu::NearForm::kStokesWinding ? (local_widths ? 5 : 4) : 1;
+}
+
+// Expansions that the moves of M2L take at most: MOST_MOVED there.
+std::size_t most_moved(cpu::NearForm form, std::size_t multipole_channels, bool local_widths) {
+  return form == cpu::NearForm::kStokesWinding ? (local_widths ? 6 : 5) : multipole_channels;
+}
+
+// The largest power of two up to `most` with which `fixed` + count * each numbers fit the local memory; at least `least`.
+std::size_t that_fit(std::size_t most, std::size_t least, std::size_t fixed, std::size_t each, std::size_t bytes_of_one) {
+  std::size_t count = most;
+  while (count > least && (fixed + count * each) * bytes_of_one > kSharedBytes) count /= 2;
+  return count;
+}
+
+}  // namespace
+
+template <class T>
+SumOnDevice<T>::SumOnDevice(Device& device, const ListsOnDevice<T>& lists, const Octree& targets, const Octree& sources,
+                            const PointsOfSum<T>& points)
+    : device_(device),
+      lists_(lists),
+      target_tree_(targets),
+      source_tree_(sources),
+      field_stride_(points.field_stride),
+      geometry_fields_(points.geometry_fields),
+      lanes_(points.first_block.back() * cpu::kLanes),
+      uniform_width_(points.uniform_width),
+      geometry_(points.geometry, points.geometry + points.geometry_fields * points.field_stride) {
+  std::vector<std::array<std::uint32_t, 2>> leaves;
+  for (std::size_t i = 0; i < targets.leaves.size(); ++i) {
+    leaves.push_back({static_cast<std::uint32_t>(points.first_block[i]), targets.nodes[targets.leaves[i]].count()});
+  }
+  target_leaves_ = upload(device, leaves);
+  for (const auto& [buffer, values] :
+       {std::pair{&x_, points.x}, std::pair{&y_, points.y}, std::pair{&z_, points.z}, std::pair{&width_squared_, points.width_squared}}) {
+    const std::size_t bytes = values != nullptr ? lanes_ * sizeof(T) : 0;
+    *buffer = device.allocate(bytes);
+    device.write(**buffer, 0, values, bytes);
+  }
+}
+
+template <class T>
+Buffer& SumOnDevice<T>::room(std::unique_ptr<Buffer>& buffer, std::size_t elements) {
+  const std::size_t bytes = elements * sizeof(T);
+  if (!buffer || buffer->bytes() < bytes) {
+    buffer.reset();  // not twice in memory
+    buffer = device_.allocate(bytes);
+  }
+  return *buffer;
+}
+
+template <class T>
+KernelTraits SumOnDevice<T>::traits(const SumRequest<T>& request) const {
+  KernelTraits traits;
+  traits.form = request.form;
+  traits.batch = request.batch;
+  traits.local_widths = geometry_fields_ > 3;
+  traits.doubles = sizeof(T) == sizeof(double);
+  traits.rough = !traits.doubles && request.kernel_error >= kRoughPolynomialError;
+  traits.lanes = traits.doubles ? device_.info().lanes_double : device_.info().lanes_float;
+  return traits;
+}
+
+// launch(first, number) over [0, count).
+template <class T>
+template <class Launch>
+void SumOnDevice<T>::in_slices(std::size_t count, std::size_t slice, const std::atomic<bool>* cancel, const Launch& launch) {
+  for (std::size_t first = 0; first < count; first += slice) {
+    if (cancel != nullptr && cancel->load(std::memory_order_relaxed)) throw Cancelled();
+    launch(first, std::min(slice, count - first));
+    if (first + slice < count) device_.finish();
+  }
+}
+
+template <class T>
+void SumOnDevice<T>::upward(const SumRequest<T>& request, Program& expansions, Program& translations) {
+  const KernelTraits t = traits(request);
+  const TreeOnDevice& tree = lists_.sources();
+  const std::size_t n = coefficient_count(request.order);
+  const std::size_t stride = cpu::padded_count(n);
+  const std::size_t parts = up_parts(request.form, request.batch, t.local_widths);
+  Buffer& multipoles = room(multipoles_, source_tree_.nodes.size() * request.multipole_channels * stride);
+  const std::size_t points = that_fit(kMostPoints, t.lanes, 6 * n, n + 7, sizeof(T));
+  const std::size_t slice = device_.info().software ? kSoftwareSlice : kSlice;
+  in_slices(source_tree_.leaves.size(), slice, request.cancel, [&](std::size_t first, std::size_t number) {
+    device_.launch(expansions.kernel("points_to_multipoles"), number * parts, far_group(t),
+                   {as_int(first), *tree.leaf_points, *tree.leaf_nodes, *tree.leaf_centres, *fields_,
+                    static_cast<std::uint32_t>(field_stride_), request.order, as_int(stride), as_int(points), multipoles},
+                   (points * (n + 7) + 6 * n) * sizeof(T));
+  });
+  const MatricesOnDevice& shifts = lists_.child_to_parent();
+  const std::size_t apart = shifts.groups->bytes() / sizeof(std::array<std::uint32_t, 4>) / 8;
+  for (std::size_t level = source_tree_.levels(); level-- > 0;) {
+    const std::size_t first = source_tree_.level_begin[level];
+    device_.launch(translations.kernel("multipoles_to_parents"), source_tree_.level_begin[level + 1] - first, far_group(t),
+                   {as_int(first), *tree.children, *tree.octants, *tree.centres, *shifts.data, *shifts.groups, as_int(apart), as_int(n),
+                    as_int(stride), multipoles},
+                   request.multipole_channels * stride * sizeof(T));
+  }
+}
+
+template <class T>
+void SumOnDevice<T>::across(const SumRequest<T>& request, Program& translations) {
+  const KernelTraits t = traits(request);
+  const std::size_t stride = cpu::padded_count(coefficient_count(request.order));
+  const std::size_t moved = most_moved(request.form, request.multipole_channels, t.local_widths);
+  const std::size_t nodes = target_tree_.nodes.size();
+  const MatricesOnDevice& matrices = lists_.matrices(request.order);
+  Buffer& locals = room(locals_, nodes * request.local_channels * stride);
+  const std::size_t slots = that_fit(kMostSlots, 1, 0, moved * stride, sizeof(T));
+  const std::size_t slice = std::max<std::size_t>(1, (device_.info().software ? kSoftwareSlice : kSlice) / 8);
+  in_slices(lists_.chunks(), slice, request.cancel, [&](std::size_t first, std::size_t number) {
+    device_.launch(translations.kernel("multipoles_to_locals"), number, far_group(t),
+                   {as_int(first), as_int(kChunkNodes), as_int(nodes), lists_.chunk_tiles(), lists_.tiles(), lists_.pairs(),
+                    *lists_.sources().centres, *lists_.targets().centres, *matrices.signs, *matrices.data, *matrices.groups,
+                    *matrices.matrix_groups, as_int(stride), as_int(slots), *multipoles_, locals},
+                   slots * moved * stride * sizeof(T));
+  });
+}
+
+template <class T>
+void SumOnDevice<T>::downward(const SumRequest<T>& request, Program& translations) {
+  const KernelTraits t = traits(request);
+  const TreeOnDevice& tree = lists_.targets();
+  const std::size_t n = coefficient_count(request.order);
+  const std::size_t stride = cpu::padded_count(n);
+  const MatricesOnDevice& shifts = lists_.parent_to_child();
+  const std::size_t apart = shifts.groups->bytes() / sizeof(std::array<std::uint32_t, 4>) / 8;
+  for (std::size_t level = 1; level < target_tree_.levels(); ++level) {
+    const std::size_t first = target_tree_.level_begin[level];
+    device_.launch(translations.kernel("locals_to_children"), target_tree_.level_begin[level + 1] - first, far_group(t),
+                   {as_int(first), *tree.parents, *tree.octants, *tree.centres, *shifts.data, *shifts.groups, as_int(apart), as_int(n),
+                    as_int(stride), *locals_},
+                   request.local_channels * stride * sizeof(T));
+  }
+}
+
+template <class T>
+void SumOnDevice<T>::near(const SumRequest<T>& request) {
+  const KernelTraits t = traits(request);
+  Program& program = device_.program(near_field_source(t));
+  const T width2 = static_cast<T>(uniform_width_ * uniform_width_);
+  const T inverse_width = static_cast<T>(1 / uniform_width_);
+  const T reach2 = request.reach * request.reach;
+  const std::size_t slice = device_.info().software ? kSoftwareSlice : kSlice;
+  in_slices(target_tree_.leaves.size(), slice, request.cancel, [&](std::size_t first, std::size_t number) {
+    device_.launch(program.kernel("near_field"), number, near_group(t),
+                   {as_int(first), lists_.near_begin(), lists_.near_leaves(), *target_leaves_, *lists_.targets().leaf_centres,
+                    *lists_.sources().leaf_points, *lists_.sources().leaf_centres, *fields_, static_cast<std::uint32_t>(field_stride_), *x_,
+                    *y_, *z_, *width_squared_, *target_data_, width2, inverse_width, reach2, *out_},
+                   0);
+  });
+}
+
+template <class T>
+void SumOnDevice<T>::far_to_points(const SumRequest<T>& request, Program& expansions) {
+  const KernelTraits t = traits(request);
+  const std::size_t n = coefficient_count(request.order);
+  const T width2 = static_cast<T>(uniform_width_ * uniform_width_);
+  const std::size_t slice = device_.info().software ? kSoftwareSlice : kSlice;
+  in_slices(target_tree_.leaves.size(), slice, request.cancel, [&](std::size_t first, std::size_t number) {
+    device_.launch(expansions.kernel("locals_to_points"), number, far_group(t),
+                   {as_int(first), *target_leaves_, *lists_.targets().leaf_nodes, *lists_.targets().leaf_centres, *x_, *y_, *z_,
+                    *width_squared_, *target_data_, request.order, as_int(cpu::padded_count(n)), width2, *locals_, *out_},
+                   7 * n * sizeof(T));
+  });
+}
+
+template <class T>
+void SumOnDevice<T>::run(const SumRequest<T>& request, std::vector<double>& out) {
+  const std::size_t field_count = geometry_fields_ + request.value_fields;
+  const std::size_t geometry_elements = geometry_fields_ * field_stride_;
+  const bool fresh = !fields_ || fields_->bytes() < field_count * field_stride_ * sizeof(T);
+  room(fields_, field_count * field_stride_);
+  if (fresh) device_.write(*fields_, 0, geometry_.data(), geometry_elements * sizeof(T));
+  device_.write(*fields_, geometry_elements * sizeof(T), request.values, request.value_fields * field_stride_ * sizeof(T));
+  device_.write(room(target_data_, lanes_ * request.data_channels), 0, request.target_data, lanes_ * request.data_channels * sizeof(T));
+  room(out_, lanes_ * request.out_channels);
+  near(request);
+  if (!request.direct) {
+    Program& expansions = device_.program(expansions_source(traits(request)));
+    Program& translations = device_.program(translations_source(traits(request)));
+    upward(request, expansions, translations);
+    across(request, translations);
+    downward(request, translations);
+    far_to_points(request, expansions);
+  }
+  staged_.resize(lanes_ * request.out_channels);
+  device_.read(*out_, staged_.data(), staged_.size() * sizeof(T));
+  out.resize(staged_.size());
+  parallel::for_blocks(staged_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) out[i] = static_cast<double>(staged_[i]);
+  });
+}
+
+template class SumOnDevice<float>;
+template class SumOnDevice<double>;
+
+}  // namespace g3r::gpu

@@ -1,0 +1,175 @@
+// What surrounds the kernels, without any device: failing devices, the cache of kernels, the tiles of far pairs.
+#include "cloud/canonical_cloud.h"
+#include "gpu/device.h"
+#include "gpu/execution.h"
+#include "gpu/kernel_cache.h"
+#include "gpu/lists_on_device.h"
+#include "shapes.h"
+#include "sum/fast_sum.h"
+#include "sum_cases.h"
+
+#include <g3r/g3r.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+namespace g3r {
+namespace {
+
+using namespace sum_cases;  // NOLINT(google-build-using-namespace)
+
+// A device of host memory that gives `allowed` buffers and cannot compile. Counts what is not freed.
+class FailingDevice : public gpu::Device {
+ public:
+  explicit FailingDevice(std::size_t allowed) : Device(described()), left_(allowed) {}
+
+  std::unique_ptr<gpu::Buffer> allocate(std::size_t bytes) override {
+    if (left_ == 0) throw gpu::DeviceError("out of memory");
+    --left_;
+    return std::make_unique<Counted>(bytes, alive);
+  }
+  void write(const gpu::Buffer&, std::size_t, const void*, std::size_t) override {}
+  void read(const gpu::Buffer&, void*, std::size_t) override { ADD_FAILURE() << "nothing was computed"; }
+  void finish() override {}
+  void launch(gpu::Kernel&, std::size_t, std::size_t, const std::vector<gpu::Argument>&, std::size_t) override {}
+
+  std::size_t alive = 0;
+
+ protected:
+  std::unique_ptr<gpu::Program> compile(const std::string&) override { throw gpu::DeviceError("the kernels do not compile"); }
+
+ private:
+  struct Counted : gpu::Buffer {
+    std::size_t& count;
+    Counted(std::size_t bytes, std::size_t& c) : Buffer(bytes), count(c) { ++count; }
+    ~Counted() override { --count; }
+    Counted(const Counted&) = delete;
+    Counted& operator=(const Counted&) = delete;
+  };
+  static gpu::DeviceInfo described() {
+    gpu::DeviceInfo info;
+    info.name = "Failing";
+    return info;
+  }
+  std::size_t left_;
+};
+
+constexpr std::size_t kPoints = 3000;
+constexpr std::size_t kPlenty = 1000;  // buffers; a sum takes fewer
+
+TEST(GpuFailures, TheProcessorTakesOverWithTheSameBytes) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  const std::vector<Vec3> eta = random_vectors(points.size(), 1);
+  const SumPlan plan = sum_plan(1e-2, kPoints);
+  const std::vector<double> expected = FastSum(points, codes(points), Widths(0.01), plan).winding(eta);
+  for (const std::size_t allowed : {std::size_t{0}, std::size_t{1}, std::size_t{9}, std::size_t{20}, kPlenty}) {
+    const auto device = std::make_shared<FailingDevice>(allowed);
+    SumPlan failing = plan;
+    failing.execution = std::make_shared<gpu::Execution>(device, false);
+    FastSum sum(points, codes(points), Widths(0.01), failing);
+    EXPECT_EQ(sum.winding(eta), expected);
+    EXPECT_EQ(failing.execution->failure(), allowed == kPlenty ? "Failing: the kernels do not compile" : "Failing: out of memory");
+    EXPECT_EQ(device->alive, 0U) << "buffers of a device that is no longer used";
+    EXPECT_EQ(sum.winding(eta), expected);
+  }
+}
+
+TEST(GpuFailures, ARequiredDeviceThatFailsIsUnavailable) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  const auto device = std::make_shared<FailingDevice>(std::size_t{5});
+  SumPlan plan = sum_plan(1e-2, kPoints);
+  plan.execution = std::make_shared<gpu::Execution>(device, true);
+  {
+    FastSum sum(points, codes(points), Widths(0.01), plan);
+    try {
+      (void)sum.winding(random_vectors(points.size(), 1));
+      ADD_FAILURE() << "no error";
+    } catch (const Unavailable& error) {
+      EXPECT_NE(std::string(error.what()).find("Failing: out of memory"), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_EQ(device->alive, 0U);
+}
+
+TEST(GpuFailures, WordsThatNameNoDeviceAreInvalid) {
+  const std::vector<Vec3> points = shapes::sphere(100).points;
+  Options options;
+  for (const char* word : {"cuda", "gpu:", "gpu:x", "gpu:-1", "gpu:1x", "GPU"}) {
+    options.device = word;
+    EXPECT_THROW((void)orient(points, options), InvalidInput) << word;
+  }
+  for (const char* word : {"", "auto", "cpu"}) {
+    options.device = word;
+    EXPECT_EQ(orient(points, options).stats.device, "cpu") << word;
+  }
+}
+
+TEST(GpuFailures, EveryFarPairIsInOneTileAndTilesDoNotMeetATargetTwice) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(20000, 0.6, 0.25, 3).points);
+  const Octree tree = build_octree(points, codes(points), {0.005}, 32);
+  const InteractionLists lists = build_interaction_lists(tree, tree, 0.8, 4);
+  const M2lMatrices<float> matrices(lists.offsets, {});
+  std::vector<std::uint32_t> matrix_of;
+  for (std::size_t i = 0; i < lists.offsets.size(); ++i) matrix_of.push_back(static_cast<std::uint32_t>(matrices.index(i)));
+  const gpu::TiledPairs tiled = gpu::tile_pairs(lists, tree.nodes.size(), matrix_of);
+  ASSERT_EQ(tiled.pairs.size(), lists.far.size());
+  std::set<std::pair<std::uint32_t, std::uint32_t>> expected;
+  for (const FarPair& pair : lists.far) expected.emplace(pair.target, pair.source);
+  std::set<std::pair<std::uint32_t, std::uint32_t>> found;
+  for (std::size_t chunk = 0; chunk + 1 < tiled.chunk_tiles.size(); ++chunk) {
+    for (std::uint32_t t = tiled.chunk_tiles[chunk]; t < tiled.chunk_tiles[chunk + 1]; ++t) {
+      const auto& tile = tiled.tiles[t];
+      EXPECT_LE(tile[2], gpu::kMostTilePairs);
+      std::set<std::uint32_t> targets;
+      for (std::uint32_t i = tile[1]; i < tile[1] + tile[2]; ++i) {
+        EXPECT_EQ(tiled.pairs[i][0] / gpu::kChunkNodes, chunk);
+        EXPECT_EQ(tiled.pairs[i][2] & gpu::kPositive, tiled.pairs[tile[1]][2] & gpu::kPositive);
+        EXPECT_TRUE(targets.insert(tiled.pairs[i][0]).second);
+        found.emplace(tiled.pairs[i][0], tiled.pairs[i][1]);
+      }
+    }
+  }
+  EXPECT_EQ(tiled.chunk_tiles.back(), tiled.tiles.size());
+  EXPECT_EQ(found, expected);
+  EXPECT_LT(tiled.tiles.size(), tiled.pairs.size() / 2) << "tiles do not share matrices";
+}
+
+TEST(GpuFailures, TheCacheGivesBackWhatIsWholeAndNothingElse) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "g3r_cache_test";
+  std::filesystem::remove_all(folder);
+  setenv("XDG_CACHE_HOME", folder.c_str(), 1);  // NOLINT(concurrency-mt-unsafe): one thread
+  const std::vector<unsigned char> binary{1, 2, 3, 0, 255, 10};
+  const gpu::KernelCache cache("device, driver, source");
+  EXPECT_TRUE(cache.read().empty());
+  cache.write(binary);
+  EXPECT_EQ(cache.read(), binary);
+  EXPECT_EQ(gpu::KernelCache("device, driver, source").read(), binary);
+  EXPECT_TRUE(gpu::KernelCache("device, driver, other source").read().empty());
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / "g3r"), {}), 1) << "unfinished files";
+  const auto size = std::filesystem::file_size(cache.file());
+  for (const std::uintmax_t left : {std::uintmax_t{0}, std::uintmax_t{5}, size - 1}) {
+    std::filesystem::resize_file(cache.file(), left);
+    EXPECT_TRUE(cache.read().empty()) << left;
+    cache.write(binary);
+    EXPECT_EQ(cache.read(), binary);
+  }
+  {
+    std::fstream file(cache.file(), std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(static_cast<std::streamoff>(size) - 1);
+    file.put('!');
+  }
+  EXPECT_TRUE(cache.read().empty());
+  std::filesystem::remove_all(folder);
+  std::ofstream(folder) << "not a folder";
+  cache.write(binary);
+  EXPECT_TRUE(cache.read().empty());
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace g3r

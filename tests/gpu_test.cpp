@@ -1,0 +1,250 @@
+// Sums on a device against those of the processor: every form over shapes, sizes and tolerances; adjoints to rounding; the same bytes from
+// run to run. Skipped (77) where there is no device; a software OpenCL such as PoCL will do.
+#include "cpu/parallel.h"
+#include "gpu/device.h"
+#include "gpu/execution.h"
+#include "gpu/scope.h"
+#include "sanitized.h"
+#include "shapes.h"
+#include "sum/fast_sum.h"
+#include "sum_cases.h"
+
+#include <g3r/g3r.h>
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdio>
+#include <numeric>
+
+namespace g3r {
+namespace {
+
+using namespace sum_cases;  // NOLINT(google-build-using-namespace)
+using shapes::Random;
+
+constexpr std::size_t kPoints = 3000;      // hierarchical, some levels
+constexpr double kRoundingFloat = 1e-6;    // of adjoints in float plans, see FastSum
+constexpr double kRoundingDouble = 1e-12;  // in double plans
+
+// One device for all tests: kernels are compiled once.
+const std::shared_ptr<gpu::Execution>& execution() {
+  static const auto opened = std::make_shared<gpu::Execution>(gpu::open_device(gpu::list_devices().at(0)), true);
+  return opened;
+}
+
+SumPlan on_device(SumPlan plan) {
+  plan.execution = execution();
+  return plan;
+}
+
+// Harmonics up to this degree: kernels of one or four compile in less time than those of nine.
+Inputs of_harmonics(int degree, const std::vector<Vec3>& points, Widths widths) {
+  Inputs in(points, std::move(widths));
+  in.u = evaluate_harmonics(harmonics_of_degrees(0, degree), points);
+  in.q = random_values(points.size() * in.u.count, 2);
+  return in;
+}
+
+// Every sum of one plan on the device and on the processor: the same terms, so they differ by the kernels of near pairs at most.
+void expect_equal(const Inputs& in, const SumPlan& plan, double accuracy, const std::string& what) {
+  const Sums processor = fast_sums(in, plan);
+  const Sums device = fast_sums(in, on_device(plan));
+  EXPECT_LE(worst_error(device, processor), 0.5 * accuracy) << what;
+  EXPECT_EQ(execution()->failure(), "");
+}
+
+TEST(Gpu, SumsEqualThoseOfTheProcessor) {
+  for (const Case& c : clouds(kPoints)) {
+    if (kSanitized && c.name != "needle") continue;
+    const Inputs in(c.points, Widths(0.4 * spacing_of(c.points)));
+    for (const double accuracy : {2e-2, 1e-2, 1e-3, 1e-4}) expect_equal(in, sum_plan(accuracy, kPoints), accuracy, c.name);
+  }
+}
+
+TEST(Gpu, DirectSumsEqualThoseOfTheProcessor) {
+  for (const std::size_t n : {1UL, 2UL, 9UL, 100UL, 700UL}) {
+    for (const Case& c : clouds(n)) {
+      if (c.name != "sphere") continue;
+      const Inputs in(c.points, Widths(0.4 * spacing_of(c.points)));
+      expect_equal(in, sum_plan(1e-4, n), 1e-4, "n=" + std::to_string(n));
+    }
+  }
+}
+
+TEST(Gpu, SumsInDoubleEqualThoseOfTheProcessor) {
+  if (!execution()->device().info().doubles) GTEST_SKIP() << "the device has no doubles";
+  if (kSanitized) GTEST_SKIP() << "takes minutes";
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  const Inputs in = of_harmonics(0, points, Widths(0.4 * spacing_of(points)));
+  expect_equal(in, sum_plan(0, kPoints), 1e-11, "direct");
+  const SumPlan plan = sum_plan(1e-6, kPoints);
+  FastSum processor(points, codes(points), in.widths, plan);
+  FastSum device(points, codes(points), in.widths, on_device(plan));
+  std::vector<std::vector<Vec3>> s(2);
+  std::vector<std::vector<double>> w(2);
+  processor.stokes_winding(in.eta, s[0], w[0]);
+  device.stokes_winding(in.eta, s[1], w[1]);
+  EXPECT_LE(relative_error(s[1], s[0]), kRoundingDouble);
+  EXPECT_LE(relative_error(w[1], w[0]), kRoundingDouble);
+  EXPECT_LE(relative_error(device.winding_adjoint(in.q1), processor.winding_adjoint(in.q1)), kRoundingDouble);
+}
+
+TEST(Gpu, PointsMayHaveTheirOwnWidths) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  Random random(5);
+  std::vector<double> widths(points.size());
+  for (double& w : widths) w = random.uniform(0.005, 0.03);
+  expect_equal(of_harmonics(1, points, Widths(widths)), sum_plan(1e-3, kPoints), 1e-3, "local widths");
+}
+
+TEST(Gpu, WideMollifiersToo) {
+  const std::vector<Vec3> points = unit_points(shapes::sphere(kPoints).points);
+  expect_equal(Inputs(points, Widths(3 * spacing_of(points))), sum_plan(1e-3, kPoints), 1e-3, "wide");
+}
+
+TEST(Gpu, NarrowerWidthsShareATree) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  const std::vector<Vec3> eta = random_vectors(points.size(), 1);
+  const auto winding = [&](const SumPlan& plan) {
+    const FastSum wide(points, codes(points), Widths(0.03), plan);
+    return FastSum(wide, Widths(0.01)).winding(eta);
+  };
+  EXPECT_LE(relative_error(winding(on_device(sum_plan(1e-3, kPoints))), winding(sum_plan(1e-3, kPoints))), 5e-4);
+}
+
+TEST(Gpu, QueriesSeeTheSameField) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  const std::vector<Vec3> eta = random_vectors(points.size(), 1);
+  Random random(2);
+  std::vector<Vec3> queries;
+  for (int i = 0; i < 500; ++i) queries.push_back({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-0.5, 0.5)});
+  const FastSum processor(points, codes(points), Widths(0.01), sum_plan(1e-3, kPoints));
+  const FastSum device(points, codes(points), Widths(0.01), on_device(sum_plan(1e-3, kPoints)));
+  EXPECT_LE(relative_error(device.winding_at(eta, queries), processor.winding_at(eta, queries)), 5e-4);
+  EXPECT_LE(relative_error(device.winding_gradient_at(eta, queries), processor.winding_gradient_at(eta, queries)), 5e-4);
+}
+
+double inner(const std::vector<double>& a, const std::vector<double>& b) { return std::inner_product(a.begin(), a.end(), b.begin(), 0.0); }
+
+// <A x, y> = <x, A^T y> to rounding, relative to |A x| |y|.
+void expect_adjoints(const Inputs& in, const SumPlan& plan, double rounding) {
+  FastSum sum(in.points, codes(in.points), in.widths, on_device(plan));
+  const std::vector<double> eta = flat(in.eta);
+  if (!plan.double_precision) {
+    const std::vector<double> forward = sum.green(in.u, in.eta);
+    EXPECT_NEAR(inner(forward, in.q), inner(eta, flat(sum.green_adjoint(in.u, in.q))), rounding * norm(forward) * norm(in.q));
+  }
+  const std::vector<Vec3> other = random_vectors(in.points.size(), 4);
+  std::vector<Vec3> s;
+  std::vector<Vec3> s_other;
+  std::vector<double> w;
+  sum.stokes_winding(other, s_other, w);
+  sum.stokes_winding(in.eta, s, w);
+  EXPECT_NEAR(inner(flat(s), flat(other)), inner(eta, flat(s_other)), rounding * norm(flat(s)) * norm(flat(other)));
+  EXPECT_NEAR(inner(w, in.q1), inner(eta, flat(sum.winding_adjoint(in.q1))), rounding * norm(w) * norm(in.q1));
+}
+
+TEST(Gpu, AdjointsAreExactToRounding) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  const Inputs in(points, Widths(0.4 * spacing_of(points)));
+  expect_adjoints(in, sum_plan(1e-2, kPoints), kRoundingFloat);
+  if (execution()->device().info().doubles && !kSanitized) expect_adjoints(in, sum_plan(1e-6, kPoints), kRoundingDouble);
+}
+
+TEST(Gpu, SameBytesFromRunToRun) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  const Inputs in(points, Widths(0.4 * spacing_of(points)));
+  const Sums first = parallel::with_threads(1, [&] { return fast_sums(in, on_device(sum_plan(1e-2, kPoints))); });
+  const Sums second = fast_sums(in, on_device(sum_plan(1e-2, kPoints)));
+  EXPECT_EQ(first.green, second.green);
+  EXPECT_EQ(first.green_adjoint, second.green_adjoint);
+  EXPECT_EQ(first.stokes, second.stokes);
+  EXPECT_EQ(first.winding, second.winding);
+  EXPECT_EQ(first.winding_adjoint, second.winding_adjoint);
+  EXPECT_EQ(first.gradient, second.gradient);
+}
+
+TEST(Gpu, SumsStopWhenCancelled) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  const std::atomic<bool> cancel{true};
+  FastSum sum(points, codes(points), Widths(0.01), on_device(sum_plan(1e-2, kPoints)), &cancel);
+  EXPECT_THROW(sum.winding(random_vectors(points.size(), 1)), Cancelled);
+}
+
+TEST(Gpu, OrientationsAndMeshesEqualThoseOfTheProcessor) {
+  if (kSanitized) GTEST_SKIP() << "takes minutes";
+  constexpr double kSameError = 0.01;  // of the error of the directions, relative
+  for (const shapes::Surface& surface : {shapes::torus(4000, 0.6, 0.25, 3), shapes::ellipsoid(3000, 0.9, 0.5, 0.3)}) {
+    Options options;
+    options.device = "cpu";
+    const Orientation processor = orient(surface.points, options);
+    options.device = "gpu:0";
+    const Orientation device = orient(surface.points, options);
+    EXPECT_EQ(processor.stats.device, "cpu");
+    EXPECT_EQ(device.stats.device, gpu::list_devices()[0].name);
+    EXPECT_FALSE(device.stats.driver.empty());
+    EXPECT_EQ(shapes::share_correct(device.normals, surface.normals), shapes::share_correct(processor.normals, surface.normals));
+    const double error = shapes::angle_error(processor.normals, surface.normals);
+    EXPECT_NEAR(shapes::angle_error(device.normals, surface.normals), error, kSameError * error);
+  }
+  Options options;
+  options.device = "gpu:0";
+  const Reconstruction made = reconstruct(shapes::sphere(2500).points, options);
+  EXPECT_TRUE(made.check.closed && made.check.manifold);
+  EXPECT_EQ(made.check.genus, 0);
+  EXPECT_TRUE(made.orientation.stats.warnings.empty()) << made.orientation.stats.warnings[0];
+}
+
+TEST(Gpu, AutoTakesNoSoftwareAndAMissingNumberIsUnavailable) {
+  const std::vector<Vec3> points = shapes::sphere(20000).points;
+  const bool software = gpu::list_devices()[0].software;
+  if (software) {
+    EXPECT_EQ(gpu::Scope("auto", points.size()).current(), nullptr);
+    EXPECT_THROW(gpu::Scope("gpu", points.size()), Unavailable);
+  }
+  EXPECT_THROW(gpu::Scope("gpu:" + std::to_string(gpu::list_devices().size()), points.size()), Unavailable);
+  EXPECT_EQ(gpu::Scope::current(), nullptr) << "a failed scope stays";
+  const gpu::Scope outer("gpu:0", 100);
+  const std::shared_ptr<gpu::Execution> shared = gpu::Scope::current();
+  EXPECT_NE(shared, nullptr);
+  {
+    const gpu::Scope inner("gpu:0", 7);
+    EXPECT_EQ(gpu::Scope::current(), shared);
+    const gpu::Scope processor("cpu", 7);
+    EXPECT_EQ(gpu::Scope::current(), nullptr);
+  }
+  EXPECT_EQ(gpu::Scope::current(), shared);
+}
+
+TEST(Gpu, WhatDoesNotCompileOrFitIsAnErrorThatSaysSo) {
+  gpu::Device& device = execution()->device();
+  const std::unique_lock lock = device.lock();
+  try {
+    (void)device.program("this is no kernel\n");
+    ADD_FAILURE() << "compiled";
+  } catch (const gpu::DeviceError& error) {
+    EXPECT_NE(std::string(error.what()).find("compile"), std::string::npos) << error.what();
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+  }
+  EXPECT_THROW((void)device.allocate(device.info().memory * 64), gpu::DeviceError);
+}
+
+}  // namespace
+}  // namespace g3r
+
+// PoCL and its compiler leak; what g3r leaks, gpu_failures_test finds.
+extern "C" const char* __lsan_default_options() { return "detect_leaks=0"; }  // NOLINT(bugprone-reserved-identifier)
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+#ifdef __SANITIZE_THREAD__
+  std::puts("skipped: ThreadSanitizer cannot see into drivers");
+  return 77;
+#endif
+  if (g3r::gpu::list_devices().empty()) {
+    std::puts("skipped: no OpenCL or CUDA device here; pocl-opencl-icd is one");
+    return 77;
+  }
+  return RUN_ALL_TESTS();
+}
