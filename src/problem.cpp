@@ -102,6 +102,7 @@ Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, 
   const std::vector<double> local = local_spacing(part.cloud.points, near);
   part.spacing = typical_spacing(local);
   part.noise = problem.noise;
+  part.outliers = problem.outliers;  // those of the whole cloud: the part was solved for among them
   Options same = options;
   if (options.epsilon.unit == Length::Unit::kPercent) {  // of the whole cloud's box
     same.epsilon = {Length::Unit::kInput, problem.cloud.frame.length_to_world(problem.settings.epsilon)};

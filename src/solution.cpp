@@ -202,12 +202,13 @@ Solution solve_on_sites(const Problem& problem, const Options& options, Stages& 
   return out;
 }
 
-// Solves for some points (ascending) without the others. An open surface that is one by itself too stays as it is.
-void solve_apart(const Problem& problem, const std::vector<std::uint32_t>& some, bool is_open, const Options& options, Stages& stages,
+// Solves for some points (ascending) without the others. An open surface that is one by itself too stays as it is. Returns false if
+// what it took did not converge.
+bool solve_apart(const Problem& problem, const std::vector<std::uint32_t>& some, bool is_open, const Options& options, Stages& stages,
                  Stats& stats, Solution& solution) {
-  if (some.size() < kFewestApart) return;
+  if (some.size() < kFewestApart) return true;
   const Solution apart = solve(part_of(problem, some, options), options, stages, stats);
-  if (is_open && !apart.sheets.part.empty()) return;
+  if (is_open && !apart.sheets.part.empty()) return true;
   for (std::size_t k = 0; k < some.size(); ++k) {
     const std::uint32_t i = some[k];
     solution.eta[i] = apart.eta[k];
@@ -217,6 +218,7 @@ void solve_apart(const Problem& problem, const std::vector<std::uint32_t>& some,
     solution.sheets.part[i] = open ? some[apart.sheets.part[k]] : OpenSurfaces::kNone;
     solution.sheets.certainty[i] = apart.sheets.certainty.empty() ? 1 : apart.sheets.certainty[k];
   }
+  return stats.converged;
 }
 
 }  // namespace
@@ -236,15 +238,17 @@ void solve_sheets_apart(const Problem& problem, const Options& options, Stages& 
   };
   collect();
   if (parts.size() < 2) return;  // no sheet, or one that is all there is
+  bool converged = true;         // what is open does not solve the equations, and does not have to
   for (const auto& [sheet, points] : parts) {
     // What encloses nothing is not closed by itself either.
     const bool may_be_closed = sheet != OpenSurfaces::kNone && solution.sheets.certainty[sheet] > kChoice;
-    if (may_be_closed) solve_apart(problem, points, true, options, stages, stats, solution);
+    if (may_be_closed) converged &= solve_apart(problem, points, true, options, stages, stats, solution);
   }
   collect();
   if (parts.size() > 1 && parts.count(OpenSurfaces::kNone) > 0) {
-    solve_apart(problem, parts[OpenSurfaces::kNone], false, options, stages, stats, solution);
+    converged &= solve_apart(problem, parts[OpenSurfaces::kNone], false, options, stages, stats, solution);
   }
+  stats.converged = converged;
 }
 
 void fit_noisy_surface(const Problem& problem, Stages& stages, Solution& solution) {

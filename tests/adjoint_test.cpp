@@ -32,7 +32,7 @@ TEST_P(Adjoint, HoldsToRounding) {
   const CanonicalCloud cloud = canonical_cloud(shapes::torus(kSanitized ? 800 : 3000, 0.6, 0.25, 2).points);
   SumPlan plan = sum_plan(accuracy, 1000000);
   plan.leaf_points = 32;
-  if (direct) plan = {true, plan.double_precision, plan.order, 0, 256};
+  plan.direct = direct;
   const double limit = plan.double_precision ? kDoubleDefect : kFloatDefect;
   std::vector<double> widths(local_widths ? cloud.size() : 1);
   for (double& w : widths) w = random.uniform(0.005, 0.02);

@@ -132,6 +132,17 @@ TEST(OpenSurfaces, DoNotDisturbTheSolidsBesideThem) {
   EXPECT_NEAR(o.stats.open_share, 2.0 / 3, 1e-12);
 }
 
+// The solver cannot converge on the ground, which is no reason to doubt the sphere; with a tolerance out of reach nothing converges.
+TEST(OpenSurfaces, ConvergenceIsThatOfEveryClosedPart) {
+  Surface s = terrain(8000, waves);
+  for (Vec3& p : s.points) p = {3 * p[0], 3 * p[1], 3 * p[2] - 1.6};
+  Surface scene = shapes::join(s, shapes::sphere(4000));
+  EXPECT_TRUE(orient(scene.points).stats.converged);
+  Options options;
+  options.tolerance = 1e-12;
+  EXPECT_FALSE(orient(scene.points, options).stats.converged);
+}
+
 // A sphere of radius 1 in the corner of a ground 12 wide, which is solved for alone: with a percentage of its own box, normals turn.
 TEST(OpenSurfaces, ThePartsTakeTheEpsilonOfTheWhole) {
   Surface ground = terrain(8000, flat);

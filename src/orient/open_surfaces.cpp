@@ -69,14 +69,40 @@ class Search {
     edges_ = edges_of(finest_, near_);
     DisjointSets parts(finest_.points.size());
     for (const SignEdge& edge : edges_) parts.join(edge.a, edge.b);
-    for (std::size_t s = 0; s < finest_.points.size(); ++s) part_.push_back(static_cast<std::uint32_t>(parts.find(s)));
-    std::vector<double> size(finest_.points.size(), 0);
-    for (const std::uint32_t p : part_) ++size[p];
-    for (std::size_t s = 0; s < finest_.points.size(); ++s) reach_.push_back(std::sqrt(size[part_[s]]) / 2 * finest_.spacing[s]);
+    std::vector<std::uint32_t> number(finest_.points.size(), 0);
+    for (std::uint32_t s = 0; s < finest_.points.size(); ++s) {
+      const std::size_t first = parts.find(s);  // the smallest site of its part
+      if (first == s) {
+        number[s] = static_cast<std::uint32_t>(members_.size());
+        members_.emplace_back();
+      }
+      part_.push_back(number[first]);
+      members_[part_.back()].push_back(s);
+    }
+    for (std::size_t s = 0; s < finest_.points.size(); ++s) {
+      reach_.push_back(std::sqrt(static_cast<double>(members_[part_[s]].size())) / 2 * finest_.spacing[s]);
+    }
   }
 
   [[nodiscard]] const Sites& sites() const { return finest_; }
-  [[nodiscard]] const std::vector<std::uint32_t>& parts() const { return part_; }
+  [[nodiscard]] std::size_t parts() const { return members_.size(); }
+  [[nodiscard]] std::size_t size(std::uint32_t part) const { return members_[part].size(); }
+  [[nodiscard]] std::uint32_t part_of_point(std::size_t i) const { return part_[finest_.site_of[i]]; }
+
+  // Mean of `value` over the sites of every part; negative values are left out, 0 where there is none.
+  [[nodiscard]] std::vector<double> mean_of_parts(const std::vector<double>& value) const {
+    std::vector<double> mean(members_.size(), 0);
+    for (std::size_t p = 0; p < members_.size(); ++p) {
+      double count = 0;
+      for (const std::uint32_t s : members_[p]) {
+        if (value[s] < 0) continue;
+        mean[p] += value[s];
+        ++count;
+      }
+      if (count > 0) mean[p] /= count;
+    }
+    return mean;
+  }
 
   // Mean direction of the points of every site.
   [[nodiscard]] std::vector<Vec3> at_sites(const std::vector<Vec3>& normals) const {
@@ -97,10 +123,7 @@ class Search {
   // likelier from two parallel quadratics than from one. n points on two walls, each with a label that costs ln 2, have the log likelihood
   // -n ln s2 - n ln 2, on one -n ln s1, with s the standard deviation from the fit.
   [[nodiscard]] bool has_two_walls(std::uint32_t part) const {
-    std::vector<std::uint32_t> members;
-    for (std::uint32_t s = 0; s < part_.size(); ++s) {
-      if (part_[s] == part) members.push_back(s);
-    }
+    const std::vector<std::uint32_t>& members = members_[part];
     std::vector<double> gain;
     std::vector<std::uint32_t> index;
     std::vector<double> squared;
@@ -121,8 +144,7 @@ class Search {
     std::vector<Vec3> points;
     std::vector<std::uint64_t> morton;
     std::vector<Vec3> eta;
-    for (std::uint32_t s = 0; s < part_.size(); ++s) {
-      if (part_[s] != part) continue;
+    for (const std::uint32_t s : members_[part]) {
       points.push_back(finest_.points[s]);
       morton.push_back(finest_.morton[s]);
       eta.push_back(vector::scale(normals[s], finest_.spacing[s] * finest_.spacing[s]));
@@ -216,22 +238,10 @@ class Search {
   Sites finest_;
   std::vector<std::uint32_t> near_;  // of every site the nearest ones, itself first
   std::vector<SignEdge> edges_;
-  std::vector<std::uint32_t> part_;  // of every site
-  std::vector<double> reach_;        // half the side of a square of as many sites as the part has
+  std::vector<std::uint32_t> part_;                  // of every site
+  std::vector<std::vector<std::uint32_t>> members_;  // the sites of every part
+  std::vector<double> reach_;                        // half the side of a square of as many sites as the part has
 };
-
-// Mean of `value` over the sites of every part, at the part's number; negative values are left out. 0 where there is none.
-std::vector<double> mean_of_parts(const std::vector<std::uint32_t>& part, const std::vector<double>& value) {
-  std::vector<double> sum(part.size(), 0);
-  std::vector<double> count(part.size(), 0);
-  for (std::size_t s = 0; s < part.size(); ++s) {
-    if (value[s] < 0) continue;
-    sum[part[s]] += value[s];
-    ++count[part[s]];
-  }
-  for (std::size_t p = 0; p < sum.size(); ++p) sum[p] = count[p] > 0 ? sum[p] / count[p] : 0;
-  return sum;
-}
 
 // By the first axis from z to x that the sum of the normals is not level to.
 bool faces_down(const Vec3& sum) {
@@ -242,84 +252,104 @@ bool faces_down(const Vec3& sum) {
   return false;
 }
 
+bool any(const std::vector<std::uint8_t>& parts) {
+  return std::any_of(parts.begin(), parts.end(), [](std::uint8_t part) { return part != 0; });
+}
+
+// What is known of every part.
+struct Verdict {
+  std::vector<std::uint8_t> is_open;
+  std::vector<std::uint8_t> is_doubtful;  // neither at rest nor shown to be open
+  std::vector<std::size_t> best;          // of the hypotheses
+  std::vector<double> defect;             // mean jump defect of the best
+  std::vector<double> enclosure;          // of the best
+};
+
+// From the field of the given normals, unrest and jump defects being means of the parts.
+Verdict suspect(const Search& search, const std::vector<double>& unrest, const std::vector<double>& defect, double noise) {
+  const std::size_t parts = search.parts();
+  Verdict verdict{std::vector<std::uint8_t>(parts, 0), std::vector<std::uint8_t>(parts, 0), std::vector<std::size_t>(parts, 0),
+                  std::vector<double>(parts, HUGE_VAL), std::vector<double>(parts, 0)};
+  for (std::uint32_t p = 0; p < parts; ++p) {
+    if (search.size(p) < kFewestSites) continue;
+    if (unrest[p] <= kUnrest && defect[p] <= (noise > 0 ? kNoJumpNoisy : kNoJump)) continue;
+    verdict.is_open[p] = search.has_two_walls(p) ? 0 : 1;
+    verdict.is_doubtful[p] = verdict.is_open[p] == 0 && unrest[p] > kUnrest ? 1 : 0;
+  }
+  return verdict;
+}
+
+// The best hypothesis of every part. Where unrest alone does not decide it has to be far better than what was given; else nothing is
+// certain, if the part is not at rest either.
+void choose(const Search& search, const std::vector<std::vector<Vec3>>& tried, const std::vector<double>& unrest,
+            const std::vector<double>& defect, Verdict& verdict) {
+  for (std::size_t h = 0; h < tried.size(); ++h) {
+    const std::vector<double> here = search.mean_of_parts(search.test(tried[h]).jump_defect);
+    for (std::size_t p = 0; p < here.size(); ++p) {
+      if (here[p] >= kClearlyLess * verdict.defect[p]) continue;
+      verdict.defect[p] = here[p];
+      verdict.best[p] = h;
+    }
+  }
+  const double most_unrest = search.sites().distance > 0 ? kUnrestNoisy : kUnrest;
+  for (std::size_t p = 0; p < unrest.size(); ++p) {
+    if (verdict.is_open[p] == 0 || unrest[p] > most_unrest || verdict.defect[p] <= kFarBetter * defect[p]) continue;
+    verdict.is_open[p] = 0;
+    verdict.is_doubtful[p] = unrest[p] > kUnrest ? 1 : 0;
+  }
+  for (std::size_t h = 0; h < tried.size(); ++h) {
+    const std::vector<Vec3> at_sites = search.at_sites(tried[h]);
+    for (std::uint32_t p = 0; p < unrest.size(); ++p) {
+      if (verdict.is_open[p] != 0 && verdict.best[p] == h) verdict.enclosure[p] = search.enclosure(p, at_sites);
+    }
+  }
+}
+
+// The normals of open parts, with their outside where they have one.
+OpenSurfaces settle(const Search& search, const std::vector<std::vector<Vec3>>& tried, const Verdict& verdict, std::vector<Vec3>& normals) {
+  OpenSurfaces found;
+  found.part.assign(normals.size(), OpenSurfaces::kNone);
+  found.certainty.assign(normals.size(), 1);
+  std::vector<Vec3> sum(search.parts(), Vec3{0, 0, 0});
+  std::vector<std::uint32_t> first(search.parts(), OpenSurfaces::kNone);
+  for (std::uint32_t i = 0; i < normals.size(); ++i) {
+    const std::uint32_t p = search.part_of_point(i);
+    if (verdict.is_doubtful[p] != 0) found.certainty[i] = kUndecided;
+    if (verdict.is_open[p] == 0) continue;
+    first[p] = std::min(first[p], i);
+    found.part[i] = first[p];
+    found.worst_defect = std::max(found.worst_defect, verdict.defect[p]);
+    normals[i] = tried[verdict.best[p]][i];
+    sum[p] = vector::add(sum[p], normals[i]);
+  }
+  for (std::uint32_t i = 0; i < normals.size(); ++i) {
+    const std::uint32_t p = search.part_of_point(i);
+    if (verdict.is_open[p] == 0) continue;
+    const double enclosure = verdict.enclosure[p];
+    const bool decided = std::abs(enclosure) > kOutside;
+    if (decided ? enclosure < 0 : faces_down(sum[p])) normals[i] = vector::scale(normals[i], -1);
+    found.certainty[i] = decided ? static_cast<float>(std::min(1.0, std::abs(enclosure))) : kUndecided;
+  }
+  return found;
+}
+
 }  // namespace
 
 OpenSurfaces find_open_surfaces(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, double spacing, double noise,
                                 const SumPlan& sums, std::vector<Vec3>& normals, const std::atomic<bool>* cancel) {
   if (points.size() < kFewestSites) return {};
   const Search search(points, morton, spacing, noise, sums, cancel);
-  const std::vector<std::uint32_t>& part = search.parts();
   const Certificate given = search.test(normals);
-  std::vector<double> size(part.size(), 0);
-  for (const std::uint32_t p : part) ++size[p];
-  std::vector<std::uint8_t> is_open(part.size(), 0);
-  std::vector<std::uint8_t> is_doubtful(part.size(), 0);
-  const std::vector<double> unrest = mean_of_parts(part, given.unrest);
-  const std::vector<double> given_defect = mean_of_parts(part, given.jump_defect);
-  const double most_unrest = search.sites().distance > 0 ? kUnrestNoisy : kUnrest;
-  const double most_defect = noise > 0 ? kNoJumpNoisy : kNoJump;
-  for (std::uint32_t p = 0; p < part.size(); ++p) {
-    if (size[p] < kFewestSites) continue;
-    if (unrest[p] <= kUnrest && given_defect[p] <= most_defect) continue;
-    is_open[p] = search.has_two_walls(p) ? 0 : 1;
-    is_doubtful[p] = is_open[p] == 0 && unrest[p] > kUnrest ? 1 : 0;
+  const std::vector<double> unrest = search.mean_of_parts(given.unrest);
+  const std::vector<double> defect = search.mean_of_parts(given.jump_defect);
+  Verdict verdict = suspect(search, unrest, defect, noise);
+  std::vector<std::vector<Vec3>> tried;
+  if (any(verdict.is_open)) {
+    tried = search.hypotheses();
+    choose(search, tried, unrest, defect, verdict);
   }
-  const auto any = [](const std::vector<std::uint8_t>& parts) {
-    return std::any_of(parts.begin(), parts.end(), [](std::uint8_t p) { return p != 0; });
-  };
-  if (!any(is_open) && !any(is_doubtful)) return {};
-  // The best hypothesis of every open part.
-  const std::vector<std::vector<Vec3>> tried = any(is_open) ? search.hypotheses() : std::vector<std::vector<Vec3>>();
-  std::vector<double> least(part.size(), HUGE_VAL);
-  std::vector<std::size_t> best(part.size(), 0);
-  for (std::size_t h = 0; h < tried.size(); ++h) {
-    const Certificate certificate = search.test(tried[h]);
-    const std::vector<double> defect = mean_of_parts(part, certificate.jump_defect);
-    for (std::size_t p = 0; p < part.size(); ++p) {
-      if (defect[p] >= kClearlyLess * least[p]) continue;
-      least[p] = defect[p];
-      best[p] = h;
-    }
-  }
-  // Where unrest alone does not decide, the hypothesis has to be far better; else nothing is certain, if the part is not at rest either.
-  for (std::size_t p = 0; p < part.size(); ++p) {
-    if (is_open[p] == 0 || unrest[p] > most_unrest || least[p] <= kFarBetter * given_defect[p]) continue;
-    is_open[p] = 0;
-    is_doubtful[p] = unrest[p] > kUnrest ? 1 : 0;
-  }
-  if (!any(is_open) && !any(is_doubtful)) return {};
-  std::vector<double> enclosure(part.size(), 0);
-  for (std::size_t h = 0; h < tried.size(); ++h) {
-    const std::vector<Vec3> at_sites = search.at_sites(tried[h]);
-    for (std::uint32_t p = 0; p < part.size(); ++p) {
-      if (is_open[p] != 0 && best[p] == h) enclosure[p] = search.enclosure(p, at_sites);
-    }
-  }
-  OpenSurfaces found;
-  found.part.assign(points.size(), OpenSurfaces::kNone);
-  found.certainty.assign(points.size(), 1);
-  for (std::size_t p = 0; p < part.size(); ++p) {
-    if (is_open[p] != 0) found.worst_defect = std::max(found.worst_defect, least[p]);
-  }
-  std::vector<Vec3> sum(part.size(), Vec3{0, 0, 0});
-  std::vector<std::uint32_t> first(part.size(), OpenSurfaces::kNone);
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
-    const std::uint32_t p = part[search.sites().site_of[i]];
-    if (is_doubtful[p] != 0) found.certainty[i] = kUndecided;
-    if (is_open[p] == 0) continue;
-    first[p] = std::min(first[p], i);
-    found.part[i] = first[p];
-    normals[i] = tried[best[p]][i];
-    sum[p] = vector::add(sum[p], normals[i]);
-  }
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
-    const std::uint32_t p = part[search.sites().site_of[i]];
-    if (is_open[p] == 0) continue;
-    const bool decided = std::abs(enclosure[p]) > kOutside;
-    if (decided ? enclosure[p] < 0 : faces_down(sum[p])) normals[i] = vector::scale(normals[i], -1);
-    found.certainty[i] = decided ? static_cast<float>(std::min(1.0, std::abs(enclosure[p]))) : kUndecided;
-  }
-  return found;
+  if (!any(verdict.is_open) && !any(verdict.is_doubtful)) return {};
+  return settle(search, tried, verdict, normals);
 }
 
 }  // namespace g3r

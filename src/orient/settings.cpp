@@ -224,7 +224,7 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
 }
 
 std::size_t planned_memory(const Settings& settings, std::size_t given, std::size_t used) {
-  constexpr std::size_t kProgram = 24u << 20;  // code, libraries, thread stacks
+  constexpr std::size_t kProgram = 34u << 20;  // code, libraries (those of E57 are a third), thread stacks
   constexpr std::size_t kPerGiven = 90;        // index, result
   const std::size_t harmonics = settings.method == Method::kGreen ? settings.harmonics.size() : 0;
   const std::size_t per_used = 1170 + 48 * harmonics;
