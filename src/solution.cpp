@@ -184,17 +184,21 @@ Solution solve_on_sites(const Problem& problem, const Options& options, Stages& 
   const std::vector<Vec3>& points = problem.cloud.points;
   const Sites sites = place_sites(points, problem.cloud.morton, Neighbours(points), problem.line_distance);
   const Problem coarse = on_sites(problem, sites, options);
-  const Solution solved = solve(coarse, options, stages, stats);
+  Solution solved = solve(coarse, options, stages, stats);
+  solve_sheets_apart(coarse, options, stages, stats, solved);
   Solution out;
   out.sheets.worst_defect = solved.sheets.worst_defect;
   out.eta.resize(points.size());
   std::vector<double> members(sites.points.size(), 0);
   for (const std::uint32_t s : sites.site_of) ++members[s];
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  std::vector<std::uint32_t> first(sites.points.size(), OpenSurfaces::kNone);  // point of every part
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
     const std::uint32_t s = sites.site_of[i];
     out.eta[i] = vector::scale(solved.eta[s], 1 / members[s]);
     if (solved.sheets.part.empty()) continue;
-    out.sheets.part.push_back(solved.sheets.part[s]);
+    const std::uint32_t part = solved.sheets.part[s];
+    if (part != OpenSurfaces::kNone) first[part] = std::min(first[part], i);
+    out.sheets.part.push_back(part == OpenSurfaces::kNone ? part : first[part]);
     out.sheets.certainty.push_back(solved.sheets.certainty[s]);
   }
   const FastSum field(sites.points, sites.morton, Widths(kBetweenSites * coarse.spacing), coarse.settings.sums, stages.cancel());
@@ -231,6 +235,7 @@ Solution solve(const Problem& problem, const Options& options, Stages& stages, S
 }
 
 void solve_sheets_apart(const Problem& problem, const Options& options, Stages& stages, Stats& stats, Solution& solution) {
+  if (problem.line_distance > 0) return;  // solve() has done it, on the sites
   std::map<std::uint32_t, std::vector<std::uint32_t>> parts;
   const auto collect = [&] {
     parts.clear();
