@@ -62,7 +62,6 @@ TEST(Certificate, IsCleanOnClosedSurfaces) {
     EXPECT_LT(mean(c.unrest), 0.03);
     EXPECT_LT(mean(c.jump_defect), 0.1);
     EXPECT_GT(*std::min_element(c.jump.begin(), c.jump.end()), 0.8);
-    EXPECT_NEAR(mean(c.winding), 0.5, 0.05);
   }
 }
 
@@ -78,7 +77,6 @@ TEST(Certificate, InsideOutIsMinusTheField) {
   for (Vec3& n : s.normals) n = vector::scale(n, -1);
   const Certificate c = test(s).certificate;
   EXPECT_GT(mean(c.unrest), 0.3);
-  for (const double w : c.winding) EXPECT_NEAR(w, -0.5, 0.1);
 }
 
 // One cap of a sphere turned: its points do not see the jump missing, the seam and the field around them do.

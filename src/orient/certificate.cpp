@@ -30,10 +30,9 @@ Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const 
   const double spacing = typical_spacing(sites.spacing);
   std::vector<Vec3> eta(count);
   for (std::size_t i = 0; i < count; ++i) eta[i] = vector::scale(normals[i], sites.spacing[i] * sites.spacing[i]);
-  FastSum field(sites.points, sites.morton, Widths(kWidth * spacing), sums, cancel);
+  const FastSum field(sites.points, sites.morton, Widths(kWidth * spacing), sums, cancel);
   const Neighbours neighbours(sites.points);
   Certificate out;
-  out.winding = field.winding(eta);
   out.jump.assign(count, -HUGE_VAL);
   out.jump_defect.assign(count, 0);
   out.unrest.assign(count, 0);

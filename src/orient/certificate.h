@@ -24,7 +24,6 @@ struct Certificate {
   std::vector<double> jump;
   std::vector<double> jump_defect;
   std::vector<double> unrest;
-  std::vector<double> winding;  ///< w at the sites: 1/2 on a closed surface, the less the more open it is; -1/2 if it is inside out
 };
 
 /// `normals`: of the sites, unit vectors. `reach`: of every site, the size of its part; farther
