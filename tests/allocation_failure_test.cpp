@@ -13,9 +13,9 @@ namespace g3r {
 namespace {
 
 constexpr std::size_t kPoints = 500;
-constexpr long kMostAllocations = 10'000'000;                 // more are a loop without end
-constexpr long kEvery = kSanitized ? 100 : kMostAllocations;  // allocations that fail one by one; the later ones are sampled
-constexpr long kSparseness = kSanitized ? 20 : 60;
+constexpr long kMostAllocations = 10'000'000;     // more are a loop without end
+constexpr long kEvery = kSanitized ? 100 : 1000;  // allocations that fail one by one; the later ones are sampled
+constexpr long kSparseness = 20;
 
 Options options_for(int threads) {
   Options options;

@@ -176,7 +176,7 @@ TEST(Noise, PlatesDoNotRaiseIt) {
 // 95,000 points on walls 3 spacings thick: a start from the field of fewer points has 55 % of the sides.
 TEST(Noise, ManyPointsOnThinWallsKeepTheirSides) {
   if (kSanitized) GTEST_SKIP() << "the code of smaller clouds, for minutes";
-  Surface plates = shapes::plates(6, 1.7, 3, 4, 0.02);
+  Surface plates = shapes::plates(6, 1.1, 3, 4, 0.02);
   shapes::scatter(plates, 0.5 * 0.02);
   EXPECT_GE(shapes::share_correct(orient(plates.points).normals, plates.normals), 0.88);
 }
