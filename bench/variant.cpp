@@ -69,6 +69,8 @@ void set_option(Variant& variant, const std::string& key, const std::string& val
     variant.options.solver = parse_solver(value);
   } else if (key == "schedule") {
     variant.options.schedule = value;
+  } else if (key == "without") {
+    variant.options.without = value;
   } else if (key == "tolerance") {
     variant.options.tolerance = number<double>(key, value);
   } else if (key == "accuracy") {
@@ -80,7 +82,7 @@ void set_option(Variant& variant, const std::string& key, const std::string& val
   } else {
     throw InvalidInput(
         "method option '" + key +
-        "' is none of method, widths, epsilon, noise, degree, harmonics, solver, schedule, tolerance, accuracy, mesher, depth");
+        "' is none of method, widths, epsilon, noise, degree, harmonics, solver, schedule, without, tolerance, accuracy, mesher, depth");
   }
 }
 

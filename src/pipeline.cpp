@@ -17,6 +17,7 @@
 
 #include <g3r/g3r.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -123,7 +124,7 @@ void add_outliers(const Problem& problem, Stages& stages, Solution& solution, st
 
 // The solve is for normals; the lengths of its vectors follow the luck of the sample. Earlier methods keep theirs.
 void settle_areas(const Problem& problem, const std::vector<std::uint32_t>& near, Stages& stages, Solution& solution) {
-  if (problem.settings.method != Method::kEnergy) return;
+  if (problem.settings.method != Method::kEnergy || contains(problem.settings.without, Step::kAreas)) return;
   solution.eta =
       area_vectors(problem.cloud.points, problem.cloud.morton, near, solution.refinement.normals, solution.sheets, stages.cancel());
 }
@@ -170,6 +171,15 @@ void add_sheets(const OpenSurfaces& sheets, std::vector<float>& confidence, Stat
                            (sheets.worst_defect < kSidesAgree ? "their sides are consistent" : "their sides do not agree everywhere"));
 }
 
+// Sides of closed surfaces that their field does not show to be right are worth less.
+void certify_sides(const OpenSurfaces& sheets, std::vector<float>& confidence) {
+  for (std::size_t i = 0; i < sheets.certified.size(); ++i) {
+    if (!sheets.part.empty() && sheets.part[i] != OpenSurfaces::kNone) continue;
+    const float least = std::min(confidence[i], sheets.uncertified);
+    confidence[i] = least + (confidence[i] - least) * sheets.certified[i];
+  }
+}
+
 void judge(const CanonicalCloud& cloud, const std::vector<float>& confidence, Stats& stats) {
   double sum = 0;
   for (const float c : confidence) sum += static_cast<double>(c);
@@ -189,6 +199,7 @@ struct Oriented {
   Solution solution;
   std::vector<float> confidence;
   std::vector<std::uint32_t> near;  // kSpacingNeighbours nearest of every point
+  double doubt = 0;                 // share of the points that could face either way by their own equations, or lie on open surfaces
 };
 
 Oriented orient_problem(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
@@ -200,22 +211,21 @@ Oriented orient_problem(const Problem& problem, const Options& options, Stages& 
   const std::vector<Vec3> vectors = problem.noise > 0 ? sums_over(out.near, out.solution.eta) : out.solution.eta;
   out.confidence = side_confidence(vectors, refined.normals, refined.strength, problem.local_spacing);
   add_sheets(out.solution.sheets, out.confidence, stats);
+  out.doubt = unsure_share(out.confidence) + stats.open_share;  // what is called open at one noise may be closed at another
+  if (!contains(problem.settings.without, Step::kCertificate)) certify_sides(out.solution.sheets, out.confidence);
   judge(problem.cloud, out.confidence, stats);
   return out;
 }
 
-// What is called open at one noise may be closed at another.
-double doubt(const Stats& stats) { return stats.confidence_below_half + stats.open_share; }
-
 bool may_try_noises(const Problem& problem, const Options& options) {
   return problem.settings.method == Method::kEnergy && options.preset != Preset::kPaper && options.epsilon.unit == Length::Unit::kAuto &&
-         options.noise.unit == Length::Unit::kAuto && options.schedule.empty();
+         options.noise.unit == Length::Unit::kAuto && options.schedule.empty() && !contains(problem.settings.without, Step::kNoiseChoice);
 }
 
 // The noise to try instead of the estimate where the sides of many points are in doubt: none if the points are so few that it may be shape;
 // more if most of many points scatter far more than those that scatter least, which the estimate goes by.
-std::optional<double> other_noise(const Problem& problem, const Options& options, const Stats& stats) {
-  if (!may_try_noises(problem, options) || doubt(stats) < kDoubtful) return std::nullopt;
+std::optional<double> other_noise(const Problem& problem, const Options& options, double doubt) {
+  if (!may_try_noises(problem, options) || doubt < kDoubtful) return std::nullopt;
   const std::vector<Vec3>& points = problem.cloud.points;
   if (points.size() <= kFewPoints && problem.noise > 0) return 0;
   if (points.size() < kManyPoints) return std::nullopt;
@@ -244,9 +254,9 @@ Attempt attempt(Problem problem, const PointsView& points, const Options& option
 Attempt settle_with_more_noise(Attempt best, const PointsView& points, const Options& options, Stages& stages) {
   const Problem& problem = best.problem;
   if (!may_try_noises(problem, options) || problem.noise < kLargeNoise * problem.spacing) return best;
-  if (best.stats.confidence_below_half < kManyDoubtful) return best;
+  if (best.oriented.doubt < kManyDoubtful) return best;
   Attempt other = attempt(with_noise(problem, kStep * problem.noise, options), points, options, stages);
-  return doubt(other.stats) <= kHardlyAny * doubt(best.stats) ? std::move(other) : std::move(best);
+  return other.oriented.doubt <= kHardlyAny * best.oriented.doubt ? std::move(other) : std::move(best);
 }
 
 // Thin walls and layers of scans that do not fit onto each other look alike from near. But few sides of walls are in doubt when they are
@@ -254,22 +264,22 @@ Attempt settle_with_more_noise(Attempt best, const PointsView& points, const Opt
 // counts that leaves no more in doubt.
 Attempt orient_with_best_noise(const PointsView& points, const Options& options, Stages& stages) {
   Attempt best = attempt(prepare(points, options, stages), points, options, stages);
-  const std::optional<double> noise = other_noise(best.problem, options, best.stats);
+  const std::optional<double> noise = other_noise(best.problem, options, best.oriented.doubt);
   if (!noise) return settle_with_more_noise(std::move(best), points, options, stages);
   Attempt other = attempt(with_noise(best.problem, *noise, options), points, options, stages);
-  const double before = doubt(best.stats);
-  const double after = doubt(other.stats);
+  const double before = best.oriented.doubt;
+  const double after = other.oriented.doubt;
   if (after > kFarLess * before && (*noise == 0 || after > kLittleDoubt || after > kLess * before)) return best;
   best = std::move(other);
   if (*noise == 0) return best;
   const auto better_with = [&](double factor, double times, double plus) {
     other = attempt(with_noise(best.problem, factor * best.problem.noise, options), points, options, stages);
-    if (doubt(other.stats) > times * doubt(best.stats) + plus) return false;
+    if (other.oriented.doubt > times * best.oriented.doubt + plus) return false;
     best = std::move(other);
     return true;
   };
   bool raised = false;
-  while (doubt(best.stats) > kLittleDoubt && best.problem.noise < kMostTried * best.problem.spacing && better_with(kStep, kGain, 0)) {
+  while (best.oriented.doubt > kLittleDoubt && best.problem.noise < kMostTried * best.problem.spacing && better_with(kStep, kGain, 0)) {
     raised = true;
   }
   while (!raised && best.problem.noise > kLeastTried * best.problem.spacing && better_with(1 / kStep, kLoss, kSlightLoss)) {
@@ -280,7 +290,9 @@ Attempt orient_with_best_noise(const PointsView& points, const Options& options,
 Orientation orient_in_arena(const PointsView& points, const Options& options, Stages& stages) {
   require_sound(options.hints, points.count);
   Attempt best = orient_with_best_noise(points, options, stages);
-  auto& [solution, confidence, near] = best.oriented;
+  Solution& solution = best.oriented.solution;
+  std::vector<float>& confidence = best.oriented.confidence;
+  const std::vector<std::uint32_t>& near = best.oriented.near;
   Orientation out;
   out.stats = std::move(best.stats);
   fit_noisy_surface(best.problem, stages, solution);

@@ -40,7 +40,8 @@ Problem prepare(const PointsView& points, const Options& options, Stages& stages
   };
   look_around();
   problem.spacing = typical_spacing(local);
-  bool outliers_wanted = options.preset != Preset::kPaper && !is_baseline(options.method);
+  const StepSet without = parse_steps(options.without);
+  bool outliers_wanted = options.preset != Preset::kPaper && !is_baseline(options.method) && !contains(without, Step::kOutliers);
   while (outliers_wanted) {
     std::vector<Vec3> removed = remove_points(problem.cloud, find_outliers(cloud, near, local, problem.spacing));
     if (removed.empty()) break;
@@ -51,10 +52,10 @@ Problem prepare(const PointsView& points, const Options& options, Stages& stages
   }
   if (const std::optional<double> given = given_noise(options.noise, problem.cloud, problem.spacing)) {
     problem.noise = *given;
-  } else if (options.preset != Preset::kPaper) {
+  } else if (options.preset != Preset::kPaper && !contains(without, Step::kNoise)) {
     problem.noise = estimate_noise(cloud, *neighbours, problem.spacing);
   }
-  if (options.method == Method::kAuto && options.preset != Preset::kPaper) {
+  if (options.method == Method::kAuto && options.preset != Preset::kPaper && !contains(without, Step::kSites)) {
     problem.line_distance = surface_distance(cloud, *neighbours, problem.spacing);
   }
   choose_scales(problem, options, std::move(near), local);
@@ -86,7 +87,9 @@ Problem on_sites(const Problem& problem, const Sites& sites, const Options& opti
   const Neighbours neighbours(sites.points);
   coarse.spacing = typical_spacing(sites.spacing);
   const std::optional<double> given = given_noise(options.noise, problem.cloud, problem.spacing);
-  coarse.noise = given ? *given : estimate_noise(sites.points, neighbours, coarse.spacing);
+  coarse.noise = given                                              ? *given
+                 : contains(problem.settings.without, Step::kNoise) ? 0
+                                                                    : estimate_noise(sites.points, neighbours, coarse.spacing);
   choose_scales(coarse, options, neighbours.of_all(kSpacingNeighbours), sites.spacing);
   return coarse;
 }

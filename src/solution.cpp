@@ -32,6 +32,8 @@ constexpr float kChoice = 0.5F;            // certainty of an open surface that 
 constexpr double kBetweenSites = 0.7;      // site spacings, of the field where there are no sites: narrower shows single ones
 constexpr int kFacetRounds = 3;            // points on no facet come right after those on one, and facets grow
 
+bool runs(const Problem& problem, Step step) { return !contains(problem.settings.without, step); }
+
 void record(const Settings& s, const IterativeResult& result, Stats& stats) {
   stats.converged = result.converged || s.tolerance == 0 || (!result.residuals.empty() && result.residuals.back() <= s.accepted_residual);
   for (std::size_t i = 0; i < result.residuals.size(); ++i) {
@@ -105,8 +107,9 @@ void agree_on_facets(const Problem& problem, const std::vector<std::uint8_t>& pr
 
 // The directions of a clean cloud, where its points prove what the surface is. Returns for which they do.
 std::vector<std::uint8_t> fit_directions(const Problem& problem, const Neighbours& neighbours, std::vector<Vec3>& normals) {
-  std::vector<std::uint8_t> proven = fit_jets(problem.cloud.points, problem.near, problem.local_spacing, normals);
-  fit_planes(problem.cloud.points, neighbours, problem.local_spacing, proven, normals);
+  std::vector<std::uint8_t> proven(normals.size(), 0);
+  if (runs(problem, Step::kJets)) proven = fit_jets(problem.cloud.points, problem.near, problem.local_spacing, normals);
+  if (runs(problem, Step::kPlanes)) fit_planes(problem.cloud.points, neighbours, problem.local_spacing, proven, normals);
   return proven;
 }
 
@@ -115,8 +118,8 @@ void fit_surface(const Problem& problem, const Neighbours& neighbours, std::vect
   std::vector<std::uint8_t> proven;
   const auto fit = [&] { proven = fit_directions(problem, neighbours, normals); };
   fit();
-  if (sharpen_creases(problem.cloud.points, problem.near, problem.local_spacing, normals)) fit();
-  agree_on_facets(problem, proven, fit, eta, normals, stages);
+  if (runs(problem, Step::kCreases) && sharpen_creases(problem.cloud.points, problem.near, problem.local_spacing, normals)) fit();
+  if (runs(problem, Step::kFacets)) agree_on_facets(problem, proven, fit, eta, normals, stages);
 }
 
 Solution solve_on_points(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
@@ -125,10 +128,13 @@ Solution solve_on_points(const Problem& problem, const Options& options, Stages&
   Solution solution = solve_equations(problem, options, stages, stats);
   if (s.refinement_width == 0) solution.refinement.normals = normalised(solution.eta);
   if (s.polish_steps == 0) return solution;
-  Polished polished = polish(points, problem.cloud.morton, s, problem.local_spacing, {}, solution.refinement, stages);
+  const std::vector<double> none;
+  const std::vector<double>& local = runs(problem, Step::kLocalWidths) ? problem.local_spacing : none;
+  Polished polished = polish(points, problem.cloud.morton, s, local, {}, solution.refinement, stages);
   std::vector<Vec3>& normals = polished.refinement.normals;
   const Neighbours neighbours(points);
   const auto find_open = [&](std::vector<Vec3>& sides) {
+    if (!runs(problem, Step::kOpenSurfaces)) return OpenSurfaces{};
     return find_open_surfaces(points, problem.cloud.morton, problem.spacing, problem.noise, s.sums, sides, stages.cancel());
   };
   OpenSurfaces sheets = find_open(normals);
@@ -171,6 +177,7 @@ Solution solve_on_clusters(const Problem& problem, Stages& stages, Stats& stats)
     for (std::size_t a = 0; a < 3; ++a) solution.eta[i][a] = eta[c][a] / clusters.multiplicity[c];
   }
   solution.refinement = unit_normals(field.winding_gradient_at(eta, problem.cloud.points, stages.cancel()), solution.eta);
+  if (!runs(problem, Step::kOpenSurfaces)) return solution;
   solution.sheets = find_open_surfaces(problem.cloud.points, problem.cloud.morton, problem.spacing, problem.noise, s.sums,
                                        solution.refinement.normals, stages.cancel());
   if (!solution.sheets.part.empty()) {
@@ -188,6 +195,7 @@ Solution solve_on_sites(const Problem& problem, const Options& options, Stages& 
   solve_sheets_apart(coarse, options, stages, stats, solved);
   Solution out;
   out.sheets.worst_defect = solved.sheets.worst_defect;
+  out.sheets.uncertified = solved.sheets.uncertified;
   out.eta.resize(points.size());
   std::vector<double> members(sites.points.size(), 0);
   for (const std::uint32_t s : sites.site_of) ++members[s];
@@ -195,6 +203,7 @@ Solution solve_on_sites(const Problem& problem, const Options& options, Stages& 
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const std::uint32_t s = sites.site_of[i];
     out.eta[i] = vector::scale(solved.eta[s], 1 / members[s]);
+    if (!solved.sheets.certified.empty()) out.sheets.certified.push_back(solved.sheets.certified[s]);
     if (solved.sheets.part.empty()) continue;
     const std::uint32_t part = solved.sheets.part[s];
     if (part != OpenSurfaces::kNone) first[part] = std::min(first[part], i);
@@ -218,6 +227,7 @@ bool solve_apart(const Problem& problem, const std::vector<std::uint32_t>& some,
     solution.eta[i] = apart.eta[k];
     solution.refinement.normals[i] = apart.refinement.normals[k];
     solution.refinement.strength[i] = apart.refinement.strength[k];
+    solution.sheets.certified[i] = apart.sheets.certified[k];
     const bool open = !apart.sheets.part.empty() && apart.sheets.part[k] != OpenSurfaces::kNone;
     solution.sheets.part[i] = open ? some[apart.sheets.part[k]] : OpenSurfaces::kNone;
     solution.sheets.certainty[i] = apart.sheets.certainty.empty() ? 1 : apart.sheets.certainty[k];
@@ -235,7 +245,7 @@ Solution solve(const Problem& problem, const Options& options, Stages& stages, S
 }
 
 void solve_sheets_apart(const Problem& problem, const Options& options, Stages& stages, Stats& stats, Solution& solution) {
-  if (problem.line_distance > 0) return;  // solve() has done it, on the sites
+  if (problem.line_distance > 0 || !runs(problem, Step::kApart)) return;  // of lines, solve() has done it, on the sites
   std::map<std::uint32_t, std::vector<std::uint32_t>> parts;
   const auto collect = [&] {
     parts.clear();
@@ -257,7 +267,7 @@ void solve_sheets_apart(const Problem& problem, const Options& options, Stages& 
 }
 
 void fit_noisy_surface(const Problem& problem, Stages& stages, Solution& solution) {
-  if (problem.baseline || problem.noise == 0 || problem.settings.polish_steps == 0) return;
+  if (problem.baseline || problem.noise == 0 || problem.settings.polish_steps == 0 || !runs(problem, Step::kNoisyJets)) return;
   const std::vector<Vec3>& points = problem.cloud.points;
   fit_noisy_jets(points, Neighbours(points), problem.noise, problem.spacing, solution.refinement.normals, stages.cancel());
 }

@@ -494,6 +494,23 @@ TEST(Orient, ASphereOfManyRandomPointsConverges) {
 }
 
 // Vectors of single points follow the noise: from them a third of these points is unsure.
+// Two walls closer together than the noise: half of the sides are wrong, and nothing shows which.
+TEST(Confidence, PromisesNothingWhereNoiseHidesTheWalls) {
+  const double spacing = 0.02;
+  Surface plate = shapes::join(shapes::plates(1, 1, 1, 1, spacing), shapes::sphere(9000, 0.4, {0, 0, 1}));
+  shapes::scatter(plate, 1.2 * spacing);
+  const Orientation o = orient(plate.points);
+  std::size_t sure_and_wrong = 0;
+  for (std::size_t i = 0; i < plate.points.size(); ++i) {
+    const Vec3& n = plate.normals[i];
+    const double cosine = o.normals[i][0] * n[0] + o.normals[i][1] * n[1] + o.normals[i][2] * n[2];
+    if (cosine < 0 && o.confidence[i] > 0.9F) ++sure_and_wrong;
+  }
+  EXPECT_LE(sure_and_wrong, plate.points.size() * 3 / 1000);
+  EXPECT_LT(shapes::share_correct(o.normals, plate.normals), 0.95);  // there is something to be unsure of
+  EXPECT_FALSE(o.stats.consistent);
+}
+
 TEST(Confidence, TrustsASphereUnderNoise) {
   shapes::Random random(6);
   Surface s = shapes::sphere(8000, 1);

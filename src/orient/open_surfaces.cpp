@@ -252,6 +252,20 @@ bool faces_down(const Vec3& sum) {
   return false;
 }
 
+// How far the certificate of the given normals shows the sides of the points to be right.
+std::vector<float> certified(const Search& search, const Certificate& certificate, const std::vector<Vec3>& normals) {
+  const bool exact = search.sites().distance == 0;
+  const std::vector<Vec3> at_sites = search.at_sites(normals);
+  std::vector<float> out(normals.size());
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const std::uint32_t s = search.sites().site_of[i];
+    const double jump = exact ? certificate.jump[s] : 1 - certificate.jump_defect[s];
+    const double shown = dot(normals[i], at_sites[s]) > 0 ? std::clamp(jump, 0.0, 1.0) : 0;
+    out[i] = static_cast<float>(shown);
+  }
+  return out;
+}
+
 bool any(const std::vector<std::uint8_t>& parts) {
   return std::any_of(parts.begin(), parts.end(), [](std::uint8_t part) { return part != 0; });
 }
@@ -348,8 +362,12 @@ OpenSurfaces find_open_surfaces(const std::vector<Vec3>& points, const std::vect
     tried = search.hypotheses();
     choose(search, tried, unrest, defect, verdict);
   }
-  if (!any(verdict.is_open) && !any(verdict.is_doubtful)) return {};
-  return settle(search, tried, verdict, normals);
+  std::vector<float> shown = certified(search, given, normals);
+  OpenSurfaces found;
+  if (any(verdict.is_open) || any(verdict.is_doubtful)) found = settle(search, tried, verdict, normals);
+  found.certified = std::move(shown);
+  found.uncertified = search.sites().distance == 0 ? kUndecided : 0;
+  return found;
 }
 
 }  // namespace g3r

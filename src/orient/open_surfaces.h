@@ -12,12 +12,14 @@
 
 namespace g3r {
 
-/// Open surfaces of a cloud. Empty vectors: there is none.
+/// Open surfaces of a cloud. Empty vectors of parts: there is none.
 struct OpenSurfaces {
   static constexpr std::uint32_t kNone = 0xffffffff;
   std::vector<std::uint32_t> part;  ///< N: number of the open surface a point belongs to (its first point), or kNone: part of a closed one
   std::vector<float> certainty;     ///< N, of the outside: up to 1 where there is one, 0.5 where either side could be it; 0.5 on closed
                                     ///< parts whose field is not at rest, so that their sides are not certified
+  std::vector<float> certified;     ///< N, 0..1: how far the field shows the sides of the solution to be right, where they are kept
+  float uncertified = 0.5F;         ///< confidence, at most, of a side that it does not show: a choice, or under noise none
   double worst_defect = 0;          ///< largest mean jump defect of an open part: about 0 where all sides agree, 1 where none do
 };
 
@@ -37,6 +39,9 @@ struct OpenSurfaces {
 /// The hypothesis with the least mean Certificate::jump_defect is taken, of equal ones the finest. The outside of a part is the side on
 /// which the mean of w at the part, of its own field, is positive: e / 2, with e = 1 on a closed surface, 0.62 on half a sphere, 0 on a
 /// plane. Where |e| is below 0.6 either side could be it, and the one that faces up (+z; if the part is level, +y, then +x) is taken.
+/// Where the solution stays as it is, J = max(0, jump of its site) certifies a side: where walls are too close for the sampling the field
+/// does not jump from 0 to 1, whatever the sides. Of exact points J is the largest jump; under noise, which makes sheets of single wrong
+/// patches, it is the mean of the jumps. Points that face the other way than the mean of their site have 0.
 /// `points`, `morton`: in canonical order; `spacing`: typical; `noise`: standard deviation; `normals`: N unit vectors, in: the solution,
 /// out: changed on open surfaces. O(N log N).
 [[nodiscard]] OpenSurfaces find_open_surfaces(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, double spacing,

@@ -135,6 +135,7 @@ double paper_epsilon(const CanonicalCloud& cloud) {
 Settings choose_settings(const Options& options, const CanonicalCloud& cloud, double spacing, double noise, std::size_t outliers) {
   const bool paper = options.preset == Preset::kPaper;
   Settings s;
+  s.without = parse_steps(options.without);
   s.method = options.method != Method::kAuto ? options.method : paper ? Method::kGreen : Method::kEnergy;
   const bool harmonics_given = options.degree >= 0 || !options.harmonics.empty();
   if (harmonics_given && options.method == Method::kAuto) s.method = Method::kGreen;
@@ -160,7 +161,7 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   s.spacing = spacing;
   s.coarsest_epsilon = green || options.epsilon.unit != Length::Unit::kAuto ? s.epsilon : kCoarsestEpsilon * spacing;
   s.refinement_width = paper ? 0 : kRefinementWidth * spacing;
-  s.polish_steps = paper ? 0 : kPolishSteps;
+  s.polish_steps = paper || contains(s.without, Step::kPolish) ? 0 : kPolishSteps;
   s.polish_epsilon = std::min(s.epsilon, kPolishEpsilon * spacing);
   s.polish_width = kPolishWidth * spacing;
   s.polish_winding_weight = kPolishWindingWeight * cube(spacing);
@@ -171,10 +172,10 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   require(!options.condition_number || s.dense, "the condition number is that of the dense system: set the solver to dense");
   s.schedule_text = !options.schedule.empty() ? options.schedule : paper ? kPaperSchedule : green ? kGreenSchedule : kEnergySchedule;
   s.schedule = parse_schedule(s.schedule_text);
-  s.coarse_to_fine = !paper && !green && options.schedule.empty();
+  s.coarse_to_fine = !paper && !green && options.schedule.empty() && !contains(s.without, Step::kCoarseStart);
   const bool among_outliers = static_cast<double>(outliers) > kFewOutliers * static_cast<double>(cloud.size());
   s.continued_schedule = {kContinued};
-  if (!among_outliers) s.doubtful_schedule = {kDoubtful};
+  if (!among_outliers && !contains(s.without, Step::kMoreSteps)) s.doubtful_schedule = {kDoubtful};
   const bool light = starts_coarse(s, cloud.size()) || among_outliers;
   s.winding_weight = (light ? kContinuedWindingWeight : kWindingWeight) * cube(spacing);
   s.tolerance = options.tolerance >= 0 ? options.tolerance : paper ? 0 : green ? kGreenTolerance : kEnergyTolerance;
@@ -196,7 +197,7 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
     s.refinement_width = std::max(s.refinement_width, width);
     s.polish_epsilon = std::max(s.polish_epsilon, kNoisyPolishEpsilon * size);
     s.polish_width = std::max(kRefinementWidth * spacing, kNoisyPolishWidth * size);
-    s.polish_steps = kNoisyPolishSteps;
+    if (s.polish_steps > 0) s.polish_steps = kNoisyPolishSteps;
     s.polish_damping = kNoisyDamping / spacing;
     s.polish_winding_weight = kNoisyPolishWindingWeight * believed;
     if (sigma <= kSlightNoise * spacing) {

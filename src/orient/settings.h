@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cloud/canonical_cloud.h"
+#include "orient/steps.h"
 #include "solve/harmonics.h"
 #include "solve/iterative_solver.h"
 #include "sum/sum_plan.h"
@@ -16,6 +17,7 @@ namespace g3r {
 
 /// Everything orient() needs to know, in normalised units. Values without an option are explained in docs/design.md.
 struct Settings {
+  StepSet without;  ///< steps that are left out
   Method method = Method::kEnergy;
   bool dense = false;
   std::vector<Harmonic> harmonics;  ///< green only

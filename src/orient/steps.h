@@ -1,0 +1,43 @@
+// The steps of orient() that can be left out, by name.
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <cstddef>
+#include <string_view>
+
+namespace g3r {
+
+/// In the order of the run. What each does and is worth: docs/design.md, "What each step is worth".
+enum class Step {
+  kOutliers,      ///< points far from all others are taken out
+  kNoise,         ///< the noise is estimated; without it every cloud is taken for clean
+  kSites,         ///< clouds of lines are solved for on sites as far apart as the lines
+  kCoarseStart,   ///< the solve starts from a solution on fewer points
+  kMoreSteps,     ///< and goes on where many sides are unsure
+  kPolish,        ///< the last iterations, with narrow kernels, and everything after them
+  kLocalWidths,   ///< whose widths follow the local spacing of a clean cloud
+  kOpenSurfaces,  ///< parts whose field is not that of a closed surface get their sides from their neighbours
+  kApart,         ///< and are solved for apart from the rest
+  kJets,          ///< directions from fitted quadratics where the points prove them
+  kPlanes,        ///< and from planes
+  kCreases,       ///< and from the facets beside a crease
+  kFacets,        ///< the points of a facet take one side
+  kNoiseChoice,   ///< other noises are tried where many sides are in doubt
+  kNoisyJets,     ///< directions of noisy clouds from wide quadratics
+  kAreas,         ///< areas from the density of the points instead of the solution
+  kCertificate    ///< the confidence of a side is lowered where the field does not certify it
+};
+
+inline constexpr std::array<std::string_view, 17> kStepNames = {
+    "outliers", "noise",  "sites",   "coarse-start", "more-steps",   "polish",     "local-widths", "open-surfaces", "apart",
+    "jets",     "planes", "creases", "facets",       "noise-choice", "noisy-jets", "areas",        "certificate"};
+
+using StepSet = std::bitset<kStepNames.size()>;
+
+/// The steps of a list of names separated by commas. Throws InvalidInput that lists the names there are.
+[[nodiscard]] StepSet parse_steps(std::string_view names);
+
+[[nodiscard]] inline bool contains(const StepSet& set, Step step) { return set.test(static_cast<std::size_t>(step)); }
+
+}  // namespace g3r
