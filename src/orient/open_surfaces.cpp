@@ -39,7 +39,7 @@ constexpr int kTurns = 3;               // rounds of the winding gradient
 constexpr double kTurnWidth = 2;        // site spacings: wider than the grooves that the sampling cannot resolve
 constexpr double kGradientWidth = 0.7;  // site spacings, from sites to points
 constexpr double kAccuracy = 1e-2;      // of the sums that tell whether a part encloses something
-constexpr double kFarBetter = 0.35;     // of the jump defect as given, up to which a hypothesis is taken where unrest alone does not decide
+constexpr double kFarBetter = 0.4;      // of the jump defect as given, up to which a hypothesis is taken where unrest alone does not decide
 constexpr double kClearlyLess = 0.8;    // of the jump defect of a finer scale, up to which a coarser one is taken
 // Verdict.
 constexpr double kUnrest = 0.08;          // mean of a part that is open: closed ones have up to 0.06, open ones 0.1 to 0.3
