@@ -34,15 +34,22 @@ std::string packed(const Outcome& outcome) {
   std::ostringstream out;
   out.precision(9);
   out << outcome.cpu_seconds << ' ' << outcome.refused << ' ' << outcome.warned << ' ' << outcome.wrong << ' ' << outcome.wrong_and_sure
-      << '\n';
+      << ' ' << outcome.touches << '\n';
   for (const Finding& f : outcome.findings) out << f.kind << '\t' << one_line(f.what) << '\n';
   return out.str();
+}
+
+Outcome crash(const std::string& what) {
+  Outcome out;
+  out.findings.push_back({"crash", one_line(what)});
+  return out;
 }
 
 Outcome unpacked(const std::string& text) {
   std::istringstream in(text);
   Outcome out;
   in >> out.cpu_seconds >> out.refused >> out.warned >> out.wrong >> out.wrong_and_sure >> out.touches;
+  if (!in) return crash("the process ended without its result");
   std::string line;
   std::getline(in, line);
   while (std::getline(in, line)) {
@@ -88,12 +95,6 @@ void limit(int what, rlim_t to) {
     code = kThrown;
   }
   _exit(code);
-}
-
-Outcome crash(const std::string& what) {
-  Outcome out;
-  out.findings.push_back({"crash", one_line(what)});
-  return out;
 }
 
 Outcome apart(const std::function<Outcome()>& work, const Limits& limits) {
