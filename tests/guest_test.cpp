@@ -14,6 +14,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -169,6 +170,35 @@ TEST_F(Guest, ASmallStackIsEnough) {
   pthread_join(caller, nullptr);
   pthread_attr_destroy(&attributes);
   EXPECT_EQ(result, expected());
+}
+
+// Resident bytes of this process.
+double resident() {
+  std::ifstream in("/proc/self/statm");
+  double pages = 0;
+  in >> pages >> pages;
+  return pages * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+TEST_F(Guest, ManyCallsTakeNoMoreMemory) {
+  if (g3r::kSanitized) GTEST_SKIP() << "sanitizers keep what is freed";
+  constexpr std::size_t kFew = 60;   // points: fast
+  constexpr int kSettled = 50;       // calls after which nothing grows
+  constexpr int kMore = 200;         // of 7 KiB each, if every call lost an arena of threads
+  constexpr double kGrowth = 700e3;  // bytes
+  const std::vector<double> points = egg();
+  std::vector<double> normals(3 * kFew);
+  g3r_options options;
+  library().find<decltype(g3r_options_init)>("g3r_options_init")(&options, sizeof options);
+  options.threads = 2;
+  options.device = "cpu";
+  const auto orient = library().find<decltype(g3r_orient)>("g3r_orient");
+  double before = 0;
+  for (int i = 0; i < kSettled + kMore; ++i) {
+    if (i == kSettled) before = resident();
+    ASSERT_EQ(orient(points.data(), kFew, &options, normals.data(), nullptr, nullptr), G3R_OK);
+  }
+  EXPECT_LT(resident() - before, kGrowth);
 }
 
 volatile std::sig_atomic_t signals = 0;

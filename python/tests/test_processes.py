@@ -14,9 +14,9 @@ from conftest import sphere_points
 
 POINTS = sphere_points(300)
 PATIENCE = 120  # seconds after which a child hangs
-MANY = 200  # calls
+MANY = 260  # calls
 SETTLED = 60  # calls, after which memory stays
-GROWTH = 2 << 20  # bytes
+GROWTH = 1 << 20  # bytes
 
 
 def test_threads_call_at_once():
