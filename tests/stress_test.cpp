@@ -40,6 +40,7 @@ TEST(Stress, ShortSetHolds) {
     dishonest += std::any_of(outcome.findings.begin(), outcome.findings.end(),
                              [](const Finding& f) { return f.kind == "confidence" || f.kind == "rigid"; });
   }
+  RecordProperty("clouds", static_cast<int>(kClouds));
   EXPECT_LE(static_cast<double>(dishonest), kDishonest * kClouds);
 }
 
