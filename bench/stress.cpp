@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,7 @@ struct Arguments {
   std::string keep;
   std::string program;
   std::vector<std::string> replay;
+  std::string recipe;
 };
 
 struct Run {
@@ -52,6 +54,7 @@ Arguments parse(int argc, char** argv) {
   app.add_option("--attempts", a.attempts, "Runs spent on making a failure small");
   app.add_flag("!--no-shrink", a.shrink, "Report failures as they are");
   app.add_option("--replay", a.replay, "Cases that were kept, instead of seeds");
+  app.add_option("--recipe", a.recipe, "One cloud, by its recipe as it was printed, instead of seeds");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -122,14 +125,16 @@ int summary(const std::vector<Run>& runs, std::map<std::string, std::size_t> fin
   return findings.empty() ? 0 : 1;
 }
 
-int run_seeds(const Arguments& a) {
+int run_seeds(Arguments a) {
   const Demands demands{a.program};
+  const std::optional<Recipe> given = a.recipe.empty() ? std::nullopt : std::optional(Recipe(a.recipe));
+  if (given) a.count = 1;
   const auto start = std::chrono::steady_clock::now();
   std::vector<Run> runs;
   std::map<std::string, std::size_t> findings;
   for (std::uint64_t i = 0; i < a.count; ++i) {
     if (a.seconds > 0 && std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > a.seconds) break;
-    Run run{random_recipe(a.seed + i, a.largest), {}};
+    Run run{given ? *given : random_recipe(a.seed + i, a.largest), {}};
     run.outcome = hold_apart(run.recipe, demands);
     tell(run);
     for (const Finding& f : run.outcome.findings) {
