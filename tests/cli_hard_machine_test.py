@@ -1,5 +1,5 @@
-"""Truths about the g3r program on a machine that is short of something: disk, files, threads, processors, stack, folders, columns. The result
-is right, or there is an error with its reason and its exit code, and nothing half written.
+"""Truths about the g3r program on a machine that is short of something: disk, files, threads, processors, stack, folders, columns. The
+result is right, or there is an error with its reason and its exit code, and nothing half written.
 
 Run by ctest with G3R_PROGRAM set to the program and G3R_FAULT_SHIM to the library that makes calls fail.
 """
@@ -79,8 +79,8 @@ class HardMachine(ProgramTest):
         self.assert_right(env={**os.environ, "HOME": home, "XDG_CACHE_HOME": ""}, **dropped_to_nobody())
 
     def test_few_open_files(self):
-        codes = {self.assert_right_or_told((NO_INPUT, OUT_OF_MEMORY, CANNOT_CREATE, INPUT_OUTPUT), preexec_fn=limited(resource.RLIMIT_NOFILE, n))
-                 for n in (6, 7, 8, 16)}
+        told = (NO_INPUT, OUT_OF_MEMORY, CANNOT_CREATE, INPUT_OUTPUT)
+        codes = {self.assert_right_or_told(told, preexec_fn=limited(resource.RLIMIT_NOFILE, n)) for n in (6, 7, 8, 16)}
         self.assertIn(OK, codes)
 
     @unittest.skipIf(is_sanitized(), "a sanitizer needs threads of its own")
@@ -96,7 +96,8 @@ class HardMachine(ProgramTest):
     def test_data_limits(self):
         if is_sanitized():
             self.skipTest("a sanitizer needs the memory")
-        codes = {self.assert_right_or_told((OUT_OF_MEMORY,), preexec_fn=limited(resource.RLIMIT_DATA, n * 1024 * KIB)) for n in (4, 8, 16, 4096)}
+        limits = [limited(resource.RLIMIT_DATA, n * 1024 * KIB) for n in (4, 8, 16, 4096)]
+        codes = {self.assert_right_or_told((OUT_OF_MEMORY,), preexec_fn=each) for each in limits}
         self.assertIn(OK, codes)
 
     def everything(self):

@@ -55,16 +55,19 @@ def debian_packages():
 
 def pinned_sources():
     """One element for every archive that tools/sources.sh fetches: `fetch FOLDER NAME VERSION SHA256 ...`."""
-    for name, pinned, checksum in re.findall(r"^fetch \S+ (\S+) (\S+) ([0-9a-f]{64})", (ROOT / "tools/sources.sh").read_text(), re.MULTILINE):
-        yield element(PARTS[name], "SPDXRef-source-" + name, versionInfo=pinned, licenseDeclared=LICENCES[name], licenseConcluded=LICENCES[name],
-                      packageFileName="%s-%s.tar.gz" % (name, pinned), checksums=[{"algorithm": "SHA256", "checksumValue": checksum}],
+    script = (ROOT / "tools/sources.sh").read_text()
+    for name, pinned, checksum in re.findall(r"^fetch \S+ (\S+) (\S+) ([0-9a-f]{64})", script, re.MULTILINE):
+        yield element(PARTS[name], "SPDXRef-source-" + name, versionInfo=pinned, licenseDeclared=LICENCES[name],
+                      licenseConcluded=LICENCES[name], packageFileName="%s-%s.tar.gz" % (name, pinned),
+                      checksums=[{"algorithm": "SHA256", "checksumValue": checksum}],
                       downloadLocation="https://pypi.org/project/%s/%s/" % (name, pinned), externalRefs=[
                           {"referenceCategory": "PACKAGE-MANAGER", "referenceType": "purl",
                            "referenceLocator": "pkg:pypi/%s@%s" % (name, pinned)}])
 
 
 def document():
-    main = element("g3r", "SPDXRef-g3r", versionInfo=version(), licenseConcluded="MIT", licenseDeclared="MIT", supplier="Organization: the g3r authors")
+    main = element("g3r", "SPDXRef-g3r", versionInfo=version(), licenseConcluded="MIT", licenseDeclared="MIT",
+                   supplier="Organization: the g3r authors")
     packages, sources = list(debian_packages()), list(pinned_sources())
     relations = [("SPDXRef-DOCUMENT", "DESCRIBES", "SPDXRef-g3r")]
     relations += [(package["SPDXID"], "BUILD_DEPENDENCY_OF", "SPDXRef-g3r") for package in packages]
