@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include "text.h"
@@ -14,6 +15,10 @@ namespace g3r::cli {
 namespace {
 
 constexpr std::size_t kBarWidth = 32;
+constexpr std::size_t kStageWidth = 10;   // of the indented name, so that bars stand below each other
+constexpr std::size_t kPercentWidth = 8;  // of what follows the bar at least: brackets and " 100 %"
+constexpr std::size_t kLeastBar = 5;      // where a bar is no help, the share alone is shown
+constexpr std::size_t kColumns = 80;      // where the terminal does not tell
 constexpr auto kRedrawInterval = std::chrono::milliseconds(100);
 // A time left extrapolated from less than these is a guess that jumps about.
 constexpr double kMinSecondsForEstimate = 1;
@@ -25,6 +30,13 @@ void print(const std::string& text) { std::fputs(text.c_str(), stderr); }
 bool is_capable_terminal() {
   const char* term = std::getenv("TERM");  // NOLINT(concurrency-mt-unsafe): no thread changes the environment
   return isatty(STDERR_FILENO) != 0 && term != nullptr && std::string_view(term) != "dumb";
+}
+
+// One less than the terminal has: a character in the last one makes some terminals begin another line, which nothing clears.
+std::size_t usable_columns() {
+  winsize size{};
+  const bool told = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return (told ? size.ws_col : kColumns) - 1;
 }
 
 }  // namespace
@@ -60,13 +72,18 @@ void Console::progress(std::string_view stage, double fraction) {
 void Console::draw_bar(double fraction) {
   last_drawn_ = Clock::now();
   bar_visible_ = true;
-  std::string line = kClearLine;
-  line.append("  ").append(stage_);
+  const std::size_t columns = usable_columns();
+  std::string line("  ");
+  line += stage_;
   if (fraction > 0) {
-    const auto filled = static_cast<std::size_t>(fraction * static_cast<double>(kBarWidth));
-    line.resize(std::max(line.size(), std::size_t{14}), ' ');
-    line.append("[").append(filled, '=').append(kBarWidth - filled, ' ').append("] ");
-    line += std::to_string(static_cast<int>(100 * fraction)) + " %";
+    const std::size_t taken = kStageWidth + kPercentWidth;
+    const std::size_t width = columns < taken + kLeastBar ? 0 : std::min(kBarWidth, columns - taken);
+    if (width > 0) {
+      const auto filled = static_cast<std::size_t>(fraction * static_cast<double>(width));
+      line.resize(std::max(line.size(), kStageWidth), ' ');
+      line.append("[").append(filled, '=').append(width - filled, ' ').append("]");
+    }
+    line.append(" ").append(std::to_string(static_cast<int>(100 * fraction))).append(" %");
     const double elapsed = std::chrono::duration<double>(last_drawn_ - stage_start_).count();
     if (elapsed > kMinSecondsForEstimate && fraction > kMinFractionForEstimate) {
       line += ", " + duration(elapsed / fraction - elapsed) + " left";
@@ -74,7 +91,8 @@ void Console::draw_bar(double fraction) {
   } else {
     line += " ...";  // a stage that cannot tell how far it is
   }
-  print(line);
+  line.resize(std::min(line.size(), columns));
+  print(kClearLine + line);
   std::fflush(stderr);
 }
 

@@ -28,7 +28,8 @@ function(g3r_laszip_defaults target)
 endfunction()
 
 # g3r_libe57_defaults(TARGET): the same for sources of libE57Format, but that only the width of its widest integers overflows (rightly). It
-# expects a header that its own build makes.
+# expects a header that its own build makes. Its messages name files of its sources: without the folder, so that builds in any folder are
+# the same bytes (tools/reproducible.sh).
 function(g3r_libe57_defaults target)
   file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/e57/E57Export.h" CONTENT "#define E57_DLL\n")
   target_compile_features(${target} PRIVATE cxx_std_17)
@@ -36,7 +37,8 @@ function(g3r_libe57_defaults target)
                                              CXX_CLANG_TIDY "")
   target_include_directories(${target} PRIVATE "${G3R_E57}/include" "${G3R_E57}/src" "${G3R_E57}/extern/CRCpp/inc"
                                                "${PROJECT_BINARY_DIR}/e57")
-  target_compile_definitions(${target} PRIVATE E57_VALIDATION_LEVEL=1 CRCPP_USE_CPP11 CRCPP_BRANCHLESS REVISION_ID="libE57Format")
+  target_compile_definitions(${target} PRIVATE E57_VALIDATION_LEVEL=1 CRCPP_USE_CPP11 CRCPP_BRANCHLESS REVISION_ID="libE57Format"
+                                               __FILE__=__FILE_NAME__)
   target_compile_options(${target} PRIVATE -w)
   if(G3R_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${G3R_SANITIZE} -fno-sanitize=signed-integer-overflow

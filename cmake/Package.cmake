@@ -44,6 +44,14 @@ install(FILES "${PROJECT_BINARY_DIR}/g3r.pc" DESTINATION ${CMAKE_INSTALL_LIBDIR}
 install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
 g3r_install_licences(${CMAKE_INSTALL_DOCDIR} runtime)
 
+# What it is made from, as SPDX: of this machine and this moment.
+find_package(Python3 COMPONENTS Interpreter)
+if(Python3_FOUND)
+  execute_process(COMMAND ${Python3_EXECUTABLE} -B "${PROJECT_SOURCE_DIR}/tools/sbom.py"
+                  OUTPUT_FILE "${PROJECT_BINARY_DIR}/g3r.spdx.json" COMMAND_ERROR_IS_FATAL ANY)
+  install(FILES "${PROJECT_BINARY_DIR}/g3r.spdx.json" DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
+endif()
+
 set(CPACK_PACKAGE_NAME g3r)
 set(CPACK_PACKAGE_VENDOR "the g3r authors")
 set(CPACK_PACKAGE_CONTACT "the g3r authors <g3r@example.org>")

@@ -2,14 +2,46 @@
 #include <g3r/g3r.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <string>
 
 namespace {
 
 using nlohmann::json;
 
 json report(const g3r::Stats& stats, const g3r::MeshCheck* mesh = nullptr) { return json::parse(g3r::report_json(stats, mesh)); }
+
+// Every field of `kept` is in `now`, with a value of the same type; null stands for a number that does not apply.
+void expect_fields(const json& kept, const json& now, const std::string& where) {
+  for (const auto& [key, value] : kept.items()) {
+    ASSERT_TRUE(now.contains(key)) << where << key << " is gone: raise schema_version";
+    const json& other = now[key];
+    if (value.is_object()) {
+      ASSERT_TRUE(other.is_object()) << where << key;
+      expect_fields(value, other, where + key + ".");
+    } else if (value.is_number()) {
+      EXPECT_TRUE(other.is_number() || other.is_null()) << where << key;
+    } else if (!value.is_null()) {
+      EXPECT_EQ(std::string(value.type_name()), other.type_name()) << where << key;
+    }
+  }
+}
+
+// report: what reads a report of 0.1.0, the first with version 1 of the schema, reads any later one of that version.
+TEST(Report, KeepsEveryFieldOfTheFirstVersion) {
+  std::ifstream file(std::string(G3R_REPORTS) + "/0.1.0.json");
+  const json kept = json::parse(file);
+  EXPECT_EQ(kept["schema"], "g3r.report");
+  EXPECT_EQ(kept["g3r_version"], "0.1.0");
+  g3r::MeshCheck mesh;
+  mesh.closed = mesh.manifold = true;
+  g3r::Stats stats;
+  const json now = report(stats, &mesh);
+  ASSERT_EQ(now["schema_version"], kept["schema_version"]) << "keep a report of the new version, and read both";
+  expect_fields(kept, now, "");
+}
 
 // report: an empty run has every documented field.
 TEST(Report, HasEveryDocumentedField) {

@@ -5,8 +5,11 @@
 #include <g3r/error.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstddef>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include <tbb/global_control.h>
@@ -41,11 +44,51 @@ inline int thread_count(int threads) {
   return threads > 0 ? std::min(threads, cores) : cores;
 }
 
+/// Arenas that wait for their next call. oneTBB does not give back all of an arena of several threads, some 7 KiB, so that a process that
+/// calls again and again would grow without end if each call made its own. A call has its arena to itself. Slots instead of a lock: in the
+/// child of a fork nobody would unlock it. Never destroyed: at the end of a process, calls in other threads may still be running.
+class IdleArenas {
+ public:
+  [[nodiscard]] std::unique_ptr<tbb::task_arena> take(int threads) {
+    for (std::atomic<tbb::task_arena*>& slot : slots_) {
+      std::unique_ptr<tbb::task_arena> arena(slot.exchange(nullptr));
+      if (arena != nullptr && arena->max_concurrency() == threads) return arena;
+      give(std::move(arena));
+    }
+    return std::make_unique<tbb::task_arena>(threads);
+  }
+  void give(std::unique_ptr<tbb::task_arena> arena) noexcept {
+    for (std::atomic<tbb::task_arena*>& slot : slots_) {
+      tbb::task_arena* empty = nullptr;
+      if (arena == nullptr || slot.compare_exchange_strong(empty, arena.get())) {
+        (void)arena.release();
+        return;
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t kCallers = 16;  // calls at once whose arenas are kept; those of more are made anew
+  std::array<std::atomic<tbb::task_arena*>, kCallers> slots_{};
+};
+
+inline IdleArenas& idle_arenas() {
+  static auto* const arenas = new IdleArenas;
+  return *arenas;
+}
+
 /// Runs `work()` with at most `threads` threads (0: all cores) and returns what it returns.
 template <class Work>
 auto with_threads(int threads, Work&& work) {
-  tbb::task_arena arena(thread_count(threads));
-  return arena.execute(std::forward<Work>(work));
+  struct Loan {
+    std::unique_ptr<tbb::task_arena> arena;
+    explicit Loan(int count) : arena(idle_arenas().take(count)) {}
+    ~Loan() { idle_arenas().give(std::move(arena)); }
+    Loan(const Loan&) = delete;
+    Loan& operator=(const Loan&) = delete;
+  };
+  const Loan loan(thread_count(threads));
+  return loan.arena->execute(std::forward<Work>(work));
 }
 
 /// body(i) for i in [0, count), each call independent of the others. `cancel` (may be null) stops the loop with Cancelled.

@@ -1,0 +1,241 @@
+// The shared library as a guest in other people's processes: loaded and unloaded, after fork, on small stacks, among signals, in another
+// locale, from many threads. This program knows the library through dlopen and g3r_c.h only. G3R_SHARED_LIBRARY is its path.
+#include <g3r/g3r_c.h>
+
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+#include <pthread.h>
+#include <sys/time.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <clocale>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "sanitized.h"
+
+namespace {
+
+constexpr std::size_t kPoints = 300;
+constexpr unsigned kPatience = 120;              // seconds after which a child hangs
+constexpr std::size_t kSmallStack = 64UL << 10;  // bytes
+
+class Library {
+ public:
+  Library() : handle_(dlopen(G3R_SHARED_LIBRARY, RTLD_NOW | RTLD_LOCAL)) {}
+  ~Library() {
+    if (handle_ != nullptr) dlclose(handle_);
+  }
+  Library(const Library&) = delete;
+  Library& operator=(const Library&) = delete;
+  template <typename Function>
+  [[nodiscard]] Function* find(const char* name) const {
+    return reinterpret_cast<Function*>(dlsym(handle_, name));
+  }
+  [[nodiscard]] bool is_loaded() const { return handle_ != nullptr; }
+
+ private:
+  void* handle_;
+};
+
+std::vector<double> egg() {
+  std::vector<double> points;
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    const double z = 1 - (2 * static_cast<double>(i) + 1) / kPoints;
+    const double r = std::sqrt(1 - z * z);
+    const double phi = 2.399963229728653 * static_cast<double>(i);
+    points.insert(points.end(), {1.5 * r * std::cos(phi), r * std::sin(phi), 0.8 * z});
+  }
+  return points;
+}
+
+// Normals and the vertices of the mesh, one after the other; empty if the call fails.
+std::vector<double> reconstruct(const Library& library) {
+  const std::vector<double> points = egg();
+  std::vector<double> out(points.size());
+  g3r_mesh* mesh = nullptr;
+  g3r_options options;
+  library.find<decltype(g3r_options_init)>("g3r_options_init")(&options, sizeof options);
+  options.device = "cpu";
+  const auto run = library.find<decltype(g3r_reconstruct)>("g3r_reconstruct");
+  if (run(points.data(), kPoints, &options, out.data(), nullptr, nullptr, &mesh) != G3R_OK) return {};
+  out.insert(out.end(), mesh->vertices, mesh->vertices + 3 * mesh->vertex_count);
+  library.find<decltype(g3r_mesh_free)>("g3r_mesh_free")(mesh);
+  return out;
+}
+
+// Runs `work` in a forked process: 0 if it says that all is well.
+template <typename Work>
+int in_child(const Work& work) {
+  const pid_t child = fork();
+  if (child == 0) {
+    alarm(kPatience);
+    _exit(work() ? 0 : 1);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return status;
+}
+
+// All tests but the first use one loaded library.
+class Guest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    library_ = new Library;
+    ASSERT_TRUE(library_->is_loaded()) << dlerror();
+    *expected_ = reconstruct(*library_);
+    ASSERT_GT(expected_->size(), 3 * kPoints);
+  }
+  static void TearDownTestSuite() {
+    delete library_;
+    library_ = nullptr;
+  }
+  static const Library& library() { return *library_; }
+  static const std::vector<double>& expected() { return *expected_; }
+
+ private:
+  static inline Library* library_ = nullptr;
+  static inline std::vector<double>* const expected_ = new std::vector<double>;
+};
+
+// In a child, so that what unloading leaves behind is of no account to the tests that follow.
+TEST(Host, LoadsAndUnloadsAgainAndAgain) {
+  constexpr int kTimes = g3r::kSanitized ? 3 : 8;
+  EXPECT_EQ(in_child([] {
+              std::vector<double> first;
+              for (int i = 0; i < kTimes; ++i) {
+                const Library library;
+                if (!library.is_loaded()) return false;
+                const std::vector<double> result = reconstruct(library);
+                if (i == 0) first = result;
+                if (result.empty() || result != first) return false;
+              }
+              return true;
+            }),
+            0);
+}
+
+TEST_F(Guest, WorksOnAfterAFork) {
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(in_child([] { return reconstruct(library()) == expected(); }), 0);
+  }
+  EXPECT_EQ(reconstruct(library()), expected());
+}
+
+TEST_F(Guest, WorksInTheChildOfAChild) {
+  EXPECT_EQ(
+      in_child([] { return reconstruct(library()) == expected() && in_child([] { return reconstruct(library()) == expected(); }) == 0; }),
+      0);
+}
+
+TEST_F(Guest, ChildrenEndByExit) {
+  const pid_t child = fork();
+  if (child == 0) {
+    alarm(kPatience);
+    std::exit(reconstruct(library()) == expected() ? 0 : 1);  // destructors of what the parent's threads used run here
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+}
+
+TEST_F(Guest, ThreadsCallAtOnce) {
+  constexpr std::size_t kCallers = 4;
+  std::vector<std::vector<double>> results(kCallers);
+  std::vector<std::thread> callers;
+  for (std::size_t i = 0; i < kCallers; ++i) callers.emplace_back([&, i] { results[i] = reconstruct(library()); });
+  for (std::thread& caller : callers) caller.join();
+  for (const std::vector<double>& result : results) EXPECT_EQ(result, expected());
+}
+
+TEST_F(Guest, ASmallStackIsEnough) {
+  if (g3r::kSanitized) GTEST_SKIP() << "sanitizers make frames larger";
+  std::vector<double> result;
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  ASSERT_EQ(pthread_attr_setstacksize(&attributes, kSmallStack), 0);
+  pthread_t caller{};
+  const auto run = [](void* to) -> void* {
+    *static_cast<std::vector<double>*>(to) = reconstruct(library());
+    return nullptr;
+  };
+  ASSERT_EQ(pthread_create(&caller, &attributes, run, &result), 0);
+  pthread_join(caller, nullptr);
+  pthread_attr_destroy(&attributes);
+  EXPECT_EQ(result, expected());
+}
+
+// Resident bytes of this process.
+double resident() {
+  std::ifstream in("/proc/self/statm");
+  double pages = 0;
+  in >> pages >> pages;
+  return pages * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+TEST_F(Guest, ManyCallsTakeNoMoreMemory) {
+  if (g3r::kSanitized) GTEST_SKIP() << "sanitizers keep what is freed";
+  constexpr std::size_t kFew = 60;   // points: fast
+  constexpr int kSettled = 50;       // calls after which nothing grows
+  constexpr int kMore = 200;         // of 7 KiB each, if every call lost an arena of threads
+  constexpr double kGrowth = 700e3;  // bytes
+  const std::vector<double> points = egg();
+  std::vector<double> normals(3 * kFew);
+  g3r_options options;
+  library().find<decltype(g3r_options_init)>("g3r_options_init")(&options, sizeof options);
+  options.threads = 2;
+  options.device = "cpu";
+  const auto orient = library().find<decltype(g3r_orient)>("g3r_orient");
+  double before = 0;
+  for (int i = 0; i < kSettled + kMore; ++i) {
+    if (i == kSettled) before = resident();
+    ASSERT_EQ(orient(points.data(), kFew, &options, normals.data(), nullptr, nullptr), G3R_OK);
+  }
+  EXPECT_LT(resident() - before, kGrowth);
+}
+
+volatile std::sig_atomic_t signals = 0;
+
+// A profiler's timer, whose handler does not restart what it interrupts.
+TEST_F(Guest, SignalsDoNotDisturb) {
+  struct sigaction action {};
+  struct sigaction before {};
+  action.sa_handler = [](int) { signals = signals + 1; };
+  sigaction(SIGALRM, &action, &before);
+  const itimerval often{{0, 500}, {0, 500}};
+  setitimer(ITIMER_REAL, &often, nullptr);
+  const std::vector<double> result = reconstruct(library());
+  const itimerval never{};
+  setitimer(ITIMER_REAL, &never, nullptr);
+  sigaction(SIGALRM, &before, nullptr);
+  EXPECT_EQ(result, expected());
+  EXPECT_GT(signals, 0);
+}
+
+TEST_F(Guest, LeavesHandlersAndTheLocaleAlone) {
+  const std::string folder = testing::TempDir() + "g3r-guest-locale-" + std::to_string(getpid());
+  (void)std::system(("mkdir " + folder + " && localedef -i de_DE -f UTF-8 " + folder + "/de_DE.UTF-8 2> /dev/null").c_str());
+  setenv("LOCPATH", folder.c_str(), 1);
+  const bool german = std::setlocale(LC_ALL, "de_DE.UTF-8") != nullptr;
+  unsetenv("LOCPATH");
+  struct sigaction interrupt {};
+  struct sigaction interrupt_after {};
+  sigaction(SIGINT, nullptr, &interrupt);
+  const std::string locale = std::setlocale(LC_ALL, nullptr);
+  EXPECT_EQ(reconstruct(library()), expected());
+  EXPECT_EQ(locale, std::setlocale(LC_ALL, nullptr));
+  sigaction(SIGINT, nullptr, &interrupt_after);
+  EXPECT_EQ(interrupt.sa_handler, interrupt_after.sa_handler);
+  std::setlocale(LC_ALL, "C");
+  (void)std::system(("rm -rf " + folder).c_str());
+  if (!german) GTEST_SKIP() << "no German locale on this machine (package locales): tried in the one that there is";
+}
+
+}  // namespace

@@ -1,0 +1,133 @@
+// Clouds made from seeds, held to what must hold for every cloud, and the cases that are kept (tests/stress_cases). bench/stress.cpp
+// runs any number.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "run_apart.h"
+#include "run_options.h"
+#include "sampling.h"
+#include "sanitized.h"
+#include "shrink.h"
+
+namespace g3r::stress {
+namespace {
+
+constexpr std::uint64_t kSeed = 5000;
+constexpr std::uint64_t kClouds = kSanitized ? 8 : 40;
+constexpr std::size_t kLargest = 200;
+constexpr double kDishonest = 0.2;  // share of the clouds with points that are wrong and sure: shapes of a few dozen points tell little
+
+std::string words(const Outcome& outcome) {
+  std::string out;
+  for (const Finding& f : outcome.findings) {
+    if (!is_statistical(f.kind)) out += f.kind + ": " + f.what + "\n";
+  }
+  return out;
+}
+
+TEST(Stress, ShortSetHolds) {
+  std::size_t dishonest = 0;
+  for (std::uint64_t seed = kSeed; seed < kSeed + kClouds; ++seed) {
+    const Recipe recipe = random_recipe(seed, kLargest);
+    const Outcome outcome = hold_apart(recipe, {});
+    EXPECT_EQ(words(outcome), "") << recipe.line();
+    dishonest += std::any_of(outcome.findings.begin(), outcome.findings.end(),
+                             [](const Finding& f) { return f.kind == "confidence" || f.kind == "rigid"; });
+  }
+  RecordProperty("clouds", static_cast<int>(kClouds));
+  EXPECT_LE(static_cast<double>(dishonest), kDishonest * kClouds);
+}
+
+TEST(Stress, KeptCasesHold) {
+  std::size_t cases = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(G3R_STRESS_CASES)) {
+    std::ifstream in(entry.path(), std::ios::binary);
+    const Case kept = from_text({std::istreambuf_iterator<char>(in), {}});
+    EXPECT_EQ(words(hold_apart(kept, {})), "") << entry.path();
+    ++cases;
+  }
+  EXPECT_GT(cases, 0U);
+}
+
+TEST(Stress, SameRecipeSameBytes) {
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    const Case a{random_recipe(seed, 200), make_scene(random_recipe(seed, 200))};
+    const Case b{random_recipe(seed, 200), make_scene(random_recipe(seed, 200))};
+    EXPECT_EQ(to_text(a), to_text(b));
+  }
+}
+
+TEST(Stress, CasesComeBackFromText) {
+  const Recipe recipe("shape=solid parts=2 points=30 missing=2 offset=utm float32=1 seed=3 method=green schedule=3_sd_30_cg");
+  const Case made{recipe, make_scene(recipe)};
+  const Case back = from_text(to_text(made));
+  EXPECT_EQ(to_text(back), to_text(made));
+  ASSERT_EQ(back.scene.points.size(), made.scene.points.size());
+  EXPECT_EQ(run_options(back).options.schedule, "3 sd 30 cg");
+}
+
+// Every family and sampling: places on the surface, and normals across which the value changes from inside to outside.
+TEST(Stress, SamplesLieOnTheirSurface) {
+  for (const char* family : {"solid", "shell", "wire", "sheet", "terrain", "room"}) {
+    for (const char* sampling : {"uniform", "uneven", "lines", "raster", "views"}) {
+      const Shape shape = make_shape(family, 3, 7);
+      const Sampled sampled = sample(shape, sampling, 100, 7);
+      EXPECT_GE(sampled.points.size(), 10U) << family << ' ' << sampling;
+      for (const Vec3& p : sampled.points) {
+        EXPECT_LT(std::abs(shape.value(p)), 1e-9) << family << ' ' << sampling;
+        const Vec3 n = normal_of(shape, p);
+        constexpr double kStep = 1e-4;
+        EXPECT_GT(shape.value({p[0] + kStep * n[0], p[1] + kStep * n[1], p[2] + kStep * n[2]}), 0) << family << ' ' << sampling;
+      }
+    }
+  }
+}
+
+TEST(Stress, AreaOfABall) {
+  const Shape ball{[](const Vec3& p) { return std::hypot(p[0], p[1], p[2]) - 1; }, [](const Vec3&) { return true; }};
+  constexpr double kSeeds = 20;
+  constexpr double kFromLines = 0.03;  // four standard deviations of the mean of 20 times 2000 lines
+  double sum = 0;
+  for (int seed = 0; seed < kSeeds; ++seed) sum += sample(ball, "uniform", 10, static_cast<std::uint64_t>(seed)).area;
+  EXPECT_NEAR(sum / kSeeds / (4 * 3.14159265), 1, kFromLines);
+}
+
+// A failure that needs 3 points that are not finite is shrunk to these.
+TEST(Stress, FailuresShrink) {
+  const Recipe recipe("shape=solid parts=4 points=200 missing=5 noise=0.1 offset=utm seed=1 preset=paper");
+  const auto fails = [](const Case& c) {
+    return std::count_if(c.scene.points.begin(), c.scene.points.end(), [](const Vec3& p) { return !std::isfinite(p[0] + p[1] + p[2]); }) >=
+           3;
+  };
+  const Case small = shrink(recipe, fails, true, 200);
+  EXPECT_EQ(small.scene.points.size(), 3U);
+  EXPECT_TRUE(fails(small));
+  EXPECT_EQ(small.recipe.line(), "missing=5 parts=1 points=6 seed=1 shape=solid");
+}
+
+TEST(Stress, FindingsComeOutOfTheirProcess) {
+  Demands demands;
+  demands.program = "/bin/false";
+  const Outcome outcome = hold_apart(Recipe("shape=solid points=50 seed=1"), demands);
+  ASSERT_EQ(outcome.findings.size(), 1U);
+  EXPECT_EQ(outcome.findings[0].kind, "program");
+  EXPECT_EQ(outcome.findings[0].what, "g3r ends with 1");
+  EXPECT_GT(outcome.cpu_seconds, 0);
+}
+
+// A run that is too long, too large or ends by a signal is a finding.
+TEST(Stress, LimitsAreFindings) {
+  const Recipe recipe("shape=solid points=20000 seed=1");
+  const Outcome outcome = hold_apart(recipe, {}, {1, 8ULL << 30});
+  ASSERT_EQ(outcome.findings.size(), 1U);
+  EXPECT_EQ(outcome.findings[0].kind, "crash");
+}
+
+}  // namespace
+}  // namespace g3r::stress
