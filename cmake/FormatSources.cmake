@@ -2,7 +2,7 @@
 # G3R_LASZIP and G3R_E57 to their folders, empty where a format is left out.
 set(G3R_SOURCES "${PROJECT_SOURCE_DIR}/build/sources" CACHE PATH "Folder with the sources of LASzip (laszip) and libE57Format (e57)")
 option(G3R_WITH_LAZ "Read and write LAZ, if the sources of LASzip are there" ON)
-option(G3R_WITH_E57 "Read E57, if the sources of libE57Format and Xerces-C++ (libxerces-c-dev) are there" ON)
+option(G3R_WITH_E57 "Read E57, if the sources of libE57Format are there" ON)
 option(G3R_FETCH_SOURCES "Run tools/sources.sh if a source is missing (for builds of the Python package)" OFF)
 
 set(G3R_LASZIP "")
@@ -15,13 +15,10 @@ if(G3R_WITH_LAZ AND EXISTS "${G3R_SOURCES}/laszip/src/laswritepoint.cpp")
 elseif(G3R_WITH_LAZ)
   message(NOTICE "g3r: LAZ is left out: no LASzip in ${G3R_SOURCES}/laszip (tools/sources.sh fetches it)")
 endif()
-if(G3R_WITH_E57)
-  find_package(XercesC QUIET)
-  if(XercesC_FOUND AND EXISTS "${G3R_SOURCES}/e57/src/CompressedVectorReaderImpl.cpp")
-    set(G3R_E57 "${G3R_SOURCES}/e57")
-  else()
-    message(NOTICE "g3r: E57 is left out: no Xerces-C++, or no libE57Format in ${G3R_SOURCES}/e57 (tools/sources.sh fetches it)")
-  endif()
+if(G3R_WITH_E57 AND EXISTS "${G3R_SOURCES}/e57/src/CompressedVectorReaderImpl.cpp")
+  set(G3R_E57 "${G3R_SOURCES}/e57")
+elseif(G3R_WITH_E57)
+  message(NOTICE "g3r: E57 is left out: no libE57Format in ${G3R_SOURCES}/e57 (tools/sources.sh fetches it)")
 endif()
 
 # g3r_install_licences(FOLDER COMPONENT): the licences of the libraries that are part of g3r.
