@@ -1,5 +1,5 @@
 # The libraries that g3r is made of: the system's, or, where the system lacks one or G3R_BUNDLED is on, compiled here from their sources in
-# G3R_SOURCES (tools/sources.sh all), as part of what is linked. The source distribution has these sources; wheels are made of them.
+# G3R_SOURCES (tools/sources.sh all), as part of what is linked. The source distribution has these sources.
 option(G3R_BUNDLED "Compile all libraries from the sources in G3R_SOURCES, whatever the system has" OFF)
 
 # g3r_bundled(NAME TARGET INCLUDE SOURCE...): the library g3r_NAME, known as TARGET, of sources that are not ours: no warnings, and nothing

@@ -2,7 +2,7 @@
 # tools/sources.sh [all]: brings the sources of LASzip (Apache License 2.0; reads and writes LAZ) and of libE57Format (Boost Software License
 # 1.0; reads E57) to build/sources, where every build takes them from. Debian 12 has no packages of them: they come from the source
 # distributions of laszip and pye57 on PyPI, of which only the libraries are kept. With "all" also those of the other libraries, for builds
-# that have to have them inside (cmake/Libraries.cmake): wheels and the source distribution. These come from Debian 12.
+# that have to have them inside (cmake/Libraries.cmake) and the source distribution. These come from Debian 12.
 # All are pinned versions, held against their checksums. The archives stay in the cache of the user ($G3R_CACHE, else $XDG_CACHE_HOME/g3r,
 # else ~/.cache/g3r), so that the network is needed once.
 # Exit status 1, with one line that says so, where there are neither: then builds leave these formats out.
