@@ -53,7 +53,7 @@ Json score_points(const Settings& settings, Console& console) {
 }
 
 Json score_meshes(const Settings& settings, const Mesh& result, const Mesh& truth) {
-  const MeshScore score = score_mesh(result, truth, settings.sample_count, settings.options.seed, settings.distances);
+  const MeshScore score = score_mesh(result, truth, settings.sample_count, settings.seed, settings.distances);
   Json f_scores = Json::array();
   for (const FScore& f : score.f_scores) {
     f_scores.push_back({{"distance", f.distance}, {"precision", f.precision}, {"recall", f.recall}, {"f", f.f}});

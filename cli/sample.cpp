@@ -28,7 +28,7 @@ int run_sample(const Settings& settings, Session& session) {
   const Mesh mesh = session.stage("read", [&] { return read_mesh(settings.input); });
   const bool percent = settings.noise.unit == Length::Unit::kPercent;
   const double noise = settings.noise.value * (percent ? box_diagonal(mesh.vertices) / 100 : 1);
-  Samples samples = session.stage("sample", [&] { return sample_mesh(mesh, settings.sample_count, settings.options.seed, noise); });
+  Samples samples = session.stage("sample", [&] { return sample_mesh(mesh, settings.sample_count, settings.seed, noise); });
   Cloud cloud;
   cloud.positions = std::move(samples.points);
   session.stage("write",

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <initializer_list>
 #include <iostream>
 #include <limits>
 #include <map>
@@ -99,6 +100,20 @@ std::string device_list() {
   return text;
 }
 
+/// What --version says: the first line is the version alone.
+std::string version_text() {
+  const BuildInfo info = build_info();
+  const auto listed = [](std::initializer_list<std::pair<const char*, bool>> parts) {
+    std::string names;
+    for (const auto& [name, there] : parts) names += there ? (names.empty() ? "" : ", ") + std::string(name) : "";
+    return names.empty() ? std::string("none") : names;
+  };
+  return "g3r " + std::string(version()) +
+         "\noptional parts: " + listed({{"LAZ", info.laz}, {"E57", info.e57}, {"screened Poisson (Open3D)", info.poisson}}) +
+         "\ninstruction set: " + info.instruction_set + "\ninterfaces to GPUs: " + listed({{"OpenCL", info.opencl}, {"CUDA", info.cuda}}) +
+         " (--device list: what they have)";
+}
+
 void add_run_options(CLI::App& app, Settings& s) {
   app.option_defaults()->group(kRunGroup);
   app.add_option("--threads", s.options.threads, "Threads, 0 (the default) for all cores; the result is the same for any number")
@@ -129,7 +144,7 @@ void add_report_options(CLI::App& app, Settings& s) {
 }
 
 void add_seed_option(CLI::App& app, Settings& s) {
-  app.add_option("--seed", s.options.seed, "Seed of random steps (default 0)")
+  app.add_option("--seed", s.seed, "Another number draws other points (default 0)")
       ->check(range(std::uint64_t{0}))
       ->type_name("S")
       ->group(kRunGroup);
@@ -336,7 +351,6 @@ void add_reconstruct(CLI::App& app, Settings& s) {
   add_finish_options(app, s);
   add_mesh_options(app, s);
   add_run_options(app, s);
-  add_seed_option(app, s);
   add_read_options(app, s);
   add_method_options(app, s);
 }
@@ -358,7 +372,6 @@ void add_orient(CLI::App& app, Settings& s) {
   add_report_options(*sub, s);
   add_hint_options(*sub, s);
   add_run_options(*sub, s);
-  add_seed_option(*sub, s);
   add_read_options(*sub, s);
   add_method_options(*sub, s);
 }
@@ -594,7 +607,7 @@ std::optional<Settings> parse_command_line(int argc, const char* const* argv) {
   Settings settings;
   CLI::App app(kIntroduction, "g3r");
   app.formatter(std::make_shared<HelpFormatter>());
-  app.set_version_flag("--version", "g3r " + std::string(version()), "Print the version and exit");
+  app.set_version_flag("--version", version_text, "Print the version, what this build has and what it runs on, and exit");
   app.set_help_flag("-h,--help", "Print this text and exit");
   app.footer(std::string(kFormatHelp) + kExitCodeHelp);
   app.require_subcommand(0, 1);

@@ -34,6 +34,7 @@ struct Settings {
   MeshOptions mesh_options;
   ReadOptions read_options;
   WriteOptions write_options;
+  std::uint64_t seed = 0;         ///< sample, eval: of the points drawn
   std::size_t sample_count = 0;   ///< sample: points to draw; eval: points per mesh
   std::vector<double> distances;  ///< eval: of the F-scores
   Length noise;                   ///< sample

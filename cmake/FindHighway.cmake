@@ -1,10 +1,16 @@
-# Debian's libhwy-dev ships pkg-config files only.
+# By pkg-config, which is all that Debian's libhwy-dev is found by, or by the package of CMake that others have.
 find_package(PkgConfig QUIET)
 if(PKG_CONFIG_FOUND)
   pkg_check_modules(HWY QUIET IMPORTED_TARGET libhwy)
 endif()
 if(HWY_FOUND AND NOT TARGET Highway::hwy)
   add_library(Highway::hwy ALIAS PkgConfig::HWY)
+elseif(NOT TARGET Highway::hwy)
+  find_package(hwy CONFIG QUIET)
+  if(TARGET hwy::hwy)
+    add_library(Highway::hwy ALIAS hwy::hwy)
+    set(HWY_FOUND TRUE)
+  endif()
 endif()
 include(FindPackageHandleStandardArgs)
 find_package_handle_standard_args(Highway REQUIRED_VARS HWY_FOUND)

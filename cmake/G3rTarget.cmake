@@ -28,14 +28,18 @@ function(g3r_laszip_defaults target)
 endfunction()
 
 # g3r_libe57_defaults(TARGET): the same for sources of libE57Format, but that only the width of its widest integers overflows (rightly). It
-# expects a header that its own build makes. Its messages name files of its sources: without the folder, so that builds in any folder are
-# the same bytes (tools/reproducible.sh).
+# expects a header that its own build makes, and those of Xerces-C++, of which src/io/e57_xml.h has what it uses. Its messages name files of
+# its sources: without the folder, so that builds in any folder are the same bytes (tools/reproducible.sh).
 function(g3r_libe57_defaults target)
   file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/e57/E57Export.h" CONTENT "#define E57_DLL\n")
+  foreach(header sax/InputSource sax2/Attributes sax2/DefaultHandler sax2/XMLReaderFactory util/BinInputStream util/TransService)
+    file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/e57/xercesc/${header}.hpp" CONTENT "#include \"io/e57_xml.h\"\n")
+  endforeach()
   target_compile_features(${target} PRIVATE cxx_std_17)
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
                                              CXX_CLANG_TIDY "")
   target_include_directories(${target} PRIVATE "${G3R_E57}/include" "${G3R_E57}/src" "${G3R_E57}/extern/CRCpp/inc"
+                                               "${PROJECT_SOURCE_DIR}/src"
                                                "${PROJECT_BINARY_DIR}/e57")
   target_compile_definitions(${target} PRIVATE E57_VALIDATION_LEVEL=1 CRCPP_USE_CPP11 CRCPP_BRANCHLESS REVISION_ID="libE57Format"
                                                __FILE__=__FILE_NAME__)

@@ -10,7 +10,8 @@ target_link_libraries(g3r_shared PRIVATE $<LINK_LIBRARY:WHOLE_ARCHIVE,g3r>)
 target_include_directories(g3r_shared PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 target_compile_features(g3r_shared PUBLIC cxx_std_20)
 target_link_options(g3r_shared PRIVATE "LINKER:--version-script=${PROJECT_SOURCE_DIR}/src/g3r.map" LINKER:--no-undefined)
-set_target_properties(g3r_shared PROPERTIES OUTPUT_NAME g3r VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}
+set_target_properties(g3r_shared PROPERTIES OUTPUT_NAME g3r VERSION ${PROJECT_VERSION}
+                                            SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}  # before 1.0 minor versions differ
                                             LINK_DEPENDS "${PROJECT_SOURCE_DIR}/src/g3r.map")
 add_library(g3r::g3r_shared ALIAS g3r_shared)
 
@@ -26,9 +27,6 @@ endif()
 set(G3R_ARCHIVE_NEEDS TBB PNG ZLIB Highway meshoptimizer)
 if(G3R_WITH_OPEN3D)
   list(APPEND G3R_ARCHIVE_NEEDS Open3D)
-endif()
-if(G3R_E57)
-  list(APPEND G3R_ARCHIVE_NEEDS XercesC)
 endif()
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/g3r)
 foreach(kind static shared)

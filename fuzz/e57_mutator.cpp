@@ -5,10 +5,6 @@
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 
-// The messages of Xerces-C++ about damaged XML, which libE57Format does not free.
-// NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming): the sanitizer's name
-extern "C" const char* __lsan_default_suppressions() { return "leak:libxerces-c\n"; }
-
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size, unsigned /*seed*/) {
   using namespace g3r::samples;
   std::string logical = without_checksums({reinterpret_cast<const char*>(data), size});

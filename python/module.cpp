@@ -97,7 +97,6 @@ Options read_options(const nb::dict& from) {
   take(from, "accuracy", options.accuracy);
   take(from, "threads", options.threads);
   take(from, "device", options.device);
-  take(from, "seed", options.seed);
   take(from, "max_memory", options.max_memory);
   options.hints = read_hints(from);
   return options;
@@ -328,6 +327,12 @@ std::vector<std::tuple<Text, Text, bool, std::size_t>> devices() {
   return out;
 }
 
+// The members of BuildInfo, in order.
+std::tuple<bool, bool, bool, Text, bool, bool> module_build_info() {
+  const BuildInfo info = build_info();
+  return {info.laz, info.e57, info.poisson, info.instruction_set, info.opencl, info.cuda};
+}
+
 void bind(nb::module_& m) {
   m.attr("__version__") = Text(version());
   nb::register_exception_translator(translate_error);
@@ -349,6 +354,7 @@ void bind(nb::module_& m) {
   m.def("reconstruct", &reconstruct_points, nb::arg("points"), nb::arg("colors").none(), nb::arg("options"), nb::arg("progress").none());
   m.def("mesh", &mesh_points, nb::arg("points"), nb::arg("normals"), nb::arg("options"), nb::arg("progress").none());
   m.def("devices", &devices);
+  m.def("build_info", &module_build_info);
   m.def("field", &make_field, nb::arg("points"), nb::arg("normals"), nb::arg("areas"), nb::arg("width"));
   m.def("read_cloud", &read_points, nb::arg("path"), nb::arg("min_opacity"), nb::arg("box").none(), nb::arg("levels"));
   m.def("write_cloud", &write_points, nb::arg("path"), nb::arg("source").none(), nb::arg("positions").none(), nb::arg("normals").none(),

@@ -90,7 +90,6 @@ Request read_options(const g3r_options* given, size_t points) {
   request.options.noise = read_length(o.noise, o.noise_unit, "noise_unit");
   request.options.degree = o.degree;
   request.options.threads = o.threads;
-  request.options.seed = o.seed;
   request.options.max_memory = o.max_memory;
   request.options.hints = read_hints(o, points);
   request.mesh_options.depth = o.depth;

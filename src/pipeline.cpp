@@ -328,6 +328,4 @@ Stats plan(const PointsView& points, const Options& options) {
   });
 }
 
-std::string_view version() { return "0.1.0"; }
-
 }  // namespace g3r

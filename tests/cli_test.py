@@ -51,6 +51,14 @@ class ExitCodes(ProgramTest):
         for command in ("orient", "mesh", "eval", "sample", "info"):
             self.assertIn(command.encode(), self.expect(OK, command, "--help").out)
 
+    def test_version_tells_what_the_build_has(self):
+        lines = self.expect(OK, "--version").out.decode().splitlines()
+        self.assertRegex(lines[0], r"^g3r \d+\.\d+\.\d+$")
+        self.assertEqual([line.split(":")[0] for line in lines[1:]], ["optional parts", "instruction set", "interfaces to GPUs"])
+        self.assertRegex(lines[2], r"^instruction set: [A-Z]\w+$")
+        if not self.expect(OK, "--device", "list").out.startswith(b"no device"):
+            self.assertRegex(lines[3], "OpenCL|CUDA")
+
     def test_help_lists_every_exit_code(self):
         text = self.expect(OK, "--help").out.decode()
         for code in (64, 65, 66, 69, 70, 71, 73, 74, 130, 143):
@@ -81,10 +89,10 @@ class ExitCodes(ProgramTest):
                 (USAGE, ["ball.ply", "a.docx"], 'unknown extension ".docx": expected .ply, .obj'),
                 (USAGE, ["ball.ply", "a.xyz"], "a.xyz: .xyz is for points"), (USAGE, ["orient", "ball.ply", "a.stl"], "a.stl: .stl is for meshes"),
                 (USAGE, ["oriend", "ball.ply"], "no file and no command named oriend"), (USAGE, ["ball.ply", "--treads", "2"], "unknown option --treads; did you mean --threads?"),
-                (USAGE, ["ball.ply", "--bogus"], "unknown option --bogus (see"), (USAGE, ["ball.ply", "-o", "a.ply"], "the output stands after the input"),
+                (USAGE, ["ball.ply", "--seed", "1"], "unknown option --seed"), (USAGE, ["ball.ply", "--bogus"], "unknown option --bogus (see"), (USAGE, ["ball.ply", "-o", "a.ply"], "the output stands after the input"),
                 (USAGE, ["oreint", "ball.ply", "a.ply"], "did you mean orient?"), (USAGE, ["ball.ply", "--open", "--trim", "3"], "excludes --open"),
                 (USAGE, ["ball.ply", "--faces", "-5"], "--faces: expected a whole number, 0 or more, found '-5'"),
-                (USAGE, ["ball.ply", "--seed", "9" * 30], "--seed: expected a whole number, 0 or more"),
+                (USAGE, ["sample", "a.obj", "b.ply", "--count", "9", "--seed", "9" * 30], "--seed: expected a whole number, 0 or more"),
                 (USAGE, ["ball.ply", "--depth", "3"], "--depth: expected a whole number, from 4 to 12, found '3'"),
                 (USAGE, ["view", "ball.ply", "-o", "a.html", "--tile", "40"], "--tile is for pictures"),
                 (USAGE, ["ball.ply", "a.ply", "b.ply"], "one file too many: b.ply"),

@@ -1,8 +1,10 @@
 #!/bin/bash
-# tools/sources.sh: brings the sources of LASzip (Apache License 2.0; reads and writes LAZ) and of libE57Format (Boost Software License 1.0;
-# reads E57) to build/sources, where every build takes them from. Debian 12 has no packages of them: they come from the source distributions
-# of laszip and pye57 on PyPI, pinned versions held against their checksums, of which only the libraries are kept. The archives stay in the
-# cache of the user ($G3R_CACHE, else $XDG_CACHE_HOME/g3r, else ~/.cache/g3r), so that the network is needed once.
+# tools/sources.sh [all]: brings the sources of LASzip (Apache License 2.0; reads and writes LAZ) and of libE57Format (Boost Software License
+# 1.0; reads E57) to build/sources, where every build takes them from. Debian 12 has no packages of them: they come from the source
+# distributions of laszip and pye57 on PyPI, of which only the libraries are kept. With "all" also those of the other libraries, for builds
+# that have to have them inside (cmake/Libraries.cmake) and the source distribution. These come from Debian 12.
+# All are pinned versions, held against their checksums. The archives stay in the cache of the user ($G3R_CACHE, else $XDG_CACHE_HOME/g3r,
+# else ~/.cache/g3r), so that the network is needed once.
 # Exit status 1, with one line that says so, where there are neither: then builds leave these formats out.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -14,26 +16,57 @@ unset PYTHONPATH # of a build of the Python package, around this
 # has_checksum FILE SUM
 has_checksum() { [ -e "$1" ] && echo "$2  $1" | sha256sum --check --status; }
 
-# download NAME VERSION SUM: from PyPI to the cache. pip asks a package's build system for its name before it hands it over.
-download() {
-  local archive=$1-$2.tar.gz
+# from_pypi NAME_VERSION.tar.gz: the source distribution to $work. pip asks a package's build system for its name before it hands it over.
+from_pypi() {
+  local archive=${1%.tar.gz}
   if [ ! -x "$work/environment/bin/pip" ]; then
     python3 -m venv "$work/environment" || return 1
   fi
   local pip=("$work/environment/bin/pip" --quiet --disable-pip-version-check --retries 1 --timeout 10)
   "${pip[@]}" install scikit-build-core setuptools wheel pybind11 || return 1
-  "${pip[@]}" download --no-deps --no-build-isolation --no-binary :all: --dest "$work" "$1==$2" || return 1
-  has_checksum "$work/$archive" "$3" || return 1
-  mkdir -p "$cache" && cp "$work/$archive" "$cache/$archive.$$" && mv "$cache/$archive.$$" "$cache/$archive"
+  "${pip[@]}" download --no-deps --no-build-isolation --no-binary :all: --dest "$work" "${archive%-*}==${archive##*-}"
 }
 
-# fetch FOLDER NAME VERSION SUM TAR-OPTION...: what tar extracts from the archive becomes build/sources/FOLDER.
+# apt ARGUMENT...: apt-get with lists of its own, of the packages and the sources of the system's Debian, so that the system's own stay as they are.
+apt() {
+  apt-get -q -o Dir::Etc::SourceList=/dev/null -o Dir::Etc::SourceParts="$work/apt/parts" -o Dir::State::Lists="$work/apt/lists" \
+    -o Dir::Cache::pkgcache= -o Dir::Cache::srcpkgcache= -o APT::Sandbox::User=root "$@"
+}
+
+# from_debian PACKAGE_VERSION.EXTENSION: a source archive as its authors made it, or a package of headers, to $work.
+from_debian() {
+  if [ ! -d "$work/apt" ]; then
+    mkdir -p "$work/apt/lists/partial" "$work/apt/parts" || return 1
+    local list
+    for list in /etc/apt/sources.list /etc/apt/sources.list.d/debian.*; do
+      case $list in
+        *.list) sed -n 's/^deb \(.*\)/deb \1\ndeb-src \1/p' "$list" > "$work/apt/parts/system.list" ;;
+        *.sources) sed 's/^Types: .*/Types: deb deb-src/' "$list" > "$work/apt/parts/system.sources" ;;
+      esac
+    done 2> /dev/null
+    apt update || return 1
+  fi
+  case $1 in
+    *.deb) (cd "$work" && apt download "${1%%_*}") ;;
+    *) (cd "$work" && apt source --download-only --tar-only "${1%%_*}") ;;
+  esac
+}
+
+# fetch FOLDER HOME ARCHIVE SUM TAR-OPTION...: what tar extracts from the archive becomes build/sources/FOLDER. HOME: from_pypi, from_debian.
 fetch() {
-  local folder=build/sources/$1 archive=$cache/$2-$3.tar.gz
+  local folder=build/sources/$1 archive=$cache/$3
   [ "$(cat "$folder/version" 2> /dev/null)" != "$4" ] || return 0
-  has_checksum "$archive" "$4" || download "$2" "$3" "$4" > "$work/log" 2>&1 || return 1
+  if ! has_checksum "$archive" "$4"; then
+    "$2" "$3" > "$work/log" 2>&1 && has_checksum "$work/$3" "$4" || return 1
+    mkdir -p "$cache" && cp "$work/$3" "$archive.$$" && mv "$archive.$$" "$archive"
+  fi
   mkdir "$work/$1"
-  tar -xzf "$archive" -C "$work/$1" "${@:5}" || return 1
+  if [[ $3 == *.deb ]]; then
+    dpkg-deb --fsys-tarfile "$archive" | tar -x -C "$work/$1" --wildcards --transform 's,^./usr/include/\(eigen3/\)\?,,;s,.*/copyright$,copyright,' \
+      "${@:5}" './usr/share/doc/*/copyright' || return 1
+  else
+    tar -xf "$archive" -C "$work/$1" --strip-components=1 --wildcards "${@:5}" || return 1
+  fi
   echo "$4" > "$work/$1/version"
   mkdir -p build/sources
   rm -rf "$folder"
@@ -41,12 +74,30 @@ fetch() {
 }
 
 missing=()
-fetch laszip laszip 0.3.0 9ddf91649b519db308f63d772a19e7647458f5d5512e3d927629f0196b9c6216 --strip-components=4 \
-  --wildcards 'laszip-0.3.0/src/vendor/LASzip-*/*' || missing+=(LAZ)
-fetch e57 pye57 0.4.19 0323a0cb5e62286fb3f4d7a2c63d811bb813ac65e2a21cfadf8ca848eaa27101 --strip-components=2 \
-  --wildcards 'pye57-0.4.19/libE57Format/*' --exclude 'pye57-0.4.19/libE57Format/test' || missing+=(E57)
+fetch laszip from_pypi laszip-0.3.0.tar.gz 9ddf91649b519db308f63d772a19e7647458f5d5512e3d927629f0196b9c6216 --strip-components=4 \
+  'laszip-0.3.0/src/vendor/LASzip-*/src' 'laszip-0.3.0/src/vendor/LASzip-*/include' 'laszip-0.3.0/src/vendor/LASzip-*/COPYING.txt' || missing+=(LAZ)
+fetch e57 from_pypi pye57-0.4.19.tar.gz 0323a0cb5e62286fb3f4d7a2c63d811bb813ac65e2a21cfadf8ca848eaa27101 --strip-components=2 \
+  'pye57-0.4.19/libE57Format/*' --exclude 'pye57-0.4.19/libE57Format/test' || missing+=(E57)
+if [ "${1:-}" = all ]; then
+  fetch tbb from_debian onetbb_2021.8.0.orig.tar.xz 7e9111b8bb59c8800bf6d0b06afe7b0891937443d2dae1ee1101c8e2ede6a7ef \
+    '*/include' '*/src/tbb' '*/LICENSE.txt' || missing+=(oneTBB)
+  fetch highway from_debian highway_1.0.3.orig.tar.gz 566fc77315878473d9a6bd815f7de78c73734acdcb745c3dde8579560ac5440e \
+    '*/hwy' '*/LICENSE' --exclude '*/contrib' --exclude '*/tests' --exclude '*_test.cc' || missing+=(Highway)
+  fetch meshoptimizer from_debian meshoptimizer_0.18+dfsg.orig.tar.xz 881ea2cc687f1fef5ce70484e0ca6504e13856dd856677749f3763bc685956d3 \
+    '*/src' '*/LICENSE.md' || missing+=(meshoptimizer)
+  fetch png from_debian libpng1.6_1.6.39.orig.tar.gz a00e9d2f2f664186e4202db9299397f851aea71b36a35e74910b8820e380d441 \
+    --no-wildcards-match-slash '*/*.c' '*/*.h' '*/scripts/pnglibconf.h.prebuilt' '*/LICENSE' || missing+=(libpng)
+  fetch zlib from_debian zlib_1.2.13.dfsg.orig.tar.bz2 71feb7947e3c00ef125f83b79a4e529bde31171e5babe48b391f06758d1ab0a1 \
+    --no-wildcards-match-slash '*/*.c' '*/*.h' '*/README' || missing+=(zlib)
+  fetch eigen from_debian libeigen3-dev_3.4.0-4_all.deb 1a167bb381acb90c1d8450a8f3e66a09d216dbc64b33ac8a082a0912513ef939 \
+    ./usr/include/eigen3/Eigen || missing+=(Eigen)
+  fetch nanoflann from_debian libnanoflann-dev_1.4.3+ds-2_all.deb 313fae94336c3d51fa893d9e57c72c549b0067be9f6fa76a9364f19e2bfbe43f \
+    ./usr/include/nanoflann.hpp || missing+=(nanoflann)
+  fetch json from_debian nlohmann-json3-dev_3.11.2-2_all.deb ec57940def6b6186c30be0e0ee81d1e58f86d11a54a145b28686a1e3e4aae801 \
+    ./usr/include/nlohmann || missing+=(nlohmann-json)
+fi
 if [ ${#missing[@]} -ne 0 ]; then
-  echo "${missing[*]}: no sources (PyPI cannot be reached, and they are not in $cache): built without" >&2
+  echo "${missing[*]}: no sources (the network cannot be reached, and they are not in $cache): built without" >&2
   tail -n 1 "$work/log" >&2 2> /dev/null || true
   exit 1
 fi

@@ -92,8 +92,7 @@ struct Options {
   /// points are many enough, else, or if it fails, the processor. A GPU's result differs in the last digits. Throws Unavailable if the
   /// device that is asked for is not there or fails.
   std::string device = "auto";
-  std::string without;     ///< names of steps to leave out, separated by commas, for ablations (docs/design.md lists them)
-  std::uint64_t seed = 0;  ///< reserved for steps that sample; the present method draws no random number
+  std::string without;  ///< names of steps to leave out, separated by commas, for ablations (docs/design.md lists them)
   std::size_t max_memory =
       0;  ///< bytes; refuse before the solve when the plan exceeds it, or before the mesh when that turns out to. 0: no limit
   Hints hints;
@@ -263,5 +262,18 @@ struct ComputeDevice {
 
 /// Version of the library, "major.minor.patch".
 [[nodiscard]] std::string_view version();
+
+/// How the library was built and what it runs on.
+struct BuildInfo {
+  bool laz = false;             ///< LAZ is read and written
+  bool e57 = false;             ///< E57 is read
+  bool poisson = false;         ///< there is screened Poisson reconstruction, through Open3D
+  std::string instruction_set;  ///< vector instructions of the sums on this processor, by Highway's name: "AVX3", "AVX2", "SSE2", "NEON"
+  bool opencl = false;          ///< OpenCL is installed on this machine
+  bool cuda = false;            ///< a driver of CUDA is
+};
+
+/// Takes a few milliseconds: libraries are looked for, drivers are not started. compute_devices() tells which devices they have.
+[[nodiscard]] BuildInfo build_info();
 
 }  // namespace g3r

@@ -39,7 +39,6 @@ typedef struct g3r_options {
   int degree;  /* of the harmonic polynomials, 0..8; -1: automatic */
   int depth;   /* octree depth of the mesh, 4..12; 0: automatic */
   int threads; /* 0: all cores; the result does not depend on it */
-  uint64_t seed;
   uint64_t max_memory; /* bytes; 0: no limit */
   g3r_progress progress;
   void* user;   /* handed to progress */

@@ -6,7 +6,7 @@
     g3r.show(r)                       # look at it
 """
 
-from ._api import Device, Field, Result, devices, mesh_oriented, orient, reconstruct, run
+from ._api import BuildInfo, Device, Field, Result, build_info, devices, mesh_oriented, orient, reconstruct, run
 from ._errors import Cancelled, Error, FileError, FileMissingError, InputError, UnavailableError
 from ._files import Cloud, read, read_mesh, write
 from ._g3r import __version__
@@ -14,7 +14,7 @@ from ._metrics import score_mesh, score_normals
 from ._show import View, show
 
 __all__ = [
-    "Cancelled", "Cloud", "Device", "Error", "Field", "FileError", "FileMissingError", "InputError", "Result", "UnavailableError", "View",
-    "__version__", "devices", "mesh_oriented", "orient", "read", "read_mesh", "reconstruct", "run",
+    "BuildInfo", "Cancelled", "Cloud", "Device", "Error", "Field", "FileError", "FileMissingError", "InputError", "Result", "UnavailableError", "View",
+    "__version__", "build_info", "devices", "mesh_oriented", "orient", "read", "read_mesh", "reconstruct", "run",
     "score_mesh", "score_normals", "show", "write",
 ]

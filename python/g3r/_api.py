@@ -41,7 +41,7 @@ _MESH_OPTIONS = {"mesher", "keep_largest", "min_component", "faces", "keep_all"}
 _METHOD_OPTIONS = {"noise", "method", "wnnc_widths", "harmonics", "solver", "schedule", "tolerance", "accuracy", "max_memory", "device"}
 
 
-def _options(epsilon: Union[str, float], degree: Optional[int], preset: str, threads: int, seed: int, known: Set[str],
+def _options(epsilon: Union[str, float], degree: Optional[int], preset: str, threads: int, known: Set[str],
              more: Dict[str, Any]) -> Dict[str, Any]:
     unknown = set(more) - known
     if unknown:
@@ -50,8 +50,8 @@ def _options(epsilon: Union[str, float], degree: Optional[int], preset: str, thr
         if name in more and (int(more[name]) != more[name] or more[name] < 0):
             raise InputError(f"{name} must be an integer, 0 or more, not {more[name]!r}")
     noise = more.pop("noise", "auto")
-    options = {**_length("epsilon", epsilon, "above 0"), **_length("noise", noise, "0 or more"), "preset": preset, "threads": int(threads),
-               "seed": int(seed), **more}
+    options = {**_length("epsilon", epsilon, "above 0"), **_length("noise", noise, "0 or more"), "preset": preset,
+               "threads": int(threads), **more}
     if degree is not None:
         options["degree"] = int(degree)
     return options
@@ -155,8 +155,30 @@ def devices() -> List[Device]:
     return [Device(*row) for row in _g3r.devices()]
 
 
+class BuildInfo(NamedTuple):
+    """How the package was built and what it runs on."""
+
+    laz: bool
+    """LAZ is read and written."""
+    e57: bool
+    """E57 is read."""
+    poisson: bool
+    """There is screened Poisson reconstruction, through Open3D."""
+    instruction_set: str
+    """Vector instructions of the sums on this processor: "AVX3", "AVX2", "SSE2", "NEON"."""
+    opencl: bool
+    """OpenCL is installed on this machine."""
+    cuda: bool
+    """A driver of CUDA is."""
+
+
+def build_info() -> BuildInfo:
+    """Takes a few milliseconds: no driver is started. `devices()` tells what drivers have."""
+    return BuildInfo(*_g3r.build_info())
+
+
 def orient(points: Any, *, epsilon: Union[str, float] = "auto", degree: Optional[int] = None, preset: str = "default", threads: int = 0,
-           seed: int = 0, progress: Optional[Progress] = None, **more: Any) -> Floats:
+           progress: Optional[Progress] = None, **more: Any) -> Floats:
     """Consistent outward normals of an unoriented cloud of a closed surface.
 
     points: (n, 3) float32 or float64 of any strides, a path, or an object with points (Open3D, trimesh, PyVista, torch, g3r.Cloud).
@@ -165,7 +187,7 @@ def orient(points: Any, *, epsilon: Union[str, float] = "auto", degree: Optional
     Raises InputError (fewer than 4 distinct finite points, all on a line, an option out of range), Cancelled, MemoryError.
     """
     points, hints = take_hints(points, more)
-    options = _options(epsilon, degree, preset, threads, seed, _METHOD_OPTIONS, more)
+    options = _options(epsilon, degree, preset, threads, _METHOD_OPTIONS, more)
     array = as_points(points)
     options.update(checked_numbers(hints, len(array)))
     return _g3r.orient(array, options, progress)[0]
@@ -187,7 +209,7 @@ def reconstruct(points: Any, *, colors: Any = None, **options: Any) -> Any:
 
 
 def run(points: Any, *, colors: Any = None, epsilon: Union[str, float] = "auto", degree: Optional[int] = None, preset: str = "default",
-        depth: Union[str, int] = "auto", trim: Union[None, str, float] = None, mesh: bool = True, threads: int = 0, seed: int = 0,
+        depth: Union[str, int] = "auto", trim: Union[None, str, float] = None, mesh: bool = True, threads: int = 0,
         progress: Optional[Progress] = None, **more: Any) -> Result:
     """Normals, confidence, areas, mesh, field and report of an unoriented cloud.
 
@@ -216,7 +238,7 @@ def run(points: Any, *, colors: Any = None, epsilon: Union[str, float] = "auto",
     The interpreter lock is released; Ctrl-C works. Raises InputError, UnavailableError, Cancelled, MemoryError.
     """
     points, hints = take_hints(points, more)
-    options = _options(epsilon, degree, preset, threads, seed, _METHOD_OPTIONS | _MESH_OPTIONS, more)
+    options = _options(epsilon, degree, preset, threads, _METHOD_OPTIONS | _MESH_OPTIONS, more)
     options.update(_depth(depth))
     options.update(_trim(trim))
     array = as_points(points)

@@ -112,10 +112,16 @@ def test_field_tells_inside_from_outside(result, sphere):
 @pytest.mark.parametrize("options", [
     {"epsilon": 0.05}, {"epsilon": "0.5%"}, {"epsilon": "0.8h"}, {"epsilon": "0.03n"}, {"noise": 0}, {"noise": "0.2h"}, {"noise": "auto"}, {"degree": 1}, {"preset": "paper"}, {"solver": "cg"}, {"method": "energy"},
     {"method": "wnnc", "wnnc_widths": "sparse"}, {"method": "agr"}, {"method": "pgr"},
-    {"threads": 1}, {"device": "cpu"}, {"seed": 7}, {"tolerance": 1e-2}, {"accuracy": 1e-2}, {"harmonics": "1,x,y,z"},
+    {"threads": 1}, {"device": "cpu"}, {"tolerance": 1e-2}, {"accuracy": 1e-2}, {"harmonics": "1,x,y,z"},
 ])
 def test_every_option_is_taken(sphere, options):
     assert is_outward(g3r.orient(sphere, **options), sphere)
+
+
+def test_build_info():
+    info = g3r.build_info()
+    assert info.instruction_set and info.laz in (True, False)
+    assert info.opencl or info.cuda or not g3r.devices()
 
 
 def test_devices(sphere):

@@ -10,7 +10,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -18,12 +17,6 @@
 #include <E57Format.h>
 
 #include <CompressedVectorNodeImpl.h>
-#include <xercesc/sax/SAXException.hpp>
-#include <xercesc/util/OutOfMemoryException.hpp>
-#include <xercesc/util/PanicHandler.hpp>
-#include <xercesc/util/PlatformUtils.hpp>
-#include <xercesc/util/XMLException.hpp>
-#include <xercesc/util/XMLUni.hpp>
 
 namespace g3r::io {
 
@@ -380,34 +373,10 @@ class E57Reader {
   std::uint64_t dropped_ = 0;
 };
 
-// What Xerces-C++ does when it cannot start: by default it would end the program.
-class NoStart : public xercesc::PanicHandler {
- public:
-  void panic(PanicReasons /*reason*/) override { throw std::bad_alloc(); }
-};
-
-// Xerces-C++ for as long as the program runs: what it starts with takes longer than a small file, and where its start runs out of memory,
-// its end crashes.
-void start_xerces() {
-  static const bool started = [] {
-    static NoStart no_start;
-    try {
-      xercesc::XMLPlatformUtils::Initialize(xercesc::XMLUni::fgXercescDefaultLocale, nullptr, &no_start);
-      return true;
-    } catch (...) {
-      return false;
-    }
-  }();
-  if (!started) throw std::bad_alloc();
-}
-
 }  // namespace
 
 Cloud read_e57(const Source& source) {
   check_e57(source);
-  static std::mutex one_at_a_time;  // Xerces-C++ counts its users without a lock
-  const std::lock_guard lock(one_at_a_time);
-  start_xerces();
   Cloud cloud;
   cloud.format = "e57";
   E57Reader reader(source, cloud);
@@ -416,12 +385,6 @@ Cloud read_e57(const Source& source) {
     return cloud;
   } catch (const e57::E57Exception& error) {
     fail(source, reader.place() + "damaged: libE57Format cannot read it (" + error.errorStr() + "); export the file anew");
-  } catch (const xercesc::OutOfMemoryException&) {
-    throw std::bad_alloc();
-  } catch (const xercesc::XMLException&) {
-    fail(source, "damaged: the XML of the E57 file cannot be parsed; export the file anew");
-  } catch (const xercesc::SAXException&) {
-    fail(source, "damaged: the XML of the E57 file cannot be parsed; export the file anew");
   }
 }
 

@@ -30,7 +30,7 @@ constexpr std::size_t kMostMembers = 256;    // of a structure
 constexpr std::size_t kMostEqual = 512;      // numbers or texts in a vector of one type
 constexpr std::size_t kMostChildren = 4096;  // of anything else
 constexpr std::size_t kMostElements = 200'000;
-constexpr std::size_t kMostAttributes = 64;  // of an element: they take fifty times their bytes
+constexpr std::size_t kMostAttributes = 64;  // of an element: they take many times their bytes
 
 // CRC-32C (Castagnoli), reflected.
 std::array<std::uint32_t, 256> crc_table() {

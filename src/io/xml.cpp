@@ -1,0 +1,234 @@
+// Source: W3C, "Extensible Markup Language (XML) 1.0 (Fifth Edition)", 2008; numbers in brackets are its productions.
+#include "io/xml.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <utility>
+
+namespace g3r::io {
+
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r\n";
+constexpr std::string_view kNameEnds = " \t\r\n=/<>\"'&";  // none of these is part of a name
+
+bool is_character(std::uint32_t c) {  // [2]
+  return c == '\t' || c == '\n' || c == '\r' || (c >= 0x20 && c < 0xD800) || (c >= 0xE000 && c < 0xFFFE) || (c >= 0x10000 && c < 0x110000);
+}
+
+void append_utf8(std::uint32_t c, std::string& text) {
+  const auto put = [&](std::uint32_t byte) { text += static_cast<char>(byte); };
+  if (c < 0x80) {
+    put(c);
+  } else if (c < 0x800) {
+    put(0xC0 | c >> 6);
+  } else if (c < 0x10000) {
+    put(0xE0 | c >> 12);
+    put(0x80 | (c >> 6 & 0x3F));
+  } else {
+    put(0xF0 | c >> 18);
+    put(0x80 | (c >> 12 & 0x3F));
+    put(0x80 | (c >> 6 & 0x3F));
+  }
+  if (c >= 0x80) put(0x80 | (c & 0x3F));
+}
+
+// The place of the first byte that does not belong to a character in UTF-8 that XML allows; npos if there is none.
+std::size_t first_bad_character(std::string_view text) {
+  constexpr std::uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};  // by bytes: shorter spellings only
+  for (std::size_t i = 0; i < text.size();) {
+    const auto lead = static_cast<unsigned char>(text[i]);
+    const std::size_t bytes = lead < 0x80 ? 1 : lead >> 5 == 6 ? 2 : lead >> 4 == 14 ? 3 : lead >> 3 == 30 ? 4 : 0;
+    if (bytes == 0 || bytes > text.size() - i) return i;
+    std::uint32_t c = bytes == 1 ? lead : lead & (0xFFU >> (bytes + 1));
+    for (std::size_t k = 1; k < bytes; ++k) {
+      const auto next = static_cast<unsigned char>(text[i + k]);
+      if (next >> 6 != 2) return i;
+      c = c << 6 | (next & 0x3F);
+    }
+    if (c < kLeast[bytes] || !is_character(c)) return i;
+    i += bytes;
+  }
+  return std::string_view::npos;
+}
+
+class Parser {
+ public:
+  Parser(std::string_view xml, XmlEvents& events) : xml_(xml), events_(events) {}
+
+  void run() {
+    if (const std::size_t bad = first_bad_character(xml_); bad != std::string_view::npos) throw XmlError("not UTF-8", bad);
+    while (i_ < xml_.size()) {
+      if (xml_[i_] != '<') {
+        text();
+      } else if (take("<!--")) {
+        upto("-->");
+      } else if (take("<![CDATA[")) {
+        if (open_.empty()) fail("text outside of the elements");
+        events_.text(in_unix_lines(upto("]]>")));
+      } else if (take("<?")) {
+        upto("?>");
+      } else if (take("<!")) {
+        fail("a document type");
+      } else if (take("</")) {
+        close();
+      } else {
+        open();
+      }
+    }
+    if (!open_.empty() || !done_) fail("truncated");
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const { throw XmlError(what, i_); }
+
+  bool take(std::string_view word) {
+    if (!xml_.substr(i_).starts_with(word)) return false;
+    i_ += word.size();
+    return true;
+  }
+
+  // What lies before the next `end`, which is passed over.
+  std::string_view upto(std::string_view end) {
+    const std::size_t found = xml_.find(end, i_);
+    if (found == std::string_view::npos) fail("truncated: no \"" + std::string(end) + "\"");
+    const std::string_view between = xml_.substr(i_, found - i_);
+    i_ = found + end.size();
+    return between;
+  }
+
+  bool skip_blanks() {
+    const std::size_t before = i_;
+    i_ = std::min(xml_.find_first_not_of(kBlanks, i_), xml_.size());
+    return i_ > before;
+  }
+
+  // [5], but for the characters beyond those that end one or may not begin one
+  std::string name() {
+    const std::size_t end = std::min(xml_.find_first_of(kNameEnds, i_), xml_.size());
+    const std::string_view word = xml_.substr(i_, end - i_);
+    if (word.empty() || std::string_view("-.0123456789").find(word.front()) != std::string_view::npos) fail("expected a name");
+    i_ = end;
+    return std::string(word);
+  }
+
+  // An opening tag [40, 44] after its '<'.
+  void open() {
+    ++i_;
+    if (done_) fail("more than one element that holds the others");
+    const std::string element = name();
+    std::vector<XmlAttribute> attributes;
+    for (bool blank = skip_blanks();; blank = skip_blanks()) {
+      if (take(">")) {
+        events_.begin(element, attributes);
+        open_.push_back(element);
+        return;
+      }
+      if (take("/>")) {
+        events_.begin(element, attributes);
+        events_.end(element);
+        done_ = open_.empty();
+        return;
+      }
+      if (!blank) fail("expected a blank or the end of the tag");
+      attributes.push_back(attribute());
+      const auto same = [&](const XmlAttribute& other) { return other.name == attributes.back().name; };
+      if (std::find_if(attributes.begin(), attributes.end() - 1, same) != attributes.end() - 1) fail("the same attribute twice");
+    }
+  }
+
+  XmlAttribute attribute() {  // [41]
+    XmlAttribute out{name(), {}};
+    skip_blanks();
+    if (!take("=")) fail("expected =");
+    skip_blanks();
+    const std::string_view quote = xml_.substr(i_, 1);
+    if (quote != "\"" && quote != "'") fail("expected a quote");
+    ++i_;
+    std::string value = in_unix_lines(upto(quote));
+    if (value.find('<') != std::string::npos) fail("'<' in an attribute");
+    std::replace_if(
+        value.begin(), value.end(), [](char c) { return c == '\n' || c == '\t'; }, ' ');  // 3.3.3
+    out.value = decoded(value);
+    return out;
+  }
+
+  void close() {
+    if (open_.empty() || name() != open_.back()) fail("an end tag without its begin");
+    skip_blanks();
+    if (!take(">")) fail("expected >");
+    const std::string element = std::move(open_.back());
+    open_.pop_back();
+    events_.end(element);
+    done_ = open_.empty();
+  }
+
+  void text() {
+    const std::size_t end = std::min(xml_.find('<', i_), xml_.size());
+    const std::string_view piece = xml_.substr(i_, end - i_);
+    if (piece.find("]]>") != std::string_view::npos) fail("\"]]>\" in a text");
+    if (!open_.empty()) {
+      events_.text(decoded(in_unix_lines(piece)));
+    } else if (piece.find_first_not_of(kBlanks) != std::string_view::npos) {
+      fail("text outside of the elements");
+    }
+    i_ = end;
+  }
+
+  static std::string in_unix_lines(std::string_view piece) {  // 2.11
+    std::string out(piece);
+    const auto crlf = [&](std::size_t i) { return i + 1 < piece.size() && piece[i] == '\r' && piece[i + 1] == '\n'; };
+    std::size_t size = 0;
+    for (std::size_t i = 0; i < piece.size(); ++i) {
+      if (!crlf(i)) out[size++] = piece[i] == '\r' ? '\n' : piece[i];
+    }
+    out.resize(size);
+    return out;
+  }
+
+  std::string decoded(const std::string& piece) const {  // [66, 68]
+    if (piece.find('&') == std::string::npos) return piece;
+    constexpr std::pair<std::string_view, char> kEntities[] = {{"lt", '<'}, {"gt", '>'}, {"amp", '&'}, {"apos", '\''}, {"quot", '"'}};
+    std::string out;
+    for (std::size_t i = 0; i < piece.size(); ++i) {
+      if (piece[i] != '&') {
+        out += piece[i];
+        continue;
+      }
+      const std::size_t end = piece.find(';', i);
+      if (end == std::string::npos) fail("'&' without ';'");
+      const std::string_view word = std::string_view(piece).substr(i + 1, end - i - 1);
+      if (word.starts_with('#')) {
+        append_utf8(number(word.substr(1)), out);
+      } else {
+        const auto* const known = std::find_if(std::begin(kEntities), std::end(kEntities), [&](const auto& e) { return e.first == word; });
+        if (known == std::end(kEntities)) fail("an entity");
+        out += known->second;
+      }
+      i = end;
+    }
+    return out;
+  }
+
+  std::uint32_t number(std::string_view digits) const {
+    const int base = digits.starts_with('x') ? 16 : 10;
+    if (base == 16) digits.remove_prefix(1);
+    std::uint32_t c = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), c, base);
+    if (error != std::errc() || end != digits.data() + digits.size() || !is_character(c)) fail("a number of no character");
+    return c;
+  }
+
+  std::string_view xml_;
+  XmlEvents& events_;
+  std::size_t i_ = 0;
+  std::vector<std::string> open_;
+  bool done_ = false;  // the element that holds the others has ended
+};
+
+}  // namespace
+
+void parse_xml(std::string_view xml, XmlEvents& events) { Parser(xml, events).run(); }
+
+}  // namespace g3r::io
