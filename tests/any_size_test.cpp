@@ -255,6 +255,9 @@ TEST_F(Tiles, DamagedFoldersAreRefused) {
     text.insert(text.rfind(field) + std::string(field).size(), 1, '7');
     refused(text);
   }
+  std::string vast = manifest;  // 32 times so many bytes is 0 in 64 bits
+  vast.replace(vast.rfind("\"points\": 8200") + 10, 4, "576460752303423488");
+  refused(vast);
   write_bytes(tiles::manifest_path(work), manifest);
   std::string cells = bytes_of(tiles::cells_path(work));
   std::swap(cells[0], cells[16]);

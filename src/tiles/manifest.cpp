@@ -18,6 +18,7 @@ namespace {
 
 constexpr const char* kSchema = "g3r.tiles";
 constexpr int kVersion = 1;
+constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 48U;  // sizes of files are numbers below; the manifest may be damaged
 
 using nlohmann::json;
 
@@ -56,13 +57,13 @@ Manifest parsed(const json& from) {
 
 // Whether numbers can be of one plan: every place in a file that they lead to is checked by those who read it.
 bool is_sound(const Manifest& m) {
-  if (m.non_finite > m.points || m.level < 0 || m.level > kGridBits || m.tiles.empty()) return false;
+  if (m.points > kMostPoints || m.non_finite > m.points || m.level < 0 || m.level > kGridBits || m.tiles.empty()) return false;
   if (m.stride == 0 || (m.stride & (m.stride - 1)) != 0 || m.stride > m.sorted() || !std::isfinite(m.frame.scale)) return false;
   if (m.coarse_points != (m.sorted() + m.stride - 1) / m.stride) return false;
   std::uint64_t own = 0;
   std::uint64_t cell = 0;
   for (const Tile& tile : m.tiles) {
-    if (tile.first_cell != cell || tile.last_cell <= cell || tile.own > m.sorted() - own) return false;
+    if (tile.first_cell != cell || tile.last_cell <= cell || tile.last_cell > m.sorted() || tile.own > m.sorted() - own) return false;
     cell = tile.last_cell;
     own += tile.own;
   }
@@ -101,6 +102,15 @@ std::string cells_path(const std::string& folder) { return folder + "/cells.bin"
 std::string points_path(const std::string& folder, std::uint64_t stride) { return folder + "/points-" + std::to_string(stride) + ".bin"; }
 std::string coarse_path(const std::string& folder) { return folder + "/coarse.bin"; }
 std::string result_path(const std::string& folder, std::size_t tile) { return folder + "/tile-" + std::to_string(tile) + ".bin"; }
+
+bool can_be_stored(const std::string& path) {
+  try {
+    (void)json(path).dump();
+    return true;
+  } catch (const json::exception&) {
+    return false;
+  }
+}
 
 bool has_manifest(const std::string& folder) {
   std::error_code ignored;

@@ -61,6 +61,8 @@ struct Manifest {
 [[nodiscard]] std::string coarse_path(const std::string& folder);
 [[nodiscard]] std::string result_path(const std::string& folder, std::size_t tile);
 
+/// Whether a path is UTF-8, as the manifest has to be.
+[[nodiscard]] bool can_be_stored(const std::string& path);
 [[nodiscard]] bool has_manifest(const std::string& folder);
 /// Throws IoError.
 void write_manifest(const std::string& folder, const Manifest& manifest);

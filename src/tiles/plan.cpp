@@ -53,6 +53,7 @@ void for_all_points(const std::vector<std::string>& files, const Between& betwee
 
 bool is_finite(const Vec3& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }
 
+// Absolute, so that workers may be started anywhere.
 std::vector<std::string> files_of(const std::vector<std::string>& inputs) {
   std::vector<std::string> files;
   for (const std::string& input : inputs) {
@@ -61,6 +62,10 @@ std::vector<std::string> files_of(const std::vector<std::string>& inputs) {
     files.insert(files.end(), found.begin(), found.end());
   }
   if (files.empty()) throw InvalidInput("plan_tiles: no input");
+  for (std::string& file : files) {
+    if (!can_be_stored(file)) throw InvalidInput(escape_text(file) + ": tiles expect names of files in UTF-8; rename it");
+    file = std::filesystem::absolute(file).string();
+  }
   return files;
 }
 
