@@ -13,7 +13,7 @@ import unittest
 from cli_support import *
 
 COUNT = 8200  # few more than tiles take
-LARGE_COUNT = 45_000  # of a cloud that fits a limit in tiles and does not in core
+LARGE_COUNT = 100_000  # of a cloud that fits a limit in tiles and does not in core
 KILLS = int(os.environ.get("G3R_TILE_KILLS", "2"))
 
 
@@ -70,7 +70,7 @@ class Tiles(ProgramTest):
     def test_orient_works_in_tiles_where_it_would_refuse(self):
         """Until the sort: the tiles themselves are those of the other tests."""
         write_points(self.path("large.ply"), sphere(LARGE_COUNT))
-        arguments = ["orient", "large.ply", "out.ply", "--max-memory", "85M"]
+        arguments = ["orient", "large.ply", "out.ply", "--max-memory", "150M"]
         self.expect(UNAVAILABLE, *arguments, "--ascii")  # which tiles do not write
         process = self.start(*arguments, "-v", preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
         guard = threading.Timer(120, process.kill)

@@ -30,12 +30,13 @@ constexpr std::uint64_t kFewestPoints = 8000;          // fewer are solved in co
 constexpr std::uint64_t kFewestCoarse = 20000;  // with half as many, fields of thin parts of the dragon no longer close, and sides go wrong
 constexpr std::uint64_t kMostCoarse = 2000000;  // every tile has them all around it
 constexpr std::uint64_t kCoarseShare = 8;       // one of so many points is in the thinned cloud, if that is enough and not too much
-constexpr std::size_t kProgram = 34u << 20;     // code, libraries, thread stacks
-constexpr std::size_t kPerPoint = 1600;         // bytes of a solve in core (docs/design.md), and of what a tile holds beside it
-constexpr std::size_t kPlannedInCore = 1260;    // bytes a point of plan(), where no point is a duplicate
-constexpr double kFreeShare = 0.75;             // of the free memory, if no limit is given
-constexpr double kLargest = 1e50;               // coordinates, whose squares and cubes are still numbers
-constexpr double kSide = 2 / 1.1;               // longest side in the unit box
+constexpr std::size_t kFixed = 72u << 20;       // code, libraries, thread stacks, and 131,072 queries of a sum
+constexpr std::size_t kPerPoint = 1600;         // bytes of a solve in core (docs/design.md) and what a tile holds beside it, at their peaks
+constexpr std::size_t kFixedInCore = 34u << 20;  // of plan()
+constexpr std::size_t kPerPointInCore = 1260;    // of it, where no point is a duplicate
+constexpr double kFreeShare = 0.75;              // of the free memory, if no limit is given
+constexpr double kLargest = 1e50;                // coordinates, whose squares and cubes are still numbers
+constexpr double kSide = 2 / 1.1;                // longest side in the unit box
 constexpr std::size_t kMostTiles = 1000000;
 
 // Calls take(file, point) for all points in order, and between(share of the files) now and then.
@@ -124,9 +125,9 @@ Manifest survey(const std::vector<std::string>& files, const TileOptions& option
   return m;
 }
 
-std::uint64_t points_for(std::size_t memory) { return memory > kProgram ? (memory - kProgram) / kPerPoint : 0; }
+std::uint64_t points_for(std::size_t memory) { return memory > kFixed ? (memory - kFixed) / kPerPoint : 0; }
 
-std::size_t memory_for(std::uint64_t points) { return kProgram + kPerPoint * static_cast<std::size_t>(points); }
+std::size_t memory_for(std::uint64_t points) { return kFixed + kPerPoint * static_cast<std::size_t>(points); }
 
 std::size_t memory_limit(const TileOptions& options) {
   if (options.max_memory > 0) return options.max_memory;
@@ -146,7 +147,7 @@ std::uint64_t choose_stride(std::uint64_t points, std::size_t limit) {
   if (most < fewest) refuse_memory(limit, 2 * fewest);
   const std::uint64_t wanted = std::min(most, std::max(fewest, points / kCoarseShare));
   std::uint64_t stride = 2;
-  while (points / stride > wanted) stride *= 2;
+  while (points / (2 * stride) >= wanted || points / stride > most) stride *= 2;
   return stride;
 }
 
@@ -296,7 +297,7 @@ TileStatus plan_tiles(const std::vector<std::string>& inputs, const std::string&
 bool needs_tiles(const std::vector<std::string>& inputs, std::size_t max_memory) {
   std::uint64_t points = 0;
   for (const std::string& file : tiles::files_of(inputs)) points += io::open_points(file)->left();
-  return max_memory > 0 && points >= tiles::kFewestPoints && tiles::kProgram + tiles::kPlannedInCore * points > max_memory;
+  return max_memory > 0 && points >= tiles::kFewestPoints && tiles::kFixedInCore + tiles::kPerPointInCore * points > max_memory;
 }
 
 TileStatus tiles_status(const std::string& folder) { return tiles::status_of(folder, tiles::read_manifest(folder)); }
