@@ -2,6 +2,8 @@
 // what the library throws.
 #pragma once
 
+#include <optional>
+
 #include "session.h"
 #include "settings.h"
 
@@ -14,5 +16,10 @@ int run_eval(const Settings& settings, Session& session);
 int run_sample(const Settings& settings, Session& session);
 int run_info(const Settings& settings, Session& session);
 int run_view(const Settings& settings, Session& session);
+int run_tiles(const Settings& settings, Session& session);
+
+/// What run_orient() does where its plan exceeds --max-memory and tiles can do the same: nothing is read in core. Empty where it does not,
+/// or they cannot (standard input, a part of the input, several outputs or one that is no .ply, options of the method).
+[[nodiscard]] std::optional<int> orient_in_tiles(const Settings& settings, Session& session);
 
 }  // namespace g3r::cli

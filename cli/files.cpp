@@ -84,6 +84,11 @@ bool makes_mesh(Command command) { return command == Command::kReconstruct || co
 
 void check_files(const Settings& settings) {
   if (settings.command == Command::kView) return check_view_files(settings);
+  if (settings.command == Command::kTiles) {
+    for (const std::string& input : settings.tile_paths) check_input(input);
+    if (!settings.output.empty()) check_text_output(settings.output, settings.tile_paths);
+    return;
+  }
   if (settings.command == Command::kReconstruct) check_not_a_command(settings.input);
   check_input(settings.input);
   check_input(settings.truth);

@@ -40,6 +40,8 @@ int run(const Settings& settings, Session& session) {
       return run_info(settings, session);
     case Command::kView:
       return run_view(settings, session);
+    case Command::kTiles:
+      return run_tiles(settings, session);
   }
   return kBug;
 }

@@ -280,17 +280,22 @@ void add_method_options(CLI::App& app, Settings& s) {
       ->check(range(0.0, 0.1))
       ->type_name("A");
   app.add_flag("--condition-number", o.condition_number, "With --solver dense: report the condition number");
+}
+
+void add_memory_option(CLI::App& app, Settings& s, const std::string& help) {
   app.add_option_function<std::string>(
          "--max-memory",
-         [&o](const std::string& text) {
+         [&s](const std::string& text) {
            const auto limit = parse_bytes(text);
            if (!limit) reject("--max-memory", text, "a size such as 8G or 512M");
-           o.max_memory = *limit;
+           s.options.max_memory = *limit;
          },
-         "Refuse before the solve if it would need more, for example 8G")
+         help)
       ->type_name("SIZE")
       ->group(kRunGroup);
 }
+
+constexpr const char* kRefuseHelp = "Refuse before the solve if it would need more, for example 8G";
 
 /// An option that may be repeated and is handed to `take` word by word.
 void add_repeated(CLI::App& app, const std::string& name, const std::function<void(const std::string&)>& take, const std::string& type,
@@ -353,6 +358,7 @@ void add_reconstruct(CLI::App& app, Settings& s) {
   add_run_options(app, s);
   add_read_options(app, s);
   add_method_options(app, s);
+  add_memory_option(app, s, kRefuseHelp);
 }
 
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& help) {
@@ -374,6 +380,8 @@ void add_orient(CLI::App& app, Settings& s) {
   add_run_options(*sub, s);
   add_read_options(*sub, s);
   add_method_options(*sub, s);
+  add_memory_option(
+      *sub, s, "If the solve would need more, for example 8G: work in tiles, on disk beside OUT (.ply), or refuse where that cannot be");
 }
 
 void add_mesh(CLI::App& app, Settings& s) {
@@ -443,11 +451,51 @@ void add_info(CLI::App& app, Settings& s) {
   sub->add_option("--report", s.report, "Write the plan as JSON; - for standard output, instead of the text")->type_name("FILE");
   add_read_options(*sub, s);
   add_method_options(*sub, s);
+  add_memory_option(*sub, s, kRefuseHelp);
   add_mesh_options(*sub, s);
 }
 
 const std::map<std::string, Layer> kLayers = {{"points", Layer::kPoints}, {"normals", Layer::kNormals}, {"confidence", Layer::kConfidence},
                                               {"colors", Layer::kColors}, {"error", Layer::kError},     {"mesh", Layer::kMesh}};
+
+CLI::App* add_tile_step(CLI::App& tiles, Settings& s, const std::string& name, TileStep step, const std::string& help) {
+  CLI::App* sub = tiles.add_subcommand(name, help);
+  sub->option_defaults()->group("Options");
+  sub->parse_complete_callback([&s, step] { s.tile_step = step; });
+  return sub;
+}
+
+void add_tiles(CLI::App& app, Settings& s) {
+  CLI::App* sub = add_command(app, "tiles", "Normals of clouds of any size: plan, run (by many workers), status, merge");
+  sub->require_subcommand(1);
+  CLI::App* plan = add_tile_step(*sub, s, "plan", TileStep::kPlan, "Sort the points into the folder DIR, solve a thinned cloud, cut tiles");
+  plan->add_option("IN", s.tile_paths, "Clouds, folders or patterns, and last the work folder DIR")
+      ->required()
+      ->expected(2, 1 << 20)
+      ->type_name("");
+  plan->add_option("--tiles", s.tile_count, "Number of tiles (default: as few as the memory allows)")
+      ->check(range(std::size_t{1}, std::size_t{1000000}))
+      ->type_name("N");
+  add_hint_options(*plan, s);
+  add_run_options(*plan, s);
+  add_memory_option(*plan, s, "What a worker may take, for example 6G (default: three quarters of what is free)");
+  CLI::App* run = add_tile_step(*sub, s, "run", TileStep::kRun, "Solve the tiles that are not done");
+  run->add_option_function<std::string>(
+         "--worker",
+         [&s](const std::string& text) {
+           const auto worker = parse_worker(text);
+           if (!worker) reject("--worker", text, "I/N, of workers 1/N to N/N");
+           s.worker = *worker;
+         },
+         "This is worker I of N: does tiles I, I + N, ...")
+      ->type_name("I/N");
+  add_run_options(*run, s);
+  CLI::App* status = add_tile_step(*sub, s, "status", TileStep::kStatus, "What is planned and what is done");
+  CLI::App* merge = add_tile_step(*sub, s, "merge", TileStep::kMerge, "Write all points in their order with normals and confidence");
+  for (CLI::App* step : {run, status, merge}) step->add_option("DIR", s.tile_folder, "The work folder")->required()->type_name("");
+  merge->add_option("OUT", s.output, "Oriented cloud, .ply")->required()->type_name("");
+  add_run_options(*merge, s);
+}
 
 void add_view(CLI::App& app, Settings& s) {
   CLI::App* sub = add_command(app, "view", "A page (.html) or a picture (.png) of a cloud, a mesh, or both");
@@ -489,7 +537,8 @@ std::string default_output(const std::string& input) {
 
 Command parsed_command(const CLI::App& app) {
   const std::map<std::string, Command> commands = {{"orient", Command::kOrient}, {"mesh", Command::kMesh}, {"eval", Command::kEval},
-                                                   {"sample", Command::kSample}, {"info", Command::kInfo}, {"view", Command::kView}};
+                                                   {"sample", Command::kSample}, {"info", Command::kInfo}, {"view", Command::kView},
+                                                   {"tiles", Command::kTiles}};
   const auto parsed = app.get_subcommands();
   return parsed.empty() ? Command::kReconstruct : commands.at(parsed.front()->get_name());
 }
@@ -573,6 +622,11 @@ void complete(const CLI::App& app, Settings& s) {
     }
     if (picture && view.count("--figures") > 0) throw UsageError("--figures is for pages (.html), not for pictures");
   }
+  if (s.command == Command::kTiles && s.tile_step == TileStep::kPlan) {
+    s.tile_folder = s.tile_paths.back();
+    s.tile_paths.pop_back();
+    if (s.sensors_of_file) throw UsageError("--sensor: expected X,Y,Z, found 'file', which tiles do not support");
+  }
   if (s.sensors_of_file && !s.options.hints.sensors.empty()) {
     throw UsageError("--sensor: places and file exclude each other");
   }
@@ -618,6 +672,7 @@ std::optional<Settings> parse_command_line(int argc, const char* const* argv) {
   add_sample(app, settings);
   add_info(app, settings);
   add_view(app, settings);
+  add_tiles(app, settings);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {

@@ -3,6 +3,7 @@
 
 #include <g3r/g3r.h>
 #include <g3r/io.h>
+#include <g3r/tiles.h>
 #include <g3r/view.h>
 
 #include <cstddef>
@@ -15,21 +16,27 @@
 
 namespace g3r::cli {
 
-enum class Command { kReconstruct, kOrient, kMesh, kEval, kSample, kInfo, kView };
+enum class Command { kReconstruct, kOrient, kMesh, kEval, kSample, kInfo, kView, kTiles };
+enum class TileStep { kPlan, kRun, kStatus, kMerge };
 
 /// Everything a command line says, with the defaults for what it does not say.
 struct Settings {
   Command command = Command::kReconstruct;
   std::string input;
   std::string output;
-  std::vector<std::string> also;   ///< further files for the same result
-  std::string oriented;            ///< reconstruct: file for the oriented points, empty for none
-  std::string truth;               ///< eval, view
-  std::vector<std::string> shown;  ///< view: a cloud, a mesh, or both; the other commands have `input`
-  std::string figures;             ///< view: the JSON report of a run
-  PageOptions page;                ///< view
-  PictureOptions picture;          ///< view
-  bool sensors_of_file = false;    ///< orient, reconstruct: the hint sensor is what the input file says
+  std::vector<std::string> also;         ///< further files for the same result
+  std::string oriented;                  ///< reconstruct: file for the oriented points, empty for none
+  std::string truth;                     ///< eval, view
+  std::vector<std::string> shown;        ///< view: a cloud, a mesh, or both; the other commands have `input`
+  std::string figures;                   ///< view: the JSON report of a run
+  PageOptions page;                      ///< view
+  PictureOptions picture;                ///< view
+  bool sensors_of_file = false;          ///< orient, reconstruct: the hint sensor is what the input file says
+  TileStep tile_step = TileStep::kPlan;  ///< tiles
+  std::vector<std::string> tile_paths;   ///< tiles: inputs of the plan
+  std::string tile_folder;               ///< tiles: the work folder
+  std::size_t tile_count = 0;            ///< tiles
+  TileWorker worker;                     ///< tiles
   Options options;
   MeshOptions mesh_options;
   ReadOptions read_options;

@@ -90,6 +90,16 @@ std::optional<std::size_t> parse_bytes(const std::string& text) {
   return static_cast<std::size_t>(value);
 }
 
+std::optional<TileWorker> parse_worker(const std::string& text) {
+  TileWorker worker;
+  const char* end = text.data() + text.size();
+  const auto number = std::from_chars(text.data(), end, worker.number);
+  if (number.ec != std::errc() || number.ptr == end || *number.ptr != '/') return std::nullopt;
+  const auto workers = std::from_chars(number.ptr + 1, end, worker.workers);
+  const bool good = workers.ec == std::errc() && workers.ptr == end && worker.number > 0 && worker.number <= worker.workers;
+  return good ? std::optional(worker) : std::nullopt;
+}
+
 std::optional<Length> parse_length(const std::string& text) {
   if (text == "auto") return Length{};
   const auto parsed = leading_number(text);

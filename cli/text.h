@@ -2,6 +2,7 @@
 #pragma once
 
 #include <g3r/g3r.h>
+#include <g3r/tiles.h>
 
 #include <cstddef>
 #include <optional>
@@ -35,6 +36,8 @@ namespace g3r::cli {
 [[nodiscard]] std::optional<std::size_t> parse_bytes(const std::string& text);
 
 /// "auto", "X" (input units), "X%" (of the bounding box diagonal), "Xh" (spacings), "Xn" (normalised box); X >= 0. Empty if it is not that.
+/// "2/8": worker 2 of 8.
+[[nodiscard]] std::optional<TileWorker> parse_worker(const std::string& text);
 [[nodiscard]] std::optional<Length> parse_length(const std::string& text);
 
 /// "1,-2.5,3e2": three finite numbers. Empty if it is not that.

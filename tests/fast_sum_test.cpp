@@ -129,6 +129,22 @@ TEST(FastSum, QueriesSeeTheSameFieldAsThePoints) {
   EXPECT_LE(relative_error(sum.winding_gradient_at(eta, queries), direct_sum::winding_gradient(points, 0.01, eta, queries)), 1e-3);
 }
 
+// More than are summed at once, whatever else is asked for.
+TEST(FastSum, AQueryHasTheSameBytesAmongMany) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(3000, 0.6, 0.25, 3).points);
+  const std::vector<Vec3> eta = random_vectors(points.size(), 1);
+  const FastSum sum(points, codes(points), Widths(0.01), sum_plan(2e-2, 1000000));
+  Random random(2);
+  std::vector<Vec3> queries;
+  for (int i = 0; i < 140000; ++i) queries.push_back({random.uniform(-1.3, 1.3), random.uniform(-1, 1), random.uniform(-0.5, 0.5)});
+  const std::vector<double> w = sum.winding_at(eta, queries);
+  const std::vector<Vec3> gradient = sum.winding_gradient_at(eta, queries);
+  for (const std::size_t i : {0UL, 70000UL, 139999UL}) {
+    EXPECT_EQ(w[i], sum.winding_at(eta, {queries[i]})[0]) << i;
+    EXPECT_EQ(gradient[i], sum.winding_gradient_at(eta, {queries[i]})[0]) << i;
+  }
+}
+
 TEST(FastSum, QueriesMayBeFarAway) {
   const double width = 0.01;
   const std::vector<Vec3> points = unit_points(shapes::torus(4000, 0.6, 0.25, 3).points);

@@ -88,12 +88,12 @@ void read_vlrs(const Source& source, LasHeader& header) {
 
 }  // namespace
 
-LasHeader read_las_header(const Source& source) {
+LasHeader read_las_header(const Source& source, std::uint64_t file_size) {
   constexpr std::size_t kLeastHeader = 227;
   constexpr std::size_t kHeader14 = 375;
   const char* bytes = source.bytes.data();
-  const std::size_t size = source.bytes.size();
-  if (size < kLeastHeader) fail_at_byte(source, size, "truncated: a LAS header has at least 227 bytes");
+  const std::uint64_t size = file_size != 0 ? file_size : source.bytes.size();
+  if (source.bytes.size() < kLeastHeader) fail_at_byte(source, size, "truncated: a LAS header has at least 227 bytes");
   LasHeader header;
   header.minor = static_cast<unsigned char>(bytes[kMinor]);
   if (bytes[kMinor - 1] != 1 || header.minor > 4) {
@@ -114,7 +114,7 @@ LasHeader read_las_header(const Source& source) {
   header.point_format = format;
   header.record_bytes = load<std::uint16_t>(bytes + kRecordBytes);
   if (header.header_size < (header.minor == 4 ? kHeader14 : kLeastHeader) || header.header_size > header.points_at ||
-      header.points_at > size) {
+      header.points_at > source.bytes.size()) {
     fail_at_byte(source, kHeaderSize,
                  "truncated or damaged: header size " + std::to_string(header.header_size) + " and start of points " +
                      std::to_string(header.points_at) + " do not go with a file of " + std::to_string(size) + " bytes");

@@ -47,7 +47,8 @@ inline constexpr unsigned kCompression = 22204;  // record id, user id "laszip e
 }  // namespace las
 
 /// Reads and checks a header. Throws InvalidInput; for LAZ, where it cannot be read, with the name of a converter.
-LasHeader read_las_header(const Source& source);
+/// `file_size`: of a file of which `source` holds what comes before the points; 0: the source is all of it.
+LasHeader read_las_header(const Source& source, std::uint64_t file_size = 0);
 
 /// LAS's number of a type (1..10) in an extra-bytes descriptor.
 unsigned las_type_number(Type type);

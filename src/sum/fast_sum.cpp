@@ -8,13 +8,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
 #include <stdexcept>
 #include <variant>
 
 namespace g3r {
 namespace {
 
-constexpr std::size_t kBlock = 1024;                     // points per parallel block
+constexpr std::size_t kBlock = 1024;             // points per parallel block
+constexpr std::size_t kTargetsAtOnce = 1 << 17;  // of queries: what a sum holds per target is 330 bytes. Fewer: each chunk costs lists
 constexpr std::array<std::size_t, 3> kBatches{1, 4, 9};  // harmonics per sweep that have a kernel; others are padded with zeros
 
 using cpu::kLanes;
@@ -128,8 +131,7 @@ void stokes_winding_into(SumEngine<T>& engine, const std::vector<Vec3>& eta, std
 }
 
 template <class T>
-void winding_gradient_into(SumEngine<T>& engine, const std::vector<Vec3>& eta, std::vector<Vec3>& out) {
-  fill_eta(engine, eta, 3);
+void winding_gradient_into(SumEngine<T>& engine, std::vector<Vec3>& out) {
   const auto& sums = engine.run(NearForm::kWindingGradient, 1, 3);
   for_targets(engine.targets(), sums, 3, [&](std::size_t p, const double* value) {
     for (std::size_t a = 0; a < 3; ++a) out[p][a] = kInv4Pi * value[a * kLanes];
@@ -137,8 +139,7 @@ void winding_gradient_into(SumEngine<T>& engine, const std::vector<Vec3>& eta, s
 }
 
 template <class T>
-void winding_into(SumEngine<T>& engine, const std::vector<Vec3>& eta, std::vector<double>& out) {
-  fill_eta(engine, eta, 3);
+void winding_into(SumEngine<T>& engine, std::vector<double>& out) {
   const auto& sums = engine.run(NearForm::kWinding, 1, 1);
   for_targets(engine.targets(), sums, 1, [&](std::size_t p, const double* value) { out[p] = kInv4Pi * value[0]; });
 }
@@ -179,34 +180,35 @@ std::vector<Vec3> scaled(std::vector<Vec3> points, double factor) {
 }  // namespace
 
 struct FastSum::Impl {
-  std::vector<Vec3> points;
+  std::shared_ptr<const std::vector<Vec3>> points;
   Widths widths;
   SumPlan plan;
   const std::atomic<bool>* cancel;
   std::variant<SumEngine<float>, SumEngine<double>> engine;
 
   using Engine = decltype(engine);
-  static Engine make(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Widths& widths, const SumPlan& plan,
-                     const std::atomic<bool>* cancel) {
+  static Engine make(const std::shared_ptr<const std::vector<Vec3>>& points, const std::vector<std::uint64_t>& morton, const Widths& widths,
+                     const SumPlan& plan, const std::atomic<bool>* cancel) {
     if (plan.double_precision) return Engine(std::in_place_type<SumEngine<double>>, points, morton, widths, plan, cancel);
     return Engine(std::in_place_type<SumEngine<float>>, points, morton, widths, plan, cancel);
   }
 
   // The sources with all lengths times `factor`, a power of two: their order stays.
   [[nodiscard]] Engine shrunk(double factor, const std::atomic<bool>* stop) const {
-    const std::vector<Vec3> sources = scaled(points, factor);
-    std::vector<std::uint64_t> codes(sources.size());
-    std::transform(sources.begin(), sources.end(), codes.begin(), morton_code);
-    SumPlan finer = sum_plan(kShellAccuracy, sources.size());
+    const auto sources = std::make_shared<const std::vector<Vec3>>(scaled(*points, factor));
+    std::vector<std::uint64_t> codes(sources->size());
+    std::transform(sources->begin(), sources->end(), codes.begin(), morton_code);
+    SumPlan finer = sum_plan(kShellAccuracy, sources->size());
     finer.execution = plan.execution;
     return make(sources, codes, Widths(factor * widths[0]), plan.order < finer.order ? finer : plan, stop);
   }
 
-  // Sums at any targets. Everything is shrunk until the targets are in the cube: one sum for every shell that has some.
-  // `fast(engine for these targets, their order, factor)`: lengths are `factor` times as long as the caller's. `direct(targets, their
+  // Sums of `eta` at any targets. Everything is shrunk until the targets are in the cube: one sum for every shell that has some.
+  // `fast(engine for some targets, their order, factor)`: lengths are `factor` times as long as the caller's. `direct(targets, their
   // order)`: outside the cube where sums are direct anyway, or a shell's kernels would be too narrow.
   template <class Fast, class Direct>
-  void at(const std::vector<Vec3>& targets, const std::atomic<bool>* stop, const Fast& fast, const Direct& direct) const {
+  void at(const std::vector<Vec3>& eta, const std::vector<Vec3>& targets, const std::atomic<bool>* stop, const Fast& fast,
+          const Direct& direct) const {
     std::array<std::vector<std::uint32_t>, kShells + 1> members;
     for (std::uint32_t i = 0; i < targets.size(); ++i) {
       const int shell = shell_of(targets[i]);
@@ -216,42 +218,67 @@ struct FastSum::Impl {
     for (int shell = 0; shell <= kNoShell; ++shell) {
       std::vector<std::uint32_t>& index = members[static_cast<std::size_t>(shell)];
       if (index.empty()) continue;
-      std::vector<Vec3> some(index.size());
-      for (std::size_t i = 0; i < some.size(); ++i) some[i] = targets[index[i]];
       if (shell == kNoShell) {
+        std::vector<Vec3> some(index.size());
+        for (std::size_t i = 0; i < some.size(); ++i) some[i] = targets[index[i]];
         direct(some, index);
         continue;
       }
       const double factor = std::ldexp(1.0, -shell);
-      some = scaled(std::move(some), factor);
-      const MortonOrder order = morton_order(some);
-      std::vector<Vec3> sorted(some.size());
-      std::vector<std::uint32_t> sorted_index(some.size());
-      for (std::size_t i = 0; i < some.size(); ++i) {
-        sorted[i] = some[order.index[i]];
-        sorted_index[i] = index[order.index[i]];
-      }
-      std::vector<Vec3>().swap(some);  // not twice in memory
-      const auto sum_on = [&](const auto& sources) {
-        std::decay_t<decltype(sources)> engine_at(sources, sorted, order.code, stop);
-        fast(engine_at, sorted_index, factor);
-      };
+      const std::vector<std::uint64_t> codes = sort_by_code(targets, factor, index);
+      const auto sum_on = [&](const auto& sources) { in_chunks(sources, eta, targets, factor, index, codes, stop, fast); };
       if (shell == 0) {
         std::visit(sum_on, engine);
       } else {
         std::visit(sum_on, shrunk(factor, stop));
       }
+      std::vector<std::uint32_t>().swap(index);
+    }
+  }
+
+  // Puts the targets of `index`, shrunk, into canonical order. Returns their codes.
+  static std::vector<std::uint64_t> sort_by_code(const std::vector<Vec3>& targets, double factor, std::vector<std::uint32_t>& index) {
+    std::vector<Vec3> some(index.size());
+    for (std::size_t i = 0; i < some.size(); ++i) some[i] = targets[index[i]];
+    MortonOrder order = morton_order(scaled(std::move(some), factor));
+    for (std::uint32_t& i : order.index) i = index[i];
+    index.swap(order.index);
+    return std::move(order.code);
+  }
+
+  // Sums at targets in canonical order, some of them at a time: a value depends on the place of its target alone.
+  template <class Sources, class Fast>
+  static void in_chunks(const Sources& sources, const std::vector<Vec3>& eta, const std::vector<Vec3>& targets, double factor,
+                        const std::vector<std::uint32_t>& index, const std::vector<std::uint64_t>& codes, const std::atomic<bool>* stop,
+                        const Fast& fast) {
+    std::optional<Sources> engine;
+    for (std::size_t begin = 0; begin < index.size(); begin += kTargetsAtOnce) {
+      const std::size_t end = std::min(index.size(), begin + kTargetsAtOnce);
+      const std::vector<std::uint32_t> chunk(index.data() + begin, index.data() + end);
+      const std::vector<std::uint64_t> code(codes.data() + begin, codes.data() + end);
+      std::vector<Vec3> some(chunk.size());
+      for (std::size_t i = 0; i < some.size(); ++i) some[i] = targets[chunk[i]];
+      some = scaled(std::move(some), factor);
+      if (engine) {
+        engine->set_targets(some, code);
+      } else {
+        engine.emplace(sources, some, code, stop);
+        fill_eta(*engine, eta, 3);
+      }
+      fast(*engine, chunk, factor);
     }
   }
 };
 
 FastSum::FastSum(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, Widths widths, const SumPlan& plan,
-                 const std::atomic<bool>* cancel)
-    : impl_(new Impl{points, widths, placed(plan), cancel, Impl::make(points, morton, widths, placed(plan), cancel)}) {}
+                 const std::atomic<bool>* cancel) {
+  const auto own = std::make_shared<const std::vector<Vec3>>(points);
+  impl_.reset(new Impl{own, widths, placed(plan), cancel, Impl::make(own, morton, widths, placed(plan), cancel)});
+}
 
 FastSum::FastSum(const FastSum& other, Widths narrower) {
   const Impl& from = *other.impl_;
-  for (std::size_t i = 0; i < (narrower.uniform() && from.widths.uniform() ? 1 : from.points.size()); ++i) {
+  for (std::size_t i = 0; i < (narrower.uniform() && from.widths.uniform() ? 1 : from.points->size()); ++i) {
     if (!(narrower[i] <= from.widths[i])) throw std::invalid_argument("a sum that shares a tree has a larger width");
   }
   impl_.reset(new Impl{
@@ -263,7 +290,7 @@ FastSum::~FastSum() = default;
 FastSum::FastSum(FastSum&&) noexcept = default;
 FastSum& FastSum::operator=(FastSum&&) noexcept = default;
 
-std::size_t FastSum::size() const { return impl_->points.size(); }
+std::size_t FastSum::size() const { return impl_->points->size(); }
 
 std::vector<double> FastSum::green(const HarmonicValues& u, const std::vector<Vec3>& eta) {
   std::vector<double> out(size() * u.count);
@@ -291,13 +318,23 @@ std::vector<Vec3> FastSum::winding_adjoint(const std::vector<double>& q) {
 
 std::vector<double> FastSum::winding(const std::vector<Vec3>& eta) {
   std::vector<double> out(size());
-  std::visit([&](auto& engine) { winding_into(engine, eta, out); }, impl_->engine);
+  std::visit(
+      [&](auto& engine) {
+        fill_eta(engine, eta, 3);
+        winding_into(engine, out);
+      },
+      impl_->engine);
   return out;
 }
 
 std::vector<Vec3> FastSum::winding_gradient(const std::vector<Vec3>& eta) {
   std::vector<Vec3> out(size());
-  std::visit([&](auto& engine) { winding_gradient_into(engine, eta, out); }, impl_->engine);
+  std::visit(
+      [&](auto& engine) {
+        fill_eta(engine, eta, 3);
+        winding_gradient_into(engine, out);
+      },
+      impl_->engine);
   return out;
 }
 
@@ -305,14 +342,14 @@ std::vector<double> FastSum::winding_at(const std::vector<Vec3>& eta, const std:
                                         const std::atomic<bool>* cancel) const {
   std::vector<double> out(targets.size());
   impl_->at(
-      targets, cancel,
+      eta, targets, cancel,
       [&](auto& engine, const std::vector<std::uint32_t>& index, double factor) {
         std::vector<double> sorted(index.size());
-        winding_into(engine, eta, sorted);
+        winding_into(engine, sorted);
         for (std::size_t i = 0; i < index.size(); ++i) out[index[i]] = factor * factor * sorted[i];
       },
       [&](const std::vector<Vec3>& far, const std::vector<std::uint32_t>& index) {
-        const std::vector<double> w = direct_sum::winding(impl_->points, impl_->widths[0], eta, far, cancel);
+        const std::vector<double> w = direct_sum::winding(*impl_->points, impl_->widths[0], eta, far, cancel);
         for (std::size_t i = 0; i < index.size(); ++i) out[index[i]] = w[i];
       });
   return out;
@@ -322,15 +359,15 @@ std::vector<Vec3> FastSum::winding_gradient_at(const std::vector<Vec3>& eta, con
                                                const std::atomic<bool>* cancel) const {
   std::vector<Vec3> out(targets.size());
   impl_->at(
-      targets, cancel,
+      eta, targets, cancel,
       [&](auto& engine, const std::vector<std::uint32_t>& index, double factor) {
         std::vector<Vec3> sorted(index.size());
-        winding_gradient_into(engine, eta, sorted);
+        winding_gradient_into(engine, sorted);
         sorted = scaled(std::move(sorted), factor * factor * factor);
         for (std::size_t i = 0; i < index.size(); ++i) out[index[i]] = sorted[i];
       },
       [&](const std::vector<Vec3>& far, const std::vector<std::uint32_t>& index) {
-        const std::vector<Vec3> g = direct_sum::winding_gradient(impl_->points, impl_->widths[0], eta, far, cancel);
+        const std::vector<Vec3> g = direct_sum::winding_gradient(*impl_->points, impl_->widths[0], eta, far, cancel);
         for (std::size_t i = 0; i < index.size(); ++i) out[index[i]] = g[i];
       });
   return out;

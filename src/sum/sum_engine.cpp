@@ -56,13 +56,13 @@ std::array<T, 3> moved(const Vec3& v) {
 }  // namespace
 
 template <class T>
-SumEngine<T>::SumEngine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Widths& widths,
-                        const SumPlan& plan, const std::atomic<bool>* cancel)
+SumEngine<T>::SumEngine(Points points, const std::vector<std::uint64_t>& morton, const Widths& widths, const SumPlan& plan,
+                        const std::atomic<bool>* cancel)
     : plan_(plan), local_widths_(!widths.uniform()), cancel_(cancel), sources_(std::make_shared<Sources>()) {
   set_terms({plan.order, plan.opening, plan.cut});
   Sources& s = *sources_;
-  s.points = points;
-  s.tree = build_octree(points, morton, widths.values, plan_.leaf_points);
+  s.points = std::move(points);
+  s.tree = build_octree(*s.points, morton, widths.values, plan_.leaf_points);
   for (std::size_t o = 0; o < 8 && !plan_.direct; ++o) {
     const Vec3 shift{o & 4 ? 0.5 : -0.5, o & 2 ? 0.5 : -0.5, o & 1 ? 0.5 : -0.5};
     const std::vector<double> matrix = multipole_translation(shift, plan_.order);
@@ -71,8 +71,7 @@ SumEngine<T>::SumEngine(const std::vector<Vec3>& points, const std::vector<std::
   }
   target_tree_ = std::shared_ptr<Octree>(sources_, &s.tree);
   locate_sources(widths.values);
-  locate_targets(points, widths.values);
-  find_interactions();
+  interactions_ = std::make_shared<Interactions>();
 }
 
 template <class T>
@@ -85,7 +84,6 @@ SumEngine<T>::SumEngine(const SumEngine& other, const Widths& narrower)
       interactions_(other.interactions_) {
   set_terms({plan_.order, plan_.opening, plan_.cut});
   locate_sources(narrower.values);
-  locate_targets(sources_->points, narrower.values);
 }
 
 template <class T>
@@ -97,9 +95,21 @@ SumEngine<T>::SumEngine(const SumEngine& other, const std::vector<Vec3>& targets
       sources_(other.sources_),
       source_fields_(other.source_fields_) {
   set_terms({plan_.order, plan_.opening, plan_.cut});
+  set_targets(targets, morton);
+}
+
+template <class T>
+void SumEngine<T>::set_targets(const std::vector<Vec3>& targets, const std::vector<std::uint64_t>& morton) {
+  on_device_.reset();
   target_tree_ = std::make_shared<Octree>(build_query_octree(targets, morton, sources_->tree));
   locate_targets(targets, {source_fields_->widths[0]});
-  find_interactions();
+  interactions_ = std::make_shared<Interactions>();
+}
+
+template <class T>
+const TargetBlocks<T>& SumEngine<T>::targets() {
+  if (!targets_) locate_targets(*sources_->points, source_fields_->widths);
+  return *targets_;
 }
 
 template <class T>
@@ -122,7 +132,7 @@ void SumEngine<T>::locate_sources(const std::vector<double>& widths) {
       const OctreeNode& leaf = s.tree.nodes[s.tree.leaves[i]];
       const Vec3 centre = leaf.centre();
       for (std::size_t p = leaf.begin; p < leaf.end; ++p) {
-        for (std::size_t a = 0; a < 3; ++a) geometry[a * stride + p] = static_cast<T>(s.points[p][a] - centre[a]);
+        for (std::size_t a = 0; a < 3; ++a) geometry[a * stride + p] = static_cast<T>((*s.points)[p][a] - centre[a]);
         if (local_widths_) geometry[3 * stride + p] = static_cast<T>(widths[p] * widths[p]);
       }
     }
@@ -162,21 +172,24 @@ void SumEngine<T>::locate_targets(const std::vector<Vec3>& targets, const std::v
 }
 
 template <class T>
-void SumEngine<T>::find_interactions() {
-  interactions_ = std::make_shared<Interactions>();
-  interactions_->lists = build_interaction_lists(*target_tree_, sources_->tree, plan_.direct ? 0.0 : plan_.opening, plan_.reach);
-  interactions_->matrices.resize(static_cast<std::size_t>(plan_.order) + 1);
+const InteractionLists& SumEngine<T>::lists() {
+  std::optional<InteractionLists>& lists = interactions_->lists;
+  if (!lists) lists = build_interaction_lists(*target_tree_, sources_->tree, plan_.direct ? 0.0 : plan_.opening, plan_.reach);
+  return *lists;
 }
 
 template <class T>
 const M2lMatrices<T>& SumEngine<T>::matrices() {
-  std::unique_ptr<M2lMatrices<T>>& of_order = interactions_->matrices[static_cast<std::size_t>(terms_.order)];
-  if (!of_order) of_order = std::make_unique<M2lMatrices<T>>(interactions_->lists.offsets, terms_);
+  std::vector<std::unique_ptr<M2lMatrices<T>>>& made = interactions_->matrices;
+  made.resize(static_cast<std::size_t>(plan_.order) + 1);
+  std::unique_ptr<M2lMatrices<T>>& of_order = made[static_cast<std::size_t>(terms_.order)];
+  if (!of_order) of_order = std::make_unique<M2lMatrices<T>>(lists().offsets, terms_);
   return *of_order;
 }
 
 template <class T>
 void SumEngine<T>::begin_values(std::size_t values) {
+  multipoles_of_.reset();
   const bool fresh = fields_.empty();
   field_count_ = geometry_fields() + values;
   if (fields_.size() < field_count_ * field_stride()) fields_.resize(field_count_ * field_stride());
@@ -185,7 +198,7 @@ void SumEngine<T>::begin_values(std::size_t values) {
 
 template <class T>
 AlignedVector<T>& SumEngine<T>::target_data(std::size_t channels) {
-  target_data_.resize(targets_->x.size() * channels);
+  target_data_.resize(targets().x.size() * channels);
   return target_data_;
 }
 
@@ -204,6 +217,7 @@ cpu::LeafTask<T> SumEngine<T>::leaf_task(cpu::NearForm form, int batch, double h
 
 template <class T>
 void SumEngine<T>::upward(cpu::NearForm form, int batch) {
+  if (multipoles_of_ == form) return;
   const Octree& tree = sources_->tree;
   multipoles_.resize(tree.nodes.size() * multipole_channels_ * stride_);
   parallel::for_blocks(
@@ -241,6 +255,7 @@ void SumEngine<T>::upward(cpu::NearForm form, int batch) {
       translate_levels(form, sources_->child_to_parent, up, multipole_channels_);
     });
   }
+  multipoles_of_ = form;
 }
 
 // Children ascend by octant, so each parent is added to in the order of its children.
@@ -257,7 +272,7 @@ void SumEngine<T>::translate_levels(cpu::NearForm form, const std::array<StoredT
 
 template <class T>
 void SumEngine<T>::across(cpu::NearForm form) {
-  const InteractionLists& lists = interactions_->lists;
+  const InteractionLists& lists = this->lists();
   const Octree& tree = *target_tree_;
   locals_.resize(tree.nodes.size() * local_channels_ * stride_);
   const M2lMatrices<T>& matrices = this->matrices();
@@ -285,7 +300,7 @@ void SumEngine<T>::across(cpu::NearForm form) {
 // The far pairs from `begin` on that share its matrix. Returns the end of them.
 template <class T>
 std::size_t SumEngine<T>::gather(cpu::NearForm form, const M2lMatrices<T>& matrices, std::size_t begin, std::size_t end, Moves& moves) {
-  const InteractionLists& lists = interactions_->lists;
+  const InteractionLists& lists = this->lists();
   moves.all.clear();
   moves.forward.clear();
   moves.transposed.clear();
@@ -332,7 +347,7 @@ void SumEngine<T>::downward(cpu::NearForm form) {
 
 template <class T>
 void SumEngine<T>::leaves(cpu::NearForm form, int batch, std::size_t out_channels) {
-  const InteractionLists& lists = interactions_->lists;
+  const InteractionLists& lists = this->lists();
   const Octree& tree = *target_tree_;
   const Octree& source_tree = sources_->tree;
   const std::size_t data_channels = form == cpu::NearForm::kGreenAdjoint ? static_cast<std::size_t>(batch) : 0;
@@ -396,7 +411,7 @@ bool SumEngine<T>::run_on_device(cpu::NearForm form, int batch, std::size_t out_
   try {
     const std::unique_lock lock = device.lock();
     std::shared_ptr<gpu::ListsOnDevice<T>>& lists = interactions_->on_device;
-    if (!lists) lists = std::make_shared<gpu::ListsOnDevice<T>>(device, *target_tree_, sources_->tree, interactions_->lists);
+    if (!lists) lists = std::make_shared<gpu::ListsOnDevice<T>>(device, *target_tree_, sources_->tree, this->lists());
     if (!plan_.direct) {
       lists->prepare_far(matrices(), terms_.order, {sources_->child_to_parent, sources_->parent_to_child}, coefficient_count(plan_.order));
     }
@@ -431,7 +446,7 @@ const std::vector<double>& SumEngine<T>::run(cpu::NearForm form, int batch, std:
   multipole_channels_ = multipole_channels(form, batch, local_widths_);
   local_channels_ = multipole_channels_ + (form == cpu::NearForm::kStokesWinding ? 1 : 0);
   set_terms(terms_for(form, batch, plan_));
-  out_.resize(targets_->x.size() * out_channels);
+  out_.resize(targets().x.size() * out_channels);
   if (run_on_device(form, batch, out_channels)) return out_;
   if (!plan_.direct) {
     upward(form, batch);

@@ -14,6 +14,7 @@
 #include <atomic>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace g3r::gpu {
@@ -38,8 +39,10 @@ struct TargetBlocks {
 template <class T>
 class SumEngine {
  public:
+  using Points = std::shared_ptr<const std::vector<Vec3>>;
+
   /// Points in canonical order with their Morton codes; the sources are also the targets.
-  SumEngine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Widths& widths, const SumPlan& plan,
+  SumEngine(Points points, const std::vector<std::uint64_t>& morton, const Widths& widths, const SumPlan& plan,
             const std::atomic<bool>* cancel);
   /// The same points with widths that are nowhere larger, in the tree and the lists of `other`, whose own targets are its sources.
   SumEngine(const SumEngine& other, const Widths& narrower);
@@ -47,8 +50,11 @@ class SumEngine {
   SumEngine(const SumEngine& other, const std::vector<Vec3>& targets, const std::vector<std::uint64_t>& morton,
             const std::atomic<bool>* cancel);
 
+  /// Takes other targets in place of those, canonical order; the values of the sources stay, and so does what was made of them.
+  void set_targets(const std::vector<Vec3>& targets, const std::vector<std::uint64_t>& morton);
+
   [[nodiscard]] bool local_widths() const { return local_widths_; }
-  [[nodiscard]] const TargetBlocks<T>& targets() const { return *targets_; }
+  [[nodiscard]] const TargetBlocks<T>& targets();
 
   /// Makes room for `values` values per source, for the caller to fill: the k-th of source i is value(k)[i].
   void begin_values(std::size_t values);
@@ -62,7 +68,7 @@ class SumEngine {
  private:
   // What belongs to the sources, shared by engines with other targets or widths.
   struct Sources {
-    std::vector<Vec3> points;
+    Points points;
     Octree tree;                                          // its nodes know the widest widths
     std::array<StoredTranslation<T>, 8> child_to_parent;  // M2M by octant
     std::array<StoredTranslation<T>, 8> parent_to_child;  // L2L by octant
@@ -72,9 +78,10 @@ class SumEngine {
     std::vector<double> widths;
     AlignedVector<T> geometry;  // x, y, z relative to the leaf's centre, and the squared width with local widths: fields as in fields_
   };
-  // Which nodes of the targets and sources interact, and how; shared by engines with other widths.
+  // Which nodes of the targets and sources interact, and how; shared by engines with other widths. Found when a sum first needs them:
+  // sources that are only asked at other targets need none of their own.
   struct Interactions {
-    InteractionLists lists;
+    std::optional<InteractionLists> lists;
     std::vector<std::unique_ptr<M2lMatrices<T>>> matrices;  // of every order, made when it is needed
     std::shared_ptr<gpu::ListsOnDevice<T>> on_device;       // made when it is needed
   };
@@ -85,10 +92,10 @@ class SumEngine {
   const M2lMatrices<T>& matrices();  // of the current order
   void locate_sources(const std::vector<double>& widths);
   void locate_targets(const std::vector<Vec3>& targets, const std::vector<double>& target_widths);
-  void find_interactions();
+  const InteractionLists& lists();
   // x, y, z and, with local widths, the squared width.
   [[nodiscard]] std::size_t geometry_fields() const { return local_widths_ ? 4 : 3; }
-  [[nodiscard]] std::size_t field_stride() const { return cpu::padded_count(sources_->points.size()) + cpu::kLanes; }
+  [[nodiscard]] std::size_t field_stride() const { return cpu::padded_count(sources_->points->size()) + cpu::kLanes; }
   void upward(cpu::NearForm form, int batch);
   // Moves between a node and its parent, by the node's octant.
   using MovesByOctant = std::array<std::vector<cpu::Translation<T>>, 8>;
@@ -111,8 +118,8 @@ class SumEngine {
   const std::atomic<bool>* cancel_;
   std::shared_ptr<Sources> sources_;
   std::shared_ptr<SourceFields> source_fields_;
-  std::shared_ptr<Octree> target_tree_;  // the sources' tree when they are the targets
-  std::shared_ptr<TargetBlocks<T>> targets_;
+  std::shared_ptr<Octree> target_tree_;       // the sources' tree when they are the targets
+  std::shared_ptr<TargetBlocks<T>> targets_;  // null: the sources, not yet located
   std::shared_ptr<Interactions> interactions_;
   // Of the current run:
   M2lTerms terms_;
@@ -125,6 +132,7 @@ class SumEngine {
   AlignedVector<T> target_data_;
   std::shared_ptr<gpu::SumOnDevice<T>> on_device_;  // made when it is needed
   AlignedVector<T> multipoles_;
+  std::optional<cpu::NearForm> multipoles_of_;  // the form for which they are those of the values
   AlignedVector<T> locals_;
   std::vector<double> out_;
 };

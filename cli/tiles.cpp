@@ -1,0 +1,132 @@
+// g3r tiles plan, run, status, merge; and g3r orient with --max-memory where the cloud does not fit.
+#include <g3r/g3r.h>
+#include <g3r/io.h>
+#include <g3r/tiles.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+
+#include "commands.h"
+#include "exit_code.h"
+#include "summary.h"
+#include "text.h"
+
+namespace g3r::cli {
+namespace {
+
+constexpr const char* kFolderSuffix = ".tiles";  // of the work folder beside the output of orient
+
+std::string status_text(const TileStatus& status) {
+  std::string text =
+      with_commas(status.points) + " points, " + std::to_string(status.done) + " of " + counted(status.tiles, "tile") + " done\n";
+  text += "thinned cloud of " + with_commas(status.coarse_points) + " points; largest tile " + with_commas(status.largest_tile) +
+          " points with its surroundings\n";
+  text += "memory of a worker " + bytes(status.worker_memory_bytes) + ", disk " + bytes(status.disk_bytes) + ", work " +
+          short_number(status.work, 3) + " times that in core\n";
+  return text;
+}
+
+void say_status(Session& session, const TileStatus& status) {
+  for (const std::string& warning : status.warnings) session.console().warn(warning);
+  std::string text = status_text(status);
+  text.pop_back();
+  session.console().clear_bar();
+  session.console().say(text);
+}
+
+TileOptions tile_options(const Settings& settings) {
+  TileOptions options;
+  options.max_memory = settings.options.max_memory;
+  options.tiles = settings.tile_count;
+  options.hints = settings.options.hints;
+  options.threads = settings.options.threads;
+  options.device = settings.options.device;
+  return options;
+}
+
+TileWorker worker_of(const Settings& settings) {
+  TileWorker worker = settings.worker;
+  worker.threads = settings.options.threads;
+  worker.device = settings.options.device;
+  return worker;
+}
+
+bool is_default_method(const Options& o) {
+  const auto automatic = [](const Length& length) { return length.unit == Length::Unit::kAuto; };
+  return o.preset == Preset::kDefault && o.method == Method::kAuto && automatic(o.epsilon) && automatic(o.noise) && o.degree == -1 &&
+         o.harmonics.empty() && o.wnnc_widths.empty() && o.solver == Solver::kAuto && o.schedule.empty() && o.tolerance == -1 &&
+         o.accuracy == -1 && !o.condition_number;
+}
+
+// Whether tiles can do what is asked for.
+bool can_be_tiled(const Settings& s) {
+  const bool simple_output = s.also.empty() && !s.write_options.ascii && !s.write_options.cloud_compare_names &&
+                             std::filesystem::path(s.output).extension() == ".ply";
+  const bool whole_input = s.input != "-" && !s.read_options.box && s.read_options.levels == 0;
+  std::error_code ignored;
+  const bool has_files = std::filesystem::is_regular_file(s.input, ignored) || std::filesystem::is_directory(s.input, ignored) ||
+                         s.input.find_first_of("*?") != std::string::npos;
+  return simple_output && whole_input && has_files && !s.sensors_of_file && is_default_method(s.options);
+}
+
+Stats stats_of(const TileStatus& status, const MergedTiles& merged, const Settings& settings) {
+  Stats stats;
+  stats.points = status.points;
+  stats.used = status.points - status.non_finite;
+  stats.dropped_non_finite = status.non_finite;
+  stats.preset = "default";
+  stats.method = "energy";
+  stats.converged = status.converged;
+  stats.consistent = status.consistent;
+  stats.open_share = status.open_share;
+  stats.undecided_share = status.undecided_share;
+  stats.confidence_mean = merged.confidence_mean;
+  stats.confidence_below_half = merged.confidence_below_half;
+  stats.planned_memory_bytes = status.worker_memory_bytes;
+  stats.threads = settings.options.threads;
+  stats.warnings = status.warnings;
+  stats.warnings.push_back("beyond --max-memory in one piece: worked in " + counted(status.tiles, "tile") +
+                           "; OUT has positions, normals and confidence, no other properties of IN");
+  return stats;
+}
+
+}  // namespace
+
+int run_tiles(const Settings& settings, Session& session) {
+  const Monitor monitor = session.monitor();
+  switch (settings.tile_step) {
+    case TileStep::kPlan:
+      say_status(session, plan_tiles(settings.tile_paths, settings.tile_folder, tile_options(settings), monitor));
+      break;
+    case TileStep::kRun:
+      say_status(session, g3r::run_tiles(settings.tile_folder, worker_of(settings), monitor));
+      break;
+    case TileStep::kStatus:
+      std::fputs(status_text(tiles_status(settings.tile_folder)).c_str(), stdout);
+      break;
+    case TileStep::kMerge:
+      (void)merge_tiles(settings.tile_folder, settings.output, monitor);
+      session.console().clear_bar();
+      session.console().say("wrote " + escape_text(settings.output));
+      break;
+  }
+  return kOk;
+}
+
+std::optional<int> orient_in_tiles(const Settings& settings, Session& session) {
+  if (settings.options.max_memory == 0 || !can_be_tiled(settings)) return std::nullopt;
+  if (!needs_tiles({settings.input}, settings.options.max_memory)) return std::nullopt;
+  const std::string folder = settings.output + kFolderSuffix;
+  session.console().say("more than --max-memory in one piece: tiles, in " + escape_text(folder) +
+                        "; where this ends early, the same command goes on");
+  const Monitor monitor = session.monitor();
+  (void)plan_tiles({settings.input}, folder, tile_options(settings), monitor);
+  const TileStatus status = g3r::run_tiles(folder, worker_of(settings), monitor);
+  const MergedTiles merged = merge_tiles(folder, settings.output, monitor);
+  std::error_code ignored;  // a folder that cannot be removed does no harm
+  std::filesystem::remove_all(folder, ignored);
+  return finish(settings, session, stats_of(status, merged, settings), nullptr);
+}
+
+}  // namespace g3r::cli

@@ -1,0 +1,29 @@
+// The positions in a file, some at a time, in the order of the file.
+#pragma once
+
+#include <g3r/points.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace g3r::io {
+
+class PointStream {
+ public:
+  virtual ~PointStream() = default;
+  /// Replaces `points` with the next ones, at most `most` (> 0); none at the end. Throws IoError.
+  virtual void next(std::size_t most, std::vector<Vec3>& points) = 0;
+  /// How many have not been handed out yet.
+  [[nodiscard]] virtual std::uint64_t left() const = 0;
+  /// Precision of the coordinates in the file.
+  [[nodiscard]] virtual Scalar scalar() const = 0;
+};
+
+/// Opens a file of any format that read_cloud() reads. LAS and binary little-endian PLY (points first, in records of one size) are read
+/// piece by piece; of others, LAZ too, the whole file is in memory until the stream is gone. Throws like read_cloud().
+[[nodiscard]] std::unique_ptr<PointStream> open_points(const std::string& path);
+
+}  // namespace g3r::io

@@ -1,0 +1,128 @@
+#include "tiles/cells.h"
+
+#include "mesh/disjoint_sets.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace g3r::tiles {
+namespace {
+
+// Points in a cell, on average, at least: 8 to 16 spacings across on a surface. Larger cells make halos wider than they need be.
+constexpr std::uint64_t kCellPoints = 64;
+// Width of a halo in cells: 16 to 32 spacings. With 1 the directions beside a border err by a sixth more than in core, with 2 by a fortieth
+// (docs/math.md).
+constexpr std::int64_t kHaloCells = 2;
+
+std::uint64_t spread(std::uint64_t v) {
+  v &= 0x1fffff;
+  v = (v | v << 32) & 0x1f00000000ffffULL;
+  v = (v | v << 16) & 0x1f0000ff0000ffULL;
+  v = (v | v << 8) & 0x100f00f00f00f00fULL;
+  v = (v | v << 4) & 0x10c30c30c30c30c3ULL;
+  return (v | v << 2) & 0x1249249249249249ULL;
+}
+
+std::int64_t gather(std::uint64_t v) {
+  v &= 0x1249249249249249ULL;
+  v = (v | v >> 2) & 0x10c30c30c30c30c3ULL;
+  v = (v | v >> 4) & 0x100f00f00f00f00fULL;
+  v = (v | v >> 8) & 0x1f0000ff0000ffULL;
+  v = (v | v >> 16) & 0x1f00000000ffffULL;
+  return static_cast<std::int64_t>((v | v >> 32) & 0x1fffff);
+}
+
+// Calls visit(code) for the cells of `level` at most `reach` away from one, itself included.
+template <class Visit>
+void for_neighbours(std::uint64_t code, int level, std::int64_t reach, const Visit& visit) {
+  const std::int64_t side = std::int64_t{1} << level;
+  const std::array<std::int64_t, 3> at{gather(code >> 2), gather(code >> 1), gather(code)};
+  std::array<std::int64_t, 3> low{};
+  std::array<std::int64_t, 3> high{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    low[a] = std::max<std::int64_t>(0, at[a] - reach);
+    high[a] = std::min(side - 1, at[a] + reach);
+  }
+  for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+    for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+      for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+        visit(spread(static_cast<std::uint64_t>(x)) << 2 | spread(static_cast<std::uint64_t>(y)) << 1 |
+              spread(static_cast<std::uint64_t>(z)));
+      }
+    }
+  }
+}
+
+void sort_unique(std::vector<std::uint64_t>& codes) {
+  std::sort(codes.begin(), codes.end());
+  codes.erase(std::unique(codes.begin(), codes.end()), codes.end());
+}
+
+// Cells of the level `up` above that are near the tile's, ascending.
+std::vector<std::uint64_t> near_cells(const Cells& cells, std::size_t first, std::size_t last, int up) {
+  std::vector<std::uint64_t> own;
+  for (std::size_t c = first; c < last; ++c) {
+    const std::uint64_t code = cells.cells[c].code >> (3 * up);
+    if (own.empty() || own.back() != code) own.push_back(code);
+  }
+  std::vector<std::uint64_t> near;
+  for (const std::uint64_t code : own) {
+    for_neighbours(code, cells.level - up, kHaloCells, [&](std::uint64_t other) { near.push_back(other); });
+    if (near.size() > (std::size_t{1} << 20)) sort_unique(near);
+  }
+  sort_unique(near);
+  return near;
+}
+
+}  // namespace
+
+void LevelChoice::add(std::uint64_t code) {
+  // Codes differ at every level from that of their first different bit on.
+  int from = 0;
+  if (points_ > 0) from = code == last_ ? kGridBits + 1 : (std::countl_zero(code ^ last_) - 1) / 3 + 1;  // the top bit of a code is unused
+  for (int level = from; level <= kGridBits; ++level) ++occupied_[static_cast<std::size_t>(level)];
+  last_ = code;
+  ++points_;
+}
+
+int LevelChoice::level() const {
+  int level = 0;
+  while (level < kGridBits && occupied_[static_cast<std::size_t>(level) + 1] * kCellPoints <= points_) ++level;
+  return level;
+}
+
+std::vector<std::uint8_t> rings_around(const Cells& cells, std::size_t first, std::size_t last, int outermost) {
+  std::vector<std::uint8_t> rings(cells.cells.size(), static_cast<std::uint8_t>(outermost));
+  for (int ring = std::min(outermost, cells.level + 1) - 1; ring >= 0; --ring) {
+    const std::vector<std::uint64_t> near = near_cells(cells, first, last, ring);
+    auto at = near.begin();
+    for (std::size_t c = 0; c < cells.cells.size(); ++c) {  // both ascend
+      const std::uint64_t code = cells.cells[c].code >> (3 * ring);
+      while (at != near.end() && *at < code) ++at;
+      if (at != near.end() && *at == code) rings[c] = static_cast<std::uint8_t>(ring);
+    }
+  }
+  return rings;
+}
+
+std::vector<std::uint32_t> parts_of_ring(const Cells& cells, const std::vector<std::uint8_t>& rings) {
+  std::vector<std::uint64_t> codes;
+  for (std::size_t c = 0; c < rings.size(); ++c) {
+    if (rings[c] == 0) codes.push_back(cells.cells[c].code);
+  }
+  DisjointSets sets(codes.size());
+  for (std::size_t i = 0; i < codes.size(); ++i) {
+    for_neighbours(codes[i], cells.level, 1, [&](std::uint64_t other) {
+      const auto found = std::lower_bound(codes.begin(), codes.end(), other);
+      if (found != codes.end() && *found == other) sets.join(i, static_cast<std::size_t>(found - codes.begin()));
+    });
+  }
+  std::vector<std::uint32_t> parts(rings.size(), kNoPart);
+  std::size_t i = 0;
+  for (std::size_t c = 0; c < rings.size(); ++c) {
+    if (rings[c] == 0) parts[c] = static_cast<std::uint32_t>(sets.find(i++));
+  }
+  return parts;
+}
+
+}  // namespace g3r::tiles

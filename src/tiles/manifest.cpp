@@ -1,0 +1,210 @@
+#include "tiles/manifest.h"
+
+#include "io/output_file.h"
+#include "io/source.h"
+#include "tiles/records.h"
+
+#include <g3r/io.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <system_error>
+
+namespace g3r::tiles {
+namespace {
+
+constexpr const char* kSchema = "g3r.tiles";
+constexpr int kVersion = 1;
+constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 48U;  // sizes of files are numbers below; the manifest may be damaged
+
+using nlohmann::json;
+
+std::uint64_t size_of_file(const std::string& path) {
+  std::error_code error;
+  const std::uint64_t size = std::filesystem::file_size(path, error);
+  return error ? 0 : size;
+}
+
+[[noreturn]] void fail(const std::string& folder, const std::string& what) {
+  throw InvalidInput(escape_text(manifest_path(folder)) + ": " + what + "; make the plan anew in another folder");
+}
+
+Manifest parsed(const json& from) {
+  Manifest m;
+  from.at("asked").get_to(m.asked);
+  for (const json& input : from.at("inputs")) m.inputs.push_back({input.at("path"), input.at("bytes"), input.at("points")});
+  from.at("points").get_to(m.points);
+  from.at("non_finite").get_to(m.non_finite);
+  from.at("single_precision").get_to(m.single_precision);
+  from.at("centre").get_to(m.frame.centre);
+  from.at("scale").get_to(m.frame.scale);
+  from.at("level").get_to(m.level);
+  from.at("stride").get_to(m.stride);
+  from.at("coarse_points").get_to(m.coarse_points);
+  for (const json& tile : from.at("tiles")) m.tiles.push_back({tile.at(0), tile.at(1), tile.at(2), tile.at(3)});
+  from.at("worker_memory_bytes").get_to(m.worker_memory);
+  from.at("disk_bytes").get_to(m.disk);
+  from.at("converged").get_to(m.converged);
+  from.at("consistent").get_to(m.consistent);
+  from.at("open_share").get_to(m.open_share);
+  from.at("undecided_share").get_to(m.undecided_share);
+  from.at("warnings").get_to(m.warnings);
+  return m;
+}
+
+// Whether numbers can be of one plan: every place in a file that they lead to is checked by those who read it.
+bool is_sound(const Manifest& m) {
+  if (m.points > kMostPoints || m.non_finite > m.points || m.level < 0 || m.level > kGridBits || m.tiles.empty()) return false;
+  if (m.stride == 0 || (m.stride & (m.stride - 1)) != 0 || m.stride > m.sorted() || !std::isfinite(m.frame.scale)) return false;
+  if (m.coarse_points != (m.sorted() + m.stride - 1) / m.stride) return false;
+  std::uint64_t own = 0;
+  std::uint64_t cell = 0;
+  for (const Tile& tile : m.tiles) {
+    if (tile.first_cell != cell || tile.last_cell <= cell || tile.last_cell > m.sorted() || tile.own > m.sorted() - own) return false;
+    cell = tile.last_cell;
+    own += tile.own;
+  }
+  std::uint64_t points = 0;
+  for (const Input& input : m.inputs) {
+    if (input.points > m.points - points) return false;
+    points += input.points;
+  }
+  return own == m.sorted() && points == m.points;
+}
+
+void require_files(const std::string& folder, const Manifest& m) {
+  const auto require = [&](const std::string& path, std::uint64_t bytes) {
+    if (const std::uint64_t size = size_of_file(path); size != bytes) {
+      fail(folder, escape_text(path) + " has " + std::to_string(size) + " bytes instead of " + std::to_string(bytes));
+    }
+  };
+  for (const std::uint64_t stride : strides(m.stride)) {
+    require(points_path(folder, stride), (m.sorted() + stride - 1) / stride * sizeof(Record));
+  }
+  require(coarse_path(folder), m.coarse_points * sizeof(CoarseNormal));
+  require(cells_path(folder), m.tiles.back().last_cell * sizeof(Cell));
+}
+
+}  // namespace
+
+std::vector<std::uint64_t> strides(std::uint64_t stride) {
+  std::vector<std::uint64_t> all;
+  for (std::uint64_t s = 1; s < stride; s *= 4) all.push_back(s);
+  all.push_back(stride);
+  return all;
+}
+
+std::string manifest_path(const std::string& folder) { return folder + "/manifest.json"; }
+std::string cells_path(const std::string& folder) { return folder + "/cells.bin"; }
+std::string points_path(const std::string& folder, std::uint64_t stride) { return folder + "/points-" + std::to_string(stride) + ".bin"; }
+std::string coarse_path(const std::string& folder) { return folder + "/coarse.bin"; }
+std::string result_path(const std::string& folder, std::size_t tile) { return folder + "/tile-" + std::to_string(tile) + ".bin"; }
+
+bool can_be_stored(const std::string& path) {
+  try {
+    (void)json(path).dump();
+    return true;
+  } catch (const json::exception&) {
+    return false;
+  }
+}
+
+bool has_manifest(const std::string& folder) {
+  std::error_code ignored;
+  return std::filesystem::exists(manifest_path(folder), ignored);
+}
+
+void write_manifest(const std::string& folder, const Manifest& m) {
+  json out = {{"schema", kSchema},
+              {"schema_version", kVersion},
+              {"g3r_version", std::string(version())},
+              {"asked", m.asked},
+              {"points", m.points},
+              {"non_finite", m.non_finite},
+              {"single_precision", m.single_precision},
+              {"centre", m.frame.centre},
+              {"scale", m.frame.scale},
+              {"level", m.level},
+              {"stride", m.stride},
+              {"coarse_points", m.coarse_points},
+              {"worker_memory_bytes", m.worker_memory},
+              {"disk_bytes", m.disk},
+              {"converged", m.converged},
+              {"consistent", m.consistent},
+              {"open_share", m.open_share},
+              {"undecided_share", m.undecided_share},
+              {"warnings", m.warnings},
+              {"inputs", json::array()},
+              {"tiles", json::array()}};
+  for (const Input& input : m.inputs) out["inputs"].push_back({{"path", input.path}, {"bytes", input.bytes}, {"points", input.points}});
+  for (const Tile& tile : m.tiles) out["tiles"].push_back(json::array({tile.first_cell, tile.last_cell, tile.own, tile.solved}));
+  io::OutputFile file(manifest_path(folder));
+  file.write(out.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+  file.commit();
+}
+
+Manifest read_manifest(const std::string& folder) {
+  if (!has_manifest(folder)) {
+    throw InvalidInput(escape_text(folder) + ": no plan of tiles is there (manifest.json); g3r tiles plan IN... FOLDER makes one");
+  }
+  Manifest manifest;
+  try {
+    const json from = json::parse(io::read_bytes(manifest_path(folder)));
+    if (from.at("schema") != kSchema) fail(folder, "not a plan of tiles");
+    if (from.at("schema_version") != kVersion) fail(folder, "of another version of g3r, schema " + from.at("schema_version").dump());
+    manifest = parsed(from);
+  } catch (const json::exception&) {
+    fail(folder, "damaged");
+  }
+  if (!is_sound(manifest)) fail(folder, "damaged: its numbers do not go together");
+  require_files(folder, manifest);
+  return manifest;
+}
+
+Cells read_cells(const std::string& folder, const Manifest& manifest) {
+  Cells cells;
+  cells.level = manifest.level;
+  cells.points = manifest.sorted();
+  const RecordFile<Cell> file(cells_path(folder));
+  file.append(0, file.size(), cells.cells);
+  for (std::size_t c = 0; c < cells.cells.size(); ++c) {
+    const Cell& cell = cells.cells[c];
+    const bool ascends = c == 0 ? cell.begin == 0 : cell.begin > cells.cells[c - 1].begin && cell.code > cells.cells[c - 1].code;
+    if (!ascends || cell.begin >= cells.points || cell.code >> (3 * cells.level) != 0) {
+      fail(folder, escape_text(cells_path(folder)) + ": damaged at record " + std::to_string(c));
+    }
+  }
+  return cells;
+}
+
+bool is_done(const std::string& folder, const Manifest& manifest, std::size_t tile) {
+  return size_of_file(result_path(folder, tile)) == manifest.tiles[tile].own * sizeof(Result);
+}
+
+TileStatus status_of(const std::string& folder, const Manifest& manifest) {
+  TileStatus status;
+  status.points = manifest.points;
+  status.non_finite = manifest.non_finite;
+  status.tiles = manifest.tiles.size();
+  status.coarse_points = manifest.coarse_points;
+  std::uint64_t solved = manifest.coarse_points;
+  for (std::size_t t = 0; t < status.tiles; ++t) {
+    if (is_done(folder, manifest, t)) ++status.done;
+    status.largest_tile = std::max(status.largest_tile, manifest.tiles[t].solved);
+    solved += manifest.tiles[t].solved;
+  }
+  status.work = static_cast<double>(solved) / static_cast<double>(std::max<std::uint64_t>(1, manifest.sorted()));
+  status.worker_memory_bytes = manifest.worker_memory;
+  status.disk_bytes = manifest.disk;
+  status.converged = manifest.converged;
+  status.consistent = manifest.consistent;
+  status.open_share = manifest.open_share;
+  status.undecided_share = manifest.undecided_share;
+  status.warnings = manifest.warnings;
+  return status;
+}
+
+}  // namespace g3r::tiles

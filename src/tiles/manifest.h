@@ -1,0 +1,77 @@
+// The plan of a work folder: what was read, what is where, which tiles there are. manifest.json is written last, so where it is all is.
+#pragma once
+
+#include "cloud/canonical_cloud.h"
+#include "tiles/cells.h"
+
+#include <g3r/tiles.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace g3r::tiles {
+
+struct Input {
+  std::string path;
+  std::uint64_t bytes = 0;
+  std::uint64_t points = 0;
+  bool operator==(const Input&) const = default;
+};
+
+/// Consecutive cells, whose points it solves for.
+struct Tile {
+  std::uint64_t first_cell = 0;
+  std::uint64_t last_cell = 0;  ///< one past the last
+  std::uint64_t own = 0;        ///< points in them
+  std::uint64_t solved = 0;     ///< points of its solve
+  bool operator==(const Tile&) const = default;
+};
+
+struct Manifest {
+  std::string asked;  ///< options of the plan, as text
+  std::vector<Input> inputs;
+  std::uint64_t points = 0;      ///< of all inputs
+  std::uint64_t non_finite = 0;  ///< of them
+  bool single_precision = false;
+  Frame frame;
+  int level = 0;             ///< of the cells
+  std::uint64_t stride = 1;  ///< every stride-th point is in the thinned cloud
+  std::uint64_t coarse_points = 0;
+  std::vector<Tile> tiles;
+  std::uint64_t worker_memory = 0;
+  std::uint64_t disk = 0;
+  bool converged = false;  ///< of the thinned cloud, as the next three
+  bool consistent = false;
+  double open_share = 0;
+  double undecided_share = 0;
+  std::vector<std::string> warnings;
+
+  [[nodiscard]] std::uint64_t sorted() const { return points - non_finite; }
+};
+
+/// Strides of the files of points: 1, 4, 16, ..., stride. A ring takes its points from the file of its number.
+[[nodiscard]] std::vector<std::uint64_t> strides(std::uint64_t stride);
+
+/// Names of files in a folder.
+[[nodiscard]] std::string manifest_path(const std::string& folder);
+[[nodiscard]] std::string cells_path(const std::string& folder);
+[[nodiscard]] std::string points_path(const std::string& folder, std::uint64_t stride);
+[[nodiscard]] std::string coarse_path(const std::string& folder);
+[[nodiscard]] std::string result_path(const std::string& folder, std::size_t tile);
+
+/// Whether a path is UTF-8, as the manifest has to be.
+[[nodiscard]] bool can_be_stored(const std::string& path);
+[[nodiscard]] bool has_manifest(const std::string& folder);
+/// Throws IoError.
+void write_manifest(const std::string& folder, const Manifest& manifest);
+/// Throws InvalidInput: no manifest, a damaged one, one of another version, or files that do not go with it.
+[[nodiscard]] Manifest read_manifest(const std::string& folder);
+/// Throws InvalidInput where the file is not that of the manifest, IoError.
+[[nodiscard]] Cells read_cells(const std::string& folder, const Manifest& manifest);
+
+[[nodiscard]] bool is_done(const std::string& folder, const Manifest& manifest, std::size_t tile);
+[[nodiscard]] TileStatus status_of(const std::string& folder, const Manifest& manifest);
+
+}  // namespace g3r::tiles

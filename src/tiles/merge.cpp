@@ -1,0 +1,150 @@
+// The inputs once more, with the results beside them: tiles list theirs in the order of the input, so all files are read front to back.
+#include "io/output_file.h"
+#include "io/point_stream.h"
+#include "io/source.h"
+#include "stages.h"
+#include "tiles/manifest.h"
+#include "tiles/records.h"
+
+#include <g3r/io.h>
+#include <g3r/tiles.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+namespace g3r::tiles {
+namespace {
+
+constexpr std::size_t kBlock = std::size_t{1} << 18;  // points written at once
+constexpr std::uint64_t kAtOnce = 4096;               // results read from a tile at once
+
+// The results of a tile, front to back.
+class Cursor {
+ public:
+  explicit Cursor(std::string path) : path_(std::move(path)) {}
+
+  // Calls take(result) for those before `end` that have not been taken. The file is open only while it is read: there may be thousands.
+  template <class Take>
+  void take_until(std::uint64_t end, const Take& take) {
+    while (fill() && results_[used_].index < end) take(results_[used_++]);
+  }
+
+ private:
+  bool fill() {
+    if (used_ < results_.size()) return true;
+    if (ended_) return false;
+    results_.clear();
+    used_ = 0;
+    const RecordFile<Result> file(path_);
+    const std::uint64_t to = std::min(file.size(), at_ + kAtOnce);
+    file.append(at_, to, results_);
+    at_ = to;
+    ended_ = results_.empty();
+    return !ended_;
+  }
+
+  std::string path_;
+  std::uint64_t at_ = 0;
+  bool ended_ = false;
+  std::vector<Result> results_;
+  std::size_t used_ = 0;
+};
+
+std::string ply_header(const Manifest& m) {
+  const std::string type = m.single_precision ? "float" : "double";
+  std::string text = "ply\nformat binary_little_endian 1.0\ncomment g3r " + std::string(version()) + ", " + std::to_string(m.tiles.size()) +
+                     " tiles\nelement vertex " + std::to_string(m.points) + "\n";
+  for (const char* axis : {"x", "y", "z"}) text += "property " + type + " " + axis + "\n";
+  for (const char* name : {"nx", "ny", "nz", "confidence"}) text += std::string("property float ") + name + "\n";
+  return text + "end_header\n";
+}
+
+void append_point(const Vec3& p, bool single, std::string& bytes) {
+  for (const double c : p) {
+    const auto rounded = static_cast<float>(c);
+    if (single) {
+      bytes.append(reinterpret_cast<const char*>(&rounded), sizeof rounded);
+    } else {
+      bytes.append(reinterpret_cast<const char*>(&c), sizeof c);
+    }
+  }
+}
+
+void require_done(const std::string& folder, const Manifest& m) {
+  std::string missing;
+  std::size_t count = 0;
+  for (std::size_t t = 0; t < m.tiles.size(); ++t) {
+    if (is_done(folder, m, t)) continue;
+    if (++count <= 10) missing += (missing.empty() ? "" : ", ") + std::to_string(t + 1);
+  }
+  if (count == 0) return;
+  throw InvalidInput(escape_text(folder) + ": " + std::to_string(count) + " of " + std::to_string(m.tiles.size()) +
+                     " tiles are not done (" + missing + (count > 10 ? ", ..." : "") + "); g3r tiles run FOLDER does them");
+}
+
+void require_unchanged(const Input& input, bool right_count) {
+  std::error_code ignored;
+  if (std::filesystem::file_size(input.path, ignored) == input.bytes && right_count) return;
+  throw InvalidInput(escape_text(input.path) + ": not the file that the plan was made of; make the plan anew");
+}
+
+MergedTiles merge(const std::string& folder, const Manifest& m, const std::string& output, const Monitor& monitor) {
+  Stages stages(monitor);
+  stages.begin("merge");
+  std::vector<Cursor> cursors;
+  for (std::size_t t = 0; t < m.tiles.size(); ++t) cursors.emplace_back(result_path(folder, t));
+  io::OutputFile file(output, monitor.cancel);
+  file.write(ply_header(m));
+  std::vector<Vec3> points;
+  std::vector<std::array<float, 4>> results;
+  std::string bytes;
+  MergedTiles out;
+  std::uint64_t begin = 0;
+  for (const Input& input : m.inputs) {
+    const std::unique_ptr<io::PointStream> stream = io::open_points(input.path);
+    std::uint64_t read = 0;
+    for (stream->next(kBlock, points); !points.empty(); stream->next(kBlock, points)) {
+      read += points.size();
+      require_unchanged(input, read <= input.points);
+      results.assign(points.size(), {0, 0, 0, 0});
+      for (Cursor& cursor : cursors) {
+        cursor.take_until(begin + points.size(), [&](const Result& r) {
+          if (r.index >= begin) results[static_cast<std::size_t>(r.index - begin)] = {r.normal[0], r.normal[1], r.normal[2], r.confidence};
+          out.confidence_mean += r.confidence;
+          out.confidence_below_half += r.confidence < 0.5F ? 1 : 0;
+        });
+      }
+      bytes.clear();
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        append_point(points[i], m.single_precision, bytes);
+        bytes.append(reinterpret_cast<const char*>(results[i].data()), sizeof results[i]);
+      }
+      file.write(bytes);
+      begin += points.size();
+      stages.progress(static_cast<double>(begin) / static_cast<double>(m.points));
+    }
+    require_unchanged(input, read == input.points);
+  }
+  file.commit();
+  out.confidence_mean /= static_cast<double>(m.sorted());
+  out.confidence_below_half /= static_cast<double>(m.sorted());
+  return out;
+}
+
+}  // namespace
+}  // namespace g3r::tiles
+
+namespace g3r {
+
+MergedTiles merge_tiles(const std::string& folder, const std::string& output, const Monitor& monitor) {
+  if (io::extension(output) != "ply") {
+    throw InvalidInput(escape_text(output) + ": tiles are merged into a binary PLY: expected a name that ends in .ply");
+  }
+  const tiles::Manifest manifest = tiles::read_manifest(folder);
+  tiles::require_done(folder, manifest);
+  return tiles::merge(folder, manifest, output, monitor);
+}
+
+}  // namespace g3r

@@ -1,0 +1,305 @@
+// Two readings of the inputs (extent, then sort), one scan of the sorted points, one solve of the thinned cloud.
+#include "cpu/parallel.h"
+#include "io/output_file.h"
+#include "io/point_stream.h"
+#include "io/tiles.h"
+#include "stages.h"
+#include "tiles/external_sort.h"
+#include "tiles/manifest.h"
+#include "tiles/records.h"
+#include "tiles/tile_cloud.h"
+
+#include <g3r/io.h>
+#include <g3r/tiles.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <sstream>
+#include <system_error>
+#include <utility>
+
+#include <unistd.h>
+
+namespace g3r::tiles {
+namespace {
+
+constexpr std::size_t kAtOnce = std::size_t{1} << 16;  // points read at once
+constexpr std::uint64_t kFewestPoints = 8000;          // fewer are solved in core in a second, and leave no thinned cloud worth the name
+constexpr std::uint64_t kFewestCoarse = 20000;  // with half as many, fields of thin parts of the dragon no longer close, and sides go wrong
+constexpr std::uint64_t kMostCoarse = 2000000;  // every tile has them all around it
+constexpr std::uint64_t kCoarseShare = 8;       // one of so many points is in the thinned cloud, if that is enough and not too much
+constexpr std::size_t kFixed = 72u << 20;       // code, libraries, thread stacks, and 131,072 queries of a sum
+constexpr std::size_t kPerPoint = 1600;         // bytes of a solve in core (docs/design.md) and what a tile holds beside it, at their peaks
+constexpr std::size_t kFixedInCore = 34u << 20;  // of plan()
+constexpr std::size_t kPerPointInCore = 1260;    // of it, where no point is a duplicate
+constexpr double kFreeShare = 0.75;              // of the free memory, if no limit is given
+constexpr double kLargest = 1e50;                // coordinates, whose squares and cubes are still numbers
+constexpr double kSide = 2 / 1.1;                // longest side in the unit box
+constexpr std::size_t kMostTiles = 1000000;
+
+// Calls take(file, point) for all points in order, and between(share of the files) now and then.
+template <class Take, class Between>
+void for_all_points(const std::vector<std::string>& files, const Between& between, const Take& take) {
+  std::vector<Vec3> points;
+  for (std::size_t f = 0; f < files.size(); ++f) {
+    const std::unique_ptr<io::PointStream> stream = io::open_points(files[f]);
+    for (stream->next(kAtOnce, points); !points.empty(); stream->next(kAtOnce, points)) {
+      between(static_cast<double>(f) / static_cast<double>(files.size()));
+      for (const Vec3& p : points) take(f, p);
+    }
+  }
+}
+
+bool is_finite(const Vec3& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }
+
+// Absolute, so that workers may be started anywhere.
+std::vector<std::string> files_of(const std::vector<std::string>& inputs) {
+  std::vector<std::string> files;
+  for (const std::string& input : inputs) {
+    const std::vector<std::string> found = io::find_tiles(input);
+    if (found.empty()) files.push_back(input);
+    files.insert(files.end(), found.begin(), found.end());
+  }
+  if (files.empty()) throw InvalidInput("plan_tiles: no input");
+  for (std::string& file : files) {
+    if (!can_be_stored(file)) throw InvalidInput(escape_text(file) + ": tiles expect names of files in UTF-8; rename it");
+    file = std::filesystem::absolute(file).string();
+  }
+  return files;
+}
+
+std::string asked_of(const TileOptions& options) {
+  std::ostringstream text;
+  text.precision(17);
+  const auto add = [&](const char* name, const Vec3& v) { text << ' ' << name << ' ' << v[0] << ',' << v[1] << ',' << v[2]; };
+  text << "tiles " << options.tiles << " max_memory " << options.max_memory;
+  if (options.hints.up) add("up", *options.hints.up);
+  for (const Vec3& place : options.hints.sensors) add("sensor", place);
+  for (const Vec3& place : options.hints.inside) add("inside", place);
+  if (options.hints.seen_from_inside) text << " seen_from_inside";
+  if (options.hints.flip) text << " flip";
+  return text.str();
+}
+
+// First reading: counts and extent.
+Manifest survey(const std::vector<std::string>& files, const TileOptions& options, Stages& stages) {
+  stages.begin("read");
+  Manifest m;
+  m.asked = asked_of(options);
+  m.single_precision = true;
+  for (const std::string& file : files) {
+    m.inputs.push_back({file, std::filesystem::file_size(file), 0});
+    m.single_precision = m.single_precision && io::open_points(file)->scalar() == Scalar::kFloat32;
+  }
+  Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL};
+  Vec3 high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+  for_all_points(
+      files, [&](double share) { stages.progress(share); },
+      [&](std::size_t file, const Vec3& p) {
+        ++m.points;
+        ++m.inputs[file].points;
+        if (!is_finite(p)) {
+          ++m.non_finite;
+          return;
+        }
+        for (std::size_t a = 0; a < 3; ++a) {
+          low[a] = std::min(low[a], p[a]);
+          high[a] = std::max(high[a], p[a]);
+        }
+      });
+  if (m.sorted() < kFewestPoints) {
+    throw InvalidInput(std::to_string(m.sorted()) + " points are too few for tiles: expected at least " + std::to_string(kFewestPoints) +
+                       "; g3r orient takes them as they are");
+  }
+  double side = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (!(std::max(-low[a], high[a]) < kLargest)) throw InvalidInput("coordinates beyond 1e50 are no lengths that can be worked with");
+    side = std::max(side, high[a] - low[a]);
+    m.frame.centre[a] = low[a] + (high[a] - low[a]) / 2;
+  }
+  if (!(side > 1 / kLargest)) throw InvalidInput("all points are at one place");
+  m.frame.scale = kSide / side;
+  if (m.non_finite > 0) m.warnings.push_back(std::to_string(m.non_finite) + " points with a non-finite coordinate were left out");
+  return m;
+}
+
+std::uint64_t points_for(std::size_t memory) { return memory > kFixed ? (memory - kFixed) / kPerPoint : 0; }
+
+std::size_t memory_for(std::uint64_t points) { return kFixed + kPerPoint * static_cast<std::size_t>(points); }
+
+std::size_t memory_limit(const TileOptions& options) {
+  if (options.max_memory > 0) return options.max_memory;
+  const double free = static_cast<double>(::sysconf(_SC_AVPHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+  return static_cast<std::size_t>(kFreeShare * free);
+}
+
+[[noreturn]] void refuse_memory(std::size_t limit, std::uint64_t needed) {
+  throw Unavailable("tiles of this cloud need " + std::to_string(memory_for(needed) >> 20U) + " MiB, the limit is " +
+                    std::to_string(limit >> 20U) + " MiB; raise the limit, or thin the cloud");
+}
+
+// The thinned cloud has as many points as are useful and the memory allows.
+std::uint64_t choose_stride(std::uint64_t points, std::size_t limit) {
+  const std::uint64_t most = std::min(kMostCoarse, points_for(limit) / 2);
+  const std::uint64_t fewest = std::min(kFewestCoarse, points / 4);
+  if (most < fewest) refuse_memory(limit, 2 * fewest);
+  const std::uint64_t wanted = std::min(most, std::max(fewest, points / kCoarseShare));
+  std::uint64_t stride = 2;
+  while (points / (2 * stride) >= wanted || points / stride > most) stride *= 2;
+  return stride;
+}
+
+// Second reading: the sorted points, the thinned files, the cells. The level of the cells is known when all points are sorted.
+Cells sort_points(const std::vector<std::string>& files, const std::string& folder, std::size_t limit, Manifest& m, Stages& stages) {
+  stages.begin("sort");
+  ExternalSort sort(folder, m.frame, limit / 4, stages.cancel());
+  std::uint64_t index = 0;
+  for_all_points(
+      files, [&](double share) { stages.progress(share / 2); },
+      [&](std::size_t, const Vec3& p) {
+        if (is_finite(p)) sort.add({p, index});
+        ++index;
+      });
+  if (index != m.points) throw InvalidInput("the inputs have changed while they were read: " + std::to_string(index) + " points now");
+  std::vector<std::unique_ptr<io::OutputFile>> outputs;
+  const std::vector<std::uint64_t> all_strides = strides(m.stride);
+  for (const std::uint64_t stride : all_strides)
+    outputs.push_back(std::make_unique<io::OutputFile>(points_path(folder, stride), stages.cancel()));
+  LevelChoice choice;
+  std::uint64_t place = 0;
+  sort.finish([&](std::uint64_t code, const Record& record) {
+    choice.add(code);
+    for (std::size_t s = 0; s < outputs.size(); ++s) {
+      if (place % all_strides[s] == 0) outputs[s]->write(&record, sizeof record);
+    }
+    if (place++ % kAtOnce == 0) stages.progress(0.5 + 0.4 * static_cast<double>(place) / static_cast<double>(m.points));
+  });
+  for (const std::unique_ptr<io::OutputFile>& output : outputs) output->commit();
+  m.level = choice.level();
+  return find_cells(folder, m, stages);
+}
+
+// Tiles of nearly equal numbers of points, cut between cells.
+std::vector<Tile> cut(const Cells& cells, std::size_t count) {
+  std::vector<Tile> tiles;
+  std::size_t first = 0;
+  for (std::size_t t = 1; t <= count && first < cells.cells.size(); ++t) {
+    const auto wanted = static_cast<std::uint64_t>(static_cast<double>(cells.points) * static_cast<double>(t) / static_cast<double>(count));
+    std::size_t last = first + 1;
+    while (last < cells.cells.size() && (t == count || cells.cells[last].begin < wanted)) ++last;
+    tiles.push_back({first, last, cells.end(last - 1) - cells.cells[first].begin, 0});
+    first = last;
+  }
+  tiles.back().last_cell = cells.cells.size();
+  tiles.back().own = cells.points - cells.cells[static_cast<std::size_t>(tiles.back().first_cell)].begin;
+  return tiles;
+}
+
+std::uint64_t count_solved(const Cells& cells, std::uint64_t stride, std::vector<Tile>& tiles) {
+  std::uint64_t largest = 0;
+  parallel::for_each(tiles.size(), [&](std::size_t t) { tiles[t].solved = count_tile_cloud(cells, stride, tiles[t]); });
+  for (const Tile& tile : tiles) largest = std::max(largest, tile.solved);
+  return largest;
+}
+
+// As few tiles as fit the memory, unless their number is given.
+void choose_tiles(const Cells& cells, const TileOptions& options, std::size_t limit, Manifest& m) {
+  const std::uint64_t most = points_for(limit);
+  const std::uint64_t free = most > m.coarse_points ? most - m.coarse_points : 1;
+  std::size_t count =
+      options.tiles > 0 ? options.tiles : static_cast<std::size_t>(std::min<std::uint64_t>(kMostTiles, m.sorted() / free + 1));
+  for (std::uint64_t before = 0;; count += count / 4 + 1) {
+    m.tiles = cut(cells, std::min(count, cells.cells.size()));
+    const std::uint64_t largest = count_solved(cells, m.stride, m.tiles);
+    m.worker_memory = memory_for(std::max(largest, m.coarse_points));
+    if (largest <= most) return;
+    const bool stuck = count > 64 && largest == before;  // no smaller for having fewer points of its own: all is halo
+    if (options.tiles > 0 || count >= cells.cells.size() || stuck) refuse_memory(limit, largest);
+    before = largest;
+  }
+}
+
+// The sides: every stride-th point, in core.
+void solve_coarse(const std::string& folder, const TileOptions& options, Manifest& m, const Monitor& monitor) {
+  std::vector<Record> records;
+  const RecordFile<Record> file(points_path(folder, m.stride));
+  file.append(0, file.size(), records);
+  std::vector<Vec3> points(records.size());
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] = records[i].point;
+  Options solve;
+  solve.hints = options.hints;
+  solve.threads = options.threads;
+  solve.device = options.device;
+  const Orientation coarse = orient(points, solve, named(monitor, "coarse"));
+  io::OutputFile out(coarse_path(folder), monitor.cancel);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3& n = coarse.normals[i];
+    const CoarseNormal normal{{static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])}, coarse.confidence[i]};
+    out.write(&normal, sizeof normal);
+  }
+  out.commit();
+  m.converged = coarse.stats.converged;
+  m.consistent = coarse.stats.consistent;
+  m.open_share = coarse.stats.open_share;
+  m.undecided_share = coarse.stats.undecided_share;
+  for (const std::string& warning : coarse.stats.warnings) m.warnings.push_back("thinned cloud: " + warning);
+}
+
+void make_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw IoError(IoError::Kind::kCannotCreate, "cannot create " + escape_text(folder) + ": " + error.message());
+}
+
+TileStatus make_plan(const std::vector<std::string>& files, const std::string& folder, const TileOptions& options, const Monitor& monitor) {
+  Stages stages(monitor);
+  const std::size_t limit = memory_limit(options);
+  Manifest m = survey(files, options, stages);
+  m.stride = choose_stride(m.sorted(), limit);
+  m.coarse_points = (m.sorted() + m.stride - 1) / m.stride;
+  make_folder(folder);
+  {
+    const Cells cells = sort_points(files, folder, limit, m, stages);
+    choose_tiles(cells, options, limit, m);
+  }
+  std::uint64_t stored = 0;
+  for (const std::uint64_t stride : strides(m.stride)) stored += m.sorted() / stride * sizeof(Record);
+  m.disk = stored + m.sorted() * std::max(sizeof(Record), sizeof(Result));  // runs before the results
+  solve_coarse(folder, options, m, monitor);
+  write_manifest(folder, m);
+  return status_of(folder, m);
+}
+
+}  // namespace
+}  // namespace g3r::tiles
+
+namespace g3r {
+
+TileStatus plan_tiles(const std::vector<std::string>& inputs, const std::string& folder, const TileOptions& options,
+                      const Monitor& monitor) {
+  if (!options.hints.sensor_of_point.empty()) throw InvalidInput("plan_tiles: sensors of single points are not supported with tiles");
+  const std::vector<std::string> files = tiles::files_of(inputs);
+  if (tiles::has_manifest(folder)) {
+    const tiles::Manifest there = tiles::read_manifest(folder);
+    bool same = there.asked == tiles::asked_of(options) && there.inputs.size() == files.size();
+    for (std::size_t f = 0; same && f < files.size(); ++f) {
+      std::error_code ignored;
+      same = there.inputs[f].path == files[f] && there.inputs[f].bytes == std::filesystem::file_size(files[f], ignored);
+    }
+    if (!same) throw InvalidInput(escape_text(folder) + ": holds the plan of other files or options; take another folder, or remove it");
+    return tiles::status_of(folder, there);
+  }
+  return parallel::with_threads(options.threads, [&] { return tiles::make_plan(files, folder, options, monitor); });
+}
+
+bool needs_tiles(const std::vector<std::string>& inputs, std::size_t max_memory) {
+  std::uint64_t points = 0;
+  for (const std::string& file : tiles::files_of(inputs)) points += io::open_points(file)->left();
+  return max_memory > 0 && points >= tiles::kFewestPoints && tiles::kFixedInCore + tiles::kPerPointInCore * points > max_memory;
+}
+
+TileStatus tiles_status(const std::string& folder) { return tiles::status_of(folder, tiles::read_manifest(folder)); }
+
+}  // namespace g3r

@@ -1,0 +1,83 @@
+// Each tile: a solve in core of its cloud, turned part by part to the sides of the thinned cloud.
+#include "cpu/parallel.h"
+#include "io/output_file.h"
+#include "tiles/manifest.h"
+#include "tiles/records.h"
+#include "tiles/tile_cloud.h"
+
+#include <g3r/tiles.h>
+
+#include <algorithm>
+#include <map>
+
+namespace g3r::tiles {
+namespace {
+
+double dot(const Vec3& a, const std::array<float, 3>& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+// Signs of the parts: that of the sum over the points that are in the thinned cloud too, of the cosine between both normals times the
+// confidence of the coarse side. Of what lies beyond ring 0, and of parts without such points, that of the sum over all.
+std::map<std::uint32_t, double> signs_of_parts(const TileCloud& cloud, const std::vector<Vec3>& normals, const std::string& folder) {
+  std::vector<CoarseNormal> coarse;
+  const RecordFile<CoarseNormal> file(coarse_path(folder));
+  file.append(0, file.size(), coarse);
+  std::map<std::uint32_t, double> votes;
+  double all = 0;
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    if (cloud.coarse[i] == kNotCoarse) continue;
+    const CoarseNormal& there = coarse[static_cast<std::size_t>(cloud.coarse[i])];
+    const double vote = there.confidence * dot(normals[i], there.normal);
+    votes[cloud.part[i]] += vote;
+    all += vote;
+  }
+  votes[kNoPart] = all;
+  for (auto& [part, vote] : votes) vote = (vote == 0 ? all : vote) < 0 ? -1 : 1;
+  return votes;
+}
+
+void solve_tile(const std::string& folder, const Manifest& m, const Cells& cells, std::size_t t, const TileWorker& worker,
+                const Monitor& monitor) {
+  const TileCloud cloud = read_tile_cloud(folder, m, cells, m.tiles[t]);
+  Orientation solved;
+  {
+    std::vector<Vec3> points(cloud.records.size());
+    for (std::size_t i = 0; i < points.size(); ++i) points[i] = cloud.records[i].point;
+    Options options;
+    options.threads = worker.threads;
+    options.device = worker.device;
+    solved = orient(points, options, named(monitor, "tile " + std::to_string(t + 1) + " of " + std::to_string(m.tiles.size())));
+  }
+  std::map<std::uint32_t, double> signs = signs_of_parts(cloud, solved.normals, folder);
+  std::vector<Result> results;
+  for (std::size_t i = 0; i < cloud.records.size(); ++i) {
+    if (cloud.own[i] == 0) continue;
+    const auto sign = signs.find(cloud.part[i]);
+    const double turn = sign != signs.end() ? sign->second : signs[kNoPart];
+    Result result{cloud.records[i].index, {}, solved.confidence[i]};
+    for (std::size_t a = 0; a < 3; ++a) result.normal[a] = static_cast<float>(turn * solved.normals[i][a]);
+    results.push_back(result);
+  }
+  std::sort(results.begin(), results.end(), [](const Result& a, const Result& b) { return a.index < b.index; });
+  io::OutputFile out(result_path(folder, t), monitor.cancel);
+  out.write(results.data(), results.size() * sizeof(Result));
+  out.commit();
+}
+
+}  // namespace
+}  // namespace g3r::tiles
+
+namespace g3r {
+
+TileStatus run_tiles(const std::string& folder, const TileWorker& worker, const Monitor& monitor) {
+  if (worker.workers == 0 || worker.number == 0 || worker.number > worker.workers) {
+    throw InvalidInput("run_tiles: expected a worker of 1.." + std::to_string(worker.workers) + ", found " + std::to_string(worker.number));
+  }
+  const tiles::Manifest manifest = tiles::read_manifest(folder);
+  const tiles::Cells cells = tiles::read_cells(folder, manifest);
+  for (std::size_t t = worker.number - 1; t < manifest.tiles.size(); t += worker.workers) {
+    if (!tiles::is_done(folder, manifest, t)) tiles::solve_tile(folder, manifest, cells, t, worker, monitor);
+  }
+  return tiles::status_of(folder, manifest);
+}
+
+}  // namespace g3r

@@ -1,0 +1,288 @@
+// Clouds in tiles: streams, the external sort, rings of cells, and that tiles give what one solve gives, whoever does them.
+#include "io/point_stream.h"
+#include "shapes.h"
+#include "tiles/external_sort.h"
+#include "tiles/manifest.h"
+#include "tiles/tile_cloud.h"
+
+#include <g3r/io.h>
+#include <g3r/tiles.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+namespace g3r {
+namespace {
+
+constexpr std::size_t kPoints = 8200;  // of the torus that is solved in tiles
+constexpr std::size_t kTiles = 3;
+constexpr double kWorse = 1.02;     // of the error of the normals in core
+constexpr double kRounding = 1e-7;  // of normals in float
+
+class Folder {
+ public:
+  Folder() {
+    std::string name = (std::filesystem::temp_directory_path() / "g3r-tiles-XXXXXX").string();
+    path_ = ::mkdtemp(name.data());
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  [[nodiscard]] std::string file(const std::string& name) const { return path_ + "/" + name; }
+
+ private:
+  std::string path_;
+};
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void write_bytes(const std::string& path, const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; }
+
+void write_points(const std::string& path, const std::vector<Vec3>& points) {
+  Cloud cloud;
+  cloud.positions = points;
+  write_cloud(path, cloud, nullptr, nullptr);
+}
+
+// Mean of (1 - n.n') / 2.
+double angle_error(const std::vector<Vec3>& normals, const std::vector<Vec3>& truth) {
+  double sum = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    sum += (1 - normals[i][0] * truth[i][0] - normals[i][1] * truth[i][1] - normals[i][2] * truth[i][2]) / 2;
+  }
+  return sum / static_cast<double>(truth.size());
+}
+
+TEST(PointStream, HandsOutThePositionsOfTheFile) {
+  const Folder folder;
+  const std::vector<Vec3> points = shapes::torus(1000).points;
+  for (const char* name : {"a.ply", "a.las", "a.xyz", "a.npy"}) {
+    write_points(folder.file(name), points);
+    const Cloud whole = read_cloud(folder.file(name));
+    const auto stream = io::open_points(folder.file(name));
+    EXPECT_EQ(stream->left(), points.size()) << name;
+    EXPECT_EQ(stream->scalar(), whole.scalar) << name;
+    std::vector<Vec3> all;
+    std::vector<Vec3> some;
+    for (stream->next(77, some); !some.empty(); stream->next(77, some)) {
+      EXPECT_LE(some.size(), 77U);
+      all.insert(all.end(), some.begin(), some.end());
+    }
+    EXPECT_EQ(all, whole.positions) << name;
+    EXPECT_EQ(stream->left(), 0U) << name;
+  }
+}
+
+TEST(PointStream, RefusesWhatReadCloudRefuses) {
+  const Folder folder;
+  write_points(folder.file("a.ply"), shapes::torus(1000).points);
+  write_points(folder.file("a.las"), shapes::torus(1000).points);
+  for (const char* name : {"a.ply", "a.las"}) {
+    const std::string bytes = bytes_of(folder.file(name));
+    for (const std::size_t left : {std::size_t{3}, std::size_t{60}, bytes.size() - 5}) {
+      write_bytes(folder.file(name), bytes.substr(0, left));
+      EXPECT_THROW((void)io::open_points(folder.file(name)), InvalidInput) << name << " " << left;
+    }
+  }
+  EXPECT_THROW((void)io::open_points(folder.file("none.ply")), IoError);
+}
+
+TEST(ExternalSort, RunsGiveTheOrderOfOneSort) {
+  shapes::Random random(5);
+  std::vector<tiles::Record> records;
+  for (std::uint64_t i = 0; i < 150000; ++i) records.push_back({{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}, i});
+  for (std::size_t i = 0; i < 1000; ++i) records[i].point = records[100000 + i].point;  // duplicates, in different runs
+  const auto sorted = [&](std::size_t memory) {
+    const Folder folder;
+    tiles::ExternalSort sort(folder.file(""), {}, memory, nullptr);
+    for (const tiles::Record& record : records) sort.add(record);
+    std::vector<std::uint64_t> order;
+    std::uint64_t last = 0;
+    sort.finish([&](std::uint64_t code, const tiles::Record& record) {
+      EXPECT_LE(last, code);
+      last = code;
+      order.push_back(record.index);
+    });
+    return order;
+  };
+  const std::vector<std::uint64_t> order = sorted(std::size_t{1} << 30);
+  EXPECT_EQ(order.size(), records.size());
+  EXPECT_EQ(sorted(1), order);
+}
+
+// Occupied cells of a sphere at a level, as if each held one point.
+tiles::Cells cells_of_sphere(int level) {
+  std::vector<std::uint64_t> codes;
+  for (const Vec3& p : shapes::sphere(20000).points) codes.push_back(morton_code(p) >> (3 * (tiles::kGridBits - level)));
+  std::sort(codes.begin(), codes.end());
+  codes.erase(std::unique(codes.begin(), codes.end()), codes.end());
+  tiles::Cells cells;
+  cells.level = level;
+  cells.points = codes.size();
+  for (const std::uint64_t code : codes) cells.cells.push_back({code, cells.cells.size()});
+  return cells;
+}
+
+std::array<int, 3> place(std::uint64_t code) {
+  std::array<int, 3> at{0, 0, 0};
+  for (unsigned bit = 0; bit < 63; ++bit) at[2 - bit % 3] |= static_cast<int>(code >> bit & 1U) << (bit / 3);
+  return at;
+}
+
+int distance(const std::array<int, 3>& a, const std::array<int, 3>& b, int up) {
+  int most = 0;
+  for (std::size_t k = 0; k < 3; ++k) most = std::max(most, std::abs((a[k] >> up) - (b[k] >> up)));
+  return most;
+}
+
+TEST(Cells, RingsAreCellsWithinTwoOfTheTileLevelByLevel) {
+  const tiles::Cells cells = cells_of_sphere(5);
+  const std::size_t first = 100;
+  const std::size_t last = 160;
+  const std::vector<std::uint8_t> rings = tiles::rings_around(cells, first, last, 3);
+  for (std::size_t c = 0; c < cells.cells.size(); ++c) {
+    int expected = 0;
+    for (; expected < 3; ++expected) {
+      const auto near = [&](const tiles::Cell& own) { return distance(place(cells.cells[c].code), place(own.code), expected) <= 2; };
+      if (std::any_of(cells.cells.begin() + first, cells.cells.begin() + last, near)) break;
+    }
+    ASSERT_EQ(rings[c], expected) << c;
+  }
+  EXPECT_EQ(std::set<std::uint8_t>(rings.begin(), rings.end()).size(), 4U);
+}
+
+TEST(Cells, PartsThatDoNotTouchAreApart) {
+  tiles::Cells cells;
+  cells.level = 3;
+  cells.cells = {{0, 0}, {7, 1}, {448, 2}, {511, 3}};  // two that touch at a corner; two far off, and from each other
+  cells.points = 4;
+  const std::vector<std::uint32_t> parts = tiles::parts_of_ring(cells, {0, 0, 0, 1});
+  EXPECT_EQ(parts[0], parts[1]);
+  EXPECT_NE(parts[0], parts[2]);
+  EXPECT_EQ(parts[3], tiles::kNoPart);
+}
+
+class Tiles : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new Folder;
+    surface_ = new shapes::Surface(shapes::torus(kPoints, 0.6, 0.25, 2));
+    write_points(folder_->file("in.ply"), surface_->points);
+    TileOptions options;
+    options.tiles = kTiles;
+    (void)plan_tiles({folder_->file("in.ply")}, folder_->file("work"), options);
+    for (const std::size_t number : {2U, 1U}) (void)run_tiles(folder_->file("work"), {number, 2, 1, "cpu"});
+    (void)merge_tiles(folder_->file("work"), folder_->file("out.ply"));
+  }
+  static void TearDownTestSuite() {
+    delete folder_;
+    delete surface_;
+  }
+  // The work folder once more, to be spoilt.
+  static std::string copy_of_work(const std::string& name) {
+    std::filesystem::copy(folder_->file("work"), folder_->file(name));
+    return folder_->file(name);
+  }
+
+  static Folder* folder_;
+  static shapes::Surface* surface_;
+};
+Folder* Tiles::folder_ = nullptr;
+shapes::Surface* Tiles::surface_ = nullptr;
+
+TEST_F(Tiles, GiveTheNormalsOfOneSolve) {
+  const Cloud out = read_cloud(folder_->file("out.ply"));
+  ASSERT_EQ(out.positions, surface_->points);
+  const Orientation core = orient(surface_->points);
+  EXPECT_LE(angle_error(out.normals, surface_->normals), kWorse * angle_error(core.normals, surface_->normals) + kRounding);
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    double cosine = 0;
+    double square = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      cosine += out.normals[i][a] * core.normals[i][a];
+      square += out.normals[i][a] * out.normals[i][a];
+    }
+    ASSERT_GT(cosine, 0) << i;
+    ASSERT_NEAR(square, 1, kRounding * 10) << i;
+  }
+  EXPECT_EQ(out.confidence.size(), kPoints);
+}
+
+TEST_F(Tiles, HaveTheSameBytesWhoeverDoesThemAndAfterARestart) {
+  const std::string work = copy_of_work("again");
+  const std::string half = bytes_of(tiles::result_path(work, 2)).substr(0, 1000);  // of a file system that loses what it has renamed
+  write_bytes(tiles::result_path(work, 2), half);
+  EXPECT_EQ(tiles_status(work).done, kTiles - 1);
+  EXPECT_THROW((void)merge_tiles(work, folder_->file("early.ply")), InvalidInput);
+  EXPECT_EQ(run_tiles(work).done, kTiles);
+  (void)merge_tiles(work, folder_->file("again.ply"));
+  EXPECT_EQ(bytes_of(folder_->file("again.ply")), bytes_of(folder_->file("out.ply")));
+}
+
+TEST_F(Tiles, APlanIsMadeOnceAndOnlyForItsInputs) {
+  const std::string work = folder_->file("work");
+  const std::string before = bytes_of(tiles::manifest_path(work));
+  TileOptions options;
+  options.tiles = kTiles;
+  EXPECT_EQ(plan_tiles({folder_->file("in.ply")}, work, options).done, kTiles);
+  EXPECT_EQ(bytes_of(tiles::manifest_path(work)), before);
+  options.hints.flip = true;
+  EXPECT_THROW((void)plan_tiles({folder_->file("in.ply")}, work, options), InvalidInput);
+  write_points(folder_->file("other.ply"), shapes::sphere(kPoints).points);
+  EXPECT_THROW((void)plan_tiles({folder_->file("other.ply")}, work, {}), InvalidInput);
+}
+
+TEST_F(Tiles, DamagedFoldersAreRefused) {
+  const std::string work = copy_of_work("damaged");
+  const std::string manifest = bytes_of(tiles::manifest_path(work));
+  const auto refused = [&](const std::string& text) {
+    write_bytes(tiles::manifest_path(work), text);
+    EXPECT_THROW((void)run_tiles(work), InvalidInput) << text.substr(0, 200);
+  };
+  for (std::size_t length = 0; length < manifest.size() - 3; length += 97) refused(manifest.substr(0, length));
+  for (const char* field : {"\"points\": 8200", "\"stride\": ", "\"level\": ", "\"coarse_points\": ", "\"schema_version\": "}) {
+    std::string text = manifest;
+    text.insert(text.rfind(field) + std::string(field).size(), 1, '7');
+    refused(text);
+  }
+  std::string vast = manifest;  // 32 times so many bytes is 0 in 64 bits
+  vast.replace(vast.rfind("\"points\": 8200") + 10, 4, "576460752303423488");
+  refused(vast);
+  write_bytes(tiles::manifest_path(work), manifest);
+  std::string cells = bytes_of(tiles::cells_path(work));
+  std::swap(cells[0], cells[16]);
+  std::swap(cells[1], cells[17]);
+  write_bytes(tiles::cells_path(work), cells);
+  EXPECT_THROW((void)run_tiles(work), InvalidInput);
+  std::filesystem::remove(tiles::points_path(work, 1));
+  EXPECT_THROW((void)tiles_status(work), InvalidInput);
+}
+
+TEST(TilesPlan, TellsWhatItCannotDo) {
+  const Folder folder;
+  write_points(folder.file("few.ply"), shapes::sphere(500).points);
+  EXPECT_THROW((void)plan_tiles({folder.file("few.ply")}, folder.file("work")), InvalidInput);
+  write_points(folder.file("in.ply"), shapes::sphere(kPoints).points);
+  TileOptions options;
+  options.max_memory = 1000;
+  EXPECT_THROW((void)plan_tiles({folder.file("in.ply")}, folder.file("work"), options), Unavailable);
+  EXPECT_THROW((void)run_tiles(folder.file("work")), InvalidInput);
+  EXPECT_THROW((void)run_tiles(folder.file("work"), {3, 2}), InvalidInput);
+  EXPECT_FALSE(needs_tiles({folder.file("few.ply")}, 1000));
+  EXPECT_TRUE(needs_tiles({folder.file("in.ply")}, std::size_t{40} << 20U));
+  EXPECT_FALSE(needs_tiles({folder.file("in.ply")}, std::size_t{80} << 20U));
+  EXPECT_FALSE(needs_tiles({folder.file("in.ply")}, 0));
+}
+
+}  // namespace
+}  // namespace g3r

@@ -1,0 +1,93 @@
+"""Truths about g3r tiles, and g3r orient beyond --max-memory: killed at any time it goes on, with the same bytes in the end.
+
+Run by ctest with G3R_PROGRAM set to the program. For measuring, G3R_TILE_KILLS raises the number of kills.
+"""
+
+import os
+import random
+import signal
+import sys
+import threading
+import unittest
+
+from cli_support import *
+
+COUNT = 8200  # few more than tiles take
+LARGE_COUNT = 100_000  # of a cloud that fits a limit in tiles and does not in core
+KILLS = int(os.environ.get("G3R_TILE_KILLS", "2"))
+
+
+class Tiles(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        write_points(self.path("in.ply"), sphere(COUNT))
+
+    def test_killed_runs_go_on_and_end_with_the_same_bytes(self):
+        plan = ["tiles", "plan", "in.ply", "work", "--tiles", "2"]
+        self.expect(OK, *plan)
+        for worker in "2/2", "1/2":
+            self.expect(OK, "tiles", "run", "work", "--worker", worker)
+        self.expect(OK, "tiles", "merge", "work", "whole.ply")
+        shutil.rmtree(self.path("work"))
+        chance = random.Random(1)
+        steps = [plan, ["tiles", "run", "work"], ["tiles", "merge", "work", "out.ply"]]
+        for _ in range(KILLS):
+            for step in steps:
+                process = self.start(*step, "-v")
+                wanted = chance.randrange(12)
+                for number, _ in enumerate(process.stderr):
+                    if number == wanted:
+                        break
+                process.kill()
+                process.communicate()
+        for step in steps:
+            self.expect(OK, *step)
+        self.assertEqual(self.bytes_of("out.ply"), self.bytes_of("whole.ply"))
+        self.assertEqual([name for name in os.listdir(self.path("work")) if name.endswith(".tmp")], [])
+        names, rows = read_ply(self.bytes_of("out.ply"))
+        self.assertEqual(names, ["x", "y", "z", "nx", "ny", "nz", "confidence"])
+        for row, point in zip(rows, sphere(COUNT)):
+            self.assertGreater(sum(row["n" + axis] * c for axis, c in zip("xyz", point)), 0.99)
+
+    def test_status_says_what_is_missing_and_merge_refuses(self):
+        self.expect(OK, "tiles", "plan", "in.ply", "work", "--tiles", "2")
+        status = self.expect(OK, "tiles", "status", "work").out.decode()
+        self.assertIn("8,200 points, 0 of 2 tiles done", status)
+        result = self.expect(BAD_DATA, "tiles", "merge", "work", "out.ply")
+        self.assertIn("2 of 2 tiles are not done (1, 2); g3r tiles run", result.err)
+        self.assertFalse(os.path.exists(self.path("out.ply")))
+
+    def test_wrong_command_lines_are_told(self):
+        for arguments in (["tiles"], ["tiles", "plan", "in.ply"], ["tiles", "run"], ["tiles", "run", "work", "--worker", "0/2"],
+                          ["tiles", "run", "work", "--worker", "3/2"], ["tiles", "plan", "in.ply", "work", "--sensor", "file"]):
+            with self.subTest(arguments=arguments):
+                self.expect(USAGE, *arguments)
+        self.expect(BAD_DATA, "tiles", "run", "nowhere")
+        self.expect(NO_INPUT, "tiles", "plan", "none.ply", "work")
+        self.expect(UNAVAILABLE, "tiles", "plan", "in.ply", "work", "--max-memory", "1M")
+        self.assertFalse(os.path.exists(self.path("work/manifest.json")))
+
+    def test_orient_works_in_tiles_where_it_would_refuse(self):
+        """Until the sort: the tiles themselves are those of the other tests."""
+        write_points(self.path("large.ply"), sphere(LARGE_COUNT))
+        arguments = ["orient", "large.ply", "out.ply", "--max-memory", "150M"]
+        self.expect(UNAVAILABLE, *arguments, "--ascii")  # which tiles do not write
+        process = self.start(*arguments, "-v", preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+        guard = threading.Timer(120, process.kill)
+        guard.start()
+        stages = []
+        for line in process.stderr:
+            stages.append(line)
+            if b"coarse" in line:
+                break
+        process.send_signal(signal.SIGINT)
+        process.communicate()
+        guard.cancel()
+        self.assertEqual(process.returncode, INTERRUPTED, stages)
+        self.assertIn(b"g3r: sort\n", stages)
+        self.assertFalse(os.path.exists(self.path("out.ply")))
+        self.assertTrue(os.path.exists(self.path("out.ply.tiles/points-1.bin")))
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())
