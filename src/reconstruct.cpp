@@ -6,6 +6,7 @@
 #include "mesh/held_points.h"
 #include "mesh/mesh_finish.h"
 #include "mesh/screened_poisson.h"
+#include "mesh/separate_vertices.h"
 #include "mesh/smooth_spacing.h"
 #include "orient/settings.h"
 #include "oriented_cloud.h"
@@ -161,6 +162,7 @@ Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor
   for (Vec3& v : mesh.vertices) {
     for (std::size_t a = 0; a < 3; ++a) v[a] = v[a] / frame.scale + frame.centre[a];
   }
+  mesh::separate_vertices(mesh);
   return mesh;
 }
 
