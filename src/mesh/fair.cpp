@@ -245,9 +245,9 @@ class Regions {
 
 }  // namespace
 
-std::vector<std::uint8_t> points_in_lines(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near) {
-  const std::size_t n = points.size(), stride = near.size() / n, count = std::min(kAlong, stride), voters = std::min(kVotes, stride);
-  std::vector<std::uint8_t> thin(n, 0), out(n, 0);
+std::vector<std::uint8_t> points_along_curves(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near) {
+  const std::size_t n = points.size(), stride = near.size() / n, count = std::min(kAlong, stride);
+  std::vector<std::uint8_t> out(n, 0);
   parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -260,9 +260,16 @@ std::vector<std::uint8_t> points_in_lines(const std::vector<Vec3>& points, const
       }
       const Eigen::Vector3d variance =
           Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread - mean * mean.transpose(), Eigen::EigenvaluesOnly).eigenvalues();
-      thin[i] = variance[1] <= kThin * variance[2] ? 1 : 0;
+      out[i] = variance[1] <= kThin * variance[2] ? 1 : 0;
     }
   });
+  return out;
+}
+
+std::vector<std::uint8_t> points_in_lines(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near) {
+  const std::size_t n = points.size(), stride = near.size() / n, voters = std::min(kVotes, stride);
+  const std::vector<std::uint8_t> thin = points_along_curves(points, near);
+  std::vector<std::uint8_t> out(n, 0);
   for (std::size_t i = 0; i < n; ++i) {
     std::size_t votes = 0;
     for (std::size_t k = 0; k < voters; ++k) votes += thin[near[i * stride + k]];

@@ -12,6 +12,9 @@
 
 namespace g3r::mesh {
 
+/// Marks (1) the points that lie along a curve with their 8 nearest. `near`: Neighbours::of_all(k) of the points, k >= 9. O(N).
+[[nodiscard]] std::vector<std::uint8_t> points_along_curves(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near);
+
 /// Marks (1) the points of which a quarter of the 16 nearest lie along a curve with their 8 nearest; if that are half of all, all are.
 /// `near`: Neighbours::of_all(k) of the points, k >= 16. Random samples of surfaces, their creases and rims are not marked. O(N).
 [[nodiscard]] std::vector<std::uint8_t> points_in_lines(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near);
