@@ -31,6 +31,8 @@ constexpr int kRounds = 3;            // of finding where the points meet the su
 constexpr int kSteps = 300;           // of conjugate gradients in each, at most
 constexpr double kTolerance = 1e-4;   // of the first residual
 constexpr std::size_t kNearTriangles = 12;  // by their centres, among which the nearest to a point is looked for
+constexpr int kAttempts = 4;                // each with the surroundings of what crossed in the one before held
+constexpr int kHeldRings = 3;               // of vertices around triangles that cross
 constexpr std::size_t kBlock = 1024;        // per parallel block
 
 // A point, and where the surface should meet it.
@@ -226,22 +228,47 @@ class Regions {
     }
   }
 
-  // Pairs of triangles that intersect, of which one is in the region; at the region's first vertex.
-  [[nodiscard]] std::vector<std::size_t> crossings(const Mesh& mesh) {
+  // Of the regions in which more triangles intersect than before.
+  void take_back(Mesh& mesh, const std::vector<TrianglePair>& before, const std::vector<TrianglePair>& after,
+                 const std::vector<Vec3>& home) {
+    const std::vector<std::size_t> least = corners_in(mesh, before), now = corners_in(mesh, after);
+    for (std::uint32_t v = 0; v < free_.size(); ++v) {
+      if (free_[v] != 0 && now[sets_.find(v)] > least[sets_.find(v)]) mesh.vertices[v] = home[v];
+    }
+  }
+
+ private:
+  // Of the triangles of the pairs, for each region at its first vertex.
+  [[nodiscard]] std::vector<std::size_t> corners_in(const Mesh& mesh, const std::vector<TrianglePair>& pairs) {
     std::vector<std::size_t> out(free_.size(), 0);
-    for (const auto& pair : self_intersections(mesh)) {
+    for (const TrianglePair& pair : pairs) {
       for (const std::uint32_t f : pair) {
-        for (const std::uint32_t v : mesh.triangles[f]) out[of(v)] += free_[v] != 0 ? 1 : 0;
+        for (const std::uint32_t v : mesh.triangles[f]) out[sets_.find(v)] += free_[v] != 0 ? 1 : 0;
       }
     }
     return out;
   }
-  [[nodiscard]] std::size_t of(std::uint32_t v) { return sets_.find(v); }
 
- private:
   const std::vector<std::uint8_t>& free_;
   DisjointSets sets_;
 };
+
+// The vertices of triangles that intersect are free no more, and some rings around them.
+void hold_around(const Mesh& mesh, const std::vector<TrianglePair>& pairs, const Rings& rings, std::vector<std::uint8_t>& free) {
+  std::vector<std::uint32_t> front, next;
+  for (const TrianglePair& pair : pairs) {
+    for (const std::uint32_t f : pair) front.insert(front.end(), mesh.triangles[f].begin(), mesh.triangles[f].end());
+  }
+  for (int ring = 0; ring <= kHeldRings; ++ring, front.swap(next)) {
+    next.clear();
+    for (const std::uint32_t v : front) {
+      free[v] = 0;
+      next.insert(next.end(), rings.vertex.begin() + rings.begin[v], rings.vertex.begin() + rings.begin[v + 1]);
+    }
+    std::sort(next.begin(), next.end());
+    next.erase(std::unique(next.begin(), next.end()), next.end());
+  }
+}
 
 }  // namespace
 
@@ -282,16 +309,21 @@ std::vector<std::uint8_t> points_in_lines(const std::vector<Vec3>& points, const
 
 void make_fair(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<std::uint8_t>& in_lines, const std::atomic<bool>* cancel) {
   if (mesh.triangles.empty() || std::none_of(in_lines.begin(), in_lines.end(), [](std::uint8_t m) { return m != 0; })) return;
-  const std::vector<std::uint8_t> free = vertices_at(mesh, points, in_lines);
+  std::vector<std::uint8_t> free = vertices_at(mesh, points, in_lines);
   const Rings rings = rings_of(mesh);
-  Regions regions(rings, free);
-  const std::vector<std::size_t> before = regions.crossings(mesh);
   const std::vector<Vec3> home = mesh.vertices;
-  const Energy energy(rings, free);
-  for (int round = 0; round < kRounds; ++round) minimise(energy, pin(mesh, points, in_lines), mesh.vertices, cancel);
-  const std::vector<std::size_t> after = regions.crossings(mesh);
-  for (std::uint32_t v = 0; v < free.size(); ++v) {
-    if (free[v] != 0 && after[regions.of(v)] > before[regions.of(v)]) mesh.vertices[v] = home[v];
+  const std::vector<TrianglePair> before = self_intersections(mesh);
+  for (int attempt = 1;; ++attempt) {
+    const Energy energy(rings, free);
+    for (int round = 0; round < kRounds; ++round) minimise(energy, pin(mesh, points, in_lines), mesh.vertices, cancel);
+    const std::vector<TrianglePair> after = self_intersections(mesh);
+    if (after.size() <= before.size()) return;
+    if (attempt == kAttempts) {
+      Regions(rings, free).take_back(mesh, before, after, home);
+      return;
+    }
+    hold_around(mesh, after, rings, free);
+    mesh.vertices = home;
   }
 }
 

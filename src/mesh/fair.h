@@ -20,9 +20,9 @@ namespace g3r::mesh {
 [[nodiscard]] std::vector<std::uint8_t> points_in_lines(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near);
 
 /// Makes the surface fair around the marked points: of the vertices to which one of them is the nearest point. The others stay, and so do
-/// connected regions in which more triangles would intersect than before. Without marked points nothing happens. Connectivity stays. The
-/// same result for any number of threads. O(V log N), up to 900 products with a sparse matrix of V rows, and two searches for crossings.
-/// Throws Cancelled.
+/// those around which triangles would intersect that did not before (up to three times tried without them; then connected regions with such
+/// triangles stay). Without marked points nothing happens. Connectivity stays. The same result for any number of threads. O(V log N), at
+/// most four times 900 products with a sparse matrix of V rows, and five searches for crossings. Throws Cancelled.
 void make_fair(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<std::uint8_t>& in_lines,
                const std::atomic<bool>* cancel = nullptr);
 
