@@ -11,6 +11,7 @@
 #include <string>
 
 #include "mesh_topology.h"
+#include "suits_float.h"
 
 namespace {
 
@@ -128,7 +129,8 @@ TEST(SeparateVertices, VerticesThatFloatMergesPartToo) {
 TEST(SeparateVertices, FarFromTheOriginOnlyTheCentreCounts) {
   const Vec3 far{500000, 5000000, 100};
   Mesh mesh = touching_tetrahedra(far);
-  EXPECT_FALSE(mesh::float_keeps({500000, 5000000, 100}, {500001, 5000001, 101}));
+  EXPECT_FALSE(suits_float({far, {500001, 5000001, 101}}));
+  EXPECT_TRUE(suits_float({{-1, 0, 0}, {1, 1, 1}}));
   EXPECT_EQ(mesh::separate_vertices(mesh), 1U);
   Mesh centred = mesh;
   for (Vec3& v : centred.vertices) {

@@ -3,7 +3,7 @@
 #include "io/table.h"
 #include "io/text.h"
 #include "io/writers.h"
-#include "mesh/separate_vertices.h"
+#include "suits_float.h"
 #include "vector.h"
 
 #include <cmath>
@@ -43,7 +43,7 @@ void append_floats(const Vec3& numbers, std::string& bytes) {
 bool steps_show(const std::vector<Vec3>& vertices) {
   vector::Box box;
   for (const Vec3& v : vertices) box.extend(v);
-  return !mesh::float_keeps(box.low, box.high);
+  return !suits_float(box);
 }
 
 }  // namespace

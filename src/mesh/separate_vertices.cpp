@@ -9,14 +9,14 @@
 #include <vector>
 
 #include "cpu/parallel.h"
+#include "suits_float.h"
 #include "vector.h"
 
 namespace g3r::mesh {
 namespace {
 
-constexpr double kStepPerExtent = 1e-5;  // of float; larger ones are seen on the surface, and formats that have them are not used
-constexpr double kFirstStep = 2;         // steps of float; a move by less than one may round to the old place
-constexpr double kMostMove = 0.25;       // of the shortest edge: no triangle turns over
+constexpr double kFirstStep = 2;    // steps of float; a move by less than one may round to the old place
+constexpr double kMostMove = 0.25;  // of the shortest edge: no triangle turns over
 constexpr double kFloatStep = std::numeric_limits<float>::epsilon();
 
 using Place = std::array<float, 3>;
@@ -114,22 +114,12 @@ bool move(const Around& around, std::vector<Rounding>& roundings, Vec3& vertex) 
 
 }  // namespace
 
-bool float_keeps(const Vec3& low, const Vec3& high) {
-  double extent = 0;
-  double largest = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    extent = std::max(extent, high[a] - low[a]);
-    largest = std::max({largest, std::fabs(low[a]), std::fabs(high[a])});
-  }
-  return largest * kFloatStep <= kStepPerExtent * extent && largest <= static_cast<double>(std::numeric_limits<float>::max());
-}
-
 std::size_t separate_vertices(Mesh& mesh) {
   vector::Box box;
   for (const Vec3& v : mesh.vertices) box.extend(v);
   if (mesh.vertices.empty()) return 0;
   std::vector<Rounding> roundings{Rounding(box.centre())};
-  if (float_keeps(box.low, box.high)) roundings.emplace_back(Vec3{0, 0, 0});
+  if (suits_float(box)) roundings.emplace_back(Vec3{0, 0, 0});
   std::vector<std::uint8_t> shared(mesh.vertices.size(), 0);
   for (Rounding& rounding : roundings) rounding.take(mesh.vertices, shared);
   std::vector<std::uint32_t> movers;

@@ -10,11 +10,8 @@ namespace g3r::mesh {
 /// Moves vertices that have the place of another one, as it is or rounded to float about the origin (STL, many readers) or about the centre
 /// of the box (glTF), along their normals to a free place: the least number of steps of float away, at most a quarter of their shortest
 /// edge. Programs that weld equal positions then see the mesh as its indices have it. So far from the origin that the steps of float show
-/// (as in write_stl), rounding about it is left alone. Which vertices: all but the first of those at one place. Returns how many moved.
+/// (suits_float), rounding about it is left alone. Which vertices: all but the first of those at one place. Returns how many moved.
 /// O(V log V + F), 40 bytes per vertex. The same for any number of threads.
 std::size_t separate_vertices(Mesh& mesh);
-
-/// Whether single precision keeps the shape of a box: its steps at the largest coordinate are at most 1e-5 of the longest side.
-[[nodiscard]] bool float_keeps(const Vec3& low, const Vec3& high);
 
 }  // namespace g3r::mesh
