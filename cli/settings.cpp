@@ -140,7 +140,8 @@ void add_report_options(CLI::App& app, Settings& s) {
   app.option_defaults()->group(kResultGroup);
   app.add_option("--report", s.report, "Write what was done as JSON (docs/report.md); - for standard output")->type_name("FILE");
   app.add_flag("--strict", s.strict,
-               "Exit with 65 when the result is doubtful: not converged, sides inconsistent, or a mesh not closed that was not trimmed");
+               "Exit with 65 when the result is doubtful: not converged, sides inconsistent, a mesh that the points cannot carry, or one "
+               "not closed that was not trimmed");
 }
 
 void add_seed_option(CLI::App& app, Settings& s) {

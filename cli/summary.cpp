@@ -105,7 +105,7 @@ int finish(const Settings& settings, Session& session, Stats stats, const MeshCh
   for (const std::string& warning : stats.warnings) console.warn(warning);
   show_summary(settings, console, stats, mesh);
   if (!settings.report.empty()) write_text(settings.report, report_json(stats, mesh));
-  const bool is_doubtful = !stats.converged || !stats.consistent || is_open;
+  const bool is_doubtful = !stats.converged || !stats.consistent || stats.doubtful || is_open;
   return settings.strict && is_doubtful ? kBadData : kOk;
 }
 

@@ -5,6 +5,7 @@
 #include "cloud/noise.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
+#include "findings.h"
 #include "gpu/scope.h"
 #include "orient/coarse_to_fine.h"
 #include "orient/hints.h"
@@ -299,6 +300,7 @@ Orientation orient_in_arena(const PointsView& points, const Options& options, St
   settle_areas(best.problem, near, stages, solution);
   settle_by_hints(best.problem, options, near, solution, confidence, out.stats, stages.cancel());
   warn_of_volume(best.problem, out.stats);
+  warn_of_sampling(best.problem.cloud, near, solution.refinement.normals, best.problem.spacing, out.stats);
   add_outliers(best.problem, stages, solution, confidence);
   hand_out(best.problem.cloud, solution.eta, solution.refinement.normals, confidence, out);
   stages.finish(out.stats);

@@ -1,11 +1,13 @@
 // From points, or oriented points, to a mesh.
 #include "cpu/parallel.h"
+#include "findings.h"
 #include "gpu/scope.h"
 #include "median.h"
 #include "mesh/field_mesher.h"
 #include "mesh/held_points.h"
 #include "mesh/mesh_finish.h"
 #include "mesh/screened_poisson.h"
+#include "mesh/separate_vertices.h"
 #include "mesh/smooth_spacing.h"
 #include "orient/settings.h"
 #include "oriented_cloud.h"
@@ -29,6 +31,7 @@ constexpr double kFieldWidth = 0.35;     // of the winding field in spacings
 constexpr double kFieldAccuracy = 1e-2;  // of its sums; only its side of a level counts, with a margin of 0.2
 constexpr double kFarSpacings = 4;       // surface farther than this from every point is a guess;
 constexpr double kFarShare = 0.05;       // more of it is worth a warning
+constexpr double kMostFar = 0.25;        // of the surface, beyond which the mesh is not what was measured
 constexpr double kWidest = 8e5;          // spacings; the octree has at most 2^20 cells of 0.8 spacings
 constexpr double kInsideOut = -0.25;     // winding number at the points; 1/2 if they face out of a solid, -1/2 into it, 0 on open sheets;
 constexpr std::size_t kProbes = 500;     // points asked for it
@@ -161,6 +164,7 @@ Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor
   for (Vec3& v : mesh.vertices) {
     for (std::size_t a = 0; a < 3; ++a) v[a] = v[a] / frame.scale + frame.centre[a];
   }
+  mesh::separate_vertices(mesh);
   return mesh;
 }
 
@@ -255,7 +259,9 @@ Reconstruction reconstruct(const PointsView& points, const Options& options, con
     out.orientation.stats.warnings.push_back(
         std::to_string(std::lround(100 * far)) +
         " % of the surface is farther than 4 spacings from any point: the cloud looks open; trim the mesh");
+    out.orientation.stats.doubtful = out.orientation.stats.doubtful || (far > kMostFar && chosen.trim == MeshOptions::Trim::kOff);
   }
+  warn_of_topology(out.check, out.orientation.stats);
   if (chosen.mesher == Mesher::kField && chosen.depth == 0 && out.orientation.stats.box_side > kWidest * out.orientation.stats.spacing) {
     out.orientation.stats.warnings.emplace_back(
         "the cloud is more than 800,000 spacings wide, so the mesh is coarser than the points: mesh parts that are far apart one by one");

@@ -90,6 +90,7 @@ std::string report_json(const Stats& stats, const MeshCheck* mesh) {
   report["iterations"] = iterations_json(stats);
   report["converged"] = stats.converged;
   report["consistent"] = stats.consistent;
+  report["doubtful"] = stats.doubtful;
   report["open_share"] = number(stats.open_share);
   report["undecided_share"] = number(stats.undecided_share);
   report["hints"] = {{"given", stats.hints.given},

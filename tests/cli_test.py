@@ -24,7 +24,7 @@ REPORT_SCHEMA = {
     "scales": {"box_centre": list, "box_side": float, "spacing": float, "noise": float, "epsilon": float, "depth": int},
     "method": {"name": str, "preset": str, "solver": str, "harmonics": str, "sums": str, "accuracy": float, "tolerance": float,
                "condition_number": None},
-    "iterations": list, "converged": bool, "consistent": bool, "open_share": float, "undecided_share": float,
+    "iterations": list, "converged": bool, "consistent": bool, "doubtful": bool, "open_share": float, "undecided_share": float,
     "hints": {"given": list, "settled_share": float, "turned_share": float, "agreement": float, "contradicted_share": float},
     "seconds": {"read": float, "build": float, "solve": float, "refine": float, "mesh": float, "write": float, "total": float},
     "planned_memory_bytes": int, "peak_memory_bytes": int, "threads": int,

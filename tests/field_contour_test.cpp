@@ -47,9 +47,9 @@ Mesh extract(const Octree& octree, const Function& f) {
     }
     positions.push_back(mean);
   }
-  for (const auto& pair : surface.midpoints) {
+  for (const auto& middle : surface.midpoints) {
     Vec3 mean{};
-    for (std::size_t i = 0; i < 3; ++i) mean[i] = 0.5 * (positions[pair[0]][i] + positions[pair[1]][i]);
+    for (std::size_t i = 0; i < 3; ++i) mean[i] = 0.5 * (positions[middle.sheets[0]][i] + positions[middle.sheets[1]][i]);
     positions.push_back(mean);
   }
   return g3r::mesh::triangulate(surface, positions, {});

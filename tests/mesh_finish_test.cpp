@@ -3,16 +3,22 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "field_shapes.h"
 #include "median.h"
 #include "mesh/field_mesher.h"
 #include "mesh/mesh_parts.h"
 #include "mesh/simplify.h"
+#include "mesh/smooth_rims.h"
 #include "mesh/smooth_spacing.h"
 #include "mesh_topology.h"
+#include "vector.h"
 
 namespace {
 
@@ -35,6 +41,19 @@ struct TwoSpheres {
     mesh = field_mesh(sample.points, sample.normals, field);
   }
 };
+
+// For every vertex of the boundary the next one.
+std::map<std::uint32_t, std::uint32_t> rim_of(const Mesh& mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
+  for (const auto& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) ++sides[{t[k], t[(k + 1) % 3]}];
+  }
+  std::map<std::uint32_t, std::uint32_t> next;
+  for (const auto& [side, count] : sides) {
+    if (sides.count({side.second, side.first}) == 0) next[side.first] = side.second;
+  }
+  return next;
+}
 
 TEST(MeshFinish, ComponentsAreFoundAndRemoved) {
   TwoSpheres two;
@@ -135,6 +154,33 @@ TEST(MeshFinish, TrimmedSurfaceEndsWithItsPoints) {
     EXPECT_GT(z, -2 * h);  // the points end at 0, a gap below it at the most
   }
   EXPECT_NEAR(check_mesh(two.mesh).area, 2 * M_PI, 0.06 * 2 * M_PI);
+}
+
+// Steps of the triangulation are no rim: without smoothing it is a third longer, and turns by more than 60 degrees at every third vertex.
+TEST(MeshFinish, RimsAreCleanLines) {
+  const OrientedSample sphere = sphere_sample(3000, 1, 1);
+  const DistanceSampler field([](const Vec3& p) { return norm(p) - 1; }, 0.1);
+  Mesh mesh = field_mesh(sphere.points, sphere.normals, field);
+  std::vector<Vec3> half;
+  std::copy_if(sphere.points.begin(), sphere.points.end(), std::back_inserter(half), [](const Vec3& p) { return p[2] > 0; });
+  MeshOptions options;
+  options.trim = MeshOptions::Trim::kAuto;
+  mesh::finish_mesh(mesh, half, mesh::smooth_spacing(half), 0, options);
+  EXPECT_TRUE(check_mesh(mesh).manifold);
+  const std::map<std::uint32_t, std::uint32_t> next = rim_of(mesh);
+  double length = 0;
+  std::size_t sharp = 0;
+  for (const auto& [from, to] : next) {
+    const Vec3 side = vector::subtract(mesh.vertices[to], mesh.vertices[from]);
+    const Vec3 then = vector::subtract(mesh.vertices[next.at(to)], mesh.vertices[to]);
+    sharp += vector::dot(vector::normalised(side), vector::normalised(then)) < 0.5 ? 1 : 0;
+    length += norm(side);
+  }
+  EXPECT_LE(sharp, next.size() / 50);  // where a triangle would turn over the rim stays as it is
+  EXPECT_NEAR(length, 2 * M_PI, 0.1 * 2 * M_PI);
+  const std::vector<Vec3> before = mesh.vertices;
+  mesh::smooth_rims(mesh, [](const std::vector<Vec3>& places) { return std::vector<std::uint8_t>(places.size(), 0); });
+  EXPECT_EQ(mesh.vertices, before);
 }
 
 // The largest component is the one that points hold, not the one that fills emptiness.

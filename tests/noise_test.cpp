@@ -340,6 +340,20 @@ TEST(Noise, IntegerCoordinatesAreNoNoiseByThemselves) {
   EXPECT_EQ(estimate(cube), 0);
 }
 
+// Rays on a grid hit a plate from above and below: its two heights are two steps, and no rounding. With directions of noisy points the
+// mesh had 45 handles along the planes of the octree.
+TEST(Noise, PlatesHitByRaysOnAGridAreClean) {
+  for (const double thickness : {0.5, 1.0, 2.0}) {
+    Surface plate;
+    for (int x = 0; x < 300; x += 2) {
+      for (int y = 0; y < 200; y += 2) {
+        for (const double z : {0.0, thickness}) plate.points.push_back({1.0 * x, 1.0 * y, z});
+      }
+    }
+    EXPECT_EQ(estimate(plate), 0) << thickness;
+  }
+}
+
 // Menger's sponge of second order: 9^3 cells, random points on the faces between full and empty ones.
 Surface sponge(int count) {
   const auto full = [](int x, int y, int z) {

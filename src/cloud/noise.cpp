@@ -40,6 +40,7 @@ constexpr double kApart = 0.12;            // and through kSheets
 constexpr double kOnSheet = 0.05;          // in spacings, that deviation
 constexpr double kRounded = 0.05;          // in spacings, steps of coordinates that put noisy points on planes
 constexpr double kLeastRounding = 0.04;    // spacings, of the deviation that rounding leaves; less is no noise
+constexpr std::size_t kFewestLevels = 5;   // values of a rounded coordinate; those of plates and boxes that stand straight are fewer
 constexpr double kTerraces = 0.5;          // of the deviation that rounding leaves, the median residual of height fields from which it does
 constexpr double kSameCoordinate = 1e-4;   // in spacings, between coordinates that differ by rounding only
 constexpr double kSmallToLarge = 1.27;     // residual of 32 neighbours to that of 16 on a noisy plane, while both are small
@@ -130,11 +131,14 @@ Vec3 rounding_steps(const std::vector<Vec3>& points, double spacing) {
     std::transform(points.begin(), points.end(), sorted.begin(), [&](const Vec3& p) { return p[a]; });
     std::sort(sorted.begin(), sorted.end());
     double least = std::numeric_limits<double>::infinity();
+    std::size_t levels = 1;
     for (std::size_t i = 1; i < sorted.size(); ++i) {
       const double step = sorted[i] - sorted[i - 1];
-      if (step > kSameCoordinate * spacing) least = std::min(least, step);
+      if (step <= kSameCoordinate * spacing) continue;
+      least = std::min(least, step);
+      ++levels;
     }
-    if (least > kRounded * spacing && std::isfinite(least)) steps[a] = least;
+    if (least > kRounded * spacing && levels >= kFewestLevels) steps[a] = least;
   }
   return steps;
 }

@@ -26,7 +26,8 @@ namespace g3r {
 ///     them to be smooth as far as that. Noise above h fills such neighbourhoods as well, so every fourth point is taken then, as often
 ///     as needed.
 ///   - Rounding of all three coordinates to steps q, as in voxels, counts as noise of the mean square of q_a^2 / 12 where that is above
-///     0.04 h and the median residual of the height fields is half of it or more: rounded flat neighbourhoods may be exact.
+///     0.04 h and the median residual of the height fields is half of it or more: rounded flat neighbourhoods may be exact. Coordinates of
+///     less than 5 values are not rounded: they are those of a plate that stands straight.
 /// Within about 15 % of the truth on smooth shapes from 0.2 to 3 h and on walls of 3 sigma (docs/study.md, "Walls and the size of the
 /// noise"). `neighbours` of these points; `spacing`: typical_spacing(). Same units as the points. Looks at about 2000 points, in O(log N)
 /// each, and sorts the thinned clouds, O(N log N).

@@ -3,10 +3,10 @@
 #include "io/table.h"
 #include "io/text.h"
 #include "io/writers.h"
+#include "suits_float.h"
+#include "vector.h"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace g3r::io {
 
@@ -41,17 +41,9 @@ void append_floats(const Vec3& numbers, std::string& bytes) {
 
 // Far from the origin the steps of float32 are steps of the surface, and triangles collapse.
 bool steps_show(const std::vector<Vec3>& vertices) {
-  constexpr double kStepPerExtent = 1e-5;
-  double extent = 0;
-  double largest = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const auto [low, high] =
-        std::minmax_element(vertices.begin(), vertices.end(), [a](const Vec3& p, const Vec3& q) { return p[a] < q[a]; });
-    extent = std::max(extent, (*high)[a] - (*low)[a]);
-    largest = std::max({largest, std::abs((*low)[a]), std::abs((*high)[a])});
-  }
-  return largest * static_cast<double>(std::numeric_limits<float>::epsilon()) > kStepPerExtent * extent ||
-         largest > static_cast<double>(std::numeric_limits<float>::max());
+  vector::Box box;
+  for (const Vec3& v : vertices) box.extend(v);
+  return !suits_float(box);
 }
 
 }  // namespace

@@ -395,7 +395,8 @@ std::unordered_map<std::uint32_t, std::uint32_t> split_double_edges(const Arcs& 
       for (std::size_t l = i; l < j; ++l) repeated = repeated || (l != k && pair_of(arcs.arcs[l]) == pair);
       if (!repeated) continue;
       const auto vertex = static_cast<std::uint32_t>(surface.patch_count() + surface.midpoints.size());
-      surface.midpoints.push_back({static_cast<std::uint32_t>(pair >> 32U), static_cast<std::uint32_t>(pair)});
+      surface.midpoints.push_back(
+          {{static_cast<std::uint32_t>(pair >> 32U), static_cast<std::uint32_t>(pair)}, {arcs.arcs[k].place / 4, arcs.arcs[k].other / 4}});
       for (const std::uint32_t place : {arcs.arcs[k].place, arcs.arcs[k].other}) middle[place] = vertex;
     }
     i = j;

@@ -22,16 +22,22 @@ struct Crossing {
   std::uint32_t outside = 0;  ///< corner
 };
 
+/// A vertex in the middle of an arc: of the line across a face of the octree along which two sheets meet.
+struct ArcMiddle {
+  std::array<std::uint32_t, 2> sheets{};
+  std::array<std::uint32_t, 2> crossings{};  ///< at the ends of the arc
+};
+
 /// The surface as a polygon mesh. Vertices 0..patches-1 are sheets, each within one leaf; the rest subdivide edges that would coincide.
 struct DualSurface {
-  std::vector<Crossing> crossings;                      ///< one per polygon
-  std::vector<std::uint32_t> patch_leaf;                ///< leaf that holds each sheet
-  std::vector<std::size_t> patch_begin;                 ///< patches + 1 offsets into patch_crossings
-  std::vector<std::uint32_t> patch_crossings;           ///< crossings on the rim of each sheet
-  std::vector<std::array<std::uint32_t, 2>> midpoints;  ///< for each further vertex, the two sheets it lies between
-  std::vector<std::size_t> polygon_begin;               ///< crossings + 1 offsets into polygon_vertices
-  std::vector<std::uint32_t> polygon_vertices;          ///< counter-clockwise seen from outside
-  std::vector<std::uint8_t> safe_diagonals;             ///< per polygon of four: bit 0: diagonal 0-2, bit 1: diagonal 1-3 may be used
+  std::vector<Crossing> crossings;              ///< one per polygon
+  std::vector<std::uint32_t> patch_leaf;        ///< leaf that holds each sheet
+  std::vector<std::size_t> patch_begin;         ///< patches + 1 offsets into patch_crossings
+  std::vector<std::uint32_t> patch_crossings;   ///< crossings on the rim of each sheet
+  std::vector<ArcMiddle> midpoints;             ///< for each further vertex
+  std::vector<std::size_t> polygon_begin;       ///< crossings + 1 offsets into polygon_vertices
+  std::vector<std::uint32_t> polygon_vertices;  ///< counter-clockwise seen from outside
+  std::vector<std::uint8_t> safe_diagonals;     ///< per polygon of four: bit 0: diagonal 0-2, bit 1: diagonal 1-3 may be used
 
   [[nodiscard]] std::size_t patch_count() const { return patch_leaf.size(); }
 };

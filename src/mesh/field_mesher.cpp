@@ -11,6 +11,7 @@
 #include "cpu/parallel.h"
 #include "g3r/error.h"
 #include "median.h"
+#include "mesh/fair.h"
 #include "mesh/field_contour.h"
 #include "mesh/field_denoise.h"
 #include "mesh/field_local_fit.h"
@@ -398,6 +399,7 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
   prepare(points, normals, options.noise, monitor, prepared);
   report(monitor, 0.2);
   Mesh mesh = raw_mesh(prepared, sampler, options, monitor, max_memory);
+  mesh::make_fair(mesh, prepared.points.positions, mesh::points_in_lines(prepared.points.positions, prepared.near), monitor.cancel);
   prepared.neighbours.reset();
   std::vector<std::uint32_t>().swap(prepared.near);  // not only emptied
   mesh::untangle(mesh, monitor.cancel);

@@ -136,11 +136,8 @@ class Placement {
     Vector3d start = Vector3d::Zero(), outward = Vector3d::Zero();
     for (std::size_t k = surface_.patch_begin[i]; k < surface_.patch_begin[i + 1]; ++k) {
       const Crossing& c = surface_.crossings[surface_.patch_crossings[k]];
-      const Vector3d a = to_eigen(octree_.corner_position(c.inside)), b = to_eigen(octree_.corner_position(c.outside));
-      const double va = std::max(static_cast<double>(value_[c.inside]), 0.0), vb = std::max(-static_cast<double>(value_[c.outside]), 0.0);
-      const double t = va + vb > 0 ? std::clamp(va / (va + vb), 0.01, 0.99) : 0.5;
-      start += a + t * (b - a);
-      outward += (b - a).normalized();
+      start += crossing_point(c);
+      outward += (to_eigen(octree_.corner_position(c.outside)) - to_eigen(octree_.corner_position(c.inside))).normalized();
     }
     start /= static_cast<double>(surface_.patch_begin[i + 1] - surface_.patch_begin[i]);
     const double length = outward.norm();
@@ -167,7 +164,22 @@ class Placement {
     return {array(x), array(normal), feature, (x - start).norm()};
   }
 
+  // In the middle of the line between the ends of its arc. Arcs of one face do not cross, so no two of them share it, as they share the
+  // middle between their sheets.
+  [[nodiscard]] Vec3 place(const ArcMiddle& middle) const {
+    const std::vector<Crossing>& crossings = surface_.crossings;
+    return array(0.5 * (crossing_point(crossings[middle.crossings[0]]) + crossing_point(crossings[middle.crossings[1]])));
+  }
+
  private:
+  // Where the surface passes between the two corners, never at one of them.
+  [[nodiscard]] Vector3d crossing_point(const Crossing& c) const {
+    const Vector3d a = to_eigen(octree_.corner_position(c.inside)), b = to_eigen(octree_.corner_position(c.outside));
+    const double va = std::max(static_cast<double>(value_[c.inside]), 0.0), vb = std::max(-static_cast<double>(value_[c.outside]), 0.0);
+    const double t = va + vb > 0 ? std::clamp(va / (va + vb), 0.01, 0.99) : 0.5;
+    return a + t * (b - a);
+  }
+
   const Octree& octree_;
   const DualSurface& surface_;
   const std::vector<float>& value_;
@@ -225,10 +237,7 @@ PlacedVertices place_vertices(const Octree& octree, const DualSurface& surface, 
     out.positions[i] = placed[i].position;
     out.normals[i] = placed[i].normal;
   }
-  for (std::size_t m = 0; m < surface.midpoints.size(); ++m) {
-    const Vector3d a = to_eigen(out.positions[surface.midpoints[m][0]]), b = to_eigen(out.positions[surface.midpoints[m][1]]);
-    out.positions[sheets + m] = array(0.5 * (a + b));
-  }
+  for (std::size_t m = 0; m < surface.midpoints.size(); ++m) out.positions[sheets + m] = placement.place(surface.midpoints[m]);
   return out;
 }
 

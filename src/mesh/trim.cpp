@@ -9,6 +9,7 @@
 #include "median.h"
 #include "mesh/distance_to_points.h"
 #include "mesh/mesh_parts.h"
+#include "mesh/smooth_rims.h"
 #include "vector.h"
 
 namespace g3r::mesh {
@@ -129,13 +130,20 @@ void drop_ears(const std::vector<Triangle>& across, std::vector<std::uint8_t>& k
 }  // namespace
 
 void trim(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>& spacing, const MeshOptions& options) {
-  std::vector<std::uint8_t> keep = within(mesh, points, limits_of(spacing, options));
+  const std::vector<double> limits = limits_of(spacing, options);
+  std::vector<std::uint8_t> keep = within(mesh, points, limits);
   if (std::all_of(keep.begin(), keep.end(), [](std::uint8_t k) { return k != 0; })) return;
   const std::vector<Triangle> across = neighbours_of(mesh);
   if (options.trim == MeshOptions::Trim::kAuto) draw_in(mesh, points, spacing, across, keep);
   for (int pass = 0; pass < kEarPasses; ++pass) drop_ears(across, keep);
   remove_triangles(mesh, keep);
   if (mesh.triangles.empty()) throw InvalidInput("trimming removed the whole mesh: the trim distance is too small");
+  smooth_rims(mesh, [&](const std::vector<Vec3>& places) {
+    std::vector<std::uint8_t> near(places.size());
+    const std::vector<double> distance = distance_to_points(places, points, [&](std::uint32_t i) { return limits[i]; });
+    std::transform(distance.begin(), distance.end(), near.begin(), [](double d) { return d <= 1 ? 1 : 0; });
+    return near;
+  });
 }
 
 }  // namespace g3r::mesh

@@ -1,0 +1,120 @@
+#include "findings.h"
+
+#include "mesh/fair.h"
+#include "vector.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+namespace g3r {
+namespace {
+
+constexpr double kInLines = 0.2;            // share of the points along curves: none of a random sample are; wireframes 0.25 and more
+constexpr std::size_t kLooks = 20000;       // points looked at for terraces,
+constexpr std::size_t kPairs = 8;           // each with so many nearest
+constexpr double kAcross = 0.7;             // of a unit normal along an axis, from which the surface is across it
+constexpr std::size_t kFewestPairs = 200;   // fewer tell nothing
+constexpr double kSame = 1e-9;              // spacings between coordinates that are the same
+constexpr double kLeastSame = 0.05;         // share of the pairs with the same coordinate: none on a surface that is not flat,
+constexpr double kMostSame = 0.9;           // and more on flat ones, where single steps are shape
+constexpr double kLowStep = 0.05;           // quantile of the differences that is the step,
+constexpr double kStepToMedian = 0.3;       // at least so much of their median: without steps they come in all sizes
+constexpr double kLeastStep = 0.15;         // spacings; smaller ones are below the noise of clean clouds
+constexpr double kMostStep = 3;             // spacings; larger ones are stairs
+constexpr std::size_t kFewestOdd = 10;      // handles or parts; fewer may be the shape's own
+constexpr std::size_t kHandlePoints = 150;  // for each handle: of the smallest that was right, in a lattice of rods, 156
+constexpr std::size_t kPartPoints = 100;    // for each part
+
+std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
+
+std::string short_number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.2g", value);
+  return text.data();
+}
+
+// The step of the terraces across an axis, 0 if there are none.
+double terrace_step(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near, const std::vector<Vec3>& normals,
+                    std::size_t axis, double spacing) {
+  const std::size_t n = points.size(), stride = near.size() / n, count = std::min(kPairs + 1, stride);
+  const std::size_t every = std::max<std::size_t>(1, n / kLooks);
+  std::size_t pairs = 0, across = 0, single = 0;
+  std::vector<double> steps;
+  for (std::size_t i = 0; i < n; i += every) {
+    if (std::fabs(normals[i][axis]) < kAcross) continue;
+    const std::uint32_t* const around = near.data() + i * stride;
+    const auto is_opposite = [&](std::uint32_t j) { return vector::dot(normals[i], normals[j]) < 0; };
+    ++across;
+    if (std::any_of(around, around + count, is_opposite)) continue;  // of slats, the next that face the same way are steps away too
+    ++single;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::uint32_t j = around[k];
+      if (j == i || std::fabs(normals[j][axis]) < kAcross || vector::dot(normals[i], normals[j]) < kAcross) continue;
+      ++pairs;
+      const double step = std::fabs(points[i][axis] - points[j][axis]);
+      if (step > kSame * spacing) steps.push_back(step);
+    }
+  }
+  if (pairs < kFewestPairs || 2 * single < across || steps.empty()) return 0;
+  const double same = 1 - static_cast<double>(steps.size()) / static_cast<double>(pairs);
+  if (same < kLeastSame || same > kMostSame) return 0;
+  std::sort(steps.begin(), steps.end());
+  const double low = steps[static_cast<std::size_t>(kLowStep * static_cast<double>(steps.size()))];
+  const bool is_step = low >= kStepToMedian * steps[steps.size() / 2] && low >= kLeastStep * spacing && low <= kMostStep * spacing;
+  return is_step ? low : 0;
+}
+
+void warn_of_lines(const CanonicalCloud& cloud, const std::vector<std::uint32_t>& near, Stats& stats) {
+  const std::vector<std::uint8_t> along = mesh::points_along_curves(cloud.points, near);
+  const auto count = std::count(along.begin(), along.end(), std::uint8_t{1});
+  const double share = static_cast<double>(count) / static_cast<double>(along.size());
+  if (share < kInLines) return;
+  stats.warnings.push_back(
+      "sampled in lines: " + percent(share) +
+      " of the points lie along a curve with their neighbours; between the lines surface and sides are a guess: measure "
+      "closer lines, or keep fewer points along them");
+}
+
+}  // namespace
+
+void warn_of_sampling(const CanonicalCloud& cloud, const std::vector<std::uint32_t>& near, const std::vector<Vec3>& normals, double spacing,
+                      Stats& stats) {
+  const std::size_t n = cloud.points.size();
+  if (n < kFewestPairs || near.size() / n <= kPairs) return;
+  warn_of_lines(cloud, near, stats);
+  std::string axes;
+  double largest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double step = terrace_step(cloud.points, near, normals, axis, spacing);
+    if (step == 0) continue;
+    axes += (axes.empty() ? "" : ", ") + std::string(1, "xyz"[axis]);
+    largest = std::max(largest, step);
+  }
+  if (axes.empty()) return;
+  stats.warnings.push_back("rounded coordinates: along " + axes + " they come in steps of about " +
+                           short_number(cloud.frame.length_to_world(largest)) + " (" + short_number(largest / spacing) +
+                           " spacings), which makes terraces: export more digits, or smooth over them with a noise of " +
+                           short_number(cloud.frame.length_to_world(largest / std::sqrt(12.0))) + " or more");
+}
+
+void warn_of_topology(const MeshCheck& check, Stats& stats) {
+  const auto points = stats.used;
+  const auto handles = static_cast<std::size_t>(std::max(0L, check.genus));
+  if (handles >= kFewestOdd && points < kHandlePoints * handles) {
+    stats.doubtful = true;
+    stats.warnings.push_back("genus " + std::to_string(handles) + ": one handle for every " + std::to_string(points / handles) +
+                             " points is more than they can carry: walls or gaps below the spacing, or noise taken for shape; measure more "
+                             "points, or give the noise");
+  }
+  if (check.components >= kFewestOdd && points < kPartPoints * check.components) {
+    stats.doubtful = true;
+    stats.warnings.push_back(
+        std::to_string(check.components) + " parts: one for every " + std::to_string(points / check.components) +
+        " points is more than they can carry: outliers, noise or gaps in the sampling; keep the largest, or clean the cloud");
+  }
+}
+
+}  // namespace g3r

@@ -1,0 +1,133 @@
+#include "mesh/smooth_rims.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "vector.h"
+
+namespace g3r::mesh {
+namespace {
+
+using vector::add;
+using vector::dot;
+using vector::scale;
+using vector::subtract;
+
+constexpr int kPasses = 10;       // steps of the triangulation, up to three edges long, go; fewer leave rags, more round corners
+constexpr double kStep = 0.5;     // of the way in each
+constexpr int kRings = 2;         // that follow
+constexpr double kTurned = 0.3;   // cosine between a triangle's normals before and after, from which it counts as turned over
+constexpr int kTakenBack = 20;    // rounds of taking vertices back; then all are
+constexpr std::uint8_t kRim = 1;  // mark of a vertex on the boundary; those that follow are above
+
+using Side = std::pair<std::uint32_t, std::uint32_t>;
+
+Vec3 normal_of(const std::vector<Vec3>& at, const std::array<std::uint32_t, 3>& t) {
+  return vector::cross(subtract(at[t[1]], at[t[0]]), subtract(at[t[2]], at[t[0]]));
+}
+
+// Sides with one triangle, as it runs along them.
+std::vector<Side> boundary_of(const Mesh& mesh) {
+  std::vector<std::array<std::uint32_t, 3>> sides;  // low, high, whether from high to low
+  sides.reserve(3 * mesh.triangles.size());
+  for (const auto& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+      sides.push_back({std::min(a, b), std::max(a, b), a > b ? 1U : 0U});
+    }
+  }
+  std::sort(sides.begin(), sides.end());
+  std::vector<Side> out;
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    const auto same = [&](std::size_t j) { return sides[j][0] == sides[i][0] && sides[j][1] == sides[i][1]; };
+    if ((i > 0 && same(i - 1)) || (i + 1 < sides.size() && same(i + 1))) continue;
+    out.emplace_back(sides[i][sides[i][2]], sides[i][1 - sides[i][2]]);
+  }
+  return out;
+}
+
+// The part of a mesh near its boundary.
+class Rim {
+ public:
+  Rim(const Mesh& mesh, std::vector<Side> boundary) : boundary_(std::move(boundary)), mark_(mesh.vertices.size(), 0) {
+    for (const auto& [a, b] : boundary_) mark_[a] = mark_[b] = kRim;
+    std::uint8_t ring = kRim;
+    for (int i = 0; i < kRings; ++i, ++ring) {
+      for (const auto& t : mesh.triangles) {
+        if (std::none_of(t.begin(), t.end(), [&](std::uint32_t v) { return mark_[v] == ring; })) continue;
+        for (const std::uint32_t v : t) mark_[v] = mark_[v] == 0 ? static_cast<std::uint8_t>(ring + 1) : mark_[v];
+      }
+    }
+    for (const auto& t : mesh.triangles) {
+      if (std::any_of(t.begin(), t.end(), [&](std::uint32_t v) { return mark_[v] != 0; })) triangles_.push_back(t);
+    }
+  }
+
+  [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& triangles() const { return triangles_; }
+
+  void smooth(std::vector<Vec3>& at) const {
+    std::vector<Vec3> normal(at.size(), Vec3{0, 0, 0}), sum(at.size(), Vec3{0, 0, 0});
+    std::vector<double> count(at.size(), 0);
+    const auto see = [&](std::uint32_t v, std::uint32_t other) {
+      sum[v] = add(sum[v], at[other]);
+      ++count[v];
+    };
+    for (const auto& [a, b] : boundary_) see(a, b), see(b, a);
+    for (const auto& t : triangles_) {
+      const Vec3 n = normal_of(at, t);
+      for (std::size_t k = 0; k < 3; ++k) {
+        normal[t[k]] = add(normal[t[k]], n);
+        if (mark_[t[k]] == kRim) continue;
+        for (const std::size_t other : {(k + 1) % 3, (k + 2) % 3}) see(t[k], t[other]);
+      }
+    }
+    for (std::uint32_t v = 0; v < at.size(); ++v) {
+      if (mark_[v] == 0 || (mark_[v] == kRim && count[v] != 2)) continue;
+      const Vec3 step = scale(subtract(scale(sum[v], 1 / count[v]), at[v]), kStep);
+      const Vec3 n = vector::normalised(normal[v]);
+      at[v] = add(at[v], subtract(step, scale(n, dot(n, step))));
+    }
+  }
+
+ private:
+  std::vector<Side> boundary_;
+  std::vector<std::uint8_t> mark_;                       // kRim on the boundary, more inwards, 0 farther off
+  std::vector<std::array<std::uint32_t, 3>> triangles_;  // with a marked corner
+};
+
+}  // namespace
+
+void smooth_rims(Mesh& mesh, const std::function<std::vector<std::uint8_t>(const std::vector<Vec3>&)>& allowed) {
+  std::vector<Side> boundary = boundary_of(mesh);
+  if (boundary.empty()) return;
+  const Rim rim(mesh, std::move(boundary));
+  std::vector<Vec3> at = mesh.vertices;
+  for (int pass = 0; pass < kPasses; ++pass) rim.smooth(at);
+  std::vector<std::uint32_t> moved;
+  std::vector<Vec3> places;
+  for (std::uint32_t v = 0; v < at.size(); ++v) {
+    if (at[v] == mesh.vertices[v]) continue;
+    moved.push_back(v);
+    places.push_back(at[v]);
+  }
+  const std::vector<std::uint8_t> may = allowed(places);
+  for (std::size_t k = 0; k < moved.size(); ++k) {
+    if (may[k] == 0) at[moved[k]] = mesh.vertices[moved[k]];
+  }
+  bool turned = true;
+  for (int round = 0; round < kTakenBack && turned; ++round) {
+    turned = false;
+    for (const auto& t : rim.triangles()) {
+      if (dot(vector::normalised(normal_of(at, t)), vector::normalised(normal_of(mesh.vertices, t))) >= kTurned) continue;
+      for (const std::uint32_t v : t) {
+        turned = turned || at[v] != mesh.vertices[v];
+        at[v] = mesh.vertices[v];
+      }
+    }
+  }
+  if (!turned) mesh.vertices = std::move(at);
+}
+
+}  // namespace g3r::mesh
