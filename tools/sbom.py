@@ -54,9 +54,9 @@ def debian_packages():
 
 
 def pinned_sources():
-    """One element for every archive that tools/sources.sh fetches: `fetch FOLDER NAME VERSION SHA256 ...`."""
+    """One element for every archive that tools/sources.sh fetches for every build: `fetch FOLDER from_pypi NAME-VERSION.tar.gz SHA256 ...`."""
     script = (ROOT / "tools/sources.sh").read_text()
-    for name, pinned, checksum in re.findall(r"^fetch \S+ (\S+) (\S+) ([0-9a-f]{64})", script, re.MULTILINE):
+    for name, pinned, checksum in re.findall(r"^fetch \S+ from_pypi (\S+)-([0-9.]+)\.tar\.gz ([0-9a-f]{64})", script, re.MULTILINE):
         yield element(PARTS[name], "SPDXRef-source-" + name, versionInfo=pinned, licenseDeclared=LICENCES[name],
                       licenseConcluded=LICENCES[name], packageFileName="%s-%s.tar.gz" % (name, pinned),
                       checksums=[{"algorithm": "SHA256", "checksumValue": checksum}],
