@@ -14,8 +14,11 @@ import re
 import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-LICENCES = {"laszip": "Apache-2.0", "pye57": "BSL-1.0"}  # of the libraries within these source distributions
-PARTS = {"laszip": "LASzip", "pye57": "libE57Format"}
+# Name and licence of what tools/sources.sh brings, by its folder.
+SOURCES = {"laszip": ("LASzip", "Apache-2.0"), "e57": ("libE57Format", "BSL-1.0"), "tbb": ("oneTBB", "Apache-2.0"),
+           "highway": ("Highway", "Apache-2.0"), "meshoptimizer": ("meshoptimizer", "MIT"), "png": ("libpng", "Libpng"),
+           "zlib": ("zlib", "Zlib"), "eigen": ("Eigen", "MPL-2.0"), "nanoflann": ("nanoflann", "BSD-2-Clause"),
+           "json": ("nlohmann-json", "MIT")}
 
 
 def output_of(*command):
@@ -54,15 +57,15 @@ def debian_packages():
 
 
 def pinned_sources():
-    """One element for every archive that tools/sources.sh fetches for every build: `fetch FOLDER from_pypi NAME-VERSION.tar.gz SHA256 ...`."""
+    """One element for every archive that tools/sources.sh fetches, `fetch FOLDER from_HOME ARCHIVE SHA256 ...`, and whether every build
+    has it inside; the others are only in builds with G3R_BUNDLED.
+    """
     script = (ROOT / "tools/sources.sh").read_text()
-    for name, pinned, checksum in re.findall(r"^fetch \S+ from_pypi (\S+)-([0-9.]+)\.tar\.gz ([0-9a-f]{64})", script, re.MULTILINE):
-        yield element(PARTS[name], "SPDXRef-source-" + name, versionInfo=pinned, licenseDeclared=LICENCES[name],
-                      licenseConcluded=LICENCES[name], packageFileName="%s-%s.tar.gz" % (name, pinned),
-                      checksums=[{"algorithm": "SHA256", "checksumValue": checksum}],
-                      downloadLocation="https://pypi.org/project/%s/%s/" % (name, pinned), externalRefs=[
-                          {"referenceCategory": "PACKAGE-MANAGER", "referenceType": "purl",
-                           "referenceLocator": "pkg:pypi/%s@%s" % (name, pinned)}])
+    for indent, folder, archive, checksum in re.findall(r"^( *)fetch (\S+) from_\w+ (\S+) ([0-9a-f]{64})", script, re.MULTILINE):
+        name, licence = SOURCES[folder]
+        yield not indent, element(name, "SPDXRef-source-" + folder, versionInfo=re.search(r"[_-]v?(\d[0-9.]*[0-9])", archive).group(1),
+                                  licenseDeclared=licence, licenseConcluded=licence, packageFileName=archive,
+                                  checksums=[{"algorithm": "SHA256", "checksumValue": checksum}])
 
 
 def document():
@@ -71,8 +74,9 @@ def document():
     packages, sources = list(debian_packages()), list(pinned_sources())
     relations = [("SPDXRef-DOCUMENT", "DESCRIBES", "SPDXRef-g3r")]
     relations += [(package["SPDXID"], "BUILD_DEPENDENCY_OF", "SPDXRef-g3r") for package in packages]
-    relations += [("SPDXRef-g3r", "CONTAINS", source["SPDXID"]) for source in sources]
-    content = [main, *sources, *packages]
+    relations += [("SPDXRef-g3r", "CONTAINS", source["SPDXID"]) for always, source in sources if always]
+    relations += [(source["SPDXID"], "OPTIONAL_DEPENDENCY_OF", "SPDXRef-g3r") for always, source in sources if not always]
+    content = [main, *(source for _, source in sources), *packages]
     digest = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:32]
     return {"spdxVersion": "SPDX-2.3", "dataLicense": "CC0-1.0", "SPDXID": "SPDXRef-DOCUMENT", "name": "g3r-" + version(),
             "documentNamespace": "https://spdx.org/spdxdocs/g3r-%s-%s" % (version(), digest),
