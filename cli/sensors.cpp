@@ -45,7 +45,7 @@ void mention_sensors(const Cloud& cloud, const std::vector<Vec3>& normals, Stats
   const std::string named = "the file names " + counted(cloud.sensor_positions.size(), "scanner position");
   const double away = share_facing_away(cloud, normals);
   if (stats.open_share > 0) {
-    stats.warnings.push_back(named + ": with --sensor file the open sheets face the scanner");
+    stats.warnings.push_back(named + ": with --sensor file the open surfaces face the scanner");
   } else if (away >= kSurrounded) {
     stats.warnings.push_back(named + ", and " + percent(away) +
                              " of the points face away, as in a room that is seen from inside: with "

@@ -13,7 +13,7 @@ namespace g3r::cli {
 /// The options, with the sensors of the file as a hint where they are asked for. Throws InvalidInput if the file names none.
 [[nodiscard]] Options with_sensors(const Settings& settings, const Cloud& cloud);
 
-/// Adds a warning where the scanner positions of the file would say more than the points and no hint was given: open sheets, and a cloud
+/// Adds a warning where the scanner positions of the file would say more than the points and no hint was given: open surfaces, and a cloud
 /// that surrounds its scanner, most of whose normals face away from it.
 void mention_sensors(const Cloud& cloud, const std::vector<Vec3>& normals, Stats& stats);
 

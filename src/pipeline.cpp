@@ -150,7 +150,7 @@ void hand_out(const CanonicalCloud& cloud, const std::vector<Vec3>& eta, const s
 
 std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 
-// The sides of points on open sheets do not come from the equations, and their confidence neither.
+// The sides of points on open surfaces do not come from the equations, and their confidence neither.
 void add_sheets(const OpenSurfaces& sheets, std::vector<float>& confidence, Stats& stats) {
   if (sheets.part.empty()) return;
   std::size_t open = 0;

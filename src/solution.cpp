@@ -26,7 +26,7 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kFewestApart = 100;  // points that are solved for again without the open sheets of their cloud
+constexpr std::size_t kFewestApart = 100;  // points that are solved for again without the open surfaces of their cloud
 constexpr double kAtOdds = 1e-3;           // share of the points against most of their facet, from which facets are solved for
 constexpr float kChoice = 0.5F;            // certainty of an open surface that has no outside
 constexpr double kBetweenSites = 0.7;      // site spacings, of the field where there are no sites: narrower shows single ones
@@ -76,7 +76,7 @@ bool has_open_part(const OpenSurfaces& sheets) {
   return std::any_of(sheets.part.begin(), sheets.part.end(), [](std::uint32_t part) { return part != OpenSurfaces::kNone; });
 }
 
-// Points on open sheets get area vectors along the normals found for them.
+// Points on open surfaces get area vectors along the normals found for them.
 void set_sheet_areas(const OpenSurfaces& sheets, const std::vector<double>& spacing, const std::vector<Vec3>& normals,
                      std::vector<Vec3>& eta) {
   for (std::size_t i = 0; i < sheets.part.size(); ++i) {

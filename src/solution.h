@@ -23,8 +23,8 @@ struct Solution {
 /// `stats`. Throws Cancelled.
 [[nodiscard]] Solution solve(const Problem& problem, const Options& options, Stages& stages, Stats& stats);
 
-/// An open sheet makes the equations of everything beside it wrong too. So each sheet is solved for alone, which may show that it was none,
-/// and then everything else without the sheets. Nothing happens without a sheet, or with one that is all there is.
+/// An open surface makes the equations of everything beside it wrong too. So each one is solved for alone, which may show that it was none,
+/// and then everything else without them. Nothing happens without an open surface, or with one that is all there is.
 void solve_sheets_apart(const Problem& problem, const Options& options, Stages& stages, Stats& stats, Solution& solution);
 
 /// The last word on the directions of a noisy cloud (fit_noisy_jets). Nothing happens without noise, and to earlier methods and the

@@ -62,7 +62,7 @@ struct Sides {
   }
 };
 
-// hints: an open sheet whose side is a choice faces the sensor, normals and area vectors alike, and is as sure as its votes agree.
+// hints: an open surface whose side is a choice faces the sensor, normals and area vectors alike, and is as sure as its votes agree.
 TEST(Hints, ASheetFacesTheSensor) {
   for (const double z : {-3.0, 3.0}) {
     Sides sides;
@@ -102,7 +102,7 @@ TEST(Hints, UpTurnsWhatIsNotUpright) {
   EXPECT_EQ(std::count(effect.settled.begin(), effect.settled.end(), 1), 400);
 }
 
-// hints: an open sheet faces away from what is inside.
+// hints: an open surface faces away from what is inside.
 TEST(Hints, ASheetFacesAwayFromInside) {
   Sides sides;
   sides.add_square({0, 0, 0}, 2, 1, 0);

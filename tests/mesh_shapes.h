@@ -73,7 +73,7 @@ inline Mesh sphere(double radius, std::uint32_t slices) {
   return m;
 }
 
-/// Square [-half, half]^2 at height z, facing up, n x n quads: an open sheet.
+/// Square [-half, half]^2 at height z, facing up, n x n quads: an open surface.
 inline Mesh square(double half, double z, std::uint32_t n) {
   Mesh m;
   for (std::uint32_t i = 0; i <= n; ++i) {

@@ -45,7 +45,7 @@ typedef struct g3r_options {
   double noise; /* standard deviation of the points from their surface; 0: clean */
   g3r_unit noise_unit;
   /* Hints (g3r/hints.h): what you know and the points cannot say. The arrays are yours and must outlive the call. */
-  const double* up;                /* 3 numbers: the direction that open sheets face; or NULL */
+  const double* up;                /* 3 numbers: the direction that open surfaces face; or NULL */
   const double* sensors;           /* sensor_count x 3: places that the points were seen from; or NULL */
   const uint32_t* sensor_of_point; /* a number of a sensor for every point, G3R_NO_SENSOR for none; or NULL */
   const double* inside;            /* inside_count x 3: points inside the solid; or NULL */

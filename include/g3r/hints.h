@@ -14,12 +14,12 @@ namespace G3R_PUBLIC g3r {
 /// Hints::sensor_of_point of a point that no sensor is known of.
 inline constexpr std::uint32_t kNoSensor = 0xffffffff;
 
-/// Hints for orient(); all are optional. They vote where the points leave the side open - on every open sheet as a whole, each point with
+/// Hints for orient(); all are optional. They vote where the points leave the side open - on every open surface as a whole, each point with
 /// the cosine under which it is seen - and settle it with the share of the votes that agree as its confidence. The sides of closed parts
 /// follow from the points; a hint that contradicts them is a warning with its share. Two hints do turn closed parts: `seen_from_inside`,
 /// and a sensor inside a closed part, from which nobody could have seen its outside; of the latter a warning tells.
 struct Hints {
-  /// Direction, of any length, that open sheets face: terrain, roofs, what lies on a table.
+  /// Direction, of any length, that open surfaces face: terrain, roofs, what lies on a table.
   std::optional<Vec3> up{};
   /// Places that the points were seen from. A point faces its own sensor, or the nearest one if `sensor_of_point` is empty.
   std::vector<Vec3> sensors{};

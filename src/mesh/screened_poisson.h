@@ -24,7 +24,7 @@ inline constexpr int kMaxPoissonDepth = 12;
 void require_screened_poisson();
 
 /// Meshes N points with their N outward normals of any length (the length has no influence). Triangles face the way the normals do, so the
-/// signed volume is positive. The mesh is manifold, and closed unless the surface leaves the cube around the points (an open sheet does).
+/// signed volume is positive. The mesh is manifold, and closed unless the surface leaves the cube around the points (an open surface does).
 /// Every vertex is used by a triangle. Where points are dense the cells of the octree are 1.1 * (longest side of the box) / 2^depth wide.
 ///
 /// Coordinates are centred and scaled in double first; vertices come back with single precision relative to the box. Runs on one thread,

@@ -51,9 +51,11 @@ constexpr double kExact = 0.01;           // spacings: deviations below are as g
 constexpr std::size_t kWallPoints = 24;   // of the heights that tell one wall from two
 constexpr std::size_t kWallPlaces = 500;  // at most, whose median counts
 constexpr double kOutside = 0.55;         // enclosure from which a part has an outside; a plane has 0, half a sphere 0.6, a sphere 1
-constexpr double kLevel = 1e-6;           // part of the mean normal that counts as none
-constexpr float kUndecided = 0.5F;        // certainty of a side that is chosen, or not certified
-constexpr std::size_t kBlock = 1024;      // points per parallel block
+constexpr double kEncloses =
+    0.7;                         // enclosure, more than half a sphere's, from which the equations hold better than a hypothesis under noise
+constexpr double kLevel = 1e-6;  // part of the mean normal that counts as none
+constexpr float kUndecided = 0.5F;    // certainty of a side that is chosen, or not certified
+constexpr std::size_t kBlock = 1024;  // points per parallel block
 
 // Places where the unrest of the given normals is that of an open surface, and what to try there.
 class Search {
@@ -296,7 +298,7 @@ Verdict suspect(const Search& search, const std::vector<double>& unrest, const s
 // The best hypothesis of every part. Where unrest alone does not decide it has to be far better than what was given; else nothing is
 // certain, if the part is not at rest either.
 void choose(const Search& search, const std::vector<std::vector<Vec3>>& tried, const std::vector<double>& unrest,
-            const std::vector<double>& defect, Verdict& verdict) {
+            const std::vector<double>& defect, double noise, Verdict& verdict) {
   for (std::size_t h = 0; h < tried.size(); ++h) {
     const std::vector<double> here = search.mean_of_parts(search.test(tried[h]).jump_defect);
     for (std::size_t p = 0; p < here.size(); ++p) {
@@ -316,6 +318,12 @@ void choose(const Search& search, const std::vector<std::vector<Vec3>>& tried, c
     for (std::uint32_t p = 0; p < unrest.size(); ++p) {
       if (verdict.is_open[p] != 0 && verdict.best[p] == h) verdict.enclosure[p] = search.enclosure(p, at_sites);
     }
+  }
+  // Noise makes one wall of two: what encloses nearly everything is a closed surface whose thin parts it hides.
+  for (std::size_t p = 0; p < unrest.size(); ++p) {
+    if (verdict.is_open[p] == 0 || noise == 0 || std::abs(verdict.enclosure[p]) < kEncloses) continue;
+    verdict.is_open[p] = 0;
+    verdict.is_doubtful[p] = 1;
   }
 }
 
@@ -360,7 +368,7 @@ OpenSurfaces find_open_surfaces(const std::vector<Vec3>& points, const std::vect
   std::vector<std::vector<Vec3>> tried;
   if (any(verdict.is_open)) {
     tried = search.hypotheses();
-    choose(search, tried, unrest, defect, verdict);
+    choose(search, tried, unrest, defect, noise, verdict);
   }
   std::vector<float> shown = certified(search, given, normals);
   OpenSurfaces found;
