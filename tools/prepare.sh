@@ -27,11 +27,6 @@ prepare() {
   tools/sources.sh || true
 }
 
-# use_ccache: what one build has compiled the next ones take, those of the Python package too.
-use_ccache() {
-  export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
-}
-
 # build PRESET [TARGET...]: configures and builds the targets, all of them by default.
 build() {
   local preset=$1
