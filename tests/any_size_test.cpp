@@ -123,7 +123,7 @@ TEST(ExternalSort, RunsGiveTheOrderOfOneSort) {
 // Occupied cells of a sphere at a level, as if each held one point.
 tiles::Cells cells_of_sphere(int level) {
   std::vector<std::uint64_t> codes;
-  for (const Vec3& p : shapes::sphere(20000).points) codes.push_back(morton_code(p) >> (3 * (tiles::kGridBits - level)));
+  for (const Vec3& p : shapes::sphere(20000).points) codes.push_back(morton_code(p) >> (3 * (kGridBits - level)));
   std::sort(codes.begin(), codes.end());
   codes.erase(std::unique(codes.begin(), codes.end()), codes.end());
   tiles::Cells cells;

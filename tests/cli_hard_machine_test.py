@@ -151,13 +151,7 @@ class HardMachine(ProgramTest):
         fcntl.ioctl(other, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
         process = self.start("ball.ply", "mesh.ply", stdout=subprocess.DEVNULL, stderr=other, env={**os.environ, "TERM": "xterm"})
         os.close(other)
-        text = b""
-        try:
-            while chunk := os.read(main, 4096):
-                text += chunk
-        except OSError:  # Linux ends a closed terminal with EIO
-            pass
-        os.close(main)
+        text = all_of_terminal(main)
         self.assertEqual(process.wait(), OK)
         return text.decode("utf-8")
 

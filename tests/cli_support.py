@@ -130,6 +130,18 @@ class ProgramTest(unittest.TestCase):
         return result
 
 
+def all_of_terminal(main):
+    """What was written to a pseudo-terminal until its other end was closed, by its main end, which is closed too."""
+    text = b""
+    try:
+        while chunk := os.read(main, 4096):
+            text += chunk
+    except OSError:  # Linux ends a closed terminal with EIO
+        pass
+    os.close(main)
+    return text
+
+
 def dropped_to_nobody():
     """Options of start() under which file permissions count: root may do anything."""
     return {"user": NOBODY, "group": NOBODY, "extra_groups": []} if os.geteuid() == 0 else {}

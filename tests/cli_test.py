@@ -265,13 +265,7 @@ class Streams(ProgramTest):
         process = self.start("orient", "ball.ply", "out.ply", *flags, stdout=subprocess.DEVNULL, stderr=other,
                              env={**os.environ, "TERM": "xterm"})
         os.close(other)
-        text = b""
-        try:
-            while chunk := os.read(main, 4096):
-                text += chunk
-        except OSError:  # Linux ends a closed terminal with EIO
-            pass
-        os.close(main)
+        text = all_of_terminal(main)
         self.assertEqual(process.wait(), OK)
         return text
 

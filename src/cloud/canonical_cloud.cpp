@@ -12,21 +12,11 @@ namespace g3r {
 namespace {
 
 constexpr double kBoxSide = 2.0 / 1.1;    // the paper's normalisation
-constexpr int kGridBits = 21;             // 3 x 21 = 63 bits fit one code
 constexpr std::size_t kBlock = 1u << 14;  // points per parallel block; any value gives the same result
 constexpr std::size_t kFewestPoints = 4;  // fewer cannot enclose a volume
 constexpr double kLineThickness = 1e-12;  // distance from a line over its length, below which points count as collinear: rounding
 
 bool finite(const Vec3& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }
-
-std::uint64_t spread_bits(std::uint64_t v) {  // 21 bits -> every third bit
-  v &= 0x1fffff;
-  v = (v | v << 32) & 0x1f00000000ffffULL;
-  v = (v | v << 16) & 0x1f0000ff0000ffULL;
-  v = (v | v << 8) & 0x100f00f00f00f00fULL;
-  v = (v | v << 4) & 0x10c30c30c30c30c3ULL;
-  return (v | v << 2) & 0x1249249249249249ULL;
-}
 
 struct Keyed {
   std::uint64_t code;
@@ -129,6 +119,15 @@ void require_not_collinear(const std::vector<Vec3>& points) {
 }
 
 }  // namespace
+
+std::uint64_t spread_bits(std::uint64_t v) {
+  v &= 0x1fffff;
+  v = (v | v << 32) & 0x1f00000000ffffULL;
+  v = (v | v << 16) & 0x1f0000ff0000ffULL;
+  v = (v | v << 8) & 0x100f00f00f00f00fULL;
+  v = (v | v << 4) & 0x10c30c30c30c30c3ULL;
+  return (v | v << 2) & 0x1249249249249249ULL;
+}
 
 std::uint64_t morton_code(const Vec3& unit) {
   constexpr double kCells = static_cast<double>(1 << kGridBits);

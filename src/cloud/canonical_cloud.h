@@ -36,6 +36,11 @@ struct CanonicalCloud {
   [[nodiscard]] std::size_t size() const { return points.size(); }
 };
 
+inline constexpr int kGridBits = 21;  ///< of an axis in a Morton code: 3 x 21 = 63 bits
+
+/// The lowest 21 bits, each moved to three times its place: one axis of a Morton code.
+[[nodiscard]] std::uint64_t spread_bits(std::uint64_t v);
+
 /// Morton code of a point of [-1, 1]^3 on the 2^21 grid: bits x2 y2 z2 x1 y1 z1 x0 y0 z0, x highest. Coordinates outside are clamped.
 [[nodiscard]] std::uint64_t morton_code(const Vec3& unit);
 

@@ -51,11 +51,10 @@ constexpr double kExact = 0.01;           // spacings: deviations below are as g
 constexpr std::size_t kWallPoints = 24;   // of the heights that tell one wall from two
 constexpr std::size_t kWallPlaces = 500;  // at most, whose median counts
 constexpr double kOutside = 0.55;         // enclosure from which a part has an outside; a plane has 0, half a sphere 0.6, a sphere 1
-constexpr double kEncloses =
-    0.7;                         // enclosure, more than half a sphere's, from which the equations hold better than a hypothesis under noise
-constexpr double kLevel = 1e-6;  // part of the mean normal that counts as none
-constexpr float kUndecided = 0.5F;    // certainty of a side that is chosen, or not certified
-constexpr std::size_t kBlock = 1024;  // points per parallel block
+constexpr double kEncloses = 0.7;         // enclosure under noise that no bowl up to a half sphere has, so that the part is a closed one
+constexpr double kLevel = 1e-6;           // part of the mean normal that counts as none
+constexpr float kUndecided = 0.5F;        // certainty of a side that is chosen, or not certified
+constexpr std::size_t kBlock = 1024;      // points per parallel block
 
 // Places where the unrest of the given normals is that of an open surface, and what to try there.
 class Search {

@@ -26,8 +26,8 @@ struct OpenSurfaces {
 /// The equations are true of the boundary of a solid. A surface without an inside (terrain, one depth frame, a dental arch) satisfies them
 /// too, but with area vectors that lie in it or change their side from place to place. The field of the result shows it: beside a closed
 /// surface it is 0 or 1, beside an open one it is not (Certificate::unrest). So every connected part of the cloud is tested, and where its
-/// unrest is above 0.17 other hypotheses are tried, from the finest scale on which the samples are a surface (scan lines are one only
-/// across their gaps) and two coarser ones:
+/// unrest is above 0.08 or its jump defect above 0.6 (0.8 under noise) other hypotheses are tried, from the finest scale on which the
+/// samples are a surface (scan lines are one only across their gaps) and two coarser ones:
 ///   1. sites an even distance apart, with the planes of their surroundings (place_sites());
 ///   2. signs by agreement of neighbours (agree_on_signs()), weights w_ij = f_i f_j exp(-0.3 |d|^2 / r^2) (n_i . n_j - 2 (n_i . e)(n_j .
 ///   e)),
@@ -38,7 +38,8 @@ struct OpenSurfaces {
 ///      sampling and turns single sites.
 /// The hypothesis with the least mean Certificate::jump_defect is taken, of equal ones the finest. The outside of a part is the side on
 /// which the mean of w at the part, of its own field, is positive: e / 2, with e = 1 on a closed surface, 0.62 on half a sphere, 0 on a
-/// plane. Where |e| is below 0.6 either side could be it, and the one that faces up (+z; if the part is level, +y, then +x) is taken.
+/// plane. Where |e| is below 0.55 either side could be it, and the one that faces up (+z; if the part is level, +y, then +x) is taken.
+/// Under noise a part with |e| above 0.7 is closed: noise makes one wall of two, and what is left encloses nearly everything.
 /// Where the solution stays as it is, J = max(0, jump of its site) certifies a side: where walls are too close for the sampling the field
 /// does not jump from 0 to 1, whatever the sides. Of exact points J is the largest jump; under noise, which makes sheets of single wrong
 /// patches, it is the mean of the jumps. Points that face the other way than the mean of their site have 0.

@@ -14,15 +14,6 @@ constexpr std::uint64_t kCellPoints = 64;
 // (docs/math.md).
 constexpr std::int64_t kHaloCells = 2;
 
-std::uint64_t spread(std::uint64_t v) {
-  v &= 0x1fffff;
-  v = (v | v << 32) & 0x1f00000000ffffULL;
-  v = (v | v << 16) & 0x1f0000ff0000ffULL;
-  v = (v | v << 8) & 0x100f00f00f00f00fULL;
-  v = (v | v << 4) & 0x10c30c30c30c30c3ULL;
-  return (v | v << 2) & 0x1249249249249249ULL;
-}
-
 std::int64_t gather(std::uint64_t v) {
   v &= 0x1249249249249249ULL;
   v = (v | v >> 2) & 0x10c30c30c30c30c3ULL;
@@ -46,8 +37,8 @@ void for_neighbours(std::uint64_t code, int level, std::int64_t reach, const Vis
   for (std::int64_t x = low[0]; x <= high[0]; ++x) {
     for (std::int64_t y = low[1]; y <= high[1]; ++y) {
       for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-        visit(spread(static_cast<std::uint64_t>(x)) << 2 | spread(static_cast<std::uint64_t>(y)) << 1 |
-              spread(static_cast<std::uint64_t>(z)));
+        visit(spread_bits(static_cast<std::uint64_t>(x)) << 2 | spread_bits(static_cast<std::uint64_t>(y)) << 1 |
+              spread_bits(static_cast<std::uint64_t>(z)));
       }
     }
   }

@@ -1,14 +1,14 @@
 // The cells of one level of the Morton grid that hold points, and what lies around a tile in them.
 #pragma once
 
+#include "cloud/canonical_cloud.h"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace g3r::tiles {
-
-inline constexpr int kGridBits = 21;  // of an axis in a Morton code
 
 /// An occupied cell. Its points follow one another in Morton order.
 struct Cell {
