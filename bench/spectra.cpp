@@ -51,17 +51,17 @@ std::vector<double> spectrum(LinearSystem& system, std::size_t points) {
 
 nlohmann::ordered_json spectra(const std::string& path, std::size_t count) {
   const CanonicalCloud cloud = canonical_cloud(sample_mesh(read_mesh(path), count, 1).points);
-  const double h = typical_spacing(local_spacing(cloud.points));
+  const double h = typical_spacing(local_spacing(cloud.points()));
   SumPlan plan;
   plan.direct = true;
   plan.double_precision = true;
-  FastSum sum(cloud.points, cloud.morton, Widths(kEpsilon * h), plan);
+  FastSum sum(cloud.points(), cloud.morton(), Widths(kEpsilon * h), plan);
   nlohmann::ordered_json out = {
       {"mesh", path.substr(path.find_last_of('/') + 1)}, {"points", cloud.size()}, {"epsilon_spacings", kEpsilon}};
-  GaussSystem pgr(cloud.points, {{1, 1, 1}}, kEpsilon * h, kLeastDamping, plan, nullptr);
+  GaussSystem pgr(cloud.points(), {{1, 1, 1}}, kEpsilon * h, kLeastDamping, plan, nullptr);
   out["spectra"]["pgr: {1}"] = spectrum(pgr, cloud.size());
   for (const char* set : {"x,y,z", "1,x,y,z", "degree:0-2", "degree:0-3"}) {
-    GreenSystem green(sum, cloud.points, parse_harmonics(set));
+    GreenSystem green(sum, cloud.points(), parse_harmonics(set));
     out["spectra"][std::string("green: {").append(set).append("}")] = spectrum(green, cloud.size());
   }
   EnergySystem energy(sum, 0, kWindingWeight * h);

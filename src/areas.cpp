@@ -1,6 +1,5 @@
 #include "areas.h"
 
-#include "cloud/spacing.h"
 #include "median.h"
 #include "mesh/held_points.h"
 #include "sum/fast_sum.h"
@@ -18,15 +17,12 @@ constexpr double kMost = 1.3;       // a square grid has 1.27; the w of open sur
 
 }  // namespace
 
-std::vector<Vec3> area_vectors(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton,
-                               const std::vector<std::uint32_t>& near, const std::vector<Vec3>& normals, const OpenSurfaces& sheets,
+std::vector<Vec3> area_vectors(const PointSet& set, const std::vector<Vec3>& normals, const OpenSurfaces& sheets,
                                const std::atomic<bool>* cancel) {
-  const std::vector<double> local = local_spacing(points, near);
-  std::vector<double> spacing = smoothed_spacing(local, near);
-  const double typical = typical_spacing(local);
-  const std::vector<std::uint8_t> held = mesh::held_points(points, normals, cancel);
+  std::vector<double> spacing = set.smoothed_spacing();
+  const std::vector<std::uint8_t> held = mesh::held_points(set.points(), normals, cancel);
   for (std::size_t i = 0; i < spacing.size(); ++i) {
-    if (held[i] == 0) spacing[i] = std::min(spacing[i], typical);  // the emptiness around a stray is not its surface
+    if (held[i] == 0) spacing[i] = std::min(spacing[i], set.spacing());  // the emptiness around a stray is not its surface
   }
   std::vector<Vec3> eta = normals;
   std::vector<double> widths = spacing;
@@ -34,7 +30,7 @@ std::vector<Vec3> area_vectors(const std::vector<Vec3>& points, const std::vecto
     for (double& c : eta[i]) c *= spacing[i] * spacing[i];
     widths[i] *= kWidth;
   }
-  FastSum sum(points, morton, Widths(std::move(widths)), sum_plan(kAccuracy, points.size()), cancel);
+  FastSum sum(set.points(), set.morton(), Widths(std::move(widths)), sum_plan(kAccuracy, set.size()), cancel);
   std::vector<double> winding = sum.winding(eta);
   if (!sheets.part.empty()) {
     std::vector<double> closed;

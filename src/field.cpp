@@ -1,8 +1,6 @@
 // The winding field of an oriented cloud, anywhere in space.
 #include "areas.h"
 #include "cloud/canonical_cloud.h"
-#include "cloud/neighbours.h"
-#include "cloud/spacing.h"
 #include "oriented_cloud.h"
 #include "sum/fast_sum.h"
 
@@ -37,7 +35,7 @@ OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& 
     const double area = areas[input[k]] * scale * scale;  // from the left: the square of a scale may leave the range of double
     for (std::size_t a = 0; a < 3; ++a) out.eta[p][a] += area * normals[input[k]][a];
   }
-  out.spacing = typical_spacing(local_spacing(out.cloud.points));
+  out.spacing = out.cloud.set.spacing();
   return out;
 }
 
@@ -50,9 +48,8 @@ OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& 
     if (p == kNoPoint) continue;
     for (std::size_t a = 0; a < 3; ++a) merged[p][a] += normals[i][a] / out.cloud.multiplicity[p];
   }
-  const std::vector<std::uint32_t> near = Neighbours(out.cloud.points).of_all(kSpacingNeighbours);
-  out.eta = area_vectors(out.cloud.points, out.cloud.morton, near, merged, {}, nullptr);
-  out.spacing = typical_spacing(local_spacing(out.cloud.points, near));
+  out.eta = area_vectors(out.cloud.set, merged, {}, nullptr);
+  out.spacing = out.cloud.set.spacing();
   return out;
 }
 
@@ -75,7 +72,7 @@ Field::Field(const PointsView& points, const Orientation& orientation, double wi
   if (!(width >= 0) || !std::isfinite(width)) throw InvalidInput("field: the width must be 0 (automatic) or positive");
   OrientedCloud oriented = oriented_cloud(points, orientation.normals, orientation.areas);
   const double unit_width = width > 0 ? oriented.cloud.frame.length_to_unit(width) : kDefaultWidth * oriented.spacing;
-  FastSum sum(oriented.cloud.points, oriented.cloud.morton, Widths(unit_width), sum_plan(kAccuracy, oriented.cloud.size()));
+  FastSum sum(oriented.cloud.points(), oriented.cloud.morton(), Widths(unit_width), sum_plan(kAccuracy, oriented.cloud.size()));
   impl_ = std::unique_ptr<Impl>(new Impl{std::move(oriented), std::move(sum)});
 }
 

@@ -37,15 +37,16 @@ std::string short_number(double value) {
 }
 
 // The step of the terraces across an axis, 0 if there are none.
-double terrace_step(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near, const std::vector<Vec3>& normals,
-                    std::size_t axis, double spacing) {
-  const std::size_t n = points.size(), stride = near.size() / n, count = std::min(kPairs + 1, stride);
+double terrace_step(const PointSet& set, const std::vector<Vec3>& normals, std::size_t axis) {
+  const std::vector<Vec3>& points = set.points();
+  const double spacing = set.spacing();
+  const std::size_t n = points.size(), stride = set.near_count(), count = std::min(kPairs + 1, stride);
   const std::size_t every = std::max<std::size_t>(1, n / kLooks);
   std::size_t pairs = 0, across = 0, single = 0;
   std::vector<double> steps;
   for (std::size_t i = 0; i < n; i += every) {
     if (std::fabs(normals[i][axis]) < kAcross) continue;
-    const std::uint32_t* const around = near.data() + i * stride;
+    const std::uint32_t* const around = set.near().data() + i * stride;
     const auto is_opposite = [&](std::uint32_t j) { return vector::dot(normals[i], normals[j]) < 0; };
     ++across;
     if (std::any_of(around, around + count, is_opposite)) continue;  // of slats, the next that face the same way are steps away too
@@ -67,8 +68,8 @@ double terrace_step(const std::vector<Vec3>& points, const std::vector<std::uint
   return is_step ? low : 0;
 }
 
-void warn_of_lines(const CanonicalCloud& cloud, const std::vector<std::uint32_t>& near, Stats& stats) {
-  const std::vector<std::uint8_t> along = mesh::points_along_curves(cloud.points, near);
+void warn_of_lines(const CanonicalCloud& cloud, Stats& stats) {
+  const std::vector<std::uint8_t> along = mesh::points_along_curves(cloud.points(), cloud.set.near());
   const auto count = std::count(along.begin(), along.end(), std::uint8_t{1});
   const double share = static_cast<double>(count) / static_cast<double>(along.size());
   if (share < kInLines) return;
@@ -80,15 +81,14 @@ void warn_of_lines(const CanonicalCloud& cloud, const std::vector<std::uint32_t>
 
 }  // namespace
 
-void warn_of_sampling(const CanonicalCloud& cloud, const std::vector<std::uint32_t>& near, const std::vector<Vec3>& normals, double spacing,
-                      Stats& stats) {
-  const std::size_t n = cloud.points.size();
-  if (n < kFewestPairs || near.size() / n <= kPairs) return;
-  warn_of_lines(cloud, near, stats);
+void warn_of_sampling(const CanonicalCloud& cloud, const std::vector<Vec3>& normals, Stats& stats) {
+  if (cloud.size() < kFewestPairs) return;
+  const double spacing = cloud.set.spacing();
+  warn_of_lines(cloud, stats);
   std::string axes;
   double largest = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double step = terrace_step(cloud.points, near, normals, axis, spacing);
+    const double step = terrace_step(cloud.set, normals, axis);
     if (step == 0) continue;
     axes += (axes.empty() ? "" : ", ") + std::string(1, "xyz"[axis]);
     largest = std::max(largest, step);

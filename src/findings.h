@@ -15,9 +15,8 @@ namespace g3r {
 ///   - rounded coordinates: where surface across an axis is in terraces. Of the pairs of near points that face the same way along the axis,
 ///     5 to 90 % have exactly the same coordinate, and the others' differ by a step of 0.15 to 3 spacings. Not where half of these points
 ///     are at walls or gaps, as those of slats.
-/// `near`: nearest points of every point, itself included, 9 or more; `normals`: unit; `spacing`: typical, in the units of the cloud. O(N).
-void warn_of_sampling(const CanonicalCloud& cloud, const std::vector<std::uint32_t>& near, const std::vector<Vec3>& normals, double spacing,
-                      Stats& stats);
+/// `normals`: unit. O(N).
+void warn_of_sampling(const CanonicalCloud& cloud, const std::vector<Vec3>& normals, Stats& stats);
 
 /// Warns, and calls the result doubtful, where a closed mesh has 10 handles or more and fewer than 150 points for each, or 10 parts or more
 /// and fewer than 100 points for each: surfaces that are resolved have more.

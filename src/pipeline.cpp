@@ -1,7 +1,6 @@
 // The whole program on one page: one line per step (orient_in_arena).
 #include "areas.h"
 #include "baselines/baseline.h"
-#include "cloud/neighbours.h"
 #include "cloud/noise.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
@@ -106,7 +105,7 @@ void warn_of_volume(const Problem& problem, Stats& stats) {
   constexpr double kStrongNoise = 0.7;  // spacings; estimate_noise() finds 0.75 to 1 where points fill a volume
   constexpr double kVolume = 2.55;      // cubes and balls have 2.57 and more, surfaces under noise of 2 h at most 2.45, but for close slats
   if (problem.noise <= kStrongNoise * problem.spacing) return;
-  if (dimension(problem.cloud.points, Neighbours(problem.cloud.points)) < kVolume) return;
+  if (dimension(problem.cloud.set) < kVolume) return;
   stats.consistent = false;
   stats.warnings.emplace_back("the points fill a volume: there is no surface, or the noise hides it");
 }
@@ -115,7 +114,7 @@ void warn_of_volume(const Problem& problem, Stats& stats) {
 void add_outliers(const Problem& problem, Stages& stages, Solution& solution, std::vector<float>& confidence) {
   if (problem.outliers.empty()) return;
   const Settings& s = problem.settings;
-  const FastSum field(problem.cloud.points, problem.cloud.morton, Widths(s.refinement_width), s.sums, stages.cancel());
+  const FastSum field(problem.cloud.points(), problem.cloud.morton(), Widths(s.refinement_width), s.sums, stages.cancel());
   const std::vector<Vec3> none(problem.outliers.size(), Vec3{0, 0, 0});
   const std::vector<Vec3> normals = unit_normals(field.winding_gradient_at(solution.eta, problem.outliers, stages.cancel()), none).normals;
   solution.refinement.normals.insert(solution.refinement.normals.end(), normals.begin(), normals.end());
@@ -124,10 +123,9 @@ void add_outliers(const Problem& problem, Stages& stages, Solution& solution, st
 }
 
 // The solve is for normals; the lengths of its vectors follow the luck of the sample. Earlier methods keep theirs.
-void settle_areas(const Problem& problem, const std::vector<std::uint32_t>& near, Stages& stages, Solution& solution) {
+void settle_areas(const Problem& problem, Stages& stages, Solution& solution) {
   if (problem.settings.method != Method::kEnergy || contains(problem.settings.without, Step::kAreas)) return;
-  solution.eta =
-      area_vectors(problem.cloud.points, problem.cloud.morton, near, solution.refinement.normals, solution.sheets, stages.cancel());
+  solution.eta = area_vectors(problem.cloud.set, solution.refinement.normals, solution.sheets, stages.cancel());
 }
 
 // From the canonical order back to the caller's. A duplicate gets its twin's normal and its share of the area.
@@ -199,7 +197,6 @@ void judge(const CanonicalCloud& cloud, const std::vector<float>& confidence, St
 struct Oriented {
   Solution solution;
   std::vector<float> confidence;
-  std::vector<std::uint32_t> near;  // kSpacingNeighbours nearest of every point
   double doubt = 0;                 // share of the points that could face either way by their own equations, or lie on open surfaces
 };
 
@@ -207,10 +204,11 @@ Oriented orient_problem(const Problem& problem, const Options& options, Stages& 
   Oriented out;
   out.solution = solve(problem, options, stages, stats);
   solve_sheets_apart(problem, options, stages, stats, out.solution);
-  out.near = problem.near.empty() ? Neighbours(problem.cloud.points).of_all(kSpacingNeighbours) : problem.near;
   const Refinement& refined = out.solution.refinement;
-  const std::vector<Vec3> vectors = problem.noise > 0 ? sums_over(out.near, out.solution.eta) : out.solution.eta;
-  out.confidence = side_confidence(vectors, refined.normals, refined.strength, problem.local_spacing);
+  const std::vector<Vec3> vectors = problem.noise > 0 ? sums_over(problem.cloud.set.near(), out.solution.eta) : out.solution.eta;
+  const std::vector<double> none;
+  const std::vector<double>& spacing = problem.is_clean() ? problem.cloud.set.smoothed_spacing() : none;
+  out.confidence = side_confidence(vectors, refined.normals, refined.strength, spacing);
   add_sheets(out.solution.sheets, out.confidence, stats);
   out.doubt = unsure_share(out.confidence) + stats.open_share;  // what is called open at one noise may be closed at another
   if (!contains(problem.settings.without, Step::kCertificate)) certify_sides(out.solution.sheets, out.confidence);
@@ -227,10 +225,10 @@ bool may_try_noises(const Problem& problem, const Options& options) {
 // more if most of many points scatter far more than those that scatter least, which the estimate goes by.
 std::optional<double> other_noise(const Problem& problem, const Options& options, double doubt) {
   if (!may_try_noises(problem, options) || doubt < kDoubtful) return std::nullopt;
-  const std::vector<Vec3>& points = problem.cloud.points;
-  if (points.size() <= kFewPoints && problem.noise > 0) return 0;
-  if (points.size() < kManyPoints) return std::nullopt;
-  const double scatter = largest_scatter(points, Neighbours(points), problem.spacing);
+  const PointSet& set = problem.cloud.set;
+  if (set.size() <= kFewPoints && problem.noise > 0) return 0;
+  if (set.size() < kManyPoints) return std::nullopt;
+  const double scatter = largest_scatter(set);
   if (scatter < kScattered * problem.spacing || scatter < kFarMore * problem.noise) return std::nullopt;
   return kAboveScatter * scatter;
 }
@@ -293,14 +291,13 @@ Orientation orient_in_arena(const PointsView& points, const Options& options, St
   Attempt best = orient_with_best_noise(points, options, stages);
   Solution& solution = best.oriented.solution;
   std::vector<float>& confidence = best.oriented.confidence;
-  const std::vector<std::uint32_t>& near = best.oriented.near;
   Orientation out;
   out.stats = std::move(best.stats);
   fit_noisy_surface(best.problem, stages, solution);
-  settle_areas(best.problem, near, stages, solution);
-  settle_by_hints(best.problem, options, near, solution, confidence, out.stats, stages.cancel());
+  settle_areas(best.problem, stages, solution);
+  settle_by_hints(best.problem, options, solution, confidence, out.stats, stages.cancel());
   warn_of_volume(best.problem, out.stats);
-  warn_of_sampling(best.problem.cloud, near, solution.refinement.normals, best.problem.spacing, out.stats);
+  warn_of_sampling(best.problem.cloud, solution.refinement.normals, out.stats);
   add_outliers(best.problem, stages, solution, confidence);
   hand_out(best.problem.cloud, solution.eta, solution.refinement.normals, confidence, out);
   stages.finish(out.stats);

@@ -18,12 +18,13 @@ namespace g3r {
 struct Problem {
   CanonicalCloud cloud;
   std::vector<Vec3> outliers;         ///< taken out of the cloud; their indices follow those of its points
-  std::vector<std::uint32_t> near;    ///< 17 nearest of every point, itself included; with local_spacing only
-  std::vector<double> local_spacing;  ///< smoothed, per point; of clean clouds only
   double spacing = 0;                 ///< typical_spacing()
   double noise = 0;                   ///< given_noise() or estimate_noise()
   double line_distance = 0;  ///< surface_distance(): 0, or the distance of the sites that are solved for where the samples are lines
   Settings settings;
+
+  /// Whether the points are exact, so that steps follow the local spacing and prove directions from the points alone.
+  [[nodiscard]] bool is_clean() const { return noise == 0 && settings.polish_steps > 0; }
   std::optional<BaselineSettings> baseline;  ///< with the methods wnnc, agr and pgr
 };
 

@@ -45,7 +45,7 @@ class WindingSampler : public FieldSampler {
   WindingSampler(const OrientedCloud& oriented, const std::atomic<bool>* cancel)
       : oriented_(oriented),
         cancel_(cancel),
-        sum_(oriented.cloud.points, oriented.cloud.morton, Widths(kFieldWidth * oriented.spacing),
+        sum_(oriented.cloud.points(), oriented.cloud.morton(), Widths(kFieldWidth * oriented.spacing),
              sum_plan(kFieldAccuracy, oriented.cloud.size()), cancel) {}
 
   void sample(const std::vector<Vec3>& queries, std::vector<double>& value, std::vector<Vec3>* gradient) const override {
@@ -86,12 +86,12 @@ void require_meshable(const PointsView& points) {
 
 Mesh mesh_with_poisson(const OrientedCloud& oriented, const std::vector<Vec3>& normals, int depth) {
   const int chosen = depth > 0 ? depth : automatic_depth(oriented.spacing, 2.0 / 1.1);
-  return screened_poisson(oriented.cloud.points, normals, chosen);
+  return screened_poisson(oriented.cloud.points(), normals, chosen);
 }
 
 // Whether the points face into the solid that they surround, as those of a room do that is seen from inside.
 bool is_inside_out(const OrientedCloud& oriented, const WindingSampler& field) {
-  const std::vector<Vec3>& points = oriented.cloud.points;
+  const std::vector<Vec3>& points = oriented.cloud.points();
   std::vector<Vec3> probes;
   for (std::size_t i = 0; i < points.size(); i += (points.size() + kProbes - 1) / kProbes) probes.push_back(points[i]);
   std::vector<double> winding;
@@ -110,20 +110,20 @@ std::vector<Vec3> directions_of(const std::vector<Vec3>& eta) {
 // Leaves out the points that no surface goes through. The numbers of the others do not lead to the input any more.
 void drop_strays(OrientedCloud& oriented, std::vector<Vec3>& strays, const std::atomic<bool>* cancel) {
   CanonicalCloud& cloud = oriented.cloud;
-  const std::vector<std::uint8_t> held = mesh::held_points(cloud.points, directions_of(oriented.eta), cancel);
-  std::size_t to = 0;
+  const std::vector<std::uint8_t> held = mesh::held_points(cloud.points(), directions_of(oriented.eta), cancel);
+  std::vector<Vec3> points;
+  std::vector<std::uint64_t> morton;
   for (std::size_t i = 0; i < held.size(); ++i) {
     if (held[i] == 0) {
-      strays.push_back(cloud.points[i]);
+      strays.push_back(cloud.points()[i]);
       continue;
     }
-    cloud.points[to] = cloud.points[i];
-    cloud.morton[to] = cloud.morton[i];
-    oriented.eta[to++] = oriented.eta[i];
+    oriented.eta[points.size()] = oriented.eta[i];
+    points.push_back(cloud.points()[i]);
+    morton.push_back(cloud.morton()[i]);
   }
-  cloud.points.resize(to);
-  cloud.morton.resize(to);
-  oriented.eta.resize(to);
+  oriented.eta.resize(points.size());
+  cloud.set = PointSet(std::move(points), std::move(morton));
 }
 
 void turn(std::vector<Vec3>& vectors) {
@@ -151,16 +151,16 @@ Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor
   if (options.mesher == Mesher::kPoisson) {
     mesh = mesh_with_poisson(oriented, directions, options.depth);
     normalised.min_component = 0;  // specks of screened Poisson are part of its result
-    mesh::finish_mesh(mesh, oriented.cloud.points, mesh::smooth_spacing(oriented.cloud.points), 0, normalised);
+    mesh::finish_mesh(mesh, oriented.cloud.points(), mesh::smooth_spacing(oriented.cloud.points()), 0, normalised);
   } else {
-    mesh = field_mesh(oriented.cloud.points, directions, field, normalised, monitor, max_memory, &left_out);
+    mesh = field_mesh(oriented.cloud.points(), directions, field, normalised, monitor, max_memory, &left_out);
   }
   left_out.dropped.area /= frame.scale * frame.scale;
   if (mesh.triangles.empty()) throw InvalidInput("no surface found: the oriented points do not enclose a volume");
   if (inside_out) {
     for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
   }
-  if (far_share != nullptr) *far_share = mesh::far_share(mesh, oriented.cloud.points, kFarSpacings);
+  if (far_share != nullptr) *far_share = mesh::far_share(mesh, oriented.cloud.points(), kFarSpacings);
   for (Vec3& v : mesh.vertices) {
     for (std::size_t a = 0; a < 3; ++a) v[a] = v[a] / frame.scale + frame.centre[a];
   }

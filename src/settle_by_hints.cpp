@@ -75,12 +75,12 @@ void warn(const HintEffect& effect, const Hints& hints, const CanonicalCloud& cl
 
 }  // namespace
 
-void settle_by_hints(const Problem& problem, const Options& options, const std::vector<std::uint32_t>& near, Solution& solution,
-                     std::vector<float>& confidence, Stats& stats, const std::atomic<bool>* cancel) {
+void settle_by_hints(const Problem& problem, const Options& options, Solution& solution, std::vector<float>& confidence,
+                     Stats& stats, const std::atomic<bool>* cancel) {
   const Patches patches = patches_of(solution.sheets);
   const Hints hints = in_frame(options.hints, problem.cloud);
   stats.hints.given = names_of(hints);
-  const HintEffect effect = follow_hints(problem.cloud.points, near, problem.spacing, patches, hints,
+  const HintEffect effect = follow_hints(problem.cloud.points(), problem.cloud.set.near(), problem.spacing, patches, hints,
                                          {solution.refinement.normals, solution.eta, confidence}, cancel);
   const double turned = share(effect.turned);
   stats.hints.turned_share = hints.flip ? 1 - turned : turned;

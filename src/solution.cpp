@@ -2,9 +2,7 @@
 
 #include "baselines/baseline.h"
 #include "cloud/clusters.h"
-#include "cloud/neighbours.h"
 #include "cloud/sites.h"
-#include "cloud/spacing.h"
 #include "orient/coarse_to_fine.h"
 #include "orient/creases.h"
 #include "orient/facets.h"
@@ -52,10 +50,10 @@ Solution solve_by_baseline(const Problem& problem, Stages& stages, Stats& stats)
 // Area vectors, and their refinement unless its width is 0.
 Solution solve_equations(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
   const Settings& s = problem.settings;
-  const std::vector<Vec3>& points = problem.cloud.points;
+  const std::vector<Vec3>& points = problem.cloud.points();
   stages.begin("solve");
   if (!s.dense) {
-    Solved solved = solve_coarse_to_fine(points, problem.cloud.morton, s, stages);
+    Solved solved = solve_coarse_to_fine(points, problem.cloud.morton(), s, stages);
     record(s, solved.result, stats);
     return {std::move(solved.result.eta), std::move(solved.refinement), {}};
   }
@@ -67,7 +65,7 @@ Solution solve_equations(const Problem& problem, const Options& options, Stages&
   solution.eta = std::move(dense.eta);
   stages.begin("refine");
   if (s.refinement_width == 0) return solution;
-  FastSum sum(points, problem.cloud.morton, Widths(s.refinement_width), s.sums, stages.cancel());
+  FastSum sum(points, problem.cloud.morton(), Widths(s.refinement_width), s.sums, stages.cancel());
   solution.refinement = refine_normals(sum, solution.eta);
   return solution;
 }
@@ -77,8 +75,8 @@ bool has_open_part(const OpenSurfaces& sheets) {
 }
 
 // Points on open surfaces get area vectors along the normals found for them.
-void set_sheet_areas(const OpenSurfaces& sheets, const std::vector<double>& spacing, const std::vector<Vec3>& normals,
-                     std::vector<Vec3>& eta) {
+void set_sheet_areas(const OpenSurfaces& sheets, const PointSet& set, const std::vector<Vec3>& normals, std::vector<Vec3>& eta) {
+  const std::vector<double>& spacing = set.local_spacing();
   for (std::size_t i = 0; i < sheets.part.size(); ++i) {
     if (sheets.part[i] == OpenSurfaces::kNone) continue;
     for (std::size_t a = 0; a < 3; ++a) eta[i][a] = spacing[i] * spacing[i] * normals[i][a];
@@ -90,15 +88,15 @@ void set_sheet_areas(const OpenSurfaces& sheets, const std::vector<double>& spac
 template <typename Fit>
 void agree_on_facets(const Problem& problem, const std::vector<std::uint8_t>& proven, const Fit& fit, std::vector<Vec3>& eta,
                      std::vector<Vec3>& normals, Stages& stages) {
-  const std::vector<Vec3>& points = problem.cloud.points;
+  const PointSet& set = problem.cloud.set;
   const Settings& s = problem.settings;
   for (int round = 0; round < kFacetRounds; ++round) {
-    const Facets facets = find_facets(points, problem.near, problem.local_spacing, proven, normals);
+    const Facets facets = find_facets(set, proven, normals);
     if (share_at_odds(facets, normals) < kAtOdds) return;
-    choose_facet_sides(points, problem.cloud.morton, s, problem.local_spacing, facets, eta, normals, stages);
-    FastSum sum(points, problem.cloud.morton, local_widths(s.polish_width, s, problem.local_spacing), s.sums, stages.cancel());
+    choose_facet_sides(set, s, facets, eta, normals, stages);
+    FastSum sum(set.points(), set.morton(), local_widths(s.polish_width, s, set.smoothed_spacing()), s.sums, stages.cancel());
     const Refinement refined = refine_normals(sum, eta);
-    for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t i = 0; i < set.size(); ++i) {
       if (facets.of[i] == Facets::kNone) normals[i] = refined.normals[i];
     }
     fit();
@@ -106,44 +104,42 @@ void agree_on_facets(const Problem& problem, const std::vector<std::uint8_t>& pr
 }
 
 // The directions of a clean cloud, where its points prove what the surface is. Returns for which they do.
-std::vector<std::uint8_t> fit_directions(const Problem& problem, const Neighbours& neighbours, std::vector<Vec3>& normals) {
+std::vector<std::uint8_t> fit_directions(const Problem& problem, std::vector<Vec3>& normals) {
   std::vector<std::uint8_t> proven(normals.size(), 0);
-  if (runs(problem, Step::kJets)) proven = fit_jets(problem.cloud.points, problem.near, problem.local_spacing, normals);
-  if (runs(problem, Step::kPlanes)) fit_planes(problem.cloud.points, neighbours, problem.local_spacing, proven, normals);
+  if (runs(problem, Step::kJets)) proven = fit_jets(problem.cloud.set, normals);
+  if (runs(problem, Step::kPlanes)) fit_planes(problem.cloud.set, proven, normals);
   return proven;
 }
 
 // The normals of a clean cloud: directions, creases, and the sides of facets.
-void fit_surface(const Problem& problem, const Neighbours& neighbours, std::vector<Vec3>& eta, std::vector<Vec3>& normals, Stages& stages) {
+void fit_surface(const Problem& problem, std::vector<Vec3>& eta, std::vector<Vec3>& normals, Stages& stages) {
   std::vector<std::uint8_t> proven;
-  const auto fit = [&] { proven = fit_directions(problem, neighbours, normals); };
+  const auto fit = [&] { proven = fit_directions(problem, normals); };
   fit();
-  if (runs(problem, Step::kCreases) && sharpen_creases(problem.cloud.points, problem.near, problem.local_spacing, normals)) fit();
+  if (runs(problem, Step::kCreases) && sharpen_creases(problem.cloud.set, normals)) fit();
   if (runs(problem, Step::kFacets)) agree_on_facets(problem, proven, fit, eta, normals, stages);
 }
 
 Solution solve_on_points(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
   const Settings& s = problem.settings;
-  const std::vector<Vec3>& points = problem.cloud.points;
+  const PointSet& set = problem.cloud.set;
   Solution solution = solve_equations(problem, options, stages, stats);
   if (s.refinement_width == 0) solution.refinement.normals = normalised(solution.eta);
   if (s.polish_steps == 0) return solution;
   const std::vector<double> none;
-  const std::vector<double>& local = runs(problem, Step::kLocalWidths) ? problem.local_spacing : none;
-  Polished polished = polish(points, problem.cloud.morton, s, local, {}, solution.refinement, stages);
+  const std::vector<double>& local = problem.is_clean() && runs(problem, Step::kLocalWidths) ? set.smoothed_spacing() : none;
+  Polished polished = polish(set.points(), set.morton(), s, local, {}, solution.refinement, stages);
   std::vector<Vec3>& normals = polished.refinement.normals;
-  const Neighbours neighbours(points);
   const auto find_open = [&](std::vector<Vec3>& sides) {
     if (!runs(problem, Step::kOpenSurfaces)) return OpenSurfaces{};
-    return find_open_surfaces(points, problem.cloud.morton, problem.spacing, problem.noise, s.sums, sides, stages.cancel());
+    return find_open_surfaces(set, problem.noise, s.sums, sides, stages.cancel());
   };
   OpenSurfaces sheets = find_open(normals);
-  const bool is_clean = !problem.local_spacing.empty();
   if (has_open_part(sheets)) {
-    set_sheet_areas(sheets, local_spacing(points), normals, polished.eta);
-    if (is_clean) fit_directions(problem, neighbours, normals);
-  } else if (is_clean) {
-    fit_surface(problem, neighbours, polished.eta, normals, stages);
+    set_sheet_areas(sheets, set, normals, polished.eta);
+    if (problem.is_clean()) fit_directions(problem, normals);
+  } else if (problem.is_clean()) {
+    fit_surface(problem, polished.eta, normals, stages);
     if (!sheets.part.empty()) sheets = find_open(normals);  // facets may have found sides that certify it
   }
   return {std::move(polished.eta), std::move(polished.refinement), std::move(sheets)};
@@ -165,7 +161,7 @@ Refinement solve_clusters(const Clusters& clusters, const Settings& s, Stages& s
 // equal. The refinement is evaluated at every point.
 Solution solve_on_clusters(const Problem& problem, Stages& stages, Stats& stats) {
   const Settings& s = problem.settings;
-  const Clusters clusters = cluster_points(problem.cloud.points, problem.cloud.morton, s.cluster_side);
+  const Clusters clusters = cluster_points(problem.cloud.points(), problem.cloud.morton(), s.cluster_side);
   const Refinement first = solve_clusters(clusters, s, stages, stats);
   Polished polished = polish(clusters.points, clusters.morton, s, {}, clusters.multiplicity, first, stages);
   std::vector<Vec3>& eta = polished.eta;
@@ -176,20 +172,17 @@ Solution solve_on_clusters(const Problem& problem, Stages& stages, Stats& stats)
     const std::uint32_t c = clusters.cluster_of[i];
     for (std::size_t a = 0; a < 3; ++a) solution.eta[i][a] = eta[c][a] / clusters.multiplicity[c];
   }
-  solution.refinement = unit_normals(field.winding_gradient_at(eta, problem.cloud.points, stages.cancel()), solution.eta);
+  solution.refinement = unit_normals(field.winding_gradient_at(eta, problem.cloud.points(), stages.cancel()), solution.eta);
   if (!runs(problem, Step::kOpenSurfaces)) return solution;
-  solution.sheets = find_open_surfaces(problem.cloud.points, problem.cloud.morton, problem.spacing, problem.noise, s.sums,
-                                       solution.refinement.normals, stages.cancel());
-  if (!solution.sheets.part.empty()) {
-    set_sheet_areas(solution.sheets, local_spacing(problem.cloud.points), solution.refinement.normals, solution.eta);
-  }
+  solution.sheets = find_open_surfaces(problem.cloud.set, problem.noise, s.sums, solution.refinement.normals, stages.cancel());
+  if (!solution.sheets.part.empty()) set_sheet_areas(solution.sheets, problem.cloud.set, solution.refinement.normals, solution.eta);
   return solution;
 }
 
 // Where the samples are lines: on sites as far apart as the lines, which are a surface. The refinement is evaluated at every point.
 Solution solve_on_sites(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
-  const std::vector<Vec3>& points = problem.cloud.points;
-  const Sites sites = place_sites(points, problem.cloud.morton, Neighbours(points), problem.line_distance);
+  const std::vector<Vec3>& points = problem.cloud.points();
+  const Sites sites = place_sites(problem.cloud.set, problem.line_distance);
   const Problem coarse = on_sites(problem, sites, options);
   Solution solved = solve(coarse, options, stages, stats);
   solve_sheets_apart(coarse, options, stages, stats, solved);
@@ -197,9 +190,9 @@ Solution solve_on_sites(const Problem& problem, const Options& options, Stages& 
   out.sheets.worst_defect = solved.sheets.worst_defect;
   out.sheets.uncertified = solved.sheets.uncertified;
   out.eta.resize(points.size());
-  std::vector<double> members(sites.points.size(), 0);
+  std::vector<double> members(sites.size(), 0);
   for (const std::uint32_t s : sites.site_of) ++members[s];
-  std::vector<std::uint32_t> first(sites.points.size(), OpenSurfaces::kNone);  // point of every part
+  std::vector<std::uint32_t> first(sites.size(), OpenSurfaces::kNone);  // point of every part
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const std::uint32_t s = sites.site_of[i];
     out.eta[i] = vector::scale(solved.eta[s], 1 / members[s]);
@@ -210,7 +203,7 @@ Solution solve_on_sites(const Problem& problem, const Options& options, Stages& 
     out.sheets.part.push_back(part == OpenSurfaces::kNone ? part : first[part]);
     out.sheets.certainty.push_back(solved.sheets.certainty[s]);
   }
-  const FastSum field(sites.points, sites.morton, Widths(kBetweenSites * coarse.spacing), coarse.settings.sums, stages.cancel());
+  const FastSum field(sites.points(), sites.set.morton(), Widths(kBetweenSites * coarse.spacing), coarse.settings.sums, stages.cancel());
   out.refinement = unit_normals(field.winding_gradient_at(solved.eta, points, stages.cancel()), out.eta);
   return out;
 }
@@ -268,8 +261,7 @@ void solve_sheets_apart(const Problem& problem, const Options& options, Stages& 
 
 void fit_noisy_surface(const Problem& problem, Stages& stages, Solution& solution) {
   if (problem.baseline || problem.noise == 0 || problem.settings.polish_steps == 0 || !runs(problem, Step::kNoisyJets)) return;
-  const std::vector<Vec3>& points = problem.cloud.points;
-  fit_noisy_jets(points, Neighbours(points), problem.noise, problem.spacing, solution.refinement.normals, stages.cancel());
+  fit_noisy_jets(problem.cloud.set, problem.noise, solution.refinement.normals, stages.cancel());
 }
 
 }  // namespace g3r

@@ -55,7 +55,7 @@ void expect_adjoint(const std::vector<double>& w, const std::vector<Vec3>& wt, c
 TEST(HardCutoff, SumsOverSourcesBeyondTheWidthOnly) {
   const CanonicalCloud cloud = bumpy_cloud();
   const double width = 0.08;
-  HardCutoffSum sum(cloud.points, cloud.morton, width, sum_plan(1e-4, cloud.size()), nullptr);
+  HardCutoffSum sum(cloud.points(), cloud.morton(), width, sum_plan(1e-4, cloud.size()), nullptr);
   const std::vector<Vec3> eta = random_vectors(cloud.size(), 3);
   const std::vector<double> w = sum.winding(eta);
   const std::vector<Vec3> gradient = sum.winding_gradient(eta);
@@ -64,7 +64,7 @@ TEST(HardCutoff, SumsOverSourcesBeyondTheWidthOnly) {
     double wanted = 0;
     Vec3 wanted_gradient{0, 0, 0};
     for (std::size_t j = 0; j < cloud.size(); ++j) {
-      const Vec3 r = vector::subtract(cloud.points[j], cloud.points[i]);
+      const Vec3 r = vector::subtract(cloud.points()[j], cloud.points()[i]);
       const double r2 = vector::dot(r, r);
       if (r2 < width * width) continue;
       const double g = 1 / (4 * std::numbers::pi * r2 * std::sqrt(r2));
@@ -84,7 +84,7 @@ TEST(HardCutoff, SumsOverSourcesBeyondTheWidthOnly) {
 
 TEST(HardCutoff, AdjointIsTheAdjoint) {
   const CanonicalCloud cloud = bumpy_cloud();
-  HardCutoffSum sum(cloud.points, cloud.morton, 0.05, sum_plan(1e-2, cloud.size()), nullptr);
+  HardCutoffSum sum(cloud.points(), cloud.morton(), 0.05, sum_plan(1e-2, cloud.size()), nullptr);
   const std::vector<Vec3> eta = random_vectors(cloud.size(), 1);
   const std::vector<double> q = random_values(cloud.size(), 2);
   expect_adjoint(sum.winding(eta), sum.winding_adjoint(q), eta, q);
@@ -96,9 +96,9 @@ TEST(StretchedWinding, IsOneHalfOnAClosedSurface) {
   const CanonicalCloud cloud = canonical_cloud(sphere.points);
   std::vector<Vec3> eta(cloud.size());
   const double area = 4 * std::numbers::pi * 0.909 * 0.909 / static_cast<double>(cloud.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i) eta[i] = vector::scale(vector::normalised(cloud.points[i]), area);
+  for (std::size_t i = 0; i < cloud.size(); ++i) eta[i] = vector::scale(vector::normalised(cloud.points()[i]), area);
   for (const Vec3& stretch : {Vec3{1, 1, 1}, Vec3{3, 1, 1}, Vec3{1, 3, 1}, Vec3{1, 1, 3}}) {
-    StretchedWinding winding(cloud.points, stretch, 0.01, sum_plan(1e-3, cloud.size()), nullptr);
+    StretchedWinding winding(cloud.points(), stretch, 0.01, sum_plan(1e-3, cloud.size()), nullptr);
     double mean = 0;
     for (const double w : winding.apply(eta)) mean += w / static_cast<double>(cloud.size());
     EXPECT_NEAR(mean, 0.5, 0.02) << stretch[0] << stretch[1] << stretch[2];
@@ -107,7 +107,7 @@ TEST(StretchedWinding, IsOneHalfOnAClosedSurface) {
 
 TEST(StretchedWinding, AdjointIsTheAdjoint) {
   const CanonicalCloud cloud = bumpy_cloud();
-  StretchedWinding winding(cloud.points, {1, 3, 1}, 0.02, sum_plan(1e-2, cloud.size()), nullptr);
+  StretchedWinding winding(cloud.points(), {1, 3, 1}, 0.02, sum_plan(1e-2, cloud.size()), nullptr);
   const std::vector<Vec3> eta = random_vectors(cloud.size(), 1);
   const std::vector<double> q = random_values(cloud.size(), 2);
   expect_adjoint(winding.apply(eta), winding.adjoint(q), eta, q);
@@ -115,7 +115,7 @@ TEST(StretchedWinding, AdjointIsTheAdjoint) {
 
 TEST(GaussSystem, IsLinearAndSymmetric) {
   const CanonicalCloud cloud = bumpy_cloud();
-  GaussSystem system(cloud.points, {{3, 1, 1}, {1, 1, 1}}, 0.02, 0.05, sum_plan(1e-2, cloud.size()), nullptr);
+  GaussSystem system(cloud.points(), {{3, 1, 1}, {1, 1, 1}}, 0.02, 0.05, sum_plan(1e-2, cloud.size()), nullptr);
   const std::vector<Vec3> a = random_vectors(cloud.size(), 1);
   const std::vector<Vec3> b = random_vectors(cloud.size(), 2);
   std::vector<Vec3> sum(a);

@@ -39,7 +39,7 @@ Tested test(const Surface& s) {
     points.push_back(s.points[i]);
     normals.push_back(s.normals[i]);
   }
-  const Sites sites = place_sites(points, order.code, Neighbours(points), 0);
+  const Sites sites = place_sites(PointSet(points, order.code), 0);
   return {certify(sites, normals, std::vector<double>(points.size(), 10), sum_plan(1e-3, points.size()), nullptr), points};
 }
 

@@ -16,13 +16,13 @@ namespace {
 TEST(Clusters, PartitionThePoints) {
   const CanonicalCloud cloud = canonical_cloud(shapes::torus(3000, 0.6, 0.25, 1).points);
   const double side = 0.15;
-  const Clusters clusters = cluster_points(cloud.points, cloud.morton, side);
+  const Clusters clusters = cluster_points(cloud.points(), cloud.morton(), side);
   double total = 0;
   for (const double m : clusters.multiplicity) total += m;
   EXPECT_EQ(total, 3000);
   EXPECT_LT(clusters.points.size(), 1500U);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    for (std::size_t a = 0; a < 3; ++a) EXPECT_LE(std::abs(cloud.points[i][a] - clusters.points[clusters.cluster_of[i]][a]), side);
+    for (std::size_t a = 0; a < 3; ++a) EXPECT_LE(std::abs(cloud.points()[i][a] - clusters.points[clusters.cluster_of[i]][a]), side);
   }
   for (std::size_t c = 1; c < clusters.morton.size(); ++c) EXPECT_LT(clusters.morton[c - 1], clusters.morton[c]);
 }
@@ -34,13 +34,13 @@ TEST(Clusters, SystemIsTheFullOneOnConstantVectors) {
   std::vector<Vec3> doubled;
   std::vector<std::uint64_t> morton;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    doubled.insert(doubled.end(), 2, cloud.points[i]);
-    morton.insert(morton.end(), 2, cloud.morton[i]);
+    doubled.insert(doubled.end(), 2, cloud.points()[i]);
+    morton.insert(morton.end(), 2, cloud.morton()[i]);
   }
   const double width = 0.1;
   const double damping = 0.7;
   const double weight = 0.3;
-  FastSum one_sum(cloud.points, cloud.morton, Widths(width), sum_plan(0, cloud.size()));
+  FastSum one_sum(cloud.points(), cloud.morton(), Widths(width), sum_plan(0, cloud.size()));
   FastSum all_sum(doubled, morton, Widths(width), sum_plan(0, doubled.size()));
   EnergySystem clustered(one_sum, damping, weight, twos);
   EnergySystem full(all_sum, damping, weight);

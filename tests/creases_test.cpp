@@ -47,16 +47,13 @@ BlurredCube blurred_cube(std::size_t per_face) {
     const double size = std::hypot(sum[0], sum[1], sum[2]);
     out.blurred.push_back({sum[0] / size, sum[1] / size, sum[2] / size});
   }
-  out.spacing.assign(out.cube.points.size(), h);
   return out;
 }
-
-std::vector<std::uint32_t> near(const std::vector<Vec3>& points) { return Neighbours(points).of_all(17); }
 
 TEST(Creases, OfPiecewiseSmoothShapesAreSharpened) {
   const BlurredCube input = blurred_cube(1000);
   std::vector<Vec3> normals = input.blurred;
-  EXPECT_TRUE(sharpen_creases(input.cube.points, near(input.cube.points), input.spacing, normals));
+  EXPECT_TRUE(sharpen_creases(PointSet(input.cube.points), normals));
   EXPECT_LE(shapes::angle_error(normals, input.cube.normals), shapes::angle_error(input.blurred, input.cube.normals) / 2);
   EXPECT_GE(shapes::share_correct(normals, input.cube.normals), 0.999);
 }
@@ -72,10 +69,10 @@ TEST(Creases, RoughSurfacesStayAsTheyAre) {
     for (double& c : n) c /= size;
   }
   const std::vector<Vec3> before = normals;
-  EXPECT_FALSE(sharpen_creases(rough.points, near(rough.points), std::vector<double>(rough.points.size(), 0.023), normals));
+  EXPECT_FALSE(sharpen_creases(PointSet(rough.points), normals));
   EXPECT_EQ(normals, before);
   normals = rough.normals;
-  EXPECT_FALSE(sharpen_creases(rough.points, near(rough.points), std::vector<double>(rough.points.size(), 0.023), normals));
+  EXPECT_FALSE(sharpen_creases(PointSet(rough.points), normals));
   EXPECT_EQ(normals, rough.normals);
 }
 

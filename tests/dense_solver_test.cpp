@@ -18,12 +18,12 @@ TEST(DenseSolver, AgreesWithConjugateGradientsAtConvergence) {
   const CanonicalCloud cloud = canonical_cloud(shapes::torus(250, 0.6, 0.25, 3).points);
   const double epsilon = 0.03;
   const std::vector<Harmonic> harmonics = harmonics_of_degrees(0, 2);
-  const DenseResult dense = solve_dense(cloud.points, epsilon, evaluate_harmonics(harmonics, cloud.points), true);
+  const DenseResult dense = solve_dense(cloud.points(), epsilon, evaluate_harmonics(harmonics, cloud.points()), true);
   EXPECT_GT(dense.condition_number, 1);
   SumPlan plan = sum_plan(0, cloud.size());
   plan.double_precision = true;
-  FastSum sum(cloud.points, cloud.morton, Widths(epsilon), plan);
-  GreenSystem system(sum, cloud.points, harmonics);
+  FastSum sum(cloud.points(), cloud.morton(), Widths(epsilon), plan);
+  GreenSystem system(sum, cloud.points(), harmonics);
   const IterativeResult iterative = solve_iteratively(system, {{4000, StepKind::kConjugateGradient}}, 1e-11);
   EXPECT_TRUE(iterative.converged);
   double difference = 0;
@@ -39,8 +39,8 @@ TEST(DenseSolver, AgreesWithConjugateGradientsAtConvergence) {
 
 TEST(IterativeSolver, EndsWhenItIsEnough) {
   const CanonicalCloud cloud = canonical_cloud(shapes::torus(250, 0.6, 0.25, 3).points);
-  FastSum sum(cloud.points, cloud.morton, Widths(0.03), sum_plan(0, cloud.size()));
-  GreenSystem system(sum, cloud.points, harmonics_of_degrees(0, 2));
+  FastSum sum(cloud.points(), cloud.morton(), Widths(0.03), sum_plan(0, cloud.size()));
+  GreenSystem system(sum, cloud.points(), harmonics_of_degrees(0, 2));
   const std::vector<Steps> schedule{{10, StepKind::kConjugateGradient}};
   const IterativeResult three =
       solve_iteratively(system, schedule, 0, {}, {}, [](const IterativeResult& r) { return r.residuals.size() == 3; });
@@ -54,8 +54,8 @@ TEST(IterativeSolver, EndsWhenItIsEnough) {
 // Smallest over largest singular value of the stacked rows A[u_k].
 double smallest_singular_ratio(std::size_t n, const std::string& harmonics) {
   const CanonicalCloud cloud = canonical_cloud(shapes::torus(n, 0.6, 0.25, 3).points);
-  const HarmonicValues u = evaluate_harmonics(parse_harmonics(harmonics), cloud.points);
-  const std::vector<double> rows = assemble_rows(cloud.points, 1.0 / static_cast<double>(n), u, 0, cloud.size());
+  const HarmonicValues u = evaluate_harmonics(parse_harmonics(harmonics), cloud.points());
+  const std::vector<double> rows = assemble_rows(cloud.points(), 1.0 / static_cast<double>(n), u, 0, cloud.size());
   using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const Eigen::Map<const RowMatrix> a(rows.data(), static_cast<Eigen::Index>(rows.size() / (3 * cloud.size())),
                                       static_cast<Eigen::Index>(3 * cloud.size()));
@@ -75,7 +75,7 @@ TEST(Spectrum, OneHarmonicIsRankDeficientThreeAreNot) {
 
 TEST(DenseSolver, RefusesSingularAndHugeSystems) {
   const CanonicalCloud cloud = canonical_cloud(shapes::sphere(60).points);
-  EXPECT_THROW(static_cast<void>(solve_dense(cloud.points, 1e-3, evaluate_harmonics(parse_harmonics("1"), cloud.points), false)),
+  EXPECT_THROW(static_cast<void>(solve_dense(cloud.points(), 1e-3, evaluate_harmonics(parse_harmonics("1"), cloud.points()), false)),
                InvalidInput);
   EXPECT_THROW(static_cast<void>(solve_dense(std::vector<Vec3>(kMostDensePoints + 1), 1e-3, HarmonicValues{}, false)), InvalidInput);
 }

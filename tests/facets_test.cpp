@@ -23,11 +23,8 @@ using shapes::Surface;
 
 constexpr double kSpacing = 0.02;
 
-std::vector<std::uint32_t> near(const std::vector<Vec3>& points) { return Neighbours(points).of_all(17); }
-
-Facets facets_of(const Surface& s, double spacing, const std::vector<Vec3>& normals) {
-  const std::size_t n = s.points.size();
-  return find_facets(s.points, near(s.points), std::vector<double>(n, spacing), std::vector<std::uint8_t>(n, 1), normals);
+Facets facets_of(const Surface& s, const std::vector<Vec3>& normals) {
+  return find_facets(PointSet(s.points), std::vector<std::uint8_t>(s.points.size(), 1), normals);
 }
 
 // Turns the normals of every fifth point round.
@@ -41,7 +38,7 @@ std::vector<Vec3> partly_turned(std::vector<Vec3> normals) {
 TEST(Facets, AreTheFacesOfABox) {
   const Surface box = shapes::plates(1, 1, 20, 5, kSpacing);
   for (const std::vector<Vec3>& normals : {box.normals, partly_turned(box.normals)}) {
-    const Facets facets = facets_of(box, kSpacing, normals);
+    const Facets facets = facets_of(box, normals);
     std::set<std::uint32_t> found(facets.of.begin(), facets.of.end());
     found.erase(Facets::kNone);
     EXPECT_EQ(facets.count, 6U);
@@ -55,7 +52,7 @@ TEST(Facets, AreTheFacesOfABox) {
 
 TEST(Facets, OfAThinWallAreItsSides) {
   const Surface wall = shapes::plates(1, 1, 0.1, 5, kSpacing);
-  const Facets facets = facets_of(wall, kSpacing, wall.normals);
+  const Facets facets = facets_of(wall, wall.normals);
   ASSERT_GE(facets.count, 2U);
   for (std::size_t i = 0; i < wall.points.size(); ++i) {
     for (const std::size_t j : {std::size_t{0}, wall.points.size() / 2}) {
@@ -68,9 +65,18 @@ TEST(Facets, OfAThinWallAreItsSides) {
 // However smooth a surface, a facet never goes round it.
 TEST(Facets, StayFlatOnSmoothSurfaces) {
   const Surface sphere = shapes::sphere(20000);
-  EXPECT_EQ(facets_of(sphere, std::sqrt(4 * std::numbers::pi * 0.81 / 20000), sphere.normals).count, 0U);
-  const Surface dense = shapes::sphere(100000);
-  const Facets caps = facets_of(dense, 1, dense.normals);  // everything near counts as in one plane
+  EXPECT_EQ(facets_of(sphere, sphere.normals).count, 0U);
+  // A part of a sphere so large that all near points count as in one plane, while normals 8 apart differ by 4.6 degrees.
+  constexpr double kRadius = 100;
+  Surface dense;
+  shapes::Random random(3);
+  for (int i = 0; i < 25600; ++i) {
+    const Vec3 p{random.uniform(-4, 4), random.uniform(-4, 4), 0};
+    const double height = std::sqrt(kRadius * kRadius - p[0] * p[0] - p[1] * p[1]);
+    dense.points.push_back({p[0], p[1], height - kRadius});
+    dense.normals.push_back({p[0] / kRadius, p[1] / kRadius, height / kRadius});
+  }
+  const Facets caps = facets_of(dense, dense.normals);
   ASSERT_GT(caps.count, 0U);
   std::vector<Vec3> first(caps.count, Vec3{0, 0, 0});
   for (std::size_t i = 0; i < dense.points.size(); ++i) {
@@ -84,8 +90,8 @@ TEST(Facets, StayFlatOnSmoothSurfaces) {
 TEST(Facets, CountPointsAtOdds) {
   const Surface box = shapes::plates(1, 1, 20, 5, kSpacing);
   const std::vector<Vec3> turned = partly_turned(box.normals);
-  EXPECT_EQ(share_at_odds(facets_of(box, kSpacing, box.normals), box.normals), 0);
-  EXPECT_NEAR(share_at_odds(facets_of(box, kSpacing, turned), turned), 0.2, 0.005);
+  EXPECT_EQ(share_at_odds(facets_of(box, box.normals), box.normals), 0);
+  EXPECT_NEAR(share_at_odds(facets_of(box, turned), turned), 0.2, 0.005);
 }
 
 // Walls a tenth of a spacing thick: single points cannot tell their side (51 % right without facets), facets can.
@@ -106,9 +112,8 @@ TEST(Facets, OnTheRightSideStayThere) {
   const CanonicalCloud cloud = canonical_cloud(box.points);
   std::vector<Vec3> truth(cloud.size());
   for (std::size_t i = 0; i < box.points.size(); ++i) truth[cloud.point_of[i]] = box.normals[i];
-  const std::vector<std::uint32_t> around = near(cloud.points);
-  const std::vector<double> spacing = smoothed_spacing(local_spacing(cloud.points, around), around);
-  const Facets facets = find_facets(cloud.points, around, spacing, std::vector<std::uint8_t>(cloud.size(), 1), truth);
+  const std::vector<double>& spacing = cloud.set.smoothed_spacing();
+  const Facets facets = find_facets(cloud.set, std::vector<std::uint8_t>(cloud.size(), 1), truth);
   std::vector<Vec3> eta = truth;
   for (std::size_t i = 0; i < eta.size(); ++i) {
     for (double& c : eta[i]) c *= spacing[i] * spacing[i];
@@ -117,7 +122,7 @@ TEST(Facets, OnTheRightSideStayThere) {
   const Monitor monitor;
   Stages stages(monitor);
   const Settings settings = choose_settings({}, cloud, typical_spacing(spacing), 0, 0);
-  choose_facet_sides(cloud.points, cloud.morton, settings, spacing, facets, eta, normals, stages);
+  choose_facet_sides(cloud.set, settings, facets, eta, normals, stages);
   EXPECT_EQ(normals, truth);
   for (std::size_t i = 0; i < eta.size(); ++i) {
     if (facets.of[i] == Facets::kNone) continue;

@@ -20,10 +20,9 @@ using testing::sphere_sample;
 
 std::vector<std::string> warnings_of(const OrientedSample& sample) {
   CanonicalCloud cloud;
-  cloud.points = sample.points;
+  cloud.set = PointSet(sample.points);
   Stats stats;
-  warn_of_sampling(cloud, Neighbours(sample.points).of_all(kSpacingNeighbours), sample.normals,
-                   typical_spacing(local_spacing(sample.points)), stats);
+  warn_of_sampling(cloud, sample.normals, stats);
   EXPECT_FALSE(stats.doubtful);
   return stats.warnings;
 }

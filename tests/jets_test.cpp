@@ -18,8 +18,6 @@ namespace {
 
 using shapes::Surface;
 
-std::vector<std::uint32_t> near(const std::vector<Vec3>& points) { return Neighbours(points).of_all(17); }
-
 // Random points of two squares of side 2, at z = height and z = -height; of one square when it is 0.
 Surface plate(std::size_t count, double height) {
   shapes::Random random(11);
@@ -37,7 +35,7 @@ double unit_sphere_spacing(std::size_t count) { return std::sqrt(4 * std::number
 double sphere_error(std::size_t count) {
   const Surface sphere = shapes::sphere(count);
   std::vector<Vec3> normals = shapes::disturbed(sphere.normals, 0.02);
-  fit_jets(sphere.points, near(sphere.points), std::vector<double>(count, unit_sphere_spacing(count)), normals);
+  fit_jets(PointSet(sphere.points), normals);
   return std::sqrt(shapes::angle_error(normals, sphere.normals));  // in proportion to the angle
 }
 
@@ -52,7 +50,7 @@ TEST(Jets, AreExactOnAPlane) {
   constexpr std::size_t kCount = 3000;
   const Surface plane = plate(kCount, 0);
   std::vector<Vec3> normals = shapes::disturbed(plane.normals, 0.05);
-  fit_jets(plane.points, near(plane.points), std::vector<double>(kCount, 2 / std::sqrt(kCount)), normals);
+  fit_jets(PointSet(plane.points), normals);
   std::size_t exact = 0;
   for (const Vec3& n : normals) exact += n[2] > 1 - 1e-12 ? 1 : 0;
   EXPECT_GT(exact, kCount * 95 / 100);
@@ -70,7 +68,7 @@ TEST(Jets, LeaveScanLinesAlone) {
     }
   }
   std::vector<Vec3> normals = shapes::disturbed(sphere.points, 0.02);
-  fit_jets(sphere.points, near(sphere.points), std::vector<double>(normals.size(), std::numbers::pi / 400), normals);
+  fit_jets(PointSet(sphere.points), normals);
   EXPECT_LT(shapes::angle_error(normals, sphere.points), 3e-4);  // 2e-4 were there
   EXPECT_LT(shapes::angle_error(orient(sphere.points).normals, sphere.points), 1e-3);
 }
@@ -85,7 +83,7 @@ TEST(Jets, LeaveNoisyPointsAlone) {
   }
   const std::vector<Vec3> before = shapes::disturbed(sphere.normals, 0.02);
   std::vector<Vec3> normals = before;
-  fit_jets(sphere.points, near(sphere.points), std::vector<double>(count, h), normals);
+  fit_jets(PointSet(sphere.points), normals);
   std::size_t changed = 0;
   for (std::size_t i = 0; i < count; ++i) changed += normals[i] != before[i] ? 1 : 0;
   EXPECT_LT(changed, count / 100);
@@ -94,7 +92,7 @@ TEST(Jets, LeaveNoisyPointsAlone) {
 TEST(Jets, LeaveFewPointsAsTheyAre) {
   const std::vector<Vec3> few{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   std::vector<Vec3> normals(3, Vec3{0, 0, 1});
-  fit_jets(few, near(few), {1, 1, 1}, normals);
+  fit_jets(PointSet(few), normals);
   EXPECT_EQ(normals, std::vector<Vec3>(3, Vec3{0, 0, 1}));
 }
 
@@ -104,7 +102,7 @@ TEST(Jets, KeepTheSidesOfAThinPlateApart) {
   const Surface thin = plate(kCount, 0.01);
   const std::vector<Vec3> before = shapes::disturbed(thin.normals, 0.05);
   std::vector<Vec3> normals = before;
-  fit_jets(thin.points, near(thin.points), std::vector<double>(kCount, 2 / std::sqrt(kCount / 2.0)), normals);
+  fit_jets(PointSet(thin.points), normals);
   EXPECT_LT(shapes::angle_error(normals, thin.normals), shapes::angle_error(before, thin.normals) / 2);
   for (std::size_t i = 0; i < kCount; ++i) EXPECT_GT(normals[i][2] * thin.normals[i][2], 0.8);
 }

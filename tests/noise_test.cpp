@@ -91,7 +91,7 @@ TEST(Layers, NoiseAboutOneSheetIsNotTwo) {
   }
 }
 
-double estimate(const Surface& s) { return estimate_noise(s.points, Neighbours(s.points), typical_spacing(local_spacing(s.points))); }
+double estimate(const Surface& s) { return estimate_noise(PointSet(s.points)); }
 
 TEST(Noise, IsNearTheTruthFromAQuarterOfTheSpacingToThreeSpacings) {
   const Surface clean = shapes::torus(40000, 0.6, 0.25, 6);
@@ -126,10 +126,10 @@ TEST(Noise, PointsInAVolumeHaveNoSurface) {
   shapes::Random random(5);
   std::vector<Vec3> volume;
   for (int i = 0; i < 5000; ++i) volume.push_back({random.gaussian(), random.gaussian(), random.gaussian()});
-  EXPECT_GT(dimension(volume, Neighbours(volume)), 2.9);
+  EXPECT_GT(dimension(PointSet(volume)), 2.9);
   Surface torus = shapes::torus(20000, 0.6, 0.25, 6);
   shapes::scatter(torus, 0.03);
-  EXPECT_LT(dimension(torus.points, Neighbours(torus.points)), 2.5);
+  EXPECT_LT(dimension(PointSet(torus.points)), 2.5);
   const Orientation o = orient(volume);
   EXPECT_FALSE(o.stats.consistent);
   EXPECT_TRUE(std::any_of(o.stats.warnings.begin(), o.stats.warnings.end(),
@@ -247,7 +247,7 @@ TEST(Noise, OfRastersAndScanLinesIsFound) {
   }
 }
 
-double scatter_of(const Surface& s) { return largest_scatter(s.points, Neighbours(s.points), typical_spacing(local_spacing(s.points))); }
+double scatter_of(const Surface& s) { return largest_scatter(PointSet(s.points)); }
 
 TEST(Scatter, IsTheNoiseWhereThatIsEven) {
   const Surface clean = shapes::torus(40000, 0.6, 0.25, 6);

@@ -23,8 +23,8 @@ constexpr double kTurned = 0.12;  // radians in each coordinate of the normals b
 
 double sphere_spacing() { return 0.9 * std::sqrt(4 * std::numbers::pi / static_cast<double>(kCount)); }
 
-std::vector<Vec3> fitted(const Surface& s, std::vector<Vec3> normals, double noise, double spacing) {
-  fit_noisy_jets(s.points, Neighbours(s.points), noise, spacing, normals);
+std::vector<Vec3> fitted(const Surface& s, std::vector<Vec3> normals, double noise) {
+  fit_noisy_jets(PointSet(s.points), noise, normals);
   return normals;
 }
 
@@ -48,7 +48,7 @@ TEST(NoisyJets, HalveTheAnglesOnASphere) {
     Surface s = shapes::sphere(kCount);
     shapes::scatter(s, sigma * h);
     const std::vector<Vec3> before = shapes::disturbed(s.normals, kTurned);
-    EXPECT_LT(shapes::angle_error(fitted(s, before, sigma * h, h), s.normals), shapes::angle_error(before, s.normals) / 4) << sigma;
+    EXPECT_LT(shapes::angle_error(fitted(s, before, sigma * h), s.normals), shapes::angle_error(before, s.normals) / 4) << sigma;
   }
 }
 
@@ -56,7 +56,7 @@ TEST(NoisyJets, AreExactOnAPlane) {
   const double h = 0.05;
   Surface s = wall(0, h);
   for (Vec3& n : s.normals) n = {0, 0, 1};
-  const std::vector<Vec3> normals = fitted(s, s.normals, 0.5 * h, h);
+  const std::vector<Vec3> normals = fitted(s, s.normals, 0.5 * h);
   for (const Vec3& n : normals) EXPECT_GT(n[2], 1 - 1e-12);
 }
 
@@ -66,7 +66,7 @@ TEST(NoisyJets, KeepTheSidesOfAWall) {
   Surface s = wall(12 * sigma, h);
   shapes::scatter(s, sigma);
   const std::vector<Vec3> before = shapes::disturbed(s.normals, kTurned);
-  const std::vector<Vec3> after = fitted(s, before, sigma, h);
+  const std::vector<Vec3> after = fitted(s, before, sigma);
   EXPECT_LT(shapes::angle_error(after, s.normals), shapes::angle_error(before, s.normals) / 2);
   EXPECT_EQ(shapes::share_correct(after, s.normals), 1);
 }
@@ -78,7 +78,7 @@ TEST(NoisyJets, LeaveAWallAsThinAsTheNoiseAlone) {
   shapes::scatter(s, sigma);
   const std::vector<Vec3> before = shapes::disturbed(s.normals, kTurned);
   std::vector<Vec3> normals = before;
-  EXPECT_FALSE(fit_noisy_jets(s.points, Neighbours(s.points), sigma, h, normals));
+  EXPECT_FALSE(fit_noisy_jets(PointSet(s.points), sigma, normals));
   EXPECT_EQ(normals, before);
 }
 
@@ -91,7 +91,7 @@ TEST(NoisyJets, FollowTheNoiseOfAPlaceThatHasLess) {
   Surface noisy = shapes::torus(count, 0.6, 0.1, 7, {1, 0, 0});
   shapes::scatter(noisy, 0.8 * h);
   const Surface both = shapes::join(smooth, noisy);
-  std::vector<Vec3> normals = fitted(both, shapes::disturbed(both.normals, 0.05), 0.8 * h, h);
+  std::vector<Vec3> normals = fitted(both, shapes::disturbed(both.normals, 0.05), 0.8 * h);
   normals.resize(count);
   EXPECT_LT(shapes::angle_error(normals, smooth.normals), 0.00025);
 }
@@ -99,7 +99,7 @@ TEST(NoisyJets, FollowTheNoiseOfAPlaceThatHasLess) {
 TEST(NoisyJets, LeaveFewPointsAsTheyAre) {
   const std::vector<Vec3> few{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   std::vector<Vec3> normals(3, Vec3{0, 0, 1});
-  EXPECT_FALSE(fit_noisy_jets(few, Neighbours(few), 0.1, 1, normals));
+  EXPECT_FALSE(fit_noisy_jets(PointSet(few), 0.1, normals));
   EXPECT_EQ(normals, std::vector<Vec3>(3, Vec3{0, 0, 1}));
 }
 
@@ -108,7 +108,7 @@ TEST(NoisyJets, AreTheSameWithAnyNumberOfThreads) {
   Surface s = shapes::sphere(kCount);
   shapes::scatter(s, 0.5 * h);
   const std::vector<Vec3> before = shapes::disturbed(s.normals, kTurned);
-  const auto with = [&](int threads) { return parallel::with_threads(threads, [&] { return fitted(s, before, 0.5 * h, h); }); };
+  const auto with = [&](int threads) { return parallel::with_threads(threads, [&] { return fitted(s, before, 0.5 * h); }); };
   EXPECT_EQ(with(1), with(0));
 }
 
@@ -116,7 +116,7 @@ TEST(NoisyJets, StopWhenAsked) {
   const Surface s = shapes::sphere(kCount);
   std::vector<Vec3> normals = s.normals;
   const std::atomic<bool> cancel{true};
-  EXPECT_THROW((void)fit_noisy_jets(s.points, Neighbours(s.points), 0.01, 0.02, normals, &cancel), Cancelled);
+  EXPECT_THROW((void)fit_noisy_jets(PointSet(s.points), 0.01, normals, &cancel), Cancelled);
 }
 
 // Of a whole run: without the fits it is 0.0022.

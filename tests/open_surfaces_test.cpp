@@ -225,8 +225,8 @@ OpenSurfaces find(const Surface& s, std::vector<Vec3>& normals, double noise = 0
     points.push_back(s.points[i]);
     sorted.push_back(normals[i]);
   }
-  OpenSurfaces found =
-      find_open_surfaces(points, order.code, typical_spacing(local_spacing(points)), noise, sum_plan(1e-2, points.size()), sorted);
+  const std::size_t count = points.size();
+  OpenSurfaces found = find_open_surfaces(PointSet(std::move(points), order.code), noise, sum_plan(1e-2, count), sorted);
   for (std::size_t k = 0; k < sorted.size(); ++k) normals[order.index[k]] = sorted[k];
   return found;
 }

@@ -18,10 +18,7 @@ namespace {
 constexpr std::size_t kPoints = 6000;
 
 std::size_t flagged(const std::vector<Vec3>& points) {
-  const CanonicalCloud cloud = canonical_cloud(points);
-  const std::vector<std::uint32_t> near = Neighbours(cloud.points).of_all(17);
-  const std::vector<double> local = local_spacing(cloud.points, near);
-  return find_outliers(cloud.points, near, local, typical_spacing(local)).size();
+  return find_outliers(canonical_cloud(points).set).size();
 }
 
 // Samples of a torus of which the share falls tenfold from one end to the other.
@@ -76,7 +73,7 @@ TEST(Outliers, RemovedPointsAreNumberedAfterTheOthers) {
   ASSERT_EQ(removed.size(), 2U);
   for (std::size_t i = 0; i < 200; ++i) {
     const std::uint32_t now = cloud.point_of[i];
-    EXPECT_EQ(now < 198 ? cloud.points[now] : removed[now - 198], before.points[before.point_of[i]]);
+    EXPECT_EQ(now < 198 ? cloud.points()[now] : removed[now - 198], before.points()[before.point_of[i]]);
   }
 }
 
@@ -111,14 +108,14 @@ TEST(Outliers, TheFrameFollowsWhatIsLeft) {
   std::vector<Vec3> others = remove_points(cloud, {cloud.point_of[200]});
   ASSERT_TRUE(refit_frame(cloud, others));
   EXPECT_FALSE(refit_frame(cloud, others));
-  EXPECT_TRUE(std::is_sorted(cloud.morton.begin(), cloud.morton.end()));
+  EXPECT_TRUE(std::is_sorted(cloud.morton().begin(), cloud.morton().end()));
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::uint32_t p = cloud.point_of[i];
-    const Vec3& unit = p < 200 ? cloud.points[p] : others[p - 200];
+    const Vec3& unit = p < 200 ? cloud.points()[p] : others[p - 200];
     const Vec3 expected = cloud.frame.to_unit(points[i]);
     for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(unit[a], expected[a], 1e-11);
     if (p < 200) {
-      EXPECT_EQ(cloud.morton[p], morton_code(unit));
+      EXPECT_EQ(cloud.morton()[p], morton_code(unit));
     }
   }
 }

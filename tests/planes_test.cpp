@@ -23,15 +23,15 @@ struct Fitted {
   std::vector<std::uint8_t> proven;
 };
 
-Fitted fit(const Surface& surface, double spacing, std::vector<Vec3> normals, std::uint8_t proven = 0) {
+Fitted fit(const Surface& surface, std::vector<Vec3> normals, std::uint8_t proven = 0) {
   const std::size_t n = surface.points.size();
   Fitted out{std::move(normals), std::vector<std::uint8_t>(n, proven)};
-  fit_planes(surface.points, Neighbours(surface.points), std::vector<double>(n, spacing), out.proven, out.normals);
+  fit_planes(PointSet(surface.points), out.proven, out.normals);
   return out;
 }
 
-std::vector<Vec3> fitted(const Surface& surface, double spacing, const std::vector<Vec3>& normals) {
-  return fit(surface, spacing, normals).normals;
+std::vector<Vec3> fitted(const Surface& surface, const std::vector<Vec3>& normals) {
+  return fit(surface, normals).normals;
 }
 
 double share_exact(const std::vector<Vec3>& normals, const std::vector<Vec3>& truth) {
@@ -56,7 +56,7 @@ TEST(Planes, AreFoundOnFacetsASpacingOrTwoWide) {
   constexpr double kSpacing = 0.02;
   for (const double thickness : {2.0, 4.0, 50.0}) {  // spacings
     const Surface bars = shapes::plates(3, 1, thickness, 5, kSpacing);
-    const std::vector<Vec3> normals = fitted(bars, kSpacing, shapes::disturbed(bars.normals, 0.3));
+    const std::vector<Vec3> normals = fitted(bars, shapes::disturbed(bars.normals, 0.3));
     EXPECT_GT(share_exact(normals, bars.normals), 0.95) << thickness;
     EXPECT_GT(shapes::share_correct(normals, bars.normals), 0.995) << thickness;
   }
@@ -66,7 +66,7 @@ TEST(Planes, AreFoundOnFacetsASpacingOrTwoWide) {
 TEST(Planes, TellTheSidesOfAThinWallApart) {
   constexpr double kSpacing = 0.02;
   const Surface wall = shapes::plates(1, 1, 0.05, 5, kSpacing);
-  const std::vector<Vec3> normals = fitted(wall, kSpacing, shapes::disturbed(wall.normals, 0.3));
+  const std::vector<Vec3> normals = fitted(wall, shapes::disturbed(wall.normals, 0.3));
   EXPECT_GT(share_exact(normals, wall.normals), 0.98);
 }
 
@@ -74,7 +74,7 @@ TEST(Planes, AreNotFoundAmongRoughPoints) {
   Surface rough = shapes::sphere(8000);
   const double spacing = 0.9 * std::sqrt(4 * std::numbers::pi / 8000);
   shapes::scatter(rough, 0.2 * spacing);
-  EXPECT_LT(turned(fitted(rough, spacing, rough.normals), rough.normals, 0.1), 80);
+  EXPECT_LT(turned(fitted(rough, rough.normals), rough.normals, 0.1), 80);
 }
 
 // Contours of a rough body in 60 parallel slices, four times as dense along as across: their planes are across the surface.
@@ -117,17 +117,17 @@ TEST(Planes, AreNotThoseOfRowsAcrossACurvedSurface) {
       waves.normals.push_back(n);
     }
   }
-  EXPECT_LT(turned(fitted(waves, std::sqrt(kAlong * kAcross), waves.normals), waves.normals, 5), waves.points.size() / 100);
+  EXPECT_LT(turned(fitted(waves, waves.normals), waves.normals, 5), waves.points.size() / 100);
 }
 
 TEST(Planes, LeaveProvenPointsAndFewPointsAsTheyAre) {
   const Surface wall = shapes::plates(1, 1, 5, 5, 0.1);
   const std::vector<Vec3> before = shapes::disturbed(wall.normals, 0.1);
-  EXPECT_EQ(fit(wall, 0.1, before, 1).normals, before);
-  const Fitted found = fit(wall, 0.1, before);
+  EXPECT_EQ(fit(wall, before, 1).normals, before);
+  const Fitted found = fit(wall, before);
   for (std::size_t i = 0; i < before.size(); ++i) EXPECT_EQ(found.proven[i] != 0, found.normals[i] != before[i]);
   const Surface few{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, std::vector<Vec3>(4, Vec3{0, 0.6, 0.8}), {}};
-  EXPECT_EQ(fitted(few, 1, few.normals), few.normals);
+  EXPECT_EQ(fitted(few, few.normals), few.normals);
 }
 
 }  // namespace

@@ -14,16 +14,11 @@
 namespace g3r {
 namespace {
 
-struct Cloud {
-  std::vector<Vec3> points;
-  std::vector<std::uint64_t> morton;
-};
-
-Cloud in_order(const std::vector<Vec3>& points) {
+PointSet in_order(const std::vector<Vec3>& points) {
   const MortonOrder order = morton_order(points);
-  Cloud cloud{{}, order.code};
-  for (const std::uint32_t i : order.index) cloud.points.push_back(points[i]);
-  return cloud;
+  std::vector<Vec3> sorted;
+  for (const std::uint32_t i : order.index) sorted.push_back(points[i]);
+  return PointSet(std::move(sorted), order.code);
 }
 
 // Lines of a wavy surface, points 0.01 apart along them.
@@ -38,33 +33,32 @@ std::vector<Vec3> scan_lines(double ratio) {
 }
 
 TEST(Sites, EveryPointIsOneAtDistanceZero) {
-  const Cloud cloud = in_order(shapes::sphere(2000).points);
-  const Sites sites = place_sites(cloud.points, cloud.morton, Neighbours(cloud.points), 0);
-  EXPECT_EQ(sites.points, cloud.points);
-  for (std::size_t i = 0; i < cloud.points.size(); ++i) EXPECT_EQ(sites.site_of[i], i);
+  const PointSet cloud = in_order(shapes::sphere(2000).points);
+  const Sites sites = place_sites(cloud, 0);
+  EXPECT_EQ(sites.points(), cloud.points());
+  for (std::size_t i = 0; i < cloud.points().size(); ++i) EXPECT_EQ(sites.site_of[i], i);
 }
 
 TEST(Sites, HoldEveryPointWithinTheDistance) {
-  const Cloud cloud = in_order(shapes::torus(6000, 0.6, 0.25, 2).points);
-  const double distance = 3 * typical_spacing(local_spacing(cloud.points));
-  const Sites sites = place_sites(cloud.points, cloud.morton, Neighbours(cloud.points), distance);
-  EXPECT_LT(sites.points.size(), cloud.points.size() / 6);
-  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
-    const Vec3 d = vector::subtract(cloud.points[i], sites.points[sites.site_of[i]]);
+  const PointSet cloud = in_order(shapes::torus(6000, 0.6, 0.25, 2).points);
+  const double distance = 3 * cloud.spacing();
+  const Sites sites = place_sites(cloud, distance);
+  EXPECT_LT(sites.points().size(), cloud.points().size() / 6);
+  for (std::size_t i = 0; i < cloud.points().size(); ++i) {
+    const Vec3 d = vector::subtract(cloud.points()[i], sites.points()[sites.site_of[i]]);
     EXPECT_LT(std::sqrt(vector::dot(d, d)), 2 * distance);  // from the first point of the site to its centroid, and to a point
   }
-  EXPECT_TRUE(std::is_sorted(sites.morton.begin(), sites.morton.end()));
+  EXPECT_TRUE(std::is_sorted(sites.set.morton().begin(), sites.set.morton().end()));
 }
 
 TEST(Sites, AxesAreNormalsAndErrorsFallWithTheSquareOfTheDistance) {
-  const Cloud cloud = in_order(shapes::sphere(40000).points);
-  const double spacing = typical_spacing(local_spacing(cloud.points));
-  const Neighbours neighbours(cloud.points);
+  const PointSet cloud = in_order(shapes::sphere(40000).points);
+  const double spacing = cloud.spacing();
   for (const double distance : {2 * spacing, 4 * spacing}) {
-    const Sites sites = place_sites(cloud.points, cloud.morton, neighbours, distance);
+    const Sites sites = place_sites(cloud, distance);
     double worst = 0;
-    for (std::size_t s = 0; s < sites.points.size(); ++s) {
-      const double cosine = std::abs(vector::dot(sites.axis[s], vector::normalised(sites.points[s])));
+    for (std::size_t s = 0; s < sites.points().size(); ++s) {
+      const double cosine = std::abs(vector::dot(sites.axis[s], vector::normalised(sites.points()[s])));
       worst = std::max(worst, std::acos(std::min(1.0, cosine)));
       EXPECT_LT(sites.flatness[s], distance * 2);
     }
@@ -74,20 +68,18 @@ TEST(Sites, AxesAreNormalsAndErrorsFallWithTheSquareOfTheDistance) {
 
 TEST(Sites, LinesBecomeASurfaceAcrossTheirGaps) {
   for (const double ratio : {1.0, 6.0, 20.0}) {
-    const Cloud cloud = in_order(scan_lines(ratio));
-    const Neighbours neighbours(cloud.points);
-    const double spacing = typical_spacing(local_spacing(cloud.points));
-    const double distance = surface_distance(cloud.points, neighbours, spacing);
+    const PointSet cloud = in_order(scan_lines(ratio));
+      const double distance = surface_distance(cloud);
     if (ratio == 1) {
       EXPECT_EQ(distance, 0);
       continue;
     }
     EXPECT_GT(distance, 0.4 * 0.01 * ratio) << ratio;
     EXPECT_LT(distance, 3 * 0.01 * ratio) << ratio;
-    const Sites sites = place_sites(cloud.points, cloud.morton, neighbours, distance);
+    const Sites sites = place_sites(cloud, distance);
     std::size_t upright = 0;
     for (const Vec3& axis : sites.axis) upright += std::abs(axis[2]) > 0.9 ? 1 : 0;
-    EXPECT_GT(static_cast<double>(upright), 0.98 * static_cast<double>(sites.points.size())) << ratio;
+    EXPECT_GT(static_cast<double>(upright), 0.98 * static_cast<double>(sites.points().size())) << ratio;
   }
 }
 

@@ -24,7 +24,7 @@ struct Case {
 
 inline std::vector<Vec3> unit_points(const std::vector<Vec3>& points) {
   if (points.size() < 4) return points;
-  return canonical_cloud(points).points;
+  return canonical_cloud(points).points();
 }
 
 inline std::vector<Case> clouds(std::size_t n) {

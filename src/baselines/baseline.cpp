@@ -25,7 +25,7 @@ void require(bool good, const char* message) {
 
 BaselineResult solve_gauss(const CanonicalCloud& cloud, const BaselineSettings& settings, Stages& stages) {
   const bool agr = settings.method == Method::kAgr;
-  GaussSystem system(cloud.points, agr ? kThreeStretches : kNoStretch, settings.epsilon, agr ? kAgrDamping : kPgrDamping, settings.sums,
+  GaussSystem system(cloud.points(), agr ? kThreeStretches : kNoStretch, settings.epsilon, agr ? kAgrDamping : kPgrDamping, settings.sums,
                      stages.cancel());
   IterativeResult solved = solve_iteratively(system, settings.schedule, settings.tolerance, {},
                                              [&](int step, int steps, double) { stages.progress(static_cast<double>(step) / steps); });
@@ -70,7 +70,7 @@ std::size_t baseline_memory(const BaselineSettings& settings, double spacing, st
 
 BaselineResult solve_baseline(const CanonicalCloud& cloud, const BaselineSettings& settings, Stages& stages) {
   if (settings.method != Method::kWnnc) return solve_gauss(cloud, settings, stages);
-  WnncResult solved = solve_wnnc(cloud.points, cloud.morton, settings.widths, settings.sums, stages);
+  WnncResult solved = solve_wnnc(cloud.points(), cloud.morton(), settings.widths, settings.sums, stages);
   BaselineResult result{std::move(solved.eta), std::move(solved.normals), std::move(solved.strength), {}, true};
   for (const double residual : solved.residuals) result.iterations.push_back({"wnnc", residual});
   return result;

@@ -194,26 +194,29 @@ CanonicalCloud canonical_cloud(const PointsView& points) {
   }
   const MortonOrder order = morton_order(unit);
   cloud.point_of.assign(points.count, kNoPoint);
-  cloud.points.reserve(unit.size());
+  std::vector<Vec3> kept;
+  std::vector<std::uint64_t> morton;
+  kept.reserve(unit.size());
   for (std::size_t k = 0; k < unit.size(); ++k) {
     const Vec3& p = unit[order.index[k]];
-    if (cloud.points.empty() || cloud.points.back() != p) {
-      cloud.points.push_back(p);
-      cloud.morton.push_back(order.code[k]);
+    if (kept.empty() || kept.back() != p) {
+      kept.push_back(p);
+      morton.push_back(order.code[k]);
       cloud.multiplicity.push_back(0);
     }
     ++cloud.multiplicity.back();
-    cloud.point_of[input[order.index[k]]] = static_cast<std::uint32_t>(cloud.points.size() - 1);
+    cloud.point_of[input[order.index[k]]] = static_cast<std::uint32_t>(kept.size() - 1);
   }
+  cloud.set = PointSet(std::move(kept), std::move(morton));
   if (cloud.size() < kFewestPoints) {
     throw InvalidInput("too few distinct points: " + std::to_string(cloud.size()) + " (the rest are duplicates), at least 4 are needed");
   }
-  require_not_collinear(cloud.points);
+  require_not_collinear(cloud.points());
   return cloud;
 }
 
 bool refit_frame(CanonicalCloud& cloud, std::vector<Vec3>& others) {
-  const Bounds bounds = bounds_of(cloud.points);
+  const Bounds bounds = bounds_of(cloud.points());
   double side = 0;
   for (std::size_t a = 0; a < 3; ++a) side = std::max(side, bounds.high[a] - bounds.low[a]);
   if (side >= kBoxSide / 2) return false;
@@ -221,18 +224,19 @@ bool refit_frame(CanonicalCloud& cloud, std::vector<Vec3>& others) {
   for (std::size_t a = 0; a < 3; ++a) cloud.frame.centre[a] += inner.centre[a] / cloud.frame.scale;
   cloud.frame.scale *= inner.scale;
   std::vector<Vec3> unit(cloud.size());
-  for (std::size_t i = 0; i < unit.size(); ++i) unit[i] = inner.to_unit(cloud.points[i]);
+  for (std::size_t i = 0; i < unit.size(); ++i) unit[i] = inner.to_unit(cloud.points()[i]);
   for (Vec3& p : others) p = inner.to_unit(p);
   MortonOrder order = morton_order(unit);
   const std::vector<std::uint32_t> multiplicity = cloud.multiplicity;
   std::vector<std::uint32_t> renumbered(cloud.size());
+  std::vector<Vec3> sorted(cloud.size());
   for (std::uint32_t k = 0; k < cloud.size(); ++k) {
     const std::uint32_t i = order.index[k];
-    cloud.points[k] = unit[i];
+    sorted[k] = unit[i];
     cloud.multiplicity[k] = multiplicity[i];
     renumbered[i] = k;
   }
-  cloud.morton = std::move(order.code);
+  cloud.set = PointSet(std::move(sorted), std::move(order.code));
   for (std::uint32_t& p : cloud.point_of) {
     if (p < renumbered.size()) p = renumbered[p];
   }
@@ -242,22 +246,22 @@ bool refit_frame(CanonicalCloud& cloud, std::vector<Vec3>& others) {
 bool is_flat(const CanonicalCloud& cloud) {
   constexpr double kFlatness = 1e-6;  // thickness over extent; a scan of any solid is far above
   // The plane through the first point, the point farthest from it, and the point farthest from the line through both.
-  const Vec3& origin = cloud.points.front();
+  const Vec3& origin = cloud.points().front();
   const auto to = [&origin](const Vec3& p) { return Vec3{p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]}; };
   const auto cross = [](const Vec3& a, const Vec3& b) {
     return Vec3{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
   };
   const auto norm = [](const Vec3& v) { return std::hypot(v[0], v[1], v[2]); };
   Vec3 axis{0, 0, 0};
-  for (const Vec3& p : cloud.points) {
+  for (const Vec3& p : cloud.points()) {
     if (const Vec3 d = to(p); norm(d) > norm(axis)) axis = d;
   }
   Vec3 normal{0, 0, 0};
-  for (const Vec3& p : cloud.points) {
+  for (const Vec3& p : cloud.points()) {
     if (const Vec3 n = cross(axis, to(p)); norm(n) > norm(normal)) normal = n;
   }
   const double allowed = kFlatness * norm(axis) * norm(normal);
-  return std::all_of(cloud.points.begin(), cloud.points.end(), [&](const Vec3& p) {
+  return std::all_of(cloud.points().begin(), cloud.points().end(), [&](const Vec3& p) {
     const Vec3 d = to(p);
     return std::abs(d[0] * normal[0] + d[1] * normal[1] + d[2] * normal[2]) <= allowed;
   });

@@ -1,6 +1,8 @@
 // The solver's view of the input: finite, distinct points in the normalised box, in an order that does not depend on the input's.
 #pragma once
 
+#include "cloud/point_set.h"
+
 #include <g3r/points.h>
 
 #include <cstddef>
@@ -27,13 +29,14 @@ inline constexpr std::uint32_t kNoPoint = 0xffffffffu;
 /// input.
 struct CanonicalCloud {
   Frame frame;
-  std::vector<Vec3> points;                 ///< M unit-box points
-  std::vector<std::uint64_t> morton;        ///< M codes, 63 bits, non-decreasing
+  PointSet set;                             ///< M points in the unit box; Morton codes of 63 bits
   std::vector<std::uint32_t> point_of;      ///< N: input point -> index into points, kNoPoint if not finite
   std::vector<std::uint32_t> multiplicity;  ///< M: number of input points at this place
   std::size_t non_finite = 0;
 
-  [[nodiscard]] std::size_t size() const { return points.size(); }
+  [[nodiscard]] const std::vector<Vec3>& points() const { return set.points(); }
+  [[nodiscard]] const std::vector<std::uint64_t>& morton() const { return set.morton(); }
+  [[nodiscard]] std::size_t size() const { return set.size(); }
 };
 
 inline constexpr int kGridBits = 21;  ///< of an axis in a Morton code: 3 x 21 = 63 bits

@@ -73,11 +73,12 @@ double quantile(std::vector<double> values, double share) {
 
 // Calls visit(point, its `count` nearest, their squared distances) for about `probes` points, spread along their order.
 template <typename Visit>
-void for_some(const std::vector<Vec3>& points, const Neighbours& neighbours, std::size_t probes, std::size_t count, Visit visit) {
+void for_some(const PointSet& set, std::size_t probes, std::size_t count, Visit visit) {
   std::vector<std::uint32_t> index;
   std::vector<double> squared;
+  const std::vector<Vec3>& points = set.points();
   for (std::size_t i = 0; i < points.size(); i += std::max<std::size_t>(1, points.size() / probes)) {
-    neighbours.nearest(points[i], count, index, squared);
+    set.tree().nearest(points[i], count, index, squared);
     visit(points[i], index, squared);
   }
 }
@@ -89,9 +90,11 @@ struct Residuals {
   std::vector<double> kurtosis;             // about the planes through kSheets
 };
 
-Residuals residuals_of(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing) {
+Residuals residuals_of(const PointSet& set) {
+  const std::vector<Vec3>& points = set.points();
+  const double spacing = set.spacing();
   Residuals r;
-  for_some(points, neighbours, kProbes, kNeighbours, [&](const Vec3&, const auto& index, const auto&) {
+  for_some(set, kProbes, kNeighbours, [&](const Vec3&, const auto& index, const auto&) {
     const PlaneFit plane = fit_plane(points, index.data(), kClean);
     r.clean.push_back(plane.residual);
     r.quadratic.push_back(quadratic_residual(points, index.data(), kClean, plane.normal, spacing));
@@ -103,9 +106,11 @@ Residuals residuals_of(const std::vector<Vec3>& points, const Neighbours& neighb
 }
 
 // Standard deviation about sheets, of which a neighbourhood may hold up to three.
-double layered_noise(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing) {
+double layered_noise(const PointSet& set) {
+  const std::vector<Vec3>& points = set.points();
+  const double spacing = set.spacing();
   std::vector<double> sigma;
-  for_some(points, neighbours, kLayerProbes, kLayerNeighbours, [&](const Vec3& point, const auto& index, const auto&) {
+  for_some(set, kLayerProbes, kLayerNeighbours, [&](const Vec3& point, const auto& index, const auto&) {
     const Vec3 normal = fit_plane(points, index.data(), index.size()).normal;
     sigma.push_back(layered_deviation(points, index.data(), index.size(), point, normal));
   });
@@ -113,7 +118,7 @@ double layered_noise(const std::vector<Vec3>& points, const Neighbours& neighbou
   if (found < kResolved * spacing || points.size() < kThinning * kFewestThinned) return found;
   std::vector<Vec3> thinned;
   for (std::size_t i = 0; i < points.size(); i += kThinning) thinned.push_back(points[i]);
-  return layered_noise(thinned, Neighbours(thinned), typical_spacing(local_spacing(thinned)));
+  return layered_noise(PointSet(std::move(thinned)));
 }
 
 // By how the planes through 16 and 32 neighbours miss them; infinite where noise fills their ball.
@@ -168,15 +173,17 @@ bool between_sheets(const std::vector<Vec3>& points, const std::vector<std::uint
 }
 
 // Whether many of the points lie on exact planes along the surface.
-bool on_exact_planes(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing) {
+bool on_exact_planes(const PointSet& set) {
+  const std::vector<Vec3>& points = set.points();
+  const double spacing = set.spacing();
   std::size_t looked = 0, on_facets = 0, along = 0;
   std::vector<std::uint32_t> wide;
   std::vector<double> squared;
-  for_some(points, neighbours, kProbes, kPlaneNeighbours, [&](const Vec3& point, const auto& index, const auto&) {
+  for_some(set, kProbes, kPlaneNeighbours, [&](const Vec3& point, const auto& index, const auto&) {
     ++looked;
     const ExactPlane facet = find_facet(points, index, spacing);
     if (facet.breadth == 0) return;
-    neighbours.nearest(point, kWide, wide, squared);
+    set.tree().nearest(point, kWide, wide, squared);
     ++on_facets;
     along += std::abs(vector::dot(facet.normal, fit_plane(points, wide.data(), wide.size()).normal)) > kAlong ? 1 : 0;
   });
@@ -184,9 +191,11 @@ bool on_exact_planes(const std::vector<Vec3>& points, const Neighbours& neighbou
 }
 
 // Whether some of the points lie on two curved sheets without scatter, as those of thin walls and narrow gaps do.
-bool on_exact_sheets(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing) {
+bool on_exact_sheets(const PointSet& set) {
+  const std::vector<Vec3>& points = set.points();
+  const double spacing = set.spacing();
   std::size_t looked = 0, between = 0;
-  for_some(points, neighbours, kProbes, kSheets, [&](const Vec3&, const auto& index, const auto&) {
+  for_some(set, kProbes, kSheets, [&](const Vec3&, const auto& index, const auto&) {
     ++looked;
     if (between_sheets(points, index, kFewSheets, kFewApart, spacing) || between_sheets(points, index, kSheets, kApart, spacing)) ++between;
   });
@@ -194,47 +203,50 @@ bool on_exact_sheets(const std::vector<Vec3>& points, const Neighbours& neighbou
 }
 
 // Standard deviation of what rounding all three coordinates leaves, 0 if it leaves none: a box may well have integer coordinates.
-double rounding_noise(const std::vector<Vec3>& points, double spacing, const Residuals& residuals) {
-  const Vec3 steps = rounding_steps(points, spacing);
+double rounding_noise(const PointSet& set, const Residuals& residuals) {
+  const double spacing = set.spacing();
+  const Vec3 steps = rounding_steps(set.points(), spacing);
   if (std::min({steps[0], steps[1], steps[2]}) == 0) return 0;
   const double sigma = std::hypot(steps[0], steps[1], steps[2]) / std::sqrt(3 * 12);
   return sigma > kLeastRounding * spacing && quantile(residuals.quadratic, 0.5) > kTerraces * sigma ? sigma : 0;
 }
 
 // By the flattest neighbourhoods, 0 where these or exact surfaces show that there is none.
-double scattered_noise(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing, const Residuals& residuals) {
+double scattered_noise(const PointSet& set, const Residuals& residuals) {
+  const double spacing = set.spacing();
   const double curved = quantile(residuals.quadratic, kFlattest);
   const bool uneven = curved < kUnevenQuadratic * spacing && curved < kUneven * quantile(residuals.quadratic, 0.5);
   if (quantile(residuals.clean, kFlattest) < kCleanResidual * spacing || curved < kCleanQuadratic * spacing || uneven) return 0;
   if (quantile(residuals.kurtosis, kFlatKurtosis) < kSheetKurtosis) return 0;
-  const bool exact = on_exact_planes(points, neighbours, spacing) || on_exact_sheets(points, neighbours, spacing);
-  if (exact && !rounded(points, spacing)) return 0;
+  const bool exact = on_exact_planes(set) || on_exact_sheets(set);
+  if (exact && !rounded(set.points(), spacing)) return 0;
   const double x16 = quantile(residuals.small, kFlattest) / spacing;
   const double x32 = quantile(residuals.large, kFlattest) / spacing;
-  return std::min(spacing * small_noise(x16, x32), layered_noise(points, neighbours, spacing));
+  return std::min(spacing * small_noise(x16, x32), layered_noise(set));
 }
 
 }  // namespace
 
-double estimate_noise(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing) {
-  if (points.size() < kFewestPoints) return 0;
-  const Residuals residuals = residuals_of(points, neighbours, spacing);
-  return std::max(scattered_noise(points, neighbours, spacing, residuals), rounding_noise(points, spacing, residuals));
+double estimate_noise(const PointSet& set) {
+  if (set.size() < kFewestPoints) return 0;
+  const Residuals residuals = residuals_of(set);
+  return std::max(scattered_noise(set, residuals), rounding_noise(set, residuals));
 }
 
-double largest_scatter(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing) {
-  if (points.size() < kFewestPoints || (on_exact_planes(points, neighbours, spacing) && !rounded(points, spacing))) return 0;
-  const double x = quantile(residuals_of(points, neighbours, spacing).quadratic, kMostScattered) / spacing;
+double largest_scatter(const PointSet& set) {
+  const double spacing = set.spacing();
+  if (set.size() < kFewestPoints || (on_exact_planes(set) && !rounded(set.points(), spacing))) return 0;
+  const double x = quantile(residuals_of(set).quadratic, kMostScattered) / spacing;
   const double filled = std::min(x, kLargestQuadratic) / kQuadraticSaturation;
   return spacing * x / (kQuadraticToSigma * std::sqrt(1 - filled * filled * filled * filled));
 }
 
-double dimension(const std::vector<Vec3>& points, const Neighbours& neighbours) {
+double dimension(const PointSet& set) {
   constexpr std::size_t kMost = 2048, kShare = 16, kRatio = 8;
-  if (points.size() < kFewestPoints) return 2;
-  const std::size_t far = std::min(kMost, points.size() / kShare);
+  if (set.size() < kFewestPoints) return 2;
+  const std::size_t far = std::min(kMost, set.size() / kShare);
   std::vector<double> found;
-  for_some(points, neighbours, kLayerProbes, far, [&](const Vec3&, const auto&, const std::vector<double>& squared) {
+  for_some(set, kLayerProbes, far, [&](const Vec3&, const auto&, const std::vector<double>& squared) {
     const double ratio = squared.back() / squared[far / kRatio];
     if (ratio > 1) found.push_back(2 * std::log(kRatio) / std::log(ratio));
   });

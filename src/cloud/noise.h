@@ -1,7 +1,7 @@
 // How noisy a cloud is, from the cloud alone.
 #pragma once
 
-#include "cloud/neighbours.h"
+#include "cloud/point_set.h"
 
 #include <g3r/points.h>
 
@@ -29,9 +29,8 @@ namespace g3r {
 ///     0.04 h and the median residual of the height fields is half of it or more: rounded flat neighbourhoods may be exact. Coordinates of
 ///     less than 5 values are not rounded: they are those of a plate that stands straight.
 /// Within about 15 % of the truth on smooth shapes from 0.2 to 3 h and on walls of 3 sigma (docs/study.md, "Walls and the size of the
-/// noise"). `neighbours` of these points; `spacing`: typical_spacing(). Same units as the points. Looks at about 2000 points, in O(log N)
-/// each, and sorts the thinned clouds, O(N log N).
-[[nodiscard]] double estimate_noise(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing);
+/// noise"). Same units as the points. Looks at about 2000 points, in O(log N) each, and sorts the thinned clouds, O(N log N).
+[[nodiscard]] double estimate_noise(const PointSet& set);
 
 /// The noise where it is largest, if all scatter is noise: of scans that do not fit onto each other, or of noise that differs from place to
 /// place, of which estimate_noise() finds the least. From the third quartile x h of the residuals of quadratic height fields through 12
@@ -39,11 +38,11 @@ namespace g3r {
 ///     sigma = h x / (1.12 sqrt(1 - (x / 0.64)^4)).
 /// Walls and detail below the spacing lift it: not an estimate, but what to try. 0 for fewer than 200 points, or where exact planes as
 /// above show that there is no noise. Units and cost as above.
-[[nodiscard]] double largest_scatter(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing);
+[[nodiscard]] double largest_scatter(const PointSet& set);
 
 /// How the number of points grows with the distance from one, as its power: about 2 on a surface, noisy or not, nearly 3 in a volume (2.6
 /// to 3: its boundary counts). From the distances r of the neighbours k = min(2048, N / 16) and k / 8, ln 8 / ln(r_k / r_(k/8)), the median
-/// over about 500 points. `neighbours` of these points, N >= 200 (fewer: 2). O(k log N).
-[[nodiscard]] double dimension(const std::vector<Vec3>& points, const Neighbours& neighbours);
+/// over about 500 points; 2 for fewer than 200. O(k log N).
+[[nodiscard]] double dimension(const PointSet& set);
 
 }  // namespace g3r

@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <cmath>
+#include <utility>
 
 namespace g3r {
 namespace {
@@ -32,15 +33,17 @@ bool fills_space(const std::vector<Vec3>& points, const std::uint32_t* index, st
 
 }  // namespace
 
-std::vector<std::uint32_t> find_outliers(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near,
-                                         const std::vector<double>& local, double typical) {
-  if (points.size() < kFewestPoints) return {};
-  const std::size_t stride = near.size() / points.size();
+std::vector<std::uint32_t> find_outliers(const PointSet& set) {
+  if (set.size() < kFewestPoints) return {};
+  const std::vector<Vec3>& points = set.points();
+  const std::vector<std::uint32_t>& near = set.near();
+  const std::vector<double>& local = set.local_spacing();
+  const double typical = set.spacing();
   std::vector<char> outlier(points.size(), 0);
   parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (local[i] <= 1.5 * typical) continue;  // most points; both rules ask for more
-      const std::uint32_t* index = near.data() + i * stride;
+      const std::uint32_t* index = near.data() + i * set.near_count();
       double neighbours = 0;  // mean logarithm
       for (std::size_t k = 1; k <= kFewNeighbours; ++k) neighbours += std::log(local[index[k]]) / kFewNeighbours;
       const bool alone = std::log(local[i]) - neighbours > std::log(kAlone);
@@ -61,21 +64,23 @@ std::vector<Vec3> remove_points(CanonicalCloud& cloud, const std::vector<std::ui
   std::vector<Vec3> removed;
   std::vector<std::uint32_t> removed_multiplicity;
   std::vector<std::uint32_t> renumbered(cloud.size());
-  std::size_t to = 0;
+  std::vector<Vec3> points;
+  std::vector<std::uint64_t> morton;
+  points.reserve(staying);
+  morton.reserve(staying);
   for (std::uint32_t i = 0; i < renumbered.size(); ++i) {
     if (removed.size() < indices.size() && indices[removed.size()] == i) {
       renumbered[i] = static_cast<std::uint32_t>(staying + removed.size());
-      removed.push_back(cloud.points[i]);
+      removed.push_back(cloud.points()[i]);
       removed_multiplicity.push_back(cloud.multiplicity[i]);
       continue;
     }
-    renumbered[i] = static_cast<std::uint32_t>(to);
-    cloud.points[to] = cloud.points[i];
-    cloud.morton[to] = cloud.morton[i];
-    cloud.multiplicity[to++] = cloud.multiplicity[i];
+    renumbered[i] = static_cast<std::uint32_t>(points.size());
+    cloud.multiplicity[points.size()] = cloud.multiplicity[i];
+    points.push_back(cloud.points()[i]);
+    morton.push_back(cloud.morton()[i]);
   }
-  cloud.points.resize(staying);
-  cloud.morton.resize(staying);
+  cloud.set = PointSet(std::move(points), std::move(morton));
   std::copy(removed_multiplicity.begin(), removed_multiplicity.end(), cloud.multiplicity.begin() + static_cast<std::ptrdiff_t>(staying));
   for (std::uint32_t& p : cloud.point_of) {
     if (p < renumbered.size()) p = renumbered[p];

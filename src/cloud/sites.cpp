@@ -1,7 +1,6 @@
 #include "cloud/sites.h"
 
 #include "cloud/canonical_cloud.h"
-#include "cloud/spacing.h"
 #include "cpu/parallel.h"
 #include "median.h"
 #include "vector.h"
@@ -107,20 +106,26 @@ Plane fit_plane_at(const std::vector<Vec3>& points, const std::vector<std::uint3
 // The plane through the surroundings of a place.
 class Planes {
  public:
-  Planes(const std::vector<Vec3>& points, const Neighbours& neighbours, double distance)
-      : points_(points), neighbours_(neighbours), reach_(kReach * distance) {}
+  Planes(const PointSet& set, double distance) : set_(set), reach_(kReach * distance) {}
 
   Plane at(const Vec3& centre) {
     index_.clear();
-    if (reach_ > 0) neighbours_.within(centre, reach_, index_);
-    if (index_.size() < kFewestPoints) neighbours_.nearest(centre, kFewestPoints, index_, squared_);
+    if (reach_ > 0) set_.tree().within(centre, reach_, index_);
+    if (index_.size() < kFewestPoints) set_.tree().nearest(centre, kFewestPoints, index_, squared_);
     std::sort(index_.begin(), index_.end());
-    return fit_plane_at(points_, index_, centre);
+    return fit_plane_at(set_.points(), index_, centre);
+  }
+
+  // Of a point and its nearest, where every point is a site.
+  Plane at_point(std::size_t i) {
+    const auto first = set_.near().begin() + static_cast<std::ptrdiff_t>(i * set_.near_count());
+    index_.assign(first, first + static_cast<std::ptrdiff_t>(std::min(kFewestPoints, set_.near_count())));
+    std::sort(index_.begin(), index_.end());
+    return fit_plane_at(set_.points(), index_, set_.points()[i]);
   }
 
  private:
-  const std::vector<Vec3>& points_;
-  const Neighbours& neighbours_;
+  const PointSet& set_;
   double reach_;
   std::vector<std::uint32_t> index_;
   std::vector<double> squared_;
@@ -145,55 +150,60 @@ void gather(const std::vector<Vec3>& points, const std::vector<Vec3>& seeds, Sit
   for (std::size_t s = 0; s < seeds.size(); ++s) centroids[s] = vector::scale(centroids[s], 1 / count[s]);
   MortonOrder order = morton_order(centroids);
   std::vector<std::uint32_t> rank(seeds.size());
-  sites.points.resize(seeds.size());
+  std::vector<Vec3> sorted(seeds.size());
   for (std::uint32_t s = 0; s < seeds.size(); ++s) {
     rank[order.index[s]] = s;
-    sites.points[s] = centroids[order.index[s]];
+    sorted[s] = centroids[order.index[s]];
   }
-  sites.morton = std::move(order.code);
+  sites.set = PointSet(std::move(sorted), std::move(order.code));
   sites.site_of.resize(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) sites.site_of[i] = rank[nearest[i]];
 }
 
 }  // namespace
 
-Sites place_sites(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Neighbours& neighbours,
-                  double distance) {
+Sites place_sites(const PointSet& set, double distance) {
+  const std::vector<Vec3>& points = set.points();
   Sites sites;
   sites.distance = distance;
   if (distance > 0) {
     gather(points, taken_points(points, distance), sites);
   } else {
-    sites.points = points;
-    sites.morton = morton;
+    sites.set = set;
     sites.site_of.resize(points.size());
     std::iota(sites.site_of.begin(), sites.site_of.end(), std::uint32_t{0});
   }
-  const std::size_t count = sites.points.size();
+  const std::size_t count = sites.size();
   sites.axis.resize(count);
   sites.flatness.resize(count);
   sites.breadth.resize(count);
+  if (distance > 0) {
+    static_cast<void>(set.tree());  // made before the loop
+  } else {
+    static_cast<void>(set.near());
+  }
   parallel::for_blocks(count, kBlock, [&](std::size_t begin, std::size_t end) {
-    Planes planes(points, neighbours, distance);
+    Planes planes(set, distance);
     for (std::size_t s = begin; s < end; ++s) {
-      const Plane plane = planes.at(sites.points[s]);
+      const Plane plane = distance > 0 ? planes.at(sites.points()[s]) : planes.at_point(s);
       sites.axis[s] = plane.normal;
       sites.flatness[s] = plane.flatness;
       sites.breadth[s] = plane.breadth;
     }
   });
-  sites.spacing = local_spacing(sites.points);
   return sites;
 }
 
-double surface_distance(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing) {
+double surface_distance(const PointSet& set) {
+  const std::vector<Vec3>& points = set.points();
+  const double spacing = set.spacing();
   const std::size_t step = std::max<std::size_t>(1, points.size() / kPlaces);
   const std::size_t places = (points.size() + step - 1) / step;
   std::vector<double> breadth(places);
   const double most = std::sqrt(static_cast<double>(points.size()) / static_cast<double>(kFewestSites)) * spacing;
   for (double distance = 0; distance < most; distance = std::max(kFirstDistance * spacing, 2 * distance)) {
     parallel::for_blocks(places, kPlaceBlock, [&](std::size_t begin, std::size_t end) {
-      Planes planes(points, neighbours, distance);
+      Planes planes(set, distance);
       for (std::size_t k = begin; k < end; ++k) breadth[k] = planes.at(points[k * step]).breadth;
     });
     if (median(breadth) >= kSurfaceBreadth) return distance;

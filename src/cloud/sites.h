@@ -1,7 +1,7 @@
 // A cloud seen at a coarser scale: sites an even distance apart, and the plane through the surroundings of each.
 #pragma once
 
-#include "cloud/neighbours.h"
+#include "cloud/point_set.h"
 
 #include <g3r/points.h>
 
@@ -13,25 +13,26 @@ namespace g3r {
 
 struct Sites {
   double distance = 0;                 ///< least distance between the points that sites begin with; 0: every point is a site
-  std::vector<Vec3> points;            ///< M centroids of the points of each site, in canonical order
-  std::vector<std::uint64_t> morton;   ///< M codes
+  PointSet set;                        ///< M centroids of the points of each site; the square of a local spacing is the area of a site
   std::vector<std::uint32_t> site_of;  ///< N: point -> nearest site
   std::vector<Vec3> axis;              ///< M unit normals of the planes, either side
   std::vector<double> flatness;        ///< M: least principal spread over the middle one; 0: a plane, 1: a ball
   std::vector<double> breadth;         ///< M: middle principal spread over the largest one; 0: a line, 1: as broad as long
-  std::vector<double> spacing;         ///< M: local_spacing() of the sites; its square is the area that one stands for
+
+  [[nodiscard]] std::size_t size() const { return set.size(); }
+  [[nodiscard]] const std::vector<Vec3>& points() const { return set.points(); }
+  [[nodiscard]] const std::vector<double>& spacing() const { return set.local_spacing(); }
 };
 
 /// Takes points in canonical order as long as they are `distance` away from all taken before (a maximal Poisson disk sample), and the
 /// centroids of the points nearest to each: scan lines and uneven densities become even where their gaps are no wider than that, and noise
 /// is averaged. The planes are fitted to the points within 2.5 distances, weights 1 - r^2 / R^2 (Epanechnikov), at least 12 of them.
-/// `points`: in the unit frame, in canonical order; `distance` >= 0. O(N log N).
-[[nodiscard]] Sites place_sites(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Neighbours& neighbours,
-                                double distance);
+/// `distance` >= 0. O(N log N).
+[[nodiscard]] Sites place_sites(const PointSet& set, double distance);
 
 /// The least distance of sites at which the samples are a surface and not lines: 0, or 1.5, 3, 6 ... typical spacings, such that the median
 /// breadth of the planes is a half or more. Scan lines are a surface only as seen across the gaps between them. Looks at about 2000
 /// places; 0 where no distance would leave 30 sites across the cloud. O(log N) each.
-[[nodiscard]] double surface_distance(const std::vector<Vec3>& points, const Neighbours& neighbours, double spacing);
+[[nodiscard]] double surface_distance(const PointSet& set);
 
 }  // namespace g3r

@@ -1,7 +1,6 @@
 #include "orient/certificate.h"
 
 #include "cloud/neighbours.h"
-#include "cloud/spacing.h"
 #include "cpu/parallel.h"
 #include "median.h"
 #include "sum/fast_sum.h"
@@ -26,12 +25,13 @@ constexpr std::size_t kBlock = 256;  // sites per parallel block
 
 Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const std::vector<double>& reach, const SumPlan& sums,
                     const std::atomic<bool>* cancel) {
-  const std::size_t count = sites.points.size();
-  const double spacing = typical_spacing(sites.spacing);
+  const std::size_t count = sites.size();
+  const std::vector<Vec3>& points = sites.points();
+  const std::vector<double>& spacing = sites.spacing();
   std::vector<Vec3> eta(count);
-  for (std::size_t i = 0; i < count; ++i) eta[i] = vector::scale(normals[i], sites.spacing[i] * sites.spacing[i]);
-  const FastSum field(sites.points, sites.morton, Widths(kWidth * spacing), sums, cancel);
-  const Neighbours neighbours(sites.points);
+  for (std::size_t i = 0; i < count; ++i) eta[i] = vector::scale(normals[i], spacing[i] * spacing[i]);
+  const FastSum field(points, sites.set.morton(), Widths(kWidth * sites.set.spacing()), sums, cancel);
+  const Neighbours& tree = sites.set.tree();
   Certificate out;
   out.jump.assign(count, -HUGE_VAL);
   out.jump_defect.assign(count, 0);
@@ -43,17 +43,17 @@ Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const 
   std::vector<Vec3> probes(2 * count);
   for (std::size_t d = 0; d < kDistances.size(); ++d) {
     for (std::size_t i = 0; i < count; ++i) {
-      const Vec3 step = vector::scale(sites.axis[i], side_of(i) * kDistances[d] * sites.spacing[i]);
-      probes[i] = vector::subtract(sites.points[i], step);
-      probes[count + i] = vector::add(sites.points[i], step);
+      const Vec3 step = vector::scale(sites.axis[i], side_of(i) * kDistances[d] * spacing[i]);
+      probes[i] = vector::subtract(points[i], step);
+      probes[count + i] = vector::add(points[i], step);
     }
     w[d] = field.winding_at(eta, probes, cancel);
     parallel::for_blocks(2 * count, kBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
-        const double apart = kApart * sites.spacing[k % count];
+        const double apart = kApart * spacing[k % count];
         double squared = apart * apart;
-        if (kDistances[d] * sites.spacing[k % count] > reach[k % count]) continue;
-        is_quiet[2 * count * d + k] = neighbours.nearest(probes[k], squared, UINT32_MAX) == UINT32_MAX ? 1 : 0;
+        if (kDistances[d] * spacing[k % count] > reach[k % count]) continue;
+        is_quiet[2 * count * d + k] = tree.nearest(probes[k], squared, UINT32_MAX) == UINT32_MAX ? 1 : 0;
       }
     });
   }

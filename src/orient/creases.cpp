@@ -24,9 +24,11 @@ struct Round {
   std::vector<double> share;  // of the weight that planes leave, at creases; -1 elsewhere
 };
 
-Round average_in_planes(const std::vector<Vec3>& points, const std::vector<double>& spacing, const std::vector<std::uint32_t>& near,
+Round average_in_planes(const PointSet& set,
                         const std::vector<Vec3>& normals) {
-  const std::size_t stride = near.size() / points.size();
+  const std::vector<Vec3>& points = set.points();
+  const std::vector<double>& spacing = set.smoothed_spacing();
+  const std::vector<std::uint32_t>& near = set.near();
   Round out{normals, std::vector<double>(points.size(), -1)};
   parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -37,7 +39,7 @@ Round average_in_planes(const std::vector<Vec3>& points, const std::vector<doubl
       double held = 0;
       Vec3 sum{0, 0, 0};
       for (std::size_t k = 1; k < kNeighbours; ++k) {
-        const std::uint32_t j = near[i * stride + k];
+        const std::uint32_t j = near[i * kNeighbours + k];
         const Vec3 d = vector::subtract(points[i], points[j]);
         const double nearness = std::exp(-vector::dot(d, d) / (2 * radius * radius));
         all += nearness;
@@ -60,12 +62,11 @@ Round average_in_planes(const std::vector<Vec3>& points, const std::vector<doubl
 
 }  // namespace
 
-bool sharpen_creases(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near, const std::vector<double>& spacing,
-                     std::vector<Vec3>& normals) {
-  if (points.size() < kNeighbours) return false;
+bool sharpen_creases(const PointSet& set, std::vector<Vec3>& normals) {
+  if (set.size() < kNeighbours) return false;
   std::vector<Vec3> sharp = normals;
-  for (int round = 0; round < kRounds; ++round) sharp = average_in_planes(points, spacing, near, sharp).normals;
-  std::vector<double> share = average_in_planes(points, spacing, near, sharp).share;
+  for (int round = 0; round < kRounds; ++round) sharp = average_in_planes(set, sharp).normals;
+  std::vector<double> share = average_in_planes(set, sharp).share;
   share.erase(std::remove(share.begin(), share.end(), -1.0), share.end());
   if (share.empty() || median(share) < kPiecewiseSmooth) return false;
   normals = std::move(sharp);

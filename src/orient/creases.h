@@ -1,6 +1,8 @@
 // Normals at the creases of piecewise smooth shapes.
 #pragma once
 
+#include "cloud/point_set.h"
+
 #include <g3r/points.h>
 
 #include <vector>
@@ -17,8 +19,7 @@ namespace g3r {
 /// fit_jets() at 50,000 points: CAD models 0.59 to 0.71, others at most 0.56). Returns whether it was. The idea of weights by tangent
 /// planes: Oztireli, Guennebaud, Gross, "Feature preserving point set surfaces based on non-linear kernel regression", Eurographics 2009.
 /// docs/study.md, "Creases".
-/// `near`: Neighbours::of_all(k), k >= 17; `spacing`: smoothed_spacing(); `normals`: N unit vectors, consistent sides. O(N).
-bool sharpen_creases(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near, const std::vector<double>& spacing,
-                     std::vector<Vec3>& normals);
+/// h_i: smoothed_spacing(); `normals`: N unit vectors, consistent sides. O(N).
+bool sharpen_creases(const PointSet& set, std::vector<Vec3>& normals);
 
 }  // namespace g3r

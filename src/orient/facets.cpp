@@ -87,12 +87,13 @@ class SettledSides {
 
 }  // namespace
 
-Facets find_facets(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near, const std::vector<double>& spacing,
-                   const std::vector<std::uint8_t>& proven, const std::vector<Vec3>& normals) {
+Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven, const std::vector<Vec3>& normals) {
+  const std::vector<Vec3>& points = set.points();
+  const std::vector<double>& spacing = set.smoothed_spacing();
+  const std::vector<std::uint32_t>& near = set.near();
   Facets facets;
   facets.of.assign(points.size(), Facets::kNone);
   if (points.size() < kNeighbours) return facets;
-  const std::size_t stride = near.size() / points.size();
   const auto parallel = [&](std::size_t i, std::size_t j) { return std::abs(vector::dot(normals[i], normals[j])) >= kParallel; };
   const auto in_one_plane = [&](std::size_t i, std::size_t j) {
     const Vec3 d = vector::subtract(points[i], points[j]);
@@ -108,7 +109,7 @@ Facets find_facets(const std::vector<Vec3>& points, const std::vector<std::uint3
     for (std::size_t m = 0; m < members.size(); ++m) {
       const std::uint32_t i = members[m];
       for (std::size_t k = 1; k < kNeighbours; ++k) {
-        const std::uint32_t j = near[i * stride + k];
+        const std::uint32_t j = near[i * kNeighbours + k];
         if (proven[j] == 0 || done[j] != 0 || !parallel(i, j) || !parallel(seed, j) || !in_one_plane(i, j)) continue;
         done[j] = 1;
         members.push_back(j);
@@ -136,25 +137,25 @@ double share_at_odds(const Facets& facets, const std::vector<Vec3>& normals) {
   return static_cast<double>(odd) / static_cast<double>(normals.size());
 }
 
-void choose_facet_sides(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
-                        const std::vector<double>& spacing, const Facets& facets, std::vector<Vec3>& eta, std::vector<Vec3>& normals,
+void choose_facet_sides(const PointSet& set, const Settings& settings, const Facets& facets, std::vector<Vec3>& eta, std::vector<Vec3>& normals,
                         Stages& stages) {
+  const std::vector<double>& spacing = set.smoothed_spacing();
   const double h = settings.spacing;
   const std::vector<Vec3> first = first_normals(facets, normals);
   std::vector<Vec3> turned = normals;
-  std::vector<double> areas(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  std::vector<double> areas(set.size());
+  for (std::size_t i = 0; i < set.size(); ++i) {
     areas[i] = spacing[i] * spacing[i];
     if (facets.of[i] != Facets::kNone && vector::dot(normals[i], first[facets.of[i]]) < 0) turned[i] = vector::scale(normals[i], -1);
   }
-  FastSum sum(points, morton, local_widths(kEpsilon * h, settings, spacing), settings.first_sums, stages.cancel());
+  FastSum sum(set.points(), set.morton(), local_widths(kEpsilon * h, settings, spacing), settings.first_sums, stages.cancel());
   EnergySystem free(sum, settings.damping, kWindingWeight * h * h * h);
   OnFacets system(free, facets, areas, turned);
   SettledSides settled(facets, turned);
   const auto still_going = [&stages](int, int, double) { stages.still_going(); };
   const auto enough = [&settled](const IterativeResult& r) { return settled(r); };
   const std::vector<Vec3> solved = solve_iteratively(system, {kSteps}, kTolerance, system.project(eta), still_going, enough).eta;
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  for (std::size_t i = 0; i < set.size(); ++i) {
     if (facets.of[i] == Facets::kNone) continue;
     normals[i] = vector::scale(turned[i], vector::dot(solved[i], turned[i]) < 0 ? -1 : 1);
     eta[i] = vector::scale(normals[i], areas[i]);

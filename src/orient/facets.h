@@ -1,6 +1,7 @@
 // The sides of flat facets, whole facets at a time.
 #pragma once
 
+#include "cloud/point_set.h"
 #include "orient/settings.h"
 #include "stages.h"
 
@@ -20,11 +21,9 @@ struct Facets {
 
 /// Grows facets over the 16 nearest points from seeds in the order of the points: p_j joins beside p_i if both are proven and each lies
 /// within 0.003 h of the other's plane, and its normal is parallel, on either side, to that of p_i and of the seed to 1.8 degrees. Sets of
-/// fewer than 10 points are no facets. `near`: Neighbours::of_all(k), k >= 17; `proven`: fit_jets() or fit_planes() found its normal;
-/// `spacing`: smoothed_spacing(). O(N).
-[[nodiscard]] Facets find_facets(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near,
-                                 const std::vector<double>& spacing, const std::vector<std::uint8_t>& proven,
-                                 const std::vector<Vec3>& normals);
+/// fewer than 10 points are no facets. h: smoothed_spacing(); `proven`: fit_jets() or fit_planes() found its normal.
+/// O(N).
+[[nodiscard]] Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven, const std::vector<Vec3>& normals);
 
 /// Share of all points whose normal is on another side than that of most points of their facet. O(N).
 [[nodiscard]] double share_at_odds(const Facets& facets, const std::vector<Vec3>& normals);
@@ -33,10 +32,9 @@ struct Facets {
 /// form's equations are restricted to area vectors eta_i = c_f A_i n_i on facets, with one unknown c_f per facet, its n_i on one side, and
 /// free ones elsewhere, which is Galerkin's method with the orthogonal projector P onto these: P M P eta = P b, by conjugate gradients from
 /// `eta`. On facets n_i gets the side of c_f and eta_i becomes A_i n_i; the others stay. docs/math.md, "Facets".
-/// `spacing`: smoothed_spacing(), A_i its square. `eta`, `normals`: in and out. Up to 120 products, 20 to 40 as a rule: it ends when sides
+/// A_i: square of the smoothed_spacing(). `eta`, `normals`: in and out. Up to 120 products, 20 to 40 as a rule: it ends when sides
 /// have settled.
-void choose_facet_sides(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
-                        const std::vector<double>& spacing, const Facets& facets, std::vector<Vec3>& eta, std::vector<Vec3>& normals,
+void choose_facet_sides(const PointSet& set, const Settings& settings, const Facets& facets, std::vector<Vec3>& eta, std::vector<Vec3>& normals,
                         Stages& stages);
 
 }  // namespace g3r

@@ -41,11 +41,12 @@ bool spread_out(const std::vector<FitPoint>& members, const Vector3d& normal) {
 
 }  // namespace
 
-std::vector<std::uint8_t> fit_jets(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near,
-                                   const std::vector<double>& spacing, std::vector<Vec3>& normals) {
+std::vector<std::uint8_t> fit_jets(const PointSet& set, std::vector<Vec3>& normals) {
+  const std::vector<Vec3>& points = set.points();
   std::vector<std::uint8_t> proven(points.size(), 0);
   if (points.size() < kNeighbours) return proven;
-  const std::size_t stride = near.size() / points.size();
+  const std::vector<double>& spacing = set.smoothed_spacing();
+  const std::vector<std::uint32_t>& near = set.near();
   std::vector<Vec3> out = normals;
   parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<FitPoint> members;
@@ -55,7 +56,7 @@ std::vector<std::uint8_t> fit_jets(const std::vector<Vec3>& points, const std::v
       const double scale = 1 / (2 * kRadius * kRadius * spacing[i] * spacing[i]);
       members.clear();
       for (std::size_t k = 0; k < kNeighbours; ++k) {
-        const std::uint32_t j = near[i * stride + k];
+        const std::uint32_t j = near[i * kNeighbours + k];
         const Vector3d d = to_eigen(points[j]) - centre;
         const Vector3d n = to_eigen(normals[j]);
         const double height = normal.dot(d);

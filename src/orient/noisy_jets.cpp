@@ -149,12 +149,14 @@ class Fitter {
 
 }  // namespace
 
-bool fit_noisy_jets(const std::vector<Vec3>& points, const Neighbours& neighbours, double noise, double spacing, std::vector<Vec3>& normals,
-                    const std::atomic<bool>* cancel) {
+bool fit_noisy_jets(const PointSet& set, double noise, std::vector<Vec3>& normals, const std::atomic<bool>* cancel) {
+  const std::vector<Vec3>& points = set.points();
+  const double spacing = set.spacing();
+  const Neighbours& tree = set.tree();
   std::vector<Vec3> out = normals;
   std::vector<std::size_t> fitted((points.size() + kBlock - 1) / kBlock, 0);
   const auto fit_block = [&](std::size_t begin, std::size_t end) {
-    Fitter fitter(points, neighbours, normals, noise, spacing);
+    Fitter fitter(points, tree, normals, noise, spacing);
     fitter.follow_noise(begin, end);
     const double depth = kDepth * fitter.noise();
     std::vector<std::uint8_t> done(end - begin, 0);

@@ -1,7 +1,7 @@
 // Normals of noisy points from quadratic fits, as wide as the points allow.
 #pragma once
 
-#include "cloud/neighbours.h"
+#include "cloud/point_set.h"
 
 #include <g3r/points.h>
 
@@ -26,9 +26,8 @@ namespace g3r {
 /// of a normal says more than its direction: n_i stays, as it does where the fitted normal is more than 37 degrees off. All stay where
 /// fewer than 40 % of the points have a fit. Sides are kept but for normals that were all but in the surface.
 ///
-/// `points`: in canonical order, blocks of which share fields; `noise`: of the cloud, > 0; `spacing`: h > 0; `normals`: N unit vectors,
+/// Blocks of points in canonical order share fields; `noise`: of the cloud, > 0; h: the typical spacing; `normals`: N unit vectors,
 /// consistent sides. Returns whether they changed. Throws Cancelled. docs/math.md and docs/study.md, "Fits of noisy points". O(N).
-bool fit_noisy_jets(const std::vector<Vec3>& points, const Neighbours& neighbours, double noise, double spacing, std::vector<Vec3>& normals,
-                    const std::atomic<bool>* cancel = nullptr);
+bool fit_noisy_jets(const PointSet& set, double noise, std::vector<Vec3>& normals, const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace g3r

@@ -3,7 +3,6 @@
 #include "cloud/layers.h"
 #include "cloud/sheet.h"
 #include "cloud/sites.h"
-#include "cloud/spacing.h"
 #include "cpu/parallel.h"
 #include "median.h"
 #include "mesh/disjoint_sets.h"
@@ -59,19 +58,18 @@ constexpr std::size_t kBlock = 1024;      // points per parallel block
 // Places where the unrest of the given normals is that of an open surface, and what to try there.
 class Search {
  public:
-  Search(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, double spacing, double noise, const SumPlan& sums,
-         const std::atomic<bool>* cancel)
-      : points_(points), morton_(morton), neighbours_(points), spacing_(spacing), sums_(sums), cancel_(cancel) {
-    const double all = std::sqrt(static_cast<double>(points.size()) / static_cast<double>(kMostSites));
+  Search(const PointSet& set, double noise, const SumPlan& sums, const std::atomic<bool>* cancel)
+      : set_(set), points_(set.points()), sums_(sums), cancel_(cancel) {
+    const double spacing = set.spacing();
+    const double all = std::sqrt(static_cast<double>(set.size()) / static_cast<double>(kMostSites));
     const double least = std::max(kNoiseScale * noise, all > 1 ? kFirstScale * all * spacing : 0);
     const double distance = least < kFirstScale / 2 * spacing ? 0 : std::max(kFirstScale * spacing, least);
-    finest_ = place_sites(points_, morton_, neighbours_, distance);
-    near_ = Neighbours(finest_.points).of_all(kAdjacent + 1);
-    edges_ = edges_of(finest_, near_);
-    DisjointSets parts(finest_.points.size());
+    finest_ = place_sites(set_, distance);
+    edges_ = edges_of(finest_);
+    DisjointSets parts(finest_.size());
     for (const SignEdge& edge : edges_) parts.join(edge.a, edge.b);
-    std::vector<std::uint32_t> number(finest_.points.size(), 0);
-    for (std::uint32_t s = 0; s < finest_.points.size(); ++s) {
+    std::vector<std::uint32_t> number(finest_.size(), 0);
+    for (std::uint32_t s = 0; s < finest_.size(); ++s) {
       const std::size_t first = parts.find(s);  // the smallest site of its part
       if (first == s) {
         number[s] = static_cast<std::uint32_t>(members_.size());
@@ -80,8 +78,8 @@ class Search {
       part_.push_back(number[first]);
       members_[part_.back()].push_back(s);
     }
-    for (std::size_t s = 0; s < finest_.points.size(); ++s) {
-      reach_.push_back(std::sqrt(static_cast<double>(members_[part_[s]].size())) / 2 * finest_.spacing[s]);
+    for (std::size_t s = 0; s < finest_.size(); ++s) {
+      reach_.push_back(std::sqrt(static_cast<double>(members_[part_[s]].size())) / 2 * finest_.spacing()[s]);
     }
   }
 
@@ -107,7 +105,7 @@ class Search {
 
   // Mean direction of the points of every site.
   [[nodiscard]] std::vector<Vec3> at_sites(const std::vector<Vec3>& normals) const {
-    std::vector<Vec3> mean(finest_.points.size(), Vec3{0, 0, 0});
+    std::vector<Vec3> mean(finest_.size(), Vec3{0, 0, 0});
     for (std::size_t i = 0; i < normals.size(); ++i) mean[finest_.site_of[i]] = vector::add(mean[finest_.site_of[i]], normals[i]);
     for (std::size_t s = 0; s < mean.size(); ++s) {
       mean[s] = vector::normalised(mean[s]);
@@ -130,11 +128,11 @@ class Search {
     std::vector<double> squared;
     for (std::size_t k = 0; k < members.size(); k += std::max<std::size_t>(1, members.size() / kWallPlaces)) {
       const std::uint32_t s = members[k];
-      neighbours_.nearest(finest_.points[s], kWallPoints, index, squared);
-      const double one = quadratic_residual(points_, index.data(), index.size(), finest_.axis[s], finest_.spacing[s]);
+      set_.tree().nearest(finest_.points()[s], kWallPoints, index, squared);
+      const double one = quadratic_residual(points_, index.data(), index.size(), finest_.axis[s], finest_.spacing()[s]);
       const TwoSheets two = fit_two_sheets(points_, index.data(), index.size(), finest_.axis[s]);
-      const double exact = kExact * finest_.spacing[s];
-      const bool thin = two.gap < kThin * finest_.spacing[s];
+      const double exact = kExact * finest_.spacing()[s];
+      const bool thin = two.gap < kThin * finest_.spacing()[s];
       gain.push_back((thin ? std::log(std::max(one, exact) / std::max(two.deviation, exact)) : 0) - std::numbers::ln2);
     }
     return median(gain) > 0;
@@ -146,11 +144,11 @@ class Search {
     std::vector<std::uint64_t> morton;
     std::vector<Vec3> eta;
     for (const std::uint32_t s : members_[part]) {
-      points.push_back(finest_.points[s]);
-      morton.push_back(finest_.morton[s]);
-      eta.push_back(vector::scale(normals[s], finest_.spacing[s] * finest_.spacing[s]));
+      points.push_back(finest_.points()[s]);
+      morton.push_back(finest_.set.morton()[s]);
+      eta.push_back(vector::scale(normals[s], finest_.spacing()[s] * finest_.spacing()[s]));
     }
-    FastSum field(points, morton, Widths(kGradientWidth * typical_spacing(finest_.spacing)), sum_plan(kAccuracy, points.size()), cancel_);
+    FastSum field(points, morton, Widths(kGradientWidth * finest_.set.spacing()), sum_plan(kAccuracy, points.size()), cancel_);
     double sum = 0;
     for (const double w : field.winding(eta)) sum += w;
     return 2 * sum / static_cast<double>(points.size());
@@ -160,8 +158,8 @@ class Search {
   [[nodiscard]] std::vector<std::vector<Vec3>> hypotheses() const {
     std::vector<std::vector<Vec3>> all{by_agreement(finest_, edges_)};
     Sites sites = coarser_than(finest_);
-    while (static_cast<int>(all.size()) < kScales && sites.points.size() >= kFewestSites) {
-      all.push_back(by_agreement(sites, edges_of(sites, Neighbours(sites.points).of_all(kAdjacent + 1))));
+    while (static_cast<int>(all.size()) < kScales && sites.size() >= kFewestSites) {
+      all.push_back(by_agreement(sites, edges_of(sites)));
       sites = coarser_than(sites);
     }
     return all;
@@ -169,15 +167,15 @@ class Search {
 
  private:
   [[nodiscard]] Sites coarser_than(const Sites& sites) const {
-    return place_sites(points_, morton_, neighbours_, std::max(kFirstScale * spacing_, 2 * sites.distance));
+    return place_sites(set_, std::max(kFirstScale * set_.spacing(), 2 * sites.distance));
   }
 
   static double reach_of(const Sites& sites, std::uint32_t a, std::uint32_t b) {
-    return sites.distance > 0 ? sites.distance : (sites.spacing[a] + sites.spacing[b]) / 2;
+    return sites.distance > 0 ? sites.distance : (sites.spacing()[a] + sites.spacing()[b]) / 2;
   }
 
   static SignEdge edge_of(const Sites& sites, std::uint32_t a, std::uint32_t b) {
-    const Vec3 d = vector::subtract(sites.points[b], sites.points[a]);
+    const Vec3 d = vector::subtract(sites.points()[b], sites.points()[a]);
     const double squared = dot(d, d);
     const double reach = reach_of(sites, a, b);
     if (squared > kLongest * kLongest * reach * reach) return {a, a, 0};
@@ -188,17 +186,18 @@ class Search {
   }
 
   // Every pair of near sites once.
-  static std::vector<SignEdge> edges_of(const Sites& sites, const std::vector<std::uint32_t>& near) {
-    const std::size_t count = sites.points.size();
-    const std::size_t stride = near.size() / count;
+  static std::vector<SignEdge> edges_of(const Sites& sites) {
+    const std::size_t count = sites.size();
+    const std::vector<std::uint32_t>& near = sites.set.near();
+    const std::size_t stride = sites.set.near_count();
+    const std::size_t adjacent = std::min(kAdjacent + 1, stride);
     std::vector<SignEdge> edges;
     for (std::uint32_t i = 0; i < count; ++i) {
-      for (std::size_t k = 0; k < stride; ++k) {
+      for (std::size_t k = 0; k < adjacent; ++k) {
         const std::uint32_t j = near[i * stride + k];
         const auto first = near.begin() + static_cast<std::ptrdiff_t>(j * stride);
-        if (j == i ||
-            (j < i && std::find(first, first + static_cast<std::ptrdiff_t>(stride), i) != first + static_cast<std::ptrdiff_t>(stride)))
-          continue;
+        const auto last = first + static_cast<std::ptrdiff_t>(adjacent);
+        if (j == i || (j < i && std::find(first, last, i) != last)) continue;
         const SignEdge edge = edge_of(sites, i, j);
         if (edge.a != edge.b) edges.push_back(edge);
       }
@@ -207,17 +206,17 @@ class Search {
   }
 
   [[nodiscard]] std::vector<Vec3> by_agreement(const Sites& sites, const std::vector<SignEdge>& edges) const {
-    const std::size_t count = sites.points.size();
+    const std::size_t count = sites.size();
     const Signs signs = agree_on_signs(count, edges);
     std::vector<Vec3> normals(count);
     for (std::size_t s = 0; s < count; ++s) normals[s] = vector::scale(sites.axis[s], signs.sign[s]);
-    const double spacing = typical_spacing(sites.spacing);
+    const double spacing = sites.set.spacing();
     const auto areas = [&] {
       std::vector<Vec3> eta(count);
-      for (std::size_t s = 0; s < count; ++s) eta[s] = vector::scale(normals[s], sites.spacing[s] * sites.spacing[s]);
+      for (std::size_t s = 0; s < count; ++s) eta[s] = vector::scale(normals[s], sites.spacing()[s] * sites.spacing()[s]);
       return eta;
     };
-    FastSum wide(sites.points, sites.morton, Widths(kTurnWidth * spacing), sums_, cancel_);
+    FastSum wide(sites.points(), sites.set.morton(), Widths(kTurnWidth * spacing), sums_, cancel_);
     for (int turn = 0; turn < kTurns; ++turn) normals = refine_normals(wide, areas()).normals;
     // Directions from a narrower field, where its side is the same.
     const FastSum field(wide, Widths(kGradientWidth * spacing));
@@ -230,14 +229,11 @@ class Search {
     return sided;
   }
 
+  const PointSet& set_;
   const std::vector<Vec3>& points_;
-  const std::vector<std::uint64_t>& morton_;
-  Neighbours neighbours_;
-  double spacing_;
   SumPlan sums_;
   const std::atomic<bool>* cancel_;
   Sites finest_;
-  std::vector<std::uint32_t> near_;  // of every site the nearest ones, itself first
   std::vector<SignEdge> edges_;
   std::vector<std::uint32_t> part_;                  // of every site
   std::vector<std::vector<std::uint32_t>> members_;  // the sites of every part
@@ -356,10 +352,10 @@ OpenSurfaces settle(const Search& search, const std::vector<std::vector<Vec3>>& 
 
 }  // namespace
 
-OpenSurfaces find_open_surfaces(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, double spacing, double noise,
-                                const SumPlan& sums, std::vector<Vec3>& normals, const std::atomic<bool>* cancel) {
-  if (points.size() < kFewestSites) return {};
-  const Search search(points, morton, spacing, noise, sums, cancel);
+OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan& sums, std::vector<Vec3>& normals,
+                                const std::atomic<bool>* cancel) {
+  if (set.size() < kFewestSites) return {};
+  const Search search(set, noise, sums, cancel);
   const Certificate given = search.test(normals);
   const std::vector<double> unrest = search.mean_of_parts(given.unrest);
   const std::vector<double> defect = search.mean_of_parts(given.jump_defect);

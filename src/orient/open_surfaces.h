@@ -1,7 +1,7 @@
 // Sides and directions where the surface has no inside.
 #pragma once
 
-#include "cloud/neighbours.h"
+#include "cloud/point_set.h"
 #include "orient/settings.h"
 
 #include <g3r/points.h>
@@ -43,10 +43,9 @@ struct OpenSurfaces {
 /// Where the solution stays as it is, J = max(0, jump of its site) certifies a side: where walls are too close for the sampling the field
 /// does not jump from 0 to 1, whatever the sides. Of exact points J is the largest jump; under noise, which makes sheets of single wrong
 /// patches, it is the mean of the jumps. Points that face the other way than the mean of their site have 0.
-/// `points`, `morton`: in canonical order; `spacing`: typical; `noise`: standard deviation; `normals`: N unit vectors, in: the solution,
+/// `noise`: standard deviation; `normals`: N unit vectors, in: the solution,
 /// out: changed on open surfaces. O(N log N).
-[[nodiscard]] OpenSurfaces find_open_surfaces(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, double spacing,
-                                              double noise, const SumPlan& sums, std::vector<Vec3>& normals,
+[[nodiscard]] OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan& sums, std::vector<Vec3>& normals,
                                               const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace g3r

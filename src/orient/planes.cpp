@@ -54,15 +54,17 @@ bool are_slices(const std::vector<Found>& found, const std::vector<Vec3>& normal
 
 }  // namespace
 
-void fit_planes(const std::vector<Vec3>& points, const Neighbours& neighbours, const std::vector<double>& spacing,
-                std::vector<std::uint8_t>& proven, std::vector<Vec3>& normals) {
+void fit_planes(const PointSet& set, std::vector<std::uint8_t>& proven, std::vector<Vec3>& normals) {
+  const std::vector<Vec3>& points = set.points();
+  const std::vector<double>& spacing = set.smoothed_spacing();
+  const Neighbours& tree = set.tree();
   std::vector<Found> found(points.size());
   parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> index;
     std::vector<double> squared;
     for (std::size_t i = begin; i < end; ++i) {
       if (proven[i] != 0) continue;
-      neighbours.nearest(points[i], kPlaneNeighbours, index, squared);
+      tree.nearest(points[i], kPlaneNeighbours, index, squared);
       found[i] = find_at(points, index, spacing[i], normals[i]);
     }
   });

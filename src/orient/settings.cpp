@@ -85,9 +85,9 @@ double in_frame(const Length& length, const CanonicalCloud& cloud, double spacin
     case Length::Unit::kInput:
       return cloud.frame.length_to_unit(length.value);
     case Length::Unit::kPercent: {
-      Vec3 low = cloud.points.front();
+      Vec3 low = cloud.points().front();
       Vec3 high = low;
-      for (const Vec3& p : cloud.points) {
+      for (const Vec3& p : cloud.points()) {
         for (std::size_t a = 0; a < 3; ++a) {
           low[a] = std::min(low[a], p[a]);
           high[a] = std::max(high[a], p[a]);
@@ -126,7 +126,7 @@ std::optional<double> given_noise(const Length& noise, const CanonicalCloud& clo
 double paper_epsilon(const CanonicalCloud& cloud) {
   int deepest = 0;
   for (std::size_t i = 1; i < cloud.size(); ++i) {
-    const int common_bits = std::countl_zero(cloud.morton[i - 1] ^ cloud.morton[i]) - 1;  // the top bit of a code is unused
+    const int common_bits = std::countl_zero(cloud.morton()[i - 1] ^ cloud.morton()[i]) - 1;  // the top bit of a code is unused
     deepest = std::max(deepest, std::min(common_bits / 3 + 1, kGridLevels));
   }
   return kPaperLeafFactor * std::ldexp(2.0, -deepest);

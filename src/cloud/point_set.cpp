@@ -1,0 +1,59 @@
+#include "cloud/point_set.h"
+
+#include "cloud/spacing.h"
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+namespace g3r {
+
+struct PointSet::Known {
+  std::vector<Vec3> points;
+  std::vector<std::uint64_t> morton;
+  std::once_flag tree_made, near_made, local_made, smoothed_made, spacing_made;
+  std::unique_ptr<Neighbours> tree;
+  std::vector<std::uint32_t> near;
+  std::vector<double> local;
+  std::vector<double> smoothed;
+  double spacing = 0;
+};
+
+PointSet::PointSet() : known_(std::make_shared<Known>()) {}
+
+PointSet::PointSet(std::vector<Vec3> points, std::vector<std::uint64_t> morton) : PointSet() {
+  known_->points = std::move(points);
+  known_->morton = std::move(morton);
+}
+
+const std::vector<Vec3>& PointSet::points() const { return known_->points; }
+const std::vector<std::uint64_t>& PointSet::morton() const { return known_->morton; }
+std::size_t PointSet::near_count() const { return std::min(kSpacingNeighbours, size()); }
+
+const Neighbours& PointSet::tree() const {
+  std::call_once(known_->tree_made, [this] { known_->tree = std::make_unique<Neighbours>(known_->points); });
+  return *known_->tree;
+}
+
+const std::vector<std::uint32_t>& PointSet::near() const {
+  std::call_once(known_->near_made, [this] { known_->near = tree().of_all(kSpacingNeighbours); });
+  return known_->near;
+}
+
+const std::vector<double>& PointSet::local_spacing() const {
+  std::call_once(known_->local_made, [this] { known_->local = g3r::local_spacing(known_->points, near()); });
+  return known_->local;
+}
+
+const std::vector<double>& PointSet::smoothed_spacing() const {
+  std::call_once(known_->smoothed_made, [this] { known_->smoothed = g3r::smoothed_spacing(local_spacing(), near()); });
+  return known_->smoothed;
+}
+
+double PointSet::spacing() const {
+  std::call_once(known_->spacing_made, [this] { known_->spacing = typical_spacing(local_spacing()); });
+  return known_->spacing;
+}
+
+}  // namespace g3r

@@ -1,0 +1,43 @@
+// Points in canonical order, and what the steps ask of them.
+#pragma once
+
+#include "cloud/neighbours.h"
+
+#include <g3r/points.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace g3r {
+
+/// Distinct points in canonical order, and what is known of their surroundings: each made on first use, once, and handed on as one thing.
+/// Copies share it. Not to be asked from within a parallel loop for what has not been made.
+class PointSet {
+ public:
+  PointSet();  ///< no points
+  /// `points`: in the unit frame, as a rule; `morton`: their codes, non-decreasing, or empty where only surroundings are asked for.
+  explicit PointSet(std::vector<Vec3> points, std::vector<std::uint64_t> morton = {});
+
+  [[nodiscard]] const std::vector<Vec3>& points() const;          ///< N
+  [[nodiscard]] const std::vector<std::uint64_t>& morton() const;  ///< N codes
+  [[nodiscard]] std::size_t size() const { return points().size(); }
+
+  /// The k-d tree. O(N log N).
+  [[nodiscard]] const Neighbours& tree() const;
+  /// Of every point the near_count() nearest, nearest first (itself, but for points in the same place): N x near_count(), row-major.
+  /// O(N log N).
+  [[nodiscard]] const std::vector<std::uint32_t>& near() const;
+  [[nodiscard]] std::size_t near_count() const;  ///< min(kSpacingNeighbours, N)
+  /// local_spacing(), smoothed_spacing() and typical_spacing() of the points.
+  [[nodiscard]] const std::vector<double>& local_spacing() const;
+  [[nodiscard]] const std::vector<double>& smoothed_spacing() const;
+  [[nodiscard]] double spacing() const;
+
+ private:
+  struct Known;
+  std::shared_ptr<Known> known_;
+};
+
+}  // namespace g3r
