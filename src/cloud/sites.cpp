@@ -1,10 +1,10 @@
 #include "cloud/sites.h"
 
+#include "base/median.h"
+#include "base/vector.h"
 #include "cloud/canonical_cloud.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
-#include "median.h"
-#include "vector.h"
 
 #include <Eigen/Eigenvalues>
 

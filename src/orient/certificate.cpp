@@ -1,11 +1,11 @@
 #include "orient/certificate.h"
 
+#include "base/median.h"
+#include "base/vector.h"
 #include "cloud/neighbours.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
-#include "median.h"
 #include "sum/fast_sum.h"
-#include "vector.h"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 // The sides of flat facets, whole facets at a time.
 #pragma once
 
+#include "base/stages.h"
 #include "orient/settings.h"
-#include "stages.h"
 
 #include <g3r/points.h>
 

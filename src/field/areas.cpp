@@ -1,7 +1,7 @@
-#include "areas.h"
+#include "field/areas.h"
 
+#include "base/median.h"
 #include "cloud/spacing.h"
-#include "median.h"
 #include "mesh/held_points.h"
 #include "sum/fast_sum.h"
 

@@ -1,4 +1,4 @@
-#include "problem.h"
+#include "orient/problem.h"
 
 #include "cloud/neighbours.h"
 #include "cloud/noise.h"
