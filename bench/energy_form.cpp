@@ -10,10 +10,10 @@
 #include "cloud/canonical_cloud.h"
 #include "cloud/spacing.h"
 #include "inputs.h"
-#include "orient/refine.h"
 #include "results.h"
 #include "solve/energy_system.h"
 #include "solve/iterative_solver.h"
+#include "solve/refine.h"
 
 namespace g3r::bench {
 

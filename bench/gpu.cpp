@@ -4,7 +4,7 @@
 // after one that compiles and allocates.
 #include "cloud/canonical_cloud.h"
 #include "cpu/parallel.h"
-#include "gpu/scope.h"
+#include "sum/device_scope.h"
 #include "sum/fast_sum.h"
 #include "sum_cases.h"
 

@@ -8,11 +8,11 @@
 #include <cmath>
 #include <functional>
 
+#include "base/vector.h"
 #include "cloud/neighbours.h"
 #include "cloud/spacing.h"
 #include "mesh/used_vertices.h"
 #include "metrics/random.h"
-#include "vector.h"
 
 namespace g3r::bench {
 

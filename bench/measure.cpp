@@ -10,7 +10,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "vector.h"
+#include "base/vector.h"
 
 namespace g3r::bench {
 

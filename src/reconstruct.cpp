@@ -1,19 +1,19 @@
 // From points, or oriented points, to a mesh.
+#include "base/median.h"
+#include "base/stages.h"
+#include "base/vector.h"
 #include "cpu/parallel.h"
-#include "findings.h"
-#include "gpu/scope.h"
-#include "median.h"
+#include "field/oriented_cloud.h"
 #include "mesh/field_mesher.h"
+#include "mesh/findings.h"
 #include "mesh/held_points.h"
 #include "mesh/mesh_finish.h"
 #include "mesh/screened_poisson.h"
 #include "mesh/separate_vertices.h"
 #include "mesh/smooth_spacing.h"
 #include "orient/settings.h"
-#include "oriented_cloud.h"
-#include "stages.h"
+#include "sum/device_scope.h"
 #include "sum/fast_sum.h"
-#include "vector.h"
 
 #include <g3r/g3r.h>
 

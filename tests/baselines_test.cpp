@@ -1,11 +1,11 @@
 // The earlier methods: their operators are what their headers say, and each orients simple shapes.
+#include "base/vector.h"
 #include "baselines/gauss_system.h"
 #include "baselines/hard_cutoff.h"
 #include "baselines/stretched_winding.h"
 #include "baselines/wnnc.h"
 #include "cloud/canonical_cloud.h"
 #include "shapes.h"
-#include "vector.h"
 
 #include <g3r/g3r.h>
 #include <gtest/gtest.h>

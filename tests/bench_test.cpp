@@ -9,8 +9,8 @@
 #include "../bench/measure.h"
 #include "../bench/results.h"
 #include "../bench/variant.h"
+#include "base/vector.h"
 #include "mesh_shapes.h"
-#include "vector.h"
 
 namespace g3r::bench {
 namespace {

@@ -1,8 +1,8 @@
 // The certificate: what it says of right normals, of wrong ones and of surfaces without an inside.
 #include "orient/certificate.h"
 
+#include "base/vector.h"
 #include "cloud/canonical_cloud.h"
-#include "vector.h"
 
 #include "shapes.h"
 

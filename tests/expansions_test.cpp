@@ -1,6 +1,6 @@
 // Expansion identities one by one, and the completeness of the interaction lists.
-#include "sum/expansions.h"
-#include "sum/m2l_matrices.h"
+#include "expansions/expansions.h"
+#include "expansions/m2l_matrices.h"
 
 #include "cloud/canonical_cloud.h"
 #include "shapes.h"

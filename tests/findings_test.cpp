@@ -1,5 +1,5 @@
 // Warnings about the sampling and the topology: on what they are for, and not on ordinary clouds.
-#include "findings.h"
+#include "mesh/findings.h"
 
 #include <gtest/gtest.h>
 

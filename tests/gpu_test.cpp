@@ -3,9 +3,9 @@
 #include "cpu/parallel.h"
 #include "gpu/device.h"
 #include "gpu/execution.h"
-#include "gpu/scope.h"
 #include "sanitized.h"
 #include "shapes.h"
+#include "sum/device_scope.h"
 #include "sum/fast_sum.h"
 #include "sum_cases.h"
 

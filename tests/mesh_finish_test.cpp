@@ -10,15 +10,15 @@
 #include <map>
 #include <utility>
 
+#include "base/median.h"
+#include "base/vector.h"
 #include "field_shapes.h"
-#include "median.h"
 #include "mesh/field_mesher.h"
 #include "mesh/mesh_parts.h"
 #include "mesh/simplify.h"
 #include "mesh/smooth_rims.h"
 #include "mesh/smooth_spacing.h"
 #include "mesh_topology.h"
-#include "vector.h"
 
 namespace {
 

@@ -5,10 +5,10 @@
 #include <limits>
 #include <map>
 
+#include "base/vector.h"
 #include "mesh_shapes.h"
 #include "metrics/random.h"
 #include "metrics/triangle_tree.h"
-#include "vector.h"
 
 namespace g3r {
 namespace {

@@ -1,10 +1,10 @@
 // Surfaces without an inside: sides consistent, directions right, told apart from solids and from thin walls.
 #include "orient/open_surfaces.h"
 
+#include "base/vector.h"
 #include "cloud/canonical_cloud.h"
 #include "cloud/plane_fit.h"
 #include "cloud/spacing.h"
-#include "vector.h"
 
 #include "shapes.h"
 

@@ -1,9 +1,9 @@
 // orient() as a user sees it: right sides on every topology, the same result for every order, place, scale and thread count, clear errors.
 #include <g3r/g3r.h>
 
+#include "base/vector.h"
 #include "sanitized.h"
 #include "shapes.h"
-#include "vector.h"
 
 #include <gtest/gtest.h>
 

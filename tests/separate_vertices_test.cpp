@@ -10,8 +10,8 @@
 #include <random>
 #include <string>
 
+#include "base/suits_float.h"
 #include "mesh_topology.h"
-#include "suits_float.h"
 
 namespace {
 

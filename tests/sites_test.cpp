@@ -1,9 +1,9 @@
 // Sites: an even distance apart, all points covered, planes of the surface rather than of its sampling.
 #include "cloud/sites.h"
 
+#include "base/vector.h"
 #include "cloud/canonical_cloud.h"
 #include "cloud/spacing.h"
-#include "vector.h"
 
 #include "shapes.h"
 

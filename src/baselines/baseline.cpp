@@ -1,7 +1,7 @@
 #include "baselines/baseline.h"
 
 #include "baselines/gauss_system.h"
-#include "orient/refine.h"
+#include "solve/refine.h"
 
 #include <g3r/error.h>
 

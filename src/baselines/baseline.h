@@ -1,10 +1,10 @@
 // The earlier methods that g3r can run in its own frame, with its own sums, so that one program compares them.
 #pragma once
 
+#include "base/stages.h"
 #include "baselines/wnnc.h"
 #include "cloud/canonical_cloud.h"
 #include "solve/iterative_solver.h"
-#include "stages.h"
 #include "sum/sum_plan.h"
 
 #include <g3r/g3r.h>

@@ -1,6 +1,6 @@
 #include "baselines/gauss_system.h"
 
-#include "vector.h"
+#include "base/vector.h"
 
 namespace g3r {
 namespace {

@@ -1,8 +1,8 @@
 #include "baselines/hard_cutoff.h"
 
+#include "base/vector.h"
 #include "cpu/parallel.h"
-#include "sum/kernels.h"
-#include "vector.h"
+#include "kernels/kernels.h"
 
 #include <algorithm>
 

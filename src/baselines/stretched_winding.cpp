@@ -1,9 +1,9 @@
 #include "baselines/stretched_winding.h"
 
+#include "base/vector.h"
 #include "baselines/near_pairs.h"
 #include "cloud/canonical_cloud.h"
-#include "sum/kernels.h"
-#include "vector.h"
+#include "kernels/kernels.h"
 
 #include <algorithm>
 #include <cmath>

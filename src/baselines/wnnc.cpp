@@ -1,8 +1,8 @@
 #include "baselines/wnnc.h"
 
+#include "base/vector.h"
 #include "baselines/hard_cutoff.h"
-#include "orient/refine.h"
-#include "vector.h"
+#include "solve/refine.h"
 
 #include <g3r/error.h>
 

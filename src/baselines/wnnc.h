@@ -8,7 +8,7 @@
 // box; its sums are a treecode of order 0, ours are as accurate as the plan says.
 #pragma once
 
-#include "stages.h"
+#include "base/stages.h"
 #include "sum/sum_plan.h"
 
 #include <g3r/points.h>

@@ -1,7 +1,7 @@
 #include "cloud/exact_plane.h"
 
+#include "base/vector.h"
 #include "cloud/plane_fit.h"
-#include "vector.h"
 
 #include <algorithm>
 #include <array>

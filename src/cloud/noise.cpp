@@ -1,11 +1,11 @@
 #include "cloud/noise.h"
 
+#include "base/vector.h"
 #include "cloud/exact_plane.h"
 #include "cloud/layers.h"
 #include "cloud/plane_fit.h"
 #include "cloud/sheet.h"
 #include "cloud/spacing.h"
-#include "vector.h"
 
 #include <algorithm>
 #include <cmath>

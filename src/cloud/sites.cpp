@@ -1,9 +1,9 @@
 #include "cloud/sites.h"
 
+#include "base/median.h"
+#include "base/vector.h"
 #include "cloud/canonical_cloud.h"
 #include "cpu/parallel.h"
-#include "median.h"
-#include "vector.h"
 
 #include <Eigen/Eigenvalues>
 

@@ -1,8 +1,8 @@
 #include "cloud/spacing.h"
 
+#include "base/median.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
-#include "median.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #define HWY_TARGET_INCLUDE "cpu/far_field.cpp"
 #include "cpu/far_field.h"
 
-#include "sum/expansions.h"
+#include "kernels/expansion_index.h"
 
 #include <cstring>
 

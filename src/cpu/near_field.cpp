@@ -12,7 +12,7 @@
 #define HWY_TARGET_INCLUDE "cpu/near_field.cpp"
 #include "cpu/near_field.h"
 
-#include "sum/kernel_polynomials.h"
+#include "kernels/kernel_polynomials.h"
 
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>

@@ -6,7 +6,7 @@
 #define HWY_TARGET_INCLUDE "cpu/translations.cpp"
 #include "cpu/translations.h"
 
-#include "sum/expansions.h"
+#include "kernels/expansion_index.h"
 
 #include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>  // IWYU pragma: keep

@@ -1,6 +1,6 @@
 #include "gpu/kernel_source.h"
 
-#include "sum/kernel_polynomials.h"
+#include "kernels/kernel_polynomials.h"
 
 #include <array>
 #include <cstdio>

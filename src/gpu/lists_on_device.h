@@ -2,8 +2,8 @@
 #pragma once
 
 #include "cpu/translations.h"
+#include "expansions/m2l_matrices.h"
 #include "gpu/device.h"
-#include "sum/m2l_matrices.h"
 #include "tree/interaction_lists.h"
 #include "tree/octree.h"
 

@@ -1,8 +1,8 @@
 #include "gpu/sum_on_device.h"
 
 #include "cpu/parallel.h"
-#include "sum/expansions.h"
-#include "sum/kernel_polynomials.h"
+#include "kernels/expansion_index.h"
+#include "kernels/kernel_polynomials.h"
 
 #include <algorithm>
 #include <cmath>

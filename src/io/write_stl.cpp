@@ -1,10 +1,10 @@
 // STL out: binary (float32, as the format has it) or text (full precision), which is also taken where float32 would show. Facet normals
 // follow from the corners.
+#include "base/suits_float.h"
+#include "base/vector.h"
 #include "io/table.h"
 #include "io/text.h"
 #include "io/writers.h"
-#include "suits_float.h"
-#include "vector.h"
 
 #include <cmath>
 

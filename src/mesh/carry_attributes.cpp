@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
+#include "base/vector.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
-#include "vector.h"
 
 namespace g3r {
 namespace {

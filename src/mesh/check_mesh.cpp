@@ -9,10 +9,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/disjoint_sets.h"
+#include "base/disjoint_sets.h"
+#include "base/vector.h"
 #include "mesh/sides.h"
 #include "mesh/used_vertices.h"
-#include "vector.h"
 
 namespace g3r {
 

@@ -6,12 +6,12 @@
 #include <limits>
 #include <utility>
 
+#include "base/disjoint_sets.h"
+#include "base/vector.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
 #include "g3r/error.h"
-#include "mesh/disjoint_sets.h"
 #include "mesh/self_intersections.h"
-#include "vector.h"
 
 namespace g3r::mesh {
 namespace {

@@ -6,8 +6,8 @@
 #include <new>
 #include <unordered_map>
 
+#include "base/disjoint_sets.h"
 #include "cpu/parallel.h"
-#include "mesh/disjoint_sets.h"
 
 namespace g3r::mesh {
 namespace {

@@ -7,10 +7,10 @@
 #include <memory>
 #include <string>
 
+#include "base/median.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
 #include "g3r/error.h"
-#include "median.h"
 #include "mesh/fair.h"
 #include "mesh/field_contour.h"
 #include "mesh/field_denoise.h"

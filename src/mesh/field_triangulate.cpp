@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/vector.h"
 #include "mesh/field_contour.h"
-#include "vector.h"
 
 namespace g3r::mesh {
 namespace {

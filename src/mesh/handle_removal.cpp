@@ -4,8 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include "base/disjoint_sets.h"
 #include "g3r/error.h"
-#include "mesh/disjoint_sets.h"
 
 namespace g3r::mesh {
 namespace {

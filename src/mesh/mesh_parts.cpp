@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "mesh/disjoint_sets.h"
+#include "base/disjoint_sets.h"
 
 namespace g3r::mesh {
 namespace {

@@ -14,8 +14,8 @@
 #include <string>
 #include <thread>
 
+#include "base/vector.h"
 #include "mesh/split_nonmanifold.h"
-#include "vector.h"
 
 namespace g3r {
 

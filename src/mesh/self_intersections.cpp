@@ -6,11 +6,11 @@
 #include <limits>
 #include <utility>
 
+#include "base/vector.h"
 #include "cpu/parallel.h"
 #include "mesh/box_tree.h"
 #include "mesh/exact_orientation.h"
 #include "mesh/used_vertices.h"
-#include "vector.h"
 
 namespace g3r {
 namespace {

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/suits_float.h"
+#include "base/vector.h"
 #include "cpu/parallel.h"
-#include "suits_float.h"
-#include "vector.h"
 
 namespace g3r::mesh {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "vector.h"
+#include "base/vector.h"
 
 namespace g3r::mesh {
 namespace {

@@ -1,8 +1,8 @@
 #include "mesh/smooth_spacing.h"
 
+#include "base/vector.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
-#include "vector.h"
 
 #include <algorithm>
 #include <cmath>

@@ -10,9 +10,9 @@
 #include <limits>
 #include <utility>
 
-#include "mesh/disjoint_sets.h"
+#include "base/disjoint_sets.h"
+#include "base/vector.h"
 #include "mesh/sides.h"
-#include "vector.h"
 
 namespace g3r {
 

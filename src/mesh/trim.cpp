@@ -5,12 +5,12 @@
 #include <cmath>
 #include <utility>
 
+#include "base/median.h"
+#include "base/vector.h"
 #include "g3r/error.h"
-#include "median.h"
 #include "mesh/distance_to_points.h"
 #include "mesh/mesh_parts.h"
 #include "mesh/smooth_rims.h"
-#include "vector.h"
 
 namespace g3r::mesh {
 namespace {

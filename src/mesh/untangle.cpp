@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/vector.h"
 #include "g3r/error.h"
 #include "mesh/self_intersections.h"
-#include "vector.h"
 
 namespace g3r::mesh {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <g3r/mesh.h>
 
-#include "vector.h"
+#include "base/vector.h"
 
 namespace g3r {
 

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
+#include "base/vector.h"
 #include "mesh/used_vertices.h"
 #include "metrics/random.h"
-#include "vector.h"
 
 namespace g3r {
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <vector>
 
+#include "base/vector.h"
 #include "cpu/parallel.h"
 #include "metrics/triangle_tree.h"
-#include "vector.h"
 
 namespace g3r {
 

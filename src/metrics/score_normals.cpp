@@ -7,7 +7,7 @@
 #include <numbers>
 #include <string>
 
-#include "vector.h"
+#include "base/vector.h"
 
 namespace g3r {
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "vector.h"
+#include "base/vector.h"
 
 namespace g3r {
 

@@ -1,10 +1,10 @@
 #include "orient/certificate.h"
 
+#include "base/median.h"
+#include "base/vector.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
-#include "median.h"
 #include "sum/fast_sum.h"
-#include "vector.h"
 
 #include <algorithm>
 #include <array>

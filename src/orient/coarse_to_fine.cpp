@@ -1,7 +1,7 @@
 #include "orient/coarse_to_fine.h"
 
+#include "orient/confidence.h"
 #include "orient/polish.h"
-#include "orient/refine.h"
 #include "solve/energy_system.h"
 #include "solve/green_system.h"
 #include "sum/fast_sum.h"
@@ -11,10 +11,8 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kThinning = 4;  // points per coarse point: twice the spacing
 constexpr double kSpacingRatio = 2;
 constexpr double kCubeRatio = kSpacingRatio * kSpacingRatio * kSpacingRatio;  // of the weights of the winding number
-constexpr std::size_t kFewestCoarsePoints = 10000;                            // a coarser start costs sides on thin parts and saves little
 constexpr double kCoarseShare = 0.2;                                          // of the progress bar
 constexpr double kDoubtfulShare = 0.04;                                       // share of the points from which more steps are tried
 constexpr double kWorse = 1.25;                                               // of that share after them, from which they are undone
@@ -123,10 +121,6 @@ Level solve_level(const std::vector<Vec3>& points, const std::vector<std::uint64
 }
 
 }  // namespace
-
-bool starts_coarse(const Settings& settings, std::size_t points) {
-  return settings.coarse_to_fine && points / kThinning >= kFewestCoarsePoints;
-}
 
 Solved solve_coarse_to_fine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
                             Stages& stages) {

@@ -1,10 +1,10 @@
 // Conjugate gradients started from the solution on fewer points.
 #pragma once
 
-#include "orient/refine.h"
+#include "base/stages.h"
 #include "orient/settings.h"
 #include "solve/iterative_solver.h"
-#include "stages.h"
+#include "solve/refine.h"
 
 #include <g3r/points.h>
 
@@ -12,9 +12,6 @@
 #include <vector>
 
 namespace g3r {
-
-/// Whether solve_coarse_to_fine() begins with fewer points.
-[[nodiscard]] bool starts_coarse(const Settings& settings, std::size_t points);
 
 /// Area vectors, and their refinement at settings.refinement_width (empty if that is 0).
 struct Solved {

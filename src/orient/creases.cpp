@@ -1,8 +1,8 @@
 #include "orient/creases.h"
 
+#include "base/median.h"
+#include "base/vector.h"
 #include "cpu/parallel.h"
-#include "median.h"
-#include "vector.h"
 
 #include <algorithm>
 #include <cmath>

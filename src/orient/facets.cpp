@@ -1,10 +1,10 @@
 #include "orient/facets.h"
 
+#include "base/vector.h"
 #include "orient/polish.h"
 #include "solve/energy_system.h"
 #include "solve/iterative_solver.h"
 #include "sum/fast_sum.h"
-#include "vector.h"
 
 #include <algorithm>
 #include <cmath>

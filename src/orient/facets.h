@@ -1,9 +1,9 @@
 // The sides of flat facets, whole facets at a time.
 #pragma once
 
+#include "base/stages.h"
 #include "cloud/point_set.h"
 #include "orient/settings.h"
-#include "stages.h"
 
 #include <g3r/points.h>
 

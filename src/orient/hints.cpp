@@ -1,10 +1,10 @@
 #include "orient/hints.h"
 
+#include "base/disjoint_sets.h"
+#include "base/median.h"
+#include "base/vector.h"
 #include "cloud/neighbours.h"
-#include "median.h"
-#include "mesh/disjoint_sets.h"
 #include "sum/direct_sum.h"
-#include "vector.h"
 
 #include <g3r/error.h>
 

@@ -1,16 +1,16 @@
 #include "orient/open_surfaces.h"
 
+#include "base/disjoint_sets.h"
+#include "base/median.h"
+#include "base/vector.h"
 #include "cloud/layers.h"
 #include "cloud/sheet.h"
 #include "cloud/sites.h"
 #include "cpu/parallel.h"
-#include "median.h"
-#include "mesh/disjoint_sets.h"
 #include "orient/certificate.h"
-#include "orient/refine.h"
 #include "orient/sign_graph.h"
+#include "solve/refine.h"
 #include "sum/fast_sum.h"
-#include "vector.h"
 
 #include <algorithm>
 #include <cmath>

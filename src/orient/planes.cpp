@@ -1,8 +1,8 @@
 #include "orient/planes.h"
 
+#include "base/vector.h"
 #include "cloud/exact_plane.h"
 #include "cpu/parallel.h"
-#include "vector.h"
 
 #include <cmath>
 #include <cstddef>

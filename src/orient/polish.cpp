@@ -1,6 +1,6 @@
 #include "orient/polish.h"
 
-#include "median.h"
+#include "base/median.h"
 #include "solve/energy_system.h"
 #include "solve/iterative_solver.h"
 #include "sum/fast_sum.h"

@@ -1,9 +1,9 @@
 // A better start makes a better solve: from the refined normals, a few steps of conjugate gradients, and a narrower refinement.
 #pragma once
 
-#include "orient/refine.h"
+#include "base/stages.h"
 #include "orient/settings.h"
-#include "stages.h"
+#include "solve/refine.h"
 
 #include <g3r/points.h>
 

@@ -1,7 +1,5 @@
 #include "orient/settings.h"
 
-#include "orient/coarse_to_fine.h"
-
 #include <g3r/error.h>
 
 #include <algorithm>
@@ -11,6 +9,8 @@
 
 namespace g3r {
 namespace {
+
+constexpr std::size_t kFewestCoarsePoints = 10000;  // a coarser start costs sides on thin parts and saves little
 
 // The default: energy form. Widths in spacings h.
 constexpr double kEnergyEpsilon = 0.4;    // smaller converges slower, larger blurs thin walls
@@ -222,6 +222,10 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   const bool continued = options.accuracy == -1 && s.method == Method::kEnergy;
   s.sums = sum_plan(continued ? kContinuedAccuracy : s.accuracy, cloud.size());
   return s;
+}
+
+bool starts_coarse(const Settings& settings, std::size_t points) {
+  return settings.coarse_to_fine && points / kThinning >= kFewestCoarsePoints;
 }
 
 std::size_t planned_memory(const Settings& settings, std::size_t given, std::size_t used) {

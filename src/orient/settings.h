@@ -9,6 +9,7 @@
 
 #include <g3r/g3r.h>
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -62,6 +63,11 @@ struct Settings {
 
 /// The paper's mollifier for clean input: 0.8 x the leaf side of an octree with at most one point per leaf, at its deepest level.
 [[nodiscard]] double paper_epsilon(const CanonicalCloud& cloud);
+
+/// Points per point of the coarse cloud that solve_coarse_to_fine() starts from: twice the spacing.
+inline constexpr std::size_t kThinning = 4;
+/// Whether solve_coarse_to_fine() begins with fewer points.
+[[nodiscard]] bool starts_coarse(const Settings& settings, std::size_t points);
 
 /// Predicted peak memory of orient() in bytes for N points. Measured peaks are 0.94 to 1.02 of it from 50,000 points on (docs/design.md).
 [[nodiscard]] std::size_t planned_memory(const Settings& settings, std::size_t given, std::size_t used);

@@ -1,7 +1,7 @@
 #include "solve/dense_solver.h"
 
 #include "cpu/parallel.h"
-#include "sum/kernels.h"
+#include "kernels/kernels.h"
 
 #include <g3r/error.h>
 

@@ -1,6 +1,8 @@
 // Real regular solid harmonics: the harmonic polynomials u of Green's identity.
 #pragma once
 
+#include "sum/harmonic_values.h"
+
 #include <g3r/points.h>
 
 #include <string>
@@ -27,13 +29,6 @@ inline constexpr int kMaxHarmonicDegree = 8;
 
 /// The shortest text that parse_harmonics() turns back into `set`.
 [[nodiscard]] std::string format_harmonics(const std::vector<Harmonic>& set);
-
-/// Values and gradients of a set of harmonics at many points.
-struct HarmonicValues {
-  std::size_t count = 0;       ///< K
-  std::vector<double> value;   ///< N x K, row-major
-  std::vector<Vec3> gradient;  ///< N x K, row-major
-};
 
 /// Evaluates by the recurrences of the solid harmonics in Cartesian coordinates (no division, exact for polynomials to rounding). O(N L^2).
 [[nodiscard]] HarmonicValues evaluate_harmonics(const std::vector<Harmonic>& set, const std::vector<Vec3>& points);

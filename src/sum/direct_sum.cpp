@@ -1,7 +1,7 @@
 #include "sum/direct_sum.h"
 
 #include "cpu/parallel.h"
-#include "sum/kernels.h"
+#include "kernels/kernels.h"
 
 #include <cmath>
 

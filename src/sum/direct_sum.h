@@ -2,7 +2,7 @@
 // Formulas and signs: docs/math.md. All arrays are in the same order as the points; sources y_i carry eta_i or q_i, targets x.
 #pragma once
 
-#include "solve/harmonics.h"
+#include "sum/harmonic_values.h"
 
 #include <g3r/points.h>
 

@@ -2,8 +2,8 @@
 
 #include "cloud/canonical_cloud.h"
 #include "cpu/parallel.h"
-#include "gpu/scope.h"
-#include "sum/kernels.h"
+#include "kernels/kernels.h"
+#include "sum/device_scope.h"
 #include "sum/sum_engine.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // The sums of g3r over one cloud, in linear time with bounded error, or directly. Formulas: docs/math.md; engine: docs/design.md.
 #pragma once
 
-#include "solve/harmonics.h"
 #include "sum/direct_sum.h"
+#include "sum/harmonic_values.h"
 #include "sum/sum_plan.h"
 
 #include <g3r/points.h>

@@ -2,10 +2,10 @@
 #include "sum/sum_engine.h"
 
 #include "cpu/parallel.h"
+#include "expansions/expansions.h"
 #include "gpu/execution.h"
 #include "gpu/sum_on_device.h"
-#include "sum/expansions.h"
-#include "sum/kernels.h"
+#include "kernels/kernels.h"
 
 #include <algorithm>
 #include <cmath>

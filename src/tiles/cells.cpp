@@ -1,6 +1,6 @@
 #include "tiles/cells.h"
 
-#include "mesh/disjoint_sets.h"
+#include "base/disjoint_sets.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,8 +1,8 @@
 // The inputs once more, with the results beside them: tiles list theirs in the order of the input, so all files are read front to back.
+#include "base/stages.h"
 #include "io/output_file.h"
 #include "io/point_stream.h"
 #include "io/source.h"
-#include "stages.h"
 #include "tiles/manifest.h"
 #include "tiles/records.h"
 

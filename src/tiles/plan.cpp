@@ -1,9 +1,9 @@
 // Two readings of the inputs (extent, then sort), one scan of the sorted points, one solve of the thinned cloud.
+#include "base/stages.h"
 #include "cpu/parallel.h"
 #include "io/output_file.h"
 #include "io/point_stream.h"
 #include "io/tiles.h"
-#include "stages.h"
 #include "tiles/external_sort.h"
 #include "tiles/manifest.h"
 #include "tiles/records.h"

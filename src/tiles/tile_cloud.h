@@ -1,7 +1,7 @@
 // The cloud that is solved for a tile: its own points, those of a halo around them, and thinned ones beyond, fewer the farther away.
 #pragma once
 
-#include "stages.h"
+#include "base/stages.h"
 #include "tiles/cells.h"
 #include "tiles/manifest.h"
 #include "tiles/records.h"

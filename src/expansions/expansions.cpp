@@ -1,4 +1,4 @@
-#include "sum/expansions.h"
+#include "expansions/expansions.h"
 
 #include <cmath>
 #include <complex>

@@ -1,7 +1,7 @@
-#include "findings.h"
+#include "mesh/findings.h"
 
+#include "base/vector.h"
 #include "mesh/fair.h"
-#include "vector.h"
 
 #include <algorithm>
 #include <array>

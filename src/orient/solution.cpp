@@ -1,5 +1,6 @@
-#include "solution.h"
+#include "orient/solution.h"
 
+#include "base/vector.h"
 #include "baselines/baseline.h"
 #include "cloud/clusters.h"
 #include "cloud/sites.h"
@@ -15,7 +16,6 @@
 #include "solve/green_system.h"
 #include "solve/iterative_solver.h"
 #include "sum/fast_sum.h"
-#include "vector.h"
 
 #include <algorithm>
 #include <map>

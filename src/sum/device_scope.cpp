@@ -1,4 +1,4 @@
-#include "gpu/scope.h"
+#include "sum/device_scope.h"
 
 #include "cloud/canonical_cloud.h"
 #include "cpu/parallel.h"

@@ -1,10 +1,10 @@
 // From a problem to area vectors and normals.
 #pragma once
 
+#include "base/stages.h"
 #include "orient/open_surfaces.h"
-#include "orient/refine.h"
-#include "problem.h"
-#include "stages.h"
+#include "orient/problem.h"
+#include "solve/refine.h"
 
 #include <g3r/g3r.h>
 

@@ -3,7 +3,7 @@
 
 #include "cpu/aligned_vector.h"
 #include "cpu/translations.h"
-#include "sum/expansions.h"
+#include "expansions/expansions.h"
 #include "tree/interaction_lists.h"
 
 #include <cstddef>

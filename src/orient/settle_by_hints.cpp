@@ -1,7 +1,7 @@
-#include "settle_by_hints.h"
+#include "orient/settle_by_hints.h"
 
+#include "orient/confidence.h"
 #include "orient/hints.h"
-#include "orient/refine.h"
 
 #include <algorithm>
 #include <cmath>

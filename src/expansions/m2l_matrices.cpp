@@ -1,4 +1,4 @@
-#include "sum/m2l_matrices.h"
+#include "expansions/m2l_matrices.h"
 
 #include "cpu/parallel.h"
 

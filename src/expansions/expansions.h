@@ -9,6 +9,7 @@
 // Sources: Epton and Dembart 1995; Greengard and Rokhlin 1997; the normalisation is that of Wang and LeSar 1996.
 #pragma once
 
+#include "kernels/expansion_index.h"
 #include "tree/interaction_lists.h"
 
 #include <g3r/points.h>
@@ -18,14 +19,6 @@
 #include <vector>
 
 namespace g3r {
-
-inline constexpr int kMaxExpansionOrder = 18;  // (2p)! / 4^(2p) must stay in range of the coefficients' products
-
-/// Number of coefficients of order p: (p + 1)^2.
-constexpr std::size_t coefficient_count(int order) { return static_cast<std::size_t>(order + 1) * static_cast<std::size_t>(order + 1); }
-/// Index of Re R_l^m (m >= 0) and of Im R_l^m (m > 0) in the real basis.
-constexpr std::size_t real_index(int l, int m) { return static_cast<std::size_t>(l * l + (m == 0 ? 0 : 2 * m - 1)); }
-constexpr std::size_t imaginary_index(int l, int m) { return static_cast<std::size_t>(l * l + 2 * m); }
 
 /// B_a(b) for all a up to order p.
 [[nodiscard]] std::vector<double> regular_harmonics(const Vec3& b, int order);

@@ -1,7 +1,7 @@
 // Whether single precision keeps shapes of some size and place.
 #pragma once
 
-#include "vector.h"
+#include "base/vector.h"
 
 #include <algorithm>
 #include <cmath>

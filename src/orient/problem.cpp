@@ -1,4 +1,4 @@
-#include "problem.h"
+#include "orient/problem.h"
 
 #include "cloud/noise.h"
 #include "cloud/outliers.h"

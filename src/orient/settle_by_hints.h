@@ -1,8 +1,8 @@
 // The caller's hints, brought to the problem's points.
 #pragma once
 
-#include "problem.h"
-#include "solution.h"
+#include "orient/problem.h"
+#include "orient/solution.h"
 
 #include <g3r/g3r.h>
 

@@ -1,11 +1,11 @@
 // A cloud and options, resolved: what is solved for.
 #pragma once
 
+#include "base/stages.h"
 #include "baselines/baseline.h"
 #include "cloud/canonical_cloud.h"
 #include "cloud/sites.h"
 #include "orient/settings.h"
-#include "stages.h"
 
 #include <g3r/g3r.h>
 

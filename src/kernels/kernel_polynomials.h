@@ -3,7 +3,7 @@
 // 1.3e-4 (float, rough) before rounding.
 #pragma once
 
-#include "sum/kernels.h"
+#include "kernels/kernels.h"
 
 namespace g3r {
 

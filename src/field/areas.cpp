@@ -1,6 +1,6 @@
-#include "areas.h"
+#include "field/areas.h"
 
-#include "median.h"
+#include "base/median.h"
 #include "mesh/held_points.h"
 #include "sum/fast_sum.h"
 

@@ -1,7 +1,5 @@
-// From the solved area vectors to normals: one evaluation of the winding gradient, and how far to trust each.
+// How far to trust the side of each normal.
 #pragma once
-
-#include "sum/fast_sum.h"
 
 #include <g3r/points.h>
 
@@ -9,21 +7,6 @@
 #include <vector>
 
 namespace g3r {
-
-/// n_i ~ -grad w_s(x_i), normalised (docs/math.md, "Refinement"): the solved vectors have the right side almost everywhere but noisy
-/// directions; the gradient of their field fixes the directions. One sweep of `sum`, whose width is s.
-/// Where the gradient vanishes the normalised eta stays.
-struct Refinement {
-  std::vector<Vec3> normals;     ///< N unit vectors
-  std::vector<double> strength;  ///< N: |grad w_s|, 1/length
-};
-[[nodiscard]] Refinement refine_normals(FastSum& sum, const std::vector<Vec3>& eta);
-
-/// The same from gradients already evaluated.
-[[nodiscard]] Refinement unit_normals(std::vector<Vec3> gradients, const std::vector<Vec3>& eta);
-
-/// Unit vectors along eta; (0, 0, 1) where eta vanishes.
-[[nodiscard]] std::vector<Vec3> normalised(const std::vector<Vec3>& eta);
 
 /// Confidence in the side of each normal, in [0, 1]: c = a m f with
 ///   a = (1 + cos angle(eta_i, n_i)) / 2              solved and refined directions agree

@@ -1,0 +1,41 @@
+#include "solve/refine.h"
+
+#include <cmath>
+#include <utility>
+
+namespace g3r {
+namespace {
+
+double length(const Vec3& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+}  // namespace
+
+std::vector<Vec3> normalised(const std::vector<Vec3>& eta) {
+  std::vector<Vec3> out(eta.size());
+  for (std::size_t i = 0; i < eta.size(); ++i) {
+    const double size = length(eta[i]);
+    out[i] = size > 0 ? Vec3{eta[i][0] / size, eta[i][1] / size, eta[i][2] / size} : Vec3{0, 0, 1};
+  }
+  return out;
+}
+
+Refinement refine_normals(FastSum& sum, const std::vector<Vec3>& eta) { return unit_normals(sum.winding_gradient(eta), eta); }
+
+Refinement unit_normals(std::vector<Vec3> gradients, const std::vector<Vec3>& eta) {
+  Refinement refined;
+  refined.normals = std::move(gradients);
+  refined.strength.resize(eta.size());
+  for (std::size_t i = 0; i < eta.size(); ++i) {
+    Vec3& n = refined.normals[i];
+    const double size = length(n);
+    refined.strength[i] = size;
+    if (size > 0) {
+      for (double& c : n) c /= size;
+    } else {
+      n = normalised({eta[i]}).front();
+    }
+  }
+  return refined;
+}
+
+}  // namespace g3r

@@ -1,0 +1,64 @@
+"""The folders of src/ build on one another and never in a circle: read off their includes."""
+
+import pathlib
+import re
+import unittest
+
+SOURCES = pathlib.Path(__file__).resolve().parent.parent / "src"
+ENTRY = "src"  # files of src/ itself: the public entry points, which may use every folder
+
+
+def uses():
+    """For every folder the folders that its files include, each with one of these files."""
+    out = {}
+    for path in sorted(SOURCES.rglob("*")):
+        if path.suffix not in (".h", ".cpp"):
+            continue
+        inside = path.relative_to(SOURCES)
+        folder = inside.parts[0] if len(inside.parts) > 1 else ENTRY
+        targets = out.setdefault(folder, {})
+        for target in re.findall(r'^#include "([^"]+)"', path.read_text(), re.MULTILINE):
+            first = target.split("/")[0] if "/" in target else ENTRY
+            if first != folder:
+                targets.setdefault(first, f"{inside} includes {target}")
+    return out
+
+
+def circle(graph):
+    """The includes of one circle, empty without any."""
+    done = set()
+
+    def walk(folder, path):
+        if folder in path:
+            ring = [*path[path.index(folder) :], folder]
+            return [graph[a][b] for a, b in zip(ring, ring[1:])]
+        if folder in done:
+            return []
+        for target in graph.get(folder, {}):
+            found = walk(target, [*path, folder])
+            if found:
+                return found
+        done.add(folder)
+        return []
+
+    return next(filter(None, (walk(folder, []) for folder in graph)), [])
+
+
+class SourceFolders(unittest.TestCase):
+    def test_a_circle_is_found(self):
+        graph = {"a": {"b": "a/1 includes b/2"}, "b": {"c": "b/2 includes c/3"}, "c": {"b": "c/3 includes b/1"}}
+        self.assertEqual(circle(graph), ["b/2 includes c/3", "c/3 includes b/1"])
+        self.assertEqual(circle({"a": graph["a"], "b": {}}), [])
+
+    def test_folders_do_not_include_in_a_circle(self):
+        self.assertEqual(circle(uses()), [])
+
+    def test_no_folder_includes_an_entry_point(self):
+        self.assertEqual([targets[ENTRY] for targets in uses().values() if ENTRY in targets], [])
+
+    def test_base_builds_on_nothing(self):
+        self.assertEqual(uses()["base"], {})
+
+
+if __name__ == "__main__":
+    unittest.main()
