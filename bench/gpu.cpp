@@ -107,7 +107,7 @@ void compare_forms(const char* what, const sum_cases::Inputs& in, SumPlan plan, 
 }
 
 sum_cases::Inputs inputs(std::size_t n, std::vector<Vec3>& points) {
-  points = canonical_cloud(shapes::torus(n, 0.6, 0.25, 5).points).points;
+  points = canonical_cloud(shapes::torus(n, 0.6, 0.25, 5).points).points();
   const double h = std::sqrt(4 * std::acos(-1.0) * std::acos(-1.0) * 0.6 * 0.25 / (0.85 * 0.85 * 1.1 * 1.1) / static_cast<double>(n));
   return {points, Widths(kEpsilon * h)};
 }

@@ -26,13 +26,11 @@ struct Fitted {
 Fitted fit(const Surface& surface, std::vector<Vec3> normals, std::uint8_t proven = 0) {
   const std::size_t n = surface.points.size();
   Fitted out{std::move(normals), std::vector<std::uint8_t>(n, proven)};
-  fit_planes(PointSet(surface.points), out.proven, out.normals);
+  fit_planes(PointSet(surface.points), 0, out.proven, out.normals);
   return out;
 }
 
-std::vector<Vec3> fitted(const Surface& surface, const std::vector<Vec3>& normals) {
-  return fit(surface, normals).normals;
-}
+std::vector<Vec3> fitted(const Surface& surface, const std::vector<Vec3>& normals) { return fit(surface, normals).normals; }
 
 double share_exact(const std::vector<Vec3>& normals, const std::vector<Vec3>& truth) {
   std::size_t exact = 0;

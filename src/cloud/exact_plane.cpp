@@ -2,10 +2,13 @@
 
 #include "base/vector.h"
 #include "cloud/plane_fit.h"
+#include "cloud/sheet.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 namespace g3r {
 namespace {
@@ -18,6 +21,15 @@ constexpr std::array<double, 3> kWithin{0.0005, 0.002, 0.003};
 constexpr double kSteepest = 0.1;    // cosine between a candidate and the direction asked for
 constexpr double kNarrowest = 0.15;  // breadth of the points on the plane
 constexpr double kLeastAngle = 0.1;  // sine, between the two that a candidate passes through
+// Of points that scatter.
+constexpr double kReach = 2.5;           // standard deviations from a plane that holds a point: 99 % of those on it
+constexpr double kBackground = 1.5;      // spacings to either side that points on no plane fill, as far as 32 neighbours reach
+constexpr double kMostChance = 0.9;      // so that the tail below is one of chance
+constexpr double kFalseAlarms = 1e-3;    // expected number of planes by chance, of all candidates
+constexpr double kLeastScatter = 0.001;  // spacings: less is exact
+constexpr double kMostScatter = 0.15;    // spacings: more, and half of 33 points prove nothing
+constexpr double kBroad = 0.4;           // breadth of a facet; the rows of a raster lie in narrow strips of planes across the surface
+constexpr int kRefits = 2;               // the candidate passes through three points, so it is tilted by their scatter
 
 // The nearest points of one, relative to it, itself first, in spacings.
 struct Around {
@@ -55,7 +67,32 @@ Candidate held_by(const Around& around, const Vec3& normal) {
   return {};
 }
 
-Candidate best_plane(const Around& around, const Vec3* towards) {
+// How many of the candidates, planes through three of `count` points, hold k points or more by chance, k = 0 ... count, where each other
+// point is within `within` of one with the probability of kBackground: a binomial tail.
+std::vector<double> false_alarms(std::size_t count, double within) {
+  const double chance = std::min(kMostChance, within / kBackground);
+  const double candidates = kSeeds * (kSeeds - 1) / 2.0;
+  std::vector<double> expected(count + 1, candidates);
+  const std::size_t others = count < 3 ? 0 : count - 3;
+  double tail = 0;
+  double term = std::pow(chance, static_cast<double>(others));  // of all others
+  for (std::size_t k = others; k > 0; --k) {
+    tail += term;
+    expected[k + 3] = candidates * tail;
+    term *= static_cast<double>(k) * (1 - chance) / (static_cast<double>(others - k + 1) * chance);
+  }
+  return expected;
+}
+
+// How many points prove a plane.
+int proof(std::size_t count, double within) {
+  const std::vector<double> expected = false_alarms(count, within);
+  const auto first = std::find_if(expected.begin(), expected.end(), [](double e) { return e <= kFalseAlarms; });
+  return std::max(static_cast<int>(first - expected.begin()), kFewest + 1);
+}
+
+template <typename HeldBy>
+Candidate best_plane(const Around& around, const Vec3* towards, const HeldBy& held_by) {
   Candidate best;
   const std::size_t seeds = std::min(kSeeds + 1, around.count);
   for (std::size_t a = 1; a < seeds; ++a) {
@@ -67,7 +104,7 @@ Candidate best_plane(const Around& around, const Vec3* towards) {
       if (!(size > kLeastAngle * std::sqrt(vector::dot(first, first) * vector::dot(second, second)))) continue;
       const double cosine = towards != nullptr ? std::abs(vector::dot(across, *towards)) / size : 1;
       if (cosine < kSteepest) continue;
-      Candidate found = held_by(around, vector::scale(across, 1 / size));
+      Candidate found = held_by(vector::scale(across, 1 / size));
       found.cosine = cosine;
       if (found.held > best.held || (found.held > 0 && found.held == best.held && found.cosine > best.cosine)) best = found;
     }
@@ -75,9 +112,7 @@ Candidate best_plane(const Around& around, const Vec3* towards) {
   return best;
 }
 
-}  // namespace
-
-ExactPlane find_exact_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing, const Vec3* towards) {
+Around around_first(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing) {
   Around around;
   around.count = std::min(index.size(), kPlaneNeighbours);
   for (std::size_t k = 0; k < around.count; ++k) {
@@ -86,7 +121,64 @@ ExactPlane find_exact_plane(const std::vector<Vec3>& points, const std::vector<s
     around.y[k] = static_cast<float>(d[1] / spacing);
     around.z[k] = static_cast<float>(d[2] / spacing);
   }
-  const Candidate best = best_plane(around, towards);
+  return around;
+}
+
+// Whether a quadratic height field over the plane through these points is likelier than the plane (Schwarz's criterion).
+bool is_bent(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& held, const PlaneFit& plane, double spacing) {
+  const auto n = static_cast<double>(held.size());
+  const double flat = plane.residual * std::sqrt((n - 3) / n);  // root mean squares, of which the likelihoods are made
+  const double bent = quadratic_residual(points, held.data(), held.size(), plane.normal, spacing) * std::sqrt((n - 6) / n);
+  return n * std::log(flat / bent) > 1.5 * std::log(n);
+}
+
+struct Scattered {
+  ExactPlane plane;
+  double away = 0;  // distance of the first point from it, in spacings
+};
+
+// Whichever plane holds most, fitted to what it holds.
+Scattered search_scattered(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing, double scatter,
+                           const Vec3& towards) {
+  const Around around = around_first(points, index, spacing);
+  const double within = kReach * scatter / spacing;
+  const int needed = proof(around.count, within);
+  if (around.count < static_cast<std::size_t>(needed)) return {};
+  const Candidate best = best_plane(around, &towards, [&](const Vec3& normal) {
+    const int held = around.held(normal, within);
+    return held >= needed ? Candidate{normal, within, held, 0} : Candidate{};
+  });
+  if (best.held == 0) return {};
+  Scattered out;
+  PlaneFit fit;
+  Vec3 normal = best.normal;
+  Vec3 middle{0, 0, 0};  // of the points held, relative to the first, in spacings
+  for (int round = 0; round <= kRefits; ++round) {
+    out.plane.points.clear();
+    Vec3 sum{0, 0, 0};
+    for (std::size_t k = 0; k < around.count; ++k) {
+      const Vec3 at = around.at(k);
+      if (std::abs(vector::dot(normal, vector::subtract(at, middle))) > within) continue;
+      out.plane.points.push_back(index[k]);
+      sum = vector::add(sum, at);
+    }
+    if (static_cast<int>(out.plane.points.size()) < needed || out.plane.points.front() != index[0]) return {};
+    middle = vector::scale(sum, 1 / static_cast<double>(out.plane.points.size()));
+    fit = fit_plane(points, out.plane.points.data(), out.plane.points.size());
+    normal = fit.normal;
+  }
+  if (fit.breadth < kNarrowest || is_bent(points, out.plane.points, fit, spacing)) return {};
+  out.plane.normal = fit.normal;
+  out.plane.breadth = fit.breadth;
+  out.away = std::abs(vector::dot(normal, middle));
+  return out;
+}
+
+}  // namespace
+
+ExactPlane find_exact_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing, const Vec3* towards) {
+  const Around around = around_first(points, index, spacing);
+  const Candidate best = best_plane(around, towards, [&](const Vec3& normal) { return held_by(around, normal); });
   if (best.held == 0) return {};
   ExactPlane plane;
   for (std::size_t k = 0; k < around.count; ++k) {
@@ -98,6 +190,50 @@ ExactPlane find_exact_plane(const std::vector<Vec3>& points, const std::vector<s
   plane.normal = fit.normal;
   plane.breadth = fit.breadth;
   return plane;
+}
+
+ExactPlane find_scattered_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing, double scatter,
+                                const Vec3& towards) {
+  Scattered first = search_scattered(points, index, spacing, scatter, towards);
+  if (first.plane.points.empty()) return {};
+  std::vector<std::uint32_t> others{index.front()};
+  std::copy_if(index.begin(), index.end(), std::back_inserter(others), [&](std::uint32_t i) {
+    return std::find(first.plane.points.begin(), first.plane.points.end(), i) == first.plane.points.end();
+  });
+  Scattered second = search_scattered(points, others, spacing, scatter, towards);
+  if (second.plane.points.empty()) return std::move(first.plane);
+  // The point is on either: the mean of the two normals by how likely its distances from them are.
+  const auto likely = [&](const Scattered& s) { return std::exp(-s.away * s.away / (2 * scatter * scatter) * spacing * spacing); };
+  const auto sided = [&](const Vec3& n) { return vector::dot(n, towards) < 0 ? vector::scale(n, -1) : n; };
+  const Vec3 mean =
+      vector::add(vector::scale(sided(first.plane.normal), likely(first)), vector::scale(sided(second.plane.normal), likely(second)));
+  Scattered& best = first.away <= second.away ? first : second;
+  best.plane.normal = vector::normalised(mean);
+  return std::move(best.plane);
+}
+
+double scatter_about_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing) {
+  const Around around = around_first(points, index, spacing);
+  double found = 0;
+  double least = kFalseAlarms;
+  for (double scatter = kLeastScatter; scatter < kMostScatter; scatter *= 2) {
+    const double within = kReach * scatter;
+    const std::vector<double> expected = false_alarms(around.count, within);
+    const Candidate best = best_plane(around, nullptr, [&](const Vec3& normal) {
+      return Candidate{normal, within, around.held(normal, within), 0};
+    });
+    if (best.held <= kFewest || expected[static_cast<std::size_t>(best.held)] >= least) continue;
+    std::vector<std::uint32_t> held;
+    for (std::size_t k = 0; k < around.count; ++k) {
+      if (std::abs(vector::dot(best.normal, around.at(k))) <= within) held.push_back(index[k]);
+    }
+    if (held.size() <= static_cast<std::size_t>(kFewest)) continue;
+    const PlaneFit fit = fit_plane(points, held.data(), held.size());
+    if (fit.breadth < kBroad || is_bent(points, held, fit, spacing)) continue;
+    least = expected[static_cast<std::size_t>(best.held)];
+    found = scatter * spacing;
+  }
+  return found;
 }
 
 }  // namespace g3r

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
 
 namespace g3r {
 namespace {
@@ -239,6 +240,28 @@ double largest_scatter(const PointSet& set) {
   const double x = quantile(residuals_of(set).quadratic, kMostScattered) / spacing;
   const double filled = std::min(x, kLargestQuadratic) / kQuadraticSaturation;
   return spacing * x / (kQuadraticToSigma * std::sqrt(1 - filled * filled * filled * filled));
+}
+
+double facet_scatter(const PointSet& set) {
+  if (set.size() < kFewestPoints) return 0;
+  std::map<double, std::size_t> counts;  // by scatter, in steps of 2
+  std::size_t looked = 0;
+  for_some(set, kLayerProbes, kPlaneNeighbours, [&](const Vec3&, const auto& index, const auto&) {
+    ++looked;
+    const double found = scatter_about_plane(set.points(), index, set.spacing());
+    if (found > 0) ++counts[found];
+  });
+  std::size_t most = 0;
+  double scatter = 0;
+  for (auto step = counts.begin(); step != counts.end(); ++step) {
+    const auto next = std::next(step);
+    const bool adjacent = next != counts.end() && next->first < 3 * step->first;
+    const std::size_t both = step->second + (adjacent ? next->second : 0);
+    if (both <= most) continue;
+    most = both;
+    scatter = adjacent && next->second > step->second ? next->first : step->first;
+  }
+  return share_of(most, looked) < kOnPlanes ? 0 : scatter;
 }
 
 double dimension(const PointSet& set) {

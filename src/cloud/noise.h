@@ -40,6 +40,12 @@ namespace g3r {
 /// above show that there is no noise. Units and cost as above.
 [[nodiscard]] double largest_scatter(const PointSet& set);
 
+/// Standard deviation of the points about the facets of a CAD model: what scatter_about_plane() finds at most of about 500 points. A
+/// scanner scatters alike everywhere, detail does not, so two adjacent ones of its steps have to hold 40 % of the points; else 0. It sees a
+/// scatter too small to blur anything, for which estimate_noise() is 0, and that of walls closer together than the sampling. 0 for fewer
+/// than 200 points. About 10 ms.
+[[nodiscard]] double facet_scatter(const PointSet& set);
+
 /// How the number of points grows with the distance from one, as its power: about 2 on a surface, noisy or not, nearly 3 in a volume (2.6
 /// to 3: its boundary counts). From the distances r of the neighbours k = min(2048, N / 16) and k / 8, ln 8 / ln(r_k / r_(k/8)), the median
 /// over about 500 points; 2 for fewer than 200. O(k log N).

@@ -20,7 +20,7 @@ class PointSet {
   /// `points`: in the unit frame, as a rule; `morton`: their codes, non-decreasing, or empty where only surroundings are asked for.
   explicit PointSet(std::vector<Vec3> points, std::vector<std::uint64_t> morton = {});
 
-  [[nodiscard]] const std::vector<Vec3>& points() const;          ///< N
+  [[nodiscard]] const std::vector<Vec3>& points() const;           ///< N
   [[nodiscard]] const std::vector<std::uint64_t>& morton() const;  ///< N codes
   [[nodiscard]] std::size_t size() const { return points().size(); }
 

@@ -23,8 +23,10 @@ struct Found {
   float logarithms = 0;
 };
 
-Found find_at(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing, const Vec3& towards) {
-  const ExactPlane plane = find_exact_plane(points, index, spacing, &towards);
+Found find_at(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing, double scatter,
+              const Vec3& towards) {
+  ExactPlane plane = find_exact_plane(points, index, spacing, &towards);
+  if (plane.points.empty() && scatter > 0) plane = find_scattered_plane(points, index, spacing, scatter, towards);
   if (plane.points.empty()) return {};
   const auto squared_distance = [&](std::uint32_t j) {
     const Vec3 d = vector::subtract(points[j], points[plane.points.front()]);
@@ -54,7 +56,7 @@ bool are_slices(const std::vector<Found>& found, const std::vector<Vec3>& normal
 
 }  // namespace
 
-void fit_planes(const PointSet& set, std::vector<std::uint8_t>& proven, std::vector<Vec3>& normals) {
+void fit_planes(const PointSet& set, double scatter, std::vector<std::uint8_t>& proven, std::vector<Vec3>& normals) {
   const std::vector<Vec3>& points = set.points();
   const std::vector<double>& spacing = set.smoothed_spacing();
   const Neighbours& tree = set.tree();
@@ -65,7 +67,7 @@ void fit_planes(const PointSet& set, std::vector<std::uint8_t>& proven, std::vec
     for (std::size_t i = begin; i < end; ++i) {
       if (proven[i] != 0) continue;
       tree.nearest(points[i], kPlaneNeighbours, index, squared);
-      found[i] = find_at(points, index, spacing[i], normals[i]);
+      found[i] = find_at(points, index, spacing[i], scatter, normals[i]);
     }
   });
   if (are_slices(found, normals)) return;

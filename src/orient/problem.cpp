@@ -12,6 +12,7 @@ namespace g3r {
 namespace {
 
 void choose_scales(Problem& problem, const Options& options) {
+  problem.scatter = facet_scatter(problem.cloud.set);
   problem.settings = choose_settings(options, problem.cloud, problem.spacing, problem.noise, problem.outliers.size());
 }
 
@@ -64,9 +65,7 @@ Problem on_sites(const Problem& problem, const Sites& sites, const Options& opti
   coarse.cloud.set = sites.set;
   coarse.spacing = sites.set.spacing();
   const std::optional<double> given = given_noise(options.noise, problem.cloud, problem.spacing);
-  coarse.noise = given                                              ? *given
-                 : contains(problem.settings.without, Step::kNoise) ? 0
-                                                                    : estimate_noise(sites.set);
+  coarse.noise = given ? *given : contains(problem.settings.without, Step::kNoise) ? 0 : estimate_noise(sites.set);
   choose_scales(coarse, options);
   return coarse;
 }

@@ -17,10 +17,11 @@ namespace g3r {
 
 struct Problem {
   CanonicalCloud cloud;
-  std::vector<Vec3> outliers;         ///< taken out of the cloud; their indices follow those of its points
-  double spacing = 0;                 ///< typical_spacing()
-  double noise = 0;                   ///< given_noise() or estimate_noise()
-  double line_distance = 0;  ///< surface_distance(): 0, or the distance of the sites that are solved for where the samples are lines
+  std::vector<Vec3> outliers;  ///< taken out of the cloud; their indices follow those of its points
+  double spacing = 0;          ///< typical_spacing()
+  double noise = 0;            ///< given_noise() or estimate_noise()
+  double scatter = 0;          ///< facet_scatter()
+  double line_distance = 0;    ///< surface_distance(): 0, or the distance of the sites that are solved for where the samples are lines
   Settings settings;
 
   /// Whether the points are exact, so that steps follow the local spacing and prove directions from the points alone.

@@ -107,7 +107,7 @@ void agree_on_facets(const Problem& problem, const std::vector<std::uint8_t>& pr
 std::vector<std::uint8_t> fit_directions(const Problem& problem, std::vector<Vec3>& normals) {
   std::vector<std::uint8_t> proven(normals.size(), 0);
   if (runs(problem, Step::kJets)) proven = fit_jets(problem.cloud.set, normals);
-  if (runs(problem, Step::kPlanes)) fit_planes(problem.cloud.set, proven, normals);
+  if (runs(problem, Step::kPlanes)) fit_planes(problem.cloud.set, problem.scatter, proven, normals);
   return proven;
 }
 
@@ -262,6 +262,9 @@ void solve_sheets_apart(const Problem& problem, const Options& options, Stages& 
 void fit_noisy_surface(const Problem& problem, Stages& stages, Solution& solution) {
   if (problem.baseline || problem.noise == 0 || problem.settings.polish_steps == 0 || !runs(problem, Step::kNoisyJets)) return;
   fit_noisy_jets(problem.cloud.set, problem.noise, solution.refinement.normals, stages.cancel());
+  std::vector<std::uint8_t> none(problem.cloud.size(), 0);
+  if (problem.scatter > 0 && runs(problem, Step::kPlanes))
+    fit_planes(problem.cloud.set, problem.scatter, none, solution.refinement.normals);
 }
 
 }  // namespace g3r
