@@ -156,9 +156,10 @@ def noise_table(results):
     return of_commit(groups) + table_text(["noise", "method", "models", "AE_p mean", "median", "PCO mean", "lowest (model)"], rows)
 
 
-def model_table(results, columns):
-    """One row per model; columns: (title, rows by model)."""
-    columns = [(title, group) for title, group in columns if group]
+def model_table(results, points):
+    """One row per model, AE_p/PCO of every method."""
+    groups = [(SHORT[method], results.of(method, "clean", points)) for method in NAMES]
+    columns = [(title, group) for title, group in groups if group]
     models = sorted(set().union(*(group for _, group in columns)))
 
     def cell(group, model):
@@ -169,16 +170,6 @@ def model_table(results, columns):
 
     rows = [[model, *(cell(group, model) for _, group in columns)] for model in models]
     return of_commit([group for _, group in columns]) + table_text(["model", *(title for title, _ in columns)], rows)
-
-
-def clean_models(results, points):
-    return model_table(results, [(SHORT[method], results.of(method, "clean", points)) for method in NAMES])
-
-
-def noisy_models(results):
-    columns = [(f"{name} {percent} %", results.of(method.format(percent), f"noise:{percent}", 50000)) for percent in ("0.25", "0.5")
-               for name, method in (("g3r", "default"), ("wnnc", "wnnc;widths=noise-{}"))]
-    return model_table(results, columns)
 
 
 def mesh_pairs(results):
@@ -222,9 +213,7 @@ TABLES = {
     "clean-50k": lambda results: method_table(results, 50000),
     "clean-5k": lambda results: method_table(results, 5000),
     "noise-50k": noise_table,
-    "models-50k": lambda results: clean_models(results, 50000),
-    "models-5k": lambda results: clean_models(results, 5000),
-    "models-noise": noisy_models,
+    "models-50k": lambda results: model_table(results, 50000),
     "meshes-50k": mesh_table,
     "mesh-models": mesh_models,
 }
