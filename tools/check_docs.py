@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Checks the documentation: links and their anchors, columns, and words that the glossary does not have; and that the pages which sources
-name are there. Standard library only.
+"""Checks the documentation: links and their anchors, paths, columns, and words that the glossary does not have; and that the pages which
+sources name are there. Standard library only.
 
     check_docs.py    prints FILE:LINE: what is wrong; exit code 1 if anything is
 """
@@ -34,6 +34,7 @@ PRIVATE_WORDS = {
 }
 LEFT_OUT = [ROOT / "docs" / "images", ROOT / "docs" / "results"]  # of source archives (pyproject.toml)
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
+PATH = re.compile(r"`((?:src|include|cli|python|tests|bench|fuzz|tools|docs)/[\w./-]+)`")
 NAMED = re.compile(r"\bdocs/[\w/]+\.md\b")
 SOURCES = {".h", ".cpp", ".c", ".cl", ".py", ".pyi", ".sh", ".txt", ".cmake", ".cff", ".toml", ".yml"}
 PRIVATE = re.compile(r"\b(" + "|".join(PRIVATE_WORDS) + r")\b", re.I)
@@ -79,6 +80,11 @@ def broken_links(path, line):
             yield f"link to {target}, but no heading is called so"
 
 
+def missing_paths(line):
+    """Files and folders that a page names in `code` and that do not exist; NAME stands for any."""
+    return [path for path in PATH.findall(line) if "NAME" not in path and not (ROOT / path).exists()]
+
+
 def complaints(path):
     name = path.relative_to(ROOT).as_posix()
     for number, line, code in prose(path.read_text(encoding="utf-8")):
@@ -89,6 +95,8 @@ def complaints(path):
             continue
         for text in broken_links(path, line):
             yield number, text
+        for missing in missing_paths(line):
+            yield number, f"{missing} does not exist"
         for word in PRIVATE.finditer(re.sub(r"`[^`]*`|\]\([^)]*\)", "", line)):
             plain = next(plain for private, plain in PRIVATE_WORDS.items() if re.fullmatch(private, word.group(0), re.I))
             yield number, f"\"{word.group(0)}\": the glossary has \"{plain}\""
