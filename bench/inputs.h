@@ -26,7 +26,7 @@ struct InputKind {
 /// highest to the lowest density), "patches:K" (number of holes). Throws InvalidInput for anything else.
 [[nodiscard]] InputKind parse_input_kind(const std::string& text);
 
-inline constexpr double kThinSpacings = 1.5;  ///< nearly all wrong sides are this near another one: docs/study.md, "Where are sides"
+inline constexpr double kThinSpacings = 1.5;  ///< nearly all wrong sides are this near another one: docs/evidence/thin_parts.md
 inline constexpr double kThinDeviations = 4;  ///< of the noise
 
 /// N points with their true normals.

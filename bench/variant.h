@@ -16,7 +16,7 @@ struct Variant {
 
 /// NAME[;KEY=VALUE]... with NAME a preset (default, paper), an earlier method (wnnc, agr, pgr) or `true`, and KEY one of method (green,
 /// energy, wnnc, agr, pgr), widths (of wnnc), epsilon and noise (auto, X, X%, Xh, Xn), degree, harmonics, solver (auto, dense, cg),
-/// schedule, without (steps, docs/design.md), tolerance, accuracy, mesher (field, poisson), depth. Throws InvalidInput.
+/// schedule, without (steps, docs/evidence/steps.md), tolerance, accuracy, mesher (field, poisson), depth. Throws InvalidInput.
 [[nodiscard]] Variant parse_variant(const std::string& text);
 
 }  // namespace g3r::bench

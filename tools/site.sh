@@ -1,9 +1,10 @@
 #!/bin/bash
-# Builds the documentation site into build/site and checks it. mkdocs-material comes from PyPI the first time; after that no network is
-# used, and the pages never use any.
+# Checks the documentation (tools/check_docs.py), builds its site into build/site and checks that. mkdocs-material comes from PyPI the
+# first time; after that no network is used, and the pages never use any.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . tools/prepare.sh
+python3 -B tools/check_docs.py
 
 environment=build/site-environment
 if [ ! -x $environment/bin/mkdocs ]; then

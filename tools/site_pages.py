@@ -1,7 +1,7 @@
 """Hooks of mkdocs: what the program, the sources and other files say already is taken from them, so that nothing is said twice.
 
-In a page, <!-- help --> becomes the text of `g3r --help`, <!-- python --> the docstrings, <!-- headers --> the public headers and
-<!-- results --> the measured tables. The program is $G3R_PROGRAM, or the one of the release build.
+In a page, <!-- help --> becomes the text of `g3r --help`, <!-- python --> the docstrings and <!-- headers --> the public headers. The
+program is $G3R_PROGRAM, or the one of the release build.
 """
 
 import ast
@@ -19,7 +19,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 COPIES = {"README.md": "index.md", "CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md", "SECURITY.md": "security.md",
           "bench/README.md": "protocol.md"}
 LINK = re.compile(r"(!?)\[([^\]]*)\]\((?!https?:|#)([^)#\s]+)(#[^)]*)?\)")
-MARK = re.compile(r"<!-- (help|python|headers|results) -->")
+MARK = re.compile(r"<!-- (help|python|headers) -->")
 
 
 def on_files(files, config):
@@ -31,7 +31,7 @@ def on_files(files, config):
 def on_page_markdown(markdown, page, **_):
     copied = {page: source for source, page in COPIES.items()}
     source = copied.get(page.file.src_uri, "docs/" + page.file.src_uri)
-    makers = {"help": help_texts, "python": python_api, "headers": header_texts, "results": result_tables}
+    makers = {"help": help_texts, "python": python_api, "headers": header_texts}
     return relink(MARK.sub(lambda mark: makers[mark.group(1)](), markdown), source, page.file.src_uri)
 
 
@@ -52,14 +52,6 @@ def relink(markdown, source, page):
         return f"{image}[{text}]({posixpath.relpath(goal, posixpath.dirname(page) or '.')}{anchor or ''})"
 
     return LINK.sub(target, markdown)
-
-
-def result_tables():
-    """Tables that were measured, as bench/plots.py joins them: docs/results/*.md."""
-    found = [path for path in sorted((ROOT / "docs" / "results").glob("*.md")) if path.name != "README.md"]
-    if not found:
-        raise PluginError("docs/results has no table")
-    return "\n".join("##" + path.read_text() for path in found)
 
 
 # --- the command line

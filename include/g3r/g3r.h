@@ -92,7 +92,7 @@ struct Options {
   /// points are many enough, else, or if it fails, the processor. A GPU's result differs in the last digits. Throws Unavailable if the
   /// device that is asked for is not there or fails.
   std::string device = "auto";
-  std::string without;  ///< names of steps to leave out, separated by commas, for ablations (docs/design.md lists them)
+  std::string without;  ///< names of steps to leave out, separated by commas, for ablations (docs/evidence/steps.md lists them)
   std::size_t max_memory =
       0;  ///< bytes; refuse before the solve when the plan exceeds it, or before the mesh when that turns out to. 0: no limit
   Hints hints;

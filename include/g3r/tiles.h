@@ -5,7 +5,7 @@
 //   g3r::merge_tiles("work", "oriented.ply");       // the points in the order of the input
 //
 // The work folder holds all state. What is there is complete or absent: a process may be killed at any time, and the same call then goes
-// on. The result depends on the points and the plan alone, not on workers, threads or restarts. How it works: docs/tiles.md.
+// on. The result depends on the points and the plan alone, not on workers, threads or restarts. How it works: docs/algorithms/tiles.md.
 #pragma once
 
 #include <g3r/export.h>

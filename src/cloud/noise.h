@@ -28,8 +28,8 @@ namespace g3r {
 ///   - Rounding of all three coordinates to steps q, as in voxels, counts as noise of the mean square of q_a^2 / 12 where that is above
 ///     0.04 h and the median residual of the height fields is half of it or more: rounded flat neighbourhoods may be exact. Coordinates of
 ///     less than 5 values are not rounded: they are those of a plate that stands straight.
-/// Within about 15 % of the truth on smooth shapes from 0.2 to 3 h and on walls of 3 sigma (docs/study.md, "Walls and the size of the
-/// noise"). Same units as the points. Looks at about 2000 points, in O(log N) each, and sorts the thinned clouds, O(N log N).
+/// Within about 15 % of the truth on smooth shapes from 0.2 to 3 h and on walls of 3 sigma (docs/evidence/noise.md). Same units as the
+/// points. Looks at about 2000 points, in O(log N) each, and sorts the thinned clouds, O(N log N).
 [[nodiscard]] double estimate_noise(const PointSet& set);
 
 /// The noise where it is largest, if all scatter is noise: of scans that do not fit onto each other, or of noise that differs from place to

@@ -60,7 +60,7 @@ constexpr double kFlipped = 0.1;            // spacings: distance from the surfa
 
 constexpr double kBaseBytes = 26 << 20;  // code, libraries (those of E57 are a third), thread stacks;
 constexpr double kBytesPerPoint = 500;   // with those of the winding field;
-constexpr double kBytesPerLeaf = 210;    // measured, docs/meshing.md,
+constexpr double kBytesPerLeaf = 210;    // measured, docs/evidence/meshes.md,
 constexpr double kBytesPerThin = 430;    // for those that thin walls and gaps add: most of their corners are in doubt
 constexpr double kBytesPerAsked = 200;   // and for all where the depth is given;
 constexpr double kPlainLeaves = 8.5;     // per point of a shape without thin walls: 5.7 to 8.6 measured,

@@ -1,4 +1,4 @@
-// From oriented points and their winding field to a triangle mesh: closed, 2-manifold, outward. docs/meshing.md explains the steps.
+// From oriented points and their winding field to a triangle mesh: closed, 2-manifold, outward. docs/algorithms/mesher.md explains.
 #pragma once
 
 #include <g3r/g3r.h>

@@ -22,7 +22,7 @@ struct Solved {
 /// Solves settings.method on N points in canonical order. With settings.coarse_to_fine and enough points, every 4th point is solved first
 /// (recursively, all lengths doubled), and the start is that solution's winding gradient as area vectors (gradient_to_areas()).
 /// The smooth part of the error, which conjugate gradients reduce slowest, is gone from the start, so the tolerances of starts and of
-/// continued solves are wider. Measured: docs/design.md.
+/// continued solves are wider. Measured: docs/evidence/formulation.md.
 /// Where the sides of many points are unsure in the end (thin walls, narrow gaps), more steps are tried, wider and with more weight on the
 /// winding number, which turns parts that are wrong as a whole. They are undone if a quarter more points are unsure then; not under noise,
 /// of which every step makes more of them unsure, right or wrong.

@@ -18,7 +18,7 @@ namespace g3r {
 /// the median share of the weight that planes leave, sum w_ij / sum exp(-|p_i - p_j|^2 / ...), is at least 0.58 (measured after
 /// fit_jets() at 50,000 points: CAD models 0.59 to 0.71, others at most 0.56). Returns whether it was. The idea of weights by tangent
 /// planes: Oztireli, Guennebaud, Gross, "Feature preserving point set surfaces based on non-linear kernel regression", Eurographics 2009.
-/// docs/study.md, "Creases".
+/// docs/evidence/directions.md.
 /// h_i: smoothed_spacing(); `normals`: N unit vectors, consistent sides. O(N).
 bool sharpen_creases(const PointSet& set, std::vector<Vec3>& normals);
 

@@ -27,7 +27,7 @@ namespace g3r {
 /// fewer than 40 % of the points have a fit. Sides are kept but for normals that were all but in the surface.
 ///
 /// Blocks of points in canonical order share fields; `noise`: of the cloud, > 0; h: the typical spacing; `normals`: N unit vectors,
-/// consistent sides. Returns whether they changed. Throws Cancelled. docs/math.md and docs/study.md, "Fits of noisy points". O(N).
+/// consistent sides. Returns whether they changed. Throws Cancelled. docs/math.md, "Fits of noisy points". O(N).
 bool fit_noisy_jets(const PointSet& set, double noise, std::vector<Vec3>& normals, const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace g3r

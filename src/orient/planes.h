@@ -12,10 +12,9 @@ namespace g3r {
 
 /// n_i becomes the normal, on its own side, of the exact plane through p_i, where there is one (find_exact_plane() of the 33 nearest
 /// points, towards n_i). Points with proven[i] != 0 keep their normals; those that get one are marked so. No plane is taken where those
-/// that differ from n_i hold curves: then the points come from slices or scan lines, whose planes are no facets. docs/study.md, "Planes".
-/// `normals`: N unit vectors. O(N log N), about 3 us a point that is not proven.
-/// `scatter`: facet_scatter(); where it is above 0 and there is no exact plane, one of scattered points is looked for
-/// (find_scattered_plane()).
+/// that differ from n_i hold curves: then the points come from slices or scan lines, whose planes are no facets.
+/// docs/evidence/directions.md. `scatter`: facet_scatter(); where it is above 0 and there is no exact plane, one of scattered points is
+/// looked for (find_scattered_plane()). `normals`: N unit vectors. O(N log N), about 3 us a point that is not proven.
 void fit_planes(const PointSet& set, double scatter, std::vector<std::uint8_t>& proven, std::vector<Vec3>& normals);
 
 }  // namespace g3r

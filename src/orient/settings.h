@@ -16,7 +16,7 @@
 
 namespace g3r {
 
-/// Everything orient() needs to know, in normalised units. Values without an option are explained in docs/design.md.
+/// Everything orient() needs to know, in normalised units. Values without an option are explained in docs/algorithms/orientation.md.
 struct Settings {
   StepSet without;  ///< steps that are left out
   Method method = Method::kEnergy;
@@ -69,7 +69,8 @@ inline constexpr std::size_t kThinning = 4;
 /// Whether solve_coarse_to_fine() begins with fewer points.
 [[nodiscard]] bool starts_coarse(const Settings& settings, std::size_t points);
 
-/// Predicted peak memory of orient() in bytes for N points. Measured peaks are 0.94 to 1.02 of it from 50,000 points on (docs/design.md).
+/// Predicted peak memory of orient() in bytes for N points. Measured peaks are 0.94 to 1.02 of it from 50,000 points on
+/// (docs/evidence/speed.md).
 [[nodiscard]] std::size_t planned_memory(const Settings& settings, std::size_t given, std::size_t used);
 
 /// Throws Unavailable if the plan exceeds options.max_memory.

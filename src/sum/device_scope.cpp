@@ -12,7 +12,7 @@
 namespace g3r::gpu {
 namespace {
 
-// Below, moving the data and starting kernels costs more than the sums: an estimate (docs/gpu.md), not a measurement.
+// Below, moving the data and starting kernels costs more than the sums: an estimate (docs/algorithms/gpu.md), not a measurement.
 constexpr std::size_t kFewestPoints = 10'000;
 constexpr std::size_t kTrialPoints = 2'000;  // some levels of a tree
 constexpr double kTrialAccuracy = 1e-2;

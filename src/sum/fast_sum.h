@@ -1,4 +1,4 @@
-// The sums of g3r over one cloud, in linear time with bounded error, or directly. Formulas: docs/math.md; engine: docs/design.md.
+// The sums of g3r over one cloud, in linear time with bounded error, or directly. docs/math.md, docs/algorithms/fast_sums.md.
 #pragma once
 
 #include "sum/direct_sum.h"

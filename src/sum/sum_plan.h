@@ -10,7 +10,7 @@ namespace gpu {
 class Execution;
 }
 
-/// Parameters of the hierarchical sums. Measured by bench/fast_sum over clouds of every kind; see docs/design.md.
+/// Parameters of the hierarchical sums. Measured by bench/fast_sum over clouds of every kind; see docs/algorithms/fast_sums.md.
 struct SumPlan {
   bool direct = false;  ///< every pair point by point
   bool double_precision = false;

@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+"""Checks the documentation: links and their anchors, paths, columns, and words that the glossary does not have; and that the pages which
+sources name are there. Standard library only.
+
+    check_docs.py    prints FILE:LINE: what is wrong; exit code 1 if anything is
+"""
+
+import functools
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+COLUMNS = 140  # as in .clang-format
+# References whose tables have one long line per entry; a line of a table cannot be broken.
+WIDE_TABLES = {"docs/formats.md", "docs/parameters.md", "docs/report.md", "SECURITY.md", "bench/README.md", "packaging/README.md",
+               "docs/python.md"}
+# What each stands for is in docs/glossary.md.
+PRIVATE_WORDS = {
+    r"told (from|apart)": "distinguished",
+    r"tells? (\w+ )?apart": "distinguish",
+    r"in doubt": "unsure, ambiguous",
+    r"settle[sd]?": "decide",
+    r"believed": "trusted",
+    r"of no account": "ignored",
+    r"looked over": "skipped",
+    r"asked of": "evaluated for",
+    r"hand(s|ed)? out": "return",
+    r"luck of the sample": "sampling variance",
+    r"sheets?": "patch, open surface",
+    r"specks?": "spurious component",
+    r"opinions?": "value",
+    r"at odds": "minority sign",
+}
+LEFT_OUT = [ROOT / "docs" / "images", ROOT / "docs" / "results"]  # of source archives (pyproject.toml)
+LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
+PATH = re.compile(r"`((?:src|include|cli|python|tests|bench|fuzz|tools|docs)/[\w./-]+)`")
+NAMED = re.compile(r"\bdocs/[\w/]+\.md\b")
+SOURCES = {".h", ".cpp", ".c", ".cl", ".py", ".pyi", ".sh", ".txt", ".cmake", ".cff", ".toml", ".yml"}
+PRIVATE = re.compile(r"\b(" + "|".join(PRIVATE_WORDS) + r")\b", re.I)
+
+
+def pages():
+    """Files of the documentation. CHANGELOG.md is a record: its lines stay as they were written."""
+    named = ["README.md", "CONTRIBUTING.md", "SECURITY.md", "bench/README.md", "packaging/README.md"]
+    return [ROOT / name for name in named] + sorted((ROOT / "docs").rglob("*.md"))
+
+
+def prose(text):
+    """(number, line, is code) of every line; the text of `code` within a line is left."""
+    fenced = False
+    for number, line in enumerate(text.splitlines(), 1):
+        fence = line.lstrip().startswith("```")
+        yield number, line, fenced or fence
+        fenced ^= fence
+
+
+@functools.cache
+def anchors(path):
+    """What the headings of a page are called, as GitHub and mkdocs name them."""
+    found = set()
+    for _, line, code in prose(path.read_text(encoding="utf-8")):
+        if not code and line.startswith("#"):
+            title = re.sub(r"[`*]|\[([^\]]*)\]\([^)]*\)", r"\1", line.lstrip("#").strip())
+            found.add(re.sub(r"\s", "-", re.sub(r"[^\w\s-]", "", title.lower())))
+    return found
+
+
+def broken_links(path, line):
+    for target in LINK.findall(re.sub(r"`[^`]*`", "", line)):
+        if re.match(r"\w+:", target):
+            continue
+        file, _, anchor = target.partition("#")
+        goal = (path.parent / file).resolve() if file else path
+        if any(folder in goal.parents and not folder.exists() for folder in LEFT_OUT):
+            continue
+        if not goal.exists():
+            yield f"link to {target}, which does not exist"
+        elif anchor and goal.suffix == ".md" and anchor not in anchors(goal):
+            yield f"link to {target}, but no heading is called so"
+
+
+def missing_paths(line):
+    """Files and folders that a page names in `code` and that do not exist; NAME stands for any."""
+    return [path for path in PATH.findall(line) if "NAME" not in path and not (ROOT / path).exists()]
+
+
+def complaints(path):
+    name = path.relative_to(ROOT).as_posix()
+    for number, line, code in prose(path.read_text(encoding="utf-8")):
+        wide = name in WIDE_TABLES and line.lstrip().startswith("|")
+        if len(line) > COLUMNS and not wide:
+            yield number, f"{len(line)} columns, more than {COLUMNS}"
+        if code:
+            continue
+        for text in broken_links(path, line):
+            yield number, text
+        for missing in missing_paths(line):
+            yield number, f"{missing} does not exist"
+        for word in PRIVATE.finditer(re.sub(r"`[^`]*`|\]\([^)]*\)", "", line)):
+            plain = next(plain for private, plain in PRIVATE_WORDS.items() if re.fullmatch(private, word.group(0), re.I))
+            yield number, f"\"{word.group(0)}\": the glossary has \"{plain}\""
+
+
+def pages_that_are_not():
+    """(file, line, page) of every page that a source names and that does not exist."""
+    for folder in ("bench", "cli", "cmake", "examples", "fuzz", "include", "packaging", "python", "src", "tests", "tools"):
+        for path in sorted((ROOT / folder).rglob("*")):
+            if path.suffix not in SOURCES or not path.is_file():
+                continue
+            for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+                for page in NAMED.findall(line):
+                    if not (ROOT / page).exists():
+                        yield path, number, page
+
+
+def main():
+    found = [f"{path.relative_to(ROOT)}:{number}: {text}" for path in pages() for number, text in complaints(path)]
+    found += [f"{path.relative_to(ROOT)}:{number}: {page} does not exist" for path, number, page in pages_that_are_not()]
+    print("\n".join(found) if found else f"{len(pages())} pages: links, columns and words are right")
+    sys.exit(1 if found else 0)
+
+
+if __name__ == "__main__":
+    main()
