@@ -10,6 +10,7 @@ from . import _g3r
 from ._arrays import as_colors, as_points, member
 from ._errors import InputError
 from ._hints import HINTS, checked_numbers, take_hints
+from ._view import DEFAULT_HEIGHT, DEFAULT_POINTS, View
 
 if TYPE_CHECKING:
     from ._types import Bytes, Floats, Indices, Points, Singles
@@ -134,9 +135,9 @@ class Result:
         return f"<g3r.Result: {len(self.normals)} normals, mean confidence {float(self.confidence.mean()):.3f}, {mesh}>"
 
     def _repr_html_(self) -> str:
-        from ._show import show
-
-        return show(self, open=False)._repr_html_()
+        scene = _g3r.scene("g3r", self.points, self.normals, self.confidence, None, None, self.vertices, self.faces, self.vertex_colors,
+                           self.vertex_confidence, self.report)
+        return View(scene, False, DEFAULT_POINTS, DEFAULT_HEIGHT)._repr_html_()
 
 
 class Device(NamedTuple):
