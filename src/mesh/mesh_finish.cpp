@@ -20,7 +20,6 @@
 namespace g3r::mesh {
 namespace {
 
-constexpr double kFarSpacings = 4;     // surface farther from every point than this is a guess
 constexpr double kAtSpacings = 1.5;    // of a point and of noise, from it to the centre of a triangle that it holds
 constexpr double kBesideSpacings = 3;  // of a point, up to which a stray is beside it
 constexpr std::uint32_t kNothing = 0xffffffff;

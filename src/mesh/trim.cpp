@@ -15,7 +15,6 @@
 namespace g3r::mesh {
 namespace {
 
-constexpr double kFarSpacings = 4;  // surface farther from every point than this is a guess
 constexpr double kGap = 1.5;        // spacings: half of the widest gap between points of a random sample of a surface
 constexpr double kSmallSide = 0.5;  // of the limit: no place of such a triangle is much farther from a point than its corners
 constexpr double kRim = 1.2;        // spacings that a rim may reach beyond its points; one gap in a hundred of a random sample is wider
