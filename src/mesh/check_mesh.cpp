@@ -3,6 +3,12 @@
 // The three sides of all triangles are sorted by their end points; equal neighbours are the triangles that meet at one edge.
 // Two union-find passes over them give the components (triangles joined by edges) and the fans (corners joined by edges
 // around their vertex): a vertex with more than one fan is a bow-tie.
+#include "base/disjoint_sets.h"
+#include "base/median.h"
+#include "base/vector.h"
+#include "mesh/sides.h"
+#include "mesh/used_vertices.h"
+
 #include <g3r/error.h>
 #include <g3r/mesh.h>
 
@@ -10,12 +16,6 @@
 #include <cmath>
 #include <numbers>
 #include <utility>
-
-#include "base/disjoint_sets.h"
-#include "base/median.h"
-#include "base/vector.h"
-#include "mesh/sides.h"
-#include "mesh/used_vertices.h"
 
 namespace g3r {
 

@@ -1,21 +1,22 @@
 #include "mesh/mesh_finish.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <numeric>
-
 #include "base/median.h"
 #include "base/vector.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
-#include "g3r/error.h"
 #include "mesh/distance_to_points.h"
 #include "mesh/held_points.h"
 #include "mesh/mesh_parts.h"
 #include "mesh/simplify.h"
 #include "mesh/smooth_spacing.h"
 #include "mesh/trim.h"
+
+#include <g3r/error.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
 
 namespace g3r::mesh {
 namespace {

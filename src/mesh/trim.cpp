@@ -1,16 +1,17 @@
 #include "mesh/trim.h"
 
+#include "base/median.h"
+#include "base/vector.h"
+#include "mesh/distance_to_points.h"
+#include "mesh/mesh_parts.h"
+#include "mesh/smooth_rims.h"
+
+#include <g3r/error.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
-
-#include "base/median.h"
-#include "base/vector.h"
-#include "g3r/error.h"
-#include "mesh/distance_to_points.h"
-#include "mesh/mesh_parts.h"
-#include "mesh/smooth_rims.h"
 
 namespace g3r::mesh {
 namespace {
