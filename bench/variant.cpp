@@ -1,6 +1,7 @@
 #include "variant.h"
 
 #include <g3r/error.h>
+#include <g3r/names.h>
 
 #include <charconv>
 #include <sstream>
@@ -18,47 +19,26 @@ Number number(const std::string& key, const std::string& text) {
   return value;
 }
 
-Length parse_length(const std::string& key, std::string text) {
-  using Unit = Length::Unit;
-  if (text == "auto" || text.empty()) return {};
-  Unit unit = Unit::kInput;
-  const char last = text.back();
-  if (last == '%') unit = Unit::kPercent;
-  if (last == 'h') unit = Unit::kSpacing;
-  if (last == 'n') unit = Unit::kNormalised;
-  if (unit != Unit::kInput) text.pop_back();
-  return {unit, number<double>(key, text)};
+Length length(const std::string& key, const std::string& text) {
+  const std::optional<Length> value = parse_length(text);
+  if (!value) throw InvalidInput("option " + key + ": '" + text + "' is not auto or a number of 0 or more with a unit: none, %, h or n");
+  return *value;
 }
 
-Solver parse_solver(const std::string& text) {
-  if (text == "auto") return Solver::kAuto;
-  if (text == "dense") return Solver::kDense;
-  if (text == "cg") return Solver::kConjugateGradient;
-  throw InvalidInput("solver '" + text + "' is none of auto, dense, cg");
-}
-
-g3r::Method parse_equations(const std::string& text) {
-  if (text == "green") return g3r::Method::kGreen;
-  if (text == "energy") return g3r::Method::kEnergy;
-  if (text == "wnnc") return g3r::Method::kWnnc;
-  if (text == "agr") return g3r::Method::kAgr;
-  if (text == "pgr") return g3r::Method::kPgr;
-  throw InvalidInput("method '" + text + "' is none of green, energy, wnnc, agr, pgr");
-}
-
-Mesher parse_mesher(const std::string& text) {
-  if (text == "field") return Mesher::kField;
-  if (text == "poisson") return Mesher::kPoisson;
-  throw InvalidInput("mesher '" + text + "' is none of field, poisson");
+template <class Value>
+Value choice(const std::string& key, const std::string& text) {
+  const std::optional<Value> value = parse<Value>(text);
+  if (!value) throw InvalidInput(key + " '" + text + "' is none of " + words<Value>());
+  return *value;
 }
 
 void set_option(Variant& variant, const std::string& key, const std::string& value) {
   if (key == "epsilon") {
-    variant.options.epsilon = parse_length(key, value);
+    variant.options.epsilon = length(key, value);
   } else if (key == "noise") {
-    variant.options.noise = parse_length(key, value);
+    variant.options.noise = length(key, value);
   } else if (key == "method") {
-    variant.options.method = parse_equations(value);
+    variant.options.method = choice<g3r::Method>(key, value);
   } else if (key == "widths") {
     variant.options.wnnc_widths = value;
   } else if (key == "degree") {
@@ -66,7 +46,7 @@ void set_option(Variant& variant, const std::string& key, const std::string& val
   } else if (key == "harmonics") {
     variant.options.harmonics = value;
   } else if (key == "solver") {
-    variant.options.solver = parse_solver(value);
+    variant.options.solver = choice<Solver>(key, value);
   } else if (key == "schedule") {
     variant.options.schedule = value;
   } else if (key == "without") {
@@ -76,7 +56,7 @@ void set_option(Variant& variant, const std::string& key, const std::string& val
   } else if (key == "accuracy") {
     variant.options.accuracy = number<double>(key, value);
   } else if (key == "mesher") {
-    variant.mesh.mesher = parse_mesher(value);
+    variant.mesh.mesher = choice<Mesher>(key, value);
   } else if (key == "depth") {
     variant.mesh.depth = number<int>(key, value);
   } else {
@@ -97,7 +77,7 @@ Variant parse_variant(const std::string& text) {
   if (part == "paper") {
     variant.options.preset = Preset::kPaper;
   } else if (part == "wnnc" || part == "agr" || part == "pgr") {
-    variant.options.method = parse_equations(part);
+    variant.options.method = choice<g3r::Method>("method", part);
   } else if (part == "true") {
     variant.true_normals = true;
   } else if (part != "default") {

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <g3r/names.h>
 
 #include "exit_code.h"
 #include "help.h"
@@ -74,19 +75,15 @@ tells which.
   throw UsageError(option + ": expected " + expected + ", found '" + text + "'");
 }
 
-/// An option whose value is one of a few words.
+/// An option whose value is one of a few words: g3r/names.h.
 template <class T>
-void add_choice(CLI::App& app, const std::string& name, T& target, const std::map<std::string, T>& choices, const std::string& help) {
+void add_choice(CLI::App& app, const std::string& name, T& target, const std::string& help) {
   app.add_option_function<std::string>(
          name,
-         [&target, name, choices](const std::string& text) {
-           const auto choice = choices.find(text);
-           if (choice == choices.end()) {
-             std::string words;
-             for (const auto& [word, value] : choices) words += (words.empty() ? "" : ", ") + word;
-             reject(name, text, "one of " + words);
-           }
-           target = choice->second;
+         [&target, name](const std::string& text) {
+           const std::optional<T> value = parse<T>(text);
+           if (!value) reject(name, text, "one of " + words<T>());
+           target = *value;
          },
          help)
       ->type_name("NAME");
@@ -192,7 +189,7 @@ void add_also_option(CLI::App& app, Settings& s) {
 
 void add_mesh_options(CLI::App& app, Settings& s) {
   app.option_defaults()->group(kMeshGroup);
-  add_choice(app, "--mesher", s.mesh_options.mesher, {{"auto", Mesher::kAuto}, {"field", Mesher::kField}, {"poisson", Mesher::kPoisson}},
+  add_choice(app, "--mesher", s.mesh_options.mesher,
              "field: contours the winding field; poisson: screened Poisson, in builds with Open3D; auto: the preset's");
   app.add_option("--depth", s.mesh_options.depth, "Octree depth of the mesher, 4 to 12 (default: from the density of the points)")
       ->check(range(kMinDepth, kMaxDepth))
@@ -248,15 +245,8 @@ void add_length(CLI::App& app, const std::string& name, Length& into, bool may_b
 void add_method_options(CLI::App& app, Settings& s) {
   app.option_defaults()->group(kMethodGroup);
   Options& o = s.options;
-  add_choice(app, "--preset", o.preset, {{"default", Preset::kDefault}, {"paper", Preset::kPaper}},
-             "default, or paper: the published method");
+  add_choice(app, "--preset", o.preset, "default, or paper: the published method");
   add_choice(app, "--method", o.method,
-             {{"auto", Method::kAuto},
-              {"green", Method::kGreen},
-              {"energy", Method::kEnergy},
-              {"wnnc", Method::kWnnc},
-              {"agr", Method::kAgr},
-              {"pgr", Method::kPgr}},
              "Equations to solve: energy, green (as published), auto: the preset's; wnnc, agr, pgr: earlier methods, to compare with");
   app.add_option("--wnnc-widths", o.wnnc_widths, "Of wnnc: density (default), clean, scan, noise-0.25, noise-0.5, noise-1 or sparse")
       ->type_name("NAME");
@@ -270,8 +260,7 @@ void add_method_options(CLI::App& app, Settings& s) {
   app.add_option("--harmonics", o.harmonics, "Of green, instead of --degree: \"1,x,y,z\" or \"degree:0-2\"")
       ->excludes(degree)
       ->type_name("LIST");
-  add_choice(app, "--solver", o.solver, {{"auto", Solver::kAuto}, {"dense", Solver::kDense}, {"cg", Solver::kConjugateGradient}},
-             "auto, dense (O(N^2) memory) or cg");
+  add_choice(app, "--solver", o.solver, "auto, dense (O(N^2) memory) or cg");
   app.add_option("--schedule", o.schedule, "Iterations, for example \"20 sd 60 cg\": steepest descent, conjugate gradients")
       ->type_name("LIST");
   app.add_option("--tolerance", o.tolerance, "Stop when the relative residual falls below T; 0: run all iterations")

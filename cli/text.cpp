@@ -100,17 +100,6 @@ std::optional<TileWorker> parse_worker(const std::string& text) {
   return good ? std::optional(worker) : std::nullopt;
 }
 
-std::optional<Length> parse_length(const std::string& text) {
-  if (text == "auto") return Length{};
-  const auto parsed = leading_number(text);
-  if (!parsed || parsed->number < 0) return std::nullopt;
-  if (parsed->rest.empty()) return Length{Length::Unit::kInput, parsed->number};
-  if (parsed->rest == "%") return Length{Length::Unit::kPercent, parsed->number};
-  if (parsed->rest == "h") return Length{Length::Unit::kSpacing, parsed->number};
-  if (parsed->rest == "n") return Length{Length::Unit::kNormalised, parsed->number};
-  return std::nullopt;
-}
-
 std::optional<Vec3> parse_vector(const std::string& text) {
   Vec3 vector{};
   std::string_view rest = text;

@@ -35,10 +35,8 @@ namespace g3r::cli {
 /// "8G", "512M", "1.5GiB", "1000": bytes, powers of 1024. Empty if it is not that.
 [[nodiscard]] std::optional<std::size_t> parse_bytes(const std::string& text);
 
-/// "auto", "X" (input units), "X%" (of the bounding box diagonal), "Xh" (spacings), "Xn" (normalised box); X >= 0. Empty if it is not that.
 /// "2/8": worker 2 of 8.
 [[nodiscard]] std::optional<TileWorker> parse_worker(const std::string& text);
-[[nodiscard]] std::optional<Length> parse_length(const std::string& text);
 
 /// "1,-2.5,3e2": three finite numbers. Empty if it is not that.
 [[nodiscard]] std::optional<Vec3> parse_vector(const std::string& text);

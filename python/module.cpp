@@ -3,10 +3,11 @@
 #include <g3r/g3r.h>
 #include <g3r/io.h>
 #include <g3r/metrics.h>
+#include <g3r/names.h>
 #include <g3r/view.h>
 
-#include <initializer_list>
 #include <memory>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -34,27 +35,26 @@ void take(const nb::dict& from, const char* name, T& into) {
   if (from.contains(name)) into = nb::cast<T>(from[name]);
 }
 
-// The value of an option that is one of a few words.
+// The value of an option that is one of a few words: g3r/names.h.
 template <class T>
-void take_choice(const nb::dict& from, const char* name, T& into, std::initializer_list<std::pair<const char*, T>> choices) {
+void take_choice(const nb::dict& from, const char* name, T& into) {
   if (!from.contains(name)) return;
   const Text word = nb::cast<Text>(from[name]);
-  Text words;
-  for (const auto& [known, value] : choices) {
-    if (word == known) {
-      into = value;
-      return;
-    }
-    words += (words.empty() ? "'" : ", '") + Text(known) + "'";
-  }
-  throw InvalidInput(Text(name) + " must be one of " + words + ", not '" + word + "'");
+  const std::optional<T> value = parse<T>(word);
+  if (!value) throw InvalidInput(Text(name) + " must be one of " + words<T>("'") + ", not '" + word + "'");
+  into = *value;
 }
 
-void take_length(const nb::dict& from, const char* name, const char* unit, Length& into) {
-  using Unit = Length::Unit;
-  take_choice(from, unit, into.unit,
-              {{"input", Unit::kInput}, {"percent", Unit::kPercent}, {"spacing", Unit::kSpacing}, {"normalised", Unit::kNormalised}});
-  take(from, name, into.value);
+// A length: a number in input units, or what parse_length() takes.
+void take_length(const nb::dict& from, const char* name, bool may_be_zero, Length& into) {
+  if (!from.contains(name)) return;
+  const nb::object given = from[name];
+  const std::optional<Length> length = parse_length(nb::cast<Text>(nb::str(given)));
+  if (!length || (length->value == 0 && length->unit != Length::Unit::kAuto && !may_be_zero)) {
+    throw InvalidInput(Text(name) + " must be 'auto', a number " + (may_be_zero ? "0 or more" : "above 0") +
+                       ", 'X%', 'Xh' (point spacings) or 'Xn' (normalised), not " + nb::cast<Text>(nb::repr(given)));
+  }
+  into = *length;
 }
 
 std::vector<Vec3> take_places(const nb::dict& from, const char* name) {
@@ -78,18 +78,12 @@ Hints read_hints(const nb::dict& from) {
 
 Options read_options(const nb::dict& from) {
   Options options;
-  take_choice(from, "preset", options.preset, {{"default", Preset::kDefault}, {"paper", Preset::kPaper}});
-  take_choice(from, "method", options.method,
-              {{"auto", Method::kAuto},
-               {"green", Method::kGreen},
-               {"energy", Method::kEnergy},
-               {"wnnc", Method::kWnnc},
-               {"agr", Method::kAgr},
-               {"pgr", Method::kPgr}});
+  take_choice(from, "preset", options.preset);
+  take_choice(from, "method", options.method);
   take(from, "wnnc_widths", options.wnnc_widths);
-  take_choice(from, "solver", options.solver, {{"auto", Solver::kAuto}, {"dense", Solver::kDense}, {"cg", Solver::kConjugateGradient}});
-  take_length(from, "epsilon", "epsilon_unit", options.epsilon);
-  take_length(from, "noise", "noise_unit", options.noise);
+  take_choice(from, "solver", options.solver);
+  take_length(from, "epsilon", false, options.epsilon);
+  take_length(from, "noise", true, options.noise);
   take(from, "degree", options.degree);
   take(from, "harmonics", options.harmonics);
   take(from, "schedule", options.schedule);
@@ -103,17 +97,16 @@ Options read_options(const nb::dict& from) {
 }
 
 MeshOptions read_mesh_options(const nb::dict& from) {
-  using Trim = MeshOptions::Trim;
   MeshOptions options;
-  take_choice(from, "mesher", options.mesher, {{"auto", Mesher::kAuto}, {"field", Mesher::kField}, {"poisson", Mesher::kPoisson}});
-  take_choice(from, "trim", options.trim, {{"off", Trim::kOff}, {"auto", Trim::kAuto}, {"distance", Trim::kDistance}});
+  take_choice(from, "mesher", options.mesher);
+  take_choice(from, "trim", options.trim);
   take(from, "trim_distance", options.trim_distance);
   take(from, "depth", options.depth);
   take(from, "keep_largest", options.keep_largest);
   take(from, "min_component", options.min_component);
   take(from, "faces", options.faces);
   take(from, "keep_all", options.keep_all);
-  take_length(from, "noise", "noise_unit", options.noise);
+  take_length(from, "noise", true, options.noise);
   take(from, "threads", options.threads);
   take(from, "device", options.device);
   return options;

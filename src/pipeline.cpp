@@ -16,6 +16,7 @@
 #include "sum/fast_sum.h"
 
 #include <g3r/g3r.h>
+#include <g3r/names.h>
 
 #include <algorithm>
 #include <cmath>
@@ -46,21 +47,6 @@ constexpr double kManyDoubtful = 0.15;  // share of sides in doubt from which it
 constexpr double kLargeNoise = 0.5;     // from so many spacings of noise on,
 constexpr double kHardlyAny = 0.1;      // and taken up to this share of the doubt
 
-const char* name_of(Method method) {
-  switch (method) {
-    case Method::kGreen:
-      return "green";
-    case Method::kWnnc:
-      return "wnnc";
-    case Method::kAgr:
-      return "agr";
-    case Method::kPgr:
-      return "pgr";
-    default:
-      return "energy";
-  }
-}
-
 void describe(const Problem& problem, const PointsView& points, const Options& options, Stats& stats) {
   const CanonicalCloud& cloud = problem.cloud;
   const Settings& settings = problem.settings;
@@ -74,9 +60,9 @@ void describe(const Problem& problem, const PointsView& points, const Options& o
   stats.spacing = cloud.frame.length_to_world(problem.spacing);
   stats.noise = cloud.frame.length_to_world(problem.noise);
   stats.epsilon = cloud.frame.length_to_world(settings.epsilon);
-  stats.preset = options.preset == Preset::kPaper ? "paper" : "default";
+  stats.preset = name_of(options.preset);
   stats.method = name_of(settings.method);
-  stats.solver = settings.dense ? "dense" : "cg";
+  stats.solver = name_of(settings.dense ? Solver::kDense : Solver::kConjugateGradient);
   stats.harmonics = settings.method == Method::kGreen ? format_harmonics(settings.harmonics) : "1,x,y,z";
   stats.sums = settings.dense || settings.sums.direct ? "direct" : "hierarchical";
   stats.accuracy = settings.sums.direct ? 0 : settings.accuracy;

@@ -10,9 +10,7 @@
 
 // What libE57Format does not free: its packets where memory runs out.
 // NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming): the sanitizer's name
-extern "C" const char* __lsan_default_suppressions() {
-  return "leak:e57::CompressedVectorReaderImpl::CompressedVectorReaderImpl\n";
-}
+extern "C" const char* __lsan_default_suppressions() { return "leak:e57::CompressedVectorReaderImpl::CompressedVectorReaderImpl\n"; }
 
 namespace g3r {
 namespace {
@@ -21,24 +19,10 @@ using samples::e57_file;
 using samples::e57_scan;
 using samples::E57Field;
 using samples::E57Scan;
+using samples::message_of;
+using samples::value_of;
 
 constexpr double kHalf = 0.70710678118654752440;  // sqrt(1/2)
-
-std::string message_of(const std::string& bytes) {
-  try {
-    samples::read(bytes);
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
-  return "";
-}
-
-double value(const Cloud& cloud, const std::string& property, std::size_t point) {
-  const io::Element& points = cloud.attributes->points();
-  const io::RecordLayout layout(points);
-  const std::size_t found = points.find(property);
-  return io::load_as_double(points.properties[found].type, points.data.data() + point * points.stride() + layout.offset(found));
-}
 
 TEST(E57, EveryKindOfNumberIsReadAsItWasWritten) {
   for (const auto kind : {E57Field::kDouble, E57Field::kFloat, E57Field::kScaled}) {
@@ -56,8 +40,8 @@ TEST(E57, EveryKindOfNumberIsReadAsItWasWritten) {
         EXPECT_LE(std::abs(cloud.positions[i][a] - scan.fields[a].values[i]), most);
         EXPECT_EQ(cloud.colors[i][a], scan.fields[3 + a].values[i]);
       }
-      EXPECT_EQ(value(cloud, "intensity", i), scan.fields[6].values[i]);
-      EXPECT_EQ(value(cloud, "rowIndex", i), 7);
+      EXPECT_EQ(value_of(cloud, "intensity", i), scan.fields[6].values[i]);
+      EXPECT_EQ(value_of(cloud, "rowIndex", i), 7);
     }
   }
 }
@@ -144,8 +128,8 @@ TEST(E57, ColoursOf16BitsAreKept) {
     for (double& v : scan.fields[c].values) v = v * 257 - (v > 0 ? 1 : 0);
   }
   const Cloud cloud = samples::read(e57_file({scan, e57_scan(2, E57Field::kFloat)}));
-  for (std::size_t i = 0; i < 256; ++i) EXPECT_EQ(value(cloud, "red", i), scan.fields[3].values[i]);
-  EXPECT_EQ(value(cloud, "blue", 256), 65535);  // 255 of 255 in the other scan
+  for (std::size_t i = 0; i < 256; ++i) EXPECT_EQ(value_of(cloud, "red", i), scan.fields[3].values[i]);
+  EXPECT_EQ(value_of(cloud, "blue", 256), 65535);  // 255 of 255 in the other scan
 }
 
 TEST(E57, IsWrittenAsOtherFormats) {

@@ -7,14 +7,7 @@
 namespace g3r {
 namespace {
 
-std::string message_of(const std::string& bytes) {
-  try {
-    samples::read(bytes);
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
-  return "";
-}
+using samples::message_of;
 
 TEST(FormatsLeftOut, AreRefusedWithTheNameOfAConverter) {
   std::string laz = samples::written(samples::helix(5), "a.las");

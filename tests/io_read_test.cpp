@@ -11,16 +11,8 @@
 namespace g3r {
 namespace {
 
+using samples::message_of;
 using samples::read;
-
-std::string message_of(const std::string& bytes, const std::string& name = "sample") {
-  try {
-    read(bytes, name);
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
-  return "";
-}
 
 TEST(Text, NumbersAreReadFromTheFirstToTheLastCharacter) {
   double v = 0;

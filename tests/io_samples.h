@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "io/lzf.h"
+#include "io/table.h"
 
 namespace g3r::samples {
 
@@ -231,6 +232,24 @@ inline std::vector<Sample> all(std::size_t count = 12) {
 
 inline Cloud read(const std::string& bytes, const std::string& name = "sample") {
   return read_cloud_bytes(bytes.data(), bytes.size(), name);
+}
+
+/// What read() says of bytes that it refuses; empty if it reads them.
+inline std::string message_of(const std::string& bytes, const std::string& name = "sample") {
+  try {
+    read(bytes, name);
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// A property of a point that only the table has.
+inline double value_of(const Cloud& cloud, const std::string& property, std::size_t point) {
+  const io::Element& points = cloud.attributes->points();
+  const io::RecordLayout layout(points);
+  const std::size_t found = points.find(property);
+  return io::load_as_double(points.properties[found].type, points.data.data() + point * points.stride() + layout.offset(found));
 }
 
 }  // namespace g3r::samples

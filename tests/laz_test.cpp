@@ -22,20 +22,12 @@ using samples::Folder;
 using samples::kAnyChunks;
 using samples::las_file;
 using samples::load_points_at;
+using samples::message_of;
 using samples::put;
 
 std::string unpacked(const std::string& laz) {
   const io::Source source{laz, "sample"};
   return io::unpack_laz(source, io::read_las_header(source));
-}
-
-std::string message_of(const std::string& bytes) {
-  try {
-    samples::read(bytes);
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(Laz, EveryPointFormatUnpacksToTheBytesOfTheLasFile) {

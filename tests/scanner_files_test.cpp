@@ -10,24 +10,10 @@
 namespace g3r {
 namespace {
 
+using samples::message_of;
 using samples::read;
+using samples::value_of;
 using Names = std::vector<std::string>;
-
-std::string message_of(const std::string& bytes, const std::string& name = "sample") {
-  try {
-    read(bytes, name);
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
-  return "";
-}
-
-double value(const Cloud& cloud, const std::string& property, std::size_t point) {
-  const io::Element& points = cloud.attributes->points();
-  const io::RecordLayout layout(points);
-  const std::size_t found = points.find(property);
-  return io::load_as_double(points.properties[found].type, points.data.data() + point * points.stride() + layout.offset(found));
-}
 
 TEST(Ptx, ScansAreMergedEachInItsPose) {
   const Cloud cloud = read(samples::ptx(6));
@@ -43,8 +29,8 @@ TEST(Ptx, ScansAreMergedEachInItsPose) {
   }
   EXPECT_EQ(cloud.positions[6], (Vec3{5 - 2, 6 + 1, 8 + 2}));
   EXPECT_EQ(cloud.property_names, (Names{"x", "y", "z", "intensity", "red", "green", "blue"}));
-  EXPECT_EQ(value(cloud, "intensity", 0), 0.25);
-  EXPECT_EQ(value(cloud, "intensity", 9), 0.75);
+  EXPECT_EQ(value_of(cloud, "intensity", 0), 0.25);
+  EXPECT_EQ(value_of(cloud, "intensity", 9), 0.75);
   EXPECT_EQ(cloud.colors[0], (std::array<std::uint8_t, 3>{0, 0, 0}));  // that scan has none
   EXPECT_EQ(cloud.colors[4], (std::array<std::uint8_t, 3>{10, 20, 30}));
   EXPECT_EQ(cloud.sensor_positions, (std::vector<Vec3>{{5, 6, 7}, {5, 6, 8}}));
@@ -83,13 +69,13 @@ TEST(Spz, PositionsColoursAndOpacityAreUnpacked) {
     EXPECT_TRUE(cloud.warnings.empty());
     EXPECT_EQ(cloud.positions, (std::vector<Vec3>{{0, 0, 0}, {1, -1, 0.25}, {2, -2, 0.5}}));
     EXPECT_EQ(cloud.colors[0], (std::array<std::uint8_t, 3>{189, 128, 68}));  // 0.5 + Y_0 (c / 255 - 0.5) / 0.15
-    EXPECT_NEAR(value(cloud, "opacity", 1), std::log(2.0 / 253), 1e-5);
-    EXPECT_EQ(value(cloud, "scale_2", 0), -3);
+    EXPECT_NEAR(value_of(cloud, "opacity", 1), std::log(2.0 / 253), 1e-5);
+    EXPECT_EQ(value_of(cloud, "scale_2", 0), -3);
     double length = 0;
-    for (const char* name : {"rot_0", "rot_1", "rot_2", "rot_3"}) length += std::pow(value(cloud, name, 2), 2);
+    for (const char* name : {"rot_0", "rot_1", "rot_2", "rot_3"}) length += std::pow(value_of(cloud, name, 2), 2);
     EXPECT_NEAR(length, 1, 2e-2);
-    EXPECT_NEAR(value(cloud, "rot_1", 2), version == 2 ? 1 : std::sqrt(0.5), 1e-6);
-    EXPECT_NEAR(value(cloud, "rot_3", 2), version == 2 ? 0.5 / 127.5 : -std::sqrt(0.5) * 255 / 511, 1e-6);
+    EXPECT_NEAR(value_of(cloud, "rot_1", 2), version == 2 ? 1 : std::sqrt(0.5), 1e-6);
+    EXPECT_NEAR(value_of(cloud, "rot_3", 2), version == 2 ? 0.5 / 127.5 : -std::sqrt(0.5) * 255 / 511, 1e-6);
     EXPECT_EQ(read(file).positions.size(), 2U);  // one is below the least opacity
   }
 }

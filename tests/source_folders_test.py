@@ -1,10 +1,11 @@
-"""The folders of src/ build on one another and never in a circle: read off their includes."""
+"""Folders of src/ and modules of the Python package build on one another, never in a circle: read off includes and imports."""
 
 import pathlib
 import re
 import unittest
 
-SOURCES = pathlib.Path(__file__).resolve().parent.parent / "src"
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+SOURCES = ROOT / "src"
 ENTRY = "src"  # files of src/ itself: the public entry points, which may use every folder
 
 
@@ -21,6 +22,15 @@ def uses():
             first = target.split("/")[0] if "/" in target else ENTRY
             if first != folder:
                 targets.setdefault(first, f"{inside} includes {target}")
+    return out
+
+
+def imports():
+    """For every module of the Python package the modules that it imports, inside of functions too."""
+    out = {}
+    for path in sorted((ROOT / "python" / "g3r").glob("*.py")):
+        text = re.sub(r"^if TYPE_CHECKING:\n(?:    .*\n)+", "", path.read_text(), flags=re.MULTILINE)
+        out[path.stem] = {target: f"{path.stem} imports {target}" for target in re.findall(r"^ *from \.(\w+) import", text, re.MULTILINE)}
     return out
 
 
@@ -55,6 +65,10 @@ class SourceFolders(unittest.TestCase):
 
     def test_no_folder_includes_an_entry_point(self):
         self.assertEqual([targets[ENTRY] for targets in uses().values() if ENTRY in targets], [])
+
+    def test_python_modules_do_not_import_in_a_circle(self):
+        self.assertIn("_arrays", imports()["_api"])
+        self.assertEqual(circle(imports()), [])
 
     def test_base_builds_on_nothing(self):
         self.assertEqual(uses()["base"], {})

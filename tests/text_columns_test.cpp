@@ -8,17 +8,9 @@
 namespace g3r {
 namespace {
 
+using samples::message_of;
 using samples::read;
 using Names = std::vector<std::string>;
-
-std::string message_of(const std::string& bytes) {
-  try {
-    read(bytes);
-  } catch (const InvalidInput& error) {
-    return error.what();
-  }
-  return "";
-}
 
 void expect_said(const std::vector<std::string>& warnings, const std::string& what) {
   for (const std::string& warning : warnings) {

@@ -60,7 +60,7 @@ struct Length {
     kNormalised  ///< units of the normalised box, whose longest side is 2/1.1 (the paper's units)
   };
   Unit unit = Unit::kAuto;
-  double value = 0;  ///< of no account when automatic
+  double value = 0;  ///< ignored if `unit` is kAuto
 };
 
 /// Progress and cancellation. Both are optional; both may be used from another thread.
@@ -116,7 +116,7 @@ struct Stats {
   double spacing = 0;   ///< typical distance between neighbours, square root of area per point
   double noise = 0;     ///< standard deviation of the points from their surface, estimated unless given; 0: clean
   double epsilon = 0;
-  int depth = 0;  ///< octree depth asked of the mesher; 0: the automatic one, or no mesh
+  int depth = 0;  ///< octree depth that the mesher was given; 0: the automatic one, or no mesh
   std::string preset;
   std::string method;
   std::string solver;     ///< "dense", "cg" or "wnnc"

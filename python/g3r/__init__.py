@@ -7,11 +7,13 @@
 """
 
 from ._api import BuildInfo, Device, Field, Result, build_info, devices, mesh_oriented, orient, reconstruct, run
+from ._cloud import Cloud, read, read_mesh
 from ._errors import Cancelled, Error, FileError, FileMissingError, InputError, UnavailableError
-from ._files import Cloud, read, read_mesh, write
+from ._files import write
 from ._g3r import __version__
 from ._metrics import score_mesh, score_normals
-from ._show import View, show
+from ._show import show
+from ._view import View
 
 __all__ = [
     "BuildInfo", "Cancelled", "Cloud", "Device", "Error", "Field", "FileError", "FileMissingError", "InputError", "Result", "UnavailableError", "View",

@@ -10,32 +10,13 @@ from . import _g3r
 from ._arrays import as_colors, as_points, member
 from ._errors import InputError
 from ._hints import HINTS, checked_numbers, take_hints
+from ._view import DEFAULT_HEIGHT, DEFAULT_POINTS, View
 
 if TYPE_CHECKING:
     from ._types import Bytes, Floats, Indices, Points, Singles
 
 Progress = Callable[[str, float], Optional[bool]]
 """Called as progress(stage, fraction in [0, 1]); returning False cancels, anything else goes on."""
-
-_UNITS = {"%": "percent", "h": "spacing", "n": "normalised"}
-
-
-def _length(name: str, value: Union[str, float], least: str) -> Dict[str, Any]:
-    if isinstance(value, str):
-        if value == "auto":
-            return {}
-        unit = _UNITS.get(value[-1:], "input")
-        text = value if unit == "input" else value[:-1]
-    else:
-        unit, text = "input", str(value)
-    try:
-        number = float(text)
-    except ValueError:
-        number = math.nan
-    if not ((number > 0 or (number == 0 and least == "0 or more")) and math.isfinite(number)):
-        raise InputError(f"{name} must be 'auto', a number {least}, 'X%', 'Xh' (point spacings) or 'Xn' (normalised), not {value!r}")
-    return {name: number, f"{name}_unit": unit}
-
 
 _MESH_OPTIONS = {"mesher", "keep_largest", "min_component", "faces", "keep_all"}
 _METHOD_OPTIONS = {"noise", "method", "wnnc_widths", "harmonics", "solver", "schedule", "tolerance", "accuracy", "max_memory", "device"}
@@ -49,9 +30,7 @@ def _options(epsilon: Union[str, float], degree: Optional[int], preset: str, thr
     for name in ("keep_largest", "faces", "max_memory"):
         if name in more and (int(more[name]) != more[name] or more[name] < 0):
             raise InputError(f"{name} must be an integer, 0 or more, not {more[name]!r}")
-    noise = more.pop("noise", "auto")
-    options = {**_length("epsilon", epsilon, "above 0"), **_length("noise", noise, "0 or more"), "preset": preset,
-               "threads": int(threads), **more}
+    options = {"epsilon": epsilon, "preset": preset, "threads": int(threads), **more}
     if degree is not None:
         options["degree"] = int(degree)
     return options
@@ -134,9 +113,9 @@ class Result:
         return f"<g3r.Result: {len(self.normals)} normals, mean confidence {float(self.confidence.mean()):.3f}, {mesh}>"
 
     def _repr_html_(self) -> str:
-        from ._show import show
-
-        return show(self, open=False)._repr_html_()
+        scene = _g3r.scene("g3r", self.points, self.normals, self.confidence, None, None, self.vertices, self.faces, self.vertex_colors,
+                           self.vertex_confidence, self.report)
+        return View(scene, False, DEFAULT_POINTS, DEFAULT_HEIGHT)._repr_html_()
 
 
 class Device(NamedTuple):
@@ -264,6 +243,6 @@ def mesh_oriented(points: Any, normals: Any = None, *, depth: Union[str, int] = 
         normals = member(points, "normals", "point_normals", "vertex_normals")
         if normals is None:
             raise InputError("there are no normals; g3r.reconstruct() takes points without them")
-    options = {"mesher": mesher, "threads": int(threads), "device": device, **_depth(depth), **_length("noise", noise, "0 or more")}
+    options = {"mesher": mesher, "threads": int(threads), "device": device, "noise": noise, **_depth(depth)}
     vertices, faces, _, _ = _g3r.mesh(as_points(points), as_points(normals, "normals"), options, progress)
     return vertices, faces

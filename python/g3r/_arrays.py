@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any
 
+from ._cloud import read
 from ._errors import InputError
 
 if TYPE_CHECKING:
@@ -65,8 +66,6 @@ def as_points(value: Any, what: str = "points") -> Points:
     import numpy as np
 
     if isinstance(value, (str, bytes, os.PathLike)):
-        from ._files import read
-
         value = read(value)
     if not _is_array(value):
         inner = member(value, "points", "vertices", "positions")

@@ -7,6 +7,7 @@ import re
 from typing import Any, Dict, Tuple
 
 from ._arrays import _plain
+from ._cloud import Cloud, read
 from ._errors import InputError
 
 HINTS = {"up", "sensor", "sensor_of_point", "inside", "seen_from_inside", "flip"}
@@ -45,8 +46,6 @@ def _numbers(value: Any, count: int) -> Any:
 
 def take_hints(points: Any, more: Dict[str, Any]) -> Tuple[Any, Dict[str, Any]]:
     """The points, read if they are a file that the hints are in, and the hints among `more` for the extension module."""
-    from ._files import Cloud, read
-
     given = {name: more.pop(name) for name in HINTS & set(more)}
     hints: Dict[str, Any] = {name: bool(given[name]) for name in ("seen_from_inside", "flip") if name in given}
     sensor, numbers = given.get("sensor"), given.get("sensor_of_point")

@@ -8,50 +8,8 @@ from typing import Any, Optional
 from . import _g3r
 from ._api import Result
 from ._arrays import as_colors, as_faces, as_points, as_values, member
-from ._files import Cloud, Path
-
-DEFAULT_HEIGHT = 620  # of the frame in a notebook, pixels
-
-
-class View:
-    """A page that shows a scene: `html` is the document; in a notebook it appears by itself."""
-
-    def __init__(self, scene: _g3r.Scene, z_up: bool, max_points: int, height: int) -> None:
-        self._scene = scene
-        self._z_up = z_up
-        self.html: str = _g3r.view_html(scene, z_up, max_points)
-        self.height = height
-
-    def save(self, path: Path) -> None:
-        """Writes the page, or for a name that ends in .png four views as a picture."""
-        name = os.fsdecode(path)
-        data = self.png() if name.lower().endswith(".png") else self.html.encode()
-        with open(name, "wb") as file:
-            file.write(data)
-
-    def png(self, tile: int = 600) -> bytes:
-        """Four views as a PNG file, each `tile` pixels wide and high."""
-        return _g3r.view_png(self._scene, self._z_up, int(tile))
-
-    def open(self) -> str:
-        """Opens the page in the browser from a temporary file, whose name is returned."""
-        import tempfile
-        import webbrowser
-
-        handle, name = tempfile.mkstemp(prefix="g3r_", suffix=".html")
-        with os.fdopen(handle, "w", encoding="utf-8") as file:
-            file.write(self.html)
-        webbrowser.open("file://" + name)
-        return name
-
-    def _repr_html_(self) -> str:
-        import html
-
-        return (f'<iframe srcdoc="{html.escape(self.html)}" width="100%" height="{self.height}" '
-                'style="border: 0; border-radius: 8px" sandbox="allow-scripts allow-downloads"></iframe>')
-
-    def __repr__(self) -> str:
-        return f"<g3r.View: {len(self.html) / 1e6:.1f} MB of HTML>"
+from ._cloud import Cloud, read
+from ._view import DEFAULT_HEIGHT, DEFAULT_POINTS, View
 
 
 def _in_notebook() -> bool:
@@ -63,7 +21,7 @@ def _in_notebook() -> bool:
 
 
 def show(what: Any, *, normals: Any = None, confidence: Any = None, colors: Any = None, true_normals: Any = None, faces: Any = None,
-         mesh: Any = None, title: str = "g3r", up: str = "y", max_points: int = 1_500_000, height: int = DEFAULT_HEIGHT, open: Optional[bool] = None) -> View:
+         mesh: Any = None, title: str = "g3r", up: str = "y", max_points: int = DEFAULT_POINTS, height: int = DEFAULT_HEIGHT, open: Optional[bool] = None) -> View:
     """A page with the points, their normals and the mesh, to turn and to look into.
 
     what: a `Result`, a `Cloud`, a path, points, or an object with points; with `faces`, the vertices of a mesh.
@@ -83,8 +41,6 @@ def show(what: Any, *, normals: Any = None, confidence: Any = None, colors: Any 
         points: Any = what.points
     else:
         if isinstance(what, (str, bytes, os.PathLike)):
-            from ._files import read
-
             what = read(what)
         if isinstance(what, Cloud):
             normals = what.normals if normals is None else normals

@@ -23,8 +23,8 @@ inline constexpr std::size_t kSpacingNeighbours = 17;
 /// The same from Neighbours::of_all(k) of these points, k >= 9.
 [[nodiscard]] std::vector<double> local_spacing(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near);
 
-/// Local spacings averaged (geometric mean) over each point's 16 nearest, itself included: they follow the density, not the luck of the
-/// sample. `near`: Neighbours::of_all(k), k >= 16. O(N).
+/// Local spacings averaged (geometric mean) over each point's 16 nearest, itself included: they follow the density, not the scatter of
+/// the sample. `near`: Neighbours::of_all(k), k >= 16. O(N).
 [[nodiscard]] std::vector<double> smoothed_spacing(const std::vector<double>& local, const std::vector<std::uint32_t>& near);
 
 /// The typical spacing: the median of the local ones, which a few far points cannot move.

@@ -15,8 +15,8 @@ namespace g3r {
 /// on a closed surface: points that scatter lie farther apart than their share of the surface, those of a grid closer (docs/math.md,
 /// "Areas"). c is within 1/3 and 1.3, and 1 if every point is on an open surface; only the others are asked for it. Strays, which no
 /// surface goes through (held_points()), have at most the typical spacing. The field of these vectors is twice to five times closer to 1
-/// inside and 0 outside than that of solved ones, whose lengths follow the luck of the sample: docs/evidence/areas.md. Points in canonical
-/// order, in the unit frame. O(N log N). Throws Cancelled.
+/// inside and 0 outside than that of solved ones, whose lengths vary with the sample: docs/evidence/areas.md. Points in canonical order,
+/// in the unit frame. O(N log N). Throws Cancelled.
 [[nodiscard]] std::vector<Vec3> area_vectors(const PointSet& set, const std::vector<Vec3>& normals, const OpenSurfaces& sheets,
                                              const std::atomic<bool>* cancel);
 

@@ -224,4 +224,39 @@ void append_as_text(Type type, const char* bytes, std::string& text) {
   }
 }
 
+const char* append_property_as_text(const Property& property, const char* bytes, std::string& text) {
+  std::size_t length = property.count;
+  if (property.list) {
+    length = static_cast<std::size_t>(load_as_double(property.count_type, bytes));
+    append_as_text(property.count_type, bytes, text);
+    text += ' ';
+    bytes += size_of(property.count_type);
+  }
+  for (std::size_t k = 0; k < length; ++k, bytes += size_of(property.type)) {
+    append_as_text(property.type, bytes, text);
+    text += ' ';
+  }
+  return bytes;
+}
+
+void write_rows(const PointData& data, const std::vector<Column>& columns, OutputFile& file) {
+  Rows rows(data, columns);
+  std::string bytes;
+  std::string text;
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    rows.next();
+    bytes.clear();
+    for (std::size_t c = 0; c < columns.size(); ++c) rows.append_bytes(c, bytes);
+    if (!data.options.ascii) {
+      file.write(bytes);
+      continue;
+    }
+    text.clear();
+    const char* at = bytes.data();
+    for (const Column& column : columns) at = append_property_as_text(column.property, at, text);
+    text.back() = '\n';
+    file.write(text);
+  }
+}
+
 }  // namespace g3r::io

@@ -1,6 +1,7 @@
 // What a point file gets: the properties of the cloud's table in their order, with normals and confidence replaced or added.
 #pragma once
 
+#include "io/output_file.h"
 #include "io/table.h"
 
 #include <string>
@@ -56,6 +57,12 @@ class Rows {
   const char* record_ = nullptr;
   std::size_t point_ = static_cast<std::size_t>(-1);
 };
+
+/// Writes the points row by row, binary or as text with a blank between numbers, as the options of `data` ask.
+void write_rows(const PointData& data, const std::vector<Column>& columns, OutputFile& file);
+
+/// Appends the number or numbers of one property as text, each before a blank; returns where the property ends.
+const char* append_property_as_text(const Property& property, const char* bytes, std::string& text);
 
 /// Appends a number of a stored type as text, the shortest that reads back the same.
 void append_as_text(Type type, const char* bytes, std::string& text);

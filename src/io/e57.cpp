@@ -133,11 +133,8 @@ class E57Reader {
   void read() {
     const e57::ImageFile file(source_.bytes.data(), source_.bytes.size(), e57::ChecksumNone);  // check_e57() has checked them
     find_scans(file.root());
-    auto table = std::make_shared<Attributes>();
-    table->dialect = Attributes::Dialect::kPly;
-    table->elements.emplace_back();
+    const std::shared_ptr<Attributes> table = Attributes::of_points(Attributes::Dialect::kPly);
     Element& points = table->elements.back();
-    points.name = "vertex";
     plan(points);
     find_sensors();
     for (std::size_t i = 0; i < scans_.size(); ++i) {
@@ -147,7 +144,7 @@ class E57Reader {
       }
     }
     if (dropped_ != 0) cloud_.warnings.push_back(std::to_string(dropped_) + " points marked as invalid are left out");
-    fill_cloud(source_, std::move(table), cloud_);
+    fill_cloud(source_, table, cloud_);
   }
 
   /// Where the reader is, for errors of the library.

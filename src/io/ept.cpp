@@ -204,10 +204,8 @@ Cloud read_records(const Ept& ept, const Source& source, std::uint64_t count) {
     fail(source, "truncated or damaged: " + std::to_string(count) + " points of " + std::to_string(ept.record) + " bytes declared, found " +
                      std::to_string(source.bytes.size()) + " bytes");
   }
-  auto table = std::make_shared<Attributes>();
-  table->elements.emplace_back();
+  const std::shared_ptr<Attributes> table = Attributes::of_points(Attributes::Dialect::kPly);
   Element& points = table->elements.back();
-  points.name = "vertex";
   points.count = count;
   for (const Dimension& dimension : ept.schema) {
     points.properties.emplace_back();
@@ -228,7 +226,7 @@ Cloud read_records(const Ept& ept, const Source& source, std::uint64_t count) {
   }
   Cloud cloud;
   cloud.format = "records";
-  fill_cloud(source, std::move(table), cloud);
+  fill_cloud(source, table, cloud);
   return cloud;
 }
 

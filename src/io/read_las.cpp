@@ -68,11 +68,8 @@ Cloud read_las(const Source& source, const ReadOptions& options) {
     if (is_copc(source, header)) cloud.format += ", COPC";
     return cloud;
   }
-  auto table = std::make_shared<Attributes>();
-  table->dialect = Attributes::Dialect::kLas;
-  table->elements.emplace_back();
+  const std::shared_ptr<Attributes> table = Attributes::of_points(Attributes::Dialect::kLas);
   Element& points = table->elements.back();
-  points.name = "vertex";
   points.count = header.count;
   points.properties.reserve(3 + header.fields.size());
   for (const char* axis : {"x", "y", "z"}) points.properties.push_back(make_property(axis, Type::kFloat64));
@@ -92,7 +89,7 @@ Cloud read_las(const Source& source, const ReadOptions& options) {
   table->raw = std::string(source.bytes);
   Cloud cloud;
   cloud.format = std::string("las 1.") += std::to_string(header.minor) + ", point format " + std::to_string(header.point_format);
-  fill_cloud(source, std::move(table), cloud);
+  fill_cloud(source, table, cloud);
   check_against_header(source, header, cloud);
   return cloud;
 }

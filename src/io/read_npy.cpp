@@ -190,8 +190,7 @@ float half_to_float(std::uint32_t bits) {
 Element make_points(const Source& source, const NpyHeader& header, std::uint64_t rows, std::uint64_t columns,
                     std::vector<std::string>& warnings) {
   const bool structured = !header.fields[0].name.empty() || header.fields.size() > 1;
-  Element points;
-  points.name = "vertex";
+  Element points = make_vertex_element();
   points.count = rows;
   points.properties = structured ? header.fields : std::vector<Property>(static_cast<std::size_t>(columns), header.fields[0]);
   const std::size_t stride = points.stride();

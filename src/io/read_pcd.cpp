@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 20;  // of one point: more is damage
 
 struct PcdHeader {
-  Element points;
+  Element points = make_vertex_element();
   std::string encoding;  // ascii, binary, binary_compressed
   std::size_t body = 0;
   std::size_t lines = 0;
@@ -137,7 +137,6 @@ class PcdParser {
     if (points_ && width_given() && organised != *points_) {
       fail(source_, "WIDTH times HEIGHT (" + std::to_string(organised) + ") and POINTS (" + std::to_string(*points_) + ") differ");
     }
-    header_.points.name = "vertex";
     header_.points.count = points_.value_or(organised);
   }
 

@@ -36,11 +36,8 @@ class PtxReader {
   Cloud read() {
     std::string_view line;
     while (lines_.next_filled(line)) find_scan(line);
-    auto table = std::make_shared<Attributes>();
-    table->dialect = Attributes::Dialect::kPly;
-    table->elements.emplace_back();
+    const std::shared_ptr<Attributes> table = Attributes::of_points(Attributes::Dialect::kPly);
     Element& points = table->elements.back();
-    points.name = "vertex";
     plan(points);
     Cloud cloud;
     cloud.format = "ptx";
@@ -49,7 +46,7 @@ class PtxReader {
       cloud.sensor_positions.push_back(scans_[i].origin);
       if (scans_.size() > 1) cloud.scan_of_point.resize(static_cast<std::size_t>(points.count), static_cast<std::uint32_t>(i));
     }
-    fill_cloud(source_, std::move(table), cloud);
+    fill_cloud(source_, table, cloud);
     if (overflow_) cloud.warnings.emplace_back("a number is out of double's range: it is taken as infinite (not finite)");
     if (!lines_.ended()) cloud.warnings.emplace_back("the last line has no line end: the file may be cut");
     return cloud;

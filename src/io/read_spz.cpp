@@ -126,10 +126,8 @@ void append_splats(const SpzHeader& header, const std::string& blocks, Element& 
 Cloud read_spz(const Source& source, const ReadOptions& options) {
   Gunzip stream(source.bytes);
   const SpzHeader header = read_header(source, stream);
-  auto table = std::make_shared<Attributes>();
-  table->elements.emplace_back();
+  const std::shared_ptr<Attributes> table = Attributes::of_points(Attributes::Dialect::kPly);
   Element& points = table->elements.back();
-  points.name = "vertex";
   points.count = header.points;
   for (const char* name : kNames) {
     points.properties.emplace_back();
@@ -148,7 +146,7 @@ Cloud read_spz(const Source& source, const ReadOptions& options) {
   if (!more && !stream.ended()) fail(source, "truncated or damaged: the gzip stream does not end as it should (checksum)");
   if (more && !header.extensions) cloud.warnings.emplace_back("trailing bytes after the last splat are not used");
   cloud.format = "spz version " + std::to_string(header.version);
-  fill_splat_cloud(source, std::move(table), options.min_opacity, cloud);
+  fill_splat_cloud(source, table, options.min_opacity, cloud);
   return cloud;
 }
 

@@ -167,8 +167,7 @@ void parse_points(const Source& source, Shape& shape, const Store& store, const 
 
 // All columns as a table of doubles without names, and what is no number in it.
 Element read_columns(const Source& source, Shape& shape, std::vector<Words>& words) {
-  Element points;
-  points.name = "vertex";
+  Element points = make_vertex_element();
   points.count = shape.points;
   points.properties.resize(shape.columns);
   for (Property& property : points.properties) property.type = Type::kFloat64;

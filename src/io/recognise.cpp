@@ -97,7 +97,7 @@ std::size_t count_fields(std::string_view line) {
   return fields;
 }
 
-// SPZ is told from other gzip files by the first bytes inside.
+// SPZ is recognised among gzip files by the first bytes inside.
 bool is_spz(std::string_view bytes) { return bytes.substr(0, 2) == "\x1f\x8b" && Gunzip(bytes).read(4) == "NGSP"; }
 
 std::size_t count_blank_separated(std::string_view line) {

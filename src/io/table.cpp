@@ -36,6 +36,12 @@ float to_float(double value) {
 
 }  // namespace
 
+Element make_vertex_element() {
+  Element points;
+  points.name = "vertex";
+  return points;
+}
+
 double load_as_double(Type type, const char* bytes) {
   switch (type) {
     case Type::kInt8:
@@ -135,3 +141,14 @@ void RecordLayout::seek(const char* record) {
 }
 
 }  // namespace g3r::io
+
+namespace g3r {
+
+std::shared_ptr<Attributes> Attributes::of_points(Dialect dialect) {
+  auto table = std::make_shared<Attributes>();
+  table->dialect = dialect;
+  table->elements.push_back(io::make_vertex_element());
+  return table;
+}
+
+}  // namespace g3r

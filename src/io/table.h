@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -67,6 +68,9 @@ struct Element {
   static constexpr std::size_t npos = static_cast<std::size_t>(-1);
 };
 
+/// The element of the points, called "vertex", empty.
+[[nodiscard]] Element make_vertex_element();
+
 /// Byte offset of every property within one record.
 class RecordLayout {
  public:
@@ -97,6 +101,8 @@ class Attributes {
   std::size_t vertex = 0;             ///< index of the element that holds the points
   std::string raw;                    ///< LAS: the file, for what the table does not show
   [[nodiscard]] const io::Element& points() const { return elements[vertex]; }
+  /// With an empty element of points and no other.
+  [[nodiscard]] static std::shared_ptr<Attributes> of_points(Dialect dialect);
 };
 
 }  // namespace g3r

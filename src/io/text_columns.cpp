@@ -54,7 +54,7 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
-// Units in brackets do not count: "X [m]" is x.
+// Units in brackets are ignored: "X [m]" is x.
 std::string without_unit(std::string_view name) { return lower_case(trim(name.substr(0, name.find_first_of("[(")))); }
 
 // The name of a column without quotes; known names in our spelling.
@@ -224,7 +224,7 @@ Arrangement find_arrangement(const Element& points, const std::vector<TextColumn
   constexpr std::size_t kDescription = 4;
   if (points.properties.size() < 4 || text[1].any || text[2].any || text[3].any) return Arrangement::kXyz;
   if (text[0].any && !text[0].all) return Arrangement::kXyz;
-  // Numbers of points beside coordinates that are all whole would be told from an x by nothing.
+  // Numbers of points beside coordinates that are all whole could not be distinguished from an x.
   const bool fractions = !is_whole(points, 1) || !is_whole(points, 2) || !is_whole(points, 3);
   if (points.properties.size() > kDescription && text[kDescription].any &&
       (text[0].all || (fractions && is_whole(points, 0) && all_different(points, 0)))) {

@@ -48,7 +48,7 @@ ColumnNames column_names(std::string_view line, char separator);
 /// A name that occurred before gets a number: a, a_2.
 void make_distinct(std::vector<std::string>& names);
 
-/// How the first columns of a text without names are arranged, told from their values.
+/// How the first columns of a text without names are arranged, inferred from their values.
 enum class Arrangement {
   kXyz,
   kNumberedXyz,  ///< a name or number of the point, x, y, z

@@ -67,10 +67,7 @@ struct Merged {
 
 class Merger {
  public:
-  explicit Merger(const std::vector<Cloud>& clouds) : clouds_(clouds) {
-    element_.name = "vertex";
-    plan();
-  }
+  explicit Merger(const std::vector<Cloud>& clouds) : clouds_(clouds) { plan(); }
 
   Element merge() {
     for (const Cloud& cloud : clouds_) {
@@ -179,7 +176,7 @@ class Merger {
   }
 
   const std::vector<Cloud>& clouds_;
-  Element element_;
+  Element element_ = make_vertex_element();
   std::vector<Merged> columns_;
 };
 

@@ -60,28 +60,7 @@ void write_pcd(const PointData& data, OutputFile& file) {
   std::vector<Column> columns = plan_columns(data, Attributes::Dialect::kPcd, false);
   std::erase_if(columns, [](const Column& column) { return column.property.name.starts_with("_"); });
   file.write(header(data, columns));
-  Rows rows(data, columns);
-  std::string bytes;
-  std::string line;
-  for (std::size_t i = 0; i < data.size(); ++i) {
-    rows.next();
-    bytes.clear();
-    for (std::size_t c = 0; c < columns.size(); ++c) rows.append_bytes(c, bytes);
-    if (!data.options.ascii) {
-      file.write(bytes);
-      continue;
-    }
-    line.clear();
-    const char* at = bytes.data();
-    for (const Column& column : columns) {
-      for (std::uint32_t k = 0; k < column.property.count; ++k, at += size_of(column.property.type)) {
-        append_as_text(column.property.type, at, line);
-        line += ' ';
-      }
-    }
-    line.back() = '\n';
-    file.write(line);
-  }
+  write_rows(data, columns, file);
 }
 
 }  // namespace g3r::io

@@ -31,49 +31,13 @@ void append_property(const Property& property, std::string& header) {
   for (std::uint32_t k = 0; k < property.count; ++k) line((property.name + '_') += std::to_string(k));
 }
 
-// Bytes of one property as text, each number before a blank; returns where the property ends.
-const char* append_property_text(const Property& property, const char* bytes, std::string& text) {
-  std::size_t length = property.count;
-  if (property.list) {
-    length = static_cast<std::size_t>(load_as_double(property.count_type, bytes));
-    append_as_text(property.count_type, bytes, text);
-    text += ' ';
-    bytes += size_of(property.count_type);
-  }
-  for (std::size_t k = 0; k < length; ++k, bytes += size_of(property.type)) {
-    append_as_text(property.type, bytes, text);
-    text += ' ';
-  }
-  return bytes;
-}
-
-void write_points(const PointData& data, const std::vector<Column>& columns, OutputFile& file) {
-  Rows rows(data, columns);
-  std::string bytes;
-  std::string text;
-  for (std::size_t i = 0; i < data.size(); ++i) {
-    rows.next();
-    bytes.clear();
-    for (std::size_t c = 0; c < columns.size(); ++c) rows.append_bytes(c, bytes);
-    if (!data.options.ascii) {
-      file.write(bytes);
-      continue;
-    }
-    text.clear();
-    const char* at = bytes.data();
-    for (const Column& column : columns) at = append_property_text(column.property, at, text);
-    text.back() = '\n';
-    file.write(text);
-  }
-}
-
 void write_element(const Element& element, bool ascii, OutputFile& file) {
   if (!ascii) return file.write(element.data);
   std::string text;
   const char* at = element.data.data();
   for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) {
     text.clear();
-    for (const Property& property : element.properties) at = append_property_text(property, at, text);
+    for (const Property& property : element.properties) at = append_property_as_text(property, at, text);
     text.back() = '\n';
     file.write(text);
   }
@@ -110,7 +74,7 @@ void write_ply(const PointData& data, OutputFile& file) {
   file.write(header + "end_header\n");
   for (std::size_t e = 0; e < elements; ++e) {
     if (e == vertex) {
-      write_points(data, columns, file);
+      write_rows(data, columns, file);
     } else {
       write_element(data.table->elements[e], ascii, file);
     }
@@ -137,7 +101,7 @@ void write_ply_mesh(const Mesh& mesh, bool ascii, OutputFile& file) {
   header += "element face " + std::to_string(mesh.triangles.size()) + "\n";
   append_property(list, header);
   file.write(header + "end_header\n");
-  write_points(data, columns, file);
+  write_rows(data, columns, file);
   std::string text;
   for (const auto& triangle : mesh.triangles) {
     char record[13] = {3};
@@ -147,7 +111,7 @@ void write_ply_mesh(const Mesh& mesh, bool ascii, OutputFile& file) {
       continue;
     }
     text.clear();
-    append_property_text(list, record, text);
+    append_property_as_text(list, record, text);
     text.back() = '\n';
     file.write(text);
   }

@@ -1,7 +1,7 @@
+#include "mesh/screened_poisson.h"
+
 #include <algorithm>
 #include <cmath>
-
-#include "mesh/screened_poisson.h"
 
 namespace g3r {
 

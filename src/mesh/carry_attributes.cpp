@@ -1,11 +1,11 @@
+#include "base/vector.h"
+#include "cloud/neighbours.h"
+#include "cpu/parallel.h"
+
 #include <g3r/g3r.h>
 
 #include <cmath>
 #include <limits>
-
-#include "base/vector.h"
-#include "cloud/neighbours.h"
-#include "cpu/parallel.h"
 
 namespace g3r {
 namespace {

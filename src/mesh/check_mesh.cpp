@@ -3,16 +3,19 @@
 // The three sides of all triangles are sorted by their end points; equal neighbours are the triangles that meet at one edge.
 // Two union-find passes over them give the components (triangles joined by edges) and the fans (corners joined by edges
 // around their vertex): a vertex with more than one fan is a bow-tie.
+#include "base/disjoint_sets.h"
+#include "base/median.h"
+#include "base/vector.h"
+#include "mesh/sides.h"
+#include "mesh/used_vertices.h"
+
 #include <g3r/error.h>
 #include <g3r/mesh.h>
 
 #include <algorithm>
 #include <cmath>
-
-#include "base/disjoint_sets.h"
-#include "base/vector.h"
-#include "mesh/sides.h"
-#include "mesh/used_vertices.h"
+#include <numbers>
+#include <utility>
 
 namespace g3r {
 
@@ -22,7 +25,7 @@ using vector::cross;
 using vector::dot;
 using vector::subtract;
 
-constexpr double kDegrees = 180 / 3.14159265358979323846;
+constexpr double kDegrees = 180 * std::numbers::inv_pi;
 
 /// Counts edges and vertices, joins triangles and corners across edges, and fills in the topological fields.
 class Topology {
@@ -110,9 +113,7 @@ void measure_shape(const Mesh& mesh, MeshCheck& check) {
     check.max_aspect = std::max(check.max_aspect, aspect);
   }
   check.min_angle = *std::min_element(angles.begin(), angles.end());
-  const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
-  std::nth_element(angles.begin(), middle, angles.end());
-  check.median_min_angle = *middle;
+  check.median_min_angle = median(std::move(angles));
 }
 
 }  // namespace

@@ -1,15 +1,15 @@
 // How far places are from a cloud, in units of its own.
 #pragma once
 
+#include "cloud/neighbours.h"
+#include "cpu/parallel.h"
+
 #include <g3r/points.h>
 
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
-
-#include "cloud/neighbours.h"
-#include "cpu/parallel.h"
 
 namespace g3r::mesh {
 

@@ -1,17 +1,19 @@
 #include "mesh/fair.h"
 
-#include <Eigen/Eigenvalues>
+#include "base/disjoint_sets.h"
+#include "base/vector.h"
+#include "cloud/neighbours.h"
+#include "cpu/parallel.h"
+#include "mesh/self_intersections.h"
+
+#include <g3r/error.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "base/disjoint_sets.h"
-#include "base/vector.h"
-#include "cloud/neighbours.h"
-#include "cpu/parallel.h"
-#include "g3r/error.h"
-#include "mesh/self_intersections.h"
+#include <Eigen/Eigenvalues>
 
 namespace g3r::mesh {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "cpu/parallel.h"
 
@@ -26,7 +27,7 @@ class Neighbourhood {
 
   const std::vector<FitPoint>& gather(std::size_t i, double width) {
     const double h = points_.spacing[i];
-    const auto k = static_cast<std::size_t>(std::clamp(M_PI * kReach * kReach * width * width, 12.0, 200.0));
+    const auto k = static_cast<std::size_t>(std::clamp(std::numbers::pi * kReach * kReach * width * width, 12.0, 200.0));
     const Vector3d x = to_eigen(points_.positions[i]);
     neighbours_.nearest(points_.positions[i], k, index_, squared_);
     Vector3d axis = to_eigen(points_.normals[i]);

@@ -1,11 +1,12 @@
 #include "mesh/handle_removal.h"
 
+#include "base/disjoint_sets.h"
+
+#include <g3r/error.h>
+
 #include <algorithm>
 #include <limits>
 #include <utility>
-
-#include "base/disjoint_sets.h"
-#include "g3r/error.h"
 
 namespace g3r::mesh {
 namespace {

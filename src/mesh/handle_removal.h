@@ -5,13 +5,13 @@
 // cut where nothing is in doubt.
 #pragma once
 
+#include "mesh/field_contour.h"
+
 #include <atomic>
 #include <cstdint>
 #include <span>
 #include <unordered_set>
 #include <vector>
-
-#include "mesh/field_contour.h"
 
 namespace g3r::mesh {
 

@@ -1,15 +1,9 @@
 #include "mesh/mesh_finish.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <numeric>
-
 #include "base/median.h"
 #include "base/vector.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
-#include "g3r/error.h"
 #include "mesh/distance_to_points.h"
 #include "mesh/held_points.h"
 #include "mesh/mesh_parts.h"
@@ -17,10 +11,16 @@
 #include "mesh/smooth_spacing.h"
 #include "mesh/trim.h"
 
+#include <g3r/error.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
 namespace g3r::mesh {
 namespace {
 
-constexpr double kFarSpacings = 4;     // surface farther from every point than this is a guess
 constexpr double kAtSpacings = 1.5;    // of a point and of noise, from it to the centre of a triangle that it holds
 constexpr double kBesideSpacings = 3;  // of a point, up to which a stray is beside it
 constexpr std::uint32_t kNothing = 0xffffffff;

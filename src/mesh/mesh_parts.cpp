@@ -1,12 +1,12 @@
 #include "mesh/mesh_parts.h"
 
+#include "base/disjoint_sets.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
-
-#include "base/disjoint_sets.h"
 
 namespace g3r::mesh {
 namespace {

@@ -1,8 +1,9 @@
 #include "mesh/screened_poisson.h"
 
+#include "base/vector.h"
+#include "mesh/split_nonmanifold.h"
+
 #include <g3r/error.h>
-#include <open3d/geometry/PointCloud.h>
-#include <open3d/geometry/TriangleMesh.h>
 
 #include <cstdio>
 #include <iostream>
@@ -14,8 +15,8 @@
 #include <string>
 #include <thread>
 
-#include "base/vector.h"
-#include "mesh/split_nonmanifold.h"
+#include <open3d/geometry/PointCloud.h>
+#include <open3d/geometry/TriangleMesh.h>
 
 namespace g3r {
 

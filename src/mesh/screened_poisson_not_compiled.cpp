@@ -1,6 +1,6 @@
-#include <g3r/error.h>
-
 #include "mesh/screened_poisson.h"
+
+#include <g3r/error.h>
 
 namespace g3r {
 

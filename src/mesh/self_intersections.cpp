@@ -1,16 +1,16 @@
 // Candidates from a tree of boxes, each decided by exact signs.
 #include "mesh/self_intersections.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <utility>
-
 #include "base/vector.h"
 #include "cpu/parallel.h"
 #include "mesh/box_tree.h"
 #include "mesh/exact_orientation.h"
 #include "mesh/used_vertices.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
 
 namespace g3r {
 namespace {

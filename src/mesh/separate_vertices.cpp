@@ -1,5 +1,9 @@
 #include "mesh/separate_vertices.h"
 
+#include "base/suits_float.h"
+#include "base/vector.h"
+#include "cpu/parallel.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -7,10 +11,6 @@
 #include <set>
 #include <utility>
 #include <vector>
-
-#include "base/suits_float.h"
-#include "base/vector.h"
-#include "cpu/parallel.h"
 
 namespace g3r::mesh {
 namespace {

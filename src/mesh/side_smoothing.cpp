@@ -1,10 +1,10 @@
 #include "mesh/side_smoothing.h"
 
+#include "cpu/parallel.h"
+
 #include <array>
 #include <cmath>
 #include <limits>
-
-#include "cpu/parallel.h"
 
 namespace g3r::mesh {
 namespace {

@@ -1,13 +1,13 @@
 // Which side the places near walls and gaps are on, as their neighbours along the sheet see it.
 #pragma once
 
+#include "mesh/field_octree.h"
+
 #include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
-
-#include "mesh/field_octree.h"
 
 namespace g3r::mesh {
 

@@ -1,13 +1,13 @@
 // The sides of triangles, grouped by the edge that they share.
 #pragma once
 
+#include "cpu/parallel.h"
+
 #include <g3r/mesh.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <vector>
-
-#include "cpu/parallel.h"
 
 namespace g3r {
 

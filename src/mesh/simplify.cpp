@@ -1,12 +1,12 @@
 #include "mesh/simplify.h"
 
-#include <meshoptimizer.h>
+#include "mesh/mesh_parts.h"
+#include "mesh/used_vertices.h"
 
 #include <cmath>
 #include <vector>
 
-#include "mesh/mesh_parts.h"
-#include "mesh/used_vertices.h"
+#include <meshoptimizer.h>
 
 namespace g3r::mesh {
 namespace {

@@ -1,11 +1,11 @@
 #include "mesh/smooth_rims.h"
 
+#include "base/vector.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <utility>
-
-#include "base/vector.h"
 
 namespace g3r::mesh {
 namespace {

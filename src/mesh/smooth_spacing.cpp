@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace g3r::mesh {
 namespace {
@@ -21,7 +22,7 @@ std::vector<double> smooth_spacing(const std::vector<Vec3>& positions, const std
   parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3 farthest = vector::subtract(positions[near[i * stride + k - 1]], positions[i]);
-      raw[i] = vector::dot(farthest, farthest) * M_PI / static_cast<double>(std::max<std::size_t>(k - 1, 1));
+      raw[i] = vector::dot(farthest, farthest) * std::numbers::pi / static_cast<double>(std::max<std::size_t>(k - 1, 1));
     }
   });
   parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {

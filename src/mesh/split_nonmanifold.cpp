@@ -4,15 +4,15 @@
 // surfaces", IEEE TVCG 7(2), 2001.
 #include "mesh/split_nonmanifold.h"
 
+#include "base/disjoint_sets.h"
+#include "base/vector.h"
+#include "mesh/sides.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
-
-#include "base/disjoint_sets.h"
-#include "base/vector.h"
-#include "mesh/sides.h"
 
 namespace g3r {
 

@@ -1,21 +1,21 @@
 #include "mesh/trim.h"
 
+#include "base/median.h"
+#include "base/vector.h"
+#include "mesh/distance_to_points.h"
+#include "mesh/mesh_parts.h"
+#include "mesh/smooth_rims.h"
+
+#include <g3r/error.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
-#include "base/median.h"
-#include "base/vector.h"
-#include "g3r/error.h"
-#include "mesh/distance_to_points.h"
-#include "mesh/mesh_parts.h"
-#include "mesh/smooth_rims.h"
-
 namespace g3r::mesh {
 namespace {
 
-constexpr double kFarSpacings = 4;  // surface farther from every point than this is a guess
 constexpr double kGap = 1.5;        // spacings: half of the widest gap between points of a random sample of a surface
 constexpr double kSmallSide = 0.5;  // of the limit: no place of such a triangle is much farther from a point than its corners
 constexpr double kRim = 1.2;        // spacings that a rim may reach beyond its points; one gap in a hundred of a random sample is wider

@@ -7,6 +7,9 @@
 
 namespace g3r::mesh {
 
+/// Surface that is more local spacings than this from every point is a guess.
+inline constexpr double kFarSpacings = 4;
+
 /// Removes triangles that reach farther from every point than `trim_distance`, or (auto) than 4 spacings: of the cloud, or of the place
 /// where that is denser; 1.5 of the place where it is so sparse that this is more. What spans gaps stays so, but at the rims of an open
 /// scan surface goes on as far for nothing: from there inwards (auto) what is farther than 1.2 spacings goes too, and then triangles that

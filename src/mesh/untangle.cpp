@@ -1,14 +1,15 @@
 #include "mesh/untangle.h"
 
+#include "base/vector.h"
+#include "mesh/self_intersections.h"
+
+#include <g3r/error.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <utility>
 #include <vector>
-
-#include "base/vector.h"
-#include "g3r/error.h"
-#include "mesh/self_intersections.h"
 
 namespace g3r::mesh {
 namespace {

@@ -1,9 +1,9 @@
 // The vertices that triangles use: validation shared by everything that takes a mesh.
 #pragma once
 
-#include <g3r/mesh.h>
-
 #include "base/vector.h"
+
+#include <g3r/mesh.h>
 
 namespace g3r {
 

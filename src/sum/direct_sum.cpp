@@ -1,5 +1,6 @@
 #include "sum/direct_sum.h"
 
+#include "base/vector.h"
 #include "cpu/parallel.h"
 #include "kernels/kernels.h"
 
@@ -8,8 +9,9 @@
 namespace g3r::direct_sum {
 namespace {
 
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+using vector::dot;
+using vector::subtract;
+
 void add_scaled(Vec3& a, double s, const Vec3& b) {
   for (std::size_t k = 0; k < 3; ++k) a[k] += s * b[k];
 }
@@ -22,7 +24,7 @@ std::vector<double> green(const std::vector<Vec3>& points, const Widths& widths,
   std::vector<double> out(n * count, 0.0);
   parallel::for_each(n, [&](std::size_t j) {
     for (std::size_t i = 0; i < n; ++i) {
-      const Vec3 r = minus(points[i], points[j]);
+      const Vec3 r = subtract(points[i], points[j]);
       const KernelValues kernel = mollified_kernels(dot(r, r), std::sqrt(pair_width_squared(widths[i], widths[j])));
       const double flux = kernel.double_layer * dot(r, eta[i]);
       for (std::size_t k = 0; k < count; ++k) {
@@ -40,7 +42,7 @@ std::vector<Vec3> green_adjoint(const std::vector<Vec3>& points, const Widths& w
   std::vector<Vec3> out(n, Vec3{0, 0, 0});
   parallel::for_each(n, [&](std::size_t i) {
     for (std::size_t j = 0; j < n; ++j) {
-      const Vec3 r = minus(points[i], points[j]);
+      const Vec3 r = subtract(points[i], points[j]);
       const KernelValues kernel = mollified_kernels(dot(r, r), std::sqrt(pair_width_squared(widths[i], widths[j])));
       for (std::size_t k = 0; k < count; ++k) {
         const double charge = q[j * count + k];
@@ -57,7 +59,7 @@ std::vector<Vec3> stokes_single_layer(const std::vector<Vec3>& points, const Wid
   std::vector<Vec3> out(n, Vec3{0, 0, 0});
   parallel::for_each(n, [&](std::size_t j) {
     for (std::size_t i = 0; i < n; ++i) {
-      const Vec3 r = minus(points[i], points[j]);
+      const Vec3 r = subtract(points[i], points[j]);
       const double e2 = pair_width_squared(widths[i], widths[j]);
       const KernelValues kernel = mollified_kernels(dot(r, r), std::sqrt(e2));
       add_scaled(out[j], kernel.single_layer + e2 * kernel.double_layer, eta[i]);
@@ -72,7 +74,7 @@ std::vector<double> winding(const std::vector<Vec3>& points, double width, const
   std::vector<double> out(targets.size(), 0.0);
   const auto sum_at = [&](std::size_t j) {
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const Vec3 r = minus(points[i], targets[j]);
+      const Vec3 r = subtract(points[i], targets[j]);
       out[j] += mollified_kernels(dot(r, r), width).double_layer * dot(r, eta[i]);
     }
   };
@@ -85,7 +87,7 @@ std::vector<Vec3> winding_gradient(const std::vector<Vec3>& points, double width
   std::vector<Vec3> out(targets.size(), Vec3{0, 0, 0});
   const auto sum_at = [&](std::size_t j) {
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const Vec3 r = minus(points[i], targets[j]);
+      const Vec3 r = subtract(points[i], targets[j]);
       const KernelValues kernel = mollified_kernels(dot(r, r), width);
       add_scaled(out[j], kernel.double_layer, eta[i]);
       add_scaled(out[j], -kernel.gradient * dot(r, eta[i]), r);

@@ -1,5 +1,6 @@
 #include "sum/fast_sum.h"
 
+#include "base/vector.h"
 #include "cloud/canonical_cloud.h"
 #include "cpu/parallel.h"
 #include "kernels/kernels.h"
@@ -15,6 +16,8 @@
 
 namespace g3r {
 namespace {
+
+using vector::dot;
 
 constexpr std::size_t kBlock = 1024;             // points per parallel block
 constexpr std::size_t kTargetsAtOnce = 1 << 17;  // of queries: what a sum holds per target is 330 bytes. Fewer: each chunk costs lists
@@ -64,8 +67,6 @@ SumPlan placed(SumPlan plan) {
   if (!plan.execution) plan.execution = gpu::Scope::current();
   return plan;
 }
-
-double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 template <class T>
 void green_into(SumEngine<T>& engine, const HarmonicValues& u, const std::vector<Vec3>& eta, std::vector<double>& out) {

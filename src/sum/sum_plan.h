@@ -16,7 +16,7 @@ struct SumPlan {
   bool double_precision = false;
   int order = 4;            ///< of the expansions
   double opening = 0.5;     ///< far when radius_t + radius_s <= opening * distance
-  double cut = 4;           ///< terms of M2L smaller than this times the first that the order leaves out do not count, see kept_degrees()
+  double cut = 4;           ///< entries of M2L below this times the first term that the order truncates are dropped, see kept_degrees()
   double reach = 5;         ///< mollifier widths between far nodes, at least; beyond, the far field's plain kernels are good enough
   double kernel_error = 0;  ///< relative error that the kernel of a near pair may have; rounding otherwise
   std::size_t leaf_points = 64;  ///< largest leaf

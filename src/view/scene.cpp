@@ -1,7 +1,6 @@
 #include "view/scene.h"
 
 #include <algorithm>
-#include <limits>
 #include <string>
 
 namespace g3r::view {
@@ -16,8 +15,6 @@ void require_size(std::size_t have, std::size_t points, const char* what) {
 
 }  // namespace
 
-double Box::longest_side() const { return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]}); }
-
 Box check_scene(const Scene& scene) {
   const std::size_t n = scene.points.size();
   require_size(scene.normals.size(), n, "normals");
@@ -28,14 +25,9 @@ Box check_scene(const Scene& scene) {
   if (!scene.mesh.colors.empty() && scene.mesh.colors.size() != vertices)
     throw InvalidInput("view: the mesh has fewer colours than vertices");
 
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  Box box;
   const auto include = [&box](const Vec3& p) {
-    if (!is_finite(p)) return;
-    for (std::size_t k = 0; k < 3; ++k) {
-      box.low[k] = std::min(box.low[k], p[k]);
-      box.high[k] = std::max(box.high[k], p[k]);
-    }
+    if (is_finite(p)) box.extend(p);
   };
   for (const Vec3& p : scene.points) include(p);
   for (const auto& triangle : scene.mesh.triangles) {

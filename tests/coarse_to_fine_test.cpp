@@ -1,0 +1,47 @@
+#include "orient/coarse_to_fine.h"
+
+#include "cloud/canonical_cloud.h"
+#include "shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace g3r {
+namespace {
+
+Solved solved(const CanonicalCloud& cloud, const Settings& settings) {
+  const Monitor monitor;
+  Stages stages(monitor);
+  return solve_coarse_to_fine(cloud.points(), cloud.morton(), settings, stages);
+}
+
+TEST(SolveCoarseToFine, OfFewPointsIsThePlainSolve) {
+  const CanonicalCloud cloud = canonical_cloud(shapes::torus(900, 0.6, 0.25, 2).points);
+  Settings settings = choose_settings({}, cloud, cloud.set.spacing(), 0, 0);
+  ASSERT_FALSE(starts_coarse(settings, cloud.size()));
+  const Solved with = solved(cloud, settings);
+  settings.coarse_to_fine = false;
+  const Solved without = solved(cloud, settings);
+  EXPECT_EQ(with.result.eta, without.result.eta);
+  EXPECT_EQ(with.refinement.normals, without.refinement.normals);
+}
+
+TEST(SolveCoarseToFine, FindsTheSidesOfABall) {
+  const shapes::Surface sphere = shapes::sphere(900);
+  const CanonicalCloud cloud = canonical_cloud(sphere.points);
+  Settings settings = choose_settings({}, cloud, cloud.set.spacing(), 0, 0);
+  const Solved found = solved(cloud, settings);
+  std::size_t outward = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3 &p = cloud.points()[i], &n = found.refinement.normals[i];
+    if (p[0] * n[0] + p[1] * n[1] + p[2] * n[2] > 0) ++outward;
+  }
+  EXPECT_EQ(outward, cloud.size());
+  EXPECT_TRUE(found.result.converged);
+  settings.refinement_width = 0;
+  EXPECT_TRUE(solved(cloud, settings).refinement.normals.empty());
+}
+
+}  // namespace
+}  // namespace g3r

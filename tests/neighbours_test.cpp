@@ -1,0 +1,82 @@
+#include "cloud/neighbours.h"
+
+#include "shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace g3r {
+namespace {
+
+constexpr std::size_t kCount = 300;
+
+std::vector<Vec3> cube() {
+  shapes::Random random(9);
+  std::vector<Vec3> points(kCount);
+  for (Vec3& p : points) p = {random.uniform(), random.uniform(), random.uniform()};
+  return points;
+}
+
+double squared_distance(const Vec3& a, const Vec3& b) {
+  return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
+}
+
+// All points, nearest to x first.
+std::vector<std::uint32_t> sorted_around(const Vec3& x, const std::vector<Vec3>& points) {
+  std::vector<std::uint32_t> index(points.size());
+  std::iota(index.begin(), index.end(), 0U);
+  std::sort(index.begin(), index.end(),
+            [&](std::uint32_t i, std::uint32_t j) { return squared_distance(x, points[i]) < squared_distance(x, points[j]); });
+  return index;
+}
+
+TEST(Neighbours, AreThoseOfALookAtAllPoints) {
+  const std::vector<Vec3> points = cube();
+  const Neighbours neighbours(points);
+  const Vec3 x{0.3, 1.2, 0.5};
+  std::vector<std::uint32_t> index = sorted_around(x, points), found;
+  std::vector<double> squared;
+  neighbours.nearest(x, 20, found, squared);
+  EXPECT_EQ(found, std::vector<std::uint32_t>(index.begin(), index.begin() + 20));
+  for (std::size_t k = 0; k < 20; ++k) EXPECT_DOUBLE_EQ(squared[k], squared_distance(x, points[found[k]]));
+  neighbours.nearest(x, 2 * kCount, found, squared);
+  EXPECT_EQ(found, index);
+}
+
+TEST(Neighbours, OfAllBeginWithThePointItself) {
+  const std::vector<Vec3> points = cube();
+  const std::vector<std::uint32_t> all = Neighbours(points).of_all(5);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const std::vector<std::uint32_t> index = sorted_around(points[i], points);
+    EXPECT_EQ(all[5 * i], i);
+    EXPECT_TRUE(std::equal(index.begin(), index.begin() + 5, all.begin() + static_cast<std::ptrdiff_t>(5 * i)));
+  }
+}
+
+TEST(Neighbours, WithinARadiusAreAllThatAreCloser) {
+  const std::vector<Vec3> points = cube();
+  const Vec3 x{0.5, 0.5, 0.5};
+  std::vector<std::uint32_t> found;
+  Neighbours(points).within(x, 0.3, found);
+  std::sort(found.begin(), found.end());
+  std::vector<std::uint32_t> expected;
+  for (std::uint32_t i = 0; i < kCount; ++i) {
+    if (squared_distance(x, points[i]) < 0.3 * 0.3) expected.push_back(i);
+  }
+  EXPECT_EQ(found, expected);
+}
+
+TEST(Neighbours, AreNoneBeyondTheGivenDistance) {
+  const std::vector<Vec3> points = cube();
+  const Neighbours neighbours(points);
+  double squared = 0.01;
+  EXPECT_EQ(neighbours.nearest({5, 5, 5}, squared, 77), 77U);
+  squared = 100;
+  EXPECT_EQ(neighbours.nearest({5, 5, 5}, squared, 77), sorted_around({5, 5, 5}, points).front());
+}
+
+}  // namespace
+}  // namespace g3r

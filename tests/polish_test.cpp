@@ -1,0 +1,69 @@
+#include "orient/polish.h"
+
+#include "base/median.h"
+#include "base/vector.h"
+#include "cloud/canonical_cloud.h"
+#include "shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace g3r {
+namespace {
+
+double length(const Vec3& v) { return std::hypot(v[0], v[1], v[2]); }
+
+struct Ball {
+  CanonicalCloud cloud = canonical_cloud(shapes::sphere(800).points);
+  Settings settings = choose_settings({}, cloud, cloud.set.spacing(), 0, 0);
+  std::vector<Vec3> truth;
+
+  Ball() {
+    for (const Vec3& p : cloud.points()) truth.push_back(vector::normalised(p));  // the centre of the frame is that of the ball
+  }
+};
+
+TEST(LocalWidths, AreInProportionToTheSpacing) {
+  Settings settings;
+  settings.spacing = 0.5;
+  const Widths same = local_widths(0.1, settings, {});
+  EXPECT_EQ(same[3], 0.1);
+  const Widths local = local_widths(0.1, settings, {0.5, 1, 0.25});
+  EXPECT_DOUBLE_EQ(local[0], 0.1);
+  EXPECT_DOUBLE_EQ(local[1], 0.2);
+  EXPECT_DOUBLE_EQ(local[2], 0.05);
+}
+
+TEST(GradientToAreas, HaveTheWindingNumberOfASurfaceWhateverTheGradientsSize) {
+  const Ball ball;
+  FastSum sum(ball.cloud.points(), ball.cloud.morton(), Widths(ball.settings.epsilon), ball.settings.sums);
+  const std::vector<double> areas{ball.settings.spacing * ball.settings.spacing};
+  std::vector<Vec3> eta = ball.truth, other = ball.truth;
+  for (Vec3& v : other) {
+    for (double& c : v) c *= 1000;
+  }
+  gradient_to_areas(sum, areas, eta);
+  gradient_to_areas(sum, areas, other);
+  EXPECT_NEAR(median(sum.winding(eta)), 0.5, 1e-5);  // sums are in single precision
+  for (std::size_t i = 0; i < eta.size(); ++i) {
+    EXPECT_NEAR(length(other[i]), length(eta[i]), 1e-6 * length(eta[i]));
+    EXPECT_NEAR(vector::dot(vector::normalised(eta[i]), ball.truth[i]), 1, 1e-12);  // directions stay
+  }
+}
+
+TEST(Polish, BringsDirectionsNearerToTheTruth) {
+  const Ball ball;
+  const std::vector<Vec3> disturbed = shapes::disturbed(ball.truth, 0.2);
+  const Refinement start{disturbed, std::vector<double>(disturbed.size(), 1.0)};
+  const Monitor monitor;
+  Stages stages(monitor);
+  const Polished polished =
+      polish(ball.cloud.points(), ball.cloud.morton(), ball.settings, ball.cloud.set.smoothed_spacing(), {}, start, stages);
+  EXPECT_EQ(shapes::share_correct(polished.refinement.normals, ball.truth), 1);
+  EXPECT_LT(shapes::angle_error(polished.refinement.normals, ball.truth), 0.1 * shapes::angle_error(disturbed, ball.truth));
+}
+
+}  // namespace
+}  // namespace g3r

@@ -1,0 +1,83 @@
+#include "orient/problem.h"
+
+#include "shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <vector>
+
+namespace g3r {
+namespace {
+
+Problem prepared(const std::vector<Vec3>& points, const Options& options = {}) {
+  const Monitor monitor;
+  Stages stages(monitor);
+  return prepare(points, options, stages);
+}
+
+TEST(Prepare, DoesNotDependOnUnitsOrPlace) {
+  std::vector<Vec3> points = shapes::sphere(600).points;
+  const Problem problem = prepared(points);
+  for (Vec3& p : points) {
+    for (double& c : p) c *= 1024;  // exact
+  }
+  const Problem same = prepared(points);
+  EXPECT_EQ(same.cloud.points(), problem.cloud.points());
+  EXPECT_EQ(same.spacing, problem.spacing);
+  EXPECT_EQ(same.noise, problem.noise);
+  EXPECT_EQ(same.settings.epsilon, problem.settings.epsilon);
+}
+
+TEST(Prepare, TakesTheNoiseThatIsGiven) {
+  Options options;
+  options.noise = {Length::Unit::kSpacing, 0.25};
+  const Problem problem = prepared(shapes::sphere(600).points, options);
+  EXPECT_DOUBLE_EQ(problem.noise, 0.25 * problem.spacing);
+  EXPECT_FALSE(problem.is_clean());
+  EXPECT_TRUE(prepared(shapes::sphere(600).points).is_clean());
+}
+
+TEST(Prepare, LeavesOutPointsThatAreAlone) {
+  std::vector<Vec3> points = shapes::sphere(600).points;
+  points.push_back({40, 0, 0});
+  const Problem problem = prepared(points);
+  EXPECT_EQ(problem.cloud.size(), 600U);
+  EXPECT_EQ(problem.outliers.size(), 1U);
+  EXPECT_NEAR(problem.spacing, prepared(shapes::sphere(600).points).spacing, 1e-9);  // the frame is that of the rest
+}
+
+TEST(Prepare, RefusesTooFewPoints) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW((void)prepared({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0}, {kNan, 0, 0}}), InvalidInput);
+}
+
+TEST(WithNoise, ChangesTheNoiseAndNothingOfTheCloud) {
+  const Problem problem = prepared(shapes::sphere(600).points);
+  const Problem noisy = with_noise(problem, problem.spacing, {});
+  EXPECT_EQ(noisy.noise, problem.spacing);
+  EXPECT_EQ(noisy.cloud.points(), problem.cloud.points());
+  EXPECT_EQ(noisy.spacing, problem.spacing);
+  EXPECT_GT(noisy.settings.epsilon, problem.settings.epsilon);
+  EXPECT_EQ(with_noise(problem, 0, {}).settings.epsilon, problem.settings.epsilon);
+}
+
+TEST(PartOf, IsTheWholeOfAllPointsAndHasTheirPlacesOfSome) {
+  const Problem problem = prepared(shapes::sphere(600).points);
+  std::vector<std::uint32_t> all, third;
+  for (std::uint32_t i = 0; i < 600; ++i) {
+    all.push_back(i);
+    if (i % 3 == 0) third.push_back(i);
+  }
+  const Problem whole = part_of(problem, all, {});
+  EXPECT_EQ(whole.cloud.points(), problem.cloud.points());
+  EXPECT_EQ(whole.settings.epsilon, problem.settings.epsilon);
+  const Problem part = part_of(problem, third, {});
+  ASSERT_EQ(part.cloud.size(), 200U);
+  for (std::size_t i = 0; i < 200; ++i) EXPECT_EQ(part.cloud.points()[i], problem.cloud.points()[3 * i]);
+  EXPECT_EQ(part.noise, problem.noise);
+  EXPECT_GT(part.spacing, problem.spacing);
+}
+
+}  // namespace
+}  // namespace g3r
