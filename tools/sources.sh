@@ -55,7 +55,7 @@ from_debian() {
 # fetch FOLDER HOME ARCHIVE SUM TAR-OPTION...: what tar extracts from the archive becomes build/sources/FOLDER. HOME: from_pypi, from_debian.
 fetch() {
   local folder=build/sources/$1 archive=$cache/$3
-  [ "$(cat "$folder/version" 2> /dev/null)" != "$4" ] || return 0
+  [ "$(cat "$folder/checksum" 2> /dev/null)" != "$4" ] || return 0
   if ! has_checksum "$archive" "$4"; then
     "$2" "$3" > "$work/log" 2>&1 && has_checksum "$work/$3" "$4" || return 1
     mkdir -p "$cache" && cp "$work/$3" "$archive.$$" && mv "$archive.$$" "$archive"
@@ -67,7 +67,7 @@ fetch() {
   else
     tar -xf "$archive" -C "$work/$1" --strip-components=1 --wildcards "${@:5}" || return 1
   fi
-  echo "$4" > "$work/$1/version"
+  echo "$4" > "$work/$1/checksum"
   mkdir -p build/sources
   rm -rf "$folder"
   mv "$work/$1" "$folder"

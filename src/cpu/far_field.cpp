@@ -10,6 +10,8 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
+#include "cpu/wasm_doubles.h"  // NOLINT(llvm-include-order): adds to what stands above
+
 #ifndef G3R_FAR_FIELD_ONCE
 #define G3R_FAR_FIELD_ONCE
 namespace g3r::cpu {

@@ -17,6 +17,8 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
+#include "cpu/wasm_doubles.h"  // NOLINT(llvm-include-order): adds to what stands above
+
 #ifndef G3R_NEAR_FIELD_ONCE
 #define G3R_NEAR_FIELD_ONCE
 namespace g3r::cpu {
@@ -42,9 +44,12 @@ using Vec = hn::Vec<Tag<T>>;
 constexpr double kEstimateError = 6.2e-5;
 #elif HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR
 constexpr double kEstimateError = 3.7e-4;
+#elif HWY_TARGET == HWY_WASM
+constexpr double kEstimateError = kRoughPolynomialError / 5;  // it has quotients in their place: only the polynomials err
 #else
 constexpr double kEstimateError = 1;
 #endif
+constexpr bool kEstimateIsExact = HWY_TARGET == HWY_WASM;
 constexpr double kRoughError = 5 * kEstimateError;  // of 1/rho to the fifth power, the highest in the kernels; the polynomials err less
 
 template <class T, Precision kPrecision>
@@ -52,7 +57,7 @@ HWY_INLINE Vec<T> Reciprocal(Vec<T> a) {
   const Tag<T> d;
   if constexpr (sizeof(T) == 4) {
     const Vec<T> x = hn::ApproximateReciprocal(a);
-    if constexpr (kPrecision == Precision::kRough) return x;
+    if constexpr (kPrecision == Precision::kRough || kEstimateIsExact) return x;
     return hn::Mul(x, hn::NegMulAdd(a, x, hn::Set(d, T{2})));
   } else {
     return hn::Div(hn::Set(d, T{1}), a);
@@ -64,7 +69,7 @@ HWY_INLINE Vec<T> ReciprocalSqrt(Vec<T> a) {
   const Tag<T> d;
   if constexpr (sizeof(T) == 4) {  // one Newton step after the estimate
     const Vec<T> x = hn::ApproximateReciprocalSqrt(a);
-    if constexpr (kPrecision == Precision::kRough) return x;
+    if constexpr (kPrecision == Precision::kRough || kEstimateIsExact) return x;
     const Vec<T> half_ax = hn::Mul(hn::Mul(a, hn::Set(d, T{0.5})), x);
     return hn::Mul(x, hn::NegMulAdd(half_ax, x, hn::Set(d, T{1.5})));
   } else {

@@ -12,6 +12,8 @@
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 #include <hwy/highway.h>
 
+#include "cpu/wasm_doubles.h"  // NOLINT(llvm-include-order): adds to what stands above
+
 HWY_BEFORE_NAMESPACE();
 namespace g3r::cpu::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;

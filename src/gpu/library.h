@@ -1,32 +1,25 @@
 // A shared library found at run time.
 #pragma once
 
-#include <dlfcn.h>
-
 #include <initializer_list>
-#include <utility>
 
 namespace g3r::gpu {
 
 /// The first of some libraries that can be loaded; stays loaded until the end of the process, as drivers do not bear to be unloaded.
 class Library {
  public:
-  explicit Library(std::initializer_list<const char*> names) {
-    for (const char* name : names) {
-      handle_ = dlopen(name, RTLD_NOW | RTLD_LOCAL);
-      if (handle_ != nullptr) return;
-    }
-  }
+  explicit Library(std::initializer_list<const char*> names);
   [[nodiscard]] bool loaded() const { return handle_ != nullptr; }
 
   /// Looks a function up. False if it is missing.
   template <class Function>
   bool find(const char* name, Function*& function) const {
-    function = handle_ == nullptr ? nullptr : reinterpret_cast<Function*>(dlsym(handle_, name));
+    function = reinterpret_cast<Function*>(look_up(name));
     return function != nullptr;
   }
 
  private:
+  [[nodiscard]] void* look_up(const char* name) const;
   void* handle_ = nullptr;
 };
 

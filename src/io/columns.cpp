@@ -187,7 +187,7 @@ double Rows::number(std::size_t index, std::size_t k) {
       return (*data_.confidence)[point_];
     case Column::From::kPackedColor: {
       const auto& c = data_.cloud.colors[point_];
-      return std::bit_cast<float>(static_cast<std::uint32_t>(c[0]) << 16 | static_cast<std::uint32_t>(c[1]) << 8 | c[2]);
+      return bits_as<float>(static_cast<std::uint32_t>(c[0]) << 16 | static_cast<std::uint32_t>(c[1]) << 8 | c[2]);
     }
     case Column::From::kTable:
       break;

@@ -76,7 +76,7 @@ Cloud read_las(const Source& source, const ReadOptions& options) {
   for (const LasField& field : header.fields) points.properties.push_back(make_property(field.name, field.type));
   make_unique(points.properties);
   const auto count = static_cast<std::size_t>(header.count);
-  points.data.resize(count * points.stride());
+  points.data.resize(bytes_of(count, points.stride()));
   char* to = points.data.data();
   const char* record = source.bytes.data() + header.points_at;
   for (std::size_t i = 0; i < count; ++i, record += header.record_bytes) {

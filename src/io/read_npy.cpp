@@ -181,9 +181,9 @@ float half_to_float(std::uint32_t bits) {
   const std::uint32_t sign = (bits & 0x8000U) << 16;
   const std::uint32_t exponent = bits >> 10 & 31U;
   const std::uint32_t fraction = bits & 1023U;
-  if (exponent == 31) return std::bit_cast<float>(sign | 0x7F800000U | fraction << 13);
+  if (exponent == 31) return bits_as<float>(sign | 0x7F800000U | fraction << 13);
   if (exponent == 0) return (sign != 0 ? -1.0F : 1.0F) * static_cast<float>(fraction) * 0x1p-24F;
-  return std::bit_cast<float>(sign | (exponent + 112) << 23 | fraction << 13);
+  return bits_as<float>(sign | (exponent + 112) << 23 | fraction << 13);
 }
 
 // The rows as one element; float16 becomes float32.
@@ -200,7 +200,7 @@ Element make_points(const Source& source, const NpyHeader& header, std::uint64_t
                  "truncated: the shape needs " + std::to_string(rows) + " rows of " + std::to_string(stride) + " bytes, but only " +
                      std::to_string(body.size()) + " bytes follow (shape too large, or file cut)");
   }
-  const std::size_t size = static_cast<std::size_t>(rows) * stride;
+  const std::size_t size = bytes_of(rows, stride);
   if (body.size() > size) warnings.push_back(std::to_string(body.size() - size) + " trailing (extra) bytes after the array are not used");
   points.data.resize(size);
   char* to = points.data.data();
@@ -217,7 +217,7 @@ Element make_points(const Source& source, const NpyHeader& header, std::uint64_t
     }
   }
   if (header.half) {
-    std::string wide(2 * size, '\0');
+    std::string wide(bytes_of(2, size), '\0');
     for (std::size_t k = 0; k < size / 2; ++k) {
       const float value = half_to_float(load<std::uint16_t>(points.data.data() + 2 * k));
       std::memcpy(wide.data() + 4 * k, &value, sizeof value);

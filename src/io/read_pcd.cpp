@@ -210,7 +210,7 @@ void read_ascii(const Source& source, const PcdHeader& header, Element& points, 
                  "truncated: POINTS " + std::to_string(points.count) + " declared, but only " + std::to_string(body.size()) +
                      " bytes follow (too large)");
   }
-  points.data.reserve(static_cast<std::size_t>(points.count) * points.stride());
+  points.data.reserve(bytes_of(points.count, points.stride()));
   Lines lines(body, header.lines);
   std::string_view line;
   bool overflow = false;

@@ -146,7 +146,7 @@ class BodyReader {
   void read_text(Element& element) {
     std::size_t properties = 0;
     for (const Property& property : element.properties) properties += property.list ? 0 : size_of(property.type);
-    element.data.reserve(static_cast<std::size_t>(element.count) * properties);  // at least two bytes of text for each number
+    element.data.reserve(bytes_of(element.count, properties));  // at least two bytes of text for each number
     std::string_view line;
     for (std::uint64_t i = 0; i < element.count; ++i) {
       if (!lines_.next_filled(line)) {

@@ -140,7 +140,7 @@ class PtxReader {
     if (color_) {
       for (const char* name : {"red", "green", "blue"}) add(name, Type::kUint8);
     }
-    points.data.reserve(static_cast<std::size_t>(count) * points.stride());  // the lines have been seen
+    points.data.reserve(bytes_of(count, points.stride()));  // the lines have been seen
   }
 
   void read_points(const Scan& scan, Element& points) {

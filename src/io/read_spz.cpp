@@ -104,7 +104,7 @@ void append_splats(const SpzHeader& header, const std::string& blocks, Element& 
   const unsigned char* scale = color + 3 * count;
   const unsigned char* rotation = scale + 3 * count;
   const double step = std::ldexp(1.0, -static_cast<int>(header.fraction_bits));
-  points.data.resize(count * kNames.size() * sizeof(float));
+  points.data.resize(bytes_of(count, kNames.size() * sizeof(float)));
   char* to = points.data.data();
   const auto append = [&](double value) {
     store_double(Type::kFloat32, value, to);

@@ -171,7 +171,7 @@ Element read_columns(const Source& source, Shape& shape, std::vector<Words>& wor
   points.count = shape.points;
   points.properties.resize(shape.columns);
   for (Property& property : points.properties) property.type = Type::kFloat64;
-  points.data.reserve(shape.points * shape.columns * sizeof(double));  // each value has two bytes of text
+  points.data.reserve(bytes_of(shape.points, shape.columns * sizeof(double)));  // each value has two bytes of text
   words.resize(shape.columns);
   parse_points(
       source, shape,

@@ -7,7 +7,9 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <memory>
+#include <new>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,6 +35,22 @@ template <class T>
 T load(const char* bytes) {
   T value;
   std::memcpy(&value, bytes, sizeof value);
+  return value;
+}
+
+/// Bytes of so many items of `each` bytes: std::bad_alloc where a size does not hold them, as one of 32 bits does not hold all of what a
+/// sound file may say.
+inline std::size_t bytes_of(std::uint64_t count, std::uint64_t each) {
+  if (each != 0 && count > std::numeric_limits<std::size_t>::max() / each) throw std::bad_alloc();
+  return static_cast<std::size_t>(count * each);
+}
+
+/// What has the bytes of `from`: std::bit_cast, which standard libraries of C++20 did not have from the start.
+template <class To, class From>
+To bits_as(const From& from) {
+  static_assert(sizeof(To) == sizeof(From));
+  To value;
+  std::memcpy(&value, &from, sizeof value);
   return value;
 }
 

@@ -1,5 +1,7 @@
 #include "io/text.h"
 
+#include "io/float_text.h"
+
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -50,8 +52,15 @@ bool parse_microsoft(std::string_view token, double& value) {
 }
 
 template <class T>
-void append(std::string& text, T value) {
-  char digits[32];  // the longest shortest double has 24 characters
+void append_float(std::string& text, T value) {
+  char digits[32];
+  const auto [end, error] = number_to_chars(digits, digits + sizeof digits, value);
+  text.append(digits, end);
+}
+
+template <class T>
+void append_integer(std::string& text, T value) {
+  char digits[20];  // of the least std::int64_t
   const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value);
   text.append(digits, end);
 }
@@ -116,7 +125,7 @@ std::string_view trim(std::string_view text) {
 bool parse_double(std::string_view token, double& value, bool* overflow) {
   if (token.size() > 1 && token[0] == '+' && token[1] != '-') token.remove_prefix(1);
   const char* last = token.data() + token.size();
-  const auto [end, error] = std::from_chars(token.data(), last, value);
+  const auto [end, error] = number_from_chars(token.data(), last, value);
   if (end != last) return parse_microsoft(token, value);
   if (error == std::errc::result_out_of_range) {
     const bool large = is_too_large(token);
@@ -147,9 +156,9 @@ std::string expected_number(std::string_view found) {
   return text;
 }
 
-void append_number(std::string& text, double value) { append(text, value); }
-void append_number(std::string& text, float value) { append(text, value); }
-void append_number(std::string& text, std::int64_t value) { append(text, value); }
-void append_number(std::string& text, std::uint64_t value) { append(text, value); }
+void append_number(std::string& text, double value) { append_float(text, value); }
+void append_number(std::string& text, float value) { append_float(text, value); }
+void append_number(std::string& text, std::int64_t value) { append_integer(text, value); }
+void append_number(std::string& text, std::uint64_t value) { append_integer(text, value); }
 
 }  // namespace g3r::io

@@ -1,4 +1,5 @@
-// Lines, tokens and numbers of text files. Numbers go through from_chars and to_chars only, so the locale never matters.
+// Lines, tokens and numbers of text files. Numbers go through from_chars and to_chars (io/float_text.h) only, so the
+// locale never matters.
 #pragma once
 
 #include "io/source.h"

@@ -108,7 +108,7 @@ void write_glb_mesh(const Mesh& mesh, OutputFile& file) {
   file.write(bytes);
   for (const Vec3& v : mesh.vertices) {
     bytes.clear();
-    for (std::size_t a = 0; a < 3; ++a) append_u32(bytes, std::bit_cast<std::uint32_t>(to_float(v[a] - centre[a])));
+    for (std::size_t a = 0; a < 3; ++a) append_u32(bytes, bits_as<std::uint32_t>(to_float(v[a] - centre[a])));
     file.write(bytes);
   }
   for (const auto& color : mesh.colors) {

@@ -60,7 +60,9 @@ class BoxTree {
   static int level_of(std::uint32_t node) { return static_cast<int>(std::bit_width(node + 1)) - 1; }
   [[nodiscard]] bool is_leaf(std::uint32_t node) const { return level_of(node) == levels_; }
   // The k-th node of a level has the boxes from begin(level, k) to begin(level, k + 1).
-  [[nodiscard]] std::size_t begin(int level, std::size_t k) const { return (order_.size() * k) >> static_cast<unsigned>(level); }
+  [[nodiscard]] std::size_t begin(int level, std::size_t k) const {
+    return static_cast<std::size_t>((std::uint64_t{order_.size()} * k) >> static_cast<unsigned>(level));
+  }
 
   // The pairs of children of a job's nodes whose boxes meet.
   template <class Use>

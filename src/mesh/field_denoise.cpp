@@ -72,7 +72,7 @@ Noise estimate_noise(const OrientedPoints& points, const Neighbours& neighbours)
   parallel::for_blocks(count, 64, [&](std::size_t begin, std::size_t end) {
     Neighbourhood near(points, neighbours);
     for (std::size_t s = begin; s < end; ++s) {
-      const std::size_t i = s * n / count;
+      const auto i = static_cast<std::size_t>(std::uint64_t{s} * n / count);
       const double h = points.spacing[i];
       const std::vector<FitPoint>& members = near.gather(i, kEstimateWidth);
       const Sheet sheet = fit_sheet(members, 0, h, 0.25);

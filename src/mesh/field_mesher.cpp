@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/median.h"
+#include "base/whole_bytes.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
 #include "g3r/error.h"
@@ -124,7 +125,7 @@ void prepare(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, 
 std::vector<Vec3> level_places(const std::vector<Vec3>& points) {
   const std::size_t count = std::min(points.size(), kLevelPoints);
   std::vector<Vec3> places(count);
-  for (std::size_t i = 0; i < count; ++i) places[i] = points[i * points.size() / count];
+  for (std::size_t i = 0; i < count; ++i) places[i] = points[static_cast<std::size_t>(std::uint64_t{i} * points.size() / count)];
   return places;
 }
 
@@ -132,7 +133,7 @@ std::vector<Vec3> level_places(const std::vector<Vec3>& points) {
 std::size_t memory_for(std::size_t points, double leaves, int depth) {
   const double plain = std::min(leaves, kPlainLeaves * static_cast<double>(points));
   const double octree = depth > 0 ? kBytesPerAsked * leaves : kBytesPerLeaf * plain + kBytesPerThin * (leaves - plain);
-  return static_cast<std::size_t>(std::min(kBaseBytes + kBytesPerPoint * static_cast<double>(points) + octree, 0x1p62));
+  return whole_bytes(kBaseBytes + kBytesPerPoint * static_cast<double>(points) + octree);
 }
 
 struct Box {

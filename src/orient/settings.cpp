@@ -1,5 +1,7 @@
 #include "orient/settings.h"
 
+#include "base/whole_bytes.h"
+
 #include <g3r/error.h>
 
 #include <algorithm>
@@ -229,13 +231,14 @@ bool starts_coarse(const Settings& settings, std::size_t points) {
 }
 
 std::size_t planned_memory(const Settings& settings, std::size_t given, std::size_t used) {
-  constexpr std::size_t kProgram = 34u << 20;  // code, libraries (those of E57 are a third), thread stacks
-  constexpr std::size_t kPerGiven = 90;        // index, result
+  constexpr double kProgram = 34u << 20;  // code, libraries (those of E57 are a third), thread stacks
+  constexpr double kPerGiven = 90;        // index, result
   const std::size_t harmonics = settings.method == Method::kGreen ? settings.harmonics.size() : 0;
-  const std::size_t per_used = 1170 + 48 * harmonics;
-  std::size_t bytes = kProgram + kPerGiven * given + per_used * used;
-  if (settings.dense) bytes += 9 * used * used * sizeof(double);
-  return bytes;
+  const auto per_used = static_cast<double>(1170 + 48 * harmonics);
+  const auto unknowns = static_cast<double>(used);
+  double bytes = kProgram + kPerGiven * static_cast<double>(given) + per_used * unknowns;
+  if (settings.dense) bytes += 9 * unknowns * unknowns * sizeof(double);
+  return whole_bytes(bytes);
 }
 
 void require_memory(std::size_t planned_bytes, const Options& options) {

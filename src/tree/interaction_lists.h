@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <tuple>
 #include <vector>
 
 namespace g3r {
@@ -30,7 +29,9 @@ struct Offset {
   }
   /// Mirror images side by side.
   std::strong_ordering operator<=>(const Offset& other) const {
-    return std::tuple(level_difference, magnitude(), mirror()) <=> std::tuple(other.level_difference, other.magnitude(), other.mirror());
+    if (level_difference != other.level_difference) return level_difference <=> other.level_difference;
+    if (magnitude() == other.magnitude()) return mirror() <=> other.mirror();
+    return magnitude() < other.magnitude() ? std::strong_ordering::less : std::strong_ordering::greater;
   }
 
   /// True for one of an offset and its opposite. No offset of far nodes is 0.

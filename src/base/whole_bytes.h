@@ -1,0 +1,15 @@
+// Plans of memory, where a product may be more than a size holds.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+
+namespace g3r {
+
+/// The number of bytes as a size, the largest one where it is more: sizes have 32 bits in a browser. Not negative.
+inline std::size_t whole_bytes(double bytes) {
+  constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max();
+  return bytes < static_cast<double>(kMost) ? static_cast<std::size_t>(bytes) : kMost;
+}
+
+}  // namespace g3r

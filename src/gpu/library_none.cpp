@@ -1,0 +1,10 @@
+// For systems where nothing is loaded at run time (browsers): no library is found.
+#include "gpu/library.h"
+
+namespace g3r::gpu {
+
+Library::Library(std::initializer_list<const char*> /*names*/) {}
+
+void* Library::look_up(const char* /*name*/) const { return nullptr; }
+
+}  // namespace g3r::gpu

@@ -1,0 +1,16 @@
+#include "gpu/library.h"
+
+#include <dlfcn.h>
+
+namespace g3r::gpu {
+
+Library::Library(std::initializer_list<const char*> names) {
+  for (const char* name : names) {
+    handle_ = dlopen(name, RTLD_NOW | RTLD_LOCAL);
+    if (handle_ != nullptr) return;
+  }
+}
+
+void* Library::look_up(const char* name) const { return handle_ == nullptr ? nullptr : dlsym(handle_, name); }
+
+}  // namespace g3r::gpu
