@@ -194,22 +194,25 @@ ExactPlane find_exact_plane(const std::vector<Vec3>& points, const std::vector<s
 
 ExactPlane find_scattered_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing, double scatter,
                                 const Vec3& towards) {
-  Scattered first = search_scattered(points, index, spacing, scatter, towards);
-  if (first.plane.points.empty()) return {};
+  Scattered best = search_scattered(points, index, spacing, scatter, towards);
+  if (best.plane.points.empty()) return {};
   std::vector<std::uint32_t> others{index.front()};
   std::copy_if(index.begin(), index.end(), std::back_inserter(others), [&](std::uint32_t i) {
-    return std::find(first.plane.points.begin(), first.plane.points.end(), i) == first.plane.points.end();
+    return std::find(best.plane.points.begin(), best.plane.points.end(), i) == best.plane.points.end();
   });
   Scattered second = search_scattered(points, others, spacing, scatter, towards);
-  if (second.plane.points.empty()) return std::move(first.plane);
-  // The point is on either: the mean of the two normals by how likely its distances from them are.
-  const auto likely = [&](const Scattered& s) { return std::exp(-s.away * s.away / (2 * scatter * scatter) * spacing * spacing); };
-  const auto sided = [&](const Vec3& n) { return vector::dot(n, towards) < 0 ? vector::scale(n, -1) : n; };
-  const Vec3 mean =
-      vector::add(vector::scale(sided(first.plane.normal), likely(first)), vector::scale(sided(second.plane.normal), likely(second)));
-  Scattered& best = first.away <= second.away ? first : second;
-  best.plane.normal = vector::normalised(mean);
-  return std::move(best.plane);
+  if (!second.plane.points.empty()) {
+    const auto likely = [&](const Scattered& s) { return std::exp(-s.away * s.away / (2 * scatter * scatter) * spacing * spacing); };
+    const auto sided = [&](const Vec3& n) { return vector::dot(n, towards) < 0 ? vector::scale(n, -1) : n; };
+    const Vec3 mean =
+        vector::add(vector::scale(sided(best.plane.normal), likely(best)), vector::scale(sided(second.plane.normal), likely(second)));
+    if (second.away < best.away) std::swap(best, second);
+    best.plane.normal = vector::normalised(mean);
+  }
+  const Vec3 farthest = vector::subtract(points[best.plane.points.back()], points[index.front()]);
+  const double hidden = 2 * kReach * scatter / std::sqrt(vector::dot(farthest, farthest));
+  const Vec3 turned = vector::cross(best.plane.normal, towards);
+  return vector::dot(turned, turned) > hidden * hidden ? std::move(best.plane) : ExactPlane{};
 }
 
 double scatter_about_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing) {
