@@ -90,8 +90,9 @@ Manifest survey(const std::vector<std::string>& files, const TileOptions& option
   m.asked = asked_of(options);
   m.single_precision = true;
   for (const std::string& file : files) {
-    m.inputs.push_back({file, std::filesystem::file_size(file), 0});
-    m.single_precision = m.single_precision && io::open_points(file)->scalar() == Scalar::kFloat32;
+    m.single_precision = io::open_points(file)->scalar() == Scalar::kFloat32 && m.single_precision;
+    std::error_code ignored;  // of a file that is gone again; reading it says so
+    m.inputs.push_back({file, std::filesystem::file_size(file, ignored), 0});
   }
   Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL};
   Vec3 high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
