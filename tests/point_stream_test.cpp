@@ -1,6 +1,8 @@
 // Files as streams of points: what they hand out is what the readers of whole files give, and what is merged is what write_cloud() writes.
-#include "io/point_stream.h"
+#include "counting_allocator.h"
+#include "io/laz.h"
 #include "io_samples.h"
+#include "stream_checks.h"
 #include "tiles/point_writer.h"
 
 #include <g3r/io.h>
@@ -15,50 +17,9 @@ namespace {
 using samples::Folder;
 using samples::slurp;
 using samples::spill;
-
-constexpr std::size_t kAtOnce = 5;  // points, so that streams are read in many pieces
-
-struct Streamed {
-  std::vector<Vec3> points;
-  std::string records;
-  io::Element properties;
-  Scalar scalar = Scalar::kFloat64;
-};
-
-Streamed streamed(const std::string& path) {
-  const auto stream = io::open_points(path, true);
-  Streamed all{{}, {}, stream->table().points(), stream->scalar()};
-  EXPECT_EQ(stream->left(), all.properties.count) << path;
-  EXPECT_TRUE(all.properties.data.empty()) << path;
-  std::vector<Vec3> points;
-  std::string records;
-  for (stream->next(kAtOnce, points, &records); !points.empty(); stream->next(kAtOnce, points, &records)) {
-    EXPECT_LE(points.size(), kAtOnce) << path;
-    all.points.insert(all.points.end(), points.begin(), points.end());
-    all.records += records;
-  }
-  EXPECT_EQ(stream->left(), 0U) << path;
-  return all;
-}
-
-bool same_bits(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0;
-}
-
-void expect_what_read_cloud_gives(const std::string& path) {
-  const Cloud whole = read_cloud(path);
-  const Streamed stream = streamed(path);
-  EXPECT_TRUE(same_bits(stream.points, whole.positions)) << path;
-  EXPECT_EQ(stream.scalar, whole.scalar) << path;
-  if (whole.attributes == nullptr) return;
-  const io::Element& points = whole.attributes->points();
-  EXPECT_EQ(stream.records, points.data) << path;
-  ASSERT_EQ(stream.properties.properties.size(), points.properties.size()) << path;
-  for (std::size_t i = 0; i < points.properties.size(); ++i) {
-    EXPECT_EQ(stream.properties.properties[i].name, points.properties[i].name) << path;
-    EXPECT_EQ(stream.properties.properties[i].type, points.properties[i].type) << path;
-  }
-}
+using stream_checks::expect_what_read_cloud_gives;
+using stream_checks::kAtOnce;
+using stream_checks::streamed;
 
 TEST(PointStream, HandsOutThePointsAndRecordsOfEveryFormat) {
   const Folder folder;
@@ -79,6 +40,27 @@ TEST(PointStream, TruncatedFilesAreErrorsThatNameThem) {
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find(sample.name), std::string::npos) << error.what();
     }
+  }
+}
+
+TEST(PointStream, MemoryDoesNotDependOnTheSizeOfTheFile) {
+  constexpr std::size_t kMany = 300'000;  // of 11 MiB and more in every format but LAZ
+  constexpr std::size_t kMostBytes = std::size_t{5}
+                                     << 20;  // a block of 1 MiB as in the file, as in the table and as points, or a LAZ chunk
+  const Folder folder;
+  const Cloud cloud = samples::helix(kMany);
+  for (const char* name : {"a.ply", "a.las", "a.laz", "a.npy", "a.pcd"}) {
+    if (name == std::string("a.laz") && !io::laz_is_compiled()) continue;
+    write_cloud(folder.path(name), cloud, nullptr, nullptr);
+    allocator::reset_peak();
+    const std::size_t before = allocator::live.load();
+    const auto stream = io::open_points(folder.path(name), true);
+    std::vector<Vec3> points;
+    std::string records;
+    std::size_t count = 0;
+    for (stream->next(kAtOnce, points, &records); !points.empty(); stream->next(1000, points, &records)) count += points.size();
+    EXPECT_EQ(count, kMany) << name;
+    EXPECT_LT(allocator::peak.load() - before, kMostBytes) << name;
   }
 }
 

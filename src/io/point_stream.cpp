@@ -2,27 +2,28 @@
 
 #include "io/cloud_from_table.h"
 #include "io/las.h"
+#include "io/laz.h"
 #include "io/merger.h"
-#include "io/ply_header.h"
 #include "io/random_file.h"
-#include "io/recognise.h"
-#include "io/splats.h"
+#include "io/readers.h"
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 
 namespace g3r::io {
 namespace {
 
-constexpr std::size_t kHead = std::size_t{1} << 16;    // bytes that a format is told by and that headers of PLY seldom exceed
-constexpr std::size_t kAtOnce = std::size_t{1} << 20;  // bytes of records read at once
+constexpr std::size_t kHead = std::size_t{1} << 16;       // bytes that a format is told by and that headers of PLY seldom exceed
+constexpr std::size_t kMostHead = std::size_t{16} << 20;  // bytes before the points of a LAS file that is read as a stream
+constexpr std::size_t kAtOnce = std::size_t{1} << 20;     // bytes of records read at once
 
-// Records of one size, one after the other in the file.
+// Records of one size, one after the other in the file as in the table.
 class FixedRecords : public PointStream {
  public:
-  FixedRecords(std::unique_ptr<RandomFile> file, std::uint64_t begin, std::uint64_t count, std::size_t stride, Attributes table)
-      : file_(std::move(file)), at_(begin), left_(count), stride_(stride), table_(std::move(table)), layout_(table_.points()) {
+  FixedRecords(std::unique_ptr<RandomFile> file, std::uint64_t begin, Attributes table)
+      : file_(std::move(file)), at_(begin), left_(table.points().count), table_(std::move(table)), layout_(table_.points()) {
     const Roles roles = find_roles(table_.points());
     std::copy_n(roles.position, 3, position_.begin());
   }
@@ -32,12 +33,9 @@ class FixedRecords : public PointStream {
     if (records != nullptr) records->clear();
     while (left_ > 0 && points.size() < most) {
       const std::uint64_t wanted = std::min<std::uint64_t>(left_, most - points.size());
-      const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(wanted, std::max<std::size_t>(1, kAtOnce / stride_)));
-      bytes_.resize(count * stride_);
-      file_->read(at_, bytes_.data(), bytes_.size());
-      at_ += bytes_.size();
-      left_ -= count;
-      decode(bytes_);
+      const std::size_t at_once = std::max<std::size_t>(1, kAtOnce / layout_.size());
+      fetch(static_cast<std::size_t>(std::min<std::uint64_t>(wanted, at_once)), bytes_);
+      left_ -= bytes_.size() / layout_.size();
       const std::vector<Property>& properties = table_.points().properties;
       for (const char* record = bytes_.data(); record != bytes_.data() + bytes_.size(); record += layout_.size()) {
         Vec3 p{};
@@ -56,14 +54,20 @@ class FixedRecords : public PointStream {
   [[nodiscard]] const Attributes& table() const override { return table_; }
 
  protected:
-  // Turns records of the file into those of the table.
-  virtual void decode(std::string& /*records*/) const {}
+  // The next `count` records of the table.
+  virtual void fetch(std::size_t count, std::string& records) { read(count * layout_.size(), records); }
+  // The next bytes of the file.
+  void read(std::size_t count, std::string& bytes) {
+    bytes.resize(count);
+    file_->read(at_, bytes.data(), count);
+    at_ += count;
+  }
+  [[nodiscard]] const RandomFile& file() const { return *file_; }
 
  private:
   std::unique_ptr<RandomFile> file_;
   std::uint64_t at_;
   std::uint64_t left_;
-  std::size_t stride_;  // in the file
   Attributes table_;
   RecordLayout layout_;
   std::array<std::size_t, 3> position_{};
@@ -72,18 +76,28 @@ class FixedRecords : public PointStream {
 
 class LasRecords : public FixedRecords {
  public:
-  LasRecords(std::unique_ptr<RandomFile> file, const LasHeader& header)
-      : FixedRecords(std::move(file), header.points_at, header.count, header.record_bytes, las_table(header)), header_(header) {}
+  // `head`: what comes before the points.
+  LasRecords(std::unique_ptr<RandomFile> file, const Source& head, const LasHeader& header)
+      : FixedRecords(std::move(file), header.points_at, las_table(header)), header_(header) {
+    if (header.compressed) laz_ = std::make_unique<LazRecords>(head, header, this->file());
+  }
 
  private:
-  void decode(std::string& records) const override {
-    std::string out(records.size() / header_.record_bytes * table().points().stride(), '\0');
-    char* to = out.data();
-    for (std::size_t at = 0; at < records.size(); at += header_.record_bytes) to = copy_las_record(header_, records.data() + at, to);
-    records.swap(out);
+  void fetch(std::size_t count, std::string& records) override {
+    bytes_.clear();
+    if (laz_) {
+      laz_->next(count, bytes_);
+    } else {
+      read(count * header_.record_bytes, bytes_);
+    }
+    records.resize(bytes_.size() / header_.record_bytes * table().points().stride());
+    char* to = records.data();
+    for (std::size_t at = 0; at < bytes_.size(); at += header_.record_bytes) to = copy_las_record(header_, bytes_.data() + at, to);
   }
 
   LasHeader header_;
+  std::unique_ptr<LazRecords> laz_;
+  std::string bytes_;  // as in the file
 };
 
 // The whole file, in memory.
@@ -135,34 +149,28 @@ class WholeCloud : public PointStream {
   std::size_t at_ = 0;
 };
 
-// The header of a LAS file that is not packed, from which its records are found; null for LAZ.
-std::unique_ptr<PointStream> las_records(std::unique_ptr<RandomFile> file, const std::string& path) {
+// Null for what the reader of whole files refuses.
+std::unique_ptr<PointStream> las_records(std::unique_ptr<RandomFile> file, std::string head, const std::string& path) {
   // What the header says is checked against the size of the file, and its variable length records may be anywhere before the points.
-  std::string bytes(static_cast<std::size_t>(std::min<std::uint64_t>(file->size(), kHead)), '\0');
-  file->read(0, bytes.data(), bytes.size());
-  if (bytes.size() < las::kRecordBytes + 2 || (load<std::uint8_t>(bytes.data() + las::kPointFormat) & 0xC0U) != 0) return nullptr;
-  const std::uint64_t points_at = load<std::uint32_t>(bytes.data() + las::kPointsAt);
-  if (points_at > bytes.size()) return nullptr;
-  const LasHeader header = read_las_header({bytes, path}, file->size());
-  if (header.compressed) return nullptr;
-  return std::make_unique<LasRecords>(std::move(file), header);
+  if (head.size() < las::kRecordBytes + 2) return nullptr;
+  const std::uint64_t points_at = load<std::uint32_t>(head.data() + las::kPointsAt);
+  if (points_at > file->size() || points_at > kMostHead) return nullptr;
+  const std::size_t known = head.size();
+  if (points_at > known) {
+    head.resize(static_cast<std::size_t>(points_at));
+    file->read(known, head.data() + known, head.size() - known);
+  }
+  const Source source{head, path};
+  const LasHeader header = read_las_header(source, file->size());
+  if (header.count == 0) return nullptr;
+  return std::make_unique<LasRecords>(std::move(file), source, header);
 }
 
-// The same for PLY: null where records are not found by counting.
-std::unique_ptr<PointStream> ply_records(std::unique_ptr<RandomFile> file, const std::string& head, const std::string& path) {
-  if (head.find("end_header") == std::string::npos) return nullptr;
-  PlyHeader header = read_ply_header({head, path});
-  if (header.encoding != PlyEncoding::kLittleEndian || header.vertex != 0) return nullptr;
-  const Element& points = header.elements[0];
-  const std::size_t stride = points.stride();
-  if (stride == 0 || is_splat(points) || points.count > (file->size() - header.body) / stride) return nullptr;
-  const Roles roles = find_roles(points);
+std::unique_ptr<PointStream> stored_records(std::unique_ptr<RandomFile> file, std::optional<StoredTable> stored) {
+  if (!stored) return nullptr;
+  const Roles roles = find_roles(stored->table.points());
   if (std::count(roles.position, roles.position + 3, Element::npos) != 0) return nullptr;
-  const std::uint64_t count = points.count;
-  Attributes table;
-  table.comments = std::move(header.comments);
-  table.elements.push_back(std::move(header.elements[0]));
-  return std::make_unique<FixedRecords>(std::move(file), header.body, count, stride, std::move(table));
+  return std::make_unique<FixedRecords>(std::move(file), stored->begin, std::move(stored->table));
 }
 
 }  // namespace
@@ -171,9 +179,18 @@ std::unique_ptr<PointStream> open_points(const std::string& path, bool with_reco
   auto file = std::make_unique<RandomFile>(path);
   std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(file->size(), kHead)), '\0');
   file->read(0, head.data(), head.size());
+  const Source source{head, path};
+  const std::uint64_t size = file->size();
   std::unique_ptr<PointStream> stream;
-  if (head.rfind("ply", 0) == 0) stream = ply_records(std::move(file), head, path);
-  if (head.rfind("LASF", 0) == 0) stream = las_records(std::move(file), path);
+  if (head.starts_with("ply")) {
+    stream = stored_records(std::move(file), find_ply_records(source, size));
+  } else if (head.starts_with("# .PCD")) {
+    stream = stored_records(std::move(file), find_pcd_records(source, size));
+  } else if (head.starts_with("\x93NUMPY")) {
+    stream = stored_records(std::move(file), find_npy_records(source, size));
+  } else if (head.starts_with("LASF")) {
+    stream = las_records(std::move(file), head, path);
+  }
   if (!stream) stream = std::make_unique<WholeCloud>(path, with_records);
   return stream;
 }

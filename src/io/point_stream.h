@@ -27,8 +27,9 @@ class PointStream {
   [[nodiscard]] virtual const Attributes& table() const = 0;
 };
 
-/// Opens a file of any format that read_cloud() reads. LAS and binary little-endian PLY (points first, in records of one size) are read
-/// piece by piece; of others, LAZ too, the whole file is in memory until the stream is gone. Throws like read_cloud().
+/// Opens a file of any format that read_cloud() reads. Read piece by piece are LAS, LAZ and COPC (chunk by chunk), binary PLY
+/// (little-endian, points first, no lists), binary PCD and NPY (little-endian, by rows); of others the whole file is in memory until the
+/// stream is gone. Throws like read_cloud().
 [[nodiscard]] std::unique_ptr<PointStream> open_points(const std::string& path, bool with_records = false);
 
 }  // namespace g3r::io

@@ -1,6 +1,7 @@
 #include "io/tiles.h"
 
 #include "io/cloud_from_table.h"
+#include "io/file_lists.h"
 #include "io/merger.h"
 #include "io/table.h"
 
@@ -89,6 +90,7 @@ void merge_warnings(const std::vector<Cloud>& clouds, const std::vector<std::str
 std::vector<std::string> find_tiles(const std::string& path) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) return files_of_folder(path);
+  if (is_file_list(path) && fs::is_regular_file(path, ignored)) return files_of_list(path);
   if (path.find_first_of("*?") == std::string::npos || fs::exists(path, ignored)) return {};
   return files_of_pattern(path);
 }

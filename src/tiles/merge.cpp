@@ -10,6 +10,7 @@
 #include <g3r/tiles.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <system_error>
@@ -22,7 +23,8 @@ constexpr std::uint64_t kAtOnce = 4096;  // results read from a tile at once
 // The results of a tile, front to back.
 class Cursor {
  public:
-  explicit Cursor(std::string path) : path_(std::move(path)) {}
+  // `points`: of the input, which results lie among.
+  Cursor(std::string path, std::uint64_t points) : path_(std::move(path)), points_(points) {}
 
   // Calls take(result) for those before `end` that have not been taken. The file is open only while it is read: there may be thousands.
   template <class Take>
@@ -41,10 +43,26 @@ class Cursor {
     file.append(at_, to, results_);
     at_ = to;
     ended_ = results_.empty();
+    check();
     return !ended_;
   }
 
+  void check() {
+    for (std::size_t i = 0; i < results_.size(); ++i) {
+      const Result& r = results_[i];
+      const bool finite = std::isfinite(r.normal[0] + r.normal[1] + r.normal[2] + r.confidence);
+      if (finite && r.index >= next_ && r.index < points_) {
+        next_ = r.index + 1;
+        continue;
+      }
+      throw InvalidInput(escape_text(path_) + ": damaged at record " + std::to_string(at_ - results_.size() + i) +
+                         "; remove it, and g3r tiles run FOLDER does the tile again");
+    }
+  }
+
   std::string path_;
+  std::uint64_t points_;
+  std::uint64_t next_ = 0;  // least index that may follow
   std::uint64_t at_ = 0;
   bool ended_ = false;
   std::vector<Result> results_;
@@ -73,7 +91,7 @@ MergedTiles merge(const std::string& folder, const Manifest& m, const std::strin
   Stages stages(monitor);
   stages.begin("merge");
   std::vector<Cursor> cursors;
-  for (std::size_t t = 0; t < m.tiles.size(); ++t) cursors.emplace_back(result_path(folder, t));
+  for (std::size_t t = 0; t < m.tiles.size(); ++t) cursors.emplace_back(result_path(folder, t), m.points);
   PointWriter writer(output, m, stages);
   std::vector<Vec3> points;
   std::string records;
