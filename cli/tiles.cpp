@@ -86,8 +86,7 @@ Stats stats_of(const TileStatus& status, const MergedTiles& merged, const Settin
   stats.planned_memory_bytes = status.worker_memory_bytes;
   stats.threads = settings.options.threads;
   stats.warnings = status.warnings;
-  stats.warnings.push_back("beyond --max-memory in one piece: worked in " + counted(status.tiles, "tile") +
-                           "; OUT has positions, normals and confidence, no other properties of IN");
+  stats.warnings.push_back("beyond --max-memory in one piece: worked in " + counted(status.tiles, "tile"));
   return stats;
 }
 

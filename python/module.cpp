@@ -23,17 +23,13 @@
 
 #include "arrays.h"
 #include "job.h"
+#include "options.h"
+#include "tiles.h"
 
 namespace g3r::python {
 namespace {
 
 using Text = std::string;
-
-// Reads one option from keyword arguments, if it is there.
-template <class T>
-void take(const nb::dict& from, const char* name, T& into) {
-  if (from.contains(name)) into = nb::cast<T>(from[name]);
-}
 
 // The value of an option that is one of a few words: g3r/names.h.
 template <class T>
@@ -55,25 +51,6 @@ void take_length(const nb::dict& from, const char* name, bool may_be_zero, Lengt
                        ", 'X%', 'Xh' (point spacings) or 'Xn' (normalised), not " + nb::cast<Text>(nb::repr(given)));
   }
   into = *length;
-}
-
-std::vector<Vec3> take_places(const nb::dict& from, const char* name) {
-  if (!from.contains(name)) return {};
-  return copy_rows<double>(nb::cast<Rows<double>>(from[name]));
-}
-
-Hints read_hints(const nb::dict& from) {
-  Hints hints;
-  const std::vector<Vec3> up = take_places(from, "up");
-  if (!up.empty()) hints.up = up.front();
-  hints.sensors = take_places(from, "sensors");
-  hints.inside = take_places(from, "inside");
-  if (from.contains("sensor_of_point")) {
-    hints.sensor_of_point = copy_values<std::uint32_t>(nb::cast<Values<std::uint32_t>>(from["sensor_of_point"]));
-  }
-  take(from, "seen_from_inside", hints.seen_from_inside);
-  take(from, "flip", hints.flip);
-  return hints;
 }
 
 Options read_options(const nb::dict& from) {
@@ -385,6 +362,7 @@ void bind(nb::module_& m) {
         return nb::bytes(png.data(), png.size());
       },
       nb::arg("scene"), nb::arg("z_up"), nb::arg("tile"));
+  bind_tiles(m);
 }
 
 }  // namespace

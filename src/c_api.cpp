@@ -1,6 +1,7 @@
 // The C interface: pointers into views, exceptions into status codes.
 #include <g3r/g3r.h>
 #include <g3r/g3r_c.h>
+#include <g3r/tiles.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -37,6 +38,8 @@ g3r_status guarded(const Work& work) noexcept {
     return fail(G3R_UNAVAILABLE, error.what());
   } catch (const g3r::Cancelled& error) {
     return fail(G3R_CANCELLED, error.what());
+  } catch (const g3r::IoError& error) {
+    return fail(G3R_IO_ERROR, error.what());
   } catch (const std::bad_alloc&) {
     return fail(G3R_OUT_OF_MEMORY, "out of memory");
   } catch (const std::exception& error) {
@@ -116,6 +119,35 @@ struct OwnedMesh {
   g3r::Mesh mesh;
 };
 
+std::string read_path(const char* path, const char* name) {
+  if (path == nullptr) throw g3r::InvalidInput(std::string(name) + " must not be NULL");
+  return path;
+}
+
+void require_size(const g3r_tiles_info* info) {
+  if (info != nullptr && info->size < sizeof info->size) throw g3r::InvalidInput("the size of the g3r_tiles_info is not set");
+}
+
+void give(const g3r::TileStatus& from, g3r_tiles_info* info) {
+  if (info == nullptr) return;
+  g3r_tiles_info all{};
+  all.size = info->size;
+  all.points = from.points;
+  all.non_finite = from.non_finite;
+  all.tiles = from.tiles;
+  all.done = from.done;
+  all.coarse_points = from.coarse_points;
+  all.largest_tile = from.largest_tile;
+  all.worker_memory_bytes = from.worker_memory_bytes;
+  all.disk_bytes = from.disk_bytes;
+  all.work = from.work;
+  all.open_share = from.open_share;
+  all.undecided_share = from.undecided_share;
+  all.converged = from.converged ? 1 : 0;
+  all.consistent = from.consistent ? 1 : 0;
+  std::memcpy(info, &all, std::min(info->size, sizeof all));
+}
+
 }  // namespace
 
 extern "C" {
@@ -150,6 +182,43 @@ g3r_status g3r_reconstruct(const double* points, size_t count, const g3r_options
   });
 }
 
+g3r_status g3r_tiles_plan(const char* const* inputs, size_t input_count, const char* folder, size_t tiles, const g3r_options* options,
+                          g3r_tiles_info* info) {
+  return guarded([&] {
+    require_size(info);
+    if (inputs == nullptr && input_count > 0) throw g3r::InvalidInput("inputs must not be NULL");
+    const Request request = read_options(options, 1);  // of sensor_of_point one is enough to be refused
+    std::vector<std::string> paths;
+    for (size_t i = 0; i < input_count; ++i) paths.push_back(read_path(inputs[i], "an input"));
+    const g3r::Options& o = request.options;
+    const g3r::TileOptions plan{o.max_memory, tiles, o.hints, o.threads, o.device};
+    give(g3r::plan_tiles(paths, read_path(folder, "folder"), plan, request.monitor), info);
+  });
+}
+
+g3r_status g3r_tiles_run(const char* folder, size_t worker, size_t workers, const g3r_options* options, g3r_tiles_info* info) {
+  return guarded([&] {
+    require_size(info);
+    const Request request = read_options(options, 0);
+    const g3r::TileWorker which{worker, workers, request.options.threads, request.options.device};
+    give(g3r::run_tiles(read_path(folder, "folder"), which, request.monitor), info);
+  });
+}
+
+g3r_status g3r_tiles_status(const char* folder, g3r_tiles_info* info) {
+  return guarded([&] {
+    require_size(info);
+    give(g3r::tiles_status(read_path(folder, "folder")), info);
+  });
+}
+
+g3r_status g3r_tiles_merge(const char* folder, const char* output, const g3r_options* options) {
+  return guarded([&] {
+    const Request request = read_options(options, 0);
+    (void)g3r::merge_tiles(read_path(folder, "folder"), read_path(output, "output"), request.monitor);
+  });
+}
+
 void g3r_mesh_free(g3r_mesh* mesh) { delete reinterpret_cast<OwnedMesh*>(mesh); }
 
 const char* g3r_status_text(g3r_status status) {
@@ -166,6 +235,8 @@ const char* g3r_status_text(g3r_status status) {
       return "out of memory";
     case G3R_INTERNAL_ERROR:
       return "an error in g3r";
+    case G3R_IO_ERROR:
+      return "a file cannot be created, read or written";
   }
   return "not a status of g3r";
 }

@@ -268,6 +268,49 @@ TEST_F(Tiles, DamagedFoldersAreRefused) {
   EXPECT_THROW((void)tiles_status(work), InvalidInput);
 }
 
+template <class Work>
+std::string complaint(const Work& work) {
+  try {
+    work();
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_F(Tiles, ADamagedResultIsNamedAndDoneAgain) {
+  const std::string work = copy_of_work("results");
+  const std::string path = tiles::result_path(work, 1);
+  const std::string good = bytes_of(path);
+  std::string bad = good;
+  bad.replace(5 * sizeof(tiles::Result), 8, 8, '\x7f');  // the index of a point
+  write_bytes(path, bad);
+  EXPECT_NE(complaint([&] { (void)merge_tiles(work, folder_->file("bad.ply")); }).find("tile-1.bin: damaged at record 5;"),
+            std::string::npos);
+  bad = good;
+  bad.replace(sizeof(tiles::Result) + 8, 4, 4, '\xff');  // NaN
+  write_bytes(path, bad);
+  EXPECT_NE(complaint([&] { (void)merge_tiles(work, folder_->file("bad.ply")); }).find("tile-1.bin: damaged at record 1;"),
+            std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder_->file("bad.ply")));
+  write_bytes(path, good);
+  EXPECT_EQ(tiles_status(work).done, kTiles);
+  (void)merge_tiles(work, folder_->file("good.ply"));
+  EXPECT_TRUE(bytes_of(folder_->file("good.ply")) == bytes_of(folder_->file("out.ply")));
+}
+
+TEST(TilesPlan, NamesTheFileThatIsGarbage) {
+  const Folder folder;
+  write_points(folder.file("a.ply"), shapes::sphere(kPoints).points);
+  write_points(folder.file("b.ply"), std::vector<Vec3>(99, Vec3{NAN, 0, 0}));
+  const auto plan = [&] { (void)plan_tiles({folder.file("a.ply"), folder.file("b.ply")}, folder.file("work")); };
+  EXPECT_NE(complaint(plan).find("b.ply: from the first to the last of its 99 points"), std::string::npos);
+  const std::string bytes = bytes_of(folder.file("a.ply"));
+  write_bytes(folder.file("b.ply"), bytes.substr(0, bytes.size() - 9));
+  EXPECT_NE(complaint(plan).find("b.ply: byte "), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder.file("work")));
+}
+
 TEST(TilesPlan, TellsWhatItCannotDo) {
   const Folder folder;
   write_points(folder.file("few.ply"), shapes::sphere(500).points);

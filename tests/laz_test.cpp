@@ -9,6 +9,7 @@
 #include "io/table.h"
 #include "laz_samples.h"
 #include "sanitized.h"
+#include "stream_checks.h"
 
 // LASzip's encoder keeps its list of chunks of different sizes for ever.
 // NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming): the sanitizer's name
@@ -183,6 +184,43 @@ TEST(Ept, CellsOfLazAreOneCloud) {
   EXPECT_EQ(cloud.colors.size(), 50U);
   samples::spill(folder.path("ept-hierarchy/0-0-0-0.json"), R"({"0-0-0-0": 21})");
   EXPECT_THROW((void)read_cloud(folder.path("")), InvalidInput);
+}
+
+TEST(Laz, IsAStreamOfTheSamePoints) {
+  const Folder folder;
+  const std::string path = folder.path("a.laz");
+  for (const unsigned format : {1U, 3U, 6U, 8U}) {
+    for (const std::uint32_t chunk : {50000U, 7U, kAnyChunks}) {
+      samples::spill(path, compressed(las_file(format, 200, true), chunk));
+      stream_checks::expect_what_read_cloud_gives(path);
+    }
+  }
+  samples::spill(path, samples::copc_file());
+  stream_checks::expect_what_read_cloud_gives(path);
+}
+
+TEST(Laz, DamageInAStreamIsWhatItIsInTheWholeFile) {
+  const Folder folder;
+  const std::string path = folder.path("a.laz");
+  const std::string good = compressed(las_file(6, 60), 20);
+  std::mt19937 random(3);
+  constexpr int kTries = 150;
+  for (int i = 0; i < kTries; ++i) {
+    std::string bad = good;
+    if (i % 3 == 0) {
+      bad.resize(random() % good.size());
+    } else {
+      bad[random() % bad.size()] = static_cast<char>(random());
+    }
+    samples::spill(path, bad);
+    try {
+      (void)stream_checks::streamed(path);
+      stream_checks::expect_what_read_cloud_gives(path);
+    } catch (const InvalidInput& error) {
+      EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << error.what();
+      EXPECT_THROW((void)read_cloud(path), InvalidInput) << error.what();
+    }
+  }
 }
 
 TEST(Laz, CutAnywhereIsAnError) {

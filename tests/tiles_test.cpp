@@ -71,6 +71,35 @@ TEST(Tiles, ScannersAndWarningsOfAllFilesAreKept) {
   EXPECT_EQ(more.warnings[8], "and 4 more warnings about these files");
 }
 
+TEST(Tiles, ListsAndVirtualPointCloudsNameTheirFiles) {
+  const Folder folder;
+  spill(folder.path("a.xyz"), "1 2 3\n");
+  spill(folder.path("b.xyz"), "4 5 6\n");
+  const std::vector<Vec3> both = {{4, 5, 6}, {1, 2, 3}};
+  spill(folder.path("all.list"), "# of today\nb.xyz\n\n" + folder.path("a.xyz") + "\n");
+  EXPECT_EQ(read_cloud(folder.path("all.list")).positions, both);
+  const auto vpc = [](const std::string& first, const std::string& second) {
+    return R"({"type": "FeatureCollection", "features": [{"type": "Feature", "assets": {"data": {"href": ")" + first +
+           R"("}, "overview": {"href": "none.copc.laz"}}}, {"assets": {"data": {"href": ")" + second + R"("}}}]})";
+  };
+  spill(folder.path("all.vpc"), vpc("./b.xyz", ".\\/a.xyz"));
+  EXPECT_EQ(read_cloud(folder.path("all.vpc")).positions, both);
+  const auto complaint = [&](const std::string& name, const std::string& bytes) -> std::string {
+    spill(folder.path(name), bytes);
+    try {
+      (void)read_cloud(folder.path(name));
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(complaint("c.vpc", vpc("b.xyz", "https://x/a.laz")).find("not on this machine"), std::string::npos);
+  EXPECT_NE(complaint("c.vpc", "{}").find("c.vpc: expected a FeatureCollection"), std::string::npos);
+  EXPECT_NE(complaint("c.vpc", R"({"features": [{"assets": 3}]})").find("c.vpc: feature 1: expected the path"), std::string::npos);
+  EXPECT_NE(complaint("c.list", "# nothing\n").find("c.list: names no files"), std::string::npos);
+  EXPECT_NE(complaint("c.list", "none.xyz\n").find("none.xyz"), std::string::npos);
+}
+
 TEST(Tiles, DamageNamesTheFile) {
   const Folder folder;
   spill(folder.path("a.xyz"), "1 2 3\n");

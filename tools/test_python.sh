@@ -5,6 +5,6 @@ cd "$(dirname "$0")/.."
 python=${PYTHON:-python3}
 environment=$PWD/build/python/venv-$("$python" -c 'import sys; print("%d.%d" % sys.version_info[:2])')
 "$python" -m venv --clear "$environment"
-"$environment/bin/pip" install --quiet --disable-pip-version-check --config-settings cmake.define.G3R_WARNINGS_AS_ERRORS=ON '.[test]'
+"$environment/bin/pip" install --quiet --disable-pip-version-check --config-settings cmake.define.G3R_WARNINGS_AS_ERRORS=ON '.[test,dask]'
 cd "$environment"  # away from the sources, so that the installed package is tested
 exec "$environment/bin/python" -m pytest -q -p no:cacheprovider "$OLDPWD/python/tests" "$@"

@@ -22,7 +22,8 @@ typedef enum g3r_status {
   G3R_UNAVAILABLE = 2,   /* this build or this machine cannot serve the request */
   G3R_CANCELLED = 3,     /* the progress function returned 0 */
   G3R_OUT_OF_MEMORY = 4,
-  G3R_INTERNAL_ERROR = 5 /* an error in g3r */
+  G3R_INTERNAL_ERROR = 5, /* an error in g3r */
+  G3R_IO_ERROR = 6        /* a file cannot be created, read or written */
 } g3r_status;
 
 /* Called on the calling thread with a stage and a fraction in [0, 1]; returning 0 cancels. */
@@ -80,6 +81,42 @@ G3R_C_API g3r_status g3r_reconstruct(const double* points, size_t count, const g
 
 /* Frees a mesh; NULL is fine. */
 G3R_C_API void g3r_mesh_free(g3r_mesh* mesh);
+
+/* Clouds of any size, tile by tile, in a work folder that holds all state (g3r/tiles.h, docs/tiles.md). What is there is complete or absent:
+ * a process may be killed at any time, and the same call then goes on. */
+
+/* Set `size` to sizeof(g3r_tiles_info) before a call; members are only ever added at the end. */
+typedef struct g3r_tiles_info {
+  size_t size;
+  uint64_t points;     /* in the input */
+  uint64_t non_finite; /* of them, which take no part */
+  uint64_t tiles;
+  uint64_t done;
+  uint64_t coarse_points;       /* of the thinned cloud */
+  uint64_t largest_tile;        /* points of the largest solve */
+  uint64_t worker_memory_bytes; /* planned, of the largest tile */
+  uint64_t disk_bytes;          /* planned, of the whole folder at its fullest */
+  double work;                  /* points of all solves over the points */
+  double open_share;            /* of the thinned cloud, as the next three */
+  double undecided_share;
+  int converged;
+  int consistent;
+} g3r_tiles_info;
+
+/* Plans `tiles` tiles (0: as few as the memory allows) of the points in `inputs` (input_count paths: files, folders, patterns). Of
+ * `options`, which may be NULL, it takes max_memory, threads, device, progress and the hints, without sensor_of_point. `info` may be NULL,
+ * here and below. A folder that holds the plan of the same files and options is left as it is. */
+G3R_C_API g3r_status g3r_tiles_plan(const char* const* inputs, size_t input_count, const char* folder, size_t tiles,
+                                    const g3r_options* options, g3r_tiles_info* info);
+
+/* Solves the tiles number `worker`, worker + workers, ... (from 1) that are not done. Of `options`: threads, device, progress. */
+G3R_C_API g3r_status g3r_tiles_run(const char* folder, size_t worker, size_t workers, const g3r_options* options, g3r_tiles_info* info);
+
+/* What is planned and done. */
+G3R_C_API g3r_status g3r_tiles_status(const char* folder, g3r_tiles_info* info);
+
+/* Writes one file of all points in the order of the input, with normals and confidence. Of `options`: progress. */
+G3R_C_API g3r_status g3r_tiles_merge(const char* folder, const char* output, const g3r_options* options);
 
 /* What a status means, one line. */
 G3R_C_API const char* g3r_status_text(g3r_status status);

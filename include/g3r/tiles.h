@@ -77,8 +77,10 @@ struct MergedTiles {
 };
 
 /// Writes one binary .ply, whole or not at all: for every input point, in the order of the input, its position, unit normal (0 for points
-/// that are not finite) and confidence. Other properties of the inputs are not carried over. Reads the inputs once more. Throws
-/// InvalidInput (tiles that are not done, inputs that have changed, another extension), IoError, Cancelled.
+/// that are not finite), confidence, and colours and other properties as write_cloud() writes them of the same cloud. Left out are elements
+/// of a PLY beside its points, and colours that no property holds (of splats). Reads the inputs once more, twice where 16-bit or float
+/// colours must be brought to 0..255. Memory does not depend on the number of points, as far as the inputs are streams (docs/tiles.md).
+/// Throws InvalidInput (tiles that are not done, inputs that have changed, another extension), IoError, Cancelled.
 MergedTiles merge_tiles(const std::string& folder, const std::string& output, const Monitor& monitor = {});
 
 }  // namespace g3r

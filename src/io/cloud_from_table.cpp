@@ -42,17 +42,9 @@ void require_positions(const Source& source, const Element& points) {
   }
 }
 
-// What brings a colour channel to 0..255: floats may mean 0..1, floats and 16 bits 0..65535.
-double color_scale(const Element& points, RecordLayout& layout, std::size_t property) {
-  const Type type = points.properties[property].type;
+// What brings a colour channel with this largest value to 0..255.
+double color_scale(Type type, double largest) {
   if (!is_float(type) && type != Type::kUint16) return 1;
-  double largest = 0;
-  const char* record = points.data.data();
-  for (std::uint64_t i = 0; i < points.count; ++i, record += layout.size()) {
-    layout.seek(record);
-    const double value = load_as_double(type, record + layout.offset(property));
-    if (std::isfinite(value)) largest = std::max(largest, value);
-  }
   if (largest > 255) return 1.0 / 257;
   return largest > 1 || type == Type::kUint16 ? 1 : 255;
 }
@@ -75,6 +67,47 @@ Roles find_roles(const Element& points) {
   return roles;
 }
 
+RecordColors::RecordColors(const Element& points) : points_(points) {
+  const Roles roles = find_roles(points);
+  std::copy_n(roles.color, 3, channel_.begin());
+  channels_ = roles.color[0] != kNone;
+  if (!channels_) packed_ = roles.packed_color;
+}
+
+void RecordColors::measure(const char* records, std::uint64_t count) {
+  RecordLayout layout(points_);
+  for (std::uint64_t i = 0; i < count && exist(); ++i, records += layout.size()) {
+    layout.seek(records);
+    if (!channels_) packed_bits_ |= load<std::uint32_t>(records + layout.offset(packed_)) & 0xFFFFFFU;
+    for (std::size_t c = 0; c < 3 && channels_; ++c) {
+      const double value = load_as_double(points_.properties[channel_[c]].type, records + layout.offset(channel_[c]));
+      if (std::isfinite(value)) largest_[c] = std::max(largest_[c], value);
+    }
+  }
+  scale_ = 255;  // the largest that there is; one channel of 0..255 means that all are
+  for (std::size_t c = 0; c < 3 && channels_; ++c) {
+    scale_ = std::min(scale_, color_scale(points_.properties[channel_[c]].type, largest_[c]));
+  }
+}
+
+bool RecordColors::are_black() const {
+  if (!channels_) return packed_bits_ == 0;
+  return std::all_of(largest_.begin(), largest_.end(), [&](double value) { return to_channel(value, scale_) == 0; });
+}
+
+std::array<std::uint8_t, 3> RecordColors::color(const RecordLayout& layout, const char* record) const {
+  if (!channels_) {
+    const auto packed = load<std::uint32_t>(record + layout.offset(packed_));
+    return {static_cast<std::uint8_t>(packed >> 16), static_cast<std::uint8_t>(packed >> 8), static_cast<std::uint8_t>(packed)};
+  }
+  std::array<std::uint8_t, 3> color{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double value = load_as_double(points_.properties[channel_[c]].type, record + layout.offset(channel_[c]));
+    color[c] = to_channel(value, scale_);
+  }
+  return color;
+}
+
 void fill_cloud(const Source& source, std::shared_ptr<const Attributes> table, Cloud& cloud) {
   const Element& points = table->points();
   require_positions(source, points);
@@ -85,20 +118,15 @@ void fill_cloud(const Source& source, std::shared_ptr<const Attributes> table, C
 
   cloud.positions.reserve(count);
   if (has(roles.normal)) cloud.normals.reserve(count);
-  const bool colored = has(roles.color) || roles.packed_color != kNone;
-  if (colored) cloud.colors.reserve(count);
   if (roles.confidence != kNone) cloud.confidence.reserve(count);
   cloud.scalar = std::all_of(roles.position, roles.position + 3, [&](std::size_t p) { return type(p) == Type::kFloat32; })
                      ? Scalar::kFloat32
                      : Scalar::kFloat64;
 
   RecordLayout layout(points);
-  double scale[3] = {1, 1, 1};
-  if (has(roles.color)) {
-    for (int c = 0; c < 3; ++c) scale[c] = color_scale(points, layout, roles.color[c]);
-    const double least = *std::min_element(scale, scale + 3);  // one channel of 0..255 means that all are
-    std::fill_n(scale, 3, least);
-  }
+  RecordColors colors(points);
+  colors.measure(points.data.data(), points.count);
+  if (colors.exist()) cloud.colors.reserve(count);
   bool any_normal = false;
   const char* record = points.data.data();
   for (std::size_t i = 0; i < count; ++i, record += layout.size()) {
@@ -111,14 +139,7 @@ void fill_cloud(const Source& source, std::shared_ptr<const Attributes> table, C
       const Vec3& n = cloud.normals.back();
       any_normal = any_normal || n[0] != 0 || n[1] != 0 || n[2] != 0;
     }
-    if (has(roles.color)) {
-      cloud.colors.push_back({to_channel(number(roles.color[0]), scale[0]), to_channel(number(roles.color[1]), scale[1]),
-                              to_channel(number(roles.color[2]), scale[2])});
-    } else if (colored) {
-      const auto packed = load<std::uint32_t>(record + layout.offset(roles.packed_color));
-      cloud.colors.push_back(
-          {static_cast<std::uint8_t>(packed >> 16), static_cast<std::uint8_t>(packed >> 8), static_cast<std::uint8_t>(packed)});
-    }
+    if (colors.exist()) cloud.colors.push_back(colors.color(layout, record));
     if (roles.confidence != kNone) {
       float value = 0;
       store_double(Type::kFloat32, number(roles.confidence), reinterpret_cast<char*>(&value));

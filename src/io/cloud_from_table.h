@@ -4,6 +4,8 @@
 #include "io/source.h"
 #include "io/table.h"
 
+#include <array>
+#include <cstdint>
 #include <memory>
 
 namespace g3r::io {
@@ -19,6 +21,29 @@ struct Roles {
 
 /// Finds the roles. A role that needs three properties is given only if all three are there and none is a list or an array.
 Roles find_roles(const Element& points);
+
+/// The colours of records as 0..255. What brings a channel there depends on all records: floats may mean 0..1, floats and 16 bits 0..65535.
+class RecordColors {
+ public:
+  explicit RecordColors(const Element& points);
+  /// Whether the records have any.
+  [[nodiscard]] bool exist() const { return channels_ || packed_ != Element::npos; }
+  /// Takes note of `count` records. All are to be measured before color().
+  void measure(const char* records, std::uint64_t count);
+  /// Whether all that were measured are black: never set.
+  [[nodiscard]] bool are_black() const;
+  /// The colour of a record, which `layout` has laid out.
+  [[nodiscard]] std::array<std::uint8_t, 3> color(const RecordLayout& layout, const char* record) const;
+
+ private:
+  const Element& points_;
+  std::array<std::size_t, 3> channel_{};
+  bool channels_ = false;
+  std::size_t packed_ = Element::npos;
+  std::array<double, 3> largest_{};
+  double scale_ = 1;
+  std::uint32_t packed_bits_ = 0;
+};
 
 /// Fills positions, normals, colours, confidence and names from the table, which the cloud then holds.
 /// Throws InvalidInput if x, y or z is missing or a list. Normals that are all zero are left out, with a warning.

@@ -50,6 +50,12 @@ inline constexpr unsigned kCompression = 22204;  // record id, user id "laszip e
 /// `file_size`: of a file of which `source` holds what comes before the points; 0: the source is all of it.
 LasHeader read_las_header(const Source& source, std::uint64_t file_size = 0);
 
+/// The properties of the points, x, y and z first, then the fields; without data.
+Attributes las_table(const LasHeader& header);
+
+/// A record of the file as one of las_table() at `to`; returns its end.
+char* copy_las_record(const LasHeader& header, const char* record, char* to);
+
 /// LAS's number of a type (1..10) in an extra-bytes descriptor.
 unsigned las_type_number(Type type);
 

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <optional>
 
 #include <arithmeticdecoder.hpp>
 #include <bytestreamin_array.hpp>
@@ -26,6 +28,8 @@ using namespace las;
 // two-thousandth. Larger: more memory for hostile files; smaller: regular grids are refused.
 constexpr std::uint64_t kMostRatio = 256;
 constexpr std::uint32_t kAnyChunks = 0xFFFFFFFF;  // as the size of chunks: the table gives that of each
+constexpr std::size_t kTableFixed = 1024;         // bytes that the compressed table of chunks takes at most,
+constexpr std::size_t kTableEntry = 16;           // and for each of them: two numbers, each in less than six
 constexpr std::size_t kPoint14 = 30;              // bytes of a record of format 6 or later before its other items
 constexpr std::size_t kPoint14Layers = 9;
 constexpr std::size_t kItem14 = 128;  // at least the size of LASzip's LASpoint14, 56 bytes in 3.5
@@ -119,18 +123,53 @@ Codec read_codec(const Source& source, const LasHeader& header) {
   return codec;
 }
 
+// The bytes of a file: in memory, or read when they are asked for.
+class Bytes {
+ public:
+  explicit Bytes(const Source& source) : source_(source), size_(source.bytes.size()) {}
+  Bytes(const Source& head, const RandomFile& file) : source_(head), file_(&file), size_(static_cast<std::size_t>(file.size())) {}
+
+  [[nodiscard]] const Source& source() const { return source_; }  // for messages, and what comes before the points
+  [[nodiscard]] std::size_t size() const { return size_; }
+  // [begin, begin + count), which lie within the file; valid until the next call.
+  std::string_view get(std::size_t begin, std::size_t count) {
+    if (file_ == nullptr) return source_.bytes.substr(begin, count);
+    buffer_.resize(count);
+    file_->read(begin, buffer_.data(), count);
+    return buffer_;
+  }
+
+ private:
+  const Source& source_;
+  const RandomFile* file_ = nullptr;
+  std::size_t size_;
+  std::string buffer_;
+};
+
 // A decoder that starts at a number not below its range leaves its tables; no encoder makes that.
-void check_start(const Source& source, std::size_t at, std::size_t end) {
-  if (end < at || end - at < 4 || load<std::uint32_t>(source.bytes.data() + at) == 0xFFFFFFFF)
+void check_start(const Source& source, std::size_t at, std::string_view bytes) {
+  if (bytes.size() < 4 || load<std::uint32_t>(bytes.data()) == 0xFFFFFFFF)
     fail_at_byte(source, at, "truncated or damaged: no compressed data where they should begin");
 }
 
+// Counts that no honest file has, before memory is taken for them.
+void check_ratio(const Bytes& file, const LasHeader& header) {
+  if (header.count > kMostRatio * file.size() / header.record_bytes) {
+    fail_at_byte(
+        file.source(), kLegacyCount,
+        std::to_string(header.count) + " points of " + std::to_string(header.record_bytes) + " bytes in a file of " +
+            std::to_string(file.size()) +
+            " bytes, more than 256 times its size: the count is damaged, or the points are all alike; then convert the file to LAS");
+  }
+}
+
 // Where the table of chunks begins.
-std::size_t find_table(const Source& source, const LasHeader& header) {
-  const std::size_t size = source.bytes.size();
+std::size_t find_table(Bytes& file, const LasHeader& header) {
+  const Source& source = file.source();
+  const std::size_t size = file.size();
   if (size - header.points_at < 16) fail_at_byte(source, size, "truncated: the compressed points are missing");
-  auto at = load<std::int64_t>(source.bytes.data() + header.points_at);
-  if (at == -1) at = load<std::int64_t>(source.bytes.data() + size - 8);  // written to a pipe
+  auto at = load<std::int64_t>(file.get(header.points_at, 8).data());
+  if (at == -1) at = load<std::int64_t>(file.get(size - 8, 8).data());  // written to a pipe
   if (at < static_cast<std::int64_t>(header.points_at) + 8 || at > static_cast<std::int64_t>(size) - 8) {
     fail_at_byte(source, header.points_at,
                  "truncated: the table of the compressed chunks should be at byte " + std::to_string(at) + " of a file of " +
@@ -140,19 +179,23 @@ std::size_t find_table(const Source& source, const LasHeader& header) {
 }
 
 // Number of points and bytes of each chunk, as LASzip stores them: a version, their number, then compressed differences.
-std::vector<Chunk> read_table(const Source& source, const LasHeader& header, const Codec& codec, std::size_t table) {
+std::vector<Chunk> read_table(Bytes& file, const LasHeader& header, const Codec& codec, std::size_t table) {
+  const Source& source = file.source();
   const bool any = codec.chunk_points == kAnyChunks;
-  const auto number = load<std::uint32_t>(source.bytes.data() + table + 4);
+  const std::string_view head = file.get(table, 8);
+  const auto version = load<std::uint32_t>(head.data());
+  const auto number = load<std::uint32_t>(head.data() + 4);
   const std::uint64_t wanted = any ? number : (header.count + codec.chunk_points - 1) / codec.chunk_points;
-  if (load<std::uint32_t>(source.bytes.data() + table) != 0 || number != wanted || number == 0 ||
+  if (version != 0 || number != wanted || number == 0 ||
       number > (table - header.points_at - 8) / header.record_bytes) {  // a chunk begins with a whole record
     fail_at_byte(source, table,
                  "damaged: the table of compressed chunks has " + std::to_string(number) + " entries, which does not go with " +
                      std::to_string(header.count) + " points");
   }
-  check_start(source, table + 8, source.bytes.size());
-  ByteStreamInArrayLE stream(reinterpret_cast<const U8*>(source.bytes.data() + table + 8),
-                             static_cast<I64>(source.bytes.size() - table - 8));
+  const std::size_t most = kTableFixed + kTableEntry * std::size_t{number};
+  const std::string_view bytes = file.get(table + 8, std::min(file.size() - table - 8, most));
+  check_start(source, table + 8, bytes);
+  ByteStreamInArrayLE stream(reinterpret_cast<const U8*>(bytes.data()), static_cast<I64>(bytes.size()));
   ArithmeticDecoder decoder;
   decoder.init(&stream);
   IntegerCompressor differences(&decoder, 32, 2);
@@ -162,11 +205,11 @@ std::vector<Chunk> read_table(const Source& source, const LasHeader& header, con
   std::size_t begin = header.points_at + 8;
   std::uint64_t left = header.count;
   I32 points = 0;
-  I32 bytes = 0;
+  I32 size = 0;
   for (std::uint32_t i = 0; i < number; ++i) {
     points = any ? differences.decompress(points, 0) : static_cast<I32>(std::min<std::uint64_t>(left, codec.chunk_points));
-    bytes = differences.decompress(bytes, 1);
-    const Chunk chunk{begin, static_cast<std::uint32_t>(bytes), static_cast<std::uint32_t>(points)};
+    size = differences.decompress(size, 1);
+    const Chunk chunk{begin, static_cast<std::uint32_t>(size), static_cast<std::uint32_t>(points)};
     if (chunk.bytes < header.record_bytes || chunk.bytes > table - begin || chunk.points == 0 || chunk.points > left)
       fail_at_byte(source, table, "damaged: chunk " + std::to_string(i + 1) + " of the table of compressed chunks does not fit");
     chunks.push_back(chunk);
@@ -177,25 +220,28 @@ std::vector<Chunk> read_table(const Source& source, const LasHeader& header, con
   return chunks;
 }
 
-// What follows the first record of a chunk: the beginning of its stream, or the number of points and the sizes of the layers.
-void check_chunk(const Source& source, const LasHeader& header, const Codec& codec, const Chunk& chunk) {
-  std::size_t at = chunk.begin + header.record_bytes;
-  const std::size_t end = chunk.begin + chunk.bytes;
+// What follows the first record of a chunk of these bytes: the beginning of its stream, or the number of points and the sizes of the
+// layers.
+void check_chunk(const Source& source, const LasHeader& header, const Codec& codec, const Chunk& chunk, std::string_view bytes) {
+  std::size_t at = header.record_bytes;
+  const auto place = [&] { return chunk.begin + at; };
   if (codec.layers == 0) {
-    check_start(source, at, end);
+    check_start(source, place(), bytes.substr(at));
     return;
   }
-  if (end - at < 4 + 4 * codec.layers) fail_at_byte(source, at, "damaged: a compressed chunk ends within the sizes of its layers");
-  const char* sizes = source.bytes.data() + at + 4;
-  if (load<std::uint32_t>(sizes - 4) != chunk.points) fail_at_byte(source, at, "damaged: a compressed chunk has another number of points");
+  if (bytes.size() - at < 4 + 4 * codec.layers)
+    fail_at_byte(source, place(), "damaged: a compressed chunk ends within the sizes of its layers");
+  const char* sizes = bytes.data() + at + 4;
+  if (load<std::uint32_t>(sizes - 4) != chunk.points)
+    fail_at_byte(source, place(), "damaged: a compressed chunk has another number of points");
   at += 4 + 4 * codec.layers;
   for (std::size_t i = 0; i < codec.layers; ++i) {
-    const auto bytes = load<std::uint32_t>(sizes + 4 * i);
-    if (bytes > end - at) fail_at_byte(source, at, "damaged: the layers of a compressed chunk do not fit in it");
-    if (bytes != 0 || i == 0) check_start(source, at, at + bytes);
-    at += bytes;
+    const auto size = load<std::uint32_t>(sizes + 4 * i);
+    if (size > bytes.size() - at) fail_at_byte(source, place(), "damaged: the layers of a compressed chunk do not fit in it");
+    if (size != 0 || i == 0) check_start(source, place(), bytes.substr(at, size));
+    at += size;
   }
-  if (at != end) fail_at_byte(source, at, "damaged: a compressed chunk is longer than its layers");
+  if (at != bytes.size()) fail_at_byte(source, place(), "damaged: a compressed chunk is longer than its layers");
 }
 
 // LASzip keeps the first item of point formats 6 to 10 in a layout of its own, in which old and new fields lie side by side.
@@ -210,34 +256,50 @@ void store_point14(const unsigned char* from, unsigned char* record) {
   std::copy_n(from + 32, 8, record + 22);  // time
 }
 
-// Appends the records of a checked chunk.
-void unpack_chunk(const Source& source, const LasHeader& header, const Codec& codec, const Chunk& chunk, std::string& records) {
-  LASzip how;
-  how.compressor = static_cast<unsigned short>(codec.compressor);
-  how.chunk_size = chunk.points;
-  how.num_items = static_cast<unsigned short>(codec.items.size());
-  how.items = new LASitem[codec.items.size()];  // belongs to LASzip
-  std::copy(codec.items.begin(), codec.items.end(), how.items);
-  // With a table "at" the points themselves LASzip reads the chunk without one.
-  std::string bytes(8, '\0');
-  bytes += source.bytes.substr(chunk.begin, chunk.bytes);
-  ByteStreamInArrayLE stream(reinterpret_cast<const U8*>(bytes.data()), static_cast<I64>(bytes.size()));
-  LASreadPoint reader;
-  bool ok = reader.setup(how.num_items, how.items, &how) != 0 && reader.init(&stream) != 0;
-  // One point for all: LASzip leaves alone what does not change.
-  alignas(8) std::array<unsigned char, kItem14> point14{};
-  std::vector<unsigned char> record(header.record_bytes);
-  std::vector<U8*> items;
-  for (std::size_t k = 0, offset = 0; k < codec.items.size(); offset += codec.items[k++].size) items.push_back(record.data() + offset);
-  if (codec.layers != 0) items[0] = point14.data();
-  for (std::uint32_t i = 0; ok && i < chunk.points; ++i) {
-    ok = reader.read(items.data()) != 0;
-    if (codec.layers != 0) store_point14(point14.data(), record.data());
-    records.append(reinterpret_cast<const char*>(record.data()), record.size());
+// Decodes a checked chunk of these bytes, some records at a time.
+class ChunkDecoder {
+ public:
+  ChunkDecoder(const LasHeader& header, const Codec& codec, const Chunk& chunk, std::string_view bytes)
+      // With a table "at" the points themselves LASzip reads the chunk without one.
+      : chunk_(chunk), layered_(codec.layers != 0), bytes_(std::string(8, '\0').append(bytes)), record_(header.record_bytes) {
+    how_.compressor = static_cast<unsigned short>(codec.compressor);
+    how_.chunk_size = chunk.points;
+    how_.num_items = static_cast<unsigned short>(codec.items.size());
+    how_.items = new LASitem[codec.items.size()];  // belongs to LASzip
+    std::copy(codec.items.begin(), codec.items.end(), how_.items);
+    stream_ = std::make_unique<ByteStreamInArrayLE>(reinterpret_cast<const U8*>(bytes_.data()), static_cast<I64>(bytes_.size()));
+    ok_ = reader_.setup(how_.num_items, how_.items, &how_) != 0 && reader_.init(stream_.get()) != 0;
+    for (std::size_t k = 0, offset = 0; k < codec.items.size(); offset += codec.items[k++].size) items_.push_back(record_.data() + offset);
+    if (layered_) items_[0] = point14_.data();
   }
-  if (!ok || stream.tell() != static_cast<I64>(bytes.size()))
-    fail_at_byte(source, chunk.begin, "damaged: LASzip cannot decode the chunk of compressed points that begins here");
-}
+
+  [[nodiscard]] std::uint32_t left() const { return chunk_.points - done_; }
+
+  // Appends the next records, at most `most`.
+  void read(std::size_t most, const Source& source, std::string& records) {
+    for (std::size_t i = 0; ok_ && i < most && done_ < chunk_.points; ++i, ++done_) {
+      ok_ = reader_.read(items_.data()) != 0;
+      if (layered_) store_point14(point14_.data(), record_.data());
+      records.append(reinterpret_cast<const char*>(record_.data()), record_.size());
+    }
+    if (!ok_ || (left() == 0 && stream_->tell() != static_cast<I64>(bytes_.size())))
+      fail_at_byte(source, chunk_.begin, "damaged: LASzip cannot decode the chunk of compressed points that begins here");
+  }
+
+ private:
+  Chunk chunk_;
+  bool layered_;
+  std::string bytes_;
+  LASzip how_;
+  std::unique_ptr<ByteStreamInArrayLE> stream_;
+  LASreadPoint reader_;
+  // One point for all: LASzip leaves alone what does not change.
+  alignas(8) std::array<unsigned char, kItem14> point14_{};
+  std::vector<unsigned char> record_;
+  std::vector<U8*> items_;
+  std::uint32_t done_ = 0;
+  bool ok_ = false;
+};
 
 // Where what follows the points begins in the LAZ file: waveforms or extended records, if the header gives a place after the table.
 std::size_t find_rest(const Source& source, const LasHeader& header, std::size_t table) {
@@ -304,17 +366,12 @@ std::string unpack_laz(const Source& source, const LasHeader& header, const Read
       fail_at_byte(source, kLegacyCount, "the header has no points (count 0), but compressed points follow it");
     return plain_header(source, header, rest).append(source.bytes.substr(rest));
   }
-  if (header.count > kMostRatio * source.bytes.size() / header.record_bytes) {
-    fail_at_byte(
-        source, kLegacyCount,
-        std::to_string(header.count) + " points of " + std::to_string(header.record_bytes) + " bytes in a file of " +
-            std::to_string(source.bytes.size()) +
-            " bytes, more than 256 times its size: the count is damaged, or the points are all alike; then convert the file to LAS");
-  }
-  const std::size_t table = find_table(source, header);
+  Bytes file(source);
+  check_ratio(file, header);
+  const std::size_t table = find_table(file, header);
   try {
-    std::vector<Chunk> chunks = read_table(source, header, codec, table);
-    for (const Chunk& chunk : chunks) check_chunk(source, header, codec, chunk);
+    std::vector<Chunk> chunks = read_table(file, header, codec, table);
+    for (const Chunk& chunk : chunks) check_chunk(source, header, codec, chunk, file.get(chunk.begin, chunk.bytes));
     LasHeader part = header;
     const bool parted = (options.box || options.levels != 0) && is_copc(source, header);
     if (parted) {
@@ -324,12 +381,60 @@ std::string unpack_laz(const Source& source, const LasHeader& header, const Read
     }
     const std::size_t rest = find_rest(source, header, table);
     std::string las = plain_header(source, part, rest);
-    for (const Chunk& chunk : chunks) unpack_chunk(source, header, codec, chunk, las);
+    for (const Chunk& chunk : chunks)
+      ChunkDecoder(header, codec, chunk, file.get(chunk.begin, chunk.bytes)).read(chunk.points, source, las);
     if (parted) fit_las_header(las, part.count);
     las += source.bytes.substr(rest);
     return las;
   } catch (int) {  // what LASzip throws
     fail_at_byte(source, table, "truncated or damaged: LASzip cannot decode the compressed points");
+  }
+}
+
+struct LazRecords::State {
+  State(const Source& head, const LasHeader& of, const RandomFile& from)
+      : name(head.name), source{{}, name}, header(of), codec(read_codec(head, of)), file(source, from) {}
+
+  std::string name;
+  Source source;  // for messages
+  LasHeader header;
+  Codec codec;
+  Bytes file;
+  std::vector<Chunk> chunks;
+  std::size_t chunk = 0;  // the next to be decoded
+  std::optional<ChunkDecoder> decoder;
+};
+
+LazRecords::LazRecords(const Source& head, const LasHeader& header, const RandomFile& file)
+    : state_(std::make_unique<State>(head, header, file)) {
+  check_ratio(state_->file, header);
+  const std::size_t table = find_table(state_->file, header);
+  try {
+    state_->chunks = read_table(state_->file, header, state_->codec, table);
+  } catch (int) {  // what LASzip throws
+    fail_at_byte(head, table, "truncated or damaged: LASzip cannot decode the table of compressed chunks");
+  }
+}
+
+LazRecords::~LazRecords() = default;
+
+void LazRecords::next(std::size_t most, std::string& records) {
+  State& s = *state_;
+  const std::size_t end = records.size() + most * s.header.record_bytes;
+  while (records.size() < end && (s.decoder || s.chunk < s.chunks.size())) {
+    const std::size_t place = s.chunks[s.decoder ? s.chunk - 1 : s.chunk].begin;
+    try {
+      if (!s.decoder) {
+        const Chunk& chunk = s.chunks[s.chunk++];
+        const std::string_view bytes = s.file.get(chunk.begin, chunk.bytes);
+        check_chunk(s.source, s.header, s.codec, chunk, bytes);
+        s.decoder.emplace(s.header, s.codec, chunk, bytes);
+      }
+      s.decoder->read((end - records.size()) / s.header.record_bytes, s.source, records);
+      if (s.decoder->left() == 0) s.decoder.reset();
+    } catch (int) {
+      fail_at_byte(s.source, place, "truncated or damaged: LASzip cannot decode the compressed points");
+    }
   }
 }
 

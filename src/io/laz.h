@@ -2,7 +2,10 @@
 #pragma once
 
 #include "io/las.h"
+#include "io/random_file.h"
 
+#include <cstddef>
+#include <memory>
 #include <string>
 
 namespace g3r::io {
@@ -17,5 +20,20 @@ void require_laz(const Source& source);
 /// the points. `header` is that of `source`. Of COPC, whose own record is left out, only the cells that `options` ask for; counts and
 /// bounds are theirs. Throws InvalidInput, also if that would be more than 256 times the size of the file.
 std::string unpack_laz(const Source& source, const LasHeader& header, const ReadOptions& options = {});
+
+/// The records of the points of a LAZ file, COPC too, as unpack_laz() gives them, some at a time: what is in memory is a chunk.
+class LazRecords {
+ public:
+  /// `head`: what comes before the points, with the name of the file, from which `header` is. The file must outlive this. Throws
+  /// InvalidInput, IoError.
+  LazRecords(const Source& head, const LasHeader& header, const RandomFile& file);
+  ~LazRecords();
+  /// Appends the next records, at most `most`; none at the end. Throws InvalidInput, IoError.
+  void next(std::size_t most, std::string& records);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace g3r::io

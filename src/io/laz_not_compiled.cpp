@@ -16,6 +16,14 @@ std::string unpack_laz(const Source& source, const LasHeader&, const ReadOptions
   return {};
 }
 
+struct LazRecords::State {};
+
+LazRecords::LazRecords(const Source& head, const LasHeader&, const RandomFile&) { require_laz(head); }
+
+LazRecords::~LazRecords() = default;
+
+void LazRecords::next(std::size_t, std::string&) {}
+
 std::unique_ptr<LasOutput> packed_las(OutputFile&) { throw Unavailable("write_cloud: this build does not write LAZ; write LAS (.las)"); }
 
 }  // namespace g3r::io

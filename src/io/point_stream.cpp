@@ -2,137 +2,196 @@
 
 #include "io/cloud_from_table.h"
 #include "io/las.h"
-#include "io/ply_header.h"
+#include "io/laz.h"
+#include "io/merger.h"
 #include "io/random_file.h"
-#include "io/recognise.h"
-#include "io/splats.h"
+#include "io/readers.h"
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 
 namespace g3r::io {
 namespace {
 
-constexpr std::size_t kHead = std::size_t{1} << 16;    // bytes that a format is told by and that headers of PLY seldom exceed
-constexpr std::size_t kAtOnce = std::size_t{1} << 20;  // bytes of records read at once
+constexpr std::size_t kHead = std::size_t{1} << 16;       // bytes that a format is told by and that headers of PLY seldom exceed
+constexpr std::size_t kMostHead = std::size_t{16} << 20;  // bytes before the points of a LAS file that is read as a stream
+constexpr std::size_t kAtOnce = std::size_t{1} << 20;     // bytes of records read at once
 
-// A coordinate in a record of fixed size: value * scale + offset.
-struct Axis {
-  Type type = Type::kFloat64;
-  std::size_t at = 0;
-  double scale = 1;
-  double offset = 0;
-};
-
+// Records of one size, one after the other in the file as in the table.
 class FixedRecords : public PointStream {
  public:
-  FixedRecords(std::unique_ptr<RandomFile> file, std::uint64_t begin, std::uint64_t count, std::size_t stride,
-               const std::array<Axis, 3>& axes)
-      : file_(std::move(file)), at_(begin), left_(count), stride_(stride), axes_(axes) {}
+  FixedRecords(std::unique_ptr<RandomFile> file, std::uint64_t begin, Attributes table)
+      : file_(std::move(file)), at_(begin), left_(table.points().count), table_(std::move(table)), layout_(table_.points()) {
+    const Roles roles = find_roles(table_.points());
+    std::copy_n(roles.position, 3, position_.begin());
+  }
 
-  void next(std::size_t most, std::vector<Vec3>& points) override {
+  void next(std::size_t most, std::vector<Vec3>& points, std::string* records) override {
     points.clear();
+    if (records != nullptr) records->clear();
     while (left_ > 0 && points.size() < most) {
       const std::uint64_t wanted = std::min<std::uint64_t>(left_, most - points.size());
-      const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(wanted, std::max<std::size_t>(1, kAtOnce / stride_)));
-      bytes_.resize(count * stride_);
-      file_->read(at_, bytes_.data(), bytes_.size());
-      for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t at_once = std::max<std::size_t>(1, kAtOnce / layout_.size());
+      fetch(static_cast<std::size_t>(std::min<std::uint64_t>(wanted, at_once)), bytes_);
+      left_ -= bytes_.size() / layout_.size();
+      const std::vector<Property>& properties = table_.points().properties;
+      for (const char* record = bytes_.data(); record != bytes_.data() + bytes_.size(); record += layout_.size()) {
         Vec3 p{};
-        for (std::size_t a = 0; a < 3; ++a) {
-          const double value = load_as_double(axes_[a].type, bytes_.data() + i * stride_ + axes_[a].at);
-          p[a] = value * axes_[a].scale + axes_[a].offset;
-        }
+        for (std::size_t a = 0; a < 3; ++a) p[a] = load_as_double(properties[position_[a]].type, record + layout_.offset(position_[a]));
         points.push_back(p);
       }
-      at_ += bytes_.size();
-      left_ -= count;
+      if (records != nullptr) records->append(bytes_);
     }
   }
 
   [[nodiscard]] std::uint64_t left() const override { return left_; }
   [[nodiscard]] Scalar scalar() const override {
-    const auto single = [](const Axis& axis) { return axis.type == Type::kFloat32; };
-    return std::all_of(axes_.begin(), axes_.end(), single) ? Scalar::kFloat32 : Scalar::kFloat64;
+    const auto single = [&](std::size_t property) { return table_.points().properties[property].type == Type::kFloat32; };
+    return std::all_of(position_.begin(), position_.end(), single) ? Scalar::kFloat32 : Scalar::kFloat64;
   }
+  [[nodiscard]] const Attributes& table() const override { return table_; }
+
+ protected:
+  // The next `count` records of the table.
+  virtual void fetch(std::size_t count, std::string& records) { read(count * layout_.size(), records); }
+  // The next bytes of the file.
+  void read(std::size_t count, std::string& bytes) {
+    bytes.resize(count);
+    file_->read(at_, bytes.data(), count);
+    at_ += count;
+  }
+  [[nodiscard]] const RandomFile& file() const { return *file_; }
 
  private:
   std::unique_ptr<RandomFile> file_;
   std::uint64_t at_;
   std::uint64_t left_;
-  std::size_t stride_;
-  std::array<Axis, 3> axes_;
-  std::vector<char> bytes_;
+  Attributes table_;
+  RecordLayout layout_;
+  std::array<std::size_t, 3> position_{};
+  std::string bytes_;
 };
 
-class WholeCloud : public PointStream {
+class LasRecords : public FixedRecords {
  public:
-  explicit WholeCloud(const std::string& path) {
-    Cloud cloud = read_cloud(path);
-    positions_ = std::move(cloud.positions);
-    scalar_ = cloud.scalar;
+  // `head`: what comes before the points.
+  LasRecords(std::unique_ptr<RandomFile> file, const Source& head, const LasHeader& header)
+      : FixedRecords(std::move(file), header.points_at, las_table(header)), header_(header) {
+    if (header.compressed) laz_ = std::make_unique<LazRecords>(head, header, this->file());
   }
-
-  void next(std::size_t most, std::vector<Vec3>& points) override {
-    const std::size_t count = std::min(most, positions_.size() - at_);
-    const auto begin = positions_.begin() + static_cast<std::ptrdiff_t>(at_);
-    points.assign(begin, begin + static_cast<std::ptrdiff_t>(count));
-    at_ += count;
-  }
-
-  [[nodiscard]] std::uint64_t left() const override { return positions_.size() - at_; }
-  [[nodiscard]] Scalar scalar() const override { return scalar_; }
 
  private:
-  std::vector<Vec3> positions_;
-  std::size_t at_ = 0;
-  Scalar scalar_;
+  void fetch(std::size_t count, std::string& records) override {
+    bytes_.clear();
+    if (laz_) {
+      laz_->next(count, bytes_);
+    } else {
+      read(count * header_.record_bytes, bytes_);
+    }
+    records.resize(bytes_.size() / header_.record_bytes * table().points().stride());
+    char* to = records.data();
+    for (std::size_t at = 0; at < bytes_.size(); at += header_.record_bytes) to = copy_las_record(header_, bytes_.data() + at, to);
+  }
+
+  LasHeader header_;
+  std::unique_ptr<LazRecords> laz_;
+  std::string bytes_;  // as in the file
 };
 
-// The header of a LAS file that is not packed, from which its records are found; null for LAZ.
-std::unique_ptr<PointStream> las_records(std::unique_ptr<RandomFile> file, const std::string& path) {
+// The whole file, in memory.
+class WholeCloud : public PointStream {
+ public:
+  WholeCloud(const std::string& path, bool with_records) : cloud_(read_cloud(path)) {
+    if (cloud_.attributes == nullptr) make_table();
+    const Attributes& from = *cloud_.attributes;
+    table_.dialect = from.dialect;
+    table_.comments = from.comments;
+    table_.elements.push_back({from.points().name, from.points().count, from.points().properties, {}});
+    record_ = from.points().data.data();
+    if (with_records) return;
+    cloud_.attributes.reset();
+    record_ = nullptr;
+  }
+
+  void next(std::size_t most, std::vector<Vec3>& points, std::string* records) override {
+    const std::size_t count = std::min(most, cloud_.positions.size() - at_);
+    const auto begin = cloud_.positions.begin() + static_cast<std::ptrdiff_t>(at_);
+    points.assign(begin, begin + static_cast<std::ptrdiff_t>(count));
+    at_ += count;
+    if (record_ == nullptr) return;
+    RecordLayout layout(table_.points());
+    const char* const first = record_;
+    for (std::size_t i = 0; i < count; ++i, record_ += layout.size()) layout.seek(record_);
+    if (records != nullptr) records->assign(first, record_);
+  }
+
+  [[nodiscard]] std::uint64_t left() const override { return cloud_.positions.size() - at_; }
+  [[nodiscard]] Scalar scalar() const override { return cloud_.scalar; }
+  [[nodiscard]] const Attributes& table() const override { return table_; }
+
+ private:
+  // Of a file that is no table: positions and colours. Normals and confidence would be replaced.
+  void make_table() {
+    cloud_.normals = {};
+    cloud_.confidence = {};
+    Merger merger({cloud_});
+    merger.append(cloud_);
+    Attributes table;
+    table.elements.push_back(merger.take());
+    cloud_.attributes = std::make_shared<Attributes>(std::move(table));
+  }
+
+  Cloud cloud_;
+  Attributes table_;  // without data
+  const char* record_ = nullptr;
+  std::size_t at_ = 0;
+};
+
+// Null for what the reader of whole files refuses.
+std::unique_ptr<PointStream> las_records(std::unique_ptr<RandomFile> file, std::string head, const std::string& path) {
   // What the header says is checked against the size of the file, and its variable length records may be anywhere before the points.
-  std::string bytes(static_cast<std::size_t>(std::min<std::uint64_t>(file->size(), kHead)), '\0');
-  file->read(0, bytes.data(), bytes.size());
-  if (bytes.size() < las::kRecordBytes + 2 || (load<std::uint8_t>(bytes.data() + las::kPointFormat) & 0xC0U) != 0) return nullptr;
-  const std::uint64_t points_at = load<std::uint32_t>(bytes.data() + las::kPointsAt);
-  if (points_at > bytes.size()) return nullptr;
-  const LasHeader header = read_las_header({bytes, path}, file->size());
-  if (header.compressed) return nullptr;
-  std::array<Axis, 3> axes;
-  for (std::size_t a = 0; a < 3; ++a) axes[a] = {Type::kInt32, 4 * a, header.scale[a], header.offset[a]};
-  return std::make_unique<FixedRecords>(std::move(file), header.points_at, header.count, header.record_bytes, axes);
+  if (head.size() < las::kRecordBytes + 2) return nullptr;
+  const std::uint64_t points_at = load<std::uint32_t>(head.data() + las::kPointsAt);
+  if (points_at > file->size() || points_at > kMostHead) return nullptr;
+  const std::size_t known = head.size();
+  if (points_at > known) {
+    head.resize(static_cast<std::size_t>(points_at));
+    file->read(known, head.data() + known, head.size() - known);
+  }
+  const Source source{head, path};
+  const LasHeader header = read_las_header(source, file->size());
+  if (header.count == 0) return nullptr;
+  return std::make_unique<LasRecords>(std::move(file), source, header);
 }
 
-// The same for PLY: null where records are not found by counting.
-std::unique_ptr<PointStream> ply_records(std::unique_ptr<RandomFile> file, const std::string& head, const std::string& path) {
-  if (head.find("end_header") == std::string::npos) return nullptr;
-  const PlyHeader header = read_ply_header({head, path});
-  if (header.encoding != PlyEncoding::kLittleEndian || header.vertex != 0) return nullptr;
-  const Element& points = header.elements[0];
-  const std::size_t stride = points.stride();
-  if (stride == 0 || is_splat(points) || points.count > (file->size() - header.body) / stride) return nullptr;
-  const Roles roles = find_roles(points);
-  std::array<Axis, 3> axes;
-  const RecordLayout layout(points);
-  for (std::size_t a = 0; a < 3; ++a) {
-    if (roles.position[a] == Element::npos) return nullptr;
-    axes[a] = {points.properties[roles.position[a]].type, layout.offset(roles.position[a])};
-  }
-  return std::make_unique<FixedRecords>(std::move(file), header.body, points.count, stride, axes);
+std::unique_ptr<PointStream> stored_records(std::unique_ptr<RandomFile> file, std::optional<StoredTable> stored) {
+  if (!stored) return nullptr;
+  const Roles roles = find_roles(stored->table.points());
+  if (std::count(roles.position, roles.position + 3, Element::npos) != 0) return nullptr;
+  return std::make_unique<FixedRecords>(std::move(file), stored->begin, std::move(stored->table));
 }
 
 }  // namespace
 
-std::unique_ptr<PointStream> open_points(const std::string& path) {
+std::unique_ptr<PointStream> open_points(const std::string& path, bool with_records) {
   auto file = std::make_unique<RandomFile>(path);
   std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(file->size(), kHead)), '\0');
   file->read(0, head.data(), head.size());
+  const Source source{head, path};
+  const std::uint64_t size = file->size();
   std::unique_ptr<PointStream> stream;
-  if (head.rfind("ply", 0) == 0) stream = ply_records(std::move(file), head, path);
-  if (head.rfind("LASF", 0) == 0) stream = las_records(std::move(file), path);
-  if (!stream) stream = std::make_unique<WholeCloud>(path);
+  if (head.starts_with("ply")) {
+    stream = stored_records(std::move(file), find_ply_records(source, size));
+  } else if (head.starts_with("# .PCD")) {
+    stream = stored_records(std::move(file), find_pcd_records(source, size));
+  } else if (head.starts_with("\x93NUMPY")) {
+    stream = stored_records(std::move(file), find_npy_records(source, size));
+  } else if (head.starts_with("LASF")) {
+    stream = las_records(std::move(file), head, path);
+  }
+  if (!stream) stream = std::make_unique<WholeCloud>(path, with_records);
   return stream;
 }
 

@@ -59,6 +59,29 @@ void check_against_header(const Source& source, const LasHeader& header, Cloud& 
 
 }  // namespace
 
+Attributes las_table(const LasHeader& header) {
+  Attributes table;
+  table.dialect = Attributes::Dialect::kLas;
+  table.elements.emplace_back();
+  Element& points = table.elements.back();
+  points.name = "vertex";
+  points.count = header.count;
+  points.properties.reserve(3 + header.fields.size());
+  for (const char* axis : {"x", "y", "z"}) points.properties.push_back(make_property(axis, Type::kFloat64));
+  for (const LasField& field : header.fields) points.properties.push_back(make_property(field.name, field.type));
+  make_unique(points.properties);
+  return table;
+}
+
+char* copy_las_record(const LasHeader& header, const char* record, char* to) {
+  for (std::size_t a = 0; a < 3; ++a, to += sizeof(double)) {
+    const double value = load<std::int32_t>(record + 4 * a) * header.scale[a] + header.offset[a];
+    std::memcpy(to, &value, sizeof value);
+  }
+  for (const LasField& field : header.fields) to = std::copy_n(record + field.offset, size_of(field.type), to);
+  return to;
+}
+
 Cloud read_las(const Source& source, const ReadOptions& options) {
   const LasHeader header = read_las_header(source);
   if (header.compressed) {
@@ -68,24 +91,13 @@ Cloud read_las(const Source& source, const ReadOptions& options) {
     if (is_copc(source, header)) cloud.format += ", COPC";
     return cloud;
   }
-  const std::shared_ptr<Attributes> table = Attributes::of_points(Attributes::Dialect::kLas);
+  auto table = std::make_shared<Attributes>(las_table(header));
   Element& points = table->elements.back();
-  points.count = header.count;
-  points.properties.reserve(3 + header.fields.size());
-  for (const char* axis : {"x", "y", "z"}) points.properties.push_back(make_property(axis, Type::kFloat64));
-  for (const LasField& field : header.fields) points.properties.push_back(make_property(field.name, field.type));
-  make_unique(points.properties);
   const auto count = static_cast<std::size_t>(header.count);
   points.data.resize(bytes_of(count, points.stride()));
   char* to = points.data.data();
   const char* record = source.bytes.data() + header.points_at;
-  for (std::size_t i = 0; i < count; ++i, record += header.record_bytes) {
-    for (std::size_t a = 0; a < 3; ++a, to += sizeof(double)) {
-      const double value = load<std::int32_t>(record + 4 * a) * header.scale[a] + header.offset[a];
-      std::memcpy(to, &value, sizeof value);
-    }
-    for (const LasField& field : header.fields) to = std::copy_n(record + field.offset, size_of(field.type), to);
-  }
+  for (std::size_t i = 0; i < count; ++i, record += header.record_bytes) to = copy_las_record(header, record, to);
   table->raw = std::string(source.bytes);
   Cloud cloud;
   cloud.format = std::string("las 1.") += std::to_string(header.minor) + ", point format " + std::to_string(header.point_format);

@@ -186,13 +186,47 @@ float half_to_float(std::uint32_t bits) {
   return bits_as<float>(sign | (exponent + 112) << 23 | fraction << 13);
 }
 
-// The rows as one element; float16 becomes float32.
-Element make_points(const Source& source, const NpyHeader& header, std::uint64_t rows, std::uint64_t columns,
-                    std::vector<std::string>& warnings) {
-  const bool structured = !header.fields[0].name.empty() || header.fields.size() > 1;
+bool is_structured(const NpyHeader& header) { return !header.fields[0].name.empty() || header.fields.size() > 1; }
+
+// By number: x y z, then nx ny nz where three more follow, then scalars.
+void name_columns(std::vector<Property>& properties) {
+  constexpr const char* kNames[] = {"x", "y", "z", "nx", "ny", "nz"};
+  const std::size_t named = properties.size() >= 6 ? 6 : 3;
+  for (std::size_t c = 0; c < properties.size(); ++c) {
+    properties[c].name = c < named ? std::string(kNames[c]) : std::string("scalar_") += std::to_string(c + 1);
+  }
+}
+
+// The rows as one element without data.
+Element describe_points(const Source& source, const NpyHeader& header) {
+  if (header.fields.empty()) fail(source, "an empty dtype in the header");
   Element points = make_vertex_element();
-  points.count = rows;
-  points.properties = structured ? header.fields : std::vector<Property>(static_cast<std::size_t>(columns), header.fields[0]);
+  points.properties = header.fields;
+  if (is_structured(header)) {
+    if (header.shape.size() != 1)
+      fail(source, "expected one dimension in the shape of a structured array, found " + std::to_string(header.shape.size()));
+  } else {
+    if (header.shape.size() != 2)
+      fail(source, "expected the shape (N, 3) with two dimensions, found " + std::to_string(header.shape.size()) + " dimensions");
+    constexpr std::uint64_t kMostColumns = 1000;
+    constexpr std::uint64_t kWide = 16;  // three rows of more columns than that are three coordinates of as many points
+    const std::uint64_t columns = header.shape[1];
+    if (columns < 3 || columns > kMostColumns || (header.shape[0] == 3 && columns > kWide)) {
+      fail(source, "expected the shape (N, 3) with 3 to 1000 columns, found " + std::to_string(columns) + " columns" +
+                       (header.shape[0] == 3 ? " and 3 rows (a transposed array?)" : ""));
+    }
+    points.properties.assign(static_cast<std::size_t>(columns), header.fields[0]);
+    name_columns(points.properties);
+  }
+  points.count = header.shape[0];
+  return points;
+}
+
+// With their data; float16 becomes float32.
+Element make_points(const Source& source, const NpyHeader& header, std::vector<std::string>& warnings) {
+  Element points = describe_points(source, header);
+  const std::uint64_t rows = points.count;
+  const bool structured = is_structured(header);
   const std::size_t stride = points.stride();
   const std::string_view body = source.bytes.substr(header.body);
   if (rows > body.size() / stride) {
@@ -228,44 +262,35 @@ Element make_points(const Source& source, const NpyHeader& header, std::uint64_t
   return points;
 }
 
-// By number: x y z, then nx ny nz where three more follow, then scalars.
-void name_columns(std::vector<Property>& properties) {
-  constexpr const char* kNames[] = {"x", "y", "z", "nx", "ny", "nz"};
-  const std::size_t named = properties.size() >= 6 ? 6 : 3;
-  for (std::size_t c = 0; c < properties.size(); ++c) {
-    properties[c].name = c < named ? std::string(kNames[c]) : std::string("scalar_") += std::to_string(c + 1);
-  }
-}
-
 }  // namespace
 
 Cloud read_npy(const Source& source) {
   const NpyHeader header = NpyParser(source).parse();
-  const bool structured = header.fields.empty() || !header.fields[0].name.empty();
-  if (header.fields.empty()) fail(source, "an empty dtype in the header");
-  constexpr std::uint64_t kMostColumns = 1000;
-  std::uint64_t columns = 0;
-  if (structured) {
-    if (header.shape.size() != 1)
-      fail(source, "expected one dimension in the shape of a structured array, found " + std::to_string(header.shape.size()));
-  } else {
-    if (header.shape.size() != 2)
-      fail(source, "expected the shape (N, 3) with two dimensions, found " + std::to_string(header.shape.size()) + " dimensions");
-    columns = header.shape[1];
-    constexpr std::uint64_t kWide = 16;  // three rows of more columns than that are three coordinates of as many points
-    if (columns < 3 || columns > kMostColumns || (header.shape[0] == 3 && columns > kWide)) {
-      fail(source, "expected the shape (N, 3) with 3 to 1000 columns, found " + std::to_string(columns) + " columns" +
-                       (header.shape[0] == 3 ? " and 3 rows (a transposed array?)" : ""));
-    }
-  }
   Cloud cloud;
   cloud.format = "npy";
   auto table = std::make_shared<Attributes>();
   table->dialect = Attributes::Dialect::kText;
-  table->elements.push_back(make_points(source, header, header.shape[0], columns, cloud.warnings));
-  if (!structured) name_columns(table->elements[0].properties);
+  table->elements.push_back(make_points(source, header, cloud.warnings));
   fill_cloud(source, std::move(table), cloud);
   return cloud;
+}
+
+std::optional<StoredTable> find_npy_records(const Source& head, std::uint64_t file_size) {
+  constexpr std::size_t kVersion = 6;  // byte; then the length of the header, in two bytes in version 1 and four in later ones
+  constexpr std::size_t kLength = 8;
+  if (head.bytes.size() < kLength + 4) return std::nullopt;
+  const std::size_t length =
+      head.bytes[kVersion] == 1 ? load<std::uint16_t>(head.bytes.data() + kLength) : load<std::uint32_t>(head.bytes.data() + kLength);
+  if (length > head.bytes.size() - kLength - 4) return std::nullopt;
+  const NpyHeader header = NpyParser(head).parse();
+  Element points = describe_points(head, header);
+  const bool in_rows = !header.column_major || is_structured(header);
+  if (!in_rows || header.big_endian || header.half || points.count > (file_size - header.body) / points.stride()) return std::nullopt;
+  StoredTable stored;
+  stored.begin = header.body;
+  stored.table.dialect = Attributes::Dialect::kText;
+  stored.table.elements.push_back(std::move(points));
+  return stored;
 }
 
 }  // namespace g3r::io

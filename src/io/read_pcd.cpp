@@ -313,4 +313,17 @@ Cloud read_pcd(const Source& source) {
   return cloud;
 }
 
+std::optional<StoredTable> find_pcd_records(const Source& head, std::uint64_t file_size) {
+  if (head.bytes.find("DATA binary\n") == std::string_view::npos) return std::nullopt;
+  PcdHeader header = PcdParser(head).parse();
+  const std::size_t stride = header.points.stride();
+  if (header.encoding != "binary" || header.points.count > (file_size - header.body) / stride) return std::nullopt;
+  StoredTable stored;
+  stored.begin = header.body;
+  stored.table.dialect = Attributes::Dialect::kPcd;
+  stored.table.comments = std::move(header.kept);
+  stored.table.elements.push_back(std::move(header.points));
+  return stored;
+}
+
 }  // namespace g3r::io

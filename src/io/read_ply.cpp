@@ -322,4 +322,18 @@ Mesh read_ply_mesh(const Source& source) {
   return mesh;
 }
 
+std::optional<StoredTable> find_ply_records(const Source& head, std::uint64_t file_size) {
+  if (head.bytes.find("end_header") == std::string_view::npos) return std::nullopt;
+  PlyHeader header = read_ply_header(head);
+  if (header.encoding != PlyEncoding::kLittleEndian || header.vertex != 0) return std::nullopt;
+  const Element& points = header.elements[0];
+  const std::size_t stride = points.stride();
+  if (stride == 0 || is_splat(points) || points.count > (file_size - header.body) / stride) return std::nullopt;
+  StoredTable stored;
+  stored.begin = header.body;
+  stored.table.comments = std::move(header.comments);
+  stored.table.elements.push_back(std::move(header.elements[0]));
+  return stored;
+}
+
 }  // namespace g3r::io

@@ -3,6 +3,10 @@
 #pragma once
 
 #include "io/source.h"
+#include "io/table.h"
+
+#include <cstdint>
+#include <optional>
 
 namespace g3r::io {
 
@@ -19,6 +23,18 @@ Cloud read_xyz(const Source& source);
 Cloud read_obj(const Source& source);
 Cloud read_off(const Source& source);
 Cloud read_stl(const Source& source, bool binary);
+
+/// A table whose records lie in a file as they are in memory.
+struct StoredTable {
+  Attributes table;         ///< one element, without data
+  std::uint64_t begin = 0;  ///< byte offset of the first record
+};
+
+/// Where the records of a file are that begins with `head` and has `file_size` bytes; nothing where they are stored otherwise, or are not
+/// all there. What these throw, the reader of the format throws too.
+std::optional<StoredTable> find_ply_records(const Source& head, std::uint64_t file_size);
+std::optional<StoredTable> find_pcd_records(const Source& head, std::uint64_t file_size);
+std::optional<StoredTable> find_npy_records(const Source& head, std::uint64_t file_size);
 
 Mesh read_ply_mesh(const Source& source);
 Mesh read_obj_mesh(const Source& source);

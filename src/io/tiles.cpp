@@ -1,6 +1,8 @@
 #include "io/tiles.h"
 
 #include "io/cloud_from_table.h"
+#include "io/file_lists.h"
+#include "io/merger.h"
 #include "io/table.h"
 
 #include <algorithm>
@@ -58,128 +60,6 @@ std::vector<std::string> files_of_pattern(const std::string& path) {
   return files;
 }
 
-// Where a column of the whole comes from in each of the clouds.
-struct Merged {
-  enum class What { kPosition, kNormal, kColor, kConfidence, kProperty };
-  What what = What::kProperty;
-  std::size_t axis = 0;
-};
-
-class Merger {
- public:
-  explicit Merger(const std::vector<Cloud>& clouds) : clouds_(clouds) { plan(); }
-
-  Element merge() {
-    for (const Cloud& cloud : clouds_) {
-      append(cloud);
-      element_.count += cloud.positions.size();
-    }
-    return std::move(element_);
-  }
-
- private:
-  void add(const std::string& name, Type type, Merged column) {
-    const std::size_t found = element_.find(name);
-    if (found == Element::npos) {
-      element_.properties.emplace_back();
-      element_.properties.back().name = name;
-      element_.properties.back().type = type;
-      columns_.push_back(column);
-    } else if (element_.properties[found].type != type) {
-      element_.properties[found].type = Type::kFloat64;
-    }
-  }
-
-  void plan() {
-    const auto any = [&](const auto& has) { return std::any_of(clouds_.begin(), clouds_.end(), has); };
-    using What = Merged::What;
-    const auto triple = [&](const std::array<const char*, 3>& names, Type type, What what) {
-      for (std::size_t a = 0; a < 3; ++a) add(names[a], type, {what, a});
-    };
-    const bool doubles = any([](const Cloud& c) { return c.scalar == Scalar::kFloat64; });
-    triple({"x", "y", "z"}, doubles ? Type::kFloat64 : Type::kFloat32, What::kPosition);
-    if (any([](const Cloud& c) { return !c.normals.empty(); })) triple({"nx", "ny", "nz"}, Type::kFloat64, What::kNormal);
-    if (any([](const Cloud& c) { return !c.colors.empty(); })) triple({"red", "green", "blue"}, Type::kUint8, What::kColor);
-    if (any([](const Cloud& c) { return !c.confidence.empty(); })) add("confidence", Type::kFloat32, {What::kConfidence, 0});
-    const std::size_t known = element_.properties.size();
-    for (const Cloud& cloud : clouds_) {
-      if (cloud.attributes == nullptr) continue;
-      const Element& points = cloud.attributes->points();
-      const std::vector<bool> special = special_properties(points);
-      for (std::size_t i = 0; i < points.properties.size(); ++i) {
-        const Property& property = points.properties[i];
-        const std::size_t found = element_.find(property.name);
-        if (!special[i] && !property.list && property.count == 1 && (found == Element::npos || found >= known))
-          add(property.name, property.type, {What::kProperty, 0});
-      }
-    }
-  }
-
-  // Those that positions, normals, colours and confidence come from.
-  static std::vector<bool> special_properties(const Element& points) {
-    const Roles roles = find_roles(points);
-    std::vector<bool> special(points.properties.size());
-    const auto mark = [&](std::size_t property) {
-      if (property != Element::npos) special[property] = true;
-    };
-    for (std::size_t a = 0; a < 3; ++a) {
-      mark(roles.position[a]);
-      mark(roles.normal[a]);
-      mark(roles.color[a]);
-    }
-    mark(roles.packed_color);
-    mark(roles.confidence);
-    return special;
-  }
-
-  void append(const Cloud& cloud) {
-    const Element* points = cloud.attributes == nullptr ? nullptr : &cloud.attributes->points();
-    std::vector<std::size_t> from(columns_.size(), Element::npos);
-    for (std::size_t c = 0; points != nullptr && c < columns_.size(); ++c) {
-      if (columns_[c].what == Merged::What::kProperty) from[c] = points->find(element_.properties[c].name);
-    }
-    static const Element kNothing;
-    RecordLayout layout(points == nullptr ? kNothing : *points);
-    const char* record = points == nullptr ? nullptr : points->data.data();
-    for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
-      if (record != nullptr) layout.seek(record);
-      for (std::size_t c = 0; c < columns_.size(); ++c) {
-        double value = 0;
-        if (from[c] != Element::npos) {
-          value = load_as_double(points->properties[from[c]].type, record + layout.offset(from[c]));
-        } else {
-          value = own_value(cloud, columns_[c], i);
-        }
-        char stored[8];
-        const Type type = element_.properties[c].type;
-        store_double(type, value, stored);
-        element_.data.append(stored, size_of(type));
-      }
-      if (record != nullptr) record += layout.size();
-    }
-  }
-
-  static double own_value(const Cloud& cloud, const Merged& column, std::size_t i) {
-    switch (column.what) {
-      case Merged::What::kPosition:
-        return cloud.positions[i][column.axis];
-      case Merged::What::kNormal:
-        return cloud.normals.empty() ? 0 : cloud.normals[i][column.axis];
-      case Merged::What::kColor:
-        return cloud.colors.empty() ? 0 : cloud.colors[i][column.axis];
-      case Merged::What::kConfidence:
-        return cloud.confidence.empty() ? 0 : static_cast<double>(cloud.confidence[i]);
-      case Merged::What::kProperty:
-        break;
-    }
-    return 0;
-  }
-
-  const std::vector<Cloud>& clouds_;
-  Element element_ = make_vertex_element();
-  std::vector<Merged> columns_;
-};
-
 void merge_scanners(const std::vector<Cloud>& clouds, Cloud& whole) {
   if (std::any_of(clouds.begin(), clouds.end(), [](const Cloud& c) { return c.sensor_positions.empty(); })) return;
   for (const Cloud& cloud : clouds) {
@@ -210,6 +90,7 @@ void merge_warnings(const std::vector<Cloud>& clouds, const std::vector<std::str
 std::vector<std::string> find_tiles(const std::string& path) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) return files_of_folder(path);
+  if (is_file_list(path) && fs::is_regular_file(path, ignored)) return files_of_list(path);
   if (path.find_first_of("*?") == std::string::npos || fs::exists(path, ignored)) return {};
   return files_of_pattern(path);
 }
@@ -228,7 +109,9 @@ Cloud merge_clouds(std::vector<Cloud>& clouds, const std::vector<std::string>& n
   const auto same = [&](const Cloud& cloud) { return cloud.format == clouds[0].format; };
   if (std::all_of(clouds.begin(), clouds.end(), same)) whole.format += " of " + clouds[0].format;
   auto table = std::make_shared<Attributes>();
-  table->elements.push_back(Merger(clouds).merge());
+  Merger merger(clouds);
+  for (const Cloud& cloud : clouds) merger.append(cloud);
+  table->elements.push_back(merger.take());
   merge_scanners(clouds, whole);
   merge_warnings(clouds, names, whole);
   clouds.clear();

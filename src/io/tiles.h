@@ -1,4 +1,4 @@
-// Several files that are one cloud: the files of a folder or of a pattern.
+// Several files that are one cloud: those of a folder, of a pattern, of a list or a virtual point cloud.
 #pragma once
 
 #include "io/source.h"
@@ -9,7 +9,8 @@
 namespace g3r::io {
 
 /// The files of points that a path stands for, sorted by name: those of a folder, by their extensions, or those that a pattern with * or ?
-/// names; empty if the path is neither, or names a file itself. Throws IoError for a folder or pattern without any.
+/// names, or in its own order those of a list (file_lists.h); empty if the path is none of these, or names a file itself. Throws IoError
+/// for a folder or pattern without any, and what files_of_list() throws.
 std::vector<std::string> find_tiles(const std::string& path);
 
 /// Drops what a cloud keeps of its LAS file beside the points, which a cloud of several files has no use for.

@@ -49,9 +49,23 @@ void append_format(bool ascii, std::string& header) {
 
 }  // namespace
 
-void write_ply(const PointData& data, OutputFile& file) {
+std::vector<Column> ply_columns(const PointData& data) {
   std::vector<Column> columns = plan_columns(data, Attributes::Dialect::kPly, true);
   for (Column& column : columns) column.property.type = ply_type(column.property.type);
+  return columns;
+}
+
+std::string ply_header(const std::vector<std::string>& comments, std::uint64_t points, const std::vector<Column>& columns) {
+  std::string header;
+  append_format(false, header);
+  for (const std::string& comment : comments) header += comment + "\n";
+  header += "element vertex " + std::to_string(points) + "\n";
+  for (const Column& column : columns) append_property(column.property, header);
+  return header + "end_header\n";
+}
+
+void write_ply(const PointData& data, OutputFile& file) {
+  const std::vector<Column> columns = ply_columns(data);
   const bool ascii = data.options.ascii;
   const bool from_ply = data.table != nullptr && data.table->dialect == Attributes::Dialect::kPly;
   std::string header;

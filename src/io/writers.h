@@ -8,6 +8,9 @@
 namespace g3r::io {
 
 void write_ply(const PointData& data, OutputFile& file);
+/// The parts of write_ply() for a binary file of points alone, whose rows write_rows() may write some at a time.
+std::vector<Column> ply_columns(const PointData& data);
+std::string ply_header(const std::vector<std::string>& comments, std::uint64_t points, const std::vector<Column>& columns);
 void write_xyz(const PointData& data, char separator, bool counted, OutputFile& file);
 void write_pcd(const PointData& data, OutputFile& file);
 void write_npy(const PointData& data, OutputFile& file);

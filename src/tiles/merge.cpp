@@ -1,15 +1,16 @@
 // The inputs once more, with the results beside them: tiles list theirs in the order of the input, so all files are read front to back.
 #include "base/stages.h"
-#include "io/output_file.h"
 #include "io/point_stream.h"
 #include "io/source.h"
 #include "tiles/manifest.h"
+#include "tiles/point_writer.h"
 #include "tiles/records.h"
 
 #include <g3r/io.h>
 #include <g3r/tiles.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <system_error>
@@ -17,13 +18,13 @@
 namespace g3r::tiles {
 namespace {
 
-constexpr std::size_t kBlock = std::size_t{1} << 18;  // points written at once
-constexpr std::uint64_t kAtOnce = 4096;               // results read from a tile at once
+constexpr std::uint64_t kAtOnce = 4096;  // results read from a tile at once
 
 // The results of a tile, front to back.
 class Cursor {
  public:
-  explicit Cursor(std::string path) : path_(std::move(path)) {}
+  // `points`: of the input, which results lie among.
+  Cursor(std::string path, std::uint64_t points) : path_(std::move(path)), points_(points) {}
 
   // Calls take(result) for those before `end` that have not been taken. The file is open only while it is read: there may be thousands.
   template <class Take>
@@ -42,35 +43,31 @@ class Cursor {
     file.append(at_, to, results_);
     at_ = to;
     ended_ = results_.empty();
+    check();
     return !ended_;
   }
 
+  void check() {
+    for (std::size_t i = 0; i < results_.size(); ++i) {
+      const Result& r = results_[i];
+      const bool finite = std::isfinite(r.normal[0] + r.normal[1] + r.normal[2] + r.confidence);
+      if (finite && r.index >= next_ && r.index < points_) {
+        next_ = r.index + 1;
+        continue;
+      }
+      throw InvalidInput(escape_text(path_) + ": damaged at record " + std::to_string(at_ - results_.size() + i) +
+                         "; remove it, and g3r tiles run FOLDER does the tile again");
+    }
+  }
+
   std::string path_;
+  std::uint64_t points_;
+  std::uint64_t next_ = 0;  // least index that may follow
   std::uint64_t at_ = 0;
   bool ended_ = false;
   std::vector<Result> results_;
   std::size_t used_ = 0;
 };
-
-std::string ply_header(const Manifest& m) {
-  const std::string type = m.single_precision ? "float" : "double";
-  std::string text = "ply\nformat binary_little_endian 1.0\ncomment g3r " + std::string(version()) + ", " + std::to_string(m.tiles.size()) +
-                     " tiles\nelement vertex " + std::to_string(m.points) + "\n";
-  for (const char* axis : {"x", "y", "z"}) text += "property " + type + " " + axis + "\n";
-  for (const char* name : {"nx", "ny", "nz", "confidence"}) text += std::string("property float ") + name + "\n";
-  return text + "end_header\n";
-}
-
-void append_point(const Vec3& p, bool single, std::string& bytes) {
-  for (const double c : p) {
-    const auto rounded = static_cast<float>(c);
-    if (single) {
-      bytes.append(reinterpret_cast<const char*>(&rounded), sizeof rounded);
-    } else {
-      bytes.append(reinterpret_cast<const char*>(&c), sizeof c);
-    }
-  }
-}
 
 void require_done(const std::string& folder, const Manifest& m) {
   std::string missing;
@@ -94,40 +91,41 @@ MergedTiles merge(const std::string& folder, const Manifest& m, const std::strin
   Stages stages(monitor);
   stages.begin("merge");
   std::vector<Cursor> cursors;
-  for (std::size_t t = 0; t < m.tiles.size(); ++t) cursors.emplace_back(result_path(folder, t));
-  io::OutputFile file(output, monitor.cancel);
-  file.write(ply_header(m));
+  for (std::size_t t = 0; t < m.tiles.size(); ++t) cursors.emplace_back(result_path(folder, t), m.points);
+  PointWriter writer(output, m, stages);
   std::vector<Vec3> points;
-  std::vector<std::array<float, 4>> results;
-  std::string bytes;
+  std::string records;
+  std::vector<Vec3> normals;
+  std::vector<float> confidence;
   MergedTiles out;
   std::uint64_t begin = 0;
-  for (const Input& input : m.inputs) {
-    const std::unique_ptr<io::PointStream> stream = io::open_points(input.path);
+  for (std::size_t i = 0; i < m.inputs.size(); ++i) {
+    const Input& input = m.inputs[i];
+    const std::unique_ptr<io::PointStream> stream = io::open_points(input.path, true);
+    const std::size_t block = PointWriter::block(*stream);
     std::uint64_t read = 0;
-    for (stream->next(kBlock, points); !points.empty(); stream->next(kBlock, points)) {
+    for (stream->next(block, points, &records); !points.empty(); stream->next(block, points, &records)) {
       read += points.size();
       require_unchanged(input, read <= input.points);
-      results.assign(points.size(), {0, 0, 0, 0});
+      normals.assign(points.size(), Vec3{});
+      confidence.assign(points.size(), 0);
       for (Cursor& cursor : cursors) {
         cursor.take_until(begin + points.size(), [&](const Result& r) {
-          if (r.index >= begin) results[static_cast<std::size_t>(r.index - begin)] = {r.normal[0], r.normal[1], r.normal[2], r.confidence};
           out.confidence_mean += r.confidence;
           out.confidence_below_half += r.confidence < 0.5F ? 1 : 0;
+          if (r.index < begin) return;
+          const auto at = static_cast<std::size_t>(r.index - begin);
+          normals[at] = {r.normal[0], r.normal[1], r.normal[2]};
+          confidence[at] = r.confidence;
         });
       }
-      bytes.clear();
-      for (std::size_t i = 0; i < points.size(); ++i) {
-        append_point(points[i], m.single_precision, bytes);
-        bytes.append(reinterpret_cast<const char*>(results[i].data()), sizeof results[i]);
-      }
-      file.write(bytes);
+      writer.write(i, points, records, normals, confidence);
       begin += points.size();
       stages.progress(static_cast<double>(begin) / static_cast<double>(m.points));
     }
     require_unchanged(input, read == input.points);
   }
-  file.commit();
+  writer.commit();
   out.confidence_mean /= static_cast<double>(m.sorted());
   out.confidence_below_half /= static_cast<double>(m.sorted());
   return out;

@@ -90,9 +90,11 @@ Manifest survey(const std::vector<std::string>& files, const TileOptions& option
   m.asked = asked_of(options);
   m.single_precision = true;
   for (const std::string& file : files) {
-    m.inputs.push_back({file, std::filesystem::file_size(file), 0});
-    m.single_precision = m.single_precision && io::open_points(file)->scalar() == Scalar::kFloat32;
+    m.single_precision = io::open_points(file)->scalar() == Scalar::kFloat32 && m.single_precision;
+    std::error_code ignored;  // of a file that is gone again; reading it says so
+    m.inputs.push_back({file, std::filesystem::file_size(file, ignored), 0});
   }
+  std::vector<std::uint64_t> non_finite(files.size());
   Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL};
   Vec3 high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
   for_all_points(
@@ -102,6 +104,7 @@ Manifest survey(const std::vector<std::string>& files, const TileOptions& option
         ++m.inputs[file].points;
         if (!is_finite(p)) {
           ++m.non_finite;
+          ++non_finite[file];
           return;
         }
         for (std::size_t a = 0; a < 3; ++a) {
@@ -109,6 +112,11 @@ Manifest survey(const std::vector<std::string>& files, const TileOptions& option
           high[a] = std::max(high[a], p[a]);
         }
       });
+  for (std::size_t f = 0; f < files.size(); ++f) {
+    if (non_finite[f] == 0 || non_finite[f] < m.inputs[f].points) continue;
+    throw InvalidInput(escape_text(files[f]) + ": from the first to the last of its " + std::to_string(non_finite[f]) +
+                       " points no coordinates are finite; get the file again, or leave it out");
+  }
   if (m.sorted() < kFewestPoints) {
     throw InvalidInput(std::to_string(m.sorted()) + " points are too few for tiles: expected at least " + std::to_string(kFewestPoints) +
                        "; g3r orient takes them as they are");
