@@ -21,5 +21,7 @@ int run_tiles(const Settings& settings, Session& session);
 /// What run_orient() does where its plan exceeds --max-memory and tiles can do the same: nothing is read in core. Empty where it does not,
 /// or they cannot (standard input, a part of the input, several outputs or one that is no .ply, options of the method).
 [[nodiscard]] std::optional<int> orient_in_tiles(const Settings& settings, Session& session);
+/// The same of run_reconstruct(), which has a mesh in the end. Neither can they with options of the mesh.
+[[nodiscard]] std::optional<int> reconstruct_in_tiles(const Settings& settings, Session& session);
 
 }  // namespace g3r::cli

@@ -285,6 +285,8 @@ void add_memory_option(CLI::App& app, Settings& s, const std::string& help) {
       ->group(kRunGroup);
 }
 
+constexpr const char* kTilesHelp =
+    "If it would need more, for example 8G: work in tiles, on disk beside OUT (.ply), or refuse where that cannot be";
 constexpr const char* kRefuseHelp = "Refuse before the solve if it would need more, for example 8G";
 
 /// An option that may be repeated and is handed to `take` word by word.
@@ -348,7 +350,7 @@ void add_reconstruct(CLI::App& app, Settings& s) {
   add_run_options(app, s);
   add_read_options(app, s);
   add_method_options(app, s);
-  add_memory_option(app, s, kRefuseHelp);
+  add_memory_option(app, s, kTilesHelp);
 }
 
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& help) {
@@ -370,8 +372,7 @@ void add_orient(CLI::App& app, Settings& s) {
   add_run_options(*sub, s);
   add_read_options(*sub, s);
   add_method_options(*sub, s);
-  add_memory_option(
-      *sub, s, "If the solve would need more, for example 8G: work in tiles, on disk beside OUT (.ply), or refuse where that cannot be");
+  add_memory_option(*sub, s, kTilesHelp);
 }
 
 void add_mesh(CLI::App& app, Settings& s) {
@@ -456,7 +457,8 @@ CLI::App* add_tile_step(CLI::App& tiles, Settings& s, const std::string& name, T
 }
 
 void add_tiles(CLI::App& app, Settings& s) {
-  CLI::App* sub = add_command(app, "tiles", "Normals of clouds of any size: plan, run (by many workers), status, merge");
+  CLI::App* sub =
+      add_command(app, "tiles", "Normals and meshes of clouds of any size: plan, run and mesh (by many workers), status, merge");
   sub->require_subcommand(1);
   CLI::App* plan = add_tile_step(*sub, s, "plan", TileStep::kPlan, "Sort the points into the folder DIR, solve a thinned cloud, cut tiles");
   plan->add_option("IN", s.tile_paths, "Clouds, folders or patterns, and last the work folder DIR")
@@ -470,20 +472,25 @@ void add_tiles(CLI::App& app, Settings& s) {
   add_run_options(*plan, s);
   add_memory_option(*plan, s, "What a worker may take, for example 6G (default: three quarters of what is free)");
   CLI::App* run = add_tile_step(*sub, s, "run", TileStep::kRun, "Solve the tiles that are not done");
-  run->add_option_function<std::string>(
-         "--worker",
-         [&s](const std::string& text) {
-           const auto worker = parse_worker(text);
-           if (!worker) reject("--worker", text, "I/N, of workers 1/N to N/N");
-           s.worker = *worker;
-         },
-         "This is worker I of N: does tiles I, I + N, ...")
-      ->type_name("I/N");
-  add_run_options(*run, s);
+  CLI::App* mesh = add_tile_step(*sub, s, "mesh", TileStep::kMesh, "Mesh the tiles that are not meshed, once all have normals");
+  for (CLI::App* step : {run, mesh}) {
+    step->add_option_function<std::string>(
+            "--worker",
+            [&s](const std::string& text) {
+              const auto worker = parse_worker(text);
+              if (!worker) reject("--worker", text, "I/N, of workers 1/N to N/N");
+              s.worker = *worker;
+            },
+            "This is worker I of N: does tiles I, I + N, ...")
+        ->type_name("I/N");
+    add_run_options(*step, s);
+  }
   CLI::App* status = add_tile_step(*sub, s, "status", TileStep::kStatus, "What is planned and what is done");
-  CLI::App* merge = add_tile_step(*sub, s, "merge", TileStep::kMerge, "Write all points in their order with normals and confidence");
-  for (CLI::App* step : {run, status, merge}) step->add_option("DIR", s.tile_folder, "The work folder")->required()->type_name("");
-  merge->add_option("OUT", s.output, "Oriented cloud, .ply")->required()->type_name("");
+  CLI::App* merge =
+      add_tile_step(*sub, s, "merge", TileStep::kMerge, "Write all points in their order with normals and confidence, or the mesh");
+  for (CLI::App* step : {run, mesh, status, merge}) step->add_option("DIR", s.tile_folder, "The work folder")->required()->type_name("");
+  merge->add_option("OUT", s.output, "Oriented cloud or mesh, .ply")->required()->type_name("");
+  merge->add_flag("--mesh", s.merge_mesh, "Write the mesh instead of the points")->disable_flag_override();
   add_run_options(*merge, s);
 }
 

@@ -17,7 +17,7 @@
 namespace g3r::cli {
 
 enum class Command { kReconstruct, kOrient, kMesh, kEval, kSample, kInfo, kView, kTiles };
-enum class TileStep { kPlan, kRun, kStatus, kMerge };
+enum class TileStep { kPlan, kRun, kMesh, kStatus, kMerge };
 
 /// Everything a command line says, with the defaults for what it does not say.
 struct Settings {
@@ -37,6 +37,7 @@ struct Settings {
   std::string tile_folder;               ///< tiles: the work folder
   std::size_t tile_count = 0;            ///< tiles
   TileWorker worker;                     ///< tiles
+  bool merge_mesh = false;               ///< tiles merge: the mesh instead of the points
   Options options;
   MeshOptions mesh_options;
   ReadOptions read_options;

@@ -1,8 +1,9 @@
-// g3r tiles plan, run, status, merge; and g3r orient with --max-memory where the cloud does not fit.
+// g3r tiles plan, run, mesh, status, merge; and g3r orient and g3r IN OUT with --max-memory where the cloud does not fit.
 #include <g3r/g3r.h>
 #include <g3r/io.h>
 #include <g3r/tiles.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
@@ -70,7 +71,12 @@ bool can_be_tiled(const Settings& s) {
   return simple_output && whole_input && has_files && !s.sensors_of_file && is_default_method(s.options);
 }
 
-Stats stats_of(const TileStatus& status, const MergedTiles& merged, const Settings& settings) {
+bool is_default_mesh(const MeshOptions& o) {
+  return o.mesher != Mesher::kPoisson && o.depth == 0 && o.trim == MeshOptions::Trim::kOff && o.keep_largest == 0 && !o.min_component &&
+         !o.keep_all && o.faces == 0;
+}
+
+Stats stats_of(const TileStatus& status, const Settings& settings) {
   Stats stats;
   stats.points = status.points;
   stats.used = status.points - status.non_finite;
@@ -81,13 +87,28 @@ Stats stats_of(const TileStatus& status, const MergedTiles& merged, const Settin
   stats.consistent = status.consistent;
   stats.open_share = status.open_share;
   stats.undecided_share = status.undecided_share;
-  stats.confidence_mean = merged.confidence_mean;
-  stats.confidence_below_half = merged.confidence_below_half;
   stats.planned_memory_bytes = status.worker_memory_bytes;
   stats.threads = settings.options.threads;
   stats.warnings = status.warnings;
-  stats.warnings.push_back("beyond --max-memory in one piece: worked in " + counted(status.tiles, "tile"));
   return stats;
+}
+
+// Plans and solves beside the output; `merge` writes it, and says what of it is worth a warning. Then the folder goes.
+template <class Merge>
+int work_in_tiles(const Settings& settings, Session& session, const Merge& merge) {
+  const std::string folder = settings.output + kFolderSuffix;
+  session.console().say("more than --max-memory in one piece: tiles, in " + escape_text(folder) +
+                        "; where this ends early, the same command goes on");
+  const Monitor monitor = session.monitor();
+  (void)plan_tiles({settings.input}, folder, tile_options(settings), monitor);
+  const TileStatus status = g3r::run_tiles(folder, worker_of(settings), monitor);
+  Stats stats = stats_of(status, settings);
+  const std::string left_out = merge(folder, monitor, stats);
+  std::error_code ignored;  // a folder that cannot be removed does no harm
+  std::filesystem::remove_all(folder, ignored);
+  stats.warnings.push_back("beyond --max-memory in one piece: worked in " + counted(status.tiles, "tile") +
+                           (left_out.empty() ? "" : "; " + left_out));
+  return finish(settings, session, stats, nullptr);
 }
 
 }  // namespace
@@ -101,11 +122,22 @@ int run_tiles(const Settings& settings, Session& session) {
     case TileStep::kRun:
       say_status(session, g3r::run_tiles(settings.tile_folder, worker_of(settings), monitor));
       break;
+    case TileStep::kMesh: {
+      const MeshTiles done = mesh_tiles(settings.tile_folder, worker_of(settings), monitor);
+      session.console().clear_bar();
+      session.console().say("meshed " + std::to_string(done.done) + " of " + counted(done.tiles, "tile") + "; memory of a worker " +
+                            bytes(done.worker_memory_bytes));
+      break;
+    }
     case TileStep::kStatus:
       std::fputs(status_text(tiles_status(settings.tile_folder)).c_str(), stdout);
       break;
     case TileStep::kMerge:
-      (void)merge_tiles(settings.tile_folder, settings.output, monitor);
+      if (settings.merge_mesh) {
+        (void)merge_mesh(settings.tile_folder, settings.output, monitor);
+      } else {
+        (void)merge_tiles(settings.tile_folder, settings.output, monitor);
+      }
       session.console().clear_bar();
       session.console().say("wrote " + escape_text(settings.output));
       break;
@@ -116,16 +148,24 @@ int run_tiles(const Settings& settings, Session& session) {
 std::optional<int> orient_in_tiles(const Settings& settings, Session& session) {
   if (settings.options.max_memory == 0 || !can_be_tiled(settings)) return std::nullopt;
   if (!needs_tiles({settings.input}, settings.options.max_memory)) return std::nullopt;
-  const std::string folder = settings.output + kFolderSuffix;
-  session.console().say("more than --max-memory in one piece: tiles, in " + escape_text(folder) +
-                        "; where this ends early, the same command goes on");
-  const Monitor monitor = session.monitor();
-  (void)plan_tiles({settings.input}, folder, tile_options(settings), monitor);
-  const TileStatus status = g3r::run_tiles(folder, worker_of(settings), monitor);
-  const MergedTiles merged = merge_tiles(folder, settings.output, monitor);
-  std::error_code ignored;  // a folder that cannot be removed does no harm
-  std::filesystem::remove_all(folder, ignored);
-  return finish(settings, session, stats_of(status, merged, settings), nullptr);
+  return work_in_tiles(settings, session, [&](const std::string& folder, const Monitor& monitor, Stats& stats) {
+    const MergedTiles merged = merge_tiles(folder, settings.output, monitor);
+    stats.confidence_mean = merged.confidence_mean;
+    stats.confidence_below_half = merged.confidence_below_half;
+    return std::string();
+  });
+}
+
+std::optional<int> reconstruct_in_tiles(const Settings& settings, Session& session) {
+  if (settings.options.max_memory == 0 || !can_be_tiled(settings)) return std::nullopt;
+  if (!settings.oriented.empty() || !is_default_mesh(settings.mesh_options)) return std::nullopt;
+  if (!needs_tiles({settings.input}, settings.options.max_memory, true)) return std::nullopt;
+  return work_in_tiles(settings, session, [&](const std::string& folder, const Monitor& monitor, Stats& stats) {
+    const MeshTiles meshed = mesh_tiles(folder, worker_of(settings), monitor);
+    stats.planned_memory_bytes = std::max<std::size_t>(stats.planned_memory_bytes, meshed.worker_memory_bytes);
+    const MergedMesh merged = merge_mesh(folder, settings.output, monitor);
+    return "a closed mesh of " + with_commas(merged.triangles) + " triangles, without colours and confidence; specks are not left out";
+  });
 }
 
 }  // namespace g3r::cli

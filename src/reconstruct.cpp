@@ -1,9 +1,9 @@
 // From points, or oriented points, to a mesh.
-#include "base/median.h"
 #include "base/stages.h"
 #include "base/vector.h"
 #include "cpu/parallel.h"
 #include "field/oriented_cloud.h"
+#include "field/winding_sampler.h"
 #include "mesh/field_mesher.h"
 #include "mesh/findings.h"
 #include "mesh/held_points.h"
@@ -13,7 +13,6 @@
 #include "mesh/smooth_spacing.h"
 #include "orient/settings.h"
 #include "sum/device_scope.h"
-#include "sum/fast_sum.h"
 
 #include <g3r/g3r.h>
 
@@ -27,41 +26,13 @@
 namespace g3r {
 namespace {
 
-constexpr double kFieldWidth = 0.35;     // of the winding field in spacings
-constexpr double kFieldAccuracy = 1e-2;  // of its sums; only its side of a level counts, with a margin of 0.2
-constexpr double kFarSpacings = 4;       // surface farther than this from every point is a guess;
-constexpr double kFarShare = 0.05;       // more of it is worth a warning
-constexpr double kMostFar = 0.25;        // of the surface, beyond which the mesh is not what was measured
-constexpr double kWidest = 8e5;          // spacings; the octree has at most 2^20 cells of 0.8 spacings
-constexpr double kInsideOut = -0.25;     // winding number at the points; 1/2 if they face out of a solid, -1/2 into it, 0 on open surfaces;
-constexpr std::size_t kProbes = 500;     // points asked for it
+constexpr double kFarSpacings = 4;  // surface farther than this from every point is a guess;
+constexpr double kFarShare = 0.05;  // more of it is worth a warning
+constexpr double kMostFar = 0.25;   // of the surface, beyond which the mesh is not what was measured
+constexpr double kWidest = 8e5;     // spacings; the octree has at most 2^20 cells of 0.8 spacings
 constexpr int kPaperDepth = 10;
 constexpr double kLargestCoordinate = 1e50;  // areas, volumes and their products of a mesh stay finite,
 constexpr double kLeastExtent = 1e-140;      // and greater than 0
-
-// The winding field in normalised units as the field mesher sees it.
-class WindingSampler : public FieldSampler {
- public:
-  WindingSampler(const OrientedCloud& oriented, const std::atomic<bool>* cancel)
-      : oriented_(oriented),
-        cancel_(cancel),
-        sum_(oriented.cloud.points(), oriented.cloud.morton(), Widths(kFieldWidth * oriented.spacing),
-             sum_plan(kFieldAccuracy, oriented.cloud.size()), cancel) {}
-
-  void sample(const std::vector<Vec3>& queries, std::vector<double>& value, std::vector<Vec3>* gradient) const override {
-    value = sum_.winding_at(oriented_.eta, queries, cancel_);
-    if (gradient == nullptr) return;
-    *gradient = sum_.winding_gradient_at(oriented_.eta, queries, cancel_);
-    for (Vec3& g : *gradient) {
-      for (double& c : g) c = -c;
-    }
-  }
-
- private:
-  const OrientedCloud& oriented_;
-  const std::atomic<bool>* cancel_;
-  FastSum sum_;
-};
 
 // Throws before the work what the mesh could not be measured with. O(N).
 void require_meshable(const PointsView& points) {
@@ -87,16 +58,6 @@ void require_meshable(const PointsView& points) {
 Mesh mesh_with_poisson(const OrientedCloud& oriented, const std::vector<Vec3>& normals, int depth) {
   const int chosen = depth > 0 ? depth : automatic_depth(oriented.spacing, 2.0 / 1.1);
   return screened_poisson(oriented.cloud.points(), normals, chosen);
-}
-
-// Whether the points face into the solid that they surround, as those of a room do that is seen from inside.
-bool is_inside_out(const OrientedCloud& oriented, const WindingSampler& field) {
-  const std::vector<Vec3>& points = oriented.cloud.points();
-  std::vector<Vec3> probes;
-  for (std::size_t i = 0; i < points.size(); i += (points.size() + kProbes - 1) / kProbes) probes.push_back(points[i]);
-  std::vector<double> winding;
-  field.sample(probes, winding, nullptr);
-  return median(std::move(winding)) < kInsideOut;
 }
 
 std::vector<Vec3> directions_of(const std::vector<Vec3>& eta) {

@@ -28,9 +28,13 @@ class Tiles(ProgramTest):
         for worker in "2/2", "1/2":
             self.expect(OK, "tiles", "run", "work", "--worker", worker)
         self.expect(OK, "tiles", "merge", "work", "whole.ply")
+        for worker in "2/2", "1/2":
+            self.expect(OK, "tiles", "mesh", "work", "--worker", worker)
+        self.expect(OK, "tiles", "merge", "work", "whole.mesh.ply", "--mesh")
         shutil.rmtree(self.path("work"))
         chance = random.Random(1)
-        steps = [plan, ["tiles", "run", "work"], ["tiles", "merge", "work", "out.ply"]]
+        steps = [plan, ["tiles", "run", "work"], ["tiles", "merge", "work", "out.ply"], ["tiles", "mesh", "work"],
+                 ["tiles", "merge", "work", "mesh.ply", "--mesh"]]
         for _ in range(KILLS):
             for step in steps:
                 process = self.start(*step, "-v")
@@ -43,6 +47,8 @@ class Tiles(ProgramTest):
         for step in steps:
             self.expect(OK, *step)
         self.assertEqual(self.bytes_of("out.ply"), self.bytes_of("whole.ply"))
+        self.assertEqual(self.bytes_of("mesh.ply"), self.bytes_of("whole.mesh.ply"))
+        self.assertIn("closed, manifold", self.expect(OK, "info", "mesh.ply").out.decode())
         self.assertEqual([name for name in os.listdir(self.path("work")) if name.endswith(".tmp")], [])
         names, rows = read_ply(self.bytes_of("out.ply"))
         self.assertEqual(names, ["x", "y", "z", "nx", "ny", "nz", "confidence"])
@@ -55,10 +61,12 @@ class Tiles(ProgramTest):
         self.assertIn("8,200 points, 0 of 2 tiles done", status)
         result = self.expect(BAD_DATA, "tiles", "merge", "work", "out.ply")
         self.assertIn("2 of 2 tiles are not done (1, 2); g3r tiles run", result.err)
+        self.assertIn("2 of 2 tiles have no normals yet", self.expect(BAD_DATA, "tiles", "mesh", "work").err)
+        self.assertIn("not meshed", self.expect(BAD_DATA, "tiles", "merge", "work", "out.ply", "--mesh").err)
         self.assertFalse(os.path.exists(self.path("out.ply")))
 
     def test_wrong_command_lines_are_told(self):
-        for arguments in (["tiles"], ["tiles", "plan", "in.ply"], ["tiles", "run"], ["tiles", "run", "work", "--worker", "0/2"],
+        for arguments in (["tiles"], ["tiles", "plan", "in.ply"], ["tiles", "run"], ["tiles", "mesh"], ["tiles", "run", "work", "--worker", "0/2"],
                           ["tiles", "run", "work", "--worker", "3/2"], ["tiles", "plan", "in.ply", "work", "--sensor", "file"]):
             with self.subTest(arguments=arguments):
                 self.expect(USAGE, *arguments)
@@ -72,6 +80,7 @@ class Tiles(ProgramTest):
         write_points(self.path("large.ply"), sphere(LARGE_COUNT))
         arguments = ["orient", "large.ply", "out.ply", "--max-memory", "150M"]
         self.expect(UNAVAILABLE, *arguments, "--ascii")  # which tiles do not write
+        self.expect(UNAVAILABLE, *arguments[1:], "--open")  # of a mesh neither
         process = self.start(*arguments, "-v", preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
         guard = threading.Timer(120, process.kill)
         guard.start()

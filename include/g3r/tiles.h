@@ -1,8 +1,10 @@
-// Clouds of any size: normals tile by tile, out of core, by any number of workers.
+// Clouds of any size: normals and a mesh tile by tile, out of core, by any number of workers.
 //
 //   g3r::plan_tiles({"scans/"}, "work", options);   // reads, sorts, solves a thinned cloud; then the tiles are known
 //   g3r::run_tiles("work", {1, 4});                 // first of four workers, in any order, at any time, anywhere
 //   g3r::merge_tiles("work", "oriented.ply");       // the points in the order of the input
+//   g3r::mesh_tiles("work", {1, 4});                // and, if a mesh is wanted: by four workers again
+//   g3r::merge_mesh("work", "mesh.ply");
 //
 // The work folder holds all state. What is there is complete or absent: a process may be killed at any time, and the same call then goes
 // on. The result depends on the points and the plan alone, not on workers, threads or restarts. How it works: docs/algorithms/tiles.md.
@@ -53,9 +55,10 @@ struct TileStatus {
   std::vector<std::string> warnings;
 };
 
-/// Whether orient() would refuse these inputs under a limit of `max_memory` bytes and tiles may not: its plan exceeds it, and the points
-/// are many enough. Counts the points, which for LAS and binary PLY takes a look at the headers. Throws like read_cloud().
-[[nodiscard]] bool needs_tiles(const std::vector<std::string>& inputs, std::size_t max_memory);
+/// Whether orient(), or with `mesh` reconstruct(), would refuse these inputs under a limit of `max_memory` bytes and tiles may not: its
+/// plan exceeds it, and the points are many enough. Counts the points, which for LAS and binary PLY takes a look at the headers. Throws
+/// like read_cloud().
+[[nodiscard]] bool needs_tiles(const std::vector<std::string>& inputs, std::size_t max_memory, bool mesh = false);
 
 /// Reads the inputs (files, folders and patterns as of read_cloud(), regular files only) twice, sorts their points into Morton order in the
 /// folder, which is made if need be, and solves every R-th of them for the sides. A folder that holds the plan of the same files and
@@ -82,5 +85,27 @@ struct MergedTiles {
 /// colours must be brought to 0..255. Memory does not depend on the number of points, as far as the inputs are streams (docs/tiles.md).
 /// Throws InvalidInput (tiles that are not done, inputs that have changed, another extension), IoError, Cancelled.
 MergedTiles merge_tiles(const std::string& folder, const std::string& output, const Monitor& monitor = {});
+
+/// What mesh_tiles() has done and left.
+struct MeshTiles {
+  std::size_t tiles = 0;  ///< of the mesh: as many as of the normals, or more where its memory asks for it
+  std::size_t done = 0;
+  std::uint64_t worker_memory_bytes = 0;  ///< planned, of the largest tile
+};
+
+/// Meshes the tiles of this worker that are not done, once all have normals. What it needs of tiles of other workers it makes where it is
+/// not there. The mesh depends on the points and the plan alone. Throws like run_tiles(), and Unavailable (no tile of the mesh fits the
+/// memory of the plan).
+MeshTiles mesh_tiles(const std::string& folder, const TileWorker& worker = {}, const Monitor& monitor = {});
+
+struct MergedMesh {
+  std::uint64_t vertices = 0;
+  std::uint64_t triangles = 0;
+};
+
+/// Writes the mesh of all tiles as one binary .ply, whole or not at all: closed and 2-manifold, outward. Its memory is that of a tile and
+/// those around it. Throws InvalidInput (tiles that are not done, no surface, another extension), Unavailable (more vertices than a PLY
+/// file can number), IoError, Cancelled.
+MergedMesh merge_mesh(const std::string& folder, const std::string& output, const Monitor& monitor = {});
 
 }  // namespace g3r

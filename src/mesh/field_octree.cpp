@@ -79,8 +79,14 @@ bool touches(const RefineDisc& r, const Vec3& low, double side) {
 }  // namespace
 
 Octree::Octree(const Vec3& low, double side, const std::vector<RefineDisc>& requests, int base_level, const std::atomic<bool>* cancel)
+    : Octree(
+          low, side, requests, [=](const OctreeNode& node) { return node.level < base_level ? Split::kYes : Split::kAsRequested; },
+          cancel) {}
+
+Octree::Octree(const Vec3& low, double side, const std::vector<RefineDisc>& requests, const SplitRule& rule,
+               const std::atomic<bool>* cancel)
     : low_(low), unit_(side / static_cast<double>(std::uint32_t{1} << kMaxOctreeLevel)) {
-  refine(requests, std::min(base_level, kMaxOctreeLevel), cancel);
+  refine(requests, rule, cancel);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     if (nodes_[i].first_child >= 0) continue;
     nodes_[i].leaf = static_cast<std::int32_t>(leaf_nodes_.size());
@@ -90,7 +96,7 @@ Octree::Octree(const Vec3& low, double side, const std::vector<RefineDisc>& requ
   number_corners();
 }
 
-void Octree::refine(const std::vector<RefineDisc>& requests, int base_level, const std::atomic<bool>* cancel) {
+void Octree::refine(const std::vector<RefineDisc>& requests, const SplitRule& rule, const std::atomic<bool>* cancel) {
   nodes_.push_back({});
   Frontier front{{0}, {0, requests.size()}, {}};
   front.request.resize(requests.size());
@@ -101,8 +107,10 @@ void Octree::refine(const std::vector<RefineDisc>& requests, int base_level, con
     // Split every node that some request wants deeper.
     std::vector<std::size_t> split;
     for (std::size_t f = 0; f < front.node.size(); ++f) {
-      bool deeper = level < base_level;
-      for (std::size_t k = front.begin[f]; !deeper && k < front.begin[f + 1]; ++k) deeper = requests[front.request[k]].level > level;
+      const Split split_it = rule(nodes_[front.node[f]]);
+      bool deeper = split_it == Split::kYes;
+      for (std::size_t k = front.begin[f]; split_it == Split::kAsRequested && !deeper && k < front.begin[f + 1]; ++k)
+        deeper = requests[front.request[k]].level > level;
       if (!deeper) continue;
       OctreeNode& parent = nodes_[front.node[f]];
       if (nodes_.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()) - 8) throw std::bad_alloc();

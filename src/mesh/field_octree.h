@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace g3r::mesh {
@@ -30,11 +31,22 @@ struct OctreeNode {
   std::uint8_t level = 0;              ///< 0 = root
 };
 
+/// Whether a node is split.
+enum class Split : std::uint8_t {
+  kNo,           ///< whatever is requested in it
+  kAsRequested,  ///< where a request that touches it wants deeper leaves
+  kYes
+};
+using SplitRule = std::function<Split(const OctreeNode&)>;
+
 class Octree {
  public:
   /// The cube [low, low + side]^3 refined as requested, every leaf at least at `base_level`. O(requests x touched leaves).
   /// Throws Cancelled.
   Octree(const Vec3& low, double side, const std::vector<RefineDisc>& requests, int base_level, const std::atomic<bool>* cancel = nullptr);
+  /// The same with nodes split by a rule.
+  Octree(const Vec3& low, double side, const std::vector<RefineDisc>& requests, const SplitRule& rule,
+         const std::atomic<bool>* cancel = nullptr);
 
   [[nodiscard]] const std::vector<OctreeNode>& nodes() const { return nodes_; }
   [[nodiscard]] std::size_t leaf_count() const { return leaf_nodes_.size(); }
@@ -55,7 +67,7 @@ class Octree {
   [[nodiscard]] int depth() const { return depth_; }
 
  private:
-  void refine(const std::vector<RefineDisc>& requests, int base_level, const std::atomic<bool>* cancel);
+  void refine(const std::vector<RefineDisc>& requests, const SplitRule& rule, const std::atomic<bool>* cancel);
   void number_corners();
 
   Vec3 low_;

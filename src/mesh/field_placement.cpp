@@ -214,14 +214,16 @@ std::vector<std::uint32_t> taken_twice(const std::vector<Placed>& placed, double
 }  // namespace
 
 PlacedVertices place_vertices(const Octree& octree, const DualSurface& surface, const std::vector<float>& value, const LocalFit& local,
-                              const std::atomic<bool>* cancel) {
+                              const std::atomic<bool>* cancel, const std::vector<std::uint8_t>& wanted) {
   const std::size_t sheets = surface.patch_count();
   const Placement placement(octree, surface, value, local);
   std::vector<Placed> placed(sheets);
   parallel::for_blocks(
       sheets, 256,
       [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) placed[i] = placement.place(i, true);
+        for (std::size_t i = begin; i < end; ++i) {
+          if (wanted.empty() || wanted[i] != 0) placed[i] = placement.place(i, true);
+        }
       },
       cancel);
   const double smallest = octree.unit() * static_cast<double>(std::uint32_t{1} << (kMaxOctreeLevel - octree.depth()));

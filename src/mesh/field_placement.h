@@ -18,6 +18,7 @@ struct PlacedVertices {
 /// `value`: one per corner, positive inside, zero on the surface; only ratios across an edge matter.
 /// A vertex stays within `kReach` cells of its leaf. O(vertices). Throws Cancelled.
 [[nodiscard]] PlacedVertices place_vertices(const Octree& octree, const DualSurface& surface, const std::vector<float>& value,
-                                            const LocalFit& local, const std::atomic<bool>* cancel = nullptr);
+                                            const LocalFit& local, const std::atomic<bool>* cancel = nullptr,
+                                            const std::vector<std::uint8_t>& wanted = {});
 
 }  // namespace g3r::mesh

@@ -1,6 +1,7 @@
 #include "tiles/cells.h"
 
 #include "base/disjoint_sets.h"
+#include "tiles/cell_codes.h"
 
 #include <algorithm>
 #include <bit>
@@ -13,36 +14,6 @@ constexpr std::uint64_t kCellPoints = 64;
 // Width of a halo in cells: 16 to 32 spacings. With 1 the directions beside a border err by a sixth more than in core, with 2 by a fortieth
 // (docs/math.md).
 constexpr std::int64_t kHaloCells = 2;
-
-std::int64_t gather(std::uint64_t v) {
-  v &= 0x1249249249249249ULL;
-  v = (v | v >> 2) & 0x10c30c30c30c30c3ULL;
-  v = (v | v >> 4) & 0x100f00f00f00f00fULL;
-  v = (v | v >> 8) & 0x1f0000ff0000ffULL;
-  v = (v | v >> 16) & 0x1f00000000ffffULL;
-  return static_cast<std::int64_t>((v | v >> 32) & 0x1fffff);
-}
-
-// Calls visit(code) for the cells of `level` at most `reach` away from one, itself included.
-template <class Visit>
-void for_neighbours(std::uint64_t code, int level, std::int64_t reach, const Visit& visit) {
-  const std::int64_t side = std::int64_t{1} << level;
-  const std::array<std::int64_t, 3> at{gather(code >> 2), gather(code >> 1), gather(code)};
-  std::array<std::int64_t, 3> low{};
-  std::array<std::int64_t, 3> high{};
-  for (std::size_t a = 0; a < 3; ++a) {
-    low[a] = std::max<std::int64_t>(0, at[a] - reach);
-    high[a] = std::min(side - 1, at[a] + reach);
-  }
-  for (std::int64_t x = low[0]; x <= high[0]; ++x) {
-    for (std::int64_t y = low[1]; y <= high[1]; ++y) {
-      for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-        visit(spread_bits(static_cast<std::uint64_t>(x)) << 2 | spread_bits(static_cast<std::uint64_t>(y)) << 1 |
-              spread_bits(static_cast<std::uint64_t>(z)));
-      }
-    }
-  }
-}
 
 void sort_unique(std::vector<std::uint64_t>& codes) {
   std::sort(codes.begin(), codes.end());

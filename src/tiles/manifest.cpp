@@ -17,7 +17,7 @@ namespace g3r::tiles {
 namespace {
 
 constexpr const char* kSchema = "g3r.tiles";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 48U;  // sizes of files are numbers below; the manifest may be damaged
 
 using nlohmann::json;
@@ -45,6 +45,7 @@ Manifest parsed(const json& from) {
   from.at("stride").get_to(m.stride);
   from.at("coarse_points").get_to(m.coarse_points);
   for (const json& tile : from.at("tiles")) m.tiles.push_back({tile.at(0), tile.at(1), tile.at(2), tile.at(3)});
+  from.at("limit_bytes").get_to(m.limit);
   from.at("worker_memory_bytes").get_to(m.worker_memory);
   from.at("disk_bytes").get_to(m.disk);
   from.at("converged").get_to(m.converged);
@@ -130,6 +131,7 @@ void write_manifest(const std::string& folder, const Manifest& m) {
               {"level", m.level},
               {"stride", m.stride},
               {"coarse_points", m.coarse_points},
+              {"limit_bytes", m.limit},
               {"worker_memory_bytes", m.worker_memory},
               {"disk_bytes", m.disk},
               {"converged", m.converged},
@@ -178,6 +180,21 @@ Cells read_cells(const std::string& folder, const Manifest& manifest) {
     }
   }
   return cells;
+}
+
+std::vector<Tile> cut(const Cells& cells, std::size_t count) {
+  std::vector<Tile> tiles;
+  std::size_t first = 0;
+  for (std::size_t t = 1; t <= count && first < cells.cells.size(); ++t) {
+    const auto wanted = static_cast<std::uint64_t>(static_cast<double>(cells.points) * static_cast<double>(t) / static_cast<double>(count));
+    std::size_t last = first + 1;
+    while (last < cells.cells.size() && (t == count || cells.cells[last].begin < wanted)) ++last;
+    tiles.push_back({first, last, cells.end(last - 1) - cells.cells[first].begin, 0});
+    first = last;
+  }
+  tiles.back().last_cell = cells.cells.size();
+  tiles.back().own = cells.points - cells.cells[static_cast<std::size_t>(tiles.back().first_cell)].begin;
+  return tiles;
 }
 
 bool is_done(const std::string& folder, const Manifest& manifest, std::size_t tile) {

@@ -13,6 +13,8 @@
 
 namespace g3r::tiles {
 
+inline constexpr double kLongestSide = 2 / 1.1;  ///< of the box of all points, in the unit frame
+
 struct Input {
   std::string path;
   std::uint64_t bytes = 0;
@@ -40,6 +42,7 @@ struct Manifest {
   std::uint64_t stride = 1;  ///< every stride-th point is in the thinned cloud
   std::uint64_t coarse_points = 0;
   std::vector<Tile> tiles;
+  std::uint64_t limit = 0;  ///< bytes that a worker may take
   std::uint64_t worker_memory = 0;
   std::uint64_t disk = 0;
   bool converged = false;  ///< of the thinned cloud, as the next three
@@ -70,6 +73,9 @@ void write_manifest(const std::string& folder, const Manifest& manifest);
 [[nodiscard]] Manifest read_manifest(const std::string& folder);
 /// Throws InvalidInput where the file is not that of the manifest, IoError.
 [[nodiscard]] Cells read_cells(const std::string& folder, const Manifest& manifest);
+
+/// Tiles of nearly equal numbers of points, cut between cells.
+[[nodiscard]] std::vector<Tile> cut(const Cells& cells, std::size_t count);
 
 [[nodiscard]] bool is_done(const std::string& folder, const Manifest& manifest, std::size_t tile);
 [[nodiscard]] TileStatus status_of(const std::string& folder, const Manifest& manifest);

@@ -34,9 +34,9 @@ constexpr std::size_t kFixed = 72u << 20;       // code, libraries, thread stack
 constexpr std::size_t kPerPoint = 1600;         // peak bytes of a solve in core (docs/evidence/speed.md), and what a tile holds beside it
 constexpr std::size_t kFixedInCore = 34u << 20;  // of plan()
 constexpr std::size_t kPerPointInCore = 1260;    // of it, where no point is a duplicate
+constexpr std::size_t kPerPointMeshed = 2700;    // of field_mesh_memory(), which is more
 constexpr double kFreeShare = 0.75;              // of the free memory, if no limit is given
 constexpr double kLargest = 1e50;                // coordinates, whose squares and cubes are still numbers
-constexpr double kSide = 2 / 1.1;                // longest side in the unit box
 constexpr std::size_t kMostTiles = 1000000;
 
 // Calls take(file, point) for all points in order, and between(share of the files) now and then.
@@ -128,7 +128,7 @@ Manifest survey(const std::vector<std::string>& files, const TileOptions& option
     m.frame.centre[a] = low[a] + (high[a] - low[a]) / 2;
   }
   if (!(side > 1 / kLargest)) throw InvalidInput("all points are at one place");
-  m.frame.scale = kSide / side;
+  m.frame.scale = kLongestSide / side;
   if (m.non_finite > 0) m.warnings.push_back(std::to_string(m.non_finite) + " points with a non-finite coordinate were left out");
   return m;
 }
@@ -187,22 +187,6 @@ Cells sort_points(const std::vector<std::string>& files, const std::string& fold
   for (const std::unique_ptr<io::OutputFile>& output : outputs) output->commit();
   m.level = choice.level();
   return find_cells(folder, m, stages);
-}
-
-// Tiles of nearly equal numbers of points, cut between cells.
-std::vector<Tile> cut(const Cells& cells, std::size_t count) {
-  std::vector<Tile> tiles;
-  std::size_t first = 0;
-  for (std::size_t t = 1; t <= count && first < cells.cells.size(); ++t) {
-    const auto wanted = static_cast<std::uint64_t>(static_cast<double>(cells.points) * static_cast<double>(t) / static_cast<double>(count));
-    std::size_t last = first + 1;
-    while (last < cells.cells.size() && (t == count || cells.cells[last].begin < wanted)) ++last;
-    tiles.push_back({first, last, cells.end(last - 1) - cells.cells[first].begin, 0});
-    first = last;
-  }
-  tiles.back().last_cell = cells.cells.size();
-  tiles.back().own = cells.points - cells.cells[static_cast<std::size_t>(tiles.back().first_cell)].begin;
-  return tiles;
 }
 
 std::uint64_t count_solved(const Cells& cells, std::uint64_t stride, std::vector<Tile>& tiles) {
@@ -265,6 +249,7 @@ TileStatus make_plan(const std::vector<std::string>& files, const std::string& f
   Stages stages(monitor);
   const std::size_t limit = memory_limit(options);
   Manifest m = survey(files, options, stages);
+  m.limit = limit;
   m.stride = choose_stride(m.sorted(), limit);
   m.coarse_points = (m.sorted() + m.stride - 1) / m.stride;
   make_folder(folder);
@@ -302,10 +287,11 @@ TileStatus plan_tiles(const std::vector<std::string>& inputs, const std::string&
   return parallel::with_threads(options.threads, [&] { return tiles::make_plan(files, folder, options, monitor); });
 }
 
-bool needs_tiles(const std::vector<std::string>& inputs, std::size_t max_memory) {
+bool needs_tiles(const std::vector<std::string>& inputs, std::size_t max_memory, bool mesh) {
   std::uint64_t points = 0;
   for (const std::string& file : tiles::files_of(inputs)) points += io::open_points(file)->left();
-  return max_memory > 0 && points >= tiles::kFewestPoints && tiles::kFixedInCore + tiles::kPerPointInCore * points > max_memory;
+  return max_memory > 0 && points >= tiles::kFewestPoints &&
+         tiles::kFixedInCore + (mesh ? tiles::kPerPointMeshed : tiles::kPerPointInCore) * points > max_memory;
 }
 
 TileStatus tiles_status(const std::string& folder) { return tiles::status_of(folder, tiles::read_manifest(folder)); }

@@ -1,0 +1,139 @@
+#include "mesh/field_corners.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/median.h"
+#include "cpu/parallel.h"
+
+namespace g3r::mesh {
+namespace {
+
+constexpr double kLocalReach = 1.8;    // spacings from the nearest point within which the fitted surface gives the side
+constexpr double kFieldSure = 0.2;     // |w - level| from which the field overrules the fitted surface
+constexpr double kBeyond = 0.05;       // of the side of the cube of the points: so far from it
+constexpr double kBeyondSpacings = 2;  // (and so many spacings) all is outside; fast sums end there, single ones are slow
+
+constexpr std::size_t kCornersAtOnce = std::size_t{1} << 17;  // of which more than the side is kept in memory
+
+constexpr double kFitSay = 2 * kFieldSure;  // in opinions the field counts 2 (w - level), the fitted surface at most this,
+constexpr double kFitFar = 0.3;             // and that from so many spacings away
+constexpr double kFlipped = 0.1;            // spacings: distance from the surface of corners that were flipped to remove a handle
+
+}  // namespace
+
+struct CornerSides::Place {
+  enum Kind : std::uint8_t { kSure, kDoubtful, kUnknown, kUnwanted };
+  Kind kind = kSure;
+  float value = 0;
+  float opinion = 0;
+  std::array<float, 3> axis{};
+};
+
+CornerSides::CornerSides(const LocalFit& local, const FieldSampler& sampler, double typical, const Cube& cube,
+                         const std::vector<Vec3>& places, std::size_t asked_at_once)
+    : local_(local), sampler_(sampler), spacing_(typical), cube_(cube), asked_at_once_(std::max(kCornersAtOnce, asked_at_once)) {
+  reach_ = 0.5 * cube_.side + std::max(kBeyond * cube_.side, kBeyondSpacings * spacing_);
+  std::vector<double> field;
+  sampler_.sample(places, field, nullptr);
+  level_ = median(std::move(field));
+}
+
+Corners CornerSides::of(const Octree& octree, const std::function<bool(std::uint32_t)>& wanted, const std::atomic<bool>* cancel) const {
+  Corners corners;
+  corners.value.resize(octree.corner_count());
+  std::vector<Place> places;
+  std::vector<Asked> asked;
+  for (std::size_t first = 0; first < corners.value.size(); first += kCornersAtOnce) {
+    places.resize(std::min(corners.value.size() - first, kCornersAtOnce));
+    parallel::for_blocks(
+        places.size(), 256,
+        [&](std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) {
+            if (wanted(static_cast<std::uint32_t>(first + i))) {
+              places[i] = fit_at(octree.corner_position(first + i));
+            } else {
+              places[i].kind = Place::kUnwanted;
+              places[i].value = static_cast<float>(-spacing_);
+            }
+          }
+        },
+        cancel);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const auto c = static_cast<std::uint32_t>(first + i);
+      const Place& place = places[i];
+      corners.value[c] = place.value;
+      if (place.kind == Place::kUnknown) asked.push_back({c, kNoOpinion});
+      if (place.kind != Place::kDoubtful) continue;
+      asked.push_back({c, static_cast<std::uint32_t>(corners.opinions.corner.size())});
+      corners.opinions.add(c, place.opinion, place.axis);
+    }
+    if (asked.size() < asked_at_once_) continue;
+    ask_field(octree, asked, corners);
+    asked.clear();
+  }
+  ask_field(octree, asked, corners);
+  return corners;
+}
+
+CornerSides::Place CornerSides::fit_at(const Vec3& at) const {
+  const Eigen::Vector3d x(at[0], at[1], at[2]);
+  const LocalSurface fit = local_.fit(x, kLocalReach, nullptr, LocalFit::Detail::kSide);
+  Place place;
+  if (fit.count == 0) {
+    place.kind = is_beyond(at) ? Place::kSure : Place::kUnknown;
+    place.value = static_cast<float>(-spacing_);
+    return place;
+  }
+  const double value = -fit.distance(x);
+  place.value = static_cast<float>(value);
+  if (fit.simple) return place;
+  place.kind = Place::kDoubtful;
+  place.opinion = static_cast<float>(kFitSay * std::clamp(value / (kFitFar * fit.spacing), -1.0, 1.0));
+  for (std::size_t a = 0; a < 3; ++a) place.axis[a] = static_cast<float>(fit.sheet[0].frame(2, static_cast<Eigen::Index>(a)));
+  return place;
+}
+
+void CornerSides::ask_field(const Octree& octree, const std::vector<Asked>& asked, Corners& corners) const {
+  std::vector<Vec3> queries(asked.size());
+  for (std::size_t k = 0; k < asked.size(); ++k) queries[k] = octree.corner_position(asked[k].corner);
+  std::vector<double> field;
+  sampler_.sample(queries, field, nullptr);
+  for (std::size_t k = 0; k < asked.size(); ++k) {
+    const double f = field[k] - level_;
+    float& value = corners.value[asked[k].corner];
+    const bool known = asked[k].opinion != kNoOpinion;
+    if (!known || (std::abs(f) >= kFieldSure && (value > 0) != (f > 0))) value = static_cast<float>(f * spacing_);
+    if (!known) continue;
+    float& opinion = corners.opinions.side[asked[k].opinion];
+    opinion = static_cast<float>(std::clamp(2 * f + opinion, -1.0, 1.0));
+  }
+}
+
+bool CornerSides::is_beyond(const Vec3& x) const {
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (std::abs(x[a] - cube_.centre[a]) > reach_) return true;
+  }
+  return false;
+}
+
+std::vector<std::uint8_t> sides_by_fit(const LocalFit& local, const std::vector<Vec3>& places) {
+  std::vector<std::uint8_t> inside(places.size());
+  parallel::for_blocks(places.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Eigen::Vector3d x(places[i][0], places[i][1], places[i][2]);
+      const LocalSurface fit = local.fit(x, kLocalReach, nullptr, LocalFit::Detail::kSide);
+      inside[i] = fit.count > 0 && fit.distance(x) < 0 ? 1 : 0;
+    }
+  });
+  return inside;
+}
+
+void settle_values(const Octree& octree, const std::vector<std::uint8_t>& inside, double typical, std::vector<float>& value) {
+  for (std::size_t c = 0; c < inside.size(); ++c) {
+    if ((value[c] > 0) != (inside[c] != 0) && !octree.on_boundary(c))
+      value[c] = static_cast<float>((inside[c] != 0 ? kFlipped : -kFlipped) * typical);
+  }
+}
+
+}  // namespace g3r::mesh

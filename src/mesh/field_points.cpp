@@ -1,0 +1,76 @@
+#include "mesh/field_points.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/median.h"
+#include "g3r/error.h"
+#include "mesh/smooth_spacing.h"
+
+namespace g3r::mesh {
+namespace {
+
+constexpr std::size_t kNear = 28;  // neighbours kept of each point; the 16 nearest to a place are nearly always among those of its nearest
+constexpr double kDisc = 1.4;      // spacings: radius of the disc around each point that is refined; spans the holes of random sampling
+constexpr double kDiscHalf = 0.3;  // spacings: its half thickness; covers curvature within the disc
+constexpr int kMaxSpread = 4;      // levels that locally dense or sparse sampling may add or take away
+constexpr double kThin = 1.3;      // walls and gaps get cells of at most their thickness over this,
+constexpr double kMaxThin = 2.0;   // but not smaller than a normal cell over this
+constexpr double kLeastSpacing = 1e-2;       // of the typical; clusters of almost equal points are no denser for the fits than this
+constexpr std::size_t kLevelPoints = 10000;  // the median of so many values is good to 1 % of their scatter
+constexpr double kNoisy = 0.15;              // spacings: positions that scatter more than this are smoothed first
+
+}  // namespace
+
+void find_neighbours(Prepared& prepared) {
+  prepared.neighbours = std::make_unique<Neighbours>(prepared.points.positions);
+  prepared.near = prepared.neighbours->of_all(kNear);
+}
+
+void prepare(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, double typical, Prepared& prepared) {
+  OrientedPoints& out = prepared.points;
+  out = {points, normals, {}};
+  find_neighbours(prepared);
+  out.spacing = smooth_spacing(out.positions, prepared.near);
+  for (Vec3& n : out.normals) {
+    const double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    if (!(length > 0)) throw InvalidInput("a normal is zero");
+    for (double& c : n) c /= length;
+  }
+  prepared.typical = typical > 0 ? typical : median(out.spacing);
+  if (!(prepared.typical > 0)) throw InvalidInput("all points are at one place");
+  for (double& h : out.spacing) h = std::max(h, kLeastSpacing * prepared.typical);
+}
+
+void smooth_noise(const Noise& noise, const std::atomic<bool>* cancel, Prepared& prepared) {
+  if (noise.position <= kNoisy) return;
+  prepared.noise = noise.position;
+  denoise(prepared.points, *prepared.neighbours, noise, cancel);
+  find_neighbours(prepared);
+}
+
+std::vector<double> sizes_to_resolve(const Prepared& prepared) {
+  std::vector<double> sizes = prepared.points.spacing;
+  if (prepared.noise > 0) return sizes;  // which side points are on is not known well enough to tell walls
+  const std::vector<double> thickness = wall_thickness(prepared.points, prepared.near);
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    if (thickness[i] < kThin * kFinestCell * sizes[i]) sizes[i] = std::max(thickness[i] / (kThin * kFinestCell), sizes[i] / kMaxThin);
+  }
+  return sizes;
+}
+
+RefineDisc disc_around(const Vec3& position, const Vec3& normal, double spacing, double size, const LevelRule& rule) {
+  const int spread = static_cast<int>(std::lround(std::log2(rule.typical / size)));
+  const int wanted = rule.finest + std::clamp(spread, -kMaxSpread, std::min(rule.finer, kMaxSpread));
+  const double reach = std::min(spacing, rule.typical * std::exp2(kMaxSpread));  // its leaves are no larger
+  return {position, normal, kDisc * reach, kDiscHalf * reach, std::clamp(wanted, kBaseLevel, kMaxOctreeLevel)};
+}
+
+std::vector<Vec3> level_places(const std::vector<Vec3>& points) {
+  const std::size_t count = std::min(points.size(), kLevelPoints);
+  std::vector<Vec3> places(count);
+  for (std::size_t i = 0; i < count; ++i) places[i] = points[static_cast<std::size_t>(std::uint64_t{i} * points.size() / count)];
+  return places;
+}
+
+}  // namespace g3r::mesh

@@ -1,0 +1,55 @@
+// What the field mesher makes of a cloud before anything else: the points that its fits see, and the discs that its octree resolves.
+#pragma once
+
+#include <g3r/g3r.h>
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "cloud/neighbours.h"
+#include "mesh/field_denoise.h"
+#include "mesh/field_local_fit.h"
+#include "mesh/field_octree.h"
+
+namespace g3r::mesh {
+
+inline constexpr double kFinestCell = 0.8;  ///< finest cell, in typical spacings
+inline constexpr int kBaseLevel = 4;        ///< coarsest leaves
+
+/// What the fits see of the cloud.
+struct Prepared {
+  OrientedPoints points;                         ///< positions that scatter are moved onto the surface they scatter about
+  std::unique_ptr<const Neighbours> neighbours;  ///< of these positions
+  std::vector<std::uint32_t> near;               ///< of_all(k) with the k of find_neighbours()
+  double typical = 0;                            ///< spacing of the cloud
+  double noise = 0;                              ///< of the positions as they came, in spacings; 0 where it is too little to tell
+};
+
+/// In place: the neighbours refer to the positions.
+void find_neighbours(Prepared& prepared);
+
+/// Fills in points, neighbours and spacings. `typical`: spacing of the cloud that these points are a part of; 0: theirs. Throws
+/// InvalidInput (a normal is zero, all points are at one place).
+void prepare(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, double typical, Prepared& prepared);
+
+/// Moves points that scatter more than a fit bears. Throws Cancelled.
+void smooth_noise(const Noise& noise, const std::atomic<bool>* cancel, Prepared& prepared);
+
+/// The size of what is to be seen at each point: its spacing, or less where walls and gaps are thinner.
+[[nodiscard]] std::vector<double> sizes_to_resolve(const Prepared& prepared);
+
+/// Levels of leaves around points.
+struct LevelRule {
+  double typical = 0;  ///< spacing,
+  int finest = 0;      ///< and the level whose cells are kFinestCell such spacings or less
+  int finer = 4;       ///< levels that dense sampling and walls may add
+};
+/// The disc around a point that leaves resolve. `size`: of sizes_to_resolve().
+[[nodiscard]] RefineDisc disc_around(const Vec3& position, const Vec3& normal, double spacing, double size, const LevelRule& rule);
+
+/// Of the points, or evenly many of them: the median of the field there is its level on the surface.
+[[nodiscard]] std::vector<Vec3> level_places(const std::vector<Vec3>& points);
+
+}  // namespace g3r::mesh

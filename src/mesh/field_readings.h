@@ -1,0 +1,20 @@
+// The doubtful signs of an octree read in other ways, where that leaves fewer handles.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "mesh/field_contour.h"
+#include "mesh/side_smoothing.h"
+
+namespace g3r::mesh {
+
+/// Of the corners with an opinion those change for which may_change(corner). `surface` = contour(octree, inside). Returns whether any was
+/// changed. Throws Cancelled.
+bool remove_handles(const Octree& octree, const Opinions& opinions, const std::function<bool(std::uint32_t)>& may_change,
+                    const InsideTest& centre_inside, std::vector<std::uint8_t>& inside, const DualSurface& surface,
+                    const std::atomic<bool>* cancel);
+
+}  // namespace g3r::mesh

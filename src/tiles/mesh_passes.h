@@ -1,0 +1,48 @@
+// The three passes over the tiles of a mesh. Each writes what its tile alone decides, and reads what others have decided, so that all agree
+// on every point, corner and vertex, whatever they see of their surroundings.
+#pragma once
+
+#include "mesh/field_contour.h"
+#include "mesh/field_octree.h"
+#include "mesh/field_points.h"
+#include "tiles/mesh_plan.h"
+#include "tiles/mesh_records.h"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace g3r::tiles {
+
+/// Pass 1: its points as the fits see them, and their area vectors added up for those who are far away.
+void write_points(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel);
+/// Pass 2, after pass 1 of all tiles: the sides of its corners of the octree.
+void write_corners(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel);
+/// Pass 3, after pass 2 of tiles_around() it: its vertices, and the polygons around its edges.
+void write_sheets(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel);
+
+/// The tiles with points at most kAround cells away, itself included, ascending.
+[[nodiscard]] std::vector<std::size_t> tiles_around(const MeshFolder& folder, std::size_t tile);
+
+/// The points around a tile, and the octree around it: as in every other tile where its own places are and next to them.
+struct Surroundings {
+  Surroundings(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel);
+  Surroundings(const Surroundings&) = delete;  // the neighbours refer to the points
+  Surroundings& operator=(const Surroundings&) = delete;
+
+  Region region;
+  std::vector<std::uint8_t> rings;  ///< of all cells
+  mesh::Prepared prepared;
+  std::vector<std::uint32_t> own;  ///< numbers of its own points
+  std::unique_ptr<const mesh::Octree> octree;
+};
+
+/// Of places where signs can be joined in two ways: by the fit where no other tile looks, the same for all elsewhere.
+[[nodiscard]] mesh::InsideTest joining_rule(const MeshFolder& folder, const Region& region, const mesh::LocalFit& local);
+
+/// Name of a corner, for all tiles.
+[[nodiscard]] std::uint64_t corner_name(const std::array<std::uint32_t, 3>& grid);
+
+}  // namespace g3r::tiles

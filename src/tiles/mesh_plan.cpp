@@ -1,0 +1,194 @@
+#include "tiles/mesh_plan.h"
+
+#include "base/median.h"
+#include "base/vector.h"
+#include "cpu/parallel.h"
+#include "field/oriented_cloud.h"
+#include "field/winding_sampler.h"
+#include "io/output_file.h"
+#include "io/source.h"
+#include "tiles/cell_codes.h"
+#include "tiles/mesh_records.h"
+
+#include <g3r/io.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <system_error>
+
+namespace g3r::tiles {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kSchema = "g3r.tiles.mesh";
+constexpr int kVersion = 1;
+constexpr std::size_t kSamples = 32;                  // cells, of 64 points or more each, that stand for the cloud
+constexpr int kSampleAround = 1;                      // cells around them: 8 spacings or more
+constexpr std::uint64_t kFixed = 72u << 20;           // as of the solves
+constexpr std::uint64_t kPerPoint = 4500;             // bytes of the octree, the sides and the sheets around each point (docs/tiles.md)
+constexpr int kMaxLevel = mesh::kMaxOctreeLevel - 4;  // of the cells: leaves are finer
+
+[[noreturn]] void fail(const std::string& folder, const std::string& what) {
+  throw InvalidInput(escape_text(mesh_plan_path(folder)) + ": " + what + "; remove it and the other mesh-* files, and mesh again");
+}
+
+// Spacing and noise of the cloud: the medians over some of its cells.
+void sample_cloud(const std::string& folder, const Manifest& m, const Cells& cells, MeshPlan& plan, const std::atomic<bool>* cancel) {
+  std::vector<double> spacing;
+  std::vector<double> position;
+  std::vector<double> normal;
+  const std::size_t count = std::min(kSamples, cells.cells.size());
+  for (std::size_t s = 0; s < count; ++s) {
+    if (cancel != nullptr && cancel->load()) throw Cancelled();
+    const std::uint64_t code = cells.cells[s * cells.cells.size() / count].code;
+    std::vector<std::uint64_t> near;
+    for_neighbours(code, cells.level, kSampleAround, [&](std::uint64_t other) { near.push_back(other); });
+    std::sort(near.begin(), near.end());
+    const RawPoints raw =
+        read_raw_points(folder, m, cells, [&](std::size_t c) { return std::binary_search(near.begin(), near.end(), cells.cells[c].code); });
+    mesh::Prepared prepared;
+    mesh::prepare(raw.positions, raw.normals, 0, prepared);
+    spacing.push_back(median(prepared.points.spacing));
+    const mesh::Noise noise = mesh::estimate_noise(prepared.points, *prepared.neighbours);
+    position.push_back(noise.position);
+    normal.push_back(noise.normal);
+  }
+  plan.spacing = median(std::move(spacing));
+  plan.noise = {median(std::move(position)), median(std::move(normal))};
+}
+
+// As the thinned cloud says.
+bool is_turned(const std::string& folder, const Manifest& m, const std::atomic<bool>* cancel) {
+  std::vector<Record> records;
+  std::vector<CoarseNormal> coarse;
+  const RecordFile<Record> points(points_path(folder, m.stride));
+  const RecordFile<CoarseNormal> normals(coarse_path(folder));
+  points.append(0, points.size(), records);
+  normals.append(0, normals.size(), coarse);
+  std::vector<Vec3> places;
+  std::vector<Vec3> directions;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const Vec3 n{coarse[i].normal[0], coarse[i].normal[1], coarse[i].normal[2]};
+    if (!(vector::dot(n, n) > 0)) continue;
+    places.push_back(records[i].point);
+    directions.push_back(vector::normalised(n));
+  }
+  const OrientedCloud oriented = oriented_cloud(places, directions);
+  return is_inside_out(oriented, WindingSampler(oriented, cancel));
+}
+
+std::uint64_t points_around(const MeshFolder& folder, std::size_t tile) {
+  const std::vector<std::uint8_t> rings = Region(folder, tile).rings();
+  std::uint64_t count = 0;
+  for (std::size_t c = 0; c < rings.size(); ++c) count += rings[c] == 0 ? folder.cells.end(c) - folder.cells.cells[c].begin : 0;
+  return count;
+}
+
+void find_first_codes(MeshFolder& folder) {
+  folder.first_code.assign(1, 0);
+  for (std::size_t t = 1; t < folder.tiles(); ++t)
+    folder.first_code.push_back(folder.cells.cells[static_cast<std::size_t>(folder.plan.tiles[t].first_cell)].code);
+}
+
+// As many as there are of normals, or more where the memory asks for it.
+void choose_tiles(MeshFolder& folder) {
+  const std::uint64_t limit = folder.manifest.limit;
+  std::size_t count = folder.manifest.tiles.size();
+  for (std::uint64_t before = 0;; count += count / 4 + 1) {
+    std::vector<Tile>& tiles = folder.plan.tiles;
+    tiles = cut(folder.cells, std::min(count, folder.cells.cells.size()));
+    find_first_codes(folder);
+    std::vector<std::uint64_t> solved(tiles.size());
+    parallel::for_each(tiles.size(), [&](std::size_t t) { solved[t] = points_around(folder, t); });
+    for (std::size_t t = 0; t < tiles.size(); ++t) tiles[t].solved = solved[t];
+    const std::uint64_t largest = *std::max_element(solved.begin(), solved.end());
+    folder.plan.worker_memory = kFixed + kPerPoint * largest;
+    if (folder.plan.worker_memory <= limit) return;
+    const bool stuck = count > 64 && largest == before;
+    if (count >= folder.cells.cells.size() || stuck) {
+      throw Unavailable("tiles of this mesh need " + std::to_string(folder.plan.worker_memory >> 20U) + " MiB, the limit of the plan is " +
+                        std::to_string(limit >> 20U) + " MiB; make a plan with a higher limit");
+    }
+    before = largest;
+  }
+}
+
+void write_plan(const std::string& folder, const MeshPlan& plan) {
+  json out = {{"schema", kSchema},
+              {"schema_version", kVersion},
+              {"spacing", plan.spacing},
+              {"noise", {plan.noise.position, plan.noise.normal}},
+              {"inside_out", plan.inside_out},
+              {"worker_memory_bytes", plan.worker_memory},
+              {"tiles", json::array()}};
+  for (const Tile& tile : plan.tiles) out["tiles"].push_back(json::array({tile.first_cell, tile.last_cell, tile.own, tile.solved}));
+  io::OutputFile file(mesh_plan_path(folder));
+  file.write(out.dump(1) + "\n");
+  file.commit();
+}
+
+MeshPlan parsed(const json& from) {
+  MeshPlan plan;
+  from.at("spacing").get_to(plan.spacing);
+  plan.noise = {from.at("noise").at(0), from.at("noise").at(1)};
+  from.at("inside_out").get_to(plan.inside_out);
+  from.at("worker_memory_bytes").get_to(plan.worker_memory);
+  for (const json& tile : from.at("tiles")) plan.tiles.push_back({tile.at(0), tile.at(1), tile.at(2), tile.at(3)});
+  return plan;
+}
+
+bool is_sound(const MeshPlan& plan, const Cells& cells) {
+  std::uint64_t next = 0;
+  for (const Tile& tile : plan.tiles) {
+    if (tile.first_cell != next || tile.last_cell <= next || tile.last_cell > cells.cells.size()) return false;
+    if (tile.own != cells.end(static_cast<std::size_t>(tile.last_cell) - 1) - cells.cells[static_cast<std::size_t>(next)].begin)
+      return false;
+    next = tile.last_cell;
+  }
+  return next == cells.cells.size() && plan.spacing > 0 && plan.spacing < 4;
+}
+
+}  // namespace
+
+mesh::LevelRule MeshFolder::levels() const {
+  const double level = std::ceil(std::log2(2 / (mesh::kFinestCell * plan.spacing)));
+  return {plan.spacing, std::clamp(static_cast<int>(level), mesh::kBaseLevel, mesh::kMaxOctreeLevel)};
+}
+
+MeshFolder read_mesh_folder(const std::string& folder, const Manifest& manifest) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(mesh_plan_path(folder), ignored)) {
+    throw InvalidInput(escape_text(folder) + ": its tiles are not meshed; g3r tiles mesh FOLDER does that");
+  }
+  MeshFolder out{folder, manifest, read_cells(folder, manifest), {}, {}};
+  try {
+    const json from = json::parse(io::read_bytes(mesh_plan_path(folder)));
+    if (from.at("schema") != kSchema || from.at("schema_version") != kVersion) fail(folder, "of another version of g3r");
+    out.plan = parsed(from);
+  } catch (const json::exception&) {
+    fail(folder, "damaged");
+  }
+  if (!is_sound(out.plan, out.cells)) fail(folder, "damaged: its numbers do not go with the cells");
+  find_first_codes(out);
+  return out;
+}
+
+MeshFolder open_mesh_folder(const std::string& folder, const Manifest& manifest, const std::atomic<bool>* cancel) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(mesh_plan_path(folder), ignored)) {
+    MeshFolder made{folder, manifest, read_cells(folder, manifest), {}, {}};
+    if (made.cells.level > kMaxLevel)
+      throw Unavailable("the points are too unevenly spread for a mesh in tiles; mesh parts that are far apart one by one");
+    sample_cloud(folder, manifest, made.cells, made.plan, cancel);
+    made.plan.inside_out = is_turned(folder, manifest, cancel);
+    choose_tiles(made);
+    write_plan(folder, made.plan);
+  }
+  return read_mesh_folder(folder, manifest);
+}
+
+}  // namespace g3r::tiles

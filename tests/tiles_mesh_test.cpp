@@ -1,0 +1,188 @@
+// A mesh in tiles: closed and 2-manifold across their borders, near the surface, the same whoever makes it.
+#include "shapes.h"
+#include "tiles/cell_codes.h"
+#include "tiles/manifest.h"
+#include "tiles/mesh_plan.h"
+#include "tiles/mesh_records.h"
+
+#include <g3r/io.h>
+#include <g3r/mesh.h>
+#include <g3r/tiles.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+namespace g3r {
+namespace {
+
+constexpr std::size_t kPoints = 9000;
+constexpr std::size_t kTiles = 4;
+constexpr double kRing = 0.6;  // radii of the torus
+constexpr double kTube = 0.25;
+constexpr double kFar = 0.05;  // of the radius of the tube: farther from it no vertex is
+
+class Folder {
+ public:
+  Folder() {
+    std::string name = (std::filesystem::temp_directory_path() / "g3r-mesh-XXXXXX").string();
+    path_ = ::mkdtemp(name.data());
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  [[nodiscard]] std::string file(const std::string& name) const { return path_ + "/" + name; }
+
+ private:
+  std::string path_;
+};
+
+std::string bytes_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void write_bytes(const std::string& path, const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; }
+
+// The results of all tiles: normals that are known. The solves have a test of their own, and take their time.
+void write_normals(const std::string& work, const std::vector<Vec3>& normals) {
+  const tiles::Manifest manifest = tiles::read_manifest(work);
+  const tiles::Cells cells = tiles::read_cells(work, manifest);
+  const tiles::RecordFile<tiles::Record> points(tiles::points_path(work, 1));
+  for (std::size_t t = 0; t < manifest.tiles.size(); ++t) {
+    const std::uint64_t begin = cells.cells[manifest.tiles[t].first_cell].begin;
+    std::vector<tiles::Record> records;
+    points.append(begin, begin + manifest.tiles[t].own, records);
+    std::sort(records.begin(), records.end(), [](const auto& a, const auto& b) { return a.index < b.index; });
+    std::string bytes;
+    for (const tiles::Record& record : records) {
+      tiles::Result result{record.index, {}, 1};
+      for (std::size_t a = 0; a < 3; ++a) result.normal[a] = static_cast<float>(normals[record.index][a]);
+      bytes.append(reinterpret_cast<const char*>(&result), sizeof result);
+    }
+    write_bytes(tiles::result_path(work, t), bytes);
+  }
+}
+
+class TilesMesh : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new Folder;
+    surface_ = new shapes::Surface(shapes::torus(kPoints, kRing, kTube, 2));
+    surface_->points.push_back(surface_->points[7]);  // one place twice
+    surface_->normals.push_back(surface_->normals[7]);
+    Cloud cloud;
+    cloud.positions = surface_->points;
+    write_cloud(folder_->file("in.ply"), cloud, nullptr, nullptr);
+    TileOptions options;
+    options.tiles = kTiles;
+    (void)plan_tiles({folder_->file("in.ply")}, folder_->file("plan"), options);
+    const std::string work = work_folder("work");
+    (void)mesh_tiles(work);
+    merged_ = merge_mesh(work, folder_->file("out.ply"));
+  }
+  static void TearDownTestSuite() {
+    delete folder_;
+    delete surface_;
+  }
+  // A copy of the plan, its tiles with normals.
+  static std::string work_folder(const std::string& name) {
+    std::filesystem::copy(folder_->file("plan"), folder_->file(name));
+    write_normals(folder_->file(name), surface_->normals);
+    return folder_->file(name);
+  }
+
+  static Folder* folder_;
+  static shapes::Surface* surface_;
+  static MergedMesh merged_;
+};
+Folder* TilesMesh::folder_ = nullptr;
+shapes::Surface* TilesMesh::surface_ = nullptr;
+MergedMesh TilesMesh::merged_;
+
+TEST_F(TilesMesh, IsOneClosedManifoldOnTheSurface) {
+  const Mesh mesh = read_mesh(folder_->file("out.ply"));
+  const MeshCheck check = check_mesh(mesh);
+  EXPECT_EQ(check.vertices, merged_.vertices);
+  EXPECT_EQ(check.triangles, merged_.triangles);
+  EXPECT_TRUE(check.closed);
+  EXPECT_TRUE(check.manifold);
+  EXPECT_EQ(check.components, 1U);
+  EXPECT_EQ(check.genus, 1);
+  EXPECT_GT(check.volume, 0);
+  double farthest = 0;
+  for (const Vec3& v : mesh.vertices) {
+    const double from_axis = std::hypot(v[0], v[1]) - kRing;
+    farthest = std::max(farthest, std::abs(std::hypot(from_axis, v[2]) - kTube));
+  }
+  EXPECT_LT(farthest, kFar * kTube);
+}
+
+TEST_F(TilesMesh, HasTheSameBytesWhoeverMakesItAndAfterARestart) {
+  const std::string work = work_folder("again");
+  EXPECT_EQ(mesh_tiles(work, {2, 2, 1, "cpu"}).done, kTiles / 2);
+  EXPECT_THROW((void)merge_mesh(work, folder_->file("early.ply")), InvalidInput);
+  std::filesystem::remove(tiles::mesh_points_path(work, 1));  // what a killed worker never finished
+  std::filesystem::remove(tiles::mesh_corners_path(work, 3));
+  EXPECT_EQ(mesh_tiles(work, {1, 2}).done, kTiles);
+  (void)merge_mesh(work, folder_->file("again.ply"));
+  EXPECT_EQ(bytes_of(folder_->file("again.ply")), bytes_of(folder_->file("out.ply")));
+}
+
+TEST_F(TilesMesh, IsRefusedWhereItCannotBe) {
+  std::filesystem::copy(folder_->file("plan"), folder_->file("no-normals"));
+  EXPECT_THROW((void)mesh_tiles(folder_->file("no-normals")), InvalidInput);
+  EXPECT_THROW((void)merge_mesh(folder_->file("no-normals"), folder_->file("none.ply")), InvalidInput);
+  EXPECT_THROW((void)merge_mesh(folder_->file("work"), folder_->file("none.obj")), InvalidInput);
+  EXPECT_THROW((void)mesh_tiles(folder_->file("work"), {3, 2}), InvalidInput);
+}
+
+TEST_F(TilesMesh, DamagedFilesAreRefused) {
+  const std::string work = folder_->file("damaged");
+  std::filesystem::copy(folder_->file("work"), work);
+  const std::string path = tiles::mesh_sheets_path(work, 2);
+  const std::string sheets = bytes_of(path);
+  const auto refused = [&](const std::string& bytes) {
+    write_bytes(path, bytes);
+    EXPECT_THROW((void)merge_mesh(work, folder_->file("none.ply")), InvalidInput);
+  };
+  refused("");
+  refused(sheets.substr(0, sheets.size() - 4));
+  std::string wrong = sheets;
+  wrong.replace(wrong.size() - 4, 4, "\xff\xff\xff\xff");  // a vertex that is not there
+  refused(wrong);
+  wrong = sheets;
+  wrong[6] = 1;  // a count of 2^48
+  refused(wrong);
+  write_bytes(path, sheets);
+  const std::string plan = bytes_of(tiles::mesh_plan_path(work));
+  for (std::size_t length = 0; length + 3 < plan.size(); length += 61) {
+    write_bytes(tiles::mesh_plan_path(work), plan.substr(0, length));
+    EXPECT_THROW((void)merge_mesh(work, folder_->file("none.ply")), InvalidInput) << length;
+  }
+}
+
+TEST_F(TilesMesh, RingsAreCellsAroundThePlacesOfATile) {
+  const std::string work = folder_->file("work");
+  const tiles::Manifest manifest = tiles::read_manifest(work);
+  const tiles::MeshFolder folder = tiles::read_mesh_folder(work, manifest);
+  for (std::size_t t = 0; t < folder.tiles(); ++t) {
+    const tiles::Region region(folder, t);
+    const std::vector<std::uint8_t> rings = region.rings();
+    for (std::size_t c = 0; c < rings.size(); ++c) {
+      const std::uint64_t code = folder.cells.cells[c].code;
+      EXPECT_EQ(region.owns(code), folder.owner(code) == t);
+      const bool near =
+          tiles::any_neighbour(code, folder.cells.level, tiles::kAround, [&](auto other) { return folder.owner(other) == t; });
+      EXPECT_EQ(rings[c] == 0, near) << t << " " << c;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace g3r
