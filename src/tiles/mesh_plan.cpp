@@ -26,10 +26,10 @@ using nlohmann::json;
 
 constexpr const char* kSchema = "g3r.tiles.mesh";
 constexpr int kVersion = 1;
-constexpr std::size_t kSamples = 32;                  // cells, of 64 points or more each, that stand for the cloud
-constexpr int kSampleAround = 1;                      // cells around them: 8 spacings or more
-constexpr std::uint64_t kFixed = 72u << 20;           // as of the solves
-constexpr std::uint64_t kPerPoint = 4500;             // bytes of the octree, the sides and the sheets around each point (docs/algorithms/tiles.md)
+constexpr std::size_t kSamples = 32;         // cells, of 64 points or more each, that stand for the cloud
+constexpr int kSampleAround = 1;             // cells around them: 8 spacings or more
+constexpr std::uint64_t kFixed = 72u << 20;  // as of the solves
+constexpr std::uint64_t kPerPoint = 4500;    // bytes of the octree, the sides and the sheets around each point (docs/algorithms/tiles.md)
 constexpr int kMaxLevel = mesh::kMaxOctreeLevel - 4;  // of the cells: leaves are finer
 
 [[noreturn]] void fail(const std::string& folder, const std::string& what) {
