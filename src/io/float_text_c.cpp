@@ -97,7 +97,7 @@ Decimal shortest(T magnitude) {
 
 std::string scientific(const Decimal& decimal) {
   std::string text = decimal.digits.substr(0, 1);
-  if (decimal.digits.size() > 1) text += "." + decimal.digits.substr(1);
+  if (decimal.digits.size() > 1) text.append(1, '.').append(decimal.digits, 1);
   const int size = std::abs(decimal.exponent);
   return text + (decimal.exponent < 0 ? "e-" : "e+") + (size < 10 ? "0" : "") + std::to_string(size);
 }
@@ -105,10 +105,10 @@ std::string scientific(const Decimal& decimal) {
 // Of integers all digits, which are more than the shortest ones beyond 2^53.
 std::string fixed(const Decimal& decimal, double magnitude) {
   const int count = static_cast<int>(decimal.digits.size());
-  if (decimal.exponent < 0) return "0." + std::string(static_cast<std::size_t>(-decimal.exponent - 1), '0') + decimal.digits;
+  if (decimal.exponent < 0) return std::string("0.").append(static_cast<std::size_t>(-decimal.exponent - 1), '0').append(decimal.digits);
   if (decimal.exponent < count - 1) {
     const auto point = static_cast<std::size_t>(decimal.exponent + 1);
-    return decimal.digits.substr(0, point) + "." + decimal.digits.substr(point);
+    return std::string(decimal.digits, 0, point).append(1, '.').append(decimal.digits, point);
   }
   char text[kLongest];
   std::snprintf(text, sizeof text, "%.0f", magnitude);
