@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, Optional
 
 from . import _g3r
 from ._errors import Cancelled, InputError, UnavailableError
+from ._tile_status import Status, status
 
 if TYPE_CHECKING:
     from ._api import Progress
-    from .tiles import Status
 
 _FREE_SHARE = 0.75  # of the free memory, for all workers of a local cluster together; as that of a plan without a limit
 
@@ -35,8 +35,6 @@ def _require_memory(worker: Any, needed: int) -> None:
 
 def solve(folder: str, number: int, tiles: int, threads: int, device: str) -> Optional[Exception]:
     """On a worker: does tile `number` (from 1) if it is not done. Errors that would come again are handed back, others are raised."""
-    from .tiles import status
-
     worker = _library().get_worker()
     key = worker.get_current_task()
 
@@ -87,8 +85,6 @@ def _error_of(future: Any, number: int, folder: str) -> Optional[BaseException]:
 
 def run_tiles(folder: str, client: Any, threads: int, retries: int, device: str, progress: Optional[Progress]) -> Status:
     """See `g3r.tiles.dask_run`."""
-    from .tiles import status
-
     dask = _library()
     before = status(folder)
     if before.done == before.tiles:

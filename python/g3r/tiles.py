@@ -11,44 +11,18 @@ The result depends on the points and the plan alone, not on workers, threads or 
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any, List, NamedTuple, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Sequence, Union
 
 from . import _g3r
 from ._errors import InputError
 from ._hints import HINTS, take_hints
+from ._tile_status import Status, status
 
 if TYPE_CHECKING:
     from ._api import Progress
-    from ._files import Path
+    from ._cloud import Path
 
 __all__ = ["Merged", "Status", "dask_run", "merge", "plan", "run", "status"]
-
-
-class Status(NamedTuple):
-    """What a work folder holds."""
-
-    points: int
-    """In the input."""
-    non_finite: int
-    """Of them, which take no part."""
-    tiles: int
-    done: int
-    coarse_points: int
-    """Of the thinned cloud."""
-    largest_tile: int
-    """Points of the largest solve: its own, those around it, and the thinned ones beyond."""
-    work: float
-    """Points of all solves over the points: what tiles cost, 1 for none."""
-    worker_memory_bytes: int
-    """Planned, of the largest tile."""
-    disk_bytes: int
-    """Planned, of the whole folder at its fullest."""
-    converged: bool
-    """Of the thinned cloud, as in `Result.stats`; the sides follow it. So do the next three."""
-    consistent: bool
-    open_share: float
-    undecided_share: float
-    warnings: List[str]
 
 
 class Merged(NamedTuple):
@@ -117,11 +91,6 @@ def dask_run(folder: Path, client: Any = None, *, threads: int = 0, retries: int
     from ._dask import run_tiles
 
     return run_tiles(os.path.abspath(os.fsdecode(folder)), client, int(threads), _whole("retries", retries), device, progress)
-
-
-def status(folder: Path) -> Status:
-    """What is planned and done. Raises what `run` does."""
-    return Status(*_g3r.tiles_status(os.fsdecode(folder)))
 
 
 def merge(folder: Path, output: Path, *, progress: Optional[Progress] = None) -> Merged:
