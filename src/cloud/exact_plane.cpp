@@ -215,9 +215,11 @@ ExactPlane find_scattered_plane(const std::vector<Vec3>& points, const std::vect
   return vector::dot(turned, turned) > hidden * hidden ? std::move(best.plane) : ExactPlane{};
 }
 
-double scatter_about_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing) {
+ExactPlane likeliest_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing,
+                           double& scatter_found) {
   const Around around = around_first(points, index, spacing);
-  double found = 0;
+  ExactPlane found;
+  scatter_found = 0;
   double least = kFalseAlarms;
   for (double scatter = kLeastScatter; scatter < kMostScatter; scatter *= 2) {
     const double within = kReach * scatter;
@@ -234,7 +236,8 @@ double scatter_about_plane(const std::vector<Vec3>& points, const std::vector<st
     const PlaneFit fit = fit_plane(points, held.data(), held.size());
     if (fit.breadth < kBroad || is_bent(points, held, fit, spacing)) continue;
     least = expected[static_cast<std::size_t>(best.held)];
-    found = scatter * spacing;
+    found = {std::move(held), fit.normal, fit.breadth};
+    scatter_found = scatter * spacing;
   }
   return found;
 }

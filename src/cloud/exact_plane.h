@@ -34,14 +34,17 @@ struct ExactPlane {
 /// in a thousand times (binomial law: detection a contrario, Desolneux, Moisan, Morel, "Meaningful alignments", International Journal of
 /// Computer Vision 2000): 8 of 33 for a scatter of 0.01 spacings, 13 for 0.04, 18 for 0.08. It is fitted anew to what it holds, twice, and
 /// it must not be the plane of a bend: a quadratic height field through the same points may not be likelier by Schwarz's criterion (three
-/// more numbers cost 3/2 ln n). What a bend hides between 2.5 `scatter` on either side is tilted by as much over the reach of the points
-/// held, so a plane that turns `towards` by less than twice that says nothing new, and is none. Where the point is held by two planes it
-/// gets the mean of their normals, by the likelihoods of its distances.
+/// more numbers cost 3/2 ln n). What a bend hides
+/// between 2.5 `scatter` on either side is tilted by as much over the reach of the points held, so a plane that turns `towards` by less
+/// than twice that says nothing new, and is none. Where the point is held by two planes it gets the mean of their normals, by the
+/// likelihoods of its distances.
 [[nodiscard]] ExactPlane find_scattered_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing,
                                               double scatter, const Vec3& towards);
 
-/// The scatter, of 0.001, 0.002, ..., 0.128 spacings, about which a plane through points[index[0]] is least likely to be one of chance; 0
-/// if none is proven, if the points on it are as good as on a line, or if they are a bend, as above. About 20 us.
-[[nodiscard]] double scatter_about_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing);
+/// The plane through points[index[0]] that is least likely to be one of chance, of all scatters of 0.001, 0.002, ..., 0.128 spacings about
+/// it, and that scatter; none if none is proven, if the points on it are as good as on a line, or if they are a bend, as above. About 20
+/// us.
+[[nodiscard]] ExactPlane likeliest_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing,
+                                         double& scatter);
 
 }  // namespace g3r

@@ -53,6 +53,8 @@ constexpr double kSigmaSlope = 0.372;
 constexpr double kLargestResidual = 0.62;      // beyond, the ball is full of noise and tells no more
 constexpr std::size_t kLayerProbes = 500;      // neighbourhoods that may hold several sheets
 constexpr std::size_t kLayerNeighbours = 256;  // of each
+constexpr std::size_t kGoesOn = 132;           // points among which the plane of a facet goes on: 13 spacings across
+constexpr double kHeld = 3.5;                  // standard deviations: the plane is known to about one so far out
 constexpr double kLayerShare = 0.1;            // share of these neighbourhoods that decides: at the others are folds, edges, a third wall
 constexpr double kLayerBias = 0.92;            // sigma at that share, of smooth surfaces, over the true one
 constexpr double kMostScattered = 0.75;        // quantile of the neighbourhoods that stands for those with the largest noise
@@ -226,6 +228,22 @@ double scattered_noise(const PointSet& set, const Residuals& residuals) {
   return std::min(spacing * small_noise(x16, x32), layered_noise(set));
 }
 
+// Whether a plane goes on among four times as many points as it was found among: that of a facet does, also where half of them are on
+// another wall; that of a bend ends.
+bool goes_on(const PointSet& set, const ExactPlane& plane, double scatter) {
+  const std::vector<Vec3>& points = set.points();
+  std::vector<std::uint32_t> index;
+  std::vector<double> squared;
+  set.tree().nearest(points[plane.points.front()], kGoesOn, index, squared);
+  Vec3 middle{0, 0, 0};
+  for (const std::uint32_t i : plane.points)
+    middle = vector::add(middle, vector::scale(points[i], 1 / static_cast<double>(plane.points.size())));
+  const auto held = std::count_if(index.begin(), index.end(), [&](std::uint32_t i) {
+    return std::abs(vector::dot(plane.normal, vector::subtract(points[i], middle))) <= kHeld * scatter;
+  });
+  return share_of(static_cast<std::size_t>(held), index.size()) >= kOnPlanes;
+}
+
 }  // namespace
 
 double estimate_noise(const PointSet& set) {
@@ -248,8 +266,9 @@ double facet_scatter(const PointSet& set) {
   std::size_t looked = 0;
   for_some(set, kLayerProbes, kPlaneNeighbours, [&](const Vec3&, const auto& index, const auto&) {
     ++looked;
-    const double found = scatter_about_plane(set.points(), index, set.spacing());
-    if (found > 0) ++counts[found];
+    double found = 0;
+    const ExactPlane plane = likeliest_plane(set.points(), index, set.spacing(), found);
+    if (found > 0 && goes_on(set, plane, found)) ++counts[found];
   });
   std::size_t most = 0;
   double scatter = 0;
