@@ -14,9 +14,9 @@ namespace g3r {
 /// eta_i = c s_i^2 n_i, with s_i the spacing averaged over 16 neighbours and c such that the median of |w| over the points is 1/2, as it is
 /// on a closed surface: points that scatter lie farther apart than their share of the surface, those of a grid closer (docs/math.md,
 /// "Areas"). c is within 1/3 and 1.3, and 1 if every point is on an open surface; only the others are asked for it. Strays, which no
-/// surface goes through (held_points()), have at most the typical spacing. The field of these vectors is twice to five times closer to 1 inside and
-/// 0 outside than that of solved ones, whose lengths follow the luck of the sample: docs/study.md, "Areas". Points in canonical order, in
-/// the unit frame. `near`: Neighbours::of_all(k), k >= 17. O(N log N). Throws Cancelled.
+/// surface goes through (held_points()), have at most the typical spacing. The field of these vectors is twice to five times closer to 1
+/// inside and 0 outside than that of solved ones, whose lengths follow the luck of the sample: docs/study.md, "Areas". Points in canonical
+/// order, in the unit frame. `near`: Neighbours::of_all(k), k >= 17. O(N log N). Throws Cancelled.
 [[nodiscard]] std::vector<Vec3> area_vectors(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton,
                                              const std::vector<std::uint32_t>& near, const std::vector<Vec3>& normals,
                                              const OpenSurfaces& sheets, const std::atomic<bool>* cancel);

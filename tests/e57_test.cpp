@@ -10,9 +10,7 @@
 
 // What libE57Format does not free: its packets where memory runs out.
 // NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming): the sanitizer's name
-extern "C" const char* __lsan_default_suppressions() {
-  return "leak:e57::CompressedVectorReaderImpl::CompressedVectorReaderImpl\n";
-}
+extern "C" const char* __lsan_default_suppressions() { return "leak:e57::CompressedVectorReaderImpl::CompressedVectorReaderImpl\n"; }
 
 namespace g3r {
 namespace {
