@@ -10,7 +10,7 @@
 namespace g3r {
 namespace {
 
-constexpr double kFloatDefect = 1e-6;    // rounding of float sums, relative to |A eta| |q|
+constexpr double kFloatDefect = 1e-6;  // rounding of float sums, relative to |A eta| |q|
 constexpr double kDoubleDefect = 1e-12;
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
@@ -61,8 +61,7 @@ TEST_P(Adjoint, HoldsToRounding) {
   for (std::size_t i = 0; i < w.size(); ++i) EXPECT_NEAR(unused[i], w[i], 2e-3 * std::sqrt(dot(w, w) / static_cast<double>(w.size())));
 }
 
-INSTANTIATE_TEST_SUITE_P(Plans, Adjoint,
-                         testing::Combine(testing::Values(1e-2, 1e-3, 1e-5), testing::Bool(), testing::Bool()));
+INSTANTIATE_TEST_SUITE_P(Plans, Adjoint, testing::Combine(testing::Values(1e-2, 1e-3, 1e-5), testing::Bool(), testing::Bool()));
 
 TEST(Linearity, SumsOfVectorsAreSumsOfResults) {
   shapes::Random random(3);

@@ -17,9 +17,15 @@ TEST(Harmonics, LowDegreesHaveTheirClosedForms) {
   const double y = -0.7;
   const double z = 0.5;
   const HarmonicValues u = evaluate_harmonics(harmonics_of_degrees(0, 2), {{x, y, z}});
-  const double expected[9] = {0.28209479177387814,           0.4886025119029199 * y,      0.4886025119029199 * z,
-                              0.4886025119029199 * x,        1.0925484305920792 * x * y,  1.0925484305920792 * y * z,
-                              0.31539156525252005 * (2 * z * z - x * x - y * y), 1.0925484305920792 * x * z, 0.5462742152960396 * (x * x - y * y)};
+  const double expected[9] = {0.28209479177387814,
+                              0.4886025119029199 * y,
+                              0.4886025119029199 * z,
+                              0.4886025119029199 * x,
+                              1.0925484305920792 * x * y,
+                              1.0925484305920792 * y * z,
+                              0.31539156525252005 * (2 * z * z - x * x - y * y),
+                              1.0925484305920792 * x * z,
+                              0.5462742152960396 * (x * x - y * y)};
   for (std::size_t k = 0; k < 9; ++k) EXPECT_NEAR(u.value[k], expected[k], 1e-15) << k;
 }
 

@@ -37,9 +37,9 @@ typedef struct g3r_options {
   int paper;   /* not 0: the published method */
   double epsilon;
   g3r_unit epsilon_unit;
-  int degree;  /* of the harmonic polynomials, 0..8; -1: automatic */
-  int depth;   /* octree depth of the mesh, 4..12; 0: automatic */
-  int threads; /* 0: all cores; the result does not depend on it */
+  int degree;          /* of the harmonic polynomials, 0..8; -1: automatic */
+  int depth;           /* octree depth of the mesh, 4..12; 0: automatic */
+  int threads;         /* 0: all cores; the result does not depend on it */
   uint64_t max_memory; /* bytes; 0: no limit */
   g3r_progress progress;
   void* user;   /* handed to progress */
@@ -54,7 +54,7 @@ typedef struct g3r_options {
   size_t inside_count;
   int seen_from_inside; /* not 0: normals face the side the scanner was on, as in a room */
   int flip;             /* not 0: turn every normal */
-  const char* device; /* "auto", "cpu", "gpu", "gpu:N"; NULL: auto */
+  const char* device;   /* "auto", "cpu", "gpu", "gpu:N"; NULL: auto */
 } g3r_options;
 
 #define G3R_NO_SENSOR UINT32_MAX

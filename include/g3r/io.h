@@ -25,17 +25,17 @@ class Attributes;
 /// Scanner positions are those that a file states: VIEWPOINT of PCD (the identity, 0 0 0 1 0 0 0, is what writers put who do not know),
 /// the poses of E57 (unknown where all are the identity) and of PTX.
 struct Cloud {
-  std::vector<Vec3> positions;                        ///< N points, file order; non-finite ones are kept (orient() leaves them out)
-  std::vector<Vec3> normals;                          ///< normals in the file, not normalised; empty if absent or all zero
-  std::vector<std::array<std::uint8_t, 3>> colors;    ///< RGB
-  std::vector<float> confidence;                      ///< a property named confidence or quality
-  std::vector<Vec3> sensor_positions;                 ///< where the scanner stood, one per scan, in input coordinates; empty if unknown
-  std::vector<std::uint32_t> scan_of_point;           ///< index into sensor_positions; empty if there is one scan or none is known
-  Scalar scalar = Scalar::kFloat64;                   ///< precision of the coordinates in the file
-  std::string format;                                 ///< for example "ply binary_little_endian"
-  std::vector<std::string> property_names;            ///< as in the file, in its order
-  std::shared_ptr<const Attributes> attributes;       ///< null when the format holds nothing else
-  std::vector<std::string> warnings;                  ///< one line each: what was odd and what was done about it
+  std::vector<Vec3> positions;                      ///< N points, file order; non-finite ones are kept (orient() leaves them out)
+  std::vector<Vec3> normals;                        ///< normals in the file, not normalised; empty if absent or all zero
+  std::vector<std::array<std::uint8_t, 3>> colors;  ///< RGB
+  std::vector<float> confidence;                    ///< a property named confidence or quality
+  std::vector<Vec3> sensor_positions;               ///< where the scanner stood, one per scan, in input coordinates; empty if unknown
+  std::vector<std::uint32_t> scan_of_point;         ///< index into sensor_positions; empty if there is one scan or none is known
+  Scalar scalar = Scalar::kFloat64;                 ///< precision of the coordinates in the file
+  std::string format;                               ///< for example "ply binary_little_endian"
+  std::vector<std::string> property_names;          ///< as in the file, in its order
+  std::shared_ptr<const Attributes> attributes;     ///< null when the format holds nothing else
+  std::vector<std::string> warnings;                ///< one line each: what was odd and what was done about it
 };
 
 /// A box with sides along the axes.
@@ -65,8 +65,8 @@ struct ReadOptions {
 [[nodiscard]] Mesh read_mesh_bytes(const void* bytes, std::size_t size, const std::string& name);
 
 struct WriteOptions {
-  bool ascii = false;               ///< text instead of binary where the format has both
-  bool cloud_compare_names = false;  ///< name the confidence "scalar_confidence" so that CloudCompare shows it at once
+  bool ascii = false;                         ///< text instead of binary where the format has both
+  bool cloud_compare_names = false;           ///< name the confidence "scalar_confidence" so that CloudCompare shows it at once
   const std::atomic<bool>* cancel = nullptr;  ///< when it becomes true the writer leaves nothing behind and throws Cancelled
 };
 
@@ -80,8 +80,8 @@ void write_cloud(const std::string& path, const Cloud& cloud, const std::vector<
 /// Writes a mesh; the format follows the extension. Whole or not at all; throws like write_cloud(), and InvalidInput for an empty mesh.
 void write_mesh(const std::string& path, const Mesh& mesh, const WriteOptions& options = {});
 
-/// Throws what write_*() would throw for this path (unknown extension, missing or read-only folder, same file as an input), before any work.
-/// `for_mesh`: check the extension as a mesh format, else as a point format. Leaves nothing behind.
+/// Throws what write_*() would throw for this path (unknown extension, missing or read-only folder, same file as an input), before any
+/// work. `for_mesh`: check the extension as a mesh format, else as a point format. Leaves nothing behind.
 void check_output(const std::string& path, const std::vector<std::string>& inputs, bool for_mesh);
 
 /// Writes bytes (a report, a page) whole or not at all.
