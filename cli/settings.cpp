@@ -16,8 +16,8 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <g3r/names.h>
+#include <CLI/CLI.hpp>
 
 #include "exit_code.h"
 #include "help.h"

@@ -13,6 +13,17 @@ function(g3r_target_defaults target)
   endif()
 endfunction()
 
+# g3r_precompile(TARGET HEADER...): headers of other libraries that many sources of the target include, parsed once for all. Never our own,
+# of which a change would compile everything anew. What a source needs it includes all the same: without G3R_PRECOMPILE it has no others.
+function(g3r_precompile target)
+  if(G3R_PRECOMPILE)
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  endif()
+endfunction()
+set(G3R_STANDARD_HEADERS <algorithm> <array> <atomic> <charconv> <cmath> <cstdint> <cstdio> <cstring> <filesystem> <functional> <limits> <map>
+                         <memory> <mutex> <numbers> <numeric> <optional> <set> <span> <sstream> <string> <string_view> <system_error> <tuple>
+                         <unordered_map> <utility> <vector>)
+
 # g3r_laszip_defaults(TARGET): settings for sources of LASzip, which are not ours: no warnings, and no UBSan, which stops at its unaligned
 # loads and shifts.
 function(g3r_laszip_defaults target)

@@ -183,7 +183,7 @@ void judge(const CanonicalCloud& cloud, const std::vector<float>& confidence, St
 struct Oriented {
   Solution solution;
   std::vector<float> confidence;
-  double doubt = 0;                 // share of the points that could face either way by their own equations, or lie on open surfaces
+  double doubt = 0;  // share of the points that could face either way by their own equations, or lie on open surfaces
 };
 
 Oriented orient_problem(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {

@@ -17,9 +17,7 @@ namespace {
 
 constexpr std::size_t kPoints = 6000;
 
-std::size_t flagged(const std::vector<Vec3>& points) {
-  return find_outliers(canonical_cloud(points).set).size();
-}
+std::size_t flagged(const std::vector<Vec3>& points) { return find_outliers(canonical_cloud(points).set).size(); }
 
 // Samples of a torus of which the share falls tenfold from one end to the other.
 shapes::Surface uneven_torus() {

@@ -69,7 +69,7 @@ TEST(Sites, AxesAreNormalsAndErrorsFallWithTheSquareOfTheDistance) {
 TEST(Sites, LinesBecomeASurfaceAcrossTheirGaps) {
   for (const double ratio : {1.0, 6.0, 20.0}) {
     const PointSet cloud = in_order(scan_lines(ratio));
-      const double distance = surface_distance(cloud);
+    const double distance = surface_distance(cloud);
     if (ratio == 1) {
       EXPECT_EQ(distance, 0);
       continue;

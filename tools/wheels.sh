@@ -52,6 +52,7 @@ set(CMAKE_C_COMPILER "$out/zig/$1-cc")
 set(CMAKE_CXX_COMPILER "$out/zig/$1-c++")
 set(CMAKE_AR "$out/zig/ar")
 set(CMAKE_RANLIB "$out/zig/ranlib")
+set(G3R_PRECOMPILE OFF) # zig has a cache of its own
 END
 }
 

@@ -82,8 +82,8 @@ G3R_C_API g3r_status g3r_reconstruct(const double* points, size_t count, const g
 /* Frees a mesh; NULL is fine. */
 G3R_C_API void g3r_mesh_free(g3r_mesh* mesh);
 
-/* Clouds of any size, tile by tile, in a work folder that holds all state (g3r/tiles.h, docs/tiles.md). What is there is complete or absent:
- * a process may be killed at any time, and the same call then goes on. */
+/* Clouds of any size, tile by tile, in a work folder that holds all state (g3r/tiles.h, docs/tiles.md). What is there is complete or
+ * absent: a process may be killed at any time, and the same call then goes on. */
 
 /* Set `size` to sizeof(g3r_tiles_info) before a call; members are only ever added at the end. */
 typedef struct g3r_tiles_info {

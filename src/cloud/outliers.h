@@ -14,7 +14,8 @@ namespace g3r {
 ///   - the local spacing is more than twice that of their 8 neighbours (geometric mean): alone near a surface;
 ///   - it is more than twice the typical one, and the 16 nearest points fill space: the smallest principal spread is more than 7 % of the
 ///     sum of all three (on a surface, however sparse, below 3 %): one of many outliers.
-/// A density that changes smoothly, by whatever factor, is no reason. Never more than a third of the points: then the cloud is something else, and none is returned. O(N).
+/// A density that changes smoothly, by whatever factor, is no reason. Never more than a third of the points: then the cloud is something
+/// else, and none is returned. O(N).
 [[nodiscard]] std::vector<std::uint32_t> find_outliers(const PointSet& set);
 
 /// Takes the points with these indices out of the cloud and returns them. point_of and multiplicity number them after those that stay, and

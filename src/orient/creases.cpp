@@ -24,8 +24,7 @@ struct Round {
   std::vector<double> share;  // of the weight that planes leave, at creases; -1 elsewhere
 };
 
-Round average_in_planes(const PointSet& set,
-                        const std::vector<Vec3>& normals) {
+Round average_in_planes(const PointSet& set, const std::vector<Vec3>& normals) {
   const std::vector<Vec3>& points = set.points();
   const std::vector<double>& spacing = set.smoothed_spacing();
   const std::vector<std::uint32_t>& near = set.near();

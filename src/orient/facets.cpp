@@ -137,8 +137,8 @@ double share_at_odds(const Facets& facets, const std::vector<Vec3>& normals) {
   return static_cast<double>(odd) / static_cast<double>(normals.size());
 }
 
-void choose_facet_sides(const PointSet& set, const Settings& settings, const Facets& facets, std::vector<Vec3>& eta, std::vector<Vec3>& normals,
-                        Stages& stages) {
+void choose_facet_sides(const PointSet& set, const Settings& settings, const Facets& facets, std::vector<Vec3>& eta,
+                        std::vector<Vec3>& normals, Stages& stages) {
   const std::vector<double>& spacing = set.smoothed_spacing();
   const double h = settings.spacing;
   const std::vector<Vec3> first = first_normals(facets, normals);

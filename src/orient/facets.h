@@ -34,7 +34,7 @@ struct Facets {
 /// `eta`. On facets n_i gets the side of c_f and eta_i becomes A_i n_i; the others stay. docs/math.md, "Facets".
 /// A_i: square of the smoothed_spacing(). `eta`, `normals`: in and out. Up to 120 products, 20 to 40 as a rule: it ends when sides
 /// have settled.
-void choose_facet_sides(const PointSet& set, const Settings& settings, const Facets& facets, std::vector<Vec3>& eta, std::vector<Vec3>& normals,
-                        Stages& stages);
+void choose_facet_sides(const PointSet& set, const Settings& settings, const Facets& facets, std::vector<Vec3>& eta,
+                        std::vector<Vec3>& normals, Stages& stages);
 
 }  // namespace g3r

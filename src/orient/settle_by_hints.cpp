@@ -75,8 +75,8 @@ void warn(const HintEffect& effect, const Hints& hints, const CanonicalCloud& cl
 
 }  // namespace
 
-void settle_by_hints(const Problem& problem, const Options& options, Solution& solution, std::vector<float>& confidence,
-                     Stats& stats, const std::atomic<bool>* cancel) {
+void settle_by_hints(const Problem& problem, const Options& options, Solution& solution, std::vector<float>& confidence, Stats& stats,
+                     const std::atomic<bool>* cancel) {
   const Patches patches = patches_of(solution.sheets);
   const Hints hints = in_frame(options.hints, problem.cloud);
   stats.hints.given = names_of(hints);

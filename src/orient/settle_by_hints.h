@@ -14,7 +14,7 @@ namespace g3r {
 /// Follows options.hints (follow_hints), if there are any: turns normals and area vectors of the solution, gives settled points the
 /// confidence of their votes, and brings `stats` up to date, with warnings where hints and points contradict each other. Also says where
 /// a side is still a choice. To be called when normals and area vectors are those that are handed out. Throws Cancelled.
-void settle_by_hints(const Problem& problem, const Options& options, Solution& solution,
-                     std::vector<float>& confidence, Stats& stats, const std::atomic<bool>* cancel);
+void settle_by_hints(const Problem& problem, const Options& options, Solution& solution, std::vector<float>& confidence, Stats& stats,
+                     const std::atomic<bool>* cancel);
 
 }  // namespace g3r
