@@ -95,12 +95,13 @@ Stats stats_of(const TileStatus& status, const Settings& settings) {
 
 // Plans and solves beside the output; `merge` writes it, and says what of it is worth a warning. Then the folder goes.
 template <class Merge>
-int work_in_tiles(const Settings& settings, Session& session, const Merge& merge) {
+int work_in_tiles(const Settings& settings, Session& session, bool mesh, const Merge& merge) {
   const std::string folder = settings.output + kFolderSuffix;
   session.console().say("more than --max-memory in one piece: tiles, in " + escape_text(folder) +
                         "; where this ends early, the same command goes on");
   const Monitor monitor = session.monitor();
   (void)plan_tiles({settings.input}, folder, tile_options(settings), monitor);
+  if (mesh) (void)planned_mesh_memory(folder);  // what does not fit is refused before the tiles are solved
   const TileStatus status = g3r::run_tiles(folder, worker_of(settings), monitor);
   Stats stats = stats_of(status, settings);
   const std::string left_out = merge(folder, monitor, stats);
@@ -148,7 +149,7 @@ int run_tiles(const Settings& settings, Session& session) {
 std::optional<int> orient_in_tiles(const Settings& settings, Session& session) {
   if (settings.options.max_memory == 0 || !can_be_tiled(settings)) return std::nullopt;
   if (!needs_tiles({settings.input}, settings.options.max_memory)) return std::nullopt;
-  return work_in_tiles(settings, session, [&](const std::string& folder, const Monitor& monitor, Stats& stats) {
+  return work_in_tiles(settings, session, false, [&](const std::string& folder, const Monitor& monitor, Stats& stats) {
     const MergedTiles merged = merge_tiles(folder, settings.output, monitor);
     stats.confidence_mean = merged.confidence_mean;
     stats.confidence_below_half = merged.confidence_below_half;
@@ -160,7 +161,7 @@ std::optional<int> reconstruct_in_tiles(const Settings& settings, Session& sessi
   if (settings.options.max_memory == 0 || !can_be_tiled(settings)) return std::nullopt;
   if (!settings.oriented.empty() || !is_default_mesh(settings.mesh_options)) return std::nullopt;
   if (!needs_tiles({settings.input}, settings.options.max_memory, true)) return std::nullopt;
-  return work_in_tiles(settings, session, [&](const std::string& folder, const Monitor& monitor, Stats& stats) {
+  return work_in_tiles(settings, session, true, [&](const std::string& folder, const Monitor& monitor, Stats& stats) {
     const MeshTiles meshed = mesh_tiles(folder, worker_of(settings), monitor);
     stats.planned_memory_bytes = std::max<std::size_t>(stats.planned_memory_bytes, meshed.worker_memory_bytes);
     const MergedMesh merged = merge_mesh(folder, settings.output, monitor);

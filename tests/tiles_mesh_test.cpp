@@ -136,6 +136,7 @@ TEST_F(TilesMesh, HasTheSameBytesWhoeverMakesItAndAfterARestart) {
 
 TEST_F(TilesMesh, IsRefusedWhereItCannotBe) {
   std::filesystem::copy(folder_->file("plan"), folder_->file("no-normals"));
+  EXPECT_GT(planned_mesh_memory(folder_->file("no-normals")), std::uint64_t{1} << 20);  // known before
   EXPECT_THROW((void)mesh_tiles(folder_->file("no-normals")), InvalidInput);
   EXPECT_THROW((void)merge_mesh(folder_->file("no-normals"), folder_->file("none.ply")), InvalidInput);
   EXPECT_THROW((void)merge_mesh(folder_->file("work"), folder_->file("none.obj")), InvalidInput);

@@ -86,6 +86,10 @@ struct MergedTiles {
 /// Throws InvalidInput (tiles that are not done, inputs that have changed, another extension), IoError, Cancelled.
 MergedTiles merge_tiles(const std::string& folder, const std::string& output, const Monitor& monitor = {});
 
+/// The memory in bytes that mesh_tiles() will take for its largest tile: known from the plan, before any tile is solved. Throws
+/// InvalidInput (no plan, a damaged one), Unavailable (no tile of a mesh fits the memory of the plan).
+[[nodiscard]] std::uint64_t planned_mesh_memory(const std::string& folder);
+
 /// What mesh_tiles() has done and left.
 struct MeshTiles {
   std::size_t tiles = 0;  ///< of the mesh: as many as of the normals, or more where its memory asks for it

@@ -177,15 +177,20 @@ MeshFolder read_mesh_folder(const std::string& folder, const Manifest& manifest)
   return out;
 }
 
+MeshFolder with_mesh_tiles(const std::string& folder, const Manifest& manifest) {
+  MeshFolder made{folder, manifest, read_cells(folder, manifest), {}, {}};
+  if (made.cells.level > kMaxLevel)
+    throw Unavailable("the points are too unevenly spread for a mesh in tiles; mesh parts that are far apart one by one");
+  choose_tiles(made);
+  return made;
+}
+
 MeshFolder open_mesh_folder(const std::string& folder, const Manifest& manifest, const std::atomic<bool>* cancel) {
   std::error_code ignored;
   if (!std::filesystem::exists(mesh_plan_path(folder), ignored)) {
-    MeshFolder made{folder, manifest, read_cells(folder, manifest), {}, {}};
-    if (made.cells.level > kMaxLevel)
-      throw Unavailable("the points are too unevenly spread for a mesh in tiles; mesh parts that are far apart one by one");
+    MeshFolder made = with_mesh_tiles(folder, manifest);
     sample_cloud(folder, manifest, made.cells, made.plan, cancel);
     made.plan.inside_out = is_turned(folder, manifest, cancel);
-    choose_tiles(made);
     write_plan(folder, made.plan);
   }
   return read_mesh_folder(folder, manifest);

@@ -70,6 +70,8 @@ class Region {
 /// Code of the cell of `level` that holds a place in the grid of octree corners.
 [[nodiscard]] std::uint64_t cell_at(const std::array<std::uint32_t, 3>& grid, int level);
 
+/// The tiles of the mesh, as the plan of the mesh will have them: nothing but the cells is needed. Throws InvalidInput, Unavailable.
+[[nodiscard]] MeshFolder with_mesh_tiles(const std::string& folder, const Manifest& manifest);
 /// Reads the plan of the mesh, or makes it. All tiles of normals must be done. Throws InvalidInput, Unavailable, IoError, Cancelled.
 [[nodiscard]] MeshFolder open_mesh_folder(const std::string& folder, const Manifest& manifest, const std::atomic<bool>* cancel);
 /// Reads it, or throws InvalidInput where there is none.

@@ -63,6 +63,10 @@ void require_normals(const std::string& folder, const Manifest& manifest) {
 
 namespace g3r {
 
+std::uint64_t planned_mesh_memory(const std::string& folder) {
+  return tiles::with_mesh_tiles(folder, tiles::read_manifest(folder)).plan.worker_memory;
+}
+
 MeshTiles mesh_tiles(const std::string& folder, const TileWorker& worker, const Monitor& monitor) {
   if (worker.workers == 0 || worker.number == 0 || worker.number > worker.workers) {
     throw InvalidInput("mesh_tiles: expected a worker of 1.." + std::to_string(worker.workers) + ", found " +
