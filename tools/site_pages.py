@@ -84,9 +84,13 @@ def python_api():
                  if isinstance(node, ast.Assign) and node.targets[0].id == "__all__")
     first = ["orient", "reconstruct", "run", "Result", "Field", "mesh_oriented", "read", "read_mesh", "write", "Cloud", "show", "View",
              "Error"]
-    rest = sorted(set(names) - set(first) - {"__version__"})
-    return "".join(class_text(found[name]) if isinstance(found[name], ast.ClassDef) else function_text(found[name], "##", "g3r")
+    rest = sorted(set(names) - set(first) - {"__version__", "tiles"})
+    text = "".join(class_text(found[name]) if isinstance(found[name], ast.ClassDef) else function_text(found[name], "##", "g3r")
                    for name in first + rest)
+    tiles = ast.parse((folder / "tiles.py").read_text())
+    text += f"\n## `g3r.tiles`\n\n{docstring_text(tiles)}\n"
+    return text + "".join(function_text(node, "###", "g3r.tiles") for node in tiles.body
+                          if isinstance(node, ast.FunctionDef) and not node.name.startswith("_"))
 
 
 def docstring_text(node):
@@ -118,7 +122,7 @@ def class_text(node):
 
 
 def header_texts():
-    names = ["g3r", "hints", "points", "mesh", "io", "metrics", "view", "error", "eigen"]
+    names = ["g3r", "hints", "names", "points", "mesh", "io", "tiles", "metrics", "view", "error", "eigen"]
     text = "".join(header_text(f"g3r/{name}.h") for name in names)
     return text + f"\n## g3r/g3r_c.h\n\n```c\n{(ROOT / 'include/g3r/g3r_c.h').read_text().rstrip()}\n```\n"
 
