@@ -22,14 +22,11 @@ constexpr double kSteepest = 0.1;    // cosine between a candidate and the direc
 constexpr double kNarrowest = 0.15;  // breadth of the points on the plane
 constexpr double kLeastAngle = 0.1;  // sine, between the two that a candidate passes through
 // Of points that scatter.
-constexpr double kReach = 2.5;           // standard deviations from a plane that holds a point: 99 % of those on it
-constexpr double kBackground = 1.5;      // spacings to either side that points on no plane fill, as far as 32 neighbours reach
-constexpr double kMostChance = 0.9;      // so that the tail below is one of chance
-constexpr double kFalseAlarms = 1e-3;    // expected number of planes by chance, of all candidates
-constexpr double kLeastScatter = 0.001;  // spacings: less is exact
-constexpr double kMostScatter = 0.15;    // spacings: more, and half of 33 points prove nothing
-constexpr double kBroad = 0.4;           // breadth of a facet; the rows of a raster lie in narrow strips of planes across the surface
-constexpr int kRefits = 2;               // the candidate passes through three points, so it is tilted by their scatter
+constexpr double kReach = 2.5;         // standard deviations from a plane that holds a point: 99 % of those on it
+constexpr double kBackground = 1.5;    // spacings to either side that points on no plane fill, as far as 32 neighbours reach
+constexpr double kFalseAlarms = 1e-3;  // expected number of planes by chance, of all candidates
+constexpr double kMostScatter = 0.15;  // spacings: with more, half of 33 points prove nothing
+constexpr int kRefits = 2;             // the candidate passes through three points, so it is tilted by their scatter
 
 // The nearest points of one, relative to it, itself first, in spacings.
 struct Around {
@@ -49,6 +46,18 @@ struct Around {
     return sum - static_cast<int>(kPlaneNeighbours - count);  // those that are missing are at 0
   }
 };
+
+Around around_first(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing) {
+  Around around;
+  around.count = std::min(index.size(), kPlaneNeighbours);
+  for (std::size_t k = 0; k < around.count; ++k) {
+    const Vec3 d = vector::subtract(points[index[k]], points[index[0]]);
+    around.x[k] = static_cast<float>(d[0] / spacing);
+    around.y[k] = static_cast<float>(d[1] / spacing);
+    around.z[k] = static_cast<float>(d[2] / spacing);
+  }
+  return around;
+}
 
 struct Candidate {
   Vec3 normal{0, 0, 0};
@@ -70,7 +79,7 @@ Candidate held_by(const Around& around, const Vec3& normal) {
 // How many of the candidates, planes through three of `count` points, hold k points or more by chance, k = 0 ... count, where each other
 // point is within `within` of one with the probability of kBackground: a binomial tail.
 std::vector<double> false_alarms(std::size_t count, double within) {
-  const double chance = std::min(kMostChance, within / kBackground);
+  const double chance = within / kBackground;
   const double candidates = kSeeds * (kSeeds - 1) / 2.0;
   std::vector<double> expected(count + 1, candidates);
   const std::size_t others = count < 3 ? 0 : count - 3;
@@ -112,24 +121,36 @@ Candidate best_plane(const Around& around, const Vec3* towards, const HeldBy& he
   return best;
 }
 
-Around around_first(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing) {
-  Around around;
-  around.count = std::min(index.size(), kPlaneNeighbours);
-  for (std::size_t k = 0; k < around.count; ++k) {
-    const Vec3 d = vector::subtract(points[index[k]], points[index[0]]);
-    around.x[k] = static_cast<float>(d[0] / spacing);
-    around.y[k] = static_cast<float>(d[1] / spacing);
-    around.z[k] = static_cast<float>(d[2] / spacing);
-  }
-  return around;
-}
-
 // Whether a quadratic height field over the plane through these points is likelier than the plane (Schwarz's criterion).
 bool is_bent(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& held, const PlaneFit& plane, double spacing) {
   const auto n = static_cast<double>(held.size());
   const double flat = plane.residual * std::sqrt((n - 3) / n);  // root mean squares, of which the likelihoods are made
   const double bent = quadratic_residual(points, held.data(), held.size(), plane.normal, spacing) * std::sqrt((n - 6) / n);
   return n * std::log(flat / bent) > 1.5 * std::log(n);
+}
+
+// The points within `within` of a plane through a place, both relative to the first point and in spacings, and the plane fitted to them.
+struct Held {
+  std::vector<std::uint32_t> points;
+  Vec3 middle{0, 0, 0};  // of them, in the same frame
+  PlaneFit fit;
+
+  [[nodiscard]] ExactPlane plane() { return {std::move(points), fit.normal, fit.breadth}; }
+};
+
+Held fit_to_held(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, const Around& around, const Vec3& normal,
+                 const Vec3& place, double within) {
+  Held held;
+  for (std::size_t k = 0; k < around.count; ++k) {
+    const Vec3 at = around.at(k);
+    if (std::abs(vector::dot(normal, vector::subtract(at, place))) > within) continue;
+    held.points.push_back(index[k]);
+    held.middle = vector::add(held.middle, at);
+  }
+  if (held.points.size() < static_cast<std::size_t>(kFewest)) return {};  // rounding
+  held.middle = vector::scale(held.middle, 1 / static_cast<double>(held.points.size()));
+  held.fit = fit_plane(points, held.points.data(), held.points.size());
+  return held;
 }
 
 struct Scattered {
@@ -149,29 +170,13 @@ Scattered search_scattered(const std::vector<Vec3>& points, const std::vector<st
     return held >= needed ? Candidate{normal, within, held, 0} : Candidate{};
   });
   if (best.held == 0) return {};
-  Scattered out;
-  PlaneFit fit;
-  Vec3 normal = best.normal;
-  Vec3 middle{0, 0, 0};  // of the points held, relative to the first, in spacings
+  Held held = fit_to_held(points, index, around, best.normal, {0, 0, 0}, within);
   for (int round = 0; round <= kRefits; ++round) {
-    out.plane.points.clear();
-    Vec3 sum{0, 0, 0};
-    for (std::size_t k = 0; k < around.count; ++k) {
-      const Vec3 at = around.at(k);
-      if (std::abs(vector::dot(normal, vector::subtract(at, middle))) > within) continue;
-      out.plane.points.push_back(index[k]);
-      sum = vector::add(sum, at);
-    }
-    if (static_cast<int>(out.plane.points.size()) < needed || out.plane.points.front() != index[0]) return {};
-    middle = vector::scale(sum, 1 / static_cast<double>(out.plane.points.size()));
-    fit = fit_plane(points, out.plane.points.data(), out.plane.points.size());
-    normal = fit.normal;
+    if (static_cast<int>(held.points.size()) < needed || held.points.front() != index[0]) return {};
+    if (round < kRefits) held = fit_to_held(points, index, around, held.fit.normal, held.middle, within);
   }
-  if (fit.breadth < kNarrowest || is_bent(points, out.plane.points, fit, spacing)) return {};
-  out.plane.normal = fit.normal;
-  out.plane.breadth = fit.breadth;
-  out.away = std::abs(vector::dot(normal, middle));
-  return out;
+  if (held.fit.breadth < kNarrowest || is_bent(points, held.points, held.fit, spacing)) return {};
+  return {held.plane(), std::abs(vector::dot(held.fit.normal, held.middle))};
 }
 
 }  // namespace
@@ -180,20 +185,13 @@ ExactPlane find_exact_plane(const std::vector<Vec3>& points, const std::vector<s
   const Around around = around_first(points, index, spacing);
   const Candidate best = best_plane(around, towards, [&](const Vec3& normal) { return held_by(around, normal); });
   if (best.held == 0) return {};
-  ExactPlane plane;
-  for (std::size_t k = 0; k < around.count; ++k) {
-    if (std::abs(vector::dot(best.normal, around.at(k))) <= best.within) plane.points.push_back(index[k]);
-  }
-  if (plane.points.size() < static_cast<std::size_t>(kFewest)) return {};  // rounding
-  const PlaneFit fit = fit_plane(points, plane.points.data(), plane.points.size());
-  if (fit.breadth < kNarrowest) return {};
-  plane.normal = fit.normal;
-  plane.breadth = fit.breadth;
-  return plane;
+  Held held = fit_to_held(points, index, around, best.normal, {0, 0, 0}, best.within);
+  return held.fit.breadth < kNarrowest ? ExactPlane{} : held.plane();
 }
 
 ExactPlane find_scattered_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing, double scatter,
                                 const Vec3& towards) {
+  if (scatter > kMostScatter * spacing) return {};
   Scattered best = search_scattered(points, index, spacing, scatter, towards);
   if (best.plane.points.empty()) return {};
   std::vector<std::uint32_t> others{index.front()};
@@ -215,29 +213,23 @@ ExactPlane find_scattered_plane(const std::vector<Vec3>& points, const std::vect
   return vector::dot(turned, turned) > hidden * hidden ? std::move(best.plane) : ExactPlane{};
 }
 
-ExactPlane likeliest_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing,
-                           double& scatter_found) {
+LikeliestPlane find_likeliest_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing) {
   const Around around = around_first(points, index, spacing);
-  ExactPlane found;
-  scatter_found = 0;
+  LikeliestPlane found;
   double least = kFalseAlarms;
-  for (double scatter = kLeastScatter; scatter < kMostScatter; scatter *= 2) {
+  for (double scatter = kExactScatter; scatter < kMostScatter; scatter *= 2) {
     const double within = kReach * scatter;
-    const std::vector<double> expected = false_alarms(around.count, within);
     const Candidate best = best_plane(around, nullptr, [&](const Vec3& normal) {
       return Candidate{normal, within, around.held(normal, within), 0};
     });
-    if (best.held <= kFewest || expected[static_cast<std::size_t>(best.held)] >= least) continue;
-    std::vector<std::uint32_t> held;
-    for (std::size_t k = 0; k < around.count; ++k) {
-      if (std::abs(vector::dot(best.normal, around.at(k))) <= within) held.push_back(index[k]);
-    }
-    if (held.size() <= static_cast<std::size_t>(kFewest)) continue;
-    const PlaneFit fit = fit_plane(points, held.data(), held.size());
-    if (fit.breadth < kBroad || is_bent(points, held, fit, spacing)) continue;
-    least = expected[static_cast<std::size_t>(best.held)];
-    found = {std::move(held), fit.normal, fit.breadth};
-    scatter_found = scatter * spacing;
+    if (best.held <= kFewest) continue;
+    const double expected = false_alarms(around.count, within)[static_cast<std::size_t>(best.held)];
+    if (expected >= least) continue;
+    Held held = fit_to_held(points, index, around, best.normal, {0, 0, 0}, within);
+    if (held.points.size() <= static_cast<std::size_t>(kFewest)) continue;  // rounding
+    if (held.fit.breadth < kFacetBreadth || is_bent(points, held.points, held.fit, spacing)) continue;
+    least = expected;
+    found = {held.plane(), scatter};
   }
   return found;
 }

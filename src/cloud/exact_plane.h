@@ -29,22 +29,28 @@ struct ExactPlane {
 [[nodiscard]] ExactPlane find_exact_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing,
                                           const Vec3* towards = nullptr);
 
-/// The same among points that scatter by `scatter` (standard deviation, above 0) about their surfaces. The plane has to hold, to within 2.5
-/// `scatter`, so many of them that points uniform within 1.5 spacings on either side would give as many to any of the 45 candidates once
-/// in a thousand times (binomial law: detection a contrario, Desolneux, Moisan, Morel, "Meaningful alignments", International Journal of
-/// Computer Vision 2000): 8 of 33 for a scatter of 0.01 spacings, 13 for 0.04, 18 for 0.08. It is fitted anew to what it holds, twice, and
-/// it must not be the plane of a bend: a quadratic height field through the same points may not be likelier by Schwarz's criterion (three
-/// more numbers cost 3/2 ln n). What a bend hides
-/// between 2.5 `scatter` on either side is tilted by as much over the reach of the points held, so a plane that turns `towards` by less
-/// than twice that says nothing new, and is none. Where the point is held by two planes it gets the mean of their normals, by the
-/// likelihoods of its distances.
+/// The same among points that scatter by `scatter` (standard deviation, above 0) about their surfaces; none where that is more than 0.15
+/// `spacing`. The plane has to hold, to within 2.5 `scatter`, so many points that points uniform within 1.5 spacings on either side would
+/// give as many to any of the 45 candidates once in a thousand times (binomial law: detection a contrario, Desolneux, Moisan, Morel,
+/// "Meaningful alignments", International Journal of Computer Vision 2000): 9 of 33 for a scatter of 0.01 spacings, 13 for 0.04, 17 for
+/// 0.08. It is fitted anew to what it holds, twice, and must not be the plane of a bend: a quadratic height field through the same points
+/// may not be likelier by Schwarz's criterion (three more numbers cost 3/2 ln n). What a bend hides between 2.5 `scatter` on either side is
+/// tilted by as much over the reach of the points held, so a plane that turns `towards` by less than twice that says nothing new, and is
+/// none. Where the point is held by two planes it gets the mean of their normals, by the likelihoods of its distances. docs/math.md,
+/// "Planes of scattered points". About 7 us.
 [[nodiscard]] ExactPlane find_scattered_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing,
                                               double scatter, const Vec3& towards);
 
-/// The plane through points[index[0]] that is least likely to be one of chance, of all scatters of 0.001, 0.002, ..., 0.128 spacings about
-/// it, and that scatter; none if none is proven, if the points on it are as good as on a line, or if they are a bend, as above. About 20
-/// us.
-[[nodiscard]] ExactPlane likeliest_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing,
-                                         double& scatter);
+inline constexpr double kExactScatter = 0.001;  ///< spacings: points that scatter less are exact
+inline constexpr double kFacetBreadth = 0.4;    ///< of the points on a facet; the rows of a raster lie in narrow strips of planes across it
+
+struct LikeliestPlane {
+  ExactPlane plane;
+  double scatter = 0;  ///< of the points about it, in spacings; 0: there is no such plane
+};
+
+/// The plane through points[index[0]] that is least likely to be one of chance, of all scatters of 1, 2, 4, ..., 128 times kExactScatter;
+/// none if none is proven as above, if what it holds is narrower than kFacetBreadth, or if it is a bend. About 30 us.
+[[nodiscard]] LikeliestPlane find_likeliest_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing);
 
 }  // namespace g3r

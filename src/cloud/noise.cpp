@@ -29,7 +29,6 @@ constexpr double kUneven = 0.15;           // of the median of the height fields
 constexpr double kFlatKurtosis = 0.1;      // share of neighbourhoods whose kurtosis decides
 constexpr double kSheetKurtosis = 1.85;    // of that quantile: 1.94 to 2.1 under Gaussian noise, 1.1 to 1.8 between sheets and on wires
 constexpr double kOnPlanes = 0.4;          // share of the points on one exact plane that shows a cloud to be clean
-constexpr double kBroad = 0.4;             // breadth of the points on it, unlike those of a row
 constexpr std::size_t kWide = 64;          // nearest ones whose plane is the surface's wherever that is not folded
 constexpr double kAlong = 0.5;             // cosine from which an exact plane lies along the surface
 constexpr double kMostlyAlong = 0.25;      // least share of the exact planes that do: none of those of scan lines
@@ -50,11 +49,11 @@ constexpr double kSaturationPower = 8;     // how late the ratio of the two leav
 constexpr double kLeastRoom = 0.1;         // of 1 - (x / saturation)^power: beyond, the small neighbourhoods bound nothing
 constexpr double kSigmaIntercept = 0.842;  // of x / sigma as a line in x, fitted to known noise of 0.1 to 0.8 h
 constexpr double kSigmaSlope = 0.372;
-constexpr double kLargestResidual = 0.62;      // beyond, the ball is full of noise and tells no more
-constexpr std::size_t kLayerProbes = 500;      // neighbourhoods that may hold several sheets
-constexpr std::size_t kLayerNeighbours = 256;  // of each
-constexpr std::size_t kGoesOn = 132;           // points among which the plane of a facet goes on: 13 spacings across
-constexpr double kHeld = 3.5;                  // standard deviations: the plane is known to about one so far out
+constexpr double kLargestResidual = 0.62;              // beyond, the ball is full of noise and tells no more
+constexpr std::size_t kLayerProbes = 500;              // neighbourhoods that may hold several sheets
+constexpr std::size_t kLayerNeighbours = 256;          // of each
+constexpr std::size_t kGoesOn = 4 * kPlaneNeighbours;  // points among which the plane of a facet goes on: 13 spacings across
+constexpr double kHeld = 3.5;                          // standard deviations that these may be off it: its tilt adds one so far out
 constexpr double kLayerShare = 0.1;            // share of these neighbourhoods that decides: at the others are folds, edges, a third wall
 constexpr double kLayerBias = 0.92;            // sigma at that share, of smooth surfaces, over the true one
 constexpr double kMostScattered = 0.75;        // quantile of the neighbourhoods that stands for those with the largest noise
@@ -161,7 +160,7 @@ bool rounded(const std::vector<Vec3>& points, double spacing) {
 // points.
 ExactPlane find_facet(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing) {
   const ExactPlane plane = find_exact_plane(points, index, spacing);
-  if (plane.breadth < kBroad) return {};
+  if (plane.breadth < kFacetBreadth) return {};
   std::vector<std::uint32_t> others{index.front()};
   std::copy_if(index.begin(), index.end(), std::back_inserter(others),
                [&](std::uint32_t i) { return std::find(plane.points.begin(), plane.points.end(), i) == plane.points.end(); });
@@ -266,21 +265,20 @@ double facet_scatter(const PointSet& set) {
   std::size_t looked = 0;
   for_some(set, kLayerProbes, kPlaneNeighbours, [&](const Vec3&, const auto& index, const auto&) {
     ++looked;
-    double found = 0;
-    const ExactPlane plane = likeliest_plane(set.points(), index, set.spacing(), found);
-    if (found > 0 && goes_on(set, plane, found)) ++counts[found];
+    const LikeliestPlane found = find_likeliest_plane(set.points(), index, set.spacing());
+    if (found.scatter > 0 && goes_on(set, found.plane, found.scatter * set.spacing())) ++counts[found.scatter];
   });
   std::size_t most = 0;
   double scatter = 0;
   for (auto step = counts.begin(); step != counts.end(); ++step) {
     const auto next = std::next(step);
-    const bool adjacent = next != counts.end() && next->first < 3 * step->first;
+    const bool adjacent = next != counts.end() && next->first == 2 * step->first;
     const std::size_t both = step->second + (adjacent ? next->second : 0);
     if (both <= most) continue;
     most = both;
     scatter = adjacent && next->second > step->second ? next->first : step->first;
   }
-  return share_of(most, looked) < kOnPlanes ? 0 : scatter;
+  return share_of(most, looked) < kOnPlanes || scatter <= kExactScatter ? 0 : scatter * set.spacing();
 }
 
 double dimension(const PointSet& set) {

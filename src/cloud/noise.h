@@ -40,10 +40,10 @@ namespace g3r {
 /// above show that there is no noise. Units and cost as above.
 [[nodiscard]] double largest_scatter(const PointSet& set);
 
-/// Standard deviation of the points about the facets of a CAD model: what likeliest_plane() finds at most of about 500 points, where 40 %
-/// of the 132 nearest points are on that plane too. A scanner scatters alike everywhere, detail does not, so two adjacent ones of its steps
-/// have to hold 40 % of the points; else 0. It sees a scatter too small to blur anything, for which estimate_noise() is 0, and that of
-/// walls closer together than the sampling. 0 for fewer than 200 points. About 15 ms.
+/// Standard deviation of the points about the facets of a CAD model: what find_likeliest_plane() finds at most of about 500 points, where
+/// 40 % of the 132 nearest points are on that plane too. A scanner scatters alike everywhere, detail does not, so two adjacent ones of its
+/// steps have to hold 40 % of the points; else 0, and 0 for exact points. It sees a scatter too small to blur anything, for which
+/// estimate_noise() is 0, and that of walls closer together than the sampling. 0 for fewer than 200 points. About 20 ms.
 [[nodiscard]] double facet_scatter(const PointSet& set);
 
 /// How the number of points grows with the distance from one, as its power: about 2 on a surface, noisy or not, nearly 3 in a volume (2.6

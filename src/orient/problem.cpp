@@ -12,11 +12,17 @@ namespace g3r {
 namespace {
 
 void choose_scales(Problem& problem, const Options& options) {
-  problem.scatter = facet_scatter(problem.cloud.set);
   problem.settings = choose_settings(options, problem.cloud, problem.spacing, problem.noise, problem.outliers.size());
 }
 
+void choose_scales_and_scatter(Problem& problem, const Options& options) {
+  choose_scales(problem, options);
+  const bool fits_planes = problem.settings.polish_steps > 0 && !contains(problem.settings.without, Step::kPlanes);
+  if (fits_planes) problem.scatter = facet_scatter(problem.cloud.set);
+}
+
 }  // namespace
+
 Problem prepare(const PointsView& points, const Options& options, Stages& stages) {
   Problem problem;
   stages.begin("build");
@@ -40,7 +46,7 @@ Problem prepare(const PointsView& points, const Options& options, Stages& stages
   if (options.method == Method::kAuto && options.preset != Preset::kPaper && !contains(without, Step::kSites)) {
     problem.line_distance = surface_distance(set);
   }
-  choose_scales(problem, options);
+  choose_scales_and_scatter(problem, options);
   if (!options.wnnc_widths.empty() && options.method != Method::kWnnc) throw InvalidInput("wnnc_widths belong to the method wnnc");
   if (is_baseline(options.method)) {
     const double epsilon = options.epsilon.unit == Length::Unit::kAuto ? 0 : problem.settings.epsilon;
@@ -55,6 +61,7 @@ Problem with_noise(const Problem& problem, double noise, const Options& options)
   same.outliers = problem.outliers;
   same.spacing = problem.spacing;
   same.noise = noise;
+  same.scatter = problem.scatter;
   choose_scales(same, options);
   return same;
 }
@@ -66,7 +73,7 @@ Problem on_sites(const Problem& problem, const Sites& sites, const Options& opti
   coarse.spacing = sites.set.spacing();
   const std::optional<double> given = given_noise(options.noise, problem.cloud, problem.spacing);
   coarse.noise = given ? *given : contains(problem.settings.without, Step::kNoise) ? 0 : estimate_noise(sites.set);
-  choose_scales(coarse, options);
+  choose_scales_and_scatter(coarse, options);
   return coarse;
 }
 
@@ -87,7 +94,7 @@ Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, 
   if (options.epsilon.unit == Length::Unit::kPercent) {  // of the whole cloud's box
     same.epsilon = {Length::Unit::kInput, problem.cloud.frame.length_to_world(problem.settings.epsilon)};
   }
-  choose_scales(part, same);
+  choose_scales_and_scatter(part, same);
   return part;
 }
 

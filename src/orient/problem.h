@@ -20,7 +20,7 @@ struct Problem {
   std::vector<Vec3> outliers;  ///< taken out of the cloud; their indices follow those of its points
   double spacing = 0;          ///< typical_spacing()
   double noise = 0;            ///< given_noise() or estimate_noise()
-  double scatter = 0;          ///< facet_scatter()
+  double scatter = 0;          ///< facet_scatter(), where planes are fitted
   double line_distance = 0;    ///< surface_distance(): 0, or the distance of the sites that are solved for where the samples are lines
   Settings settings;
 
