@@ -1,6 +1,7 @@
 // Clouds in tiles: streams, the external sort, rings of cells, and that tiles give what one solve gives, whoever does them.
 #include "io/point_stream.h"
 #include "shapes.h"
+#include "temporary_folder.h"
 #include "tiles/external_sort.h"
 #include "tiles/manifest.h"
 #include "tiles/tile_cloud.h"
@@ -12,10 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <set>
 
 namespace g3r {
@@ -25,28 +23,6 @@ constexpr std::size_t kPoints = 8200;  // of the torus that is solved in tiles
 constexpr std::size_t kTiles = 3;
 constexpr double kWorse = 1.02;     // of the error of the normals in core
 constexpr double kRounding = 1e-7;  // of normals in float
-
-class Folder {
- public:
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "g3r-tiles-XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  [[nodiscard]] std::string file(const std::string& name) const { return path_ + "/" + name; }
-
- private:
-  std::string path_;
-};
-
-std::string bytes_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-void write_bytes(const std::string& path, const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; }
 
 void write_points(const std::string& path, const std::vector<Vec3>& points) {
   Cloud cloud;
@@ -64,7 +40,7 @@ double angle_error(const std::vector<Vec3>& normals, const std::vector<Vec3>& tr
 }
 
 TEST(PointStream, HandsOutThePositionsOfTheFile) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const std::vector<Vec3> points = shapes::torus(1000).points;
   for (const char* name : {"a.ply", "a.las", "a.xyz", "a.npy"}) {
     write_points(folder.file(name), points);
@@ -84,7 +60,7 @@ TEST(PointStream, HandsOutThePositionsOfTheFile) {
 }
 
 TEST(PointStream, RefusesWhatReadCloudRefuses) {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_points(folder.file("a.ply"), shapes::torus(1000).points);
   write_points(folder.file("a.las"), shapes::torus(1000).points);
   for (const char* name : {"a.ply", "a.las"}) {
@@ -103,7 +79,7 @@ TEST(ExternalSort, RunsGiveTheOrderOfOneSort) {
   for (std::uint64_t i = 0; i < 150000; ++i) records.push_back({{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)}, i});
   for (std::size_t i = 0; i < 1000; ++i) records[i].point = records[100000 + i].point;  // duplicates, in different runs
   const auto sorted = [&](std::size_t memory) {
-    const Folder folder;
+    const TemporaryFolder folder;
     tiles::ExternalSort sort(folder.file(""), {}, memory, nullptr);
     for (const tiles::Record& record : records) sort.add(record);
     std::vector<std::uint64_t> order;
@@ -175,7 +151,7 @@ TEST(Cells, PartsThatDoNotTouchAreApart) {
 class Tiles : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder_ = new Folder;
+    folder_ = new TemporaryFolder;
     surface_ = new shapes::Surface(shapes::torus(kPoints, 0.6, 0.25, 2));
     write_points(folder_->file("in.ply"), surface_->points);
     TileOptions options;
@@ -194,10 +170,10 @@ class Tiles : public testing::Test {
     return folder_->file(name);
   }
 
-  static Folder* folder_;
+  static TemporaryFolder* folder_;
   static shapes::Surface* surface_;
 };
-Folder* Tiles::folder_ = nullptr;
+TemporaryFolder* Tiles::folder_ = nullptr;
 shapes::Surface* Tiles::surface_ = nullptr;
 
 TEST_F(Tiles, GiveTheNormalsOfOneSolve) {
@@ -300,7 +276,7 @@ TEST_F(Tiles, ADamagedResultIsNamedAndDoneAgain) {
 }
 
 TEST(TilesPlan, NamesTheFileThatIsGarbage) {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_points(folder.file("a.ply"), shapes::sphere(kPoints).points);
   write_points(folder.file("b.ply"), std::vector<Vec3>(99, Vec3{NAN, 0, 0}));
   const auto plan = [&] { (void)plan_tiles({folder.file("a.ply"), folder.file("b.ply")}, folder.file("work")); };
@@ -312,7 +288,7 @@ TEST(TilesPlan, NamesTheFileThatIsGarbage) {
 }
 
 TEST(TilesPlan, TellsWhatItCannotDo) {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_points(folder.file("few.ply"), shapes::sphere(500).points);
   EXPECT_THROW((void)plan_tiles({folder.file("few.ply")}, folder.file("work")), InvalidInput);
   write_points(folder.file("in.ply"), shapes::sphere(kPoints).points);

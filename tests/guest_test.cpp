@@ -15,12 +15,12 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "sanitized.h"
+#include "temporary_folder.h"
 
 namespace {
 
@@ -239,11 +239,6 @@ TEST_F(Guest, LeavesHandlersAndTheLocaleAlone) {
   if (!german) GTEST_SKIP() << "no German locale on this machine (package locales): tried in the one that there is";
 }
 
-std::string bytes_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 TEST_F(Guest, TilesAreFourCalls) {
   const auto init = library().find<decltype(g3r_options_init)>("g3r_options_init");
   const auto plan = library().find<decltype(g3r_tiles_plan)>("g3r_tiles_plan");
@@ -251,20 +246,19 @@ TEST_F(Guest, TilesAreFourCalls) {
   const auto look = library().find<decltype(g3r_tiles_status)>("g3r_tiles_status");
   const auto merge = library().find<decltype(g3r_tiles_merge)>("g3r_tiles_merge");
   const auto complaint = library().find<decltype(g3r_last_error)>("g3r_last_error");
-  std::string name = testing::TempDir() + "g3r-guest-XXXXXX";
-  const std::string folder = mkdtemp(name.data());
+  const g3r::TemporaryFolder folder;
   constexpr int kTilePoints = 8200;  // few more than tiles take
   {
-    std::ofstream file(folder + "/in.xyz");
+    std::ofstream file(folder.file("in.xyz"));
     for (int i = 0; i < kTilePoints; ++i) {
       const double z = 1 - (2.0 * i + 1) / kTilePoints;
       const double r = std::sqrt(1 - z * z);
       file << r * std::cos(2.399963 * i) << ' ' << r * std::sin(2.399963 * i) << ' ' << z << '\n';
     }
   }
-  const std::string in = folder + "/in.xyz";
-  const std::string work = folder + "/work";
-  const std::string out = folder + "/out.ply";
+  const std::string in = folder.file("in.xyz");
+  const std::string work = folder.file("work");
+  const std::string out = folder.file("out.ply");
   const char* inputs[] = {in.c_str()};
   g3r_options options;
   init(&options, sizeof options);
@@ -281,14 +275,13 @@ TEST_F(Guest, TilesAreFourCalls) {
   ASSERT_EQ(run(work.c_str(), 1, 1, &options, nullptr), G3R_OK) << complaint();
   ASSERT_EQ(look(work.c_str(), &info), G3R_OK);
   EXPECT_EQ(info.done, 1U);
-  EXPECT_EQ(merge(work.c_str(), (folder + "/none/out.ply").c_str(), nullptr), G3R_IO_ERROR);
+  EXPECT_EQ(merge(work.c_str(), folder.file("none/out.ply").c_str(), nullptr), G3R_IO_ERROR);
   ASSERT_EQ(merge(work.c_str(), out.c_str(), nullptr), G3R_OK) << complaint();
-  EXPECT_NE(bytes_of(out).find("element vertex 8200\n"), std::string::npos);
+  EXPECT_NE(g3r::bytes_of(out).find("element vertex 8200\n"), std::string::npos);
   const std::uint32_t sensors[] = {0};
   options.sensor_of_point = sensors;
   EXPECT_EQ(plan(inputs, 1, work.c_str(), 1, &options, nullptr), G3R_INVALID_INPUT);
   EXPECT_EQ(look(nullptr, &info), G3R_INVALID_INPUT);
-  (void)std::system(("rm -rf " + folder).c_str());
 }
 
 }  // namespace

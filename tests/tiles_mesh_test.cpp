@@ -1,5 +1,6 @@
 // A mesh in tiles: closed and 2-manifold across their borders, near the surface, the same whoever makes it.
 #include "shapes.h"
+#include "temporary_folder.h"
 #include "tiles/cell_codes.h"
 #include "tiles/manifest.h"
 #include "tiles/mesh_plan.h"
@@ -13,10 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 namespace g3r {
 namespace {
@@ -26,28 +24,6 @@ constexpr std::size_t kTiles = 4;
 constexpr double kRing = 0.6;  // radii of the torus
 constexpr double kTube = 0.25;
 constexpr double kFar = 0.05;  // of the radius of the tube: farther from it no vertex is
-
-class Folder {
- public:
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "g3r-mesh-XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  [[nodiscard]] std::string file(const std::string& name) const { return path_ + "/" + name; }
-
- private:
-  std::string path_;
-};
-
-std::string bytes_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-void write_bytes(const std::string& path, const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; }
 
 // The results of all tiles: normals that are known. The solves have a test of their own, and take their time.
 void write_normals(const std::string& work, const std::vector<Vec3>& normals) {
@@ -72,7 +48,7 @@ void write_normals(const std::string& work, const std::vector<Vec3>& normals) {
 class TilesMesh : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder_ = new Folder;
+    folder_ = new TemporaryFolder;
     surface_ = new shapes::Surface(shapes::torus(kPoints, kRing, kTube, 2));
     surface_->points.push_back(surface_->points[7]);  // one place twice
     surface_->normals.push_back(surface_->normals[7]);
@@ -97,11 +73,11 @@ class TilesMesh : public testing::Test {
     return folder_->file(name);
   }
 
-  static Folder* folder_;
+  static TemporaryFolder* folder_;
   static shapes::Surface* surface_;
   static MergedMesh merged_;
 };
-Folder* TilesMesh::folder_ = nullptr;
+TemporaryFolder* TilesMesh::folder_ = nullptr;
 shapes::Surface* TilesMesh::surface_ = nullptr;
 MergedMesh TilesMesh::merged_;
 
