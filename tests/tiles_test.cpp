@@ -4,6 +4,8 @@
 
 #include <filesystem>
 
+#include "counting_allocator.h"
+#include "io/file_lists.h"
 #include "io/table.h"
 #include "io_samples.h"
 
@@ -97,7 +99,33 @@ TEST(Tiles, ListsAndVirtualPointCloudsNameTheirFiles) {
   EXPECT_NE(complaint("c.vpc", "{}").find("c.vpc: expected a FeatureCollection"), std::string::npos);
   EXPECT_NE(complaint("c.vpc", R"({"features": [{"assets": 3}]})").find("c.vpc: feature 1: expected the path"), std::string::npos);
   EXPECT_NE(complaint("c.list", "# nothing\n").find("c.list: names no files"), std::string::npos);
+  EXPECT_NE(complaint("c.vpc", R"({"features": [1]})").find("c.vpc: feature 1: expected the path"), std::string::npos);
+  EXPECT_NE(complaint("c.vpc", vpc("b.xyz", "a.xyz") + "}").find("c.vpc: expected a FeatureCollection"), std::string::npos);
   EXPECT_NE(complaint("c.list", "none.xyz\n").find("none.xyz"), std::string::npos);
+  EXPECT_NE(complaint("c.list", "/dev/zero\n").find("c.list: names \"/dev/zero\", which is no file"), std::string::npos);
+  EXPECT_NE(complaint("c.list", ".\n").find("which is no file"), std::string::npos);
+  const std::filesystem::path here = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path(""));
+  spill("c.list", "-\n");
+  EXPECT_EQ(io::files_of_list("c.list"), Names{"./-"});  // not standard input
+  std::filesystem::current_path(here);
+}
+
+TEST(Tiles, MemoryOfListsKeepsTheLaw) {
+  const Folder folder;
+  std::string ones = "1";
+  while (ones.size() < 1 << 20) ones += "," + ones;
+  const auto expect_law = [&](const std::string& name, const std::string& bytes) {
+    spill(folder.path(name), bytes);
+    const std::size_t before = allocator::live;
+    allocator::reset_peak();
+    EXPECT_THROW((void)read_cloud(folder.path(name)), InvalidInput) << name;
+    EXPECT_LT(allocator::peak - before, 16 * bytes.size() + (1 << 20)) << name;  // SECURITY.md
+  };
+  expect_law("values.vpc", R"({"features": [{"values": [)" + ones + "]}]}");
+  expect_law("deep.vpc", R"({"features": [{"assets": )" + std::string(1 << 20, '['));
+  expect_law("text.vpc", R"({"features": [{"assets": ")" + ones);
+  expect_law("unnamed.list", std::string(1 << 20, '#'));
 }
 
 TEST(Tiles, DamageNamesTheFile) {

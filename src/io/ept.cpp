@@ -9,6 +9,8 @@
 #include "io/text.h"
 #include "io/tiles.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -71,9 +73,11 @@ std::optional<Key> parse_key(std::string_view text) {
   return key;
 }
 
+// The description, which is short: more values than the memory law pays for (read_gltf.cpp) are refused.
 Json parse(const Source& source) {
-  std::optional<Json> json = parse_json(source.bytes, source.bytes.size() / 2 + 1);
-  if (!json || !json->is_object()) fail(source, "damaged: no JSON object");
+  constexpr std::size_t kAllowance = 2000;
+  std::optional<Json> json = parse_json(source.bytes, source.bytes.size() / 30 + kAllowance);
+  if (!json || !json->is_object()) fail(source, "damaged: no JSON object, or too many values for its size");
   return std::move(*json);
 }
 
@@ -161,23 +165,39 @@ class Hierarchy {
   }
 
  private:
+  // Entries are taken as they are read, without a tree of them.
   void read_page(const Key& page) {
     const std::string path = (ept_.folder / "ept-hierarchy" / (name_of(page) + ".json")).string();
     const std::string bytes = read_bytes(path);
     const Source source{bytes, path};
-    const Json json = parse(source);
-    for (std::size_t i = 0; i < json.keys.size(); ++i) {
-      const std::optional<Key> key = parse_key(json.keys[i]);
-      const Json& points = json.items[i];
-      const bool refers = points.is_number() && points.number == -1;
-      if (!key || !(refers || points.whole())) fail(source, "expected cells such as \"2-0-1-3\": 1000, found " + quote(json.keys[i]));
-      if (options_.levels != 0 && (*key)[0] >= static_cast<std::uint32_t>(options_.levels)) continue;
-      if (!meets_box(*key)) continue;
-      if (refers) {
-        pages_.push_back(*key);
-      } else if (*points.whole() != 0) {
-        nodes_.push_back({*key, *points.whole()});
+    const auto damaged = [&] { fail(source, "damaged: no JSON object of cells"); };
+    std::string cell;
+    const auto take = [&](int depth, nlohmann::json::parse_event_t event, const nlohmann::json& value) {
+      using Event = nlohmann::json::parse_event_t;
+      if (event == Event::key) {
+        cell = value.get<std::string>();
+      } else if (event == Event::value || depth > 0) {
+        read_entry(source, cell, depth == 1 ? value : nlohmann::json());
       }
+      return depth == 0;  // nothing is kept
+    };
+    try {
+      if (!nlohmann::json::parse(source.bytes, take).is_object()) damaged();
+    } catch (const nlohmann::json::exception&) {
+      damaged();
+    }
+  }
+
+  void read_entry(const Source& source, const std::string& cell, const nlohmann::json& points) {
+    const std::optional<Key> key = parse_key(cell);
+    const bool refers = points == -1;
+    if (!key || !(refers || points.is_number_unsigned())) fail(source, "expected cells such as \"2-0-1-3\": 1000, found " + quote(cell));
+    if (options_.levels != 0 && (*key)[0] >= static_cast<std::uint32_t>(options_.levels)) return;
+    if (!meets_box(*key)) return;
+    if (refers) {
+      pages_.push_back(*key);
+    } else if (points != 0) {
+      nodes_.push_back({*key, points.get<std::uint64_t>()});
     }
   }
 
