@@ -43,6 +43,25 @@ TEST(PointStream, TruncatedFilesAreErrorsThatNameThem) {
   }
 }
 
+TEST(PointStream, HeadersLongerThanWhatIsReadFirstAreWhole) {
+  const Folder folder;
+  const std::string filler = "comment " + std::string(1 << 16, '-') + "\n";  // beyond what a format is told by
+  const auto with = [&](const std::string& bytes, const std::string& line, const std::string& first) {
+    const std::size_t at = bytes.find('\n') + 1;
+    return bytes.substr(0, at) + line + first + bytes.substr(at);
+  };
+  for (const samples::Sample& sample : samples::all(23)) {
+    if (sample.bytes.starts_with("ply\n")) {
+      spill(folder.path(sample.name), with(sample.bytes, "comment end_header\n", filler));
+    } else if (sample.bytes.starts_with("# .PCD")) {
+      spill(folder.path(sample.name), with(sample.bytes, "# DATA binary\n", "# " + filler));
+    } else {
+      continue;
+    }
+    expect_what_read_cloud_gives(folder.path(sample.name));
+  }
+}
+
 TEST(PointStream, MemoryDoesNotDependOnTheSizeOfTheFile) {
   constexpr std::size_t kMany = 300'000;  // of 11 MiB and more in every format but LAZ
   constexpr std::size_t kMostBytes = std::size_t{5}

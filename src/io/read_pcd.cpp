@@ -314,7 +314,7 @@ Cloud read_pcd(const Source& source) {
 }
 
 std::optional<StoredTable> find_pcd_records(const Source& head, std::uint64_t file_size) {
-  if (head.bytes.find("DATA binary\n") == std::string_view::npos) return std::nullopt;
+  if (head.bytes.find("\nDATA binary\n") == std::string_view::npos) return std::nullopt;  // a line of its own, and not in a comment
   PcdHeader header = PcdParser(head).parse();
   const std::size_t stride = header.points.stride();
   if (header.encoding != "binary" || header.points.count > (file_size - header.body) / stride) return std::nullopt;

@@ -323,7 +323,7 @@ Mesh read_ply_mesh(const Source& source) {
 }
 
 std::optional<StoredTable> find_ply_records(const Source& head, std::uint64_t file_size) {
-  if (head.bytes.find("end_header") == std::string_view::npos) return std::nullopt;
+  if (head.bytes.find("\nend_header") == std::string_view::npos) return std::nullopt;  // a line of its own, and not in a comment
   PlyHeader header = read_ply_header(head);
   if (header.encoding != PlyEncoding::kLittleEndian || header.vertex != 0) return std::nullopt;
   const Element& points = header.elements[0];
