@@ -231,9 +231,12 @@ TEST_F(Tiles, DamagedFoldersAreRefused) {
     text.insert(text.rfind(field) + std::string(field).size(), 1, '7');
     refused(text);
   }
-  std::string vast = manifest;  // 32 times so many bytes is 0 in 64 bits
-  vast.replace(vast.rfind("\"points\": 8200") + 10, 4, "576460752303423488");
-  refused(vast);
+  // Of the first, 32 times as many bytes are 0 in 64 bits.
+  for (const char* number : {"576460752303423488", "1e300", "-8200", "8200.5", "null"}) {
+    std::string text = manifest;
+    text.replace(text.rfind("\"points\": 8200") + 10, 4, number);
+    refused(text);
+  }
   write_bytes(tiles::manifest_path(work), manifest);
   std::string cells = bytes_of(tiles::cells_path(work));
   std::swap(cells[0], cells[16]);

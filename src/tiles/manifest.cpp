@@ -3,6 +3,7 @@
 #include "io/output_file.h"
 #include "io/source.h"
 #include "tiles/records.h"
+#include "tiles/whole_number.h"
 
 #include <g3r/io.h>
 
@@ -35,19 +36,21 @@ std::uint64_t size_of_file(const std::string& path) {
 Manifest parsed(const json& from) {
   Manifest m;
   from.at("asked").get_to(m.asked);
-  for (const json& input : from.at("inputs")) m.inputs.push_back({input.at("path"), input.at("bytes"), input.at("points")});
-  from.at("points").get_to(m.points);
-  from.at("non_finite").get_to(m.non_finite);
+  for (const json& input : from.at("inputs"))
+    m.inputs.push_back({input.at("path"), whole_number(input.at("bytes")), whole_number(input.at("points"))});
+  m.points = whole_number(from.at("points"));
+  m.non_finite = whole_number(from.at("non_finite"));
   from.at("single_precision").get_to(m.single_precision);
   from.at("centre").get_to(m.frame.centre);
   from.at("scale").get_to(m.frame.scale);
-  from.at("level").get_to(m.level);
-  from.at("stride").get_to(m.stride);
-  from.at("coarse_points").get_to(m.coarse_points);
-  for (const json& tile : from.at("tiles")) m.tiles.push_back({tile.at(0), tile.at(1), tile.at(2), tile.at(3)});
-  from.at("limit_bytes").get_to(m.limit);
-  from.at("worker_memory_bytes").get_to(m.worker_memory);
-  from.at("disk_bytes").get_to(m.disk);
+  m.level = static_cast<int>(std::min<std::uint64_t>(whole_number(from.at("level")), kGridBits + 1));
+  m.stride = whole_number(from.at("stride"));
+  m.coarse_points = whole_number(from.at("coarse_points"));
+  for (const json& tile : from.at("tiles"))
+    m.tiles.push_back({whole_number(tile.at(0)), whole_number(tile.at(1)), whole_number(tile.at(2)), whole_number(tile.at(3))});
+  m.limit = whole_number(from.at("limit_bytes"));
+  m.worker_memory = whole_number(from.at("worker_memory_bytes"));
+  m.disk = whole_number(from.at("disk_bytes"));
   from.at("converged").get_to(m.converged);
   from.at("consistent").get_to(m.consistent);
   from.at("open_share").get_to(m.open_share);

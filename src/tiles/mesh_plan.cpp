@@ -9,6 +9,7 @@
 #include "io/source.h"
 #include "tiles/cell_codes.h"
 #include "tiles/mesh_records.h"
+#include "tiles/whole_number.h"
 
 #include <g3r/io.h>
 
@@ -136,8 +137,9 @@ MeshPlan parsed(const json& from) {
   from.at("spacing").get_to(plan.spacing);
   plan.noise = {from.at("noise").at(0), from.at("noise").at(1)};
   from.at("inside_out").get_to(plan.inside_out);
-  from.at("worker_memory_bytes").get_to(plan.worker_memory);
-  for (const json& tile : from.at("tiles")) plan.tiles.push_back({tile.at(0), tile.at(1), tile.at(2), tile.at(3)});
+  plan.worker_memory = whole_number(from.at("worker_memory_bytes"));
+  for (const json& tile : from.at("tiles"))
+    plan.tiles.push_back({whole_number(tile.at(0)), whole_number(tile.at(1)), whole_number(tile.at(2)), whole_number(tile.at(3))});
   return plan;
 }
 
