@@ -56,7 +56,22 @@ g3r::Options options_from(Bytes& bytes) {
   o.condition_number = bytes.pick({false, true});
   o.threads = bytes.pick({1, 2, 0, -1});
   o.max_memory = bytes.pick<std::size_t>({0, 1 << 20, 1 << 30});
+  o.without = bytes.pick<const char*>({"", "planes", "facets,areas", "polish,open-surfaces", "certificate", "q"});
   return o;
+}
+
+g3r::Hints hints_from(Bytes& bytes, std::size_t points) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const std::initializer_list<g3r::Vec3> places = {{0, 0, 0}, {0, 0, 1}, {-200, 3, 500}, {1e300, 0, 0}, {1e-300, 0, 0}, {kNan, 0, 0}};
+  g3r::Hints h;
+  if (bytes.pick({false, true})) h.up = bytes.pick(places);
+  for (int k = bytes.pick({0, 1, 2}); k > 0; --k) h.sensors.push_back(bytes.pick(places));
+  if (const std::size_t count = bytes.pick<std::size_t>({0, points, points + 1}); count > 0)
+    h.sensor_of_point.assign(count, bytes.pick<std::uint32_t>({0, 1, 2, g3r::kNoSensor}));
+  if (bytes.pick({false, true})) h.inside.push_back(bytes.pick(places));
+  h.seen_from_inside = bytes.pick({false, true});
+  h.flip = bytes.pick({false, true});
+  return h;
 }
 
 g3r::MeshOptions mesh_options_from(Bytes& bytes) {
@@ -132,10 +147,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size < g3r::fuzz::kOptionBytes) return -1;
   Bytes choices(data, g3r::fuzz::kOptionBytes);
   const auto coding = choices.pick({Coding::kFile, Coding::kInteger, Coding::kFloat, Coding::kDouble});
-  const g3r::Options options = options_from(choices);
+  g3r::Options options = options_from(choices);
   const g3r::MeshOptions mesh_options = mesh_options_from(choices);
   try {
     const auto points = points_from(coding, {data + g3r::fuzz::kOptionBytes, size - g3r::fuzz::kOptionBytes});
+    options.hints = hints_from(choices, points.size());
     check(points, g3r::orient(points, options));
     const g3r::Reconstruction r = g3r::reconstruct(points, options, mesh_options);
     check(points, r.orientation);

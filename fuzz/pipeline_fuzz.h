@@ -6,7 +6,7 @@
 namespace g3r::fuzz {
 
 /// Bytes that choose the coding of the points and the options; all zero: a file, default options.
-inline constexpr std::size_t kOptionBytes = 24;
+inline constexpr std::size_t kOptionBytes = 36;
 
 /// What the other bytes are, by the first one.
 enum class Coding : unsigned char { kFile, kInteger, kFloat, kDouble };

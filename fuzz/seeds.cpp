@@ -1,11 +1,13 @@
 // seeds FOLDER: what the fuzzers start from. Adds one small file of every format to FOLDER/read, which may hold files already, and makes
-// FOLDER/pipeline from all of them, and FOLDER/command_line; in builds that read them FOLDER/laz and FOLDER/e57.
+// FOLDER/pipeline from all of them, FOLDER/streams, FOLDER/folders and FOLDER/command_line; in builds that read them FOLDER/laz and
+// FOLDER/e57.
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
 
+#include "folders_fuzz.h"
 #include "io_samples.h"
 #include "pipeline_fuzz.h"
 #ifdef G3R_FUZZ_LAZ
@@ -71,6 +73,34 @@ void spill_pipeline(const std::string& files, const std::string& folder) {
   spill_shapes<double>(folder, Coding::kDouble);
 }
 
+// The files of formats that have streams, and LAZ, if it is made.
+void spill_streams(const std::string& from, const std::string& folder) {
+  std::filesystem::create_directories(folder);
+  for (const std::string name : {"/read", "/laz"}) {
+    if (!std::filesystem::exists(from + name)) continue;
+    for (const auto& file : std::filesystem::directory_iterator(from + name)) {
+      const std::string bytes = g3r::samples::slurp(file.path());
+      const bool streams =
+          bytes.starts_with("ply") || bytes.starts_with("# .PCD") || bytes.starts_with("\x93NUMPY") || bytes.starts_with("LASF");
+      if (streams) spill(folder + "/" + file.path().filename().string(), bytes);
+    }
+  }
+}
+
+void spill_folders(const std::string& folder) {
+  using g3r::fuzz::Naming;
+  const g3r::samples::Folder made;
+  g3r::fuzz::make_ept(made);
+  g3r::fuzz::make_plan(made);
+  spill(made.path(g3r::fuzz::file_of(Naming::kList)), "# two files\na.las\n/b/c.laz\n");
+  spill(made.path(g3r::fuzz::file_of(Naming::kVirtual)),
+        R"({"type":"FeatureCollection","features":[{"type":"Feature","assets":{"data":{"href":"./a\/b.copc.laz"}},"links":[]}]})");
+  for (const Naming naming : {Naming::kList, Naming::kVirtual, Naming::kEpt, Naming::kEptPage, Naming::kManifest}) {
+    const std::string kind(1, static_cast<char>(naming));
+    spill(folder + "/seed" + std::to_string(kind[0]), kind + g3r::samples::slurp(made.path(g3r::fuzz::file_of(naming))));
+  }
+}
+
 void spill_command_lines(const std::string& folder) {
   const std::vector<std::string> lines = {
       "scan.ply",
@@ -125,9 +155,10 @@ void spill_e57(const std::string& folder) {
 int main(int argc, char** argv) {
   if (argc != 2) return 64;
   const std::string folder = argv[1];
-  for (const char* part : {"/read", "/pipeline", "/command_line"}) std::filesystem::create_directories(folder + part);
+  for (const char* part : {"/read", "/pipeline", "/folders", "/command_line"}) std::filesystem::create_directories(folder + part);
   for (const g3r::samples::Sample& sample : g3r::samples::all(4)) spill(folder + "/read/" + sample.name, sample.bytes);
   spill_pipeline(folder + "/read", folder + "/pipeline");
+  spill_folders(folder + "/folders");
   spill_command_lines(folder + "/command_line");
 #ifdef G3R_FUZZ_LAZ
   spill_laz(folder + "/laz");
@@ -135,5 +166,6 @@ int main(int argc, char** argv) {
 #ifdef G3R_FUZZ_E57
   spill_e57(folder + "/e57");
 #endif
+  spill_streams(folder, folder + "/streams");
   return 0;
 }
