@@ -14,7 +14,7 @@ from cli_support import *
 
 COUNT = 8200  # few more than tiles take
 LARGE_COUNT = 100_000  # of a cloud that fits a limit in tiles and does not in core
-KILLS = int(os.environ.get("G3R_TILE_KILLS", "2"))
+KILLS = int(os.environ.get("G3R_TILE_KILLS", "1" if is_sanitized() else "2"))
 
 
 class Tiles(ProgramTest):
