@@ -3,6 +3,7 @@
 #include "io/e57.h"
 
 #include "io/cloud_from_table.h"
+#include "io/fixed_records.h"
 #include "io/readers.h"
 #include "io/text.h"
 
@@ -10,6 +11,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -126,25 +128,73 @@ std::optional<Field> make_field(const e57::Node& node) {
   }
 }
 
-class E57Reader {
+// The points of all scans, one after the other.
+class E57Points {
  public:
-  E57Reader(const Source& source, Cloud& cloud) : source_(source), cloud_(cloud) {}
+  explicit E57Points(FileBytes& bytes) : bytes_(bytes), source_(bytes.source()) {}
 
-  void read() {
-    const e57::ImageFile file(source_.bytes.data(), source_.bytes.size(), e57::ChecksumNone);  // check_e57() has checked them
+  // Finds scans and properties. `file` is that of the bytes, which check_e57() has checked.
+  void open(e57::ImageFile file) {
     find_scans(file.root());
-    const std::shared_ptr<Attributes> table = Attributes::of_points(Attributes::Dialect::kPly);
-    Element& points = table->elements.back();
-    plan(points);
-    find_sensors();
-    for (std::size_t i = 0; i < scans_.size(); ++i) {
-      read_points(file, scans_[i], points);
-      if (scans_.size() > 1 && !cloud_.sensor_positions.empty()) {
-        cloud_.scan_of_point.resize(static_cast<std::size_t>(points.count), static_cast<std::uint32_t>(i));
+    plan();
+    file_.emplace(std::move(file));
+  }
+
+  // Without data.
+  [[nodiscard]] const Attributes& table() const { return *table_; }
+  // With those that are marked as invalid.
+  [[nodiscard]] std::uint64_t declared() const { return declared_; }
+  [[nodiscard]] std::size_t scans() const { return scans_.size(); }
+  // Of the points that next() has given.
+  [[nodiscard]] std::size_t scan() const { return at_; }
+  // Points marked as invalid, so far.
+  [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
+
+  // A scanner stands at the origin of its scan. Where no scan has a pose the points may have been joined and moved before.
+  [[nodiscard]] std::vector<Vec3> sensors() const {
+    std::vector<Vec3> places;
+    if (std::all_of(scans_.begin(), scans_.end(), [](const Scan& scan) { return scan.pose.is_identity() && !scan.spherical; }))
+      return places;
+    for (const Scan& scan : scans_) places.push_back(scan.pose.shift);
+    return places;
+  }
+
+  // How many points are not marked as invalid; unpacks the marks.
+  [[nodiscard]] std::uint64_t count() {
+    std::uint64_t valid = 0;
+    for (const Scan& scan : scans_) {
+      if (scan.invalid == kNone) {
+        valid += scan.count;
+        continue;
       }
+      scan_ = scan.number;
+      std::vector<double> marks(kBlock);
+      std::vector<e57::SourceDestBuffer> buffers;
+      buffers.emplace_back(*file_, scan.fields[scan.invalid].name, marks.data(), marks.size(), true, true);
+      e57::CompressedVectorReader reader = e57::CompressedVectorNode(scan.points).reader(buffers);
+      while (const std::size_t read = reader.read()) {
+        valid += static_cast<std::uint64_t>(std::count(marks.begin(), marks.begin() + static_cast<std::ptrdiff_t>(read), 0.0));
+      }
+      reader.close();
+      scan_ = 0;
     }
-    if (dropped_ != 0) cloud_.warnings.push_back(std::to_string(dropped_) + " points marked as invalid are left out");
-    fill_cloud(source_, table, cloud_);
+    return valid;
+  }
+
+  // Appends the records of the next block, which may all be marked as invalid; false at the end.
+  bool next(Element& points) {
+    for (; at_ < scans_.size(); ++at_) {
+      const Scan& scan = scans_[at_];
+      scan_ = scan.number;
+      if (!reader_) begin_scan(scans_[at_]);
+      const std::size_t read = reader_->read();
+      for (std::size_t i = 0; i < read; ++i) append_point(scan, i, points);
+      done_ += read;
+      if (read != 0) return true;
+      end_scan(scan);
+    }
+    scan_ = 0;
+    return false;
   }
 
   /// Where the reader is, for errors of the library.
@@ -204,7 +254,7 @@ class E57Reader {
   // The library unpacks a field without bits from nothing, as often as the file says.
   void check_count(const Scan& scan) const {
     const std::vector<std::uint64_t> bytes =
-        check_e57_packets(source_, scan.points.impl()->getBinarySectionLogicalStart(), scan.fields.size());
+        check_e57_packets(bytes_, scan.points.impl()->getBinarySectionLogicalStart(), scan.fields.size());
     for (std::size_t i = 0; i < bytes.size(); ++i) {
       if (scan.fields[i].bits != 0 && scan.count > 8 * bytes[i] / scan.fields[i].bits) {
         fail_here("truncated or damaged: " + std::to_string(scan.count) + " points declared, but field " + std::to_string(i + 1) +
@@ -242,14 +292,9 @@ class E57Reader {
     return pose;
   }
 
-  // A scanner stands at the origin of its scan. Where no scan has a pose the points may have been joined and moved before.
-  void find_sensors() {
-    if (std::all_of(scans_.begin(), scans_.end(), [](const Scan& scan) { return scan.pose.is_identity() && !scan.spherical; })) return;
-    for (const Scan& scan : scans_) cloud_.sensor_positions.push_back(scan.pose.shift);
-  }
-
   // The properties that the scans have together; a type that holds what is in any of them.
-  void plan(Element& points) {
+  void plan() {
+    Element& points = table_->elements.back();
     const auto add = [&](const std::string& name, Type type) {
       std::size_t at = points.find(name);
       if (at == kNone) {
@@ -264,7 +309,6 @@ class E57Reader {
     };
     for (const char* axis : {"x", "y", "z"}) add(axis, Type::kFloat64);
     const bool words = std::any_of(scans_.begin(), scans_.end(), [](const Scan& s) { return s.color[0] != kNone && s.brightest > 255; });
-    std::uint64_t count = 0;
     for (Scan& scan : scans_) {
       for (std::size_t i = 0; i < scan.fields.size(); ++i) {
         Field& field = scan.fields[i];
@@ -283,45 +327,42 @@ class E57Reader {
           field.to = add(name, field.type);
         }
       }
-      count += std::min(scan.count, kMostRatio * source_.bytes.size());
+      declared_ += std::min(scan.count, kMostRatio * bytes_.size());
     }
-    if (count > kMostRatio * source_.bytes.size() / points.stride()) {
-      fail(source_, std::to_string(count) + " points of " + std::to_string(points.stride()) + " bytes in a file of " +
-                        std::to_string(source_.bytes.size()) + " bytes, more than " + std::to_string(kMostRatio) +
+    if (declared_ > kMostRatio * bytes_.size() / points.stride()) {
+      fail(source_, std::to_string(declared_) + " points of " + std::to_string(points.stride()) + " bytes in a file of " +
+                        std::to_string(bytes_.size()) + " bytes, more than " + std::to_string(kMostRatio) +
                         " times its size: a count is damaged, or the points are all alike; then convert the file");
     }
-    points.data.reserve(static_cast<std::size_t>(count) * points.stride());
     for (const Property& property : points.properties) offsets_.push_back(std::exchange(stride_, stride_ + size_of(property.type)));
   }
 
-  void read_points(const e57::ImageFile& file, Scan& scan, Element& points) {
-    scan_ = scan.number;
+  void begin_scan(Scan& scan) {
     const auto block = static_cast<std::size_t>(std::min<std::uint64_t>(kBlock, scan.count));
-    std::vector<std::vector<double>> numbers;
+    numbers_.clear();
+    numbers_.reserve(scan.fields.size());
     std::vector<e57::SourceDestBuffer> buffers;
-    numbers.reserve(scan.fields.size());
     for (std::size_t i = 0; i < scan.fields.size(); ++i) {
       Field& field = scan.fields[i];
       if (field.to == kNone && i != scan.invalid) continue;
-      field.block = numbers.size();
-      numbers.emplace_back(block);
-      buffers.emplace_back(file, field.name, numbers.back().data(), block, true, true);
+      field.block = numbers_.size();
+      numbers_.emplace_back(block);
+      buffers.emplace_back(*file_, field.name, numbers_.back().data(), block, true, true);
     }
-    e57::CompressedVectorReader reader = e57::CompressedVectorNode(scan.points).reader(buffers);
-    std::uint64_t done = 0;
-    while (const std::size_t read = reader.read()) {
-      for (std::size_t i = 0; i < read; ++i) append_point(scan, numbers, i, points);
-      done += read;
-    }
-    if (done != scan.count) {
-      fail_here("truncated: " + std::to_string(scan.count) + " points declared, but only " + std::to_string(done) + " could be unpacked");
-    }
-    reader.close();
-    scan_ = 0;
+    reader_.emplace(e57::CompressedVectorNode(scan.points).reader(buffers));
+    done_ = 0;
   }
 
-  void append_point(const Scan& scan, const std::vector<std::vector<double>>& numbers, std::size_t i, Element& points) {
-    const auto value = [&](std::size_t field) { return numbers[scan.fields[field].block][i]; };
+  void end_scan(const Scan& scan) {
+    if (done_ != scan.count) {
+      fail_here("truncated: " + std::to_string(scan.count) + " points declared, but only " + std::to_string(done_) + " could be unpacked");
+    }
+    reader_->close();
+    reader_.reset();
+  }
+
+  void append_point(const Scan& scan, std::size_t i, Element& points) {
+    const auto value = [&](std::size_t field) { return numbers_[scan.fields[field].block][i]; };
     if (scan.invalid != kNone && value(scan.invalid) != 0) {
       ++dropped_;
       return;
@@ -361,28 +402,93 @@ class E57Reader {
 
   [[noreturn]] void fail_here(const std::string& what) const { fail(source_, place() + what); }
 
+  FileBytes& bytes_;
   const Source& source_;
-  Cloud& cloud_;
+  std::optional<e57::ImageFile> file_;
+  std::shared_ptr<Attributes> table_ = Attributes::of_points(Attributes::Dialect::kPly);
+  std::uint64_t declared_ = 0;
   std::vector<Scan> scans_;
   std::vector<std::size_t> offsets_;  // of the properties within a record
   std::size_t stride_ = 0;
-  std::size_t scan_ = 0;
+  std::size_t scan_ = 0;                      // number of the scan that is worked on, 0 for none
+  std::size_t at_ = 0;                        // index of the scan that is read
+  std::vector<std::vector<double>> numbers_;  // a block of each of its fields
+  std::optional<e57::CompressedVectorReader> reader_;
+  std::uint64_t done_ = 0;  // of its points
   std::uint64_t dropped_ = 0;
+};
+
+// Errors of the library as ours.
+template <class Work>
+auto checked(const Source& source, const E57Points& points, const Work& work) {
+  try {
+    return work();
+  } catch (const e57::E57Exception& error) {
+    fail(source, points.place() + "damaged: libE57Format cannot read it (" + error.errorStr() + "); export the file anew");
+  }
+}
+
+class E57Records : public FixedRecords {
+ public:
+  struct Opened {
+    explicit Opened(const RandomFile& file) : source{{}, file.path()}, bytes(source, file), points(bytes) {}
+    Source source;
+    FileBytes bytes;
+    E57Points points;
+    Attributes table;
+  };
+  // `opened` is of `file`.
+  E57Records(std::unique_ptr<RandomFile> file, std::unique_ptr<Opened> opened)
+      : FixedRecords(std::move(file), 0, opened->table), opened_(std::move(opened)), block_(table().points()) {}
+
+ private:
+  void fetch(std::size_t count, std::string& records) override {
+    const std::size_t wanted = count * block_.stride();
+    checked(opened_->source, opened_->points, [&] {
+      while (block_.data.size() < wanted && opened_->points.next(block_)) {
+      }
+    });
+    records.assign(block_.data, 0, wanted);
+    block_.data.erase(0, records.size());
+  }
+
+  std::unique_ptr<Opened> opened_;
+  Element block_;  // with the records that have not been handed out
 };
 
 }  // namespace
 
 Cloud read_e57(const Source& source) {
-  check_e57(source);
+  FileBytes bytes(source);
+  check_e57(bytes);
+  E57Points points(bytes);
   Cloud cloud;
   cloud.format = "e57";
-  E57Reader reader(source, cloud);
-  try {
-    reader.read();
-    return cloud;
-  } catch (const e57::E57Exception& error) {
-    fail(source, reader.place() + "damaged: libE57Format cannot read it (" + error.errorStr() + "); export the file anew");
-  }
+  checked(source, points, [&] {
+    points.open({source.bytes.data(), source.bytes.size(), e57::ChecksumNone});
+    cloud.sensor_positions = points.sensors();
+    auto table = std::make_shared<Attributes>(points.table());
+    Element& element = table->elements.back();
+    element.data.reserve(static_cast<std::size_t>(points.declared()) * element.stride());
+    const bool apart = points.scans() > 1 && !cloud.sensor_positions.empty();
+    while (points.next(element)) {
+      if (apart) cloud.scan_of_point.resize(static_cast<std::size_t>(element.count), static_cast<std::uint32_t>(points.scan()));
+    }
+    if (points.dropped() != 0) cloud.warnings.push_back(std::to_string(points.dropped()) + " points marked as invalid are left out");
+    fill_cloud(source, std::move(table), cloud);
+  });
+  return cloud;
+}
+
+std::unique_ptr<PointStream> stream_e57(std::unique_ptr<RandomFile> file) {
+  auto opened = std::make_unique<E57Records::Opened>(*file);
+  check_e57(opened->bytes);
+  checked(opened->source, opened->points, [&] {
+    opened->points.open({file->path(), "r", e57::ChecksumAll});  // once more: the file may be another one by now
+    opened->table = opened->points.table();
+    opened->table.elements.back().count = opened->points.count();
+  });
+  return std::make_unique<E57Records>(std::move(file), std::move(opened));
 }
 
 }  // namespace g3r::io

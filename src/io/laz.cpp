@@ -4,6 +4,7 @@
 #include "io/laz.h"
 
 #include "io/copc.h"
+#include "io/file_bytes.h"
 #include "io/subset.h"
 
 #include <algorithm>
@@ -123,29 +124,6 @@ Codec read_codec(const Source& source, const LasHeader& header) {
   return codec;
 }
 
-// The bytes of a file: in memory, or read when they are asked for.
-class Bytes {
- public:
-  explicit Bytes(const Source& source) : source_(source), size_(source.bytes.size()) {}
-  Bytes(const Source& head, const RandomFile& file) : source_(head), file_(&file), size_(static_cast<std::size_t>(file.size())) {}
-
-  [[nodiscard]] const Source& source() const { return source_; }  // for messages, and what comes before the points
-  [[nodiscard]] std::size_t size() const { return size_; }
-  // [begin, begin + count), which lie within the file; valid until the next call.
-  std::string_view get(std::size_t begin, std::size_t count) {
-    if (file_ == nullptr) return source_.bytes.substr(begin, count);
-    buffer_.resize(count);
-    file_->read(begin, buffer_.data(), count);
-    return buffer_;
-  }
-
- private:
-  const Source& source_;
-  const RandomFile* file_ = nullptr;
-  std::size_t size_;
-  std::string buffer_;
-};
-
 // A decoder that starts at a number not below its range leaves its tables; no encoder makes that.
 void check_start(const Source& source, std::size_t at, std::string_view bytes) {
   if (bytes.size() < 4 || load<std::uint32_t>(bytes.data()) == 0xFFFFFFFF)
@@ -153,7 +131,7 @@ void check_start(const Source& source, std::size_t at, std::string_view bytes) {
 }
 
 // Counts that no honest file has, before memory is taken for them.
-void check_ratio(const Bytes& file, const LasHeader& header) {
+void check_ratio(const FileBytes& file, const LasHeader& header) {
   if (header.count > kMostRatio * file.size() / header.record_bytes) {
     fail_at_byte(
         file.source(), kLegacyCount,
@@ -164,7 +142,7 @@ void check_ratio(const Bytes& file, const LasHeader& header) {
 }
 
 // Where the table of chunks begins.
-std::size_t find_table(Bytes& file, const LasHeader& header) {
+std::size_t find_table(FileBytes& file, const LasHeader& header) {
   const Source& source = file.source();
   const std::size_t size = file.size();
   if (size - header.points_at < 16) fail_at_byte(source, size, "truncated: the compressed points are missing");
@@ -179,7 +157,7 @@ std::size_t find_table(Bytes& file, const LasHeader& header) {
 }
 
 // Number of points and bytes of each chunk, as LASzip stores them: a version, their number, then compressed differences.
-std::vector<Chunk> read_table(Bytes& file, const LasHeader& header, const Codec& codec, std::size_t table) {
+std::vector<Chunk> read_table(FileBytes& file, const LasHeader& header, const Codec& codec, std::size_t table) {
   const Source& source = file.source();
   const bool any = codec.chunk_points == kAnyChunks;
   const std::string_view head = file.get(table, 8);
@@ -366,7 +344,7 @@ std::string unpack_laz(const Source& source, const LasHeader& header, const Read
       fail_at_byte(source, kLegacyCount, "the header has no points (count 0), but compressed points follow it");
     return plain_header(source, header, rest).append(source.bytes.substr(rest));
   }
-  Bytes file(source);
+  FileBytes file(source);
   check_ratio(file, header);
   const std::size_t table = find_table(file, header);
   try {
@@ -399,7 +377,7 @@ struct LazRecords::State {
   Source source;  // for messages
   LasHeader header;
   Codec codec;
-  Bytes file;
+  FileBytes file;
   std::vector<Chunk> chunks;
   std::size_t chunk = 0;  // the next to be decoded
   std::optional<ChunkDecoder> decoder;
