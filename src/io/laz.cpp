@@ -280,8 +280,8 @@ class ChunkDecoder {
 };
 
 // Where what follows the points begins in the LAZ file: waveforms or extended records, if the header gives a place after the table.
-std::size_t find_rest(const Source& source, const LasHeader& header, std::size_t table) {
-  std::size_t rest = source.bytes.size();
+std::size_t find_rest(const Source& source, const LasHeader& header, std::size_t file_size, std::size_t table) {
+  std::size_t rest = file_size;
   const auto consider = [&](std::size_t field) {
     const auto at = load<std::uint64_t>(source.bytes.data() + field);
     if (at > table && at < rest) rest = static_cast<std::size_t>(at);
@@ -291,13 +291,8 @@ std::size_t find_rest(const Source& source, const LasHeader& header, std::size_t
   return rest;
 }
 
-template <class T>
-void put(std::string& bytes, std::size_t at, T value) {
-  std::memcpy(bytes.data() + at, &value, sizeof value);
-}
-
 // Header and variable length records, without the mark and the record of LAZ.
-std::string plain_header(const Source& source, const LasHeader& header, std::size_t rest) {
+std::string plain_header(const Source& source, const LasHeader& header, std::size_t file_size, std::size_t rest) {
   std::string las(source.bytes.substr(0, header.points_at));
   const std::size_t record = kVlrHeader + load<std::uint16_t>(las.data() + header.laszip_vlr + 20);
   las.erase(header.laszip_vlr, record);
@@ -309,7 +304,7 @@ std::string plain_header(const Source& source, const LasHeader& header, std::siz
   const std::uint64_t moved = las.size() + header.count * header.record_bytes - rest;  // modulo 2^64 where it moves back
   const auto shift = [&](std::size_t field) {
     const auto at = load<std::uint64_t>(las.data() + field);
-    if (at >= rest && rest < source.bytes.size()) put(las, field, at + moved);
+    if (at >= rest && rest < file_size) put(las, field, at + moved);
   };
   if (header.minor >= 3 && header.header_size >= kWaveform + 8) shift(kWaveform);
   if (header.minor == 4) shift(kEvlrAt);
@@ -339,10 +334,10 @@ std::string unpack_laz(const Source& source, const LasHeader& header, const Read
   const Codec codec = read_codec(source, header);
   if (header.count == 0) {
     constexpr std::size_t kEmptyTable = 16;  // its place, version and number of chunks
-    const std::size_t rest = find_rest(source, header, header.points_at);
+    const std::size_t rest = find_rest(source, header, source.bytes.size(), header.points_at);
     if (rest - header.points_at >= kEmptyTable + header.record_bytes)
       fail_at_byte(source, kLegacyCount, "the header has no points (count 0), but compressed points follow it");
-    return plain_header(source, header, rest).append(source.bytes.substr(rest));
+    return plain_header(source, header, source.bytes.size(), rest).append(source.bytes.substr(rest));
   }
   FileBytes file(source);
   check_ratio(file, header);
@@ -357,8 +352,8 @@ std::string unpack_laz(const Source& source, const LasHeader& header, const Read
       part.count = 0;
       for (const Chunk& chunk : chunks) part.count += chunk.points;
     }
-    const std::size_t rest = find_rest(source, header, table);
-    std::string las = plain_header(source, part, rest);
+    const std::size_t rest = find_rest(source, header, file.size(), table);
+    std::string las = plain_header(source, part, file.size(), rest);
     for (const Chunk& chunk : chunks)
       ChunkDecoder(header, codec, chunk, file.get(chunk.begin, chunk.bytes)).read(chunk.points, source, las);
     if (parted) fit_las_header(las, part.count);
@@ -379,6 +374,8 @@ struct LazRecords::State {
   Codec codec;
   FileBytes file;
   std::vector<Chunk> chunks;
+  std::size_t rest = 0;  // place of what follows the points
+  std::string las_head;
   std::size_t chunk = 0;  // the next to be decoded
   std::optional<ChunkDecoder> decoder;
 };
@@ -392,9 +389,15 @@ LazRecords::LazRecords(const Source& head, const LasHeader& header, const Random
   } catch (int) {  // what LASzip throws
     fail_at_byte(head, table, "truncated or damaged: LASzip cannot decode the table of compressed chunks");
   }
+  state_->rest = find_rest(head, header, state_->file.size(), table);
+  state_->las_head = plain_header(head, header, state_->file.size(), state_->rest);
 }
 
 LazRecords::~LazRecords() = default;
+
+const std::string& LazRecords::las_head() const { return state_->las_head; }
+
+std::uint64_t LazRecords::rest() const { return state_->rest; }
 
 void LazRecords::next(std::size_t most, std::string& records) {
   State& s = *state_;
