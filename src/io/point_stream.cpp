@@ -19,15 +19,35 @@ namespace {
 constexpr std::size_t kHead = std::size_t{1} << 16;       // bytes that a format is told by and that headers of PLY seldom exceed
 constexpr std::size_t kMostHead = std::size_t{16} << 20;  // bytes before the points of a LAS file that is read as a stream
 
-class LasRecords : public FixedRecords {
+class LasRecords : public FixedRecords, public LasOrigin {
  public:
   // `head`: what comes before the points.
   LasRecords(std::unique_ptr<RandomFile> file, const Source& head, const LasHeader& header)
       : FixedRecords(std::move(file), header.points_at, las_table(header)), header_(header) {
-    if (header.compressed) laz_ = std::make_unique<LazRecords>(head, header, this->file());
+    if (header.compressed) {
+      laz_ = std::make_unique<LazRecords>(head, header, this->file());
+    } else {
+      head_ = head.bytes.substr(0, header.points_at);
+    }
+  }
+
+  [[nodiscard]] LasOrigin* las() override { return this; }
+  [[nodiscard]] const std::string& head() const override { return laz_ ? laz_->las_head() : head_; }
+  void keep(std::string* records) override { kept_ = records; }
+  [[nodiscard]] std::uint64_t rest() const override { return file().size() - rest_at(); }
+  void read_rest(const std::function<void(std::string_view)>& take) const override {
+    constexpr std::uint64_t kPiece = std::uint64_t{1} << 20U;
+    std::string piece;
+    for (std::uint64_t at = rest_at(); at < file().size(); at += piece.size()) {
+      piece.resize(static_cast<std::size_t>(std::min(kPiece, file().size() - at)));
+      file().read(at, piece.data(), piece.size());
+      take(piece);
+    }
   }
 
  private:
+  [[nodiscard]] std::uint64_t rest_at() const { return laz_ ? laz_->rest() : header_.points_at + header_.count * header_.record_bytes; }
+
   void fetch(std::size_t count, std::string& records) override {
     bytes_.clear();
     if (laz_) {
@@ -38,11 +58,14 @@ class LasRecords : public FixedRecords {
     records.resize(bytes_.size() / header_.record_bytes * table().points().stride());
     char* to = records.data();
     for (std::size_t at = 0; at < bytes_.size(); at += header_.record_bytes) to = copy_las_record(header_, bytes_.data() + at, to);
+    if (kept_ != nullptr) kept_->append(bytes_);
   }
 
   LasHeader header_;
+  std::string head_;  // of LAS
   std::unique_ptr<LazRecords> laz_;
   std::string bytes_;  // as in the file
+  std::string* kept_ = nullptr;
 };
 
 // The whole file, in memory.
@@ -75,6 +98,7 @@ class WholeCloud : public PointStream {
   [[nodiscard]] std::uint64_t left() const override { return cloud_.positions.size() - at_; }
   [[nodiscard]] Scalar scalar() const override { return cloud_.scalar; }
   [[nodiscard]] const Attributes& table() const override { return table_; }
+  [[nodiscard]] std::vector<std::string> warnings() const override { return cloud_.warnings; }
 
  private:
   // Of a file that is no table: positions and colours. Normals and confidence would be replaced.

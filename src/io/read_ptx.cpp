@@ -16,6 +16,7 @@ namespace g3r::io {
 
 namespace {
 
+constexpr const char* kOpenEnd = "the last line has no line end: the file may be cut";
 constexpr std::uint64_t kLeastLine = 6;  // bytes of "0 0 0" and its end
 
 // One scan: where its points begin, and what its header says.
@@ -240,6 +241,11 @@ class PtxRecords : public FixedRecords {
   PtxRecords(std::unique_ptr<RandomFile> file, std::unique_ptr<PtxFile> ptx)
       : FixedRecords(std::move(file), 0, ptx->points.table()), ptx_(std::move(ptx)) {}
 
+  [[nodiscard]] std::vector<std::string> warnings() const override {
+    if (!ptx_->points.open_end()) return {};
+    return {kOpenEnd};
+  }
+
  private:
   void fetch(std::size_t count, std::string& records) override {
     records.clear();
@@ -266,7 +272,7 @@ Cloud read_ptx(const Source& source) {
   }
   fill_cloud(source, std::move(table), cloud);
   if (points.overflow()) cloud.warnings.emplace_back("a number is out of double's range: it is taken as infinite (not finite)");
-  if (points.open_end()) cloud.warnings.emplace_back("the last line has no line end: the file may be cut");
+  if (points.open_end()) cloud.warnings.emplace_back(kOpenEnd);
   return cloud;
 }
 

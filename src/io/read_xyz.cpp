@@ -51,6 +51,17 @@ void warn_about_degrees(Cloud& cloud) {
       "PROJ");
 }
 
+std::vector<std::string> warnings_of(const TextShape& shape, bool overflow) {
+  std::vector<std::string> warnings;
+  if (shape.announced) {
+    warnings.push_back("more points follow than the count line says (" + std::to_string(*shape.announced) + "): all are read");
+  }
+  if (shape.header_differs) warnings.emplace_back("the header line has not as many columns as the points: it is not used");
+  if (overflow) warnings.emplace_back("a number is out of double's range: it is taken as infinite (not finite)");
+  if (shape.open_end) warnings.emplace_back("the last line has no line end: the file may be cut");
+  return warnings;
+}
+
 // The text of a file, and the kept columns of its points.
 struct TextFile {
   TextFile(const RandomFile& file, std::uint64_t begin)
@@ -88,6 +99,13 @@ class TextRecords : public FixedRecords {
   TextRecords(std::unique_ptr<RandomFile> file, std::unique_ptr<TextFile> text)
       : FixedRecords(std::move(file), 0, text->table()), text_(std::move(text)) {}
 
+  [[nodiscard]] std::vector<std::string> warnings() const override {
+    std::vector<std::string> all = text_->columns.warnings;
+    const std::vector<std::string> more = warnings_of(text_->shape, text_->columns.overflow);
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+
  private:
   void fetch(std::size_t count, std::string& records) override {
     records.clear();
@@ -120,12 +138,8 @@ Cloud read_xyz(const Source& source) {
     cloud.property_names = {"x", "y", "z"};
   }
   if (shape.header.geographic) warn_about_degrees(cloud);
-  if (shape.announced) {
-    cloud.warnings.push_back("more points follow than the count line says (" + std::to_string(*shape.announced) + "): all are read");
-  }
-  if (shape.header_differs) cloud.warnings.emplace_back("the header line has not as many columns as the points: it is not used");
-  if (overflow) cloud.warnings.emplace_back("a number is out of double's range: it is taken as infinite (not finite)");
-  if (shape.open_end) cloud.warnings.emplace_back("the last line has no line end: the file may be cut");
+  const std::vector<std::string> more = warnings_of(shape, overflow);
+  cloud.warnings.insert(cloud.warnings.end(), more.begin(), more.end());
   return cloud;
 }
 

@@ -17,7 +17,7 @@ namespace g3r::tiles {
 namespace {
 
 constexpr const char* kSchema = "g3r.tiles";
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 48U;  // sizes of files are numbers below; the manifest may be damaged
 
 using nlohmann::json;
@@ -39,6 +39,8 @@ Manifest parsed(const json& from) {
   from.at("points").get_to(m.points);
   from.at("non_finite").get_to(m.non_finite);
   from.at("single_precision").get_to(m.single_precision);
+  from.at("low").get_to(m.bounds.low);
+  from.at("high").get_to(m.bounds.high);
   from.at("centre").get_to(m.frame.centre);
   from.at("scale").get_to(m.frame.scale);
   from.at("level").get_to(m.level);
@@ -126,6 +128,8 @@ void write_manifest(const std::string& folder, const Manifest& m) {
               {"points", m.points},
               {"non_finite", m.non_finite},
               {"single_precision", m.single_precision},
+              {"low", m.bounds.low},
+              {"high", m.bounds.high},
               {"centre", m.frame.centre},
               {"scale", m.frame.scale},
               {"level", m.level},
