@@ -1,5 +1,5 @@
-// E57 (ASTM E2807): scans in binary sections, each with its own pose, described by XML. Only e57.cpp knows libE57Format; in builds without
-// it (e57_not_compiled.cpp) read_e57() and stream_e57() throw. What follows checks what the library would trust.
+// E57 (ASTM E2807): scans in binary sections, each with its own pose, described by XML. Only e57.cpp and e57_scans.cpp know libE57Format;
+// in builds without it (e57_not_compiled.cpp) read_e57() and stream_e57() throw. What follows checks what the library would trust.
 #pragma once
 
 #include "io/file_bytes.h"
