@@ -286,7 +286,7 @@ void add_memory_option(CLI::App& app, Settings& s, const std::string& help) {
 }
 
 constexpr const char* kTilesHelp =
-    "If it would need more, for example 8G: work in tiles, on disk beside OUT (.ply; of orient .las and .laz too), or refuse where that cannot be";
+    "If it would need more, for example 8G: work in tiles, on disk beside OUT (.ply; orient: .las, .laz too), or refuse";
 constexpr const char* kRefuseHelp = "Refuse before the solve if it would need more, for example 8G";
 
 /// An option that may be repeated and is handed to `take` word by word.
