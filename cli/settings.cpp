@@ -286,7 +286,7 @@ void add_memory_option(CLI::App& app, Settings& s, const std::string& help) {
 }
 
 constexpr const char* kTilesHelp =
-    "If it would need more, for example 8G: work in tiles, on disk beside OUT (.ply), or refuse where that cannot be";
+    "If it would need more, for example 8G: work in tiles, on disk beside OUT (.ply; orient: .las, .laz too), or refuse";
 constexpr const char* kRefuseHelp = "Refuse before the solve if it would need more, for example 8G";
 
 /// An option that may be repeated and is handed to `take` word by word.
@@ -489,7 +489,7 @@ void add_tiles(CLI::App& app, Settings& s) {
   CLI::App* merge =
       add_tile_step(*sub, s, "merge", TileStep::kMerge, "Write all points in their order with normals and confidence, or the mesh");
   for (CLI::App* step : {run, mesh, status, merge}) step->add_option("DIR", s.tile_folder, "The work folder")->required()->type_name("");
-  merge->add_option("OUT", s.output, "Oriented cloud or mesh, .ply")->required()->type_name("");
+  merge->add_option("OUT", s.output, "Oriented cloud (.ply, .las, .laz), or mesh (.ply)")->required()->type_name("");
   merge->add_flag("--mesh", s.merge_mesh, "Write the mesh instead of the points")->disable_flag_override();
   add_run_options(*merge, s);
 }

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <initializer_list>
+#include <string>
 #include <system_error>
 
 #include "commands.h"
@@ -60,10 +62,11 @@ bool is_default_method(const Options& o) {
          o.accuracy == -1 && !o.condition_number;
 }
 
-// Whether tiles can do what is asked for.
-bool can_be_tiled(const Settings& s) {
+// Whether tiles can do what is asked for, and end in a file with one of these extensions.
+bool can_be_tiled(const Settings& s, std::initializer_list<const char*> extensions) {
+  const std::string extension = std::filesystem::path(s.output).extension().string();
   const bool simple_output = s.also.empty() && !s.write_options.ascii && !s.write_options.cloud_compare_names &&
-                             std::filesystem::path(s.output).extension() == ".ply";
+                             std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
   const bool whole_input = s.input != "-" && !s.read_options.box && s.read_options.levels == 0;
   std::error_code ignored;
   const bool has_files = std::filesystem::is_regular_file(s.input, ignored) || std::filesystem::is_directory(s.input, ignored) ||
@@ -101,7 +104,12 @@ int work_in_tiles(const Settings& settings, Session& session, bool mesh, const M
                         "; where this ends early, the same command goes on");
   const Monitor monitor = session.monitor();
   (void)plan_tiles({settings.input}, folder, tile_options(settings), monitor);
-  if (mesh) (void)planned_mesh_memory(folder);  // what does not fit is refused before the tiles are solved
+  // What cannot be is refused before the tiles are solved.
+  if (mesh) {
+    (void)planned_mesh_memory(folder);
+  } else {
+    check_merge(folder, settings.output);
+  }
   const TileStatus status = g3r::run_tiles(folder, worker_of(settings), monitor);
   Stats stats = stats_of(status, settings);
   const std::string left_out = merge(folder, monitor, stats);
@@ -147,7 +155,7 @@ int run_tiles(const Settings& settings, Session& session) {
 }
 
 std::optional<int> orient_in_tiles(const Settings& settings, Session& session) {
-  if (settings.options.max_memory == 0 || !can_be_tiled(settings)) return std::nullopt;
+  if (settings.options.max_memory == 0 || !can_be_tiled(settings, {".ply", ".las", ".laz"})) return std::nullopt;
   if (!needs_tiles({settings.input}, settings.options.max_memory)) return std::nullopt;
   return work_in_tiles(settings, session, false, [&](const std::string& folder, const Monitor& monitor, Stats& stats) {
     const MergedTiles merged = merge_tiles(folder, settings.output, monitor);
@@ -158,7 +166,7 @@ std::optional<int> orient_in_tiles(const Settings& settings, Session& session) {
 }
 
 std::optional<int> reconstruct_in_tiles(const Settings& settings, Session& session) {
-  if (settings.options.max_memory == 0 || !can_be_tiled(settings)) return std::nullopt;
+  if (settings.options.max_memory == 0 || !can_be_tiled(settings, {".ply"})) return std::nullopt;
   if (!settings.oriented.empty() || !is_default_mesh(settings.mesh_options)) return std::nullopt;
   if (!needs_tiles({settings.input}, settings.options.max_memory, true)) return std::nullopt;
   return work_in_tiles(settings, session, true, [&](const std::string& folder, const Monitor& monitor, Stats& stats) {

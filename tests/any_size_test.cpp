@@ -200,6 +200,8 @@ TEST_F(Tiles, HaveTheSameBytesWhoeverDoesThemAndAfterARestart) {
   write_bytes(tiles::result_path(work, 2), half);
   EXPECT_EQ(tiles_status(work).done, kTiles - 1);
   EXPECT_THROW((void)merge_tiles(work, folder_->file("early.ply")), InvalidInput);
+  EXPECT_THROW(check_merge(work, folder_->file("early.xyz")), InvalidInput);
+  EXPECT_NO_THROW(check_merge(work, folder_->file("early.las")));
   EXPECT_EQ(run_tiles(work).done, kTiles);
   (void)merge_tiles(work, folder_->file("again.ply"));
   EXPECT_EQ(bytes_of(folder_->file("again.ply")), bytes_of(folder_->file("out.ply")));

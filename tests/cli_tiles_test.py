@@ -47,6 +47,8 @@ class Tiles(ProgramTest):
         for step in steps:
             self.expect(OK, *step)
         self.assertEqual(self.bytes_of("out.ply"), self.bytes_of("whole.ply"))
+        self.expect(OK, "tiles", "merge", "work", "out.las")
+        self.assertIn("las 1.4, point format 0", self.expect(OK, "info", "out.las").out.decode())
         self.assertEqual(self.bytes_of("mesh.ply"), self.bytes_of("whole.mesh.ply"))
         self.assertIn("closed, manifold", self.expect(OK, "info", "mesh.ply").out.decode())
         self.assertEqual([name for name in os.listdir(self.path("work")) if name.endswith(".tmp")], [])
@@ -63,7 +65,17 @@ class Tiles(ProgramTest):
         self.assertIn("2 of 2 tiles are not done (1, 2); g3r tiles run", result.err)
         self.assertIn("2 of 2 tiles have no normals yet", self.expect(BAD_DATA, "tiles", "mesh", "work").err)
         self.assertIn("not meshed", self.expect(BAD_DATA, "tiles", "merge", "work", "out.ply", "--mesh").err)
+        self.assertIn("ends in .ply, .las or .laz", self.expect(BAD_DATA, "tiles", "merge", "work", "out.xyz").err)
         self.assertFalse(os.path.exists(self.path("out.ply")))
+
+    def test_damage_in_a_text_names_the_line(self):
+        lines = ["%r,%r,%r" % point for point in sphere(COUNT)]
+        lines[4000] = "1,2,north"
+        with open(self.path("in.csv"), "w") as file:
+            file.write("x,y,z\n" + "\n".join(lines) + "\n")
+        result = self.expect(BAD_DATA, "tiles", "plan", "in.csv", "work", "--tiles", "2")
+        self.assertIn('in.csv: line 4002: expected a number, found "north"', result.err)
+        self.assertFalse(os.path.exists(self.path("work/manifest.json")))
 
     def test_wrong_command_lines_are_told(self):
         for arguments in (["tiles"], ["tiles", "plan", "in.ply"], ["tiles", "run"], ["tiles", "mesh"], ["tiles", "run", "work", "--worker", "0/2"],

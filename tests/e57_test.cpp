@@ -6,7 +6,9 @@
 #include "counting_allocator.h"
 #include "e57_samples.h"
 #include "io/table.h"
+#include "merge_checks.h"
 #include "sanitized.h"
+#include "stream_checks.h"
 
 // What libE57Format does not free: its packets where memory runs out.
 // NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming): the sanitizer's name
@@ -172,6 +174,89 @@ TEST(E57, MemoryIsThatOfTheFile) {
     samples::read(bytes);
     EXPECT_LE(allocator::peak - before, 15 * bytes.size() + kLibraries);
   }
+}
+
+// Files of every kind that the tests above read.
+std::vector<std::string> variants(std::size_t count) {
+  E57Scan turned = e57_scan(count, E57Field::kDouble);
+  turned.rotation = {kHalf, 0, 0, kHalf};
+  turned.translation = {5e5, 5.4e6, 100};
+  for (std::size_t i = 0; i < count; i += 3) turned.fields.back().values[i] = 1;  // not valid
+  E57Scan sphere;
+  sphere.fields = {{"sphericalRange", E57Field::kDouble, {2, 2, 4}},
+                   {"sphericalAzimuth", E57Field::kDouble, {0, 1, 0.5}},
+                   {"sphericalElevation", E57Field::kDouble, {0, 0, 1}}};
+  E57Scan wide = e57_scan(count, E57Field::kScaled);
+  wide.fields[3].high = 65535;
+  return {e57_file({turned, e57_scan(0, E57Field::kFloat), sphere}), e57_file({wide, turned}),
+          e57_file({e57_scan(count, E57Field::kFloat)})};
+}
+
+TEST(E57, IsAStreamOfTheSamePoints) {
+  const samples::Folder folder;
+  for (const std::size_t count : {40U, 9000U}) {  // more than two blocks
+    for (const std::string& bytes : variants(count)) {
+      samples::spill(folder.path("a.e57"), bytes);
+      stream_checks::expect_what_read_cloud_gives(folder.path("a.e57"));
+    }
+  }
+}
+
+TEST(E57, TilesWriteWhatWriteCloudWrites) {
+  const samples::Folder folder;
+  const std::string path = folder.path("a.e57");
+  for (const std::string& bytes : variants(40)) {
+    samples::spill(path, bytes);
+    merge_checks::expect_what_write_cloud_writes(path, {path});
+  }
+}
+
+TEST(E57, MemoryOfAStreamDoesNotDependOnTheSizeOfTheFile) {
+  constexpr std::size_t kMany = 120'000;
+  const samples::Folder folder;
+  samples::spill(folder.path("a.e57"), e57_file({e57_scan(kMany, E57Field::kDouble), e57_scan(kMany, E57Field::kDouble)}));
+  allocator::reset_peak();
+  const std::size_t before = allocator::live;
+  const auto stream = io::open_points(folder.path("a.e57"), true);
+  std::vector<Vec3> points;
+  std::string records;
+  std::size_t count = 0;
+  for (stream->next(5000, points, &records); !points.empty(); stream->next(5000, points, &records)) count += points.size();
+  EXPECT_EQ(count, 2 * kMany);
+  EXPECT_LE(allocator::peak - before, kLibraries / 2);  // of a file of 8 MiB
+}
+
+TEST(E57, DamageInAStreamIsWhatItIsInTheWholeFile) {
+  const samples::Folder folder;
+  const std::string path = folder.path("a.e57");
+  const std::string good = e57_file({e57_scan(40, E57Field::kScaled), e57_scan(20, E57Field::kFloat)});
+  int refused = 0;
+  for (std::size_t i = 0; i < 120; ++i) {
+    std::string bad = good;
+    const std::size_t at = i * good.size() / 120 + i % 7;
+    if (i % 4 == 0) {
+      bad.resize(at);
+    } else {
+      bad[at % bad.size()] = static_cast<char>(~bad[at % bad.size()]);
+      if (i % 4 > 1) bad = samples::with_checksums(samples::without_checksums(bad));
+    }
+    samples::spill(path, bad);
+    std::string message;
+    try {
+      (void)read_cloud(path);
+    } catch (const InvalidInput& error) {
+      message = error.what();
+    }
+    try {
+      (void)stream_checks::streamed(path);
+      EXPECT_EQ(message, "") << i;
+    } catch (const InvalidInput& error) {
+      ++refused;
+      EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << error.what();
+      EXPECT_NE(message, "") << error.what();
+    }
+  }
+  EXPECT_GT(refused, 60);
 }
 
 // With checksums as if it had been written so: an error, or a cloud that is no larger than the file allows.

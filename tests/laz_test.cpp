@@ -8,6 +8,7 @@
 #include "io/laz.h"
 #include "io/table.h"
 #include "laz_samples.h"
+#include "merge_checks.h"
 #include "sanitized.h"
 #include "stream_checks.h"
 
@@ -197,6 +198,38 @@ TEST(Laz, IsAStreamOfTheSamePoints) {
   }
   samples::spill(path, samples::copc_file());
   stream_checks::expect_what_read_cloud_gives(path);
+}
+
+TEST(Laz, TilesWriteWhatWriteCloudWrites) {
+  const Folder folder;
+  const std::string path = folder.path("a.laz");
+  const std::string rest = std::string(60, '\0') + "after the points";
+  for (const unsigned format : {1U, 3U, 4U, 6U, 8U}) {
+    for (const bool extra : {false, true}) {
+      const std::string las = las_file(format, 60, extra, format == 3 || format == 6 ? rest : "");
+      for (const std::string& bytes : {las, compressed(las, 7)}) {
+        samples::spill(path, bytes);
+        merge_checks::expect_what_write_cloud_writes(path, {path});
+      }
+    }
+  }
+  samples::spill(path, samples::copc_file());
+  merge_checks::expect_what_write_cloud_writes(path, {path});
+  samples::spill(folder.path("b.las"), las_file(7, 30));
+  merge_checks::expect_what_write_cloud_writes(folder.path(""), {path, folder.path("b.las")});
+}
+
+TEST(Laz, ManyPointsAreWrittenWithoutBeingHeld) {
+  constexpr std::size_t kMany = 200'000;  // four chunks, that pack to 4 MiB
+  const Folder folder;
+  const std::string path = folder.path("a.las");
+  write_cloud(path, samples::helix(kMany), nullptr, nullptr);
+  const Cloud cloud = read_cloud(path);
+  allocator::reset_peak();
+  const std::size_t before = allocator::live.load();
+  write_cloud(folder.path("b.laz"), cloud, nullptr, nullptr);
+  EXPECT_LT(allocator::peak.load() - before, std::filesystem::file_size(folder.path("b.laz")));
+  EXPECT_TRUE(unpacked(samples::slurp(folder.path("b.laz"))) == samples::slurp(path));
 }
 
 TEST(Laz, DamageInAStreamIsWhatItIsInTheWholeFile) {

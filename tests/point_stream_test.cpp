@@ -2,20 +2,20 @@
 #include "counting_allocator.h"
 #include "io/laz.h"
 #include "io_samples.h"
+#include "merge_checks.h"
 #include "stream_checks.h"
-#include "tiles/point_writer.h"
 
 #include <g3r/io.h>
 
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <random>
 
 namespace g3r {
 namespace {
 
+using merge_checks::expect_what_write_cloud_writes;
 using samples::Folder;
-using samples::slurp;
 using samples::spill;
 using stream_checks::expect_what_read_cloud_gives;
 using stream_checks::kAtOnce;
@@ -63,14 +63,18 @@ TEST(PointStream, HeadersLongerThanWhatIsReadFirstAreWhole) {
 }
 
 TEST(PointStream, MemoryDoesNotDependOnTheSizeOfTheFile) {
-  constexpr std::size_t kMany = 300'000;  // of 11 MiB and more in every format but LAZ
+  constexpr std::size_t kMany = 150'000;  // of 5.5 MiB and more in every format but LAZ
   constexpr std::size_t kMostBytes = std::size_t{5}
                                      << 20;  // a block of 1 MiB as in the file, as in the table and as points, or a LAZ chunk
   const Folder folder;
   const Cloud cloud = samples::helix(kMany);
-  for (const char* name : {"a.ply", "a.las", "a.laz", "a.npy", "a.pcd"}) {
+  for (const char* name : {"a.ply", "a.las", "a.laz", "a.npy", "a.pcd", "a.csv", "a.pts", "a.xyz", "a.ptx"}) {
     if (name == std::string("a.laz") && !io::laz_is_compiled()) continue;
-    write_cloud(folder.path(name), cloud, nullptr, nullptr);
+    if (name == std::string("a.ptx")) {
+      spill(folder.path(name), samples::ptx(kMany * 3 / 5));  // of the first of its two scans a third is left out
+    } else {
+      write_cloud(folder.path(name), cloud, nullptr, nullptr);
+    }
     allocator::reset_peak();
     const std::size_t before = allocator::live.load();
     const auto stream = io::open_points(folder.path(name), true);
@@ -83,47 +87,105 @@ TEST(PointStream, MemoryDoesNotDependOnTheSizeOfTheFile) {
   }
 }
 
-// The inputs as tiles::merge() writes them, with normals and confidence that count the points.
-std::string merged(const std::vector<std::string>& inputs, const std::vector<Vec3>& normals, const std::vector<float>& confidence) {
-  const Folder folder;
-  tiles::Manifest manifest;
-  for (const std::string& input : inputs) {
-    const std::uint64_t points = io::open_points(input)->left();
-    manifest.inputs.push_back({input, 0, points});
-    manifest.points += points;
+// Three columns, more, names, words, counts, two scans: every kind of text.
+std::vector<samples::Sample> texts(std::size_t count) {
+  std::vector<samples::Sample> found;
+  std::string named = "id;label;x;y;z;i\r\n";
+  std::string pnezd;
+  std::string words;
+  std::string triples;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string n = std::to_string(i);
+    named += n + ";wall " + n + ";0.5;" + n + ";1e3;" + std::to_string(i % 9) + "\r\n";
+    pnezd += std::to_string(i * 7 % count + 1) + ",5000.5," + n + ",7.25,GND\n";
+    words += "0.5 " + n + " 1 a 0 0 1 255 0 " + std::to_string(i % 256) + " b\r";
+    triples += "1 2 " + n + " " + std::to_string(i % 256) + " 2 3 0.6 0 0.8 9.5\n";
   }
-  const Monitor monitor;
-  Stages stages(monitor);
-  tiles::PointWriter writer(folder.path("out.ply"), manifest, stages);
-  std::size_t at = 0;
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const auto stream = io::open_points(inputs[i], true);
-    std::vector<Vec3> points;
-    std::string records;
-    for (stream->next(kAtOnce, points, &records); !points.empty(); stream->next(kAtOnce, points, &records)) {
-      const auto from = static_cast<std::ptrdiff_t>(at);
-      const auto to = static_cast<std::ptrdiff_t>(at + points.size());
-      writer.write(i, points, records, {normals.begin() + from, normals.begin() + to},
-                   {confidence.begin() + from, confidence.begin() + to});
-      at += points.size();
-    }
+  found.push_back({"named.csv", named, 0, false});
+  found.push_back({"pnezd.txt", pnezd, 0, false});
+  found.push_back({"words.xyz", words, 0, false});  // lines end with CR
+  found.push_back({"triples.xyz", "\xef\xbb\xbf" + triples, 0, false});
+  found.push_back({"a.pts", std::to_string(count) + "\n" + triples + std::to_string(count) + "\n" + triples, 0, true});
+  for (const samples::Sample& sample : samples::all(count)) {
+    const std::string& name = sample.name;
+    if (name.ends_with(".xyz") || name.ends_with(".csv") || name.ends_with(".pts") || name.ends_with(".ptx")) found.push_back(sample);
   }
-  writer.commit();
-  return slurp(folder.path("out.ply"));
+  return found;
 }
 
-// `path` as read_cloud() takes it, which stands for the inputs.
-void expect_what_write_cloud_writes(const std::string& path, const std::vector<std::string>& inputs) {
-  const Cloud whole = read_cloud(path);
-  std::vector<Vec3> normals;
-  std::vector<float> confidence;
-  for (std::size_t i = 0; i < whole.positions.size(); ++i) {
-    normals.push_back({std::cos(static_cast<double>(i)), std::sin(static_cast<double>(i)), 0});
-    confidence.push_back(static_cast<float>(i % 7) / 7);
-  }
+TEST(TextStream, HandsOutThePointsAndRecordsOfEveryText) {
   const Folder folder;
-  write_cloud(folder.path("whole.ply"), whole, &normals, &confidence);
-  EXPECT_TRUE(slurp(folder.path("whole.ply")) == merged(inputs, normals, confidence)) << path;
+  for (const std::size_t count : {23U, 4000U}) {
+    for (const samples::Sample& sample : texts(count)) {
+      spill(folder.path(sample.name), sample.bytes);
+      expect_what_read_cloud_gives(folder.path(sample.name));
+    }
+  }
+}
+
+TEST(TextStream, LinesThatPiecesCutAreWhole) {
+  const Folder folder;
+  for (const char* end : {"\n", "\r", "\r\n"}) {
+    std::string text;
+    for (int i = 0; i < 60'000; ++i) text += std::to_string(i) + " 0.125 " + std::to_string(i % 10) + end;
+    spill(folder.path("a.xyz"), text);
+    expect_what_read_cloud_gives(folder.path("a.xyz"));
+  }
+}
+
+TEST(TextStream, DamageIsWhatItIsInTheWholeFile) {
+  const Folder folder;
+  std::mt19937 random(5);
+  constexpr int kTries = 300;
+  int refused = 0;
+  for (const samples::Sample& sample : texts(40)) {
+    const std::string path = folder.path(sample.name);
+    for (int i = 0; i < kTries / 10; ++i) {
+      std::string bad = sample.bytes;
+      if (i % 3 == 0) {
+        bad.resize(random() % bad.size());
+      } else {
+        bad[random() % bad.size()] = "x, ;9\n\0-"[random() % 8];
+      }
+      spill(path, bad);
+      std::string message;
+      try {
+        (void)read_cloud(path);
+      } catch (const InvalidInput& error) {
+        message = error.what();
+      }
+      try {
+        (void)streamed(path);
+        EXPECT_EQ(message, "") << bad;
+        expect_what_read_cloud_gives(path);
+      } catch (const InvalidInput& error) {
+        ++refused;
+        EXPECT_EQ(error.what(), message) << bad;
+        EXPECT_NE(message.find(path), std::string::npos);
+      }
+    }
+  }
+  EXPECT_GT(refused, kTries / 10);
+}
+
+TEST(TextStream, ALineWithoutAnEndIsRefused) {
+  const Folder folder;
+  spill(folder.path("a.xyz"), "1 2 3\n1 2 " + std::string(std::size_t{17} << 20, '3'));
+  try {
+    (void)streamed(folder.path("a.xyz"));
+    FAIL();
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("a.xyz: line 2: more than 16 MiB without a line end"), std::string::npos) << error.what();
+  }
+}
+
+TEST(TextStream, AFileThatShrinksIsAnError) {
+  const Folder folder;
+  spill(folder.path("a.xyz"), "1 2 3\n4 5 6\n");
+  const auto stream = io::open_points(folder.path("a.xyz"));
+  spill(folder.path("a.xyz"), "1 2 3\n");
+  std::vector<Vec3> points;
+  EXPECT_THROW(stream->next(9, points), Error);
 }
 
 TEST(PointWriter, WritesWhatWriteCloudWritesOfOneFile) {
@@ -134,6 +196,31 @@ TEST(PointWriter, WritesWhatWriteCloudWritesOfOneFile) {
     spill(folder.path(sample.name), sample.bytes);
     expect_what_write_cloud_writes(folder.path(sample.name), {folder.path(sample.name)});
   }
+}
+
+TEST(PointWriter, WritesWhatWriteCloudWritesOfEveryText) {
+  const Folder folder;
+  for (const samples::Sample& sample : texts(23)) {
+    spill(folder.path(sample.name), sample.bytes);
+    expect_what_write_cloud_writes(folder.path(sample.name), {folder.path(sample.name)});
+  }
+}
+
+TEST(PointWriter, LasIsRefusedForPointsThatAreNotFinite) {
+  const Folder folder;
+  tiles::Manifest manifest;
+  manifest.inputs.push_back({"a.ply", 0, 1});
+  manifest.non_finite = 3;
+  const Monitor monitor;
+  Stages stages(monitor);
+  try {
+    tiles::PointWriter::check(folder.path("out.ply"), manifest);
+    const tiles::PointWriter writer(folder.path("out.las"), manifest, stages);
+    FAIL();
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("out.las: LAS cannot hold"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(folder.files(), 0U);
 }
 
 TEST(PointWriter, WritesWhatWriteCloudWritesOfAFolder) {

@@ -2,6 +2,8 @@
 #include <g3r/io.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "io/text_columns.h"
 #include "io_samples.h"
 
@@ -71,6 +73,23 @@ TEST(Pnezd, IsRecognisedAndSaid) {
   expect_said(cloud.warnings, "PNEZD");
   EXPECT_EQ(read("A1 5000.5 1000.25 7.5 GND 1\n").positions[0], (Vec3{1000.25, 5000.5, 7.5}));
   EXPECT_EQ(read("5,6,7,1,wall\n5,7,7,1,wall\n").positions[1], (Vec3{5, 7, 7}));  // x is no number of a point: it occurs twice
+}
+
+TEST(AllDiffer, InAsManyPartsAsTheMemoryAsksFor) {
+  std::vector<double> values;
+  for (int i = 0; i < 500; ++i) values.push_back(i * 7 % 500);
+  const auto differ = [&](std::size_t at_once) {
+    return io::all_differ(
+        values.size(), [&](const auto& take) { std::for_each(values.begin(), values.end(), take); }, at_once);
+  };
+  for (const std::size_t at_once : {1U, 10U, 1000U}) {
+    values[0] = 0;
+    EXPECT_TRUE(differ(at_once));
+    values[0] = values[321];
+    EXPECT_FALSE(differ(at_once)) << at_once;
+  }
+  values = {0.0, -0.0};
+  EXPECT_FALSE(differ(1));
 }
 
 TEST(Pnezd, NamedColumnsAreTakenAtTheirWord) {

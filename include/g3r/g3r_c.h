@@ -115,7 +115,7 @@ G3R_C_API g3r_status g3r_tiles_run(const char* folder, size_t worker, size_t wor
 /* What is planned and done. */
 G3R_C_API g3r_status g3r_tiles_status(const char* folder, g3r_tiles_info* info);
 
-/* Writes one file of all points in the order of the input, with normals and confidence. Of `options`: progress. */
+/* Writes one .ply, .las or .laz of all points in the order of the input, with normals and confidence. Of `options`: progress. */
 G3R_C_API g3r_status g3r_tiles_merge(const char* folder, const char* output, const g3r_options* options);
 
 /* What a status means, one line. */

@@ -56,8 +56,8 @@ struct TileStatus {
 };
 
 /// Whether orient(), or with `mesh` reconstruct(), would refuse these inputs under a limit of `max_memory` bytes and tiles may not: its
-/// plan exceeds it, and the points are many enough. Counts the points, which for LAS and binary PLY takes a look at the headers. Throws
-/// like read_cloud().
+/// plan exceeds it, and the points are many enough. Counts the points, which for LAS and binary PLY takes a look at the headers; text, PTX
+/// and E57 are read. Throws like read_cloud().
 [[nodiscard]] bool needs_tiles(const std::vector<std::string>& inputs, std::size_t max_memory, bool mesh = false);
 
 /// Reads the inputs (files, folders and patterns as of read_cloud(), regular files only) twice, sorts their points into Morton order in the
@@ -79,12 +79,18 @@ struct MergedTiles {
   double confidence_below_half = 0;  ///< share, 0..1
 };
 
-/// Writes one binary .ply, whole or not at all: for every input point, in the order of the input, its position, unit normal (0 for points
-/// that are not finite), confidence, and colours and other properties as write_cloud() writes them of the same cloud. Left out are elements
-/// of a PLY beside its points, and colours that no property holds (of splats). Reads the inputs once more, twice where 16-bit or float
-/// colours must be brought to 0..255. Memory does not depend on the number of points, as far as the inputs are streams (docs/tiles.md).
-/// Throws InvalidInput (tiles that are not done, inputs that have changed, another extension), IoError, Cancelled.
+/// Writes one binary .ply, .las or .laz, whole or not at all: for every input point, in the order of the input, its position, unit normal
+/// (0 for points that are not finite), confidence, and colours and other properties as write_cloud() writes them of the same cloud; one LAS
+/// or LAZ keeps its header, scale and offset as LAS or LAZ. Left out are elements of a PLY beside its points, and colours that no property
+/// holds (of splats). Reads the inputs once more, twice where colours must be brought to 8 bits. Memory does not depend on the number of
+/// points, as far as the inputs are streams (docs/tiles.md). Throws InvalidInput (tiles that are not done, inputs that have changed,
+/// another extension, points that LAS cannot hold: not finite, or more than 2^32 - 1 of other formats), Unavailable (LAZ in builds without
+/// it), IoError, Cancelled.
 MergedTiles merge_tiles(const std::string& folder, const std::string& output, const Monitor& monitor = {});
+
+/// Throws what merge_tiles() will throw of this output, as far as it is known from the plan, before any tile is solved: another extension,
+/// points that LAS cannot hold as they are not finite, LAZ in builds without it.
+void check_merge(const std::string& folder, const std::string& output);
 
 /// The memory in bytes that mesh_tiles() will take for its largest tile: known from the plan, before any tile is solved. Throws
 /// InvalidInput (no plan, a damaged one), Unavailable (no tile of a mesh fits the memory of the plan).

@@ -94,9 +94,10 @@ def dask_run(folder: Path, client: Any = None, *, threads: int = 0, retries: int
 
 
 def merge(folder: Path, output: Path, *, progress: Optional[Progress] = None) -> Merged:
-    """Writes one file with the points in the order of the input, their normals and confidence, whole or not at all; see docs/tiles.md.
+    """Writes one .ply, .las or .laz with the points in the order of the input, their normals and confidence, whole or not at all; see
+    docs/tiles.md.
 
-    Reads the inputs once more. Raises InputError (tiles that are not done, inputs that have changed, another extension), FileError,
-    Cancelled.
+    Reads the inputs once more. Raises InputError (tiles that are not done, inputs that have changed, another extension, points that LAS
+    cannot hold), FileError, Cancelled.
     """
     return Merged(*_g3r.tiles_merge(os.fsdecode(folder), os.fsdecode(output), progress))

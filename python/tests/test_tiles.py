@@ -61,6 +61,23 @@ def test_the_four_steps(whole, tmp_path):
     assert (cloud.points * cloud.normals).sum(axis=1).min() > 0.99 * np.linalg.norm(cloud.points, axis=1).min()
 
 
+def test_las_has_the_same_points(whole, tmp_path):
+    work = planned(whole, tmp_path)
+    g3r.tiles.run(work)
+    merged(work)
+    ply = g3r.read(tmp_path / "out.ply")
+    for name in "out.las", "out.laz":
+        try:
+            g3r.tiles.merge(work, tmp_path / name)
+        except g3r.UnavailableError:  # a build without LASzip
+            continue
+        las = g3r.read(tmp_path / name)
+        assert np.allclose(las.points, ply.points, rtol=0, atol=1e-8)
+        assert np.array_equal(las.normals, ply.normals) and np.array_equal(las.confidence, ply.confidence)
+    with pytest.raises(g3r.InputError, match="ends in .ply, .las or .laz"):
+        g3r.tiles.merge(work, tmp_path / "out.xyz")
+
+
 def test_hints_are_part_of_the_plan(whole, tmp_path):
     g3r.tiles.plan(whole[0], tmp_path / "work", tiles=1, flip=True, up="+z", threads=1)
     with pytest.raises(g3r.InputError, match="plan of other files or options"):

@@ -12,8 +12,9 @@ namespace {
 
 using namespace std::string_view_literals;
 
-constexpr std::size_t kPage = 1024;     // bytes of a page in the file ("physical")
-constexpr std::size_t kPayload = 1020;  // of them all but a checksum ("logical")
+constexpr std::size_t kPage = 1024;           // bytes of a page in the file ("physical")
+constexpr std::size_t kPayload = 1020;        // of them all but a checksum ("logical")
+constexpr std::size_t kAtOnce = 256 * kPage;  // bytes checked at once
 constexpr std::size_t kFileHeader = 48;
 constexpr std::size_t kVersion = 8;
 constexpr std::size_t kFileLength = 16;
@@ -63,36 +64,40 @@ std::uint64_t to_logical(std::uint64_t physical) {
 
 std::uint64_t to_physical(std::uint64_t logical) { return logical / kPayload * kPage + logical % kPayload; }
 
-std::uint64_t logical_size(const Source& source) { return source.bytes.size() / kPage * kPayload; }
+std::uint64_t logical_size(const FileBytes& file) { return file.size() / kPage * kPayload; }
 
 // The bytes of the pages without their checksums; they lie within the file.
-std::string load_logical(const Source& source, std::uint64_t offset, std::size_t size) {
+std::string load_logical(FileBytes& file, std::uint64_t offset, std::size_t size) {
   std::string bytes;
   bytes.reserve(size);
   while (bytes.size() < size) {
     const std::uint64_t at = offset + bytes.size();
     const std::size_t rest = kPayload - static_cast<std::size_t>(at % kPayload);
-    bytes += source.bytes.substr(static_cast<std::size_t>(to_physical(at)), std::min(rest, size - bytes.size()));
+    bytes += file.get(static_cast<std::size_t>(to_physical(at)), std::min(rest, size - bytes.size()));
   }
   return bytes;
 }
 
-void check_pages(const Source& source) {
-  const std::string_view bytes = source.bytes;
-  if (bytes.size() < kPage) fail_at_byte(source, bytes.size(), "truncated: an E57 file has at least one page of 1024 bytes");
-  const auto length = load<std::uint64_t>(bytes.data() + kFileLength);
-  if (length != bytes.size() || length % kPage != 0) {
+void check_pages(FileBytes& file) {
+  const Source& source = file.source();
+  if (file.size() < kPage) fail_at_byte(source, file.size(), "truncated: an E57 file has at least one page of 1024 bytes");
+  const std::string header(file.get(0, kFileHeader));
+  const auto length = load<std::uint64_t>(header.data() + kFileLength);
+  if (length != file.size() || length % kPage != 0) {
     fail_at_byte(source, kFileLength,
                  "truncated or damaged: the header states " + std::to_string(length) +
-                     " bytes, expected a multiple of 1024 and the size, " + std::to_string(bytes.size()) + "; get the file again");
+                     " bytes, expected a multiple of 1024 and the size, " + std::to_string(file.size()) + "; get the file again");
   }
-  const auto major = load<std::uint32_t>(bytes.data() + kVersion);
-  const auto page = load<std::uint64_t>(bytes.data() + kPageSize);
+  const auto major = load<std::uint32_t>(header.data() + kVersion);
+  const auto page = load<std::uint64_t>(header.data() + kPageSize);
   if (major != 1) fail_at_byte(source, kVersion, "expected E57 version 1, found " + std::to_string(major));
   if (page != kPage) fail_at_byte(source, kPageSize, "expected pages of 1024 bytes, found " + std::to_string(page));
-  for (std::size_t at = 0; at < bytes.size(); at += kPage) {
-    if (crc_of(bytes.substr(at, kPayload)) != load_big(bytes.data() + at + kPayload)) {
-      fail_at_byte(source, at, "damaged: these 1024 bytes do not have their checksum; get the file again, or export it anew");
+  for (std::size_t begin = 0; begin < file.size(); begin += kAtOnce) {
+    const std::string_view pages = file.get(begin, std::min(kAtOnce, file.size() - begin));
+    for (std::size_t at = 0; at < pages.size(); at += kPage) {
+      if (crc_of(pages.substr(at, kPayload)) != load_big(pages.data() + at + kPayload)) {
+        fail_at_byte(source, begin + at, "damaged: these 1024 bytes do not have their checksum; get the file again, or export it anew");
+      }
     }
   }
 }
@@ -217,27 +222,29 @@ class XmlCheck {
 
 }  // namespace
 
-void check_e57(const Source& source) {
-  check_pages(source);
-  const char* bytes = source.bytes.data();
-  const auto physical = load<std::uint64_t>(bytes + kXmlAt);
-  const auto length = load<std::uint64_t>(bytes + kXmlLength);
+void check_e57(FileBytes& file) {
+  check_pages(file);
+  const Source& source = file.source();
+  const std::string header(file.get(0, kFileHeader));
+  const auto physical = load<std::uint64_t>(header.data() + kXmlAt);
+  const auto length = load<std::uint64_t>(header.data() + kXmlLength);
   const std::uint64_t at = to_logical(physical);
-  if (physical < kFileHeader || physical % kPage >= kPayload || at >= logical_size(source) || length > logical_size(source) - at) {
+  if (physical < kFileHeader || physical % kPage >= kPayload || at >= logical_size(file) || length > logical_size(file) - at) {
     fail_at_byte(source, kXmlAt,
                  "truncated or damaged: the XML, " + std::to_string(length) + " bytes at " + std::to_string(physical) +
                      ", does not lie within the file");
   }
-  XmlCheck(source, load_logical(source, at, static_cast<std::size_t>(length)), static_cast<std::size_t>(physical)).run();
+  XmlCheck(source, load_logical(file, at, static_cast<std::size_t>(length)), static_cast<std::size_t>(physical)).run();
 }
 
-std::vector<std::uint64_t> check_e57_packets(const Source& source, std::uint64_t section, std::size_t streams) {
+std::vector<std::uint64_t> check_e57_packets(FileBytes& file, std::uint64_t section, std::size_t streams) {
+  const Source& source = file.source();
   const auto place = [](std::uint64_t logical) { return static_cast<std::size_t>(to_physical(logical)); };
-  const std::uint64_t size = logical_size(source);
+  const std::uint64_t size = logical_size(file);
   if (section < kFileHeader || section >= size || size - section < kSectionHeader) {
     fail(source, "truncated or damaged: a scan's points at byte " + std::to_string(to_physical(section)) + " are not in the file");
   }
-  const std::string header = load_logical(source, section, kSectionHeader);
+  const std::string header = load_logical(file, section, kSectionHeader);
   const auto section_length = load<std::uint64_t>(header.data() + 8);
   std::uint64_t at = to_logical(load<std::uint64_t>(header.data() + 16));
   if (header.substr(0, 8) != "\1\0\0\0\0\0\0\0"sv || section_length > size - section || at < section + kSectionHeader ||
@@ -250,7 +257,7 @@ std::vector<std::uint64_t> check_e57_packets(const Source& source, std::uint64_t
     enum : char { kIndex, kData, kEmpty };
     const auto damaged = [&](const std::string& what) { fail_at_byte(source, place(at), "damaged packet of points: " + what); };
     if (end - at < kDataHeader) damaged("expected at least 6 bytes until the end of its section");
-    const std::string packet = load_logical(source, at, kDataHeader);
+    const std::string packet = load_logical(file, at, kDataHeader);
     const std::size_t length = std::size_t{load<std::uint16_t>(packet.data() + 2)} + 1;
     if (length % 4 != 0 || length < 4 || length > end - at) damaged("length " + std::to_string(length));
     if (packet[0] < kIndex || packet[0] > kEmpty || (first && packet[0] != kData)) damaged("type " + std::to_string(packet[0]));
@@ -259,7 +266,7 @@ std::vector<std::uint64_t> check_e57_packets(const Source& source, std::uint64_t
       if (count != streams || kDataHeader + 2 * count > length) {
         damaged("expected " + std::to_string(streams) + " streams, one per field, found " + std::to_string(count));
       }
-      const std::string lengths = load_logical(source, at + kDataHeader, 2 * count);
+      const std::string lengths = load_logical(file, at + kDataHeader, 2 * count);
       std::size_t sum = kDataHeader + 2 * count;
       for (std::size_t i = 0; i < count; ++i) {
         const std::size_t stream = load<std::uint16_t>(lengths.data() + 2 * i);
@@ -267,7 +274,7 @@ std::vector<std::uint64_t> check_e57_packets(const Source& source, std::uint64_t
         sum += stream;
       }
       if (sum > length || sum + 3 < length) damaged("its streams do not fill it");
-      if (load_logical(source, at + sum, length - sum).find_first_not_of('\0') != std::string::npos) damaged("its end is not zero");
+      if (load_logical(file, at + sum, length - sum).find_first_not_of('\0') != std::string::npos) damaged("its end is not zero");
     }
     at += length;
   }

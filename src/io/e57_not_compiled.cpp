@@ -8,4 +8,9 @@ Cloud read_e57(const Source& source) {
        "build g3r with libE57Format (tools/sources.sh)");
 }
 
+std::unique_ptr<PointStream> stream_e57(std::unique_ptr<RandomFile> file) {
+  read_e57({{}, file->path()});
+  return nullptr;
+}
+
 }  // namespace g3r::io

@@ -2,7 +2,9 @@
 
 #include "io/laz.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace g3r::io {
 
@@ -155,6 +157,31 @@ unsigned las_type_number(Type type) {
     if (kDescribedTypes[i] == type) return i + 1;
   }
   return 0;
+}
+
+std::string las_descriptor(const std::string& name, unsigned type, std::size_t options) {
+  std::string bytes(kDescriptor, '\0');
+  bytes[2] = static_cast<char>(type);
+  bytes[3] = static_cast<char>(options);
+  bytes.replace(4, std::min(name.size(), kLasNameBytes), name, 0, kLasNameBytes);
+  return bytes;
+}
+
+std::string las_extra_vlr(std::size_t length) {
+  std::string bytes(kVlrHeader, '\0');
+  bytes.replace(2, 9, "LASF_Spec");
+  put(bytes, 18, static_cast<std::uint16_t>(kExtraBytes));
+  put(bytes, 20, static_cast<std::uint16_t>(length));
+  bytes.replace(22, 11, "Extra Bytes");
+  return bytes;
+}
+
+std::int32_t las_steps(double value, double scale, double offset, const char* axis) {
+  const double steps = std::nearbyint((value - offset) / scale);
+  if (!(std::abs(steps) <= std::numeric_limits<std::int32_t>::max())) {
+    throw InvalidInput(std::string("write_cloud: LAS cannot hold this ") + axis + " coordinate (not finite, or outside scale and offset)");
+  }
+  return static_cast<std::int32_t>(steps);
 }
 
 }  // namespace g3r::io

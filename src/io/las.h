@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,11 @@ inline constexpr std::size_t kMinor = 25, kHeaderSize = 94, kPointsAt = 96, kVlr
 inline constexpr std::array<std::size_t, 11> kRecordSize = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
 inline constexpr unsigned kExtraBytes = 4;       // record id, user id "LASF_Spec"
 inline constexpr unsigned kCompression = 22204;  // record id, user id "laszip encoded"
+
+template <class T>
+void put(std::string& bytes, std::size_t at, T value) {
+  std::memcpy(bytes.data() + at, &value, sizeof value);
+}
 }  // namespace las
 
 /// Reads and checks a header. Throws InvalidInput; for LAZ, where it cannot be read, with the name of a converter.
@@ -58,5 +64,16 @@ char* copy_las_record(const LasHeader& header, const char* record, char* to);
 
 /// LAS's number of a type (1..10) in an extra-bytes descriptor.
 unsigned las_type_number(Type type);
+
+inline constexpr std::size_t kLasNameBytes = 32;  ///< of an extra-bytes descriptor
+
+/// An extra-bytes descriptor; type 0 with `options` bytes stands for bytes without meaning.
+std::string las_descriptor(const std::string& name, unsigned type, std::size_t options);
+
+/// The header of the variable length record that holds `length` bytes of descriptors.
+std::string las_extra_vlr(std::size_t length);
+
+/// The integer that a coordinate is stored as. Throws InvalidInput, with the name of the axis, if there is none.
+std::int32_t las_steps(double value, double scale, double offset, const char* axis);
 
 }  // namespace g3r::io

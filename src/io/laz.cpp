@@ -4,6 +4,7 @@
 #include "io/laz.h"
 
 #include "io/copc.h"
+#include "io/file_bytes.h"
 #include "io/subset.h"
 
 #include <algorithm>
@@ -123,29 +124,6 @@ Codec read_codec(const Source& source, const LasHeader& header) {
   return codec;
 }
 
-// The bytes of a file: in memory, or read when they are asked for.
-class Bytes {
- public:
-  explicit Bytes(const Source& source) : source_(source), size_(source.bytes.size()) {}
-  Bytes(const Source& head, const RandomFile& file) : source_(head), file_(&file), size_(static_cast<std::size_t>(file.size())) {}
-
-  [[nodiscard]] const Source& source() const { return source_; }  // for messages, and what comes before the points
-  [[nodiscard]] std::size_t size() const { return size_; }
-  // [begin, begin + count), which lie within the file; valid until the next call.
-  std::string_view get(std::size_t begin, std::size_t count) {
-    if (file_ == nullptr) return source_.bytes.substr(begin, count);
-    buffer_.resize(count);
-    file_->read(begin, buffer_.data(), count);
-    return buffer_;
-  }
-
- private:
-  const Source& source_;
-  const RandomFile* file_ = nullptr;
-  std::size_t size_;
-  std::string buffer_;
-};
-
 // A decoder that starts at a number not below its range leaves its tables; no encoder makes that.
 void check_start(const Source& source, std::size_t at, std::string_view bytes) {
   if (bytes.size() < 4 || load<std::uint32_t>(bytes.data()) == 0xFFFFFFFF)
@@ -153,7 +131,7 @@ void check_start(const Source& source, std::size_t at, std::string_view bytes) {
 }
 
 // Counts that no honest file has, before memory is taken for them.
-void check_ratio(const Bytes& file, const LasHeader& header) {
+void check_ratio(const FileBytes& file, const LasHeader& header) {
   if (header.count > kMostRatio * file.size() / header.record_bytes) {
     fail_at_byte(
         file.source(), kLegacyCount,
@@ -164,7 +142,7 @@ void check_ratio(const Bytes& file, const LasHeader& header) {
 }
 
 // Where the table of chunks begins.
-std::size_t find_table(Bytes& file, const LasHeader& header) {
+std::size_t find_table(FileBytes& file, const LasHeader& header) {
   const Source& source = file.source();
   const std::size_t size = file.size();
   if (size - header.points_at < 16) fail_at_byte(source, size, "truncated: the compressed points are missing");
@@ -179,7 +157,7 @@ std::size_t find_table(Bytes& file, const LasHeader& header) {
 }
 
 // Number of points and bytes of each chunk, as LASzip stores them: a version, their number, then compressed differences.
-std::vector<Chunk> read_table(Bytes& file, const LasHeader& header, const Codec& codec, std::size_t table) {
+std::vector<Chunk> read_table(FileBytes& file, const LasHeader& header, const Codec& codec, std::size_t table) {
   const Source& source = file.source();
   const bool any = codec.chunk_points == kAnyChunks;
   const std::string_view head = file.get(table, 8);
@@ -302,8 +280,8 @@ class ChunkDecoder {
 };
 
 // Where what follows the points begins in the LAZ file: waveforms or extended records, if the header gives a place after the table.
-std::size_t find_rest(const Source& source, const LasHeader& header, std::size_t table) {
-  std::size_t rest = source.bytes.size();
+std::size_t find_rest(const Source& source, const LasHeader& header, std::size_t file_size, std::size_t table) {
+  std::size_t rest = file_size;
   const auto consider = [&](std::size_t field) {
     const auto at = load<std::uint64_t>(source.bytes.data() + field);
     if (at > table && at < rest) rest = static_cast<std::size_t>(at);
@@ -313,13 +291,8 @@ std::size_t find_rest(const Source& source, const LasHeader& header, std::size_t
   return rest;
 }
 
-template <class T>
-void put(std::string& bytes, std::size_t at, T value) {
-  std::memcpy(bytes.data() + at, &value, sizeof value);
-}
-
 // Header and variable length records, without the mark and the record of LAZ.
-std::string plain_header(const Source& source, const LasHeader& header, std::size_t rest) {
+std::string plain_header(const Source& source, const LasHeader& header, std::size_t file_size, std::size_t rest) {
   std::string las(source.bytes.substr(0, header.points_at));
   const std::size_t record = kVlrHeader + load<std::uint16_t>(las.data() + header.laszip_vlr + 20);
   las.erase(header.laszip_vlr, record);
@@ -331,7 +304,7 @@ std::string plain_header(const Source& source, const LasHeader& header, std::siz
   const std::uint64_t moved = las.size() + header.count * header.record_bytes - rest;  // modulo 2^64 where it moves back
   const auto shift = [&](std::size_t field) {
     const auto at = load<std::uint64_t>(las.data() + field);
-    if (at >= rest && rest < source.bytes.size()) put(las, field, at + moved);
+    if (at >= rest && rest < file_size) put(las, field, at + moved);
   };
   if (header.minor >= 3 && header.header_size >= kWaveform + 8) shift(kWaveform);
   if (header.minor == 4) shift(kEvlrAt);
@@ -361,12 +334,12 @@ std::string unpack_laz(const Source& source, const LasHeader& header, const Read
   const Codec codec = read_codec(source, header);
   if (header.count == 0) {
     constexpr std::size_t kEmptyTable = 16;  // its place, version and number of chunks
-    const std::size_t rest = find_rest(source, header, header.points_at);
+    const std::size_t rest = find_rest(source, header, source.bytes.size(), header.points_at);
     if (rest - header.points_at >= kEmptyTable + header.record_bytes)
       fail_at_byte(source, kLegacyCount, "the header has no points (count 0), but compressed points follow it");
-    return plain_header(source, header, rest).append(source.bytes.substr(rest));
+    return plain_header(source, header, source.bytes.size(), rest).append(source.bytes.substr(rest));
   }
-  Bytes file(source);
+  FileBytes file(source);
   check_ratio(file, header);
   const std::size_t table = find_table(file, header);
   try {
@@ -379,8 +352,8 @@ std::string unpack_laz(const Source& source, const LasHeader& header, const Read
       part.count = 0;
       for (const Chunk& chunk : chunks) part.count += chunk.points;
     }
-    const std::size_t rest = find_rest(source, header, table);
-    std::string las = plain_header(source, part, rest);
+    const std::size_t rest = find_rest(source, header, file.size(), table);
+    std::string las = plain_header(source, part, file.size(), rest);
     for (const Chunk& chunk : chunks)
       ChunkDecoder(header, codec, chunk, file.get(chunk.begin, chunk.bytes)).read(chunk.points, source, las);
     if (parted) fit_las_header(las, part.count);
@@ -399,8 +372,10 @@ struct LazRecords::State {
   Source source;  // for messages
   LasHeader header;
   Codec codec;
-  Bytes file;
+  FileBytes file;
   std::vector<Chunk> chunks;
+  std::size_t rest = 0;  // place of what follows the points
+  std::string las_head;
   std::size_t chunk = 0;  // the next to be decoded
   std::optional<ChunkDecoder> decoder;
 };
@@ -414,9 +389,15 @@ LazRecords::LazRecords(const Source& head, const LasHeader& header, const Random
   } catch (int) {  // what LASzip throws
     fail_at_byte(head, table, "truncated or damaged: LASzip cannot decode the table of compressed chunks");
   }
+  state_->rest = find_rest(head, header, state_->file.size(), table);
+  state_->las_head = plain_header(head, header, state_->file.size(), state_->rest);
 }
 
 LazRecords::~LazRecords() = default;
+
+const std::string& LazRecords::las_head() const { return state_->las_head; }
+
+std::uint64_t LazRecords::rest() const { return state_->rest; }
 
 void LazRecords::next(std::size_t most, std::string& records) {
   State& s = *state_;

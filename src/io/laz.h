@@ -5,6 +5,7 @@
 #include "io/random_file.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -30,6 +31,10 @@ class LazRecords {
   ~LazRecords();
   /// Appends the next records, at most `most`; none at the end. Throws InvalidInput, IoError.
   void next(std::size_t most, std::string& records);
+  /// Header and variable length records as unpack_laz() gives them.
+  [[nodiscard]] const std::string& las_head() const;
+  /// Byte offset in the file of what follows the points.
+  [[nodiscard]] std::uint64_t rest() const;
 
  private:
   struct State;

@@ -24,6 +24,13 @@ LazRecords::~LazRecords() = default;
 
 void LazRecords::next(std::size_t, std::string&) {}
 
+const std::string& LazRecords::las_head() const {
+  static const std::string kNone;
+  return kNone;
+}
+
+std::uint64_t LazRecords::rest() const { return 0; }
+
 std::unique_ptr<LasOutput> packed_las(OutputFile&) { throw Unavailable("write_cloud: this build does not write LAZ; write LAS (.las)"); }
 
 }  // namespace g3r::io

@@ -125,6 +125,18 @@ void OutputFile::flush() {
   buffer_.clear();
 }
 
+void OutputFile::overwrite(std::size_t offset, std::string_view bytes) {
+  flush();
+  for (std::size_t done = 0; done < bytes.size();) {
+    const ssize_t written = ::pwrite(fd_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
+    if (written < 0) {
+      if (errno == EINTR) continue;
+      fail(false, errno);
+    }
+    done += static_cast<std::size_t>(written);
+  }
+}
+
 void OutputFile::commit() {
   flush();
   if (temporary_.empty()) {

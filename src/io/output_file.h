@@ -22,6 +22,10 @@ class OutputFile {
   /// Appends bytes. Throws IoError (kFailed).
   void write(const void* bytes, std::size_t size);
   void write(std::string_view text) { write(text.data(), text.size()); }
+  /// Whether overwrite() can be called: not where the bytes go to a device or a pipe.
+  [[nodiscard]] bool can_overwrite() const { return !temporary_.empty(); }
+  /// Puts bytes in the place of some that have been written, from `offset` on. Throws IoError (kFailed).
+  void overwrite(std::size_t offset, std::string_view bytes);
   /// Makes the file take its place. Throws IoError (kFailed).
   void commit();
 

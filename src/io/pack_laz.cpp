@@ -22,11 +22,6 @@ using namespace las;
 
 constexpr std::uint32_t kChunkPoints = 50000;  // LASzip's own choice: readers that skip chunks expect about as many
 
-template <class T>
-void put(std::string& bytes, std::size_t at, T value) {
-  std::memcpy(bytes.data() + at, &value, sizeof value);
-}
-
 void require(bool done) {
   if (!done) throw Error("write_cloud: LASzip cannot pack the points");
 }
@@ -57,13 +52,19 @@ class PackedLas : public LasOutput {
   explicit PackedLas(OutputFile& file) : file_(file) {}
 
   void header(const std::string& text) override {
-    header_ = text;
     const auto format = static_cast<unsigned char>(text[kPointFormat]);
     layered_ = format >= 6;
     require(how_.setup(format, load<std::uint16_t>(text.data() + kRecordBytes),
                        layered_ ? LASZIP_COMPRESSOR_LAYERED_CHUNKED : LASZIP_COMPRESSOR_CHUNKED) != 0);
     how_.set_chunk_size(kChunkPoints);
     how_.request_version(layered_ ? 3 : 2);
+    las_points_at_ = text.size();
+    header_ = text + description();
+    header_[kPointFormat] = static_cast<char>(header_[kPointFormat] | 0x80);
+    put(header_, kVlrCount, load<std::uint32_t>(header_.data() + kVlrCount) + 1);
+    put(header_, kPointsAt, static_cast<std::uint32_t>(header_.size()));
+    header_.append(sizeof(std::uint64_t), '\0');  // where the table of chunks will be
+    if (file_.can_overwrite()) file_.write(header_);
   }
 
   void record(const std::string& bytes) override {
@@ -77,32 +78,30 @@ class PackedLas : public LasOutput {
     if (++in_chunk_ == kChunkPoints) end_chunk();
   }
 
-  void finish(std::string_view rest) override {
+  void finish(std::uint64_t rest) override {
     if (writer_) end_chunk();
-    const std::size_t las_points_at = header_.size();
-    const std::string vlr = description();
-    header_ += vlr;
-    header_[kPointFormat] = static_cast<char>(header_[kPointFormat] | 0x80);
-    put(header_, kVlrCount, load<std::uint32_t>(header_.data() + kVlrCount) + 1);
-    put(header_, kPointsAt, static_cast<std::uint32_t>(header_.size()));
     const std::string table = chunk_table();
-    const std::uint64_t table_at = header_.size() + sizeof(std::uint64_t) + packed_.size();
-    const std::uint64_t las_rest = las_points_at + points_ * load<std::uint16_t>(header_.data() + kRecordBytes);
+    const std::uint64_t table_at = header_.size() + packed_bytes_;
+    const std::uint64_t las_rest = las_points_at_ + points_ * load<std::uint16_t>(header_.data() + kRecordBytes);
     const std::uint64_t moved = table_at + table.size() - las_rest;  // modulo 2^64
     const auto shift = [&](std::size_t field) {
       const auto at = load<std::uint64_t>(header_.data() + field);
-      if (at >= las_rest && !rest.empty()) put(header_, field, at + moved);
+      if (at >= las_rest && rest != 0) put(header_, field, at + moved);
     };
     const auto minor = static_cast<unsigned char>(header_[kMinor]);
     if (minor >= 3 && load<std::uint16_t>(header_.data() + kHeaderSize) >= kWaveform + 8) shift(kWaveform);
     if (minor == 4) shift(kEvlrAt);
-    std::string place(sizeof table_at, '\0');
-    put(place, 0, table_at);
-    for (const std::string_view part :
-         {std::string_view(header_), std::string_view(place), std::string_view(packed_), std::string_view(table)})
-      file_.write(part);
-    file_.write(rest);
+    put(header_, header_.size() - sizeof table_at, table_at);
+    if (file_.can_overwrite()) {
+      file_.overwrite(0, header_);
+    } else {
+      file_.write(header_);
+      file_.write(packed_);
+    }
+    file_.write(table);
   }
+
+  void rest(std::string_view bytes) override { file_.write(bytes); }
 
  private:
   void begin_chunk() {
@@ -118,7 +117,13 @@ class PackedLas : public LasOutput {
     const std::string bytes = bytes_of(*stream_);
     const auto end = static_cast<std::size_t>(load<std::uint64_t>(bytes.data()));
     chunks_.push_back(static_cast<std::uint32_t>(end - sizeof(std::uint64_t)));
-    packed_.append(bytes, sizeof(std::uint64_t), chunks_.back());
+    const std::string_view chunk = std::string_view(bytes).substr(sizeof(std::uint64_t), chunks_.back());
+    packed_bytes_ += chunk.size();
+    if (file_.can_overwrite()) {
+      file_.write(chunk);
+    } else {
+      packed_ += chunk;
+    }
     points_ += in_chunk_;
     writer_.reset();
     stream_.reset();
@@ -160,7 +165,8 @@ class PackedLas : public LasOutput {
   }
 
   OutputFile& file_;
-  std::string header_;
+  std::string header_;  // of the LAZ file, and the place of the table of chunks
+  std::size_t las_points_at_ = 0;
   LASzip how_;
   bool layered_ = false;
   std::unique_ptr<ByteStreamOutArrayLE> stream_;
@@ -168,7 +174,8 @@ class PackedLas : public LasOutput {
   std::vector<const U8*> items_;
   std::uint32_t in_chunk_ = 0;
   std::uint64_t points_ = 0;
-  std::string packed_;
+  std::uint64_t packed_bytes_ = 0;
+  std::string packed_;  // chunks that wait for the header
   std::vector<std::uint32_t> chunks_;
 };
 

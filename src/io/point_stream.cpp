@@ -1,14 +1,15 @@
 #include "io/point_stream.h"
 
 #include "io/cloud_from_table.h"
+#include "io/fixed_records.h"
 #include "io/las.h"
 #include "io/laz.h"
 #include "io/merger.h"
 #include "io/random_file.h"
 #include "io/readers.h"
+#include "io/recognise.h"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <utility>
 
@@ -17,72 +18,36 @@ namespace {
 
 constexpr std::size_t kHead = std::size_t{1} << 16;       // bytes that a format is told by and that headers of PLY seldom exceed
 constexpr std::size_t kMostHead = std::size_t{16} << 20;  // bytes before the points of a LAS file that is read as a stream
-constexpr std::size_t kAtOnce = std::size_t{1} << 20;     // bytes of records read at once
 
-// Records of one size, one after the other in the file as in the table.
-class FixedRecords : public PointStream {
- public:
-  FixedRecords(std::unique_ptr<RandomFile> file, std::uint64_t begin, Attributes table)
-      : file_(std::move(file)), at_(begin), left_(table.points().count), table_(std::move(table)), layout_(table_.points()) {
-    const Roles roles = find_roles(table_.points());
-    std::copy_n(roles.position, 3, position_.begin());
-  }
-
-  void next(std::size_t most, std::vector<Vec3>& points, std::string* records) override {
-    points.clear();
-    if (records != nullptr) records->clear();
-    while (left_ > 0 && points.size() < most) {
-      const std::uint64_t wanted = std::min<std::uint64_t>(left_, most - points.size());
-      const std::size_t at_once = std::max<std::size_t>(1, kAtOnce / layout_.size());
-      fetch(static_cast<std::size_t>(std::min<std::uint64_t>(wanted, at_once)), bytes_);
-      left_ -= bytes_.size() / layout_.size();
-      const std::vector<Property>& properties = table_.points().properties;
-      for (const char* record = bytes_.data(); record != bytes_.data() + bytes_.size(); record += layout_.size()) {
-        Vec3 p{};
-        for (std::size_t a = 0; a < 3; ++a) p[a] = load_as_double(properties[position_[a]].type, record + layout_.offset(position_[a]));
-        points.push_back(p);
-      }
-      if (records != nullptr) records->append(bytes_);
-    }
-  }
-
-  [[nodiscard]] std::uint64_t left() const override { return left_; }
-  [[nodiscard]] Scalar scalar() const override {
-    const auto single = [&](std::size_t property) { return table_.points().properties[property].type == Type::kFloat32; };
-    return std::all_of(position_.begin(), position_.end(), single) ? Scalar::kFloat32 : Scalar::kFloat64;
-  }
-  [[nodiscard]] const Attributes& table() const override { return table_; }
-
- protected:
-  // The next `count` records of the table.
-  virtual void fetch(std::size_t count, std::string& records) { read(count * layout_.size(), records); }
-  // The next bytes of the file.
-  void read(std::size_t count, std::string& bytes) {
-    bytes.resize(count);
-    file_->read(at_, bytes.data(), count);
-    at_ += count;
-  }
-  [[nodiscard]] const RandomFile& file() const { return *file_; }
-
- private:
-  std::unique_ptr<RandomFile> file_;
-  std::uint64_t at_;
-  std::uint64_t left_;
-  Attributes table_;
-  RecordLayout layout_;
-  std::array<std::size_t, 3> position_{};
-  std::string bytes_;
-};
-
-class LasRecords : public FixedRecords {
+class LasRecords : public FixedRecords, public LasOrigin {
  public:
   // `head`: what comes before the points.
   LasRecords(std::unique_ptr<RandomFile> file, const Source& head, const LasHeader& header)
       : FixedRecords(std::move(file), header.points_at, las_table(header)), header_(header) {
-    if (header.compressed) laz_ = std::make_unique<LazRecords>(head, header, this->file());
+    if (header.compressed) {
+      laz_ = std::make_unique<LazRecords>(head, header, this->file());
+    } else {
+      head_ = head.bytes.substr(0, header.points_at);
+    }
+  }
+
+  [[nodiscard]] LasOrigin* las() override { return this; }
+  [[nodiscard]] const std::string& head() const override { return laz_ ? laz_->las_head() : head_; }
+  void keep(std::string* records) override { kept_ = records; }
+  [[nodiscard]] std::uint64_t rest() const override { return file().size() - rest_at(); }
+  void read_rest(const std::function<void(std::string_view)>& take) const override {
+    constexpr std::uint64_t kPiece = std::uint64_t{1} << 20U;
+    std::string piece;
+    for (std::uint64_t at = rest_at(); at < file().size(); at += piece.size()) {
+      piece.resize(static_cast<std::size_t>(std::min(kPiece, file().size() - at)));
+      file().read(at, piece.data(), piece.size());
+      take(piece);
+    }
   }
 
  private:
+  [[nodiscard]] std::uint64_t rest_at() const { return laz_ ? laz_->rest() : header_.points_at + header_.count * header_.record_bytes; }
+
   void fetch(std::size_t count, std::string& records) override {
     bytes_.clear();
     if (laz_) {
@@ -93,11 +58,14 @@ class LasRecords : public FixedRecords {
     records.resize(bytes_.size() / header_.record_bytes * table().points().stride());
     char* to = records.data();
     for (std::size_t at = 0; at < bytes_.size(); at += header_.record_bytes) to = copy_las_record(header_, bytes_.data() + at, to);
+    if (kept_ != nullptr) kept_->append(bytes_);
   }
 
   LasHeader header_;
+  std::string head_;  // of LAS
   std::unique_ptr<LazRecords> laz_;
   std::string bytes_;  // as in the file
+  std::string* kept_ = nullptr;
 };
 
 // The whole file, in memory.
@@ -130,6 +98,7 @@ class WholeCloud : public PointStream {
   [[nodiscard]] std::uint64_t left() const override { return cloud_.positions.size() - at_; }
   [[nodiscard]] Scalar scalar() const override { return cloud_.scalar; }
   [[nodiscard]] const Attributes& table() const override { return table_; }
+  [[nodiscard]] std::vector<std::string> warnings() const override { return cloud_.warnings; }
 
  private:
   // Of a file that is no table: positions and colours. Normals and confidence would be replaced.
@@ -173,6 +142,22 @@ std::unique_ptr<PointStream> stored_records(std::unique_ptr<RandomFile> file, st
   return std::make_unique<FixedRecords>(std::move(file), stored->begin, std::move(stored->table));
 }
 
+// Of what is told by more than its first letters; null for the rest, and for what may not be what its head looks like.
+std::unique_ptr<PointStream> parsed_records(std::unique_ptr<RandomFile>& file, const Source& head) {
+  const bool whole = head.bytes.size() == file->size();
+  if (is_binary_stl(head.bytes, file->size())) return nullptr;
+  const std::uint64_t begin = head.bytes.size() - without_mark(head.bytes).size();
+  try {
+    const Format format = recognise(head);
+    if (format == Format::kText) return stream_xyz(std::move(file), begin);
+    if (format == Format::kPtx) return stream_ptx(std::move(file), begin);
+    if (format == Format::kE57) return stream_e57(std::move(file));
+  } catch (const InvalidInput&) {
+    if (whole || !file) throw;  // what is recognised is refused for good
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 std::unique_ptr<PointStream> open_points(const std::string& path, bool with_records) {
@@ -190,6 +175,8 @@ std::unique_ptr<PointStream> open_points(const std::string& path, bool with_reco
     stream = stored_records(std::move(file), find_npy_records(source, size));
   } else if (head.starts_with("LASF")) {
     stream = las_records(std::move(file), head, path);
+  } else {
+    stream = parsed_records(file, source);
   }
   if (!stream) stream = std::make_unique<WholeCloud>(path, with_records);
   return stream;

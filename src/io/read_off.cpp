@@ -29,7 +29,7 @@ class Statements {
   // Gives a part of a line back: the next call returns it.
   void put_back(std::string_view part) { pending_ = part; }
   [[nodiscard]] std::size_t number() const { return lines_.number(); }
-  [[nodiscard]] std::size_t offset() const { return lines_.offset(); }
+  [[nodiscard]] std::size_t offset() const { return static_cast<std::size_t>(lines_.offset()); }
   [[nodiscard]] bool ended() const { return lines_.ended(); }
 
  private:

@@ -43,7 +43,7 @@ class PcdParser {
       statement(keyword, words, line);
     }
     if (header_.encoding.empty()) fail(source_, "the header does not end: expected a line DATA ascii, binary or binary_compressed");
-    header_.body = lines_.offset();
+    header_.body = static_cast<std::size_t>(lines_.offset());
     header_.lines = lines_.number();
     finish();
     return std::move(header_);

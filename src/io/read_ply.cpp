@@ -74,7 +74,7 @@ class BodyReader {
   [[nodiscard]] bool last_line_open() const { return last_line_open_; }
 
  private:
-  [[nodiscard]] std::size_t position() const { return encoding_ == PlyEncoding::kText ? lines_.offset() : at_; }
+  [[nodiscard]] std::size_t position() const { return encoding_ == PlyEncoding::kText ? static_cast<std::size_t>(lines_.offset()) : at_; }
 
   void read_fixed(Element& element) {
     const std::size_t stride = element.stride();

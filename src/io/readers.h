@@ -2,10 +2,13 @@
 // InvalidInput. None allocates more than the bytes at hand can fill.
 #pragma once
 
+#include "io/point_stream.h"
+#include "io/random_file.h"
 #include "io/source.h"
 #include "io/table.h"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 namespace g3r::io {
@@ -35,6 +38,12 @@ struct StoredTable {
 std::optional<StoredTable> find_ply_records(const Source& head, std::uint64_t file_size);
 std::optional<StoredTable> find_pcd_records(const Source& head, std::uint64_t file_size);
 std::optional<StoredTable> find_npy_records(const Source& head, std::uint64_t file_size);
+
+/// The points of recognised files, some at a time; of a text, which begins at byte `begin`. Opening reads the text once, or twice where it
+/// has more columns than x y z; E57 is read for its checksums. Throw what the reader of the format throws, or next() does.
+std::unique_ptr<PointStream> stream_xyz(std::unique_ptr<RandomFile> file, std::uint64_t begin);
+std::unique_ptr<PointStream> stream_ptx(std::unique_ptr<RandomFile> file, std::uint64_t begin);
+std::unique_ptr<PointStream> stream_e57(std::unique_ptr<RandomFile> file);
 
 Mesh read_ply_mesh(const Source& source);
 Mesh read_obj_mesh(const Source& source);

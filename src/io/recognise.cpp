@@ -147,10 +147,10 @@ std::string_view without_mark(std::string_view bytes) {
   return bytes;
 }
 
-bool is_binary_stl(std::string_view bytes) {
+bool is_binary_stl(std::string_view bytes, std::uint64_t file_size) {
   constexpr std::size_t kHeader = 80;
   constexpr std::uint64_t kTriangle = 50;
-  return bytes.size() >= kHeader + 4 && bytes.size() == kHeader + 4 + kTriangle * load<std::uint32_t>(bytes.data() + kHeader);
+  return bytes.size() >= kHeader + 4 && file_size == kHeader + 4 + kTriangle * load<std::uint32_t>(bytes.data() + kHeader);
 }
 
 Format recognise(const Source& source) {
@@ -169,7 +169,7 @@ Format recognise(const Source& source) {
   if (bytes.substr(0, 8) == "ASTM-E57") return Format::kE57;
   if (bytes.substr(0, 4) == "glTF") return Format::kGlb;
   if (bytes.substr(0, 6) == "# .PCD") return Format::kPcd;
-  if (is_binary_stl(bytes)) return Format::kStlBinary;
+  if (is_binary_stl(bytes, bytes.size())) return Format::kStlBinary;
   if (is_ptx(bytes)) return Format::kPtx;
 
   Beginning beginning(bytes);

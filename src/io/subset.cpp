@@ -18,11 +18,6 @@ using Kept = std::vector<char>;  // one per point: whether it is kept
 constexpr std::size_t kReturns = kCount + 8;  // LAS 1.4: points by return, 15 of 64 bits; before, 5 of 32 after the count
 
 template <class T>
-void put(std::string& bytes, std::size_t at, T value) {
-  std::memcpy(bytes.data() + at, &value, sizeof value);
-}
-
-template <class T>
 void keep(std::vector<T>& values, const Kept& kept) {
   if (values.empty()) return;
   std::size_t end = 0;

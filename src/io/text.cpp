@@ -2,6 +2,7 @@
 
 #include "io/float_text.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -9,6 +10,9 @@
 namespace g3r::io {
 
 namespace {
+
+constexpr std::size_t kPiece = std::size_t{1} << 18;         // bytes of a file read at once; larger gains no time
+constexpr std::size_t kLongestLine = std::size_t{16} << 20;  // bytes: the longest line is in memory; 1000 columns take a thousandth
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f' || c == '\r'; }
 
@@ -67,27 +71,55 @@ void append_integer(std::string& text, T value) {
 
 }  // namespace
 
-bool Lines::next(std::string_view& line) {
-  if (at_ >= text_.size()) return false;
+Lines::Lines(const RandomFile& file, std::uint64_t begin, std::size_t lines_before)
+    : number_(lines_before), file_(&file), piece_(std::make_unique<std::string>()), before_(begin) {}
+
+// Whether it is known where the line at at_ ends, of the text in memory; a CR at its end may be one of a CR LF.
+bool Lines::find_end() {
   if (!feed_known_ || next_feed_ < at_) {
-    const std::size_t feed = text_.find('\n', at_);
-    next_feed_ = feed == std::string_view::npos ? text_.size() : feed;
+    next_feed_ = std::min(text_.find('\n', at_), text_.size());
     feed_known_ = true;
   }
   const std::string_view upto_feed = text_.substr(at_, next_feed_ - at_);
-  const std::size_t carriage = upto_feed.find('\r');
-  ++number_;
-  if (carriage == std::string_view::npos) {
-    line = upto_feed;
-    ended_ = next_feed_ < text_.size();
-    at_ = next_feed_ + (ended_ ? 1 : 0);
-  } else {
-    line = upto_feed.substr(0, carriage);
-    ended_ = true;
-    at_ += carriage + 1;
-    if (at_ < text_.size() && text_[at_] == '\n') ++at_;
+  length_ = std::min(upto_feed.find('\r'), upto_feed.size());
+  return next_feed_ < text_.size() || at_ + length_ + 1 < text_.size();
+}
+
+// The next bytes of the file behind those that are not consumed; false if there are none.
+bool Lines::load() {
+  if (file_ == nullptr || before_ + text_.size() >= file_->size()) return false;
+  if (text_.size() - at_ > kLongestLine) {
+    throw InvalidInput(escape_text(file_->path()) + ": line " + std::to_string(number_ + 1) + ": more than " +
+                       std::to_string(kLongestLine >> 20U) + " MiB without a line end: expected one point per line");
   }
+  before_ += at_;
+  piece_->erase(0, at_);
+  at_ = 0;
+  feed_known_ = false;
+  const std::size_t known = piece_->size();
+  piece_->resize(known + static_cast<std::size_t>(std::min<std::uint64_t>(kPiece, file_->size() - before_ - known)));
+  file_->read(before_ + known, piece_->data() + known, piece_->size() - known);
+  text_ = *piece_;
   return true;
+}
+
+bool Lines::next(std::string_view& line) {
+  if (at_ >= text_.size() && !load()) return false;
+  while (!find_end() && load()) {
+  }
+  line = text_.substr(at_, length_);
+  at_ += length_;
+  ++number_;
+  ended_ = at_ < text_.size();
+  if (!ended_) return true;
+  const bool carriage = text_[at_++] == '\r';
+  if (carriage && at_ < text_.size() && text_[at_] == '\n') ++at_;
+  return true;
+}
+
+Lines Text::lines_from(std::uint64_t offset, std::size_t lines_before) const {
+  if (file_ != nullptr) return {*file_, offset, lines_before};
+  return Lines(source_.bytes.substr(static_cast<std::size_t>(offset)), lines_before, offset);
 }
 
 bool Lines::next_filled(std::string_view& line) {

@@ -89,62 +89,8 @@ constexpr AxisName kAxisNames[] = {{"easting", "x", false}, {"east", "x", false}
                                    {"alt", "z", false},     {"longitude", "x", true},  {"lon", "x", true},       {"long", "x", true},
                                    {"latitude", "y", true}, {"lat", "y", true}};
 
-double value_at(const Element& points, std::size_t point, std::size_t column) {
-  return load<double>(points.data.data() + (point * points.properties.size() + column) * sizeof(double));
-}
-
-bool is_whole(const Element& points, std::size_t column) {
-  for (std::size_t i = 0; i < points.count; ++i) {
-    const double value = value_at(points, i, column);
-    if (value != std::nearbyint(value) || std::isinf(value)) return false;
-  }
-  return true;
-}
-
-bool all_different(const Element& points, std::size_t column) {
-  std::vector<double> values(static_cast<std::size_t>(points.count));
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = value_at(points, i, column);
-  std::sort(values.begin(), values.end());
-  return std::adjacent_find(values.begin(), values.end()) == values.end();
-}
-
-// 1, 2, 3, ...: fewer lines may be so by chance.
-bool counts_points(const Element& points, std::size_t column) {
-  constexpr std::uint64_t kLeast = 10;
-  if (points.count < kLeast) return false;
-  for (std::size_t i = 1; i < points.count; ++i) {
-    if (value_at(points, i, column) != value_at(points, i - 1, column) + 1) return false;
-  }
-  return true;
-}
-
-bool are_normals(const Element& points, std::size_t column) {
-  constexpr double kSlack = 0.01;  // two decimals are common
-  bool any = false;
-  for (std::size_t i = 0; i < points.count; ++i) {
-    double square = 0;
-    for (std::size_t a = 0; a < 3; ++a) square += value_at(points, i, column + a) * value_at(points, i, column + a);
-    if (std::abs(square - 1) <= kSlack) {
-      any = true;
-    } else if (square != 0 && !std::isnan(square)) {
-      return false;
-    }
-  }
-  return any;
-}
-
-bool are_colors(const Element& points, std::size_t column) {
-  for (std::size_t i = 0; i < points.count; ++i) {
-    for (std::size_t c = column; c < column + 3; ++c) {
-      const double value = value_at(points, i, c);
-      if (!(value >= 0 && value <= 255 && value == std::nearbyint(value))) return false;
-    }
-  }
-  return true;
-}
-
-void name_triple(Element& points, std::size_t first, const std::array<const char*, 3>& names) {
-  for (std::size_t c = 0; c < 3; ++c) points.properties[first + c].name = names[c];
+void name_triple(std::vector<Property>& columns, std::size_t first, const std::array<const char*, 3>& names) {
+  for (std::size_t c = 0; c < 3; ++c) columns[first + c].name = names[c];
 }
 
 }  // namespace
@@ -220,36 +166,86 @@ void make_distinct(std::vector<std::string>& names) {
   }
 }
 
-Arrangement find_arrangement(const Element& points, const std::vector<TextColumn>& text) {
-  constexpr std::size_t kDescription = 4;
-  if (points.properties.size() < 4 || text[1].any || text[2].any || text[3].any) return Arrangement::kXyz;
-  if (text[0].any && !text[0].all) return Arrangement::kXyz;
-  // Numbers of points beside coordinates that are all whole could not be distinguished from an x.
-  const bool fractions = !is_whole(points, 1) || !is_whole(points, 2) || !is_whole(points, 3);
-  if (points.properties.size() > kDescription && text[kDescription].any &&
-      (text[0].all || (fractions && is_whole(points, 0) && all_different(points, 0)))) {
-    return Arrangement::kPnezd;
+ColumnFacts::ColumnFacts(std::size_t columns)
+    : whole_(columns, true), channel_(columns, true), any_unit_(columns, false), any_other_(columns, false) {}
+
+void ColumnFacts::add(const double* row) {
+  constexpr double kSlack = 0.01;  // of squares of lengths: two decimals are common
+  const std::size_t columns = whole_.size();
+  for (std::size_t c = 0; c < columns; ++c) {
+    if (!whole_[c]) continue;
+    whole_[c] = row[c] == std::nearbyint(row[c]) && !std::isinf(row[c]);
+    channel_[c] = channel_[c] && whole_[c] && row[c] >= 0 && row[c] <= 255;
   }
-  return text[0].all || (fractions && counts_points(points, 0)) ? Arrangement::kNumberedXyz : Arrangement::kXyz;
+  for (std::size_t c = 0; c + 3 <= columns; ++c) {
+    if (any_other_[c]) continue;
+    const double square = row[c] * row[c] + row[c + 1] * row[c + 1] + row[c + 2] * row[c + 2];
+    if (std::abs(square - 1) <= kSlack) {
+      any_unit_[c] = true;
+    } else {
+      any_other_[c] = square != 0 && !std::isnan(square);
+    }
+  }
+  if (points_++ > 0) {
+    by_one_ = by_one_ && row[0] == last_ + 1;
+    increase_ = increase_ && row[0] > last_;
+  }
+  last_ = row[0];
 }
 
-void guess_names(Element& points, std::size_t known) {
-  const std::size_t columns = points.properties.size();
+bool ColumnFacts::are_colors(std::size_t column) const { return channel_[column] && channel_[column + 1] && channel_[column + 2]; }
+
+bool ColumnFacts::count_points() const {
+  constexpr std::uint64_t kLeast = 10;  // fewer lines may count by chance
+  return points_ >= kLeast && by_one_;
+}
+
+Arrangement find_arrangement(const ColumnFacts& facts, const std::vector<TextColumn>& text, const std::function<bool()>& all_differ) {
+  constexpr std::size_t kDescription = 4;
+  if (text.size() < 4 || text[1].any || text[2].any || text[3].any) return Arrangement::kXyz;
+  if (text[0].any && !text[0].all) return Arrangement::kXyz;
+  // Numbers of points beside coordinates that are all whole could not be distinguished from an x.
+  const bool fractions = !facts.are_whole(1) || !facts.are_whole(2) || !facts.are_whole(3);
+  if (text.size() > kDescription && text[kDescription].any &&
+      (text[0].all || (fractions && facts.are_whole(0) && (facts.increase() || all_differ())))) {
+    return Arrangement::kPnezd;
+  }
+  return text[0].all || (fractions && facts.count_points()) ? Arrangement::kNumberedXyz : Arrangement::kXyz;
+}
+
+bool all_differ(std::uint64_t count, const std::function<void(const std::function<void(double)>&)>& for_each_value, std::size_t at_once) {
+  const std::uint64_t parts = count / at_once + 1;
+  std::vector<double> values;
+  for (std::uint64_t part = 0; part < parts; ++part) {
+    values.clear();
+    for_each_value([&](double value) {
+      constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15;  // an odd number: whole numbers next to each other fall into different parts
+      const std::uint64_t bits = bits_as<std::uint64_t>(value + 0.0);  // 0 and -0 are equal
+      if ((bits * kSpread >> 32) % parts == part) values.push_back(value);
+    });
+    std::sort(values.begin(), values.end());
+    if (std::adjacent_find(values.begin(), values.end()) != values.end()) return false;
+  }
+  return true;
+}
+
+void guess_names(std::vector<Property>& columns, const ColumnFacts& facts, std::size_t known) {
+  const std::size_t count = columns.size();
   bool normals = false;
   bool colors = false;
-  for (std::size_t c = known; c < columns;) {
-    const bool triple = c + 3 <= columns;
-    const bool unit = triple && !normals && are_normals(points, c);
-    if (triple && !unit && !colors && are_colors(points, c)) {
-      name_triple(points, c, {"red", "green", "blue"});
+  for (std::size_t c = known; c < count;) {
+    const bool triple = c + 3 <= count;
+    const bool unit = triple && !normals && facts.are_normals(c);
+    if (triple && !unit && !colors && facts.are_colors(c)) {
+      name_triple(columns, c, {"red", "green", "blue"});
       colors = true;
       c += 3;
-    } else if (unit || columns == known + 3) {  // a triple alone that is no colour: normals of any length
-      name_triple(points, c, {"nx", "ny", "nz"});
+    } else if (unit || count == known + 3) {  // a triple alone that is no colour: normals of any length
+      name_triple(columns, c, {"nx", "ny", "nz"});
       normals = true;
       c += 3;
     } else {
-      points.properties[c].name = "scalar_" + std::to_string(c + 1);
+      columns[c].name = "scalar_" + std::to_string(c + 1);
       ++c;
     }
   }

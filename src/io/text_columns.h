@@ -4,6 +4,8 @@
 #include "io/table.h"
 #include "io/text.h"
 
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,6 +50,34 @@ ColumnNames column_names(std::string_view line, char separator);
 /// A name that occurred before gets a number: a, a_2.
 void make_distinct(std::vector<std::string>& names);
 
+/// What the values of columns are like, told point by point. Columns with text have NaN in its place.
+class ColumnFacts {
+ public:
+  explicit ColumnFacts(std::size_t columns);
+  /// Takes note of a point.
+  void add(const double* row);
+  /// Whether a column holds whole numbers.
+  [[nodiscard]] bool are_whole(std::size_t column) const { return whole_[column]; }
+  /// Whether a column and the next two hold whole numbers 0..255.
+  [[nodiscard]] bool are_colors(std::size_t column) const;
+  /// Whether a column and the next two hold vectors of length 1, or 0 here and there.
+  [[nodiscard]] bool are_normals(std::size_t column) const { return any_unit_[column] && !any_other_[column]; }
+  /// Whether the first column is 1 more from point to point, in more points than may be so by chance.
+  [[nodiscard]] bool count_points() const;
+  /// Whether the first column becomes larger from point to point.
+  [[nodiscard]] bool increase() const { return increase_; }
+
+ private:
+  std::uint64_t points_ = 0;
+  std::vector<bool> whole_;
+  std::vector<bool> channel_;    // whole numbers 0..255
+  std::vector<bool> any_unit_;   // of the triple that begins at the column
+  std::vector<bool> any_other_;  // neither 0 nor of length 1
+  double last_ = 0;              // of the first column
+  bool increase_ = true;
+  bool by_one_ = true;
+};
+
 /// How the first columns of a text without names are arranged, inferred from their values.
 enum class Arrangement {
   kXyz,
@@ -61,11 +91,16 @@ struct TextColumn {
   bool all = false;
 };
 
-/// `points`: records of doubles, one property per column (NaN for text).
-Arrangement find_arrangement(const Element& points, const std::vector<TextColumn>& text);
+/// `all_differ` says whether all values of the first column differ, which takes long and is seldom asked.
+Arrangement find_arrangement(const ColumnFacts& facts, const std::vector<TextColumn>& text, const std::function<bool()>& all_differ);
+
+/// Whether all of some numbers differ, of which for_each_value(take) calls take(number) for each, as often as it is called. No more than
+/// about `at_once` are in memory.
+bool all_differ(std::uint64_t count, const std::function<void(const std::function<void(double)>&)>& for_each_value,
+                std::size_t at_once = std::size_t{1} << 21);
 
 /// Names for columns without names, of which none holds text any more and the first `known` are named already: triples that look like
 /// normals or colours, else "scalar_4" and so on.
-void guess_names(Element& points, std::size_t known);
+void guess_names(std::vector<Property>& columns, const ColumnFacts& facts, std::size_t known);
 
 }  // namespace g3r::io

@@ -18,7 +18,7 @@ namespace g3r::tiles {
 namespace {
 
 constexpr const char* kSchema = "g3r.tiles";
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 48U;  // sizes of files are numbers below; the manifest may be damaged
 
 using nlohmann::json;
@@ -41,6 +41,8 @@ Manifest parsed(const json& from) {
   m.points = whole_number(from.at("points"));
   m.non_finite = whole_number(from.at("non_finite"));
   from.at("single_precision").get_to(m.single_precision);
+  from.at("low").get_to(m.bounds.low);
+  from.at("high").get_to(m.bounds.high);
   from.at("centre").get_to(m.frame.centre);
   from.at("scale").get_to(m.frame.scale);
   m.level = static_cast<int>(std::min<std::uint64_t>(whole_number(from.at("level")), kGridBits + 1));
@@ -129,6 +131,8 @@ void write_manifest(const std::string& folder, const Manifest& m) {
               {"points", m.points},
               {"non_finite", m.non_finite},
               {"single_precision", m.single_precision},
+              {"low", m.bounds.low},
+              {"high", m.bounds.high},
               {"centre", m.frame.centre},
               {"scale", m.frame.scale},
               {"level", m.level},

@@ -4,6 +4,7 @@
 #include "cloud/canonical_cloud.h"
 #include "tiles/cells.h"
 
+#include <g3r/io.h>
 #include <g3r/tiles.h>
 
 #include <cstddef>
@@ -37,6 +38,7 @@ struct Manifest {
   std::uint64_t points = 0;      ///< of all inputs
   std::uint64_t non_finite = 0;  ///< of them
   bool single_precision = false;
+  Box bounds;  ///< of the finite points
   Frame frame;
   int level = 0;             ///< of the cells
   std::uint64_t stride = 1;  ///< every stride-th point is in the thinned cloud

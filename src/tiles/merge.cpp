@@ -1,7 +1,6 @@
 // The inputs once more, with the results beside them: tiles list theirs in the order of the input, so all files are read front to back.
 #include "base/stages.h"
 #include "io/point_stream.h"
-#include "io/source.h"
 #include "tiles/manifest.h"
 #include "tiles/point_writer.h"
 #include "tiles/records.h"
@@ -103,6 +102,7 @@ MergedTiles merge(const std::string& folder, const Manifest& m, const std::strin
     const Input& input = m.inputs[i];
     const std::unique_ptr<io::PointStream> stream = io::open_points(input.path, true);
     const std::size_t block = PointWriter::block(*stream);
+    writer.begin(*stream);
     std::uint64_t read = 0;
     for (stream->next(block, points, &records); !points.empty(); stream->next(block, points, &records)) {
       read += points.size();
@@ -124,6 +124,7 @@ MergedTiles merge(const std::string& folder, const Manifest& m, const std::strin
       stages.progress(static_cast<double>(begin) / static_cast<double>(m.points));
     }
     require_unchanged(input, read == input.points);
+    writer.end(*stream);
   }
   writer.commit();
   out.confidence_mean /= static_cast<double>(m.sorted());
@@ -137,12 +138,12 @@ MergedTiles merge(const std::string& folder, const Manifest& m, const std::strin
 namespace g3r {
 
 MergedTiles merge_tiles(const std::string& folder, const std::string& output, const Monitor& monitor) {
-  if (io::extension(output) != "ply") {
-    throw InvalidInput(escape_text(output) + ": tiles are merged into a binary PLY: expected a name that ends in .ply");
-  }
   const tiles::Manifest manifest = tiles::read_manifest(folder);
+  tiles::PointWriter::check(output, manifest);
   tiles::require_done(folder, manifest);
   return tiles::merge(folder, manifest, output, monitor);
 }
+
+void check_merge(const std::string& folder, const std::string& output) { tiles::PointWriter::check(output, tiles::read_manifest(folder)); }
 
 }  // namespace g3r

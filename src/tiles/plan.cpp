@@ -38,13 +38,15 @@ constexpr std::size_t kPerPointMeshed = 2700;    // of field_mesh_memory(), whic
 constexpr double kFreeShare = 0.75;              // of the free memory, if no limit is given
 constexpr double kLargest = 1e50;                // coordinates, whose squares and cubes are still numbers
 constexpr std::size_t kMostTiles = 1000000;
+constexpr std::size_t kMostWarnings = 8;  // of all files together
 
-// Calls take(file, point) for all points in order, and between(share of the files) now and then.
-template <class Take, class Between>
-void for_all_points(const std::vector<std::string>& files, const Between& between, const Take& take) {
+// Calls begin(file, stream) for each file, take(file, point) for all points in order, and between(share of the files) now and then.
+template <class Begin, class Between, class Take>
+void for_all_points(const std::vector<std::string>& files, const Begin& begin, const Between& between, const Take& take) {
   std::vector<Vec3> points;
   for (std::size_t f = 0; f < files.size(); ++f) {
     const std::unique_ptr<io::PointStream> stream = io::open_points(files[f]);
+    begin(f, *stream);
     for (stream->next(kAtOnce, points); !points.empty(); stream->next(kAtOnce, points)) {
       between(static_cast<double>(f) / static_cast<double>(files.size()));
       for (const Vec3& p : points) take(f, p);
@@ -90,15 +92,25 @@ Manifest survey(const std::vector<std::string>& files, const TileOptions& option
   m.asked = asked_of(options);
   m.single_precision = true;
   for (const std::string& file : files) {
-    m.single_precision = io::open_points(file)->scalar() == Scalar::kFloat32 && m.single_precision;
     std::error_code ignored;  // of a file that is gone again; reading it says so
     m.inputs.push_back({file, std::filesystem::file_size(file, ignored), 0});
   }
   std::vector<std::uint64_t> non_finite(files.size());
   Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL};
   Vec3 high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+  std::size_t more_warnings = 0;
+  const auto begin = [&](std::size_t file, const io::PointStream& stream) {
+    m.single_precision = stream.scalar() == Scalar::kFloat32 && m.single_precision;
+    for (const std::string& warning : stream.warnings()) {
+      if (m.warnings.size() < kMostWarnings) {
+        m.warnings.push_back(escape_text(files[file]) + ": " + escape_text(warning));
+      } else {
+        ++more_warnings;
+      }
+    }
+  };
   for_all_points(
-      files, [&](double share) { stages.progress(share); },
+      files, begin, [&](double share) { stages.progress(share); },
       [&](std::size_t file, const Vec3& p) {
         ++m.points;
         ++m.inputs[file].points;
@@ -127,8 +139,10 @@ Manifest survey(const std::vector<std::string>& files, const TileOptions& option
     side = std::max(side, high[a] - low[a]);
     m.frame.centre[a] = low[a] + (high[a] - low[a]) / 2;
   }
+  m.bounds = {low, high};
   if (!(side > 1 / kLargest)) throw InvalidInput("all points are at one place");
   m.frame.scale = kLongestSide / side;
+  if (more_warnings > 0) m.warnings.push_back("and " + std::to_string(more_warnings) + " more warnings about these files");
   if (m.non_finite > 0) m.warnings.push_back(std::to_string(m.non_finite) + " points with a non-finite coordinate were left out");
   return m;
 }
@@ -165,7 +179,7 @@ Cells sort_points(const std::vector<std::string>& files, const std::string& fold
   ExternalSort sort(folder, m.frame, limit / 4, stages.cancel());
   std::uint64_t index = 0;
   for_all_points(
-      files, [&](double share) { stages.progress(share / 2); },
+      files, [](std::size_t, const io::PointStream&) {}, [&](double share) { stages.progress(share / 2); },
       [&](std::size_t, const Vec3& p) {
         if (is_finite(p)) sort.add({p, index});
         ++index;

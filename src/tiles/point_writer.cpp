@@ -1,5 +1,7 @@
 #include "tiles/point_writer.h"
 
+#include "io/laz.h"
+#include "io/source.h"
 #include "io/writers.h"
 
 #include <algorithm>
@@ -27,11 +29,18 @@ std::size_t PointWriter::block(const io::PointStream& stream) {
   return stride == 0 ? kListPoints : std::clamp<std::size_t>(kMostRecords / stride, 1, kMostPoints);
 }
 
-void PointWriter::look_at(const Input& input, bool alone, Stages& stages) {
+void PointWriter::look_at(const Input& input, Stages& stages) {
   Part& part = parts_.emplace_back();
   const auto stream = io::open_points(input.path, true);
   const Attributes& table = stream->table();
   part.table = table_of(table, table.points());
+  if (io::LasOrigin* las = stream->las(); las != nullptr && las_file_ && alone_) {
+    from_las_ = true;
+    path_ = input.path;
+    head_ = las->head();
+    las_ = io::las_from_las({head_, path_}, true, true, *las_file_);
+    return;
+  }
   const io::Element& properties = part.table->elements[0];
   const io::Roles roles = io::find_roles(properties);
   part.cloud.scalar = stream->scalar();
@@ -40,7 +49,7 @@ void PointWriter::look_at(const Input& input, bool alone, Stages& stages) {
   if (roles.confidence != io::Element::npos) part.cloud.confidence.resize(1);
   io::RecordColors colors(properties);
   if (!colors.exist()) return;
-  const bool kept = alone && table.dialect == Attributes::Dialect::kPly;  // as they are in the records
+  const bool kept = alone_ && !las_file_ && table.dialect == Attributes::Dialect::kPly;  // as they are in the records
   if (!kept) {
     std::vector<Vec3> points;
     std::string records;
@@ -55,24 +64,60 @@ void PointWriter::look_at(const Input& input, bool alone, Stages& stages) {
   part.cloud.colors.resize(1);
 }
 
-PointWriter::PointWriter(const std::string& output, const Manifest& manifest, Stages& stages) : file_(output, stages.cancel()) {
-  std::vector<Cloud> clouds;
-  for (const Input& input : manifest.inputs) {
-    look_at(input, manifest.inputs.size() == 1, stages);
-    clouds.push_back(parts_.back().cloud);
+PointWriter::PointWriter(const std::string& output, const Manifest& manifest, Stages& stages)
+    : file_(output, stages.cancel()), alone_(manifest.inputs.size() == 1) {
+  check(output, manifest);
+  const std::string format = io::extension(output);
+  if (format == "las") las_file_ = io::plain_las(file_);
+  if (format == "laz") las_file_ = io::packed_las(file_);
+  for (const Input& input : manifest.inputs) look_at(input, stages);
+  if (!from_las_) write_header(manifest);
+}
+
+void PointWriter::check(const std::string& output, const Manifest& manifest) {
+  const std::string format = io::extension(output);
+  if (format == "ply") return;
+  const std::string name = escape_text(output);
+  if (format != "las" && format != "laz") {
+    throw InvalidInput(name + ": tiles are merged into a binary PLY, LAS or LAZ: expected a name that ends in .ply, .las or .laz");
   }
-  Cloud like = clouds[0];
-  std::vector<std::string> comments = parts_[0].table->comments;
-  if (clouds.size() > 1) {
+  if (format == "laz" && !io::laz_is_compiled()) throw Unavailable(name + ": this build does not write LAZ: write LAS (.las)");
+  if (manifest.non_finite == 0) return;
+  throw InvalidInput(name + ": LAS cannot hold coordinates that are not finite, and " + std::to_string(manifest.non_finite) +
+                     " points have such: write PLY");
+}
+
+void PointWriter::write_header(const Manifest& manifest) {
+  Cloud like = parts_[0].cloud;
+  if (!alone_) {
+    std::vector<Cloud> clouds;
+    for (const Part& part : parts_) clouds.push_back(part.cloud);
     merger_.emplace(clouds);
     like = Cloud();
     like.attributes = table_of(Attributes(), merger_->element());
+    colored_ = std::any_of(clouds.begin(), clouds.end(), [](const Cloud& cloud) { return !cloud.colors.empty(); });
+    if (las_file_ && colored_) like.colors.resize(1);
+  } else if (las_file_ && like.attributes->dialect == Attributes::Dialect::kLas) {
+    like.attributes = table_of(Attributes(), like.attributes->points());  // without what belongs to its header
   }
   const std::vector<Vec3> normals;
   const std::vector<float> confidence;
   const WriteOptions options;
-  columns_ = io::ply_columns({like, &normals, &confidence, like.attributes.get(), options});
-  file_.write(io::ply_header(comments, manifest.points, columns_));
+  const io::PointData data{like, &normals, &confidence, like.attributes.get(), options};
+  if (las_file_) {
+    las_ = io::new_las(data, manifest.points, manifest.bounds, *las_file_);
+    return;
+  }
+  columns_ = io::ply_columns(data);
+  file_.write(io::ply_header(parts_[0].table->comments, manifest.points, columns_));
+}
+
+void PointWriter::begin(io::PointStream& stream) {
+  if (!from_las_) return;
+  io::LasOrigin* las = stream.las();
+  if (las == nullptr || las->head() != head_)
+    throw InvalidInput(escape_text(path_) + ": has changed while it was read: another header; make the plan anew");
+  las->keep(&stored_);
 }
 
 Cloud PointWriter::make_cloud(const Part& part, const std::vector<Vec3>& points, std::string& records) const {
@@ -95,14 +140,37 @@ Cloud PointWriter::make_cloud(const Part& part, const std::vector<Vec3>& points,
 
 void PointWriter::write(std::size_t input, const std::vector<Vec3>& points, std::string& records, const std::vector<Vec3>& normals,
                         const std::vector<float>& confidence) {
+  const WriteOptions options;
+  if (from_las_) {
+    Cloud cloud;
+    cloud.positions = points;
+    las_->write({cloud, &normals, &confidence, nullptr, options}, stored_.data());
+    stored_.clear();
+    return;
+  }
   Cloud cloud = make_cloud(parts_[input], points, records);
   if (merger_) {
     merger_->append(cloud);
-    cloud.colors = {};  // are in the table now
     cloud.attributes = table_of(Attributes(), merger_->take());
+    if (colored_) cloud.colors.resize(points.size());  // of those that have none
   }
-  const WriteOptions options;
-  io::write_rows({cloud, &normals, &confidence, cloud.attributes.get(), options}, columns_, file_);
+  const io::PointData data{cloud, &normals, &confidence, cloud.attributes.get(), options};
+  if (las_) {
+    las_->write(data, nullptr);
+  } else {
+    io::write_rows(data, columns_, file_);
+  }
+}
+
+void PointWriter::end(io::PointStream& stream) {
+  if (!from_las_) return;
+  las_file_->finish(stream.las()->rest());
+  stream.las()->read_rest([&](std::string_view bytes) { las_file_->rest(bytes); });
+}
+
+void PointWriter::commit() {
+  if (las_file_ && !from_las_) las_file_->finish(0);
+  file_.commit();
 }
 
 }  // namespace g3r::tiles
