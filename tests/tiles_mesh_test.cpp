@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 
 namespace g3r {
 namespace {
@@ -23,7 +24,9 @@ constexpr std::size_t kPoints = 9000;
 constexpr std::size_t kTiles = 4;
 constexpr double kRing = 0.6;  // radii of the torus
 constexpr double kTube = 0.25;
-constexpr double kFar = 0.05;  // of the radius of the tube: farther from it no vertex is
+constexpr std::size_t kBallPoints = 122;  // as dense as the torus
+constexpr double kBall = 0.08;            // radius of a ball in the middle, where tiles meet
+constexpr double kFar = 0.05;             // of the radius of the tube: farther from it no vertex is
 
 // The results of all tiles: normals that are known. The solves have a test of their own, and take their time.
 void write_normals(const std::string& work, const std::vector<Vec3>& normals) {
@@ -50,6 +53,9 @@ class TilesMesh : public testing::Test {
   static void SetUpTestSuite() {
     folder_ = new TemporaryFolder;
     surface_ = new shapes::Surface(shapes::torus(kPoints, kRing, kTube, 2));
+    const shapes::Surface ball = shapes::sphere(kBallPoints, kBall);
+    surface_->points.insert(surface_->points.end(), ball.points.begin(), ball.points.end());
+    surface_->normals.insert(surface_->normals.end(), ball.normals.begin(), ball.normals.end());
     surface_->points.push_back(surface_->points[7]);  // one place twice
     surface_->normals.push_back(surface_->normals[7]);
     Cloud cloud;
@@ -81,22 +87,51 @@ TemporaryFolder* TilesMesh::folder_ = nullptr;
 shapes::Surface* TilesMesh::surface_ = nullptr;
 MergedMesh TilesMesh::merged_;
 
-TEST_F(TilesMesh, IsOneClosedManifoldOnTheSurface) {
+TEST_F(TilesMesh, IsAClosedManifoldOnTheSurface) {
   const Mesh mesh = read_mesh(folder_->file("out.ply"));
   const MeshCheck check = check_mesh(mesh);
   EXPECT_EQ(check.vertices, merged_.vertices);
   EXPECT_EQ(check.triangles, merged_.triangles);
   EXPECT_TRUE(check.closed);
   EXPECT_TRUE(check.manifold);
-  EXPECT_EQ(check.components, 1U);
+  EXPECT_EQ(check.components, 2U);
+  EXPECT_EQ(merged_.components, 2U);
+  EXPECT_EQ(merged_.dropped.components, 0U);
   EXPECT_EQ(check.genus, 1);
   EXPECT_GT(check.volume, 0);
   double farthest = 0;
   for (const Vec3& v : mesh.vertices) {
     const double from_axis = std::hypot(v[0], v[1]) - kRing;
-    farthest = std::max(farthest, std::abs(std::hypot(from_axis, v[2]) - kTube));
+    const double from_ball = std::abs(std::hypot(v[0], v[1], v[2]) - kBall);
+    farthest = std::max(farthest, std::min(from_ball, std::abs(std::hypot(from_axis, v[2]) - kTube)));
   }
   EXPECT_LT(farthest, kFar * kTube);
+}
+
+// The ball is in parts of several tiles, which are one component.
+TEST_F(TilesMesh, LeavesOutComponentsByTheLawOfMeshesInCore) {
+  const double area = 4 * std::numbers::pi * kBall * kBall;
+  MeshOptions options;
+  options.min_component = 2 * kBallPoints;
+  const std::string out = folder_->file("torus.ply");
+  const MergedMesh torus = merge_mesh(folder_->file("work"), out, options);
+  EXPECT_EQ(torus.components, 1U);
+  EXPECT_EQ(torus.dropped.components, 1U);
+  EXPECT_NEAR(torus.dropped.area, area, 0.1 * area);
+  const MeshCheck check = check_mesh(read_mesh(out));
+  EXPECT_TRUE(check.closed && check.manifold);
+  EXPECT_EQ(check.components, 1U);
+  EXPECT_EQ(check.vertices, torus.vertices);
+  EXPECT_EQ(check.triangles, torus.triangles);
+  options.min_component = 0.5 * kBallPoints;
+  EXPECT_EQ(merge_mesh(folder_->file("work"), out, options).components, 2U);
+  EXPECT_EQ(bytes_of(out), bytes_of(folder_->file("out.ply")));
+  options.keep_largest = 1;
+  const MergedMesh largest = merge_mesh(folder_->file("work"), out, options);
+  EXPECT_EQ(largest.triangles, torus.triangles);
+  EXPECT_EQ(largest.dropped.components, 0U);  // it was not asked for, but has support
+  options.faces = 100;
+  EXPECT_THROW((void)merge_mesh(folder_->file("work"), out, options), Unavailable);
 }
 
 TEST_F(TilesMesh, HasTheSameBytesWhoeverMakesItAndAfterARestart) {
@@ -137,6 +172,14 @@ TEST_F(TilesMesh, DamagedFilesAreRefused) {
   wrong[6] = 1;  // a count of 2^48
   refused(wrong);
   write_bytes(path, sheets);
+  const std::string parts_path = tiles::mesh_parts_path(work, 2);
+  const std::string parts = bytes_of(parts_path);
+  for (const std::string& bytes : {std::string(), parts.substr(0, parts.size() - 4), parts.substr(0, parts.size() - 4) + "\xff\xff\xff\xff",
+                                   parts.substr(0, 6) + '\1' + parts.substr(7)}) {
+    write_bytes(parts_path, bytes);
+    EXPECT_THROW((void)merge_mesh(work, folder_->file("none.ply")), InvalidInput);
+  }
+  write_bytes(parts_path, parts);
   const std::string plan = bytes_of(tiles::mesh_plan_path(work));
   for (std::size_t length = 0; length + 3 < plan.size(); length += 61) {
     write_bytes(tiles::mesh_plan_path(work), plan.substr(0, length));

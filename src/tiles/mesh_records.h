@@ -78,6 +78,7 @@ struct SheetsHeader {
 [[nodiscard]] std::string mesh_far_path(const std::string& folder, std::size_t tile);
 [[nodiscard]] std::string mesh_corners_path(const std::string& folder, std::size_t tile);
 [[nodiscard]] std::string mesh_sheets_path(const std::string& folder, std::size_t tile);
+[[nodiscard]] std::string mesh_parts_path(const std::string& folder, std::size_t tile);
 
 /// Points with the normals that their tiles found, in the unit frame.
 struct RawPoints {

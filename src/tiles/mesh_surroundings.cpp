@@ -51,11 +51,8 @@ std::vector<std::size_t> tiles_around(const MeshFolder& folder, std::size_t tile
   return tiles;
 }
 
-Surroundings::Surroundings(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel)
-    : region(folder, tile), rings(region.rings()) {
-  mesh::OrientedPoints& points = prepared.points;
-  std::vector<mesh::RefineDisc> discs;
-  const mesh::LevelRule levels = folder.levels();
+void for_points_around(const MeshFolder& folder, const std::vector<std::uint8_t>& rings,
+                       const std::function<void(std::size_t, const MeshPoint&)>& take) {
   const auto tile_of = [&](std::size_t c) { return folder.owner(folder.cells.cells[c].code); };
   std::vector<MeshPoint> read;
   for_runs(
@@ -67,16 +64,25 @@ Surroundings::Surroundings(const MeshFolder& folder, std::size_t tile, const std
         RecordFile<MeshPoint>(mesh_points_path(folder.folder, from))
             .append(folder.cells.cells[first].begin - before, folder.cells.end(last - 1) - before, read);
         for (const MeshPoint& p : read) {
-          if (!(p.spacing > 0)) continue;
-          if (from == tile) own.push_back(static_cast<std::uint32_t>(points.positions.size()));
-          points.positions.push_back(p.position);
-          points.normals.push_back({p.normal[0], p.normal[1], p.normal[2]});
-          points.spacing.push_back(p.spacing);
-          mesh::RefineDisc disc = mesh::disc_around(p.position, points.normals.back(), p.spacing, p.size, levels);
-          disc.radius = std::min(disc.radius, double{p.room});
-          if (disc.radius > 0) discs.push_back(disc);
+          if (p.spacing > 0) take(from, p);
         }
       });
+}
+
+Surroundings::Surroundings(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel)
+    : region(folder, tile), rings(region.rings()) {
+  mesh::OrientedPoints& points = prepared.points;
+  std::vector<mesh::RefineDisc> discs;
+  const mesh::LevelRule levels = folder.levels();
+  for_points_around(folder, rings, [&](std::size_t from, const MeshPoint& p) {
+    if (from == tile) own.push_back(static_cast<std::uint32_t>(points.positions.size()));
+    points.positions.push_back(p.position);
+    points.normals.push_back({p.normal[0], p.normal[1], p.normal[2]});
+    points.spacing.push_back(p.spacing);
+    mesh::RefineDisc disc = mesh::disc_around(p.position, points.normals.back(), p.spacing, p.size, levels);
+    disc.radius = std::min(disc.radius, double{p.room});
+    if (disc.radius > 0) discs.push_back(disc);
+  });
   mesh::find_neighbours(prepared);
   prepared.typical = folder.plan.spacing;
   octree = std::make_unique<mesh::Octree>(Vec3{-1, -1, -1}, 2, discs, split_rule(folder, region), cancel);

@@ -1,0 +1,82 @@
+// Pass 4.
+#include "base/disjoint_sets.h"
+#include "io/output_file.h"
+#include "mesh/field_points.h"
+#include "tiles/mesh_passes.h"
+#include "tiles/parts.h"
+#include "tiles/sheets_file.h"
+
+namespace g3r::tiles {
+namespace {
+
+// The connected parts of the triangles of a tile, numbered in the order of their first vertices.
+struct PartNumbers {
+  std::vector<std::uint32_t> of_vertex;
+  std::size_t count = 0;
+};
+
+PartNumbers number_parts(const Mesh& mesh) {
+  DisjointSets sets(mesh.vertices.size());
+  for (const auto& t : mesh.triangles) {
+    sets.join(t[0], t[1]);
+    sets.join(t[0], t[2]);
+  }
+  PartNumbers out;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    const std::size_t first = sets.find(v);
+    out.of_vertex.push_back(static_cast<std::uint32_t>(first == v ? out.count : out.of_vertex[first]));
+    out.count += first == v ? 1 : 0;
+  }
+  return out;
+}
+
+// How the points around hold them.
+std::vector<mesh::Support> support_of(const MeshFolder& folder, std::size_t tile, const Mesh& mesh, const PartNumbers& parts) {
+  std::vector<Vec3> points;
+  std::vector<double> spacing;
+  for_points_around(folder, Region(folder, tile).rings(), [&](std::size_t, const MeshPoint& p) {
+    points.push_back(p.position);
+    spacing.push_back(p.spacing);
+  });
+  std::vector<std::uint32_t> of_triangle;
+  of_triangle.reserve(mesh.triangles.size());
+  for (const auto& t : mesh.triangles) of_triangle.push_back(parts.of_vertex[t[0]]);
+  std::vector<mesh::Support> support(parts.count);
+  mesh::add_areas(mesh, of_triangle, points, spacing, mesh::noise_seen(folder.plan.noise) * folder.plan.spacing, support);
+  return support;
+}
+
+template <class T>
+void append(io::OutputFile& out, const std::vector<T>& records) {
+  out.write(records.data(), records.size() * sizeof(T));
+}
+
+}  // namespace
+
+void write_parts(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel) {
+  const TileSurface surface = read_surface(folder, tile);
+  const Mesh& mesh = surface.mesh;
+  const PartNumbers numbers = number_parts(mesh);
+  const std::vector<mesh::Support> support = support_of(folder, tile, mesh, numbers);
+  std::vector<Part> parts(numbers.count);
+  for (std::size_t p = 0; p < parts.size(); ++p) parts[p].support = support[p];
+  for (const auto& t : mesh.triangles) ++parts[numbers.of_vertex[t[0]]].triangles;
+  const std::size_t centres = surface.own + surface.foreign.size();
+  for (std::size_t v = 0; v < surface.own; ++v) ++parts[numbers.of_vertex[v]].vertices;
+  for (std::size_t v = centres; v < mesh.vertices.size(); ++v) ++parts[numbers.of_vertex[v]].centres;
+  std::vector<ForeignPart> foreign;
+  for (std::size_t f = 0; f < surface.foreign.size(); ++f) {
+    const TileSurface::Place& at = surface.foreign[f];
+    foreign.push_back({at.vertex, static_cast<std::uint32_t>(at.tile), numbers.of_vertex[surface.own + f]});
+  }
+  std::vector<std::uint32_t> own(numbers.of_vertex.begin(), numbers.of_vertex.begin() + static_cast<std::ptrdiff_t>(surface.own));
+  const PartsHeader header{parts.size(), foreign.size(), own.size()};
+  io::OutputFile out(mesh_parts_path(folder.folder, tile), cancel);
+  out.write(&header, sizeof header);
+  append(out, parts);
+  append(out, foreign);
+  append(out, own);
+  out.commit();
+}
+
+}  // namespace g3r::tiles
