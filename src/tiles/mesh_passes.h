@@ -47,8 +47,9 @@ struct Surroundings {
   std::unique_ptr<const mesh::Octree> octree;
 };
 
-/// Of places where signs can be joined in two ways: by the fit where no other tile looks, the same for all elsewhere.
-[[nodiscard]] mesh::InsideTest joining_rule(const MeshFolder& folder, const Region& region, const mesh::LocalFit& local);
+/// Of places where signs can be joined in two ways: by the fit where all that it is made of is less than a cell away, which every tile that
+/// looks there sees too; elsewhere inside is cut off.
+[[nodiscard]] mesh::InsideTest joining_rule(const MeshFolder& folder, const mesh::Prepared& prepared, const mesh::LocalFit& local);
 
 /// Name of a corner, for all tiles.
 [[nodiscard]] std::uint64_t corner_name(const std::array<std::uint32_t, 3>& grid);

@@ -53,8 +53,6 @@ class Region {
   [[nodiscard]] bool owns(std::uint64_t code) const { return code >= begin_ && code < end_; }
   /// Whether a cell of `level`, no deeper than that of the cells, is at most `reach` such cells from one with a place of the tile.
   [[nodiscard]] bool is_near(std::uint64_t code, int level, int reach) const;
-  /// Whether no other tile ever looks at what is in this cell.
-  [[nodiscard]] bool is_interior(std::uint64_t code) const;
   /// For every occupied cell 0 if it is at most kAround cells away, r where that holds of the cells r levels up.
   [[nodiscard]] std::vector<std::uint8_t> rings() const;
 
