@@ -5,6 +5,7 @@
 #include "tiles/manifest.h"
 #include "tiles/mesh_plan.h"
 #include "tiles/mesh_records.h"
+#include "tiles/spacing_sample.h"
 
 #include <g3r/io.h>
 #include <g3r/mesh.h>
@@ -26,6 +27,7 @@ constexpr double kRing = 0.6;  // radii of the torus
 constexpr double kTube = 0.25;
 constexpr std::size_t kBallPoints = 122;  // as dense as the torus
 constexpr double kBall = 0.08;            // radius of a ball in the middle, where tiles meet
+constexpr double kSpacingError = 0.1;     // of random samples: the median over 8 neighbours is a few hundredths above the mean
 constexpr double kFar = 0.05;             // of the radius of the tube: farther from it no vertex is
 
 // The results of all tiles: normals that are known. The solves have a test of their own, and take their time.
@@ -184,6 +186,27 @@ TEST_F(TilesMesh, DamagedFilesAreRefused) {
   for (std::size_t length = 0; length + 3 < plan.size(); length += 61) {
     write_bytes(tiles::mesh_plan_path(work), plan.substr(0, length));
     EXPECT_THROW((void)merge_mesh(work, folder_->file("none.ply")), InvalidInput) << length;
+  }
+}
+
+// A sample of the cloud tells the plan its spacing, which makes the frame such that cells have the size that they have in core.
+TEST_F(TilesMesh, CellsAreAsLargeAsInCore) {
+  const std::string work = folder_->file("work");
+  const tiles::MeshFolder folder = tiles::read_mesh_folder(work, tiles::read_manifest(work));
+  const double cell = std::ldexp(2.0, -folder.levels().finest) / folder.plan.spacing;
+  EXPECT_NEAR(cell, mesh::kFinestCell, kSpacingError * mesh::kFinestCell);
+}
+
+TEST(SpacingSample, TellsTheSpacingOfCloudsOfAnySize) {
+  tiles::SpacingSample nothing;
+  EXPECT_EQ(nothing.spacing(), 0);
+  for (const std::size_t count : {1000U, 300000U}) {
+    const shapes::Surface torus = shapes::torus(count, kRing, kTube, 3);
+    tiles::SpacingSample sample;
+    for (const Vec3& p : torus.points) sample.add(p);
+    const double area = 4 * std::numbers::pi * std::numbers::pi * kRing * kTube;
+    const double spacing = std::sqrt(area / static_cast<double>(count));
+    EXPECT_NEAR(sample.spacing(), spacing, kSpacingError * spacing) << count;
   }
 }
 

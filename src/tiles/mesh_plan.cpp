@@ -30,6 +30,8 @@ constexpr std::size_t kSamples = 32;         // cells, of 64 points or more each
 constexpr int kSampleAround = 1;             // cells around them: 8 spacings or more
 constexpr std::uint64_t kFixed = 72u << 20;  // as of the solves
 constexpr std::uint64_t kPerPoint = 4500;    // bytes of the octree, the sides and the sheets around each point (docs/algorithms/tiles.md)
+constexpr double kLargestCell =
+    1.15;  // of kFinestCell: the frame is made for cells of just that size, from a spacing that errs (scale_for())
 constexpr int kMaxLevel = mesh::kMaxOctreeLevel - 4;  // of the cells: leaves are finer
 
 [[noreturn]] void fail(const std::string& folder, const std::string& what) {
@@ -155,7 +157,7 @@ bool is_sound(const MeshPlan& plan, const Cells& cells) {
 }  // namespace
 
 mesh::LevelRule MeshFolder::levels() const {
-  const double level = std::ceil(std::log2(2 / (mesh::kFinestCell * plan.spacing)));
+  const double level = std::ceil(std::log2(2 / (kLargestCell * mesh::kFinestCell * plan.spacing)));
   return {plan.spacing, std::clamp(static_cast<int>(level), mesh::kBaseLevel, mesh::kMaxOctreeLevel)};
 }
 
