@@ -5,6 +5,7 @@
 #include "tiles/manifest.h"
 #include "tiles/mesh_plan.h"
 #include "tiles/mesh_records.h"
+#include "tiles/sheets_file.h"
 #include "tiles/spacing_sample.h"
 
 #include <g3r/io.h>
@@ -15,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <numbers>
 
@@ -145,6 +147,30 @@ TEST_F(TilesMesh, HasTheSameBytesWhoeverMakesItAndAfterARestart) {
   EXPECT_EQ(mesh_tiles(work, {1, 2}).done, kTiles);
   (void)merge_mesh(work, folder_->file("again.ply"));
   EXPECT_EQ(bytes_of(folder_->file("again.ply")), bytes_of(folder_->file("out.ply")));
+}
+
+// A vertex that the sheets have beyond its neighbours is pulled back within its tile.
+TEST_F(TilesMesh, UnfoldsTrianglesThatCross) {
+  const std::string work = folder_->file("folded");
+  std::filesystem::copy(folder_->file("work"), work);
+  const tiles::MeshFolder folder = tiles::read_mesh_folder(work, tiles::read_manifest(work));
+  const Mesh clean = tiles::read_surface(folder, 0).mesh;
+  EXPECT_EQ(count_self_intersections(clean), 0U);
+  const auto& t = clean.triangles[clean.triangles.size() / 2];
+  std::string bytes = bytes_of(tiles::mesh_sheets_path(work, 0));
+  tiles::MeshVertex vertex;
+  char* const at = bytes.data() + sizeof(tiles::SheetsHeader) + t[0] * sizeof vertex;
+  std::memcpy(&vertex, at, sizeof vertex);
+  ASSERT_EQ(vertex.position, clean.vertices[t[0]]);
+  for (std::size_t a = 0; a < 3; ++a) vertex.position[a] += 2.5 * (clean.vertices[t[1]][a] - vertex.position[a]);
+  std::memcpy(at, &vertex, sizeof vertex);
+  write_bytes(tiles::mesh_sheets_path(work, 0), bytes);
+  EXPECT_GT(count_self_intersections(tiles::read_surface(folder, 0).mesh), 0U);
+  std::filesystem::remove(tiles::mesh_parts_path(work, 0));
+  (void)mesh_tiles(work);
+  const MergedMesh merged = merge_mesh(work, folder_->file("unfolded.ply"));
+  EXPECT_EQ(merged.triangles, merged_.triangles);
+  EXPECT_EQ(count_self_intersections(read_mesh(folder_->file("unfolded.ply"))), 0U);
 }
 
 TEST_F(TilesMesh, IsRefusedWhereItCannotBe) {

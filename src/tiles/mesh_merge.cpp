@@ -58,6 +58,9 @@ class KeptSurface {
       const TileSurface::Place& at = surface_.foreign[f];
       if (foreign[f].tile != at.tile || foreign[f].vertex != at.vertex) file.fail();
     }
+    for (const MovedVertex& moved : file.moved()) {
+      if (moved.vertex >= surface_.own) surface_.mesh.vertices[moved.vertex + surface_.foreign.size()] = moved.position;
+    }
     const std::vector<std::uint32_t> part = file.parts_of(0, surface_.own);
     const auto keeps = [&](std::uint32_t v) { return kept.keeps(tile, v < surface_.own ? part[v] : foreign[v - surface_.own].part); };
     number_own(folder, kept, numbers, tile);
@@ -157,14 +160,17 @@ void require_known(const MeshOptions& options) {
 void append_vertices(const MeshFolder& folder, const KeptParts& kept, std::size_t tile, std::string& bytes) {
   const SheetsFile sheets(folder.folder, tile);
   const PartsFile parts(folder, tile);
+  const std::vector<MovedVertex> moved = parts.moved();
   std::vector<MeshVertex> vertices;
   std::uint64_t count = 0;
+  std::size_t next = 0;
   for (std::uint64_t at = 0; at < sheets.header().vertices; at += kAtOnce) {
     const std::uint64_t end = std::min(sheets.header().vertices, at + kAtOnce);
     vertices.clear();
     sheets.append_vertices(at, end, vertices);
     const std::vector<std::uint32_t> part = parts.parts_of(at, end);
     for (std::size_t k = 0; k < part.size(); ++k) {
+      if (next < moved.size() && moved[next].vertex == at + k) vertices[k].position = moved[next++].position;
       if (!kept.keeps(tile, part[k])) continue;
       append_vertex(folder, vertices[k].position, bytes);
       ++count;

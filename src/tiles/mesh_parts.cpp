@@ -2,9 +2,12 @@
 #include "base/disjoint_sets.h"
 #include "io/output_file.h"
 #include "mesh/field_points.h"
+#include "mesh/untangle.h"
 #include "tiles/mesh_passes.h"
 #include "tiles/parts.h"
 #include "tiles/sheets_file.h"
+
+#include <algorithm>
 
 namespace g3r::tiles {
 namespace {
@@ -46,6 +49,42 @@ std::vector<mesh::Support> support_of(const MeshFolder& folder, std::size_t tile
   return support;
 }
 
+// Marks what other tiles see too: vertices of theirs, and those at the rim of this tile's triangles.
+std::vector<std::uint8_t> shared_vertices(const TileSurface& surface) {
+  const Mesh& mesh = surface.mesh;
+  std::vector<std::uint64_t> sides;
+  sides.reserve(3 * mesh.triangles.size());
+  for (const auto& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint64_t a = t[k];
+      const std::uint64_t b = t[(k + 1) % 3];
+      sides.push_back(std::min(a, b) << 32U | std::max(a, b));
+    }
+  }
+  std::sort(sides.begin(), sides.end());
+  std::vector<std::uint8_t> shared(mesh.vertices.size(), 0);
+  for (std::size_t f = 0; f < surface.foreign.size(); ++f) shared[surface.own + f] = 1;
+  for (std::size_t i = 0; i < sides.size();) {
+    std::size_t end = i + 1;
+    while (end < sides.size() && sides[end] == sides[i]) ++end;
+    if (end - i != 2) shared[sides[i] >> 32U] = shared[sides[i] & 0xffffffffU] = 1;
+    i = end;
+  }
+  return shared;
+}
+
+// Within the tile: what crosses at its rim stays.
+std::vector<MovedVertex> untangle(TileSurface& surface, const std::atomic<bool>* cancel) {
+  const std::vector<Vec3> before = surface.mesh.vertices;
+  mesh::untangle(surface.mesh, cancel, shared_vertices(surface));
+  std::vector<MovedVertex> moved;
+  for (std::size_t v = 0; v < before.size(); ++v) {
+    if (surface.mesh.vertices[v] == before[v]) continue;
+    moved.push_back({v < surface.own ? v : v - surface.foreign.size(), surface.mesh.vertices[v]});
+  }
+  return moved;
+}
+
 template <class T>
 void append(io::OutputFile& out, const std::vector<T>& records) {
   out.write(records.data(), records.size() * sizeof(T));
@@ -54,7 +93,8 @@ void append(io::OutputFile& out, const std::vector<T>& records) {
 }  // namespace
 
 void write_parts(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel) {
-  const TileSurface surface = read_surface(folder, tile);
+  TileSurface surface = read_surface(folder, tile);
+  const std::vector<MovedVertex> moved = untangle(surface, cancel);
   const Mesh& mesh = surface.mesh;
   const PartNumbers numbers = number_parts(mesh);
   const std::vector<mesh::Support> support = support_of(folder, tile, mesh, numbers);
@@ -70,10 +110,11 @@ void write_parts(const MeshFolder& folder, std::size_t tile, const std::atomic<b
     foreign.push_back({at.vertex, static_cast<std::uint32_t>(at.tile), numbers.of_vertex[surface.own + f]});
   }
   std::vector<std::uint32_t> own(numbers.of_vertex.begin(), numbers.of_vertex.begin() + static_cast<std::ptrdiff_t>(surface.own));
-  const PartsHeader header{parts.size(), foreign.size(), own.size()};
+  const PartsHeader header{parts.size(), moved.size(), foreign.size(), own.size()};
   io::OutputFile out(mesh_parts_path(folder.folder, tile), cancel);
   out.write(&header, sizeof header);
   append(out, parts);
+  append(out, moved);
   append(out, foreign);
   append(out, own);
   out.commit();

@@ -18,7 +18,8 @@ std::vector<T> read_records(const io::RandomFile& file, std::uint64_t at, std::u
   return out;
 }
 
-std::uint64_t foreign_at(const PartsHeader& h) { return sizeof h + h.parts * sizeof(Part); }
+std::uint64_t moved_at(const PartsHeader& h) { return sizeof h + h.parts * sizeof(Part); }
+std::uint64_t foreign_at(const PartsHeader& h) { return moved_at(h) + h.moved * sizeof(MovedVertex); }
 std::uint64_t vertices_at(const PartsHeader& h) { return foreign_at(h) + h.foreign * sizeof(ForeignPart); }
 
 }  // namespace
@@ -27,11 +28,21 @@ PartsFile::PartsFile(const MeshFolder& folder, std::size_t tile) : file_(mesh_pa
   if (file_.size() < sizeof header_) fail();
   file_.read(0, &header_, sizeof header_);
   const SheetsHeader sheets = SheetsFile(folder.folder, tile).header();
-  const bool fits = header_.parts <= file_.size() && header_.foreign == sheets.foreign && header_.vertices == sheets.vertices;
+  movable_ = sheets.vertices + sheets.centres;
+  const bool fits = header_.parts <= file_.size() && header_.moved <= movable_ && header_.foreign == sheets.foreign &&
+                    header_.vertices == sheets.vertices;
   if (!fits || file_.size() != vertices_at(header_) + header_.vertices * sizeof(std::uint32_t)) fail();
 }
 
 std::vector<Part> PartsFile::parts() const { return read_records<Part>(file_, sizeof header_, header_.parts); }
+
+std::vector<MovedVertex> PartsFile::moved() const {
+  auto out = read_records<MovedVertex>(file_, moved_at(header_), header_.moved);
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    if (out[k].vertex >= movable_ || (k > 0 && out[k].vertex <= out[k - 1].vertex)) fail();
+  }
+  return out;
+}
 
 std::vector<ForeignPart> PartsFile::foreign() const {
   auto out = read_records<ForeignPart>(file_, foreign_at(header_), header_.foreign);

@@ -31,9 +31,18 @@ struct ForeignPart {
 };
 static_assert(sizeof(ForeignPart) == 16);
 
-/// At the head of a file of parts: then come the parts, the foreign vertices in the order of the sheets, and the part of every own vertex.
+/// A vertex that is elsewhere than the sheets say, for triangles not to cross.
+struct MovedVertex {
+  std::uint64_t vertex;  ///< an own one, or after them one of those in the middle of polygons
+  Vec3 position;
+};
+static_assert(sizeof(MovedVertex) == 32);
+
+/// At the head of a file of parts: then come the parts, the moved vertices, ascending, the foreign vertices in the order of the sheets, and
+/// the part of every own vertex.
 struct PartsHeader {
   std::uint64_t parts = 0;
+  std::uint64_t moved = 0;
   std::uint64_t foreign = 0;
   std::uint64_t vertices = 0;
 };
@@ -45,6 +54,7 @@ class PartsFile {
 
   [[nodiscard]] const PartsHeader& header() const { return header_; }
   [[nodiscard]] std::vector<Part> parts() const;
+  [[nodiscard]] std::vector<MovedVertex> moved() const;
   [[nodiscard]] std::vector<ForeignPart> foreign() const;
   /// Of own vertices [begin, end).
   [[nodiscard]] std::vector<std::uint32_t> parts_of(std::uint64_t begin, std::uint64_t end) const;
@@ -54,6 +64,7 @@ class PartsFile {
  private:
   io::RandomFile file_;
   PartsHeader header_;
+  std::uint64_t movable_ = 0;  // vertices: own and in the middle of polygons
 };
 
 /// The components that all tiles' parts make together: parts of two tiles are one where they share a vertex. Holds a few dozen bytes for
