@@ -31,6 +31,7 @@ std::string status_text(const TileStatus& status) {
 std::string mesh_text(const MergedMesh& mesh) {
   std::string text = "a closed mesh of " + with_commas(mesh.triangles) + " triangles in " + counted(mesh.components, "component");
   if (mesh.dropped.components > 0) text += ", " + counted(mesh.dropped.components, "part") + " without support left out";
+  if (mesh.dropped.points > 0) text += ", made without " + with_commas(mesh.dropped.points) + " points that no surface goes through";
   return text;
 }
 

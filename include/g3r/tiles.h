@@ -106,7 +106,7 @@ struct MergedMesh {
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;
   std::size_t components = 0;
-  Dropped dropped;  ///< for want of support
+  Dropped dropped;  ///< for want of support: strays, whatever the options, and components
 };
 
 /// Writes the mesh of all tiles as one binary .ply, whole or not at all: closed and 2-manifold, outward. Its memory is that of a tile and

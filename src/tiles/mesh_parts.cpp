@@ -33,19 +33,41 @@ PartNumbers number_parts(const Mesh& mesh) {
   return out;
 }
 
-// How the points around hold them.
-std::vector<mesh::Support> support_of(const MeshFolder& folder, std::size_t tile, const Mesh& mesh, const PartNumbers& parts) {
-  std::vector<Vec3> points;
-  std::vector<double> spacing;
-  for_points_around(folder, Region(folder, tile).rings(), [&](std::size_t, const MeshPoint& p) {
-    points.push_back(p.position);
-    spacing.push_back(p.spacing);
+std::vector<Vec3> strays_of(const MeshFolder& folder, std::size_t tile) {
+  const RecordFile<MeshPoint> file(mesh_points_path(folder.folder, tile));
+  std::vector<MeshPoint> points;
+  file.append(0, file.size(), points);
+  std::vector<Vec3> strays;
+  for (const MeshPoint& p : points) {
+    if (p.room == kStray) strays.push_back(p.position);
+  }
+  return strays;
+}
+
+// What holds them: areas by all points around, points and strays by those of the tile itself.
+std::vector<mesh::Support> support_of(const MeshFolder& folder, std::size_t tile, const Mesh& mesh, const PartNumbers& parts,
+                                      const std::vector<Vec3>& strays) {
+  struct Points {
+    std::vector<Vec3> positions;
+    std::vector<double> spacing;
+  };
+  Points all;
+  Points own;
+  for_points_around(folder, Region(folder, tile).rings(), [&](std::size_t from, const MeshPoint& p) {
+    for (Points* points : {&all, &own}) {
+      if (points == &own && from != tile) continue;
+      points->positions.push_back(p.position);
+      points->spacing.push_back(p.spacing);
+    }
   });
   std::vector<std::uint32_t> of_triangle;
   of_triangle.reserve(mesh.triangles.size());
   for (const auto& t : mesh.triangles) of_triangle.push_back(parts.of_vertex[t[0]]);
   std::vector<mesh::Support> support(parts.count);
-  mesh::add_areas(mesh, of_triangle, points, spacing, mesh::noise_seen(folder.plan.noise) * folder.plan.spacing, support);
+  if (mesh.triangles.empty()) return support;
+  const double scatter = mesh::noise_seen(folder.plan.noise) * folder.plan.spacing;
+  mesh::add_areas(mesh, of_triangle, all.positions, all.spacing, scatter, support);
+  mesh::add_points(mesh, of_triangle, own.positions, own.spacing, scatter, strays, support);
   return support;
 }
 
@@ -97,7 +119,8 @@ void write_parts(const MeshFolder& folder, std::size_t tile, const std::atomic<b
   const std::vector<MovedVertex> moved = untangle(surface, cancel);
   const Mesh& mesh = surface.mesh;
   const PartNumbers numbers = number_parts(mesh);
-  const std::vector<mesh::Support> support = support_of(folder, tile, mesh, numbers);
+  const std::vector<Vec3> strays = strays_of(folder, tile);
+  const std::vector<mesh::Support> support = support_of(folder, tile, mesh, numbers, strays);
   std::vector<Part> parts(numbers.count);
   for (std::size_t p = 0; p < parts.size(); ++p) parts[p].support = support[p];
   for (const auto& t : mesh.triangles) ++parts[numbers.of_vertex[t[0]]].triangles;
@@ -110,7 +133,7 @@ void write_parts(const MeshFolder& folder, std::size_t tile, const std::atomic<b
     foreign.push_back({at.vertex, static_cast<std::uint32_t>(at.tile), numbers.of_vertex[surface.own + f]});
   }
   std::vector<std::uint32_t> own(numbers.of_vertex.begin(), numbers.of_vertex.begin() + static_cast<std::ptrdiff_t>(surface.own));
-  const PartsHeader header{parts.size(), moved.size(), foreign.size(), own.size()};
+  const PartsHeader header{parts.size(), moved.size(), foreign.size(), own.size(), strays.size()};
   io::OutputFile out(mesh_parts_path(folder.folder, tile), cancel);
   out.write(&header, sizeof header);
   append(out, parts);

@@ -30,7 +30,7 @@ void write_parts(const MeshFolder& folder, std::size_t tile, const std::atomic<b
 /// The tiles with points at most kAround cells away, itself included, ascending.
 [[nodiscard]] std::vector<std::size_t> tiles_around(const MeshFolder& folder, std::size_t tile);
 
-/// Calls take(tile, point) for the points of the cells of ring 0, in order, without repeated places.
+/// Calls take(tile, point) for the points of the cells of ring 0, in order, without repeated places and strays.
 void for_points_around(const MeshFolder& folder, const std::vector<std::uint8_t>& rings,
                        const std::function<void(std::size_t, const MeshPoint&)>& take);
 

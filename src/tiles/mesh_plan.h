@@ -3,6 +3,7 @@
 
 #include "mesh/field_denoise.h"
 #include "mesh/field_points.h"
+#include "mesh/held_points.h"
 #include "tiles/cells.h"
 #include "tiles/manifest.h"
 
@@ -16,8 +17,9 @@
 namespace g3r::tiles {
 
 struct MeshPlan {
-  double spacing = 0;       ///< typical, in the unit frame
-  mesh::Noise noise;        ///< of the cloud
+  double spacing = 0;  ///< typical, in the unit frame
+  mesh::Noise noise;   ///< of the cloud
+  mesh::CloudHeights heights;
   bool inside_out = false;  ///< the points face into the solid: normals are turned, and so are triangles in the end
   std::vector<Tile> tiles;  ///< `solved`: points of its own and around them
   std::uint64_t worker_memory = 0;

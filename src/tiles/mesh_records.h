@@ -13,13 +13,15 @@
 
 namespace g3r::tiles {
 
+inline constexpr float kStray = -1;
+
 /// A point as the fits see it, in the unit frame, in the order of the sorted points.
 struct MeshPoint {
   Vec3 position;
   std::array<float, 3> normal;
-  float spacing;  ///< 0: the same place as the point before it, which stands for it
+  float spacing;  ///< 0: the same place as the point before it, which stands for it, or a stray
   float size;     ///< of what is to be seen there
-  float room;     ///< the disc around it may be so wide: then it stays within one cell of its own
+  float room;     ///< kStray of a stray; the disc around it may be so wide: then it stays within one cell of its own
 };
 static_assert(sizeof(MeshPoint) == 48);
 

@@ -64,6 +64,7 @@ KeptParts::KeptParts(const MeshFolder& folder, const MeshOptions& options, Dropp
     const std::vector<Part> of_tile = PartsFile(folder, t).parts();
     first_.push_back(parts.size());
     parts.insert(parts.end(), of_tile.begin(), of_tile.end());
+    dropped.points += PartsFile(folder, t).header().strays;
   }
   first_.push_back(parts.size());
   DisjointSets sets(parts.size());
@@ -90,7 +91,7 @@ KeptParts::KeptParts(const MeshFolder& folder, const MeshOptions& options, Dropp
     if (root == p) support.emplace_back();
     support[number[p]].add(parts[p].support);
   }
-  const std::vector<std::uint8_t> keep = mesh::kept_components(support, options, 0, dropped);
+  const std::vector<std::uint8_t> keep = mesh::kept_components(support, options, dropped.points, dropped);
   components_ = static_cast<std::size_t>(std::count(keep.begin(), keep.end(), std::uint8_t{1}));
   for (const std::size_t n : number) keep_.push_back(keep[n]);
   counts_.resize(folder.tiles());

@@ -45,6 +45,7 @@ struct PartsHeader {
   std::uint64_t moved = 0;
   std::uint64_t foreign = 0;
   std::uint64_t vertices = 0;
+  std::uint64_t strays = 0;  ///< among its own points
 };
 
 /// A file of parts, piece by piece. All members throw IoError, InvalidInput where it is damaged.
@@ -71,7 +72,7 @@ class PartsFile {
 /// every part.
 class KeptParts {
  public:
-  /// Takes those that mesh::kept_components() keeps; what goes is added to `dropped`, areas in the unit frame.
+  /// Takes those that mesh::kept_components() keeps; what goes is added to `dropped`, areas in the unit frame, and so are strays.
   KeptParts(const MeshFolder& folder, const MeshOptions& options, Dropped& dropped);
 
   [[nodiscard]] bool keeps(std::size_t tile, std::uint32_t part) const { return keep_[first_[tile] + part] != 0; }
