@@ -196,6 +196,17 @@ void add_mesh_options(CLI::App& app, Settings& s) {
       ->type_name("D");
 }
 
+void add_component_options(CLI::App& app, MeshOptions& o) {
+  app.add_option("--keep-largest", o.keep_largest, "Keep only the N largest components (default, or 0: all)")
+      ->check(range(std::size_t{0}))
+      ->type_name("N");
+  app.add_option("--min-component", o.min_component,
+                 "Drop components of less area than N points stand for (default 8, more under noise; 0 keeps all)")
+      ->check(range(0.0, 1e15))
+      ->type_name("N");
+  app.add_flag("--keep-all", o.keep_all, "Keep what too few points hold: specks, and points that no surface goes through");
+}
+
 void add_finish_options(CLI::App& app, Settings& s) {
   app.option_defaults()->group(kMeshGroup);
   MeshOptions& o = s.mesh_options;
@@ -218,14 +229,7 @@ void add_finish_options(CLI::App& app, Settings& s) {
          "--open", [&o] { o.trim = MeshOptions::Trim::kAuto; }, "For open scans: the same as --trim auto")
       ->disable_flag_override()
       ->excludes(trim);
-  app.add_option("--keep-largest", o.keep_largest, "Keep only the N largest components (default, or 0: all)")
-      ->check(range(std::size_t{0}))
-      ->type_name("N");
-  app.add_option("--min-component", o.min_component,
-                 "Drop components of less area than N points stand for (default 8, more under noise; 0 keeps all)")
-      ->check(range(0.0, 1e15))
-      ->type_name("N");
-  app.add_flag("--keep-all", o.keep_all, "Keep what too few points hold: specks, and points that no surface goes through");
+  add_component_options(app, o);
   app.add_option("--faces", o.faces, "Simplify to about N triangles (default, or 0: off)")->check(range(std::size_t{0}))->type_name("N");
 }
 
@@ -491,6 +495,7 @@ void add_tiles(CLI::App& app, Settings& s) {
   for (CLI::App* step : {run, mesh, status, merge}) step->add_option("DIR", s.tile_folder, "The work folder")->required()->type_name("");
   merge->add_option("OUT", s.output, "Oriented cloud (.ply, .las, .laz), or mesh (.ply)")->required()->type_name("");
   merge->add_flag("--mesh", s.merge_mesh, "Write the mesh instead of the points")->disable_flag_override();
+  add_component_options(*merge, s.mesh_options);
   add_run_options(*merge, s);
 }
 

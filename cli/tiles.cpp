@@ -30,6 +30,13 @@ std::string status_text(const TileStatus& status) {
   return text;
 }
 
+std::string mesh_text(const MergedMesh& mesh) {
+  std::string text = "a closed mesh of " + with_commas(mesh.triangles) + " triangles in " + counted(mesh.components, "component");
+  if (mesh.dropped.components > 0) text += ", " + counted(mesh.dropped.components, "part") + " without support left out";
+  if (mesh.dropped.points > 0) text += ", made without " + with_commas(mesh.dropped.points) + " points that no surface goes through";
+  return text;
+}
+
 void say_status(Session& session, const TileStatus& status) {
   for (const std::string& warning : status.warnings) session.console().warn(warning);
   std::string text = status_text(status);
@@ -74,9 +81,8 @@ bool can_be_tiled(const Settings& s, std::initializer_list<const char*> extensio
   return simple_output && whole_input && has_files && !s.sensors_of_file && is_default_method(s.options);
 }
 
-bool is_default_mesh(const MeshOptions& o) {
-  return o.mesher != Mesher::kPoisson && o.depth == 0 && o.trim == MeshOptions::Trim::kOff && o.keep_largest == 0 && !o.min_component &&
-         !o.keep_all && o.faces == 0;
+bool can_be_meshed(const MeshOptions& o) {
+  return o.mesher != Mesher::kPoisson && o.depth == 0 && o.trim == MeshOptions::Trim::kOff && o.faces == 0;
 }
 
 Stats stats_of(const TileStatus& status, const Settings& settings) {
@@ -141,15 +147,17 @@ int run_tiles(const Settings& settings, Session& session) {
     case TileStep::kStatus:
       std::fputs(status_text(tiles_status(settings.tile_folder)).c_str(), stdout);
       break;
-    case TileStep::kMerge:
+    case TileStep::kMerge: {
+      std::string mesh;
       if (settings.merge_mesh) {
-        (void)merge_mesh(settings.tile_folder, settings.output, monitor);
+        mesh = ": " + mesh_text(merge_mesh(settings.tile_folder, settings.output, settings.mesh_options, monitor));
       } else {
         (void)merge_tiles(settings.tile_folder, settings.output, monitor);
       }
       session.console().clear_bar();
-      session.console().say("wrote " + escape_text(settings.output));
+      session.console().say("wrote " + escape_text(settings.output) + mesh);
       break;
+    }
   }
   return kOk;
 }
@@ -167,13 +175,12 @@ std::optional<int> orient_in_tiles(const Settings& settings, Session& session) {
 
 std::optional<int> reconstruct_in_tiles(const Settings& settings, Session& session) {
   if (settings.options.max_memory == 0 || !can_be_tiled(settings, {".ply"})) return std::nullopt;
-  if (!settings.oriented.empty() || !is_default_mesh(settings.mesh_options)) return std::nullopt;
+  if (!settings.oriented.empty() || !can_be_meshed(settings.mesh_options)) return std::nullopt;
   if (!needs_tiles({settings.input}, settings.options.max_memory, true)) return std::nullopt;
   return work_in_tiles(settings, session, true, [&](const std::string& folder, const Monitor& monitor, Stats& stats) {
     const MeshTiles meshed = mesh_tiles(folder, worker_of(settings), monitor);
     stats.planned_memory_bytes = std::max<std::size_t>(stats.planned_memory_bytes, meshed.worker_memory_bytes);
-    const MergedMesh merged = merge_mesh(folder, settings.output, monitor);
-    return "a closed mesh of " + with_commas(merged.triangles) + " triangles, without colours and confidence; specks are not left out";
+    return mesh_text(merge_mesh(folder, settings.output, settings.mesh_options, monitor)) + ", without colours and confidence";
   });
 }
 

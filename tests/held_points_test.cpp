@@ -41,6 +41,29 @@ TEST(HeldPoints, RandomPointsAreStrays) {
   EXPECT_GE(strays_among(held, 5000, 5500), 450U);
 }
 
+// held points: a part of a cloud, away from where it is cut, is held as it is in the cloud.
+TEST(HeldPoints, PartsAreHeldAsInTheCloud) {
+  Surface s = shapes::ellipsoid(5000, 1, 1, 1);
+  add_random_points(s, 500, 0.15);
+  const std::vector<std::uint8_t> held = mesh::held_points(s.points, s.normals);
+  const mesh::CloudHeights cloud = mesh::cloud_heights(s.points, s.normals);
+  EXPECT_NEAR(cloud.stray_share, 500.0 / 5500, 0.01);
+  Surface part;
+  std::vector<std::size_t> number;
+  for (std::size_t i = 0; i < s.points.size(); ++i) {
+    if (s.points[i][0] > 0.7) continue;
+    part.points.push_back(s.points[i]);
+    part.normals.push_back(s.normals[i]);
+    number.push_back(i);
+  }
+  const std::vector<std::uint8_t> of_part = mesh::held_points(part.points, part.normals, cloud, nullptr);
+  for (std::size_t i = 0; i < number.size(); ++i) {
+    EXPECT_TRUE(part.points[i][0] > 0 || of_part[i] == held[number[i]]) << i;
+  }
+  const mesh::CloudHeights noise{cloud.usual, 0.5};
+  EXPECT_EQ(strays_among(mesh::held_points(part.points, part.normals, noise, nullptr), 0, part.points.size()), 0U);
+}
+
 // held points: creases and corners, noise, and a density that changes tenfold are no reasons.
 TEST(HeldPoints, SurfacesAreHeld) {
   shapes::Random random(3);

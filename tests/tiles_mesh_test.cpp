@@ -5,6 +5,8 @@
 #include "tiles/manifest.h"
 #include "tiles/mesh_plan.h"
 #include "tiles/mesh_records.h"
+#include "tiles/sheets_file.h"
+#include "tiles/spacing_sample.h"
 
 #include <g3r/io.h>
 #include <g3r/mesh.h>
@@ -14,7 +16,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
+#include <numbers>
 
 namespace g3r {
 namespace {
@@ -23,7 +27,23 @@ constexpr std::size_t kPoints = 9000;
 constexpr std::size_t kTiles = 4;
 constexpr double kRing = 0.6;  // radii of the torus
 constexpr double kTube = 0.25;
-constexpr double kFar = 0.05;  // of the radius of the tube: farther from it no vertex is
+constexpr std::size_t kBallPoints = 122;  // as dense as the torus
+constexpr double kBall = 0.08;            // radius of a ball in the middle, where tiles meet
+constexpr std::size_t kStrays = 150;
+constexpr double kSpacingError = 0.1;  // of random samples: the median over 8 neighbours is a few hundredths above the mean
+constexpr double kFar = 0.05;          // of the radius of the tube: farther from it no vertex is
+
+// Points far from the torus and the ball, with normals of all directions, as a scanner leaves them.
+void add_strays(shapes::Surface& surface) {
+  shapes::Random random(5);
+  for (std::size_t count = 0; count < kStrays;) {
+    const Vec3 p{random.uniform(-0.8, 0.8), random.uniform(-0.8, 0.8), random.uniform(-0.8, 0.8)};
+    if (std::abs(std::hypot(std::hypot(p[0], p[1]) - kRing, p[2]) - kTube) < 0.1 || std::hypot(p[0], p[1], p[2]) < 0.2) continue;
+    surface.points.push_back(p);
+    surface.normals.push_back(random.direction());
+    ++count;
+  }
+}
 
 // The results of all tiles: normals that are known. The solves have a test of their own, and take their time.
 void write_normals(const std::string& work, const std::vector<Vec3>& normals) {
@@ -50,6 +70,10 @@ class TilesMesh : public testing::Test {
   static void SetUpTestSuite() {
     folder_ = new TemporaryFolder;
     surface_ = new shapes::Surface(shapes::torus(kPoints, kRing, kTube, 2));
+    const shapes::Surface ball = shapes::sphere(kBallPoints, kBall);
+    surface_->points.insert(surface_->points.end(), ball.points.begin(), ball.points.end());
+    surface_->normals.insert(surface_->normals.end(), ball.normals.begin(), ball.normals.end());
+    add_strays(*surface_);
     surface_->points.push_back(surface_->points[7]);  // one place twice
     surface_->normals.push_back(surface_->normals[7]);
     Cloud cloud;
@@ -81,22 +105,50 @@ TemporaryFolder* TilesMesh::folder_ = nullptr;
 shapes::Surface* TilesMesh::surface_ = nullptr;
 MergedMesh TilesMesh::merged_;
 
-TEST_F(TilesMesh, IsOneClosedManifoldOnTheSurface) {
+TEST_F(TilesMesh, IsAClosedManifoldOnTheSurface) {
   const Mesh mesh = read_mesh(folder_->file("out.ply"));
   const MeshCheck check = check_mesh(mesh);
   EXPECT_EQ(check.vertices, merged_.vertices);
   EXPECT_EQ(check.triangles, merged_.triangles);
   EXPECT_TRUE(check.closed);
   EXPECT_TRUE(check.manifold);
-  EXPECT_EQ(check.components, 1U);
+  EXPECT_EQ(check.components, 2U);
+  EXPECT_EQ(merged_.components, 2U);
   EXPECT_EQ(check.genus, 1);
   EXPECT_GT(check.volume, 0);
   double farthest = 0;
   for (const Vec3& v : mesh.vertices) {
     const double from_axis = std::hypot(v[0], v[1]) - kRing;
-    farthest = std::max(farthest, std::abs(std::hypot(from_axis, v[2]) - kTube));
+    const double from_ball = std::abs(std::hypot(v[0], v[1], v[2]) - kBall);
+    farthest = std::max(farthest, std::min(from_ball, std::abs(std::hypot(from_axis, v[2]) - kTube)));
   }
   EXPECT_LT(farthest, kFar * kTube);
+}
+
+// The ball is in parts of several tiles, which are one component.
+TEST_F(TilesMesh, LeavesOutComponentsByTheLawOfMeshesInCore) {
+  const double area = 4 * std::numbers::pi * kBall * kBall;
+  MeshOptions options;
+  options.min_component = 2 * kBallPoints;
+  const std::string out = folder_->file("torus.ply");
+  const MergedMesh torus = merge_mesh(folder_->file("work"), out, options);
+  EXPECT_EQ(torus.components, 1U);
+  EXPECT_EQ(torus.dropped.components, merged_.dropped.components + 1);
+  EXPECT_NEAR(torus.dropped.area - merged_.dropped.area, area, 0.1 * area);
+  const MeshCheck check = check_mesh(read_mesh(out));
+  EXPECT_TRUE(check.closed && check.manifold);
+  EXPECT_EQ(check.components, 1U);
+  EXPECT_EQ(check.vertices, torus.vertices);
+  EXPECT_EQ(check.triangles, torus.triangles);
+  options.min_component = 0.5 * kBallPoints;
+  EXPECT_EQ(merge_mesh(folder_->file("work"), out, options).components, 2U);
+  EXPECT_EQ(bytes_of(out), bytes_of(folder_->file("out.ply")));
+  options.keep_largest = 1;
+  const MergedMesh largest = merge_mesh(folder_->file("work"), out, options);
+  EXPECT_EQ(largest.triangles, torus.triangles);
+  EXPECT_EQ(largest.dropped.components, merged_.dropped.components);  // it was not asked for, but has support
+  options.faces = 100;
+  EXPECT_THROW((void)merge_mesh(folder_->file("work"), out, options), Unavailable);
 }
 
 TEST_F(TilesMesh, HasTheSameBytesWhoeverMakesItAndAfterARestart) {
@@ -108,6 +160,36 @@ TEST_F(TilesMesh, HasTheSameBytesWhoeverMakesItAndAfterARestart) {
   EXPECT_EQ(mesh_tiles(work, {1, 2}).done, kTiles);
   (void)merge_mesh(work, folder_->file("again.ply"));
   EXPECT_EQ(bytes_of(folder_->file("again.ply")), bytes_of(folder_->file("out.ply")));
+}
+
+TEST_F(TilesMesh, StraysAreLeftOut) {
+  EXPECT_GE(merged_.dropped.points, kStrays * 9 / 10);
+  EXPECT_LE(merged_.dropped.points, kStrays * 11 / 10);
+  EXPECT_EQ(merged_.components, 2U);
+}
+
+// A vertex that the sheets have beyond its neighbours is pulled back within its tile.
+TEST_F(TilesMesh, UnfoldsTrianglesThatCross) {
+  const std::string work = folder_->file("folded");
+  std::filesystem::copy(folder_->file("work"), work);
+  const tiles::MeshFolder folder = tiles::read_mesh_folder(work, tiles::read_manifest(work));
+  const Mesh clean = tiles::read_surface(folder, 0).mesh;
+  EXPECT_EQ(count_self_intersections(clean), 0U);
+  const auto& t = clean.triangles[clean.triangles.size() / 2];
+  std::string bytes = bytes_of(tiles::mesh_sheets_path(work, 0));
+  tiles::MeshVertex vertex;
+  char* const at = bytes.data() + sizeof(tiles::SheetsHeader) + t[0] * sizeof vertex;
+  std::memcpy(&vertex, at, sizeof vertex);
+  ASSERT_EQ(vertex.position, clean.vertices[t[0]]);
+  for (std::size_t a = 0; a < 3; ++a) vertex.position[a] += 2.5 * (clean.vertices[t[1]][a] - vertex.position[a]);
+  std::memcpy(at, &vertex, sizeof vertex);
+  write_bytes(tiles::mesh_sheets_path(work, 0), bytes);
+  EXPECT_GT(count_self_intersections(tiles::read_surface(folder, 0).mesh), 0U);
+  std::filesystem::remove(tiles::mesh_parts_path(work, 0));
+  (void)mesh_tiles(work);
+  const MergedMesh merged = merge_mesh(work, folder_->file("unfolded.ply"));
+  EXPECT_EQ(merged.triangles, merged_.triangles);
+  EXPECT_EQ(count_self_intersections(read_mesh(folder_->file("unfolded.ply"))), 0U);
 }
 
 TEST_F(TilesMesh, IsRefusedWhereItCannotBe) {
@@ -137,10 +219,39 @@ TEST_F(TilesMesh, DamagedFilesAreRefused) {
   wrong[6] = 1;  // a count of 2^48
   refused(wrong);
   write_bytes(path, sheets);
+  const std::string parts_path = tiles::mesh_parts_path(work, 2);
+  const std::string parts = bytes_of(parts_path);
+  for (const std::string& bytes : {std::string(), parts.substr(0, parts.size() - 4), parts.substr(0, parts.size() - 4) + "\xff\xff\xff\xff",
+                                   parts.substr(0, 6) + '\1' + parts.substr(7)}) {
+    write_bytes(parts_path, bytes);
+    EXPECT_THROW((void)merge_mesh(work, folder_->file("none.ply")), InvalidInput);
+  }
+  write_bytes(parts_path, parts);
   const std::string plan = bytes_of(tiles::mesh_plan_path(work));
   for (std::size_t length = 0; length + 3 < plan.size(); length += 61) {
     write_bytes(tiles::mesh_plan_path(work), plan.substr(0, length));
     EXPECT_THROW((void)merge_mesh(work, folder_->file("none.ply")), InvalidInput) << length;
+  }
+}
+
+// A sample of the cloud tells the plan its spacing, which makes the frame such that cells have the size that they have in core.
+TEST_F(TilesMesh, CellsAreAsLargeAsInCore) {
+  const std::string work = folder_->file("work");
+  const tiles::MeshFolder folder = tiles::read_mesh_folder(work, tiles::read_manifest(work));
+  const double cell = std::ldexp(2.0, -folder.levels().finest) / folder.plan.spacing;
+  EXPECT_NEAR(cell, mesh::kFinestCell, kSpacingError * mesh::kFinestCell);
+}
+
+TEST(SpacingSample, TellsTheSpacingOfCloudsOfAnySize) {
+  tiles::SpacingSample nothing;
+  EXPECT_EQ(nothing.spacing(), 0);
+  for (const std::size_t count : {1000U, 300000U}) {
+    const shapes::Surface torus = shapes::torus(count, kRing, kTube, 3);
+    tiles::SpacingSample sample;
+    for (const Vec3& p : torus.points) sample.add(p);
+    const double area = 4 * std::numbers::pi * std::numbers::pi * kRing * kTube;
+    const double spacing = std::sqrt(area / static_cast<double>(count));
+    EXPECT_NEAR(sample.spacing(), spacing, kSpacingError * spacing) << count;
   }
 }
 

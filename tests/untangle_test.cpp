@@ -18,10 +18,8 @@ TEST(Untangle, LeavesCleanMeshesAlone) {
   EXPECT_EQ(mesh.vertices, before.vertices);
 }
 
-// Vertices pushed past their neighbours, as placement beyond a crease does.
-TEST(Untangle, UnfoldsWhatCrossesAndKeepsTheRest) {
-  const Mesh clean = shapes::torus(1, 0.4, 120, 80);
-  Mesh mesh = clean;
+// Pushes vertices past their neighbours, as placement beyond a crease does, and returns which.
+std::vector<std::uint32_t> tangle(const Mesh& clean, Mesh& mesh) {
   std::mt19937_64 rng(3);
   std::vector<std::uint32_t> pushed;
   for (int i = 0; i < 60; ++i) {
@@ -30,6 +28,13 @@ TEST(Untangle, UnfoldsWhatCrossesAndKeepsTheRest) {
     for (std::size_t a = 0; a < 3; ++a) mesh.vertices[t[0]][a] = from[a] + 2.5 * (to[a] - from[a]) + (a == 2 ? 0.01 : 0);
     pushed.push_back(t[0]);
   }
+  return pushed;
+}
+
+TEST(Untangle, UnfoldsWhatCrossesAndKeepsTheRest) {
+  const Mesh clean = shapes::torus(1, 0.4, 120, 80);
+  Mesh mesh = clean;
+  const std::vector<std::uint32_t> pushed = tangle(clean, mesh);
   ASSERT_GT(count_self_intersections(mesh), 60U);
   const Mesh tangled = mesh;
   EXPECT_EQ(mesh::untangle(mesh), 0U);
@@ -39,6 +44,22 @@ TEST(Untangle, UnfoldsWhatCrossesAndKeepsTheRest) {
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) moved += mesh.vertices[v] != tangled.vertices[v] ? 1 : 0;
   EXPECT_GE(moved, pushed.size() / 2);
   EXPECT_LT(moved, mesh.vertices.size() / 4);
+}
+
+TEST(Untangle, FixedVerticesStay) {
+  const Mesh clean = shapes::torus(1, 0.4, 120, 80);
+  Mesh mesh = clean;
+  (void)tangle(clean, mesh);
+  const Mesh tangled = mesh;
+  const std::size_t before = count_self_intersections(mesh);
+  std::vector<std::uint8_t> fixed;
+  for (const Vec3& v : mesh.vertices) fixed.push_back(v[0] < 0 ? 1 : 0);
+  const std::size_t left = mesh::untangle(mesh, nullptr, fixed);
+  EXPECT_GT(left, 0U);
+  EXPECT_LT(left, before);
+  for (std::size_t v = 0; v < fixed.size(); ++v) {
+    EXPECT_TRUE(fixed[v] == 0 || mesh.vertices[v] == tangled.vertices[v]) << v;
+  }
 }
 
 // Two spheres through each other cannot be pulled apart; the mesh must come out no worse, and whole.

@@ -111,11 +111,14 @@ MeshTiles mesh_tiles(const std::string& folder, const TileWorker& worker = {}, c
 struct MergedMesh {
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;
+  std::size_t components = 0;
+  Dropped dropped;  ///< for want of support: strays, whatever the options, and components
 };
 
 /// Writes the mesh of all tiles as one binary .ply, whole or not at all: closed and 2-manifold, outward. Its memory is that of a tile and
-/// those around it. Throws InvalidInput (tiles that are not done, no surface, another extension), Unavailable (more vertices than a PLY
+/// those around it. Of the options the components that stay (keep_largest, min_component, keep_all) are taken, by the law of meshes in
+/// core. Throws InvalidInput (tiles that are not done, no surface, another extension), Unavailable (other options, more vertices than a PLY
 /// file can number), IoError, Cancelled.
-MergedMesh merge_mesh(const std::string& folder, const std::string& output, const Monitor& monitor = {});
+MergedMesh merge_mesh(const std::string& folder, const std::string& output, const MeshOptions& options = {}, const Monitor& monitor = {});
 
 }  // namespace g3r

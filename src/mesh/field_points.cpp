@@ -42,9 +42,11 @@ void prepare(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, 
   for (double& h : out.spacing) h = std::max(h, kLeastSpacing * prepared.typical);
 }
 
+double noise_seen(const Noise& noise) { return noise.position > kNoisy ? noise.position : 0; }
+
 void smooth_noise(const Noise& noise, const std::atomic<bool>* cancel, Prepared& prepared) {
-  if (noise.position <= kNoisy) return;
-  prepared.noise = noise.position;
+  prepared.noise = noise_seen(noise);
+  if (prepared.noise == 0) return;
   denoise(prepared.points, *prepared.neighbours, noise, cancel);
   find_neighbours(prepared);
 }

@@ -24,7 +24,7 @@ struct Prepared {
   std::unique_ptr<const Neighbours> neighbours;  ///< of these positions
   std::vector<std::uint32_t> near;               ///< of_all(k) with the k of find_neighbours()
   double typical = 0;                            ///< spacing of the cloud
-  double noise = 0;                              ///< of the positions as they came, in spacings; 0 where it is too little to tell
+  double noise = 0;                              ///< noise_seen() of the positions as they came
 };
 
 /// In place: the neighbours refer to the positions.
@@ -33,6 +33,9 @@ void find_neighbours(Prepared& prepared);
 /// Fills in points, neighbours and spacings. `typical`: spacing of the cloud that these points are a part of; 0: theirs. Throws
 /// InvalidInput (a normal is zero, all points are at one place).
 void prepare(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, double typical, Prepared& prepared);
+
+/// Of the positions, in spacings; 0 where it is too little to tell.
+[[nodiscard]] double noise_seen(const Noise& noise);
 
 /// Moves points that scatter more than a fit bears. Throws Cancelled.
 void smooth_noise(const Noise& noise, const std::atomic<bool>* cancel, Prepared& prepared);

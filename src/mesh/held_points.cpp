@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 namespace g3r::mesh {
 namespace {
@@ -22,10 +23,9 @@ constexpr double kTimesUsual = 2;    // four standard deviations of noise
 constexpr double kAlone = 2;         // spacing over that of the nearest; 1.5 is the most in a thousand points of uneven surfaces
 constexpr int kRounds = 4;           // strays that hold each other go one after the other; the fifth finds none
 constexpr std::size_t kFewestPoints = 100;  // below, sparse parts are a matter of chance
-constexpr double kMostStrays = 1.0 / 3;
-constexpr std::size_t kBlock = 256;      // points per parallel block
-constexpr double kLooksLikeSurface = 4;  // one in so many strays seems to be held by the one next to it; measured 1 in 4 to 1 in 50
-constexpr double kRare = 100;            // clouds in which it may happen once
+constexpr std::size_t kBlock = 256;         // points per parallel block
+constexpr double kLooksLikeSurface = 4;     // one in so many strays seems to be held by the one next to it; measured 1 in 4 to 1 in 50
+constexpr double kRare = 100;               // clouds in which it may happen once
 
 // How a point and its nearest ones see each other.
 struct Look {
@@ -53,16 +53,16 @@ class Search {
     for (std::uint32_t i = 0; i < points.size(); ++i) doubtful_.push_back(i);
   }
 
-  std::vector<std::uint8_t> run() {
-    std::size_t strays = 0;
+  // `usual`: of the cloud, where it is known.
+  std::vector<std::uint8_t> run(std::optional<double> usual) {
     for (int round = 0; round < kRounds && !doubtful_.empty(); ++round) {
       look();
-      if (round == 0) usual_ = usual_height();
-      strays += take_strays();
+      if (round == 0) usual_ = usual ? *usual : usual_height();
+      take_strays();
     }
-    if (static_cast<double>(strays) > kMostStrays * static_cast<double>(points_.size())) std::fill(held_.begin(), held_.end(), 1);
     return std::move(held_);
   }
+  [[nodiscard]] double usual() const { return usual_; }
 
  private:
   // From every doubtful point at those nearest to it that are still held.
@@ -119,8 +119,8 @@ class Search {
     return holding < kHolding || std::log(look.distance[kNear - 1]) - spacing > std::log(kAlone);
   }
 
-  // Returns how many there were; those that had one among their nearest are doubtful after.
-  std::size_t take_strays() {
+  // Those that had one among their nearest are doubtful after.
+  void take_strays() {
     std::vector<std::uint8_t> stray(doubtful_.size(), 0);
     parallel::for_blocks(
         doubtful_.size(), kBlock,
@@ -139,7 +139,6 @@ class Search {
       const auto& near = looks_[i].near;
       if (held_[i] != 0 && std::any_of(near.begin(), near.end(), [this](std::uint32_t j) { return held_[j] == 0; })) doubtful_.push_back(i);
     }
-    return count;
   }
 
   const std::vector<Vec3>& points_;
@@ -151,11 +150,30 @@ class Search {
   double usual_ = 0;
 };
 
+double share_of_strays(const std::vector<std::uint8_t>& held) {
+  return static_cast<double>(std::count(held.begin(), held.end(), std::uint8_t{0})) / static_cast<double>(held.size());
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> held_points(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const std::atomic<bool>* cancel) {
   if (points.size() < kFewestPoints) return std::vector<std::uint8_t>(points.size(), 1);
-  return Search(points, normals, cancel).run();
+  std::vector<std::uint8_t> held = Search(points, normals, cancel).run({});
+  if (share_of_strays(held) > kMostStrays) std::fill(held.begin(), held.end(), 1);
+  return held;
+}
+
+CloudHeights cloud_heights(const std::vector<Vec3>& points, const std::vector<Vec3>& normals) {
+  if (points.size() < kFewestPoints) return {};
+  Search search(points, normals, nullptr);
+  const std::vector<std::uint8_t> held = search.run({});
+  return {search.usual(), share_of_strays(held)};
+}
+
+std::vector<std::uint8_t> held_points(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const CloudHeights& cloud,
+                                      const std::atomic<bool>* cancel) {
+  if (points.size() < kFewestPoints || cloud.stray_share > kMostStrays) return std::vector<std::uint8_t>(points.size(), 1);
+  return Search(points, normals, cancel).run(cloud.usual);
 }
 
 double least_points_of_a_part(std::size_t strays) {

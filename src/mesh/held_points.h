@@ -10,6 +10,8 @@
 
 namespace g3r::mesh {
 
+inline constexpr double kMostStrays = 1.0 / 3;  ///< of the points: where they would be more, none is
+
 /// Marks (1) the points that the surface of the others goes through. A point is a stray
 ///   - if less than 3 of its 8 nearest points are on one sheet with it: its distance from their plane, and theirs from its own, is at most
 ///     0.35 of the way between them and twice what is usual (the 90 % quantile over the points of such distances, for noise and detail), or
@@ -21,6 +23,17 @@ namespace g3r::mesh {
 /// else, and all are held. `normals`: unit. O(N log N), once more for points near strays. Throws Cancelled.
 [[nodiscard]] std::vector<std::uint8_t> held_points(const std::vector<Vec3>& points, const std::vector<Vec3>& normals,
                                                     const std::atomic<bool>* cancel = nullptr);
+
+/// The same of a part of a cloud, of which more than the part is known. Points within 12 of their spacings of where the part ends are not
+/// what they are in the cloud.
+struct CloudHeights {
+  double usual = 0;        ///< the 90 % quantile, a length
+  double stray_share = 0;  ///< of the points
+};
+/// Of points that stand for a cloud. O(N log N).
+[[nodiscard]] CloudHeights cloud_heights(const std::vector<Vec3>& points, const std::vector<Vec3>& normals);
+[[nodiscard]] std::vector<std::uint8_t> held_points(const std::vector<Vec3>& points, const std::vector<Vec3>& normals,
+                                                    const CloudHeights& cloud, const std::atomic<bool>* cancel);
 
 /// The least number of points of a part that is not a cluster of outliers by chance: of m random points one next to the other, about one in
 /// 4^(m - 1) looks like a surface, so that among `strays` of them 1 + log_4(100 strays) are met once in a hundred clouds. 0 without strays.

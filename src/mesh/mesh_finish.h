@@ -19,8 +19,7 @@ struct LeftOut {
 /// Trims, drops components and simplifies as the options ask; `trim_distance` is in the units of the mesh. A closed 2-manifold stays
 /// closed unless trimmed, and 2-manifold always. Throws InvalidInput if an option is out of range or nothing would be left.
 /// `spacing`: of each point; `noise`: standard deviation of the points about the surface, in spacings; `left_out`: the points
-/// that were left out before, to which the components that are left out now are added: specks, those that fewer points hold than
-/// least_points_of_a_part(), and those that fewer points hold than strays are within 3 spacings of them, as in a cloud that fills space.
+/// that were left out before, to which the components that kept_components() leaves out are added.
 void finish_mesh(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>& spacing, double noise, const MeshOptions& options,
                  LeftOut& left_out);
 void finish_mesh(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>& spacing, double noise, const MeshOptions& options);

@@ -84,7 +84,7 @@ void smooth(Part& part, const std::vector<std::uint8_t>& move) {
 
 }  // namespace
 
-std::size_t untangle(Mesh& mesh, const std::atomic<bool>* cancel) {
+std::size_t untangle(Mesh& mesh, const std::atomic<bool>* cancel, const std::vector<std::uint8_t>& fixed) {
   std::vector<TrianglePair> pairs = self_intersections(mesh);
   std::vector<std::uint8_t> crossing(mesh.vertices.size(), 0);
   mark_corners(
@@ -96,6 +96,9 @@ std::size_t untangle(Mesh& mesh, const std::atomic<bool>* cancel) {
     std::vector<std::uint8_t> move = crossing;
     if (round >= kWider) grow(mesh, move);
     std::vector<std::uint8_t> near = move;
+    for (std::size_t v = 0; v < fixed.size(); ++v) {
+      if (fixed[v] != 0) move[v] = 0;
+    }
     for (int ring = 0; ring < kRings; ++ring) grow(mesh, near);
     Part part = part_of(mesh, near);
     smooth(part, move);

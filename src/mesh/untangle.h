@@ -5,13 +5,15 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 namespace g3r::mesh {
 
 /// Moves the vertices of triangles that intersect others towards the mean of their neighbours, in rounds, until none intersect or more
 /// rounds do not help; keeps the best. Connectivity and all vertices more than a few rings away stay. The same result for any number of
 /// threads. Returns the pairs left around those found at first (a vertex that moved may, rarely, meet a part of the surface farther off).
-/// Costs one search of the whole mesh, O(F log F). Throws Cancelled.
-std::size_t untangle(Mesh& mesh, const std::atomic<bool>* cancel = nullptr);
+/// Costs one search of the whole mesh, O(F log F). `fixed`: empty, or 1 for vertices that stay where they are. Throws Cancelled.
+std::size_t untangle(Mesh& mesh, const std::atomic<bool>* cancel = nullptr, const std::vector<std::uint8_t>& fixed = {});
 
 }  // namespace g3r::mesh

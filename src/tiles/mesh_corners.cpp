@@ -82,6 +82,18 @@ void scale_areas(OrientedCloud& sources, const std::vector<Vec3>& places, const 
   for (Vec3& v : sources.eta) v = vector::scale(v, factor);
 }
 
+// Corners that may change sides to remove a handle: no other tile changes one of the same leaf, so what a change does to the surface is
+// what it seems to do here.
+std::vector<std::uint8_t> free_corners(const mesh::Octree& octree, const std::vector<std::uint8_t>& owned) {
+  std::vector<std::uint8_t> free = owned;
+  for (std::size_t leaf = 0; leaf < octree.leaf_count(); ++leaf) {
+    const auto& corners = octree.corners(leaf);
+    if (std::all_of(corners.begin(), corners.end(), [&](std::uint32_t c) { return owned[c] != 0; })) continue;
+    for (const std::uint32_t c : corners) free[c] = 0;
+  }
+  return free;
+}
+
 // Corners that are inside, and those outside that an edge of the surface may end at; all others are outside.
 std::vector<CornerValue> worth_saying(const Surroundings& around, const std::vector<std::uint8_t>& owned, const std::vector<float>& value,
                                       const std::vector<std::uint8_t>& inside) {
@@ -128,9 +140,11 @@ void write_corners(const MeshFolder& folder, std::size_t tile, const std::atomic
   }
   std::vector<std::uint8_t> inside(owned.size());
   for (std::size_t c = 0; c < inside.size(); ++c) inside[c] = owned[c] != 0 && corners.value[c] > 0 ? 1 : 0;
-  const mesh::InsideTest joined = joining_rule(folder, around.region, local);
-  const auto may_change = [&](std::uint32_t c) { return around.region.is_interior(cell_at(octree.corner_grid(c), level)); };
-  mesh::remove_handles(octree, corners.opinions, may_change, joined, inside, mesh::contour(octree, inside, joined, cancel), cancel);
+  const mesh::InsideTest joined = joining_rule(folder, prepared, local);
+  const std::vector<std::uint8_t> free = free_corners(octree, owned);
+  mesh::remove_handles(
+      octree, corners.opinions, [&](std::uint32_t c) { return free[c] != 0; }, joined, inside,
+      mesh::contour(octree, inside, joined, cancel), cancel);
   mesh::settle_values(octree, inside, prepared.typical, corners.value);
 
   const std::vector<CornerValue> values = worth_saying(around, owned, corners.value, inside);

@@ -1,9 +1,11 @@
-// The sheets of all tiles into one mesh: vertices by tile, then those in the middle of polygons by tile, then the triangles.
+// The sheets of all tiles into one mesh, without the components that nothing holds: vertices by tile, then those in the middle of polygons
+// by tile, then the triangles.
 #include "base/stages.h"
 #include "io/output_file.h"
 #include "io/source.h"
-#include "mesh/field_contour.h"
-#include "tiles/mesh_passes.h"
+#include "tiles/mesh_plan.h"
+#include "tiles/parts.h"
+#include "tiles/sheets_file.h"
 
 #include <g3r/io.h>
 #include <g3r/tiles.h>
@@ -20,81 +22,22 @@ namespace {
 constexpr std::uint64_t kAtOnce = 4096;                                            // records read at once
 constexpr std::uint64_t kMostVertices = std::numeric_limits<std::int32_t>::max();  // that readers of PLY take
 
-// A file of sheets, piece by piece.
-class SheetsFile {
- public:
-  SheetsFile(const std::string& folder, std::size_t tile) : file_(mesh_sheets_path(folder, tile)) {
-    if (file_.size() < sizeof header_) fail();
-    file_.read(0, &header_, sizeof header_);
-    constexpr std::uint64_t kMost = std::uint64_t{1} << 40U;  // records; sums below do not overflow
-    for (const std::uint64_t count : {header_.vertices, header_.foreign, header_.polygons, header_.corners}) {
-      if (count > kMost) fail();
-    }
-    if (file_.size() != corners_at() + header_.corners * sizeof(std::uint32_t)) fail();
-  }
-
-  [[nodiscard]] const SheetsHeader& header() const { return header_; }
-  void append_vertices(std::uint64_t begin, std::uint64_t end, std::vector<MeshVertex>& out) const {
-    append(sizeof header_ + begin * sizeof(MeshVertex), end - begin, out);
-  }
-  void append_foreign(std::vector<ForeignVertex>& out) const { append(foreign_at(), header_.foreign, out); }
-
-  // Checked: every corner is one of `vertices`, and the polygons use all corners.
-  void read_polygons(mesh::DualSurface& surface) const {
-    std::vector<std::uint8_t> sizes;
-    append(polygons_at(), 2 * header_.polygons, sizes);
-    append(corners_at(), header_.corners, surface.polygon_vertices);
-    surface.polygon_begin.assign(1, 0);
-    for (std::size_t p = 0; p < header_.polygons; ++p) {
-      if (sizes[2 * p] < 3 || (sizes[2 * p + 1] != 0 && sizes[2 * p] != 4)) fail();
-      surface.polygon_begin.push_back(surface.polygon_begin.back() + sizes[2 * p]);
-      surface.safe_diagonals.push_back(sizes[2 * p + 1]);
-    }
-    surface.crossings.resize(header_.polygons);
-    const std::uint64_t count = header_.vertices + header_.foreign;
-    const auto is_number = [&](std::uint32_t v) { return v < count; };
-    if (surface.polygon_begin.back() != header_.corners ||
-        !std::all_of(surface.polygon_vertices.begin(), surface.polygon_vertices.end(), is_number)) {
-      fail();
-    }
-  }
-
-  [[noreturn]] void fail() const { throw InvalidInput(escape_text(file_.path()) + ": damaged; remove it, and mesh again"); }
-
- private:
-  [[nodiscard]] std::uint64_t foreign_at() const { return sizeof header_ + header_.vertices * sizeof(MeshVertex); }
-  [[nodiscard]] std::uint64_t polygons_at() const { return foreign_at() + header_.foreign * sizeof(ForeignVertex); }
-  [[nodiscard]] std::uint64_t corners_at() const { return polygons_at() + 2 * header_.polygons; }
-  template <class T>
-  void append(std::uint64_t at, std::uint64_t count, std::vector<T>& out) const {
-    const std::size_t before = out.size();
-    out.resize(before + static_cast<std::size_t>(count));
-    file_.read(at, out.data() + before, static_cast<std::size_t>(count) * sizeof(T));
-  }
-
-  io::RandomFile file_;
-  SheetsHeader header_;
-};
-
-// Where the vertices of each tile begin in the mesh.
+// Where the vertices of each tile begin in the mesh, and those in the middle of its polygons.
 struct Numbers {
   std::vector<std::uint64_t> vertices, centres;
   std::uint64_t all_vertices = 0, triangles = 0;
 };
 
-Numbers number_vertices(const MeshFolder& folder) {
+Numbers number_vertices(const MeshFolder& folder, const KeptParts& kept) {
   Numbers out;
   for (std::size_t t = 0; t < folder.tiles(); ++t) {
-    const SheetsHeader header = SheetsFile(folder.folder, t).header();
     out.vertices.push_back(out.all_vertices);
-    out.centres.push_back(header.centres);
-    out.all_vertices += header.vertices;
-    out.triangles += header.triangles;
+    out.all_vertices += kept.counts(t).vertices;
+    out.triangles += kept.counts(t).triangles;
   }
-  for (std::uint64_t& centres : out.centres) {
-    const std::uint64_t count = centres;
-    centres = out.all_vertices;
-    out.all_vertices += count;
+  for (std::size_t t = 0; t < folder.tiles(); ++t) {
+    out.centres.push_back(out.all_vertices);
+    out.all_vertices += kept.counts(t).centres;
   }
   if (out.triangles == 0) throw InvalidInput("no surface found: the oriented points do not enclose a volume");
   if (out.all_vertices > kMostVertices) {
@@ -104,50 +47,77 @@ Numbers number_vertices(const MeshFolder& folder) {
   return out;
 }
 
-// The triangles of one tile, and the numbers in the whole mesh of what they stand on.
-struct TileMesh {
-  Mesh mesh;
-  std::vector<std::uint64_t> number;  // of each vertex
-};
-
-TileMesh triangles_of(const MeshFolder& folder, const Numbers& numbers, std::size_t tile) {
-  const SheetsFile file(folder.folder, tile);
-  std::vector<MeshVertex> vertices;
-  std::vector<ForeignVertex> foreign;
-  file.append_vertices(0, file.header().vertices, vertices);
-  file.append_foreign(foreign);
-  TileMesh out;
-  for (std::size_t v = 0; v < vertices.size(); ++v) out.number.push_back(numbers.vertices[tile] + v);
-  for (std::size_t f = 0; f < foreign.size();) {
-    const std::uint64_t from = foreign[f].tile;
-    if (from >= folder.tiles()) file.fail();
-    const SheetsFile there(folder.folder, static_cast<std::size_t>(from));
-    std::vector<MeshVertex> read;
-    for (std::uint64_t at = 0; at < there.header().vertices; at += kAtOnce) {
-      read.clear();
-      there.append_vertices(at, std::min(there.header().vertices, at + kAtOnce), read);
-      for (std::size_t k = 0; k < read.size(); ++k) {
-        if (f == foreign.size() || foreign[f].tile != from || read[k].key != foreign[f].key) continue;
-        vertices.push_back(read[k]);
-        out.number.push_back(numbers.vertices[static_cast<std::size_t>(from)] + at + k);
-        ++f;
+// The triangles of one tile that stay, and the numbers in the whole mesh of what they stand on.
+class KeptSurface {
+ public:
+  KeptSurface(const MeshFolder& folder, const KeptParts& kept, const Numbers& numbers, std::size_t tile)
+      : surface_(read_surface(folder, tile)) {
+    const PartsFile file(folder, tile);
+    const std::vector<ForeignPart> foreign = file.foreign();
+    for (std::size_t f = 0; f < foreign.size(); ++f) {
+      const TileSurface::Place& at = surface_.foreign[f];
+      if (foreign[f].tile != at.tile || foreign[f].vertex != at.vertex) file.fail();
+    }
+    for (const MovedVertex& moved : file.moved()) {
+      if (moved.vertex >= surface_.own) surface_.mesh.vertices[moved.vertex + surface_.foreign.size()] = moved.position;
+    }
+    const std::vector<std::uint32_t> part = file.parts_of(0, surface_.own);
+    const auto keeps = [&](std::uint32_t v) { return kept.keeps(tile, v < surface_.own ? part[v] : foreign[v - surface_.own].part); };
+    number_own(folder, kept, numbers, tile);
+    std::vector<std::uint8_t> seen(mesh().vertices.size() - number_.size(), 0);
+    const auto centres = static_cast<std::uint32_t>(number_.size());
+    for (const auto& t : mesh().triangles) {
+      const std::uint32_t known = *std::min_element(t.begin(), t.end());  // a triangle has one centre at most
+      if (!keeps(known)) continue;
+      triangles_.push_back(t);
+      for (const std::uint32_t v : t) {
+        if (v >= centres) seen[v - centres] = 1;
       }
     }
-    if (f < foreign.size() && foreign[f].tile == from) there.fail();
+    for (const std::uint8_t is_there : seen) {
+      number_.push_back(numbers.centres[tile] + centres_.size());
+      if (is_there != 0) centres_.push_back(mesh().vertices[number_.size() - 1]);
+    }
+    const Part& counts = kept.counts(tile);
+    if (triangles_.size() != counts.triangles || centres_.size() != counts.centres) file.fail();
   }
-  std::vector<Vec3> positions;
-  std::vector<Vec3> normals;
-  for (const MeshVertex& v : vertices) {
-    positions.push_back(v.position);
-    normals.push_back({v.normal[0], v.normal[1], v.normal[2]});
+
+  [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& triangles() const { return triangles_; }
+  [[nodiscard]] const std::vector<Vec3>& centres() const { return centres_; }
+  [[nodiscard]] std::uint64_t number(std::uint32_t vertex) const { return number_[vertex]; }
+
+ private:
+  [[nodiscard]] const Mesh& mesh() const { return surface_.mesh; }
+
+  // Of own and of foreign vertices: those that stay before it in its tile, after those of all tiles before.
+  void number_own(const MeshFolder& folder, const KeptParts& kept, const Numbers& numbers, std::size_t tile) {
+    const auto add = [&](std::size_t of, const auto& wanted, std::size_t count) {
+      const PartsFile file(folder, of);
+      const std::vector<std::uint32_t> part = file.parts_of(0, file.header().vertices);
+      std::uint64_t next = numbers.vertices[of];
+      std::uint64_t at = 0;
+      for (std::size_t k = 0; k < count; ++k) {
+        for (; at < wanted(k); ++at) next += kept.keeps(of, part[static_cast<std::size_t>(at)]) ? 1 : 0;
+        number_.push_back(next);
+      }
+    };
+    add(
+        tile, [](std::size_t k) { return std::uint64_t{k}; }, surface_.own);
+    for (std::size_t f = 0; f < surface_.foreign.size();) {
+      const std::size_t from = surface_.foreign[f].tile;
+      std::size_t last = f;
+      while (last < surface_.foreign.size() && surface_.foreign[last].tile == from) ++last;
+      add(
+          from, [&](std::size_t k) { return surface_.foreign[f + k].vertex; }, last - f);
+      f = last;
+    }
   }
-  mesh::DualSurface surface;
-  file.read_polygons(surface);
-  out.mesh = mesh::triangulate(surface, std::move(positions), normals);
-  for (std::uint64_t c = 0; out.number.size() < out.mesh.vertices.size(); ++c) out.number.push_back(numbers.centres[tile] + c);
-  if (out.mesh.triangles.size() != file.header().triangles || out.number.size() != vertices.size() + file.header().centres) file.fail();
-  return out;
-}
+
+  TileSurface surface_;
+  std::vector<std::array<std::uint32_t, 3>> triangles_;
+  std::vector<Vec3> centres_;
+  std::vector<std::uint64_t> number_;  // of each vertex; of those that go, nobody asks
+};
 
 std::string ply_header(const MeshFolder& folder, const Numbers& numbers) {
   const std::string type = folder.manifest.single_precision ? "float" : "double";
@@ -170,22 +140,53 @@ void append_vertex(const MeshFolder& folder, const Vec3& unit, std::string& byte
   }
 }
 
-void require_sheets(const MeshFolder& folder) {
+void require_parts(const MeshFolder& folder) {
   std::size_t missing = 0;
   for (std::size_t t = 0; t < folder.tiles(); ++t) {
     std::error_code ignored;
-    missing += std::filesystem::exists(mesh_sheets_path(folder.folder, t), ignored) ? 0 : 1;
+    missing += std::filesystem::exists(mesh_parts_path(folder.folder, t), ignored) ? 0 : 1;
   }
   if (missing == 0) return;
   throw InvalidInput(escape_text(folder.folder) + ": " + std::to_string(missing) + " of " + std::to_string(folder.tiles()) +
                      " tiles are not meshed; g3r tiles mesh FOLDER does them");
 }
 
-MergedMesh merge(const MeshFolder& folder, const std::string& output, const Monitor& monitor) {
-  require_sheets(folder);
+void require_known(const MeshOptions& options) {
+  if (options.trim == MeshOptions::Trim::kOff && options.faces == 0 && options.depth == 0 && options.mesher != Mesher::kPoisson) return;
+  throw Unavailable("meshes of tiles are neither trimmed nor simplified, and have the depth that their plan gives them");
+}
+
+// Of the vertices of a tile those that stay.
+void append_vertices(const MeshFolder& folder, const KeptParts& kept, std::size_t tile, std::string& bytes) {
+  const SheetsFile sheets(folder.folder, tile);
+  const PartsFile parts(folder, tile);
+  const std::vector<MovedVertex> moved = parts.moved();
+  std::vector<MeshVertex> vertices;
+  std::uint64_t count = 0;
+  std::size_t next = 0;
+  for (std::uint64_t at = 0; at < sheets.header().vertices; at += kAtOnce) {
+    const std::uint64_t end = std::min(sheets.header().vertices, at + kAtOnce);
+    vertices.clear();
+    sheets.append_vertices(at, end, vertices);
+    const std::vector<std::uint32_t> part = parts.parts_of(at, end);
+    for (std::size_t k = 0; k < part.size(); ++k) {
+      if (next < moved.size() && moved[next].vertex == at + k) vertices[k].position = moved[next++].position;
+      if (!kept.keeps(tile, part[k])) continue;
+      append_vertex(folder, vertices[k].position, bytes);
+      ++count;
+    }
+  }
+  if (count != kept.counts(tile).vertices) parts.fail();
+}
+
+MergedMesh merge(const MeshFolder& folder, const std::string& output, const MeshOptions& options, const Monitor& monitor) {
+  require_known(options);
+  require_parts(folder);
   Stages stages(monitor);
   stages.begin("merge");
-  const Numbers numbers = number_vertices(folder);
+  MergedMesh out;
+  const KeptParts kept(folder, options, out.dropped);
+  const Numbers numbers = number_vertices(folder, kept);
   io::OutputFile file(output, monitor.cancel);
   file.write(ply_header(folder, numbers));
   std::string bytes;
@@ -195,34 +196,33 @@ MergedMesh merge(const MeshFolder& folder, const std::string& output, const Moni
     stages.progress(static_cast<double>(step) / static_cast<double>(3 * folder.tiles()));
   };
   for (std::size_t t = 0; t < folder.tiles(); ++t) {
-    const SheetsFile sheets(folder.folder, t);
-    std::vector<MeshVertex> vertices;
-    sheets.append_vertices(0, sheets.header().vertices, vertices);
-    for (const MeshVertex& v : vertices) append_vertex(folder, v.position, bytes);
+    append_vertices(folder, kept, t, bytes);
     write(t);
   }
   for (std::size_t t = 0; t < folder.tiles(); ++t) {
-    if (SheetsFile(folder.folder, t).header().centres == 0) continue;
-    const TileMesh tile = triangles_of(folder, numbers, t);
-    for (std::size_t v = 0; v < tile.number.size(); ++v) {
-      if (tile.number[v] >= numbers.centres[0]) append_vertex(folder, tile.mesh.vertices[v], bytes);
-    }
+    if (kept.counts(t).centres == 0) continue;
+    const KeptSurface surface(folder, kept, numbers, t);
+    for (const Vec3& centre : surface.centres()) append_vertex(folder, centre, bytes);
     write(folder.tiles() + t);
   }
   for (std::size_t t = 0; t < folder.tiles(); ++t) {
-    const TileMesh tile = triangles_of(folder, numbers, t);
-    for (auto corners : tile.mesh.triangles) {
+    const KeptSurface surface(folder, kept, numbers, t);
+    for (auto corners : surface.triangles()) {
       if (folder.plan.inside_out) std::swap(corners[1], corners[2]);
       bytes.push_back(3);
       for (const std::uint32_t v : corners) {
-        const auto number = static_cast<std::int32_t>(tile.number[v]);
+        const auto number = static_cast<std::int32_t>(surface.number(v));
         bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
       }
     }
     write(2 * folder.tiles() + t);
   }
   file.commit();
-  return {numbers.all_vertices, numbers.triangles};
+  out.vertices = numbers.all_vertices;
+  out.triangles = numbers.triangles;
+  out.components = kept.components();
+  out.dropped.area /= folder.manifest.frame.scale * folder.manifest.frame.scale;
+  return out;
 }
 
 }  // namespace
@@ -230,11 +230,11 @@ MergedMesh merge(const MeshFolder& folder, const std::string& output, const Moni
 
 namespace g3r {
 
-MergedMesh merge_mesh(const std::string& folder, const std::string& output, const Monitor& monitor) {
+MergedMesh merge_mesh(const std::string& folder, const std::string& output, const MeshOptions& options, const Monitor& monitor) {
   if (io::extension(output) != "ply") {
     throw InvalidInput(escape_text(output) + ": meshes of tiles are written as binary PLY: expected a name that ends in .ply");
   }
-  return tiles::merge(tiles::read_mesh_folder(folder, tiles::read_manifest(folder)), output, monitor);
+  return tiles::merge(tiles::read_mesh_folder(folder, tiles::read_manifest(folder)), output, options, monitor);
 }
 
 }  // namespace g3r

@@ -1,4 +1,4 @@
-// The three passes over the tiles of a mesh. Each writes what its tile alone decides, and reads what others have decided, so that all agree
+// The four passes over the tiles of a mesh. Each writes what its tile alone decides, and reads what others have decided, so that all agree
 // on every point, corner and vertex, whatever they see of their surroundings.
 #pragma once
 
@@ -11,6 +11,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -22,9 +23,16 @@ void write_points(const MeshFolder& folder, std::size_t tile, const std::atomic<
 void write_corners(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel);
 /// Pass 3, after pass 2 of tiles_around() it: its vertices, and the polygons around its edges.
 void write_sheets(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel);
+/// Pass 4, after pass 3 of it and of the tiles whose vertices it has, and pass 1 of tiles_around() it: the connected parts of its
+/// triangles, and what holds them.
+void write_parts(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel);
 
 /// The tiles with points at most kAround cells away, itself included, ascending.
 [[nodiscard]] std::vector<std::size_t> tiles_around(const MeshFolder& folder, std::size_t tile);
+
+/// Calls take(tile, point) for the points of the cells of ring 0, in order, without repeated places and strays.
+void for_points_around(const MeshFolder& folder, const std::vector<std::uint8_t>& rings,
+                       const std::function<void(std::size_t, const MeshPoint&)>& take);
 
 /// The points around a tile, and the octree around it: as in every other tile where its own places are and next to them.
 struct Surroundings {
@@ -39,8 +47,9 @@ struct Surroundings {
   std::unique_ptr<const mesh::Octree> octree;
 };
 
-/// Of places where signs can be joined in two ways: by the fit where no other tile looks, the same for all elsewhere.
-[[nodiscard]] mesh::InsideTest joining_rule(const MeshFolder& folder, const Region& region, const mesh::LocalFit& local);
+/// Of places where signs can be joined in two ways: by the fit where all that it is made of is less than a cell away, which every tile that
+/// looks there sees too; elsewhere inside is cut off.
+[[nodiscard]] mesh::InsideTest joining_rule(const MeshFolder& folder, const mesh::Prepared& prepared, const mesh::LocalFit& local);
 
 /// Name of a corner, for all tiles.
 [[nodiscard]] std::uint64_t corner_name(const std::array<std::uint32_t, 3>& grid);

@@ -26,22 +26,26 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kSchema = "g3r.tiles.mesh";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr std::size_t kSamples = 32;         // cells, of 64 points or more each, that stand for the cloud
 constexpr int kSampleAround = 1;             // cells around them: 8 spacings or more
 constexpr std::uint64_t kFixed = 72u << 20;  // as of the solves
 constexpr std::uint64_t kPerPoint = 4500;    // bytes of the octree, the sides and the sheets around each point (docs/algorithms/tiles.md)
+constexpr double kLargestCell =
+    1.15;  // of kFinestCell: the frame is made for cells of just that size, from a spacing that errs (scale_for())
 constexpr int kMaxLevel = mesh::kMaxOctreeLevel - 4;  // of the cells: leaves are finer
 
 [[noreturn]] void fail(const std::string& folder, const std::string& what) {
   throw InvalidInput(escape_text(mesh_plan_path(folder)) + ": " + what + "; remove it and the other mesh-* files, and mesh again");
 }
 
-// Spacing and noise of the cloud: the medians over some of its cells.
+// Spacing, noise and heights of the cloud: the medians over some of its cells.
 void sample_cloud(const std::string& folder, const Manifest& m, const Cells& cells, MeshPlan& plan, const std::atomic<bool>* cancel) {
   std::vector<double> spacing;
   std::vector<double> position;
   std::vector<double> normal;
+  std::vector<double> usual;
+  std::vector<double> strays;
   const std::size_t count = std::min(kSamples, cells.cells.size());
   for (std::size_t s = 0; s < count; ++s) {
     if (cancel != nullptr && cancel->load()) throw Cancelled();
@@ -57,9 +61,13 @@ void sample_cloud(const std::string& folder, const Manifest& m, const Cells& cel
     const mesh::Noise noise = mesh::estimate_noise(prepared.points, *prepared.neighbours);
     position.push_back(noise.position);
     normal.push_back(noise.normal);
+    const mesh::CloudHeights heights = mesh::cloud_heights(prepared.points.positions, prepared.points.normals);
+    usual.push_back(heights.usual);
+    strays.push_back(heights.stray_share);
   }
   plan.spacing = median(std::move(spacing));
   plan.noise = {median(std::move(position)), median(std::move(normal))};
+  plan.heights = {median(std::move(usual)), median(std::move(strays))};
 }
 
 // As the thinned cloud says.
@@ -123,6 +131,7 @@ void write_plan(const std::string& folder, const MeshPlan& plan) {
               {"schema_version", kVersion},
               {"spacing", plan.spacing},
               {"noise", {plan.noise.position, plan.noise.normal}},
+              {"heights", {plan.heights.usual, plan.heights.stray_share}},
               {"inside_out", plan.inside_out},
               {"worker_memory_bytes", plan.worker_memory},
               {"tiles", json::array()}};
@@ -136,6 +145,7 @@ MeshPlan parsed(const json& from) {
   MeshPlan plan;
   from.at("spacing").get_to(plan.spacing);
   plan.noise = {from.at("noise").at(0), from.at("noise").at(1)};
+  plan.heights = {from.at("heights").at(0), from.at("heights").at(1)};
   from.at("inside_out").get_to(plan.inside_out);
   plan.worker_memory = whole_number(from.at("worker_memory_bytes"));
   for (const json& tile : from.at("tiles"))
@@ -157,7 +167,7 @@ bool is_sound(const MeshPlan& plan, const Cells& cells) {
 }  // namespace
 
 mesh::LevelRule MeshFolder::levels() const {
-  const double level = std::ceil(std::log2(2 / (mesh::kFinestCell * plan.spacing)));
+  const double level = std::ceil(std::log2(2 / (kLargestCell * mesh::kFinestCell * plan.spacing)));
   return {plan.spacing, std::clamp(static_cast<int>(level), mesh::kBaseLevel, mesh::kMaxOctreeLevel)};
 }
 

@@ -3,6 +3,7 @@
 
 #include "mesh/field_denoise.h"
 #include "mesh/field_points.h"
+#include "mesh/held_points.h"
 #include "tiles/cells.h"
 #include "tiles/manifest.h"
 
@@ -16,8 +17,9 @@
 namespace g3r::tiles {
 
 struct MeshPlan {
-  double spacing = 0;       ///< typical, in the unit frame
-  mesh::Noise noise;        ///< of the cloud
+  double spacing = 0;  ///< typical, in the unit frame
+  mesh::Noise noise;   ///< of the cloud
+  mesh::CloudHeights heights;
   bool inside_out = false;  ///< the points face into the solid: normals are turned, and so are triangles in the end
   std::vector<Tile> tiles;  ///< `solved`: points of its own and around them
   std::uint64_t worker_memory = 0;
@@ -53,8 +55,6 @@ class Region {
   [[nodiscard]] bool owns(std::uint64_t code) const { return code >= begin_ && code < end_; }
   /// Whether a cell of `level`, no deeper than that of the cells, is at most `reach` such cells from one with a place of the tile.
   [[nodiscard]] bool is_near(std::uint64_t code, int level, int reach) const;
-  /// Whether no other tile ever looks at what is in this cell.
-  [[nodiscard]] bool is_interior(std::uint64_t code) const;
   /// For every occupied cell 0 if it is at most kAround cells away, r where that holds of the cells r levels up.
   [[nodiscard]] std::vector<std::uint8_t> rings() const;
 

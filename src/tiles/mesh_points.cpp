@@ -92,36 +92,73 @@ void write_file(const std::string& path, const std::vector<T>& records, const st
   out.commit();
 }
 
+// The points of a tile and around it, as they came, those that no surface goes through left out.
+struct HeldPoints {
+  RawPoints all;
+  std::vector<std::uint8_t> held;
+  std::size_t first_own = 0;  // among all
+  RawPoints kept;             // those that are held
+};
+
+// Of `own` places from the first at or after the code `begin` on, a third at most are strays: more are no strays, as of a cloud.
+HeldPoints held_points_around(const MeshFolder& folder, std::size_t tile, std::uint64_t begin, std::size_t own,
+                              const std::atomic<bool>* cancel) {
+  const std::vector<std::uint8_t> rings = Region(folder, tile).rings();
+  HeldPoints out;
+  out.all = read_raw_points(folder.folder, folder.manifest, folder.cells, [&](std::size_t c) { return rings[c] == 0; });
+  for (Vec3& n : out.all.normals) n = vector::scale(vector::normalised(n), folder.plan.inside_out ? -1 : 1);
+  const std::vector<Vec3>& places = out.all.positions;
+  const auto before = [&](const Vec3& p) { return morton_code(p) < begin; };
+  const auto first = std::partition_point(places.begin(), places.end(), before) - places.begin();
+  out.first_own = static_cast<std::size_t>(first);
+  out.held = mesh::held_points(places, out.all.normals, folder.plan.heights, cancel);
+  const auto own_held = out.held.begin() + first;
+  const auto own_end = own_held + static_cast<std::ptrdiff_t>(own);
+  const auto strays = static_cast<double>(std::count(own_held, own_end, std::uint8_t{0}));
+  if (strays > mesh::kMostStrays * static_cast<double>(own)) std::fill(own_held, own_end, std::uint8_t{1});
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (out.held[i] == 0) continue;
+    out.kept.positions.push_back(places[i]);
+    out.kept.normals.push_back(out.all.normals[i]);
+  }
+  return out;
+}
+
 }  // namespace
 
 void write_points(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel) {
-  const std::vector<std::uint8_t> rings = Region(folder, tile).rings();
-  RawPoints raw = read_raw_points(folder.folder, folder.manifest, folder.cells, [&](std::size_t c) { return rings[c] == 0; });
-  if (folder.plan.inside_out) {
-    for (Vec3& n : raw.normals) n = vector::scale(n, -1);
-  }
-  mesh::Prepared prepared;
-  mesh::prepare(raw.positions, raw.normals, folder.plan.spacing, prepared);
-  mesh::smooth_noise(folder.plan.noise, cancel, prepared);
-  const std::vector<double> sizes = mesh::sizes_to_resolve(prepared);
-  // Its own, in the order of the records: one place that several have is among the raw points once.
   const Tile& own = folder.plan.tiles[tile];
   std::vector<Record> records;
   const std::uint64_t first = folder.first_point(tile);
   RecordFile<Record>(points_path(folder.folder, 1)).append(first, first + own.own, records);
-  const std::uint64_t begin = morton_code(folder.manifest.frame.to_unit(records[0].point));
-  const auto before = [&](const Vec3& p) { return morton_code(p) < begin; };
-  auto at = static_cast<std::size_t>(std::partition_point(raw.positions.begin(), raw.positions.end(), before) - raw.positions.begin());
-  const double cell = std::ldexp(2.0, -folder.cells.level);
-  std::vector<MeshPoint> points;
   std::vector<Vec3> places;
+  for (const Record& record : records) places.push_back(folder.manifest.frame.to_unit(record.point));
+  const auto repeats = [&](std::size_t i) { return i > 0 && records[i].point == records[i - 1].point; };
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < records.size(); ++i) count += repeats(i) ? 0 : 1;
+
+  const HeldPoints around = held_points_around(folder, tile, morton_code(places[0]), count, cancel);
+  mesh::Prepared prepared;
+  mesh::prepare(around.kept.positions, around.kept.normals, folder.plan.spacing, prepared);
+  mesh::smooth_noise(folder.plan.noise, cancel, prepared);
+  const std::vector<double> sizes = mesh::sizes_to_resolve(prepared);
+  // Its own, in the order of the records: one place that several have is among the points around once.
+  const double cell = std::ldexp(2.0, -folder.cells.level);
+  std::size_t at = around.first_own;
+  auto kept =
+      static_cast<std::size_t>(std::count(around.held.begin(), around.held.begin() + static_cast<std::ptrdiff_t>(at), std::uint8_t{1}));
+  std::vector<MeshPoint> points;
   for (std::size_t i = 0; i < records.size(); ++i) {
-    places.push_back(folder.manifest.frame.to_unit(records[i].point));
-    if (i > 0 && records[i].point == records[i - 1].point) {
+    if (repeats(i)) {
       points.push_back({points.back().position, points.back().normal, 0, 0, 0});
       continue;
     }
-    points.push_back(mesh_point(raw.positions[at], prepared, at, sizes[at], cell));
+    if (around.held[at] != 0) {
+      points.push_back(mesh_point(places[i], prepared, kept, sizes[kept], cell));
+      ++kept;
+    } else {
+      points.push_back({places[i], {}, 0, 0, kStray});
+    }
     ++at;
   }
   write_file(mesh_far_path(folder.folder, tile), far_nodes(places, points, std::min(kGridBits, folder.cells.level + 1)), cancel);

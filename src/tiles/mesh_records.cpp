@@ -45,6 +45,7 @@ std::string mesh_corners_path(const std::string& folder, std::size_t tile) {
 std::string mesh_sheets_path(const std::string& folder, std::size_t tile) {
   return folder + "/mesh-sheets-" + std::to_string(tile) + ".bin";
 }
+std::string mesh_parts_path(const std::string& folder, std::size_t tile) { return folder + "/mesh-parts-" + std::to_string(tile) + ".bin"; }
 
 void for_runs(std::size_t cells, const std::function<bool(std::size_t)>& wanted, const std::function<std::size_t(std::size_t)>& bound,
               const std::function<void(std::size_t, std::size_t)>& take) {

@@ -13,13 +13,15 @@
 
 namespace g3r::tiles {
 
+inline constexpr float kStray = -1;
+
 /// A point as the fits see it, in the unit frame, in the order of the sorted points.
 struct MeshPoint {
   Vec3 position;
   std::array<float, 3> normal;
-  float spacing;  ///< 0: the same place as the point before it, which stands for it
+  float spacing;  ///< 0: the same place as the point before it, which stands for it, or a stray
   float size;     ///< of what is to be seen there
-  float room;     ///< the disc around it may be so wide: then it stays within one cell of its own
+  float room;     ///< kStray of a stray; the disc around it may be so wide: then it stays within one cell of its own
 };
 static_assert(sizeof(MeshPoint) == 48);
 
@@ -78,6 +80,7 @@ struct SheetsHeader {
 [[nodiscard]] std::string mesh_far_path(const std::string& folder, std::size_t tile);
 [[nodiscard]] std::string mesh_corners_path(const std::string& folder, std::size_t tile);
 [[nodiscard]] std::string mesh_sheets_path(const std::string& folder, std::size_t tile);
+[[nodiscard]] std::string mesh_parts_path(const std::string& folder, std::size_t tile);
 
 /// Points with the normals that their tiles found, in the unit frame.
 struct RawPoints {

@@ -22,11 +22,6 @@ bool Region::is_near(std::uint64_t code, int level, int reach) const {
   return meets(code) || any_neighbour(code, level, reach, meets);
 }
 
-bool Region::is_interior(std::uint64_t code) const {
-  constexpr int kReach = 2;  // a leaf around a place may have the size of a cell, and touch the next one
-  return owns(code) && !any_neighbour(code, level_, kReach, [&](std::uint64_t other) { return !owns(other); });
-}
-
 // Of the cells [first, last), all within the cell `code` of `level`.
 void Region::mark(int level, std::uint64_t code, std::size_t first, std::size_t last, std::vector<std::uint8_t>& rings) const {
   if (first == last) return;

@@ -2,6 +2,7 @@
 #include "base/stages.h"
 #include "cpu/parallel.h"
 #include "tiles/mesh_passes.h"
+#include "tiles/sheets_file.h"
 
 #include <g3r/io.h>
 #include <g3r/tiles.h>
@@ -40,6 +41,19 @@ class MeshRun {
     for (const std::size_t other : tiles_around(folder_, t)) corners(other);
     begin("surface", t);
     write_sheets(folder_, t, stages_.cancel());
+  }
+
+  void parts(std::size_t t) {
+    if (is_there(mesh_parts_path(folder_.folder, t))) return;
+    sheets(t);
+    const SheetsFile file(folder_.folder, t);
+    for (const std::size_t other : file.foreign_tiles()) {
+      if (other >= folder_.tiles()) file.fail();
+      sheets(other);
+    }
+    for (const std::size_t other : tiles_around(folder_, t)) points(other);
+    begin("parts", t);
+    write_parts(folder_, t, stages_.cancel());
   }
 
  private:
@@ -85,10 +99,11 @@ MeshTiles mesh_tiles(const std::string& folder, const TileWorker& worker, const 
     for_own(&tiles::MeshRun::points);
     for_own(&tiles::MeshRun::corners);
     for_own(&tiles::MeshRun::sheets);
+    for_own(&tiles::MeshRun::parts);
     MeshTiles out;
     out.tiles = opened.tiles();
     out.worker_memory_bytes = opened.plan.worker_memory;
-    for (std::size_t t = 0; t < opened.tiles(); ++t) out.done += tiles::is_there(tiles::mesh_sheets_path(folder, t)) ? 1 : 0;
+    for (std::size_t t = 0; t < opened.tiles(); ++t) out.done += tiles::is_there(tiles::mesh_parts_path(folder, t)) ? 1 : 0;
     return out;
   });
 }

@@ -157,7 +157,7 @@ void write_sheets(const MeshFolder& folder, std::size_t tile, const std::atomic<
   const std::vector<float> value = read_corners(folder, around, tile);
   std::vector<std::uint8_t> inside(value.size());
   for (std::size_t c = 0; c < inside.size(); ++c) inside[c] = value[c] > 0 ? 1 : 0;
-  const mesh::DualSurface surface = mesh::contour(octree, inside, joining_rule(folder, around.region, local), cancel);
+  const mesh::DualSurface surface = mesh::contour(octree, inside, joining_rule(folder, prepared, local), cancel);
   const Names names(folder, octree, surface);
   std::vector<std::uint8_t> wanted(surface.patch_count());
   for (std::size_t v = 0; v < wanted.size(); ++v) wanted[v] = names.owner_of_vertex(v) == tile ? 1 : 0;

@@ -1,4 +1,5 @@
 // What a tile sees around it.
+#include "base/vector.h"
 #include "mesh/field_corners.h"
 #include "tiles/cell_codes.h"
 #include "tiles/mesh_passes.h"
@@ -51,11 +52,8 @@ std::vector<std::size_t> tiles_around(const MeshFolder& folder, std::size_t tile
   return tiles;
 }
 
-Surroundings::Surroundings(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel)
-    : region(folder, tile), rings(region.rings()) {
-  mesh::OrientedPoints& points = prepared.points;
-  std::vector<mesh::RefineDisc> discs;
-  const mesh::LevelRule levels = folder.levels();
+void for_points_around(const MeshFolder& folder, const std::vector<std::uint8_t>& rings,
+                       const std::function<void(std::size_t, const MeshPoint&)>& take) {
   const auto tile_of = [&](std::size_t c) { return folder.owner(folder.cells.cells[c].code); };
   std::vector<MeshPoint> read;
   for_runs(
@@ -67,30 +65,50 @@ Surroundings::Surroundings(const MeshFolder& folder, std::size_t tile, const std
         RecordFile<MeshPoint>(mesh_points_path(folder.folder, from))
             .append(folder.cells.cells[first].begin - before, folder.cells.end(last - 1) - before, read);
         for (const MeshPoint& p : read) {
-          if (!(p.spacing > 0)) continue;
-          if (from == tile) own.push_back(static_cast<std::uint32_t>(points.positions.size()));
-          points.positions.push_back(p.position);
-          points.normals.push_back({p.normal[0], p.normal[1], p.normal[2]});
-          points.spacing.push_back(p.spacing);
-          mesh::RefineDisc disc = mesh::disc_around(p.position, points.normals.back(), p.spacing, p.size, levels);
-          disc.radius = std::min(disc.radius, double{p.room});
-          if (disc.radius > 0) discs.push_back(disc);
+          if (p.spacing > 0) take(from, p);
         }
       });
+}
+
+Surroundings::Surroundings(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel)
+    : region(folder, tile), rings(region.rings()) {
+  mesh::OrientedPoints& points = prepared.points;
+  std::vector<mesh::RefineDisc> discs;
+  const mesh::LevelRule levels = folder.levels();
+  for_points_around(folder, rings, [&](std::size_t from, const MeshPoint& p) {
+    if (from == tile) own.push_back(static_cast<std::uint32_t>(points.positions.size()));
+    points.positions.push_back(p.position);
+    points.normals.push_back({p.normal[0], p.normal[1], p.normal[2]});
+    points.spacing.push_back(p.spacing);
+    mesh::RefineDisc disc = mesh::disc_around(p.position, points.normals.back(), p.spacing, p.size, levels);
+    disc.radius = std::min(disc.radius, double{p.room});
+    if (disc.radius > 0) discs.push_back(disc);
+  });
   mesh::find_neighbours(prepared);
   prepared.typical = folder.plan.spacing;
   octree = std::make_unique<mesh::Octree>(Vec3{-1, -1, -1}, 2, discs, split_rule(folder, region), cancel);
 }
 
-mesh::InsideTest joining_rule(const MeshFolder& folder, const Region& region, const mesh::LocalFit& local) {
-  return [&folder, &region, &local](const std::vector<Vec3>& places) {
+mesh::InsideTest joining_rule(const MeshFolder& folder, const mesh::Prepared& prepared, const mesh::LocalFit& local) {
+  const double cell = std::ldexp(2.0, -folder.cells.level);
+  return [cell, &prepared, &local](const std::vector<Vec3>& places) {
     std::vector<std::uint8_t> inside = mesh::sides_by_fit(local, places);
-    const int level = folder.cells.level;
-    const auto occupied = [&](std::uint64_t other) { return is_occupied(folder.cells, other, level); };
+    const std::vector<Vec3>& points = prepared.points.positions;
+    const std::size_t near = prepared.near.size() / points.size();
+    const auto distance = [](const Vec3& a, const Vec3& b) {
+      const Vec3 d = vector::subtract(a, b);
+      return std::sqrt(vector::dot(d, d));
+    };
     for (std::size_t i = 0; i < places.size(); ++i) {
       if (inside[i] == 0) continue;
-      const std::uint64_t code = morton_code(places[i]) >> (3 * (kGridBits - level));
-      if (!region.is_interior(code) || !any_neighbour(code, level, 1, occupied)) inside[i] = 0;
+      double squared = cell * cell;
+      const std::uint32_t nearest = prepared.neighbours->nearest(places[i], squared, static_cast<std::uint32_t>(points.size()));
+      if (nearest == points.size()) {
+        inside[i] = 0;
+        continue;
+      }
+      const std::uint32_t last = prepared.near[(nearest + 1) * near - 1];
+      if (!(std::sqrt(squared) + distance(points[nearest], points[last]) < cell)) inside[i] = 0;
     }
     return inside;
   };

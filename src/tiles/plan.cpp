@@ -4,9 +4,11 @@
 #include "io/output_file.h"
 #include "io/point_stream.h"
 #include "io/tiles.h"
+#include "mesh/field_points.h"
 #include "tiles/external_sort.h"
 #include "tiles/manifest.h"
 #include "tiles/records.h"
+#include "tiles/spacing_sample.h"
 #include "tiles/tile_cloud.h"
 
 #include <g3r/io.h>
@@ -85,6 +87,13 @@ std::string asked_of(const TileOptions& options) {
   return text.str();
 }
 
+// The points fill the frame as far as may be with cells of the mesh, halves of halves of the frame, of the size that they have in core.
+double scale_for(double longest_side, double spacing) {
+  const double scale = kLongestSide / longest_side;
+  const double halvings = std::log2(2 / (mesh::kFinestCell * spacing * scale));
+  return spacing > 0 && std::isfinite(halvings) ? scale * std::exp2(halvings - std::ceil(halvings)) : scale;
+}
+
 // First reading: counts and extent.
 Manifest survey(const std::vector<std::string>& files, const TileOptions& options, Stages& stages) {
   stages.begin("read");
@@ -96,6 +105,7 @@ Manifest survey(const std::vector<std::string>& files, const TileOptions& option
     m.inputs.push_back({file, std::filesystem::file_size(file, ignored), 0});
   }
   std::vector<std::uint64_t> non_finite(files.size());
+  SpacingSample sample;
   Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL};
   Vec3 high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
   std::size_t more_warnings = 0;
@@ -119,6 +129,7 @@ Manifest survey(const std::vector<std::string>& files, const TileOptions& option
           ++non_finite[file];
           return;
         }
+        sample.add(p);
         for (std::size_t a = 0; a < 3; ++a) {
           low[a] = std::min(low[a], p[a]);
           high[a] = std::max(high[a], p[a]);
@@ -141,7 +152,7 @@ Manifest survey(const std::vector<std::string>& files, const TileOptions& option
   }
   m.bounds = {low, high};
   if (!(side > 1 / kLargest)) throw InvalidInput("all points are at one place");
-  m.frame.scale = kLongestSide / side;
+  m.frame.scale = scale_for(side, sample.spacing());
   if (more_warnings > 0) m.warnings.push_back("and " + std::to_string(more_warnings) + " more warnings about these files");
   if (m.non_finite > 0) m.warnings.push_back(std::to_string(m.non_finite) + " points with a non-finite coordinate were left out");
   return m;

@@ -1,0 +1,114 @@
+#include "mesh/component_support.h"
+
+#include "base/vector.h"
+#include "cloud/neighbours.h"
+#include "cpu/parallel.h"
+#include "mesh/held_points.h"
+#include "mesh/mesh_parts.h"
+#include "mesh/trim.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace g3r::mesh {
+namespace {
+
+constexpr double kAtSpacings = 1.5;    // of a point and of noise, from it to the centre of a triangle that it holds
+constexpr double kBesideSpacings = 3;  // of a point, up to which a stray is beside it
+constexpr std::uint32_t kNothing = 0xffffffff;
+constexpr double kAnywhere = 1e150;    // its square is a number still
+constexpr double kLeastComponent = 8;  // points: smaller ones are specks of the sign
+constexpr double kLeastPerNoise = 4;   // squared noise for which one point more is asked: it leaves spheres of 1.7 standard deviations
+
+// For every place the nearest of some points within its reach, or kNothing.
+template <class Reach>
+std::vector<std::uint32_t> nearest_of(const std::vector<Vec3>& points, const std::vector<Vec3>& places, const Reach& reach) {
+  const Neighbours neighbours(points);
+  std::vector<std::uint32_t> out(places.size());
+  parallel::for_blocks(places.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      double squared = std::pow(reach(i), 2);
+      out[i] = neighbours.nearest(places[i], squared, kNothing);
+    }
+  });
+  return out;
+}
+
+std::vector<Vec3> centres_of(const Mesh& mesh) {
+  std::vector<Vec3> centres;
+  centres.reserve(mesh.triangles.size());
+  for (const auto& t : mesh.triangles) {
+    const Vec3 sum = vector::add(mesh.vertices[t[0]], vector::add(mesh.vertices[t[1]], mesh.vertices[t[2]]));
+    centres.push_back(vector::scale(sum, 1.0 / 3));
+  }
+  return centres;
+}
+
+}  // namespace
+
+void Support::add(const Support& other) {
+  area += other.area;
+  near_area += other.near_area;
+  stands_for += other.stands_for;
+  stands_for_under_noise += other.stands_for_under_noise;
+  strays += other.strays;
+  points += other.points;
+}
+
+void add_areas(const Mesh& mesh, const std::vector<std::uint32_t>& component, const std::vector<Vec3>& points,
+               const std::vector<double>& spacing, double scatter, std::vector<Support>& support) {
+  const std::vector<Vec3> centres = centres_of(mesh);
+  const std::vector<std::uint32_t> nearest = nearest_of(points, centres, [](std::size_t) { return kAnywhere; });
+  for (std::size_t t = 0; t < centres.size(); ++t) {
+    const double h2 = spacing[nearest[t]] * spacing[nearest[t]];
+    const double area = area_of(mesh, mesh.triangles[t]);
+    const Vec3 d = vector::subtract(centres[t], points[nearest[t]]);
+    Support& of = support[component[t]];
+    of.area += area;
+    of.near_area += vector::dot(d, d) <= kFarSpacings * kFarSpacings * h2 ? area : 0;
+    of.stands_for += area / h2;
+    of.stands_for_under_noise += area / (h2 + kLeastPerNoise * scatter * scatter);
+  }
+}
+
+void add_points(const Mesh& mesh, const std::vector<std::uint32_t>& component, const std::vector<Vec3>& points,
+                const std::vector<double>& spacing, double scatter, const std::vector<Vec3>& strays, std::vector<Support>& support) {
+  const std::vector<Vec3> centres = centres_of(mesh);
+  const std::vector<std::uint32_t> held_by =
+      nearest_of(centres, points, [&](std::size_t i) { return kAtSpacings * (spacing[i] + scatter); });
+  for (const std::uint32_t t : held_by) {
+    if (t != kNothing) ++support[component[t]].points;
+  }
+  const std::vector<std::uint32_t> beside = nearest_of(points, strays, [](std::size_t) { return kAnywhere; });
+  for (std::size_t k = 0; k < strays.size(); ++k) {
+    const Vec3 d = vector::subtract(strays[k], points[beside[k]]);
+    if (held_by[beside[k]] == kNothing || std::sqrt(vector::dot(d, d)) > kBesideSpacings * spacing[beside[k]]) continue;
+    ++support[component[held_by[beside[k]]]].strays;
+  }
+}
+
+std::vector<std::uint8_t> kept_components(const std::vector<Support>& support, const MeshOptions& options, std::size_t strays,
+                                          Dropped& dropped) {
+  std::vector<std::size_t> order(support.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return support[a].near_area > support[b].near_area; });
+  const double least_area = options.min_component.value_or(options.keep_all ? 0 : kLeastComponent);
+  const bool by_points = !options.min_component && !options.keep_all;
+  const double least_points = least_points_of_a_part(strays);
+  std::vector<std::uint8_t> keep(support.size(), 1);
+  for (std::size_t k = 1; k < order.size(); ++k) {
+    const Support& of = support[order[k]];
+    const double stands_for = options.min_component ? of.stands_for : of.stands_for_under_noise;
+    if (stands_for < least_area || (by_points && of.points < std::max(least_points, of.strays))) {
+      keep[order[k]] = 0;
+      ++dropped.components;
+      dropped.area += of.area;
+    } else if (options.keep_largest > 0 && k >= options.keep_largest) {
+      keep[order[k]] = 0;
+    }
+  }
+  return keep;
+}
+
+}  // namespace g3r::mesh

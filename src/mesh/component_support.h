@@ -1,0 +1,39 @@
+// What holds the components of a mesh, and which of them stay: one law for meshes in core and in tiles.
+#pragma once
+
+#include <g3r/g3r.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace g3r::mesh {
+
+/// What holds a component. Of parts that turn out to be one component the sums are those of the parts.
+struct Support {
+  double area = 0;                    ///< of its surface
+  double near_area = 0;               ///< of that within kFarSpacings of a point
+  double stands_for = 0;              ///< points that its area stands for
+  double stands_for_under_noise = 0;  ///< the same where noise makes specks of the sign
+  double strays = 0;                  ///< beside it
+  double points = 0;                  ///< that lie at it
+
+  void add(const Support& other);
+};
+
+/// Adds the triangles t to support[component[t]], all but its strays and points. N points with the spacing at each, N > 0; `scatter`: of
+/// the points about the surface, a length. O(F log N).
+void add_areas(const Mesh& mesh, const std::vector<std::uint32_t>& component, const std::vector<Vec3>& points,
+               const std::vector<double>& spacing, double scatter, std::vector<Support>& support);
+
+/// Adds the points and the strays (points that no surface goes through, none of them among the points). O((F + N) log F).
+void add_points(const Mesh& mesh, const std::vector<std::uint32_t>& component, const std::vector<Vec3>& points,
+                const std::vector<double>& spacing, double scatter, const std::vector<Vec3>& strays, std::vector<Support>& support);
+
+/// Marks (1) the components that stay. The one with most area near points always does. Of the others go, and are added to `dropped`, specks
+/// (MeshOptions::min_component), those that fewer points hold than least_points_of_a_part(strays), and those that fewer points hold than
+/// strays are within 3 spacings of them, as in a cloud that fills space; and those beyond MeshOptions::keep_largest.
+[[nodiscard]] std::vector<std::uint8_t> kept_components(const std::vector<Support>& support, const MeshOptions& options, std::size_t strays,
+                                                        Dropped& dropped);
+
+}  // namespace g3r::mesh
