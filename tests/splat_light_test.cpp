@@ -1,4 +1,5 @@
-// Gaussian splats: floaters and splats inside are distinguished from those of a surface, one by one and in a scene, from the file to the mesh.
+// Gaussian splats: floaters and splats inside are distinguished from those of a surface, one by one and in a scene, from the file to the
+// mesh.
 #include "cloud/splat_light.h"
 
 #include "io_samples.h"
