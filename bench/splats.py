@@ -45,10 +45,11 @@ def read_ply(path):
         return np.frombuffer(file.read(count * np.dtype(names).itemsize), dtype=names)
 
 
-def write_ply(path, table):
+def write_ply(path, table, names):
+    """A float property for every column."""
     with open(path, "wb") as file:
         file.write(b"ply\nformat binary_little_endian 1.0\nelement vertex %d\n" % len(table))
-        file.write("".join(f"property float {name}\n" for name in SPLAT).encode() + b"end_header\n" + table.astype("<f4").tobytes())
+        file.write("".join(f"property float {name}\n" for name in names).encode() + b"end_header\n" + table.astype("<f4").tobytes())
 
 
 def turned_to(direction, rng):
@@ -163,7 +164,7 @@ def main():
     if len(points) < 4 * arguments.count:
         raise SystemExit(f"{arguments.surface}: expected at least 4 points for each of {arguments.count} splats, found {len(points)}")
     table = scene(points, normals, arguments.count, arguments.inside, arguments.floating, arguments.seed)
-    write_ply(arguments.out, table)
+    write_ply(arguments.out, table, SPLAT)
     if arguments.spz:
         write_spz(arguments.spz, table)
 
