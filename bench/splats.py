@@ -5,16 +5,16 @@
     splats.py make dense.ply scene.ply --count 50000            # what 3DGS writes, and the truth beside it
     g3r orient scene.ply oriented.ply && splats.py score oriented.ply
 
-dense.ply has points and normals; its points are those of the surface, at least four of them for a splat, as the inside is told by the
-nearest. In the scene, all lengths in spacings h of the splats on the surface:
-  80 %  lie on the surface, but for noise of 0.1 along the normal; discs of about 0.8 by 0.8 by 0.08, tilted by about 10 degrees, half of them
-        of an opacity above 0.82;
-  15 %  inside (--inside): half of them anywhere, half 3 below the surface on the average, where training splits splats; of the same sizes and
-        opacities, turned anyhow, as no picture shows them;
+dense.ply has points and normals; its points are those of the surface, at least four of them for a splat, as the inside is where the
+nearest one says. In the scene, all lengths in spacings h of the splats on the surface:
+  80 %  lie on the surface, but for noise of 0.1 along the normal; discs of about 0.8 by 0.8 by 0.08, tilted by about 10 degrees, half of
+        them of an opacity above 0.82;
+  15 %  inside (--inside): half of them anywhere, half 3 below the surface on the average, where training splits splats; of the same sizes
+        and opacities, turned anyhow, as no picture shows them;
    5 %  float outside (--floating), in the box enlarged by half: blobs of 2 to 6, of an opacity of 0.02 to 0.4.
-scene.ply has the properties of 3DGS (logarithms of scales, logits of opacities, quaternions) and true_nx, true_ny, true_nz, kind (0 surface,
-1 inside, 2 floating), which g3r hands through; `score` prints, as JSON, the share of each kind that is left, and the share of those on the
-surface whose normals are on the right side. --spz FILE writes the splats as SPZ too. Needs NumPy and SciPy.
+scene.ply has the properties of 3DGS (logarithms of scales, logits of opacities, quaternions) and true_nx, true_ny, true_nz, kind
+(0 surface, 1 inside, 2 floating), which g3r hands through; `score` prints, as JSON, how many of each kind are left, and the share of those
+on the surface whose normals are on the right side. --spz FILE writes the splats as SPZ too. Needs NumPy and SciPy.
 """
 
 import argparse
@@ -27,8 +27,8 @@ from scipy.spatial import cKDTree
 
 TYPES = {"float": "<f4", "double": "<f8", "uchar": "u1", "int": "<i4", "float32": "<f4", "float64": "<f8"}
 HARMONIC = 0.28209479177387814  # Y_0
-SPLAT = ["x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1", "rot_2",
-         "rot_3", "true_nx", "true_ny", "true_nz", "kind"]
+SPLAT = ["x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2",
+         "rot_0", "rot_1", "rot_2", "rot_3", "true_nx", "true_ny", "true_nz", "kind"]
 
 
 def read_ply(path):
@@ -115,9 +115,9 @@ def scene(points, normals, count, inside, floating, seed):
     axis[kind == 0] = unit(normal + np.tan(np.radians(10)) / np.sqrt(2) * rng.normal(size=normal.shape))
     truth = np.zeros((count, 3))
     truth[kind == 0] = normal
-    color = (0.5 + 0.5 * (place - solid.low) / (solid.high - solid.low).max() - 0.5) / HARMONIC
-    table = np.concatenate([place, np.zeros((count, 3)), color, np.log(opacity / (1 - opacity))[:, None], np.log(size), turned_to(axis, rng), truth,
-                            kind[:, None]], 1)
+    color = 0.5 * (place - solid.low) / (solid.high - solid.low).max() / HARMONIC
+    logit = np.log(opacity / (1 - opacity))[:, None]
+    table = np.concatenate([place, np.zeros((count, 3)), color, logit, np.log(size), turned_to(axis, rng), truth, kind[:, None]], 1)
     return table[rng.permutation(count)]
 
 
@@ -129,7 +129,8 @@ def write_spz(path, table):
     quaternion = unit(stack("rot_0", "rot_1", "rot_2", "rot_3"))
     quaternion *= np.where(quaternion[:, :1] < 0, -1, 1)
     to_bytes = lambda values: np.clip(np.round(values), 0, 255).astype(np.uint8).tobytes()
-    blocks = b"".join([fixed[:, :, None].view(np.uint8).reshape(len(table), 3, 4)[:, :, :3].tobytes(), to_bytes(255 / (1 + np.exp(-value["opacity"]))),
+    blocks = b"".join([fixed[:, :, None].view(np.uint8).reshape(len(table), 3, 4)[:, :, :3].tobytes(),
+                       to_bytes(255 / (1 + np.exp(-value["opacity"]))),
                        to_bytes((stack("f_dc_0", "f_dc_1", "f_dc_2") * 0.15 + 0.5) * 255),
                        to_bytes((stack("scale_0", "scale_1", "scale_2") + 10) * 16), to_bytes((quaternion[:, 1:] + 1) * 127.5)])
     with gzip.open(path, "wb") as file:
@@ -139,7 +140,8 @@ def write_spz(path, table):
 def score(table):
     kind = table["kind"]
     dot = sum(table["n" + a].astype(float) * table["true_n" + a] for a in "xyz")[kind == 0]
-    return {"left": {name: int((kind == k).sum()) for k, name in enumerate(["surface", "inside", "floating"])}, "right": float((dot > 0).mean())}
+    left = {name: int((kind == k).sum()) for k, name in enumerate(["surface", "inside", "floating"])}
+    return {"left": left, "right": float((dot > 0).mean())}
 
 
 def main():
