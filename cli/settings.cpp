@@ -153,6 +153,9 @@ void add_read_options(CLI::App& app, Settings& s) {
   app.add_option("--min-opacity", s.read_options.min_opacity, "Gaussian splats: leave out those below this opacity, 0 to 1 (default 0.1)")
       ->check(range(0.0, 1.0))
       ->type_name("X");
+  app.add_flag("--all-splats", s.read_options.all_splats,
+               "Gaussian splats: keep all, also faint ones, floaters and those inside, which no light from outside reaches")
+      ->disable_flag_override();
   app.add_option_function<std::vector<double>>(
          "--box",
          [&s](const std::vector<double>& sides) {

@@ -74,7 +74,9 @@ bool can_be_tiled(const Settings& s, std::initializer_list<const char*> extensio
   const std::string extension = std::filesystem::path(s.output).extension().string();
   const bool simple_output = s.also.empty() && !s.write_options.ascii && !s.write_options.cloud_compare_names &&
                              std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
-  const bool whole_input = s.input != "-" && !s.read_options.box && s.read_options.levels == 0;
+  const ReadOptions& read = s.read_options;
+  const bool whole_input =
+      s.input != "-" && !read.box && read.levels == 0 && !read.all_splats && read.min_opacity == ReadOptions{}.min_opacity;
   std::error_code ignored;
   const bool has_files = std::filesystem::is_regular_file(s.input, ignored) || std::filesystem::is_directory(s.input, ignored) ||
                          s.input.find_first_of("*?") != std::string::npos;

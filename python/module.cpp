@@ -156,10 +156,12 @@ auto field_gradient(const Field& field, const PointsArray& queries) {
   return give_rows(std::move(gradients));
 }
 
-std::shared_ptr<Cloud> read_points(const Text& path, double min_opacity, const std::optional<std::array<double, 6>>& box, int levels) {
+std::shared_ptr<Cloud> read_points(const Text& path, double min_opacity, bool all_splats, const std::optional<std::array<double, 6>>& box,
+                                   int levels) {
   const nb::gil_scoped_release release;
   ReadOptions options;
   options.min_opacity = min_opacity;
+  options.all_splats = all_splats;
   if (box) options.box = Box{{(*box)[0], (*box)[1], (*box)[2]}, {(*box)[3], (*box)[4], (*box)[5]}};
   options.levels = levels;
   return std::make_shared<Cloud>(read_cloud(path, options));
@@ -326,7 +328,8 @@ void bind(nb::module_& m) {
   m.def("devices", &devices);
   m.def("build_info", &module_build_info);
   m.def("field", &make_field, nb::arg("points"), nb::arg("normals"), nb::arg("areas"), nb::arg("width"));
-  m.def("read_cloud", &read_points, nb::arg("path"), nb::arg("min_opacity"), nb::arg("box").none(), nb::arg("levels"));
+  m.def("read_cloud", &read_points, nb::arg("path"), nb::arg("min_opacity"), nb::arg("all_splats"), nb::arg("box").none(),
+        nb::arg("levels"));
   m.def("write_cloud", &write_points, nb::arg("path"), nb::arg("source").none(), nb::arg("positions").none(), nb::arg("normals").none(),
         nb::arg("colors").none(), nb::arg("confidence").none(), nb::arg("ascii"), nb::arg("cloud_compare_names"));
   m.def("score_normals", &score_directions, nb::arg("normals"), nb::arg("truth"));

@@ -641,6 +641,19 @@ class Measuring(ProgramTest):
         self.expect(USAGE, "tiles/*.xyz")
         self.expect(NO_INPUT, "info", "tiles/*.ply")
 
+    def test_splats_that_are_no_surface_are_left_out_unless_all_are_wanted(self):
+        names = "x y z f_dc_0 f_dc_1 f_dc_2 opacity scale_0 scale_1 scale_2 rot_0 rot_1 rot_2 rot_3".split()
+        corners = [(i % 2 * 9, i // 2 % 2 * 9, i // 4 * 9, 4 if i < 7 else -1) for i in range(8)]  # opacities 0.98, and 0.27 of the last
+        with open(self.path("splats.ply"), "w", encoding="ascii") as file:
+            file.write("ply\nformat ascii 1.0\nelement vertex 8\n" + "".join(f"property float {name}\n" for name in names) + "end_header\n")
+            file.writelines(f"{x} {y} {z} 0 0 0 {opacity} 0 0 0 1 0 0 0\n" for x, y, z, opacity in corners)
+        some = self.expect(OK, "info", "splats.ply")
+        self.assertRegex(some.out.decode(), "points +7\n")
+        self.assertIn("1 of 8 splats are left out: 1 where most of the light passes (floaters); --all-splats keeps them", some.err)
+        everything = self.expect(OK, "info", "splats.ply", "--all-splats")
+        self.assertRegex(everything.out.decode(), "points +8\n")
+        self.assertNotIn("left out", everything.err)
+
     def test_info_says_what_is_in_a_file(self):
         text = self.expect(OK, "info", "cube.obj").out.decode()
         for words in ("cube.obj", "8", "12 triangles", "closed", "genus 0", "no triangles intersect", "smallest 45 degrees", "x 0 to 2"):

@@ -64,7 +64,7 @@ TEST(Ptx, WhatIsWrongIsSaid) {
 TEST(Spz, PositionsColoursAndOpacityAreUnpacked) {
   for (const std::uint32_t version : {2U, 3U}) {
     const std::string file = samples::gzip(samples::unpacked_spz(3, version, true));
-    const Cloud cloud = read_cloud_bytes(file.data(), file.size(), "splats", {.min_opacity = 0});
+    const Cloud cloud = read_cloud_bytes(file.data(), file.size(), "splats", {.all_splats = true});
     EXPECT_EQ(cloud.format, "spz version " + std::to_string(version) + ", Gaussian splats");
     EXPECT_TRUE(cloud.warnings.empty());
     EXPECT_EQ(cloud.positions, (std::vector<Vec3>{{0, 0, 0}, {1, -1, 0.25}, {2, -2, 0.5}}));

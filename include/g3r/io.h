@@ -46,6 +46,9 @@ struct Box {
 
 struct ReadOptions {
   double min_opacity = 0.1;  ///< Gaussian splats: leave out splats below this opacity, 0..1
+  /// Gaussian splats: keep all, also those below min_opacity and, where the file has scales and rotations, those that are no surface: at
+  /// whose centre the splats together stop less than half of the light (floaters), or that from no side half of the light reaches (inside).
+  bool all_splats = false;
   std::optional<Box> box{};  ///< leave out points outside of it; of COPC and EPT only cells that it meets are unpacked
   int levels = 0;            ///< COPC, EPT: levels of the octree to read, from the coarsest; 0 for all (as of other files, with a warning)
 };

@@ -117,3 +117,14 @@ def test_errors_name_the_file(tmp_path, sphere):
     with pytest.raises(g3r.InputError, match="without normals"):
         g3r.write(tmp_path / "a.ply", TETRAHEDRON, normals=TETRAHEDRON[0])
     assert sorted(p.name for p in tmp_path.iterdir()) == ["bad.ply"], "nothing half written is left"
+
+
+def test_splats_that_are_no_surface_are_left_out(tmp_path):
+    names = "x y z f_dc_0 f_dc_1 f_dc_2 opacity scale_0 scale_1 scale_2 rot_0 rot_1 rot_2 rot_3".split()
+    lines = ["ply", "format ascii 1.0", "element vertex 2", *(f"property float {name}" for name in names), "end_header"]
+    path = tmp_path / "a.ply"
+    path.write_text("\n".join([*lines, "1 2 3 0 0 0 4 0 0 0 1 0 0 0", "9 2 3 0 0 0 -1 0 0 0 1 0 0 0"]) + "\n")  # opacities 0.98 and 0.27
+    cloud = g3r.read(path)
+    np.testing.assert_array_equal(cloud.points, [[1, 2, 3]])
+    assert "floaters" in cloud.warnings[0]
+    assert len(g3r.read(path, all_splats=True)) == 2

@@ -292,7 +292,7 @@ Cloud read_ply(const Source& source, const ReadOptions& options) {
   std::shared_ptr<Attributes> table = read_table(source, cloud);
   check_faces(*table, cloud.warnings);
   if (is_splat(table->points())) {
-    fill_splat_cloud(source, std::move(table), options.min_opacity, cloud);
+    fill_splat_cloud(source, std::move(table), options, cloud);
   } else {
     fill_cloud(source, std::move(table), cloud);
   }

@@ -146,7 +146,7 @@ Cloud read_spz(const Source& source, const ReadOptions& options) {
   if (!more && !stream.ended()) fail(source, "truncated or damaged: the gzip stream does not end as it should (checksum)");
   if (more && !header.extensions) cloud.warnings.emplace_back("trailing bytes after the last splat are not used");
   cloud.format = "spz version " + std::to_string(header.version);
-  fill_splat_cloud(source, table, options.min_opacity, cloud);
+  fill_splat_cloud(source, table, options, cloud);
   return cloud;
 }
 

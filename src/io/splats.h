@@ -12,8 +12,12 @@ namespace g3r::io {
 /// Whether the vertices are splats.
 bool is_splat(const Element& points);
 
-/// Fills the cloud from a table of splats: those whose opacity, 1 / (1 + exp(-value)), is below `least` (0..1) are left out, with a warning
-/// that says how many (all are kept where every splat is below it); colours are 0.5 + Y_0 f_dc. Throws as fill_cloud().
-void fill_splat_cloud(const Source& source, std::shared_ptr<Attributes> table, double least, Cloud& cloud);
+/// Fills the cloud from a table of splats; colours are 0.5 + Y_0 f_dc. Left out, with a warning that says how many and how to keep them,
+/// are
+///   - those whose opacity, 1 / (1 + exp(-value)), is below options.min_opacity;
+///   - where the table has scale_0..2 (logarithms) and rot_0..3 (a quaternion, w first), those that places_of() finds translucent or
+///   hidden.
+/// All are kept with options.all_splats, and where none would be left. Throws as fill_cloud().
+void fill_splat_cloud(const Source& source, std::shared_ptr<Attributes> table, const ReadOptions& options, Cloud& cloud);
 
 }  // namespace g3r::io
