@@ -26,26 +26,15 @@ namespace g3r {
 namespace {
 
 constexpr double kSidesAgree = 0.45;  // mean jump defect of an open surface up to which its sides are called consistent; 1: none agree
-// Another noise than the estimate.
-constexpr std::size_t kFewPoints = 2500;   // up to which what looks like noise is often shape
-constexpr std::size_t kManyPoints = 8000;  // from which what looks like shape is sometimes noise
-constexpr double kDoubtful = 0.03;         // share of sides in doubt from which one is tried,
-constexpr double kScattered = 0.05;        // and of the spacing, the scatter,
-constexpr double kFarMore = 2;             // over the estimate
-constexpr double kAboveScatter = 1.4;      // times the scatter: the first one tried
-constexpr double kFarLess = 0.5;           // of the doubt with the estimate, up to which it is taken,
-constexpr double kLess = 0.6;              // or up to this
-constexpr double kLittleDoubt = 0.04;      // where there is little
-constexpr double kStep = 1.4;              // from one noise to the next
-constexpr double kMostTried = 0.5;         // of the spacing, below which more is tried while there is more than little doubt,
-constexpr double kGain = 0.75;             // and taken up to this share of the doubt
-constexpr double kLeastTried = 0.7;        // of the spacing, above which less is tried
-constexpr double kLoss = 1.25;             // and taken up to this share of the doubt
-constexpr double kSlightLoss = 0.01;       // and this
-// A little more than the estimate, where scatter does not say that it is wrong.
-constexpr double kManyDoubtful = 0.15;  // share of sides in doubt from which it is tried,
-constexpr double kLargeNoise = 0.5;     // from so many spacings of noise on,
-constexpr double kHardlyAny = 0.1;      // and taken up to this share of the doubt
+// Other noises than the estimate.
+constexpr double kDoubtful = 0.05;        // share of the sides in doubt from which others are tried: few clean clouds leave as many
+constexpr double kFarLess = 0.5;          // of that share, up to which another is taken: chance changes it by less
+constexpr double kFarMore = 2;            // times the estimate, scatter that speaks against it
+constexpr double kAboveScatter = 1.4;     // times the scatter, the noise that is tried: kernels have to hide all of it,
+constexpr double kLeastTried = 0.3;       // but at least this in spacings: less blurs no less, and leaves more in doubt
+constexpr std::size_t kFewPoints = 2500;  // up to which shape looks like noise, so that none is tried too
+constexpr double kManyDoubtful = 0.15;    // share of the sides in doubt from which more noise is tried with nothing to speak for it,
+constexpr double kHardlyAny = 0.1;        // and of that share, up to which it is taken: noise hides thin walls and all doubt about them
 
 void describe(const Problem& problem, const PointsView& points, const Options& options, Stats& stats) {
   const CanonicalCloud& cloud = problem.cloud;
@@ -204,19 +193,30 @@ Oriented orient_problem(const Problem& problem, const Options& options, Stages& 
 
 bool may_try_noises(const Problem& problem, const Options& options) {
   return problem.settings.method == Method::kEnergy && options.preset != Preset::kPaper && options.epsilon.unit == Length::Unit::kAuto &&
-         options.noise.unit == Length::Unit::kAuto && options.schedule.empty() && !contains(problem.settings.without, Step::kNoiseChoice);
+         options.noise.unit == Length::Unit::kAuto && options.schedule.empty() && !contains(problem.settings.without, Step::kNoise) &&
+         !contains(problem.settings.without, Step::kNoiseChoice);
 }
 
-// The noise to try instead of the estimate where the sides of many points are in doubt: none if the points are so few that it may be shape;
-// more if most of many points scatter far more than those that scatter least, which the estimate goes by.
-std::optional<double> other_noise(const Problem& problem, const Options& options, double doubt) {
-  if (!may_try_noises(problem, options) || doubt < kDoubtful) return std::nullopt;
+struct OtherNoise {
+  double noise = 0;
+  double most_doubt = 0;  // of the doubt with the estimate, up to which it is taken
+};
+
+// What to try where the sides of many points are in doubt. No noise: few points on much shape look noisy. More: what scatters most, of
+// noise that differs from place to place and of scans that do not fit onto each other, looks like shape beside what scatters least, which
+// the estimate goes by; and noise of a spacing or so can turn whole shells, in cavities for example, in the narrow polish.
+std::vector<OtherNoise> other_noises(const Problem& problem, const Options& options, double doubt) {
+  if (!may_try_noises(problem, options) || doubt < kDoubtful) return {};
   const PointSet& set = problem.cloud.set;
-  if (set.size() <= kFewPoints && problem.noise > 0) return 0;
-  if (set.size() < kManyPoints) return std::nullopt;
+  std::vector<OtherNoise> noises;
+  if (problem.noise > 0 && set.size() <= kFewPoints) noises.push_back({0, kFarLess});
   const double scatter = largest_scatter(set);
-  if (scatter < kScattered * problem.spacing || scatter < kFarMore * problem.noise) return std::nullopt;
-  return kAboveScatter * scatter;
+  if (scatter > kFarMore * problem.noise) {
+    noises.push_back({std::max(kAboveScatter * scatter, kLeastTried * problem.spacing), kFarLess});
+  } else if (problem.noise > 0 && doubt >= kManyDoubtful) {
+    noises.push_back({kAboveScatter * problem.noise, kHardlyAny});
+  }
+  return noises;
 }
 
 // A problem, its solution and what there is to say of them.
@@ -234,40 +234,15 @@ Attempt attempt(Problem problem, const PointsView& points, const Options& option
   return out;
 }
 
-// Noise of more than a spacing or so can turn whole shells, of cavities for example, in the narrow polish. Kernels a little wider tell all
-// sides then; of thin walls, where doubt is in place, they leave about as many in doubt.
-Attempt settle_with_more_noise(Attempt best, const PointsView& points, const Options& options, Stages& stages) {
-  const Problem& problem = best.problem;
-  if (!may_try_noises(problem, options) || problem.noise < kLargeNoise * problem.spacing) return best;
-  if (best.oriented.doubt < kManyDoubtful) return best;
-  Attempt other = attempt(with_noise(problem, kStep * problem.noise, options), points, options, stages);
-  return other.oriented.doubt <= kHardlyAny * best.oriented.doubt ? std::move(other) : std::move(best);
-}
-
 // Thin walls and layers of scans that do not fit onto each other look alike from near. But few sides of walls are in doubt when they are
-// solved for as what they are, of layers when they are solved for as noise. Then, as too large a noise hides everything, the least one
-// counts that leaves no more in doubt.
+// solved for as what they are, of layers when they are solved for as noise.
 Attempt orient_with_best_noise(const PointsView& points, const Options& options, Stages& stages) {
   Attempt best = attempt(prepare(points, options, stages), points, options, stages);
-  const std::optional<double> noise = other_noise(best.problem, options, best.oriented.doubt);
-  if (!noise) return settle_with_more_noise(std::move(best), points, options, stages);
-  Attempt other = attempt(with_noise(best.problem, *noise, options), points, options, stages);
-  const double before = best.oriented.doubt;
-  const double after = other.oriented.doubt;
-  if (after > kFarLess * before && (*noise == 0 || after > kLittleDoubt || after > kLess * before)) return best;
-  best = std::move(other);
-  if (*noise == 0) return best;
-  const auto better_with = [&](double factor, double times, double plus) {
-    other = attempt(with_noise(best.problem, factor * best.problem.noise, options), points, options, stages);
-    if (other.oriented.doubt > times * best.oriented.doubt + plus) return false;
-    best = std::move(other);
-    return true;
-  };
-  bool raised = false;
-  while (best.oriented.doubt > kLittleDoubt && best.problem.noise < kMostTried * best.problem.spacing && better_with(kStep, kGain, 0)) {
-    raised = true;
-  }
-  while (!raised && best.problem.noise > kLeastTried * best.problem.spacing && better_with(1 / kStep, kLoss, kSlightLoss)) {
+  const double doubt = best.oriented.doubt;
+  for (const OtherNoise& other : other_noises(best.problem, options, doubt)) {
+    Attempt tried = attempt(with_noise(best.problem, other.noise, options), points, options, stages);
+    const double most = std::min(other.most_doubt * doubt, best.oriented.doubt);
+    if (tried.oriented.doubt <= most) best = std::move(tried);
   }
   return best;
 }
