@@ -16,7 +16,7 @@ import argparse
 
 import numpy as np
 from scipy.spatial import cKDTree
-from splats import Solid, read_ply, write_ply
+from splats import Solid, read_surface, write_ply
 
 NEIGHBOURS = 20
 WAVES = 6  # of the density field
@@ -73,10 +73,7 @@ def main():
     parser.add_argument("--where", default="box", choices=["box", "near", "inside"])
     parser.add_argument("--seed", type=int, default=1)
     a = parser.parse_args()
-    given = read_ply(a.surface)
-    points, normals = (np.stack([given[prefix + axis] for axis in "xyz"], 1).astype(float) for prefix in ("", "n"))
-    if len(points) < 6 * a.count:
-        raise SystemExit(f"{a.surface}: expected at least 6 points for each of {a.count}, found {len(points)}")
+    points, normals = read_surface(a.surface, 6 * a.count)
     cloud, truth = corrupt(points, normals, a.count, a.uneven, a.noise, a.outliers, a.where, a.seed)
     write_ply(a.out, np.concatenate([cloud, truth], 1), ["x", "y", "z", "true_nx", "true_ny", "true_nz"])
     print(f"n {a.count} b_u {{:.2f}} b_sigma {{:.5f}} b_o {{:.3f}}".format(*measures(cloud)))

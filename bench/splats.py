@@ -45,6 +45,14 @@ def read_ply(path):
         return np.frombuffer(file.read(count * np.dtype(names).itemsize), dtype=names)
 
 
+def read_surface(path, least):
+    """Positions and normals (n, 3) of the `least` points or more of a surface in a binary PLY."""
+    table = read_ply(path)
+    if len(table) < least:
+        raise SystemExit(f"{path}: expected at least {least} points, found {len(table)}")
+    return (np.stack([table[prefix + axis] for axis in "xyz"], 1).astype(float) for prefix in ("", "n"))
+
+
 def write_ply(path, table, names):
     """A float property for every column."""
     with open(path, "wb") as file:
@@ -161,10 +169,7 @@ def main():
     if arguments.command == "score":
         print(json.dumps(score(read_ply(arguments.oriented))))
         return
-    given = read_ply(arguments.surface)
-    points, normals = (np.stack([given[prefix + a] for a in "xyz"], 1).astype(float) for prefix in ("", "n"))
-    if len(points) < 4 * arguments.count:
-        raise SystemExit(f"{arguments.surface}: expected at least 4 points for each of {arguments.count} splats, found {len(points)}")
+    points, normals = read_surface(arguments.surface, 4 * arguments.count)
     table = scene(points, normals, arguments.count, arguments.inside, arguments.floating, arguments.seed)
     write_ply(arguments.out, table, SPLAT)
     if arguments.spz:

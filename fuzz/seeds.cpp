@@ -73,16 +73,13 @@ void spill_pipeline(const std::string& files, const std::string& folder) {
   spill_shapes<double>(folder, Coding::kDouble);
 }
 
-// The files of formats that have streams, and LAZ, if it is made.
+// All files of points, and LAZ and E57, if they are made.
 void spill_streams(const std::string& from, const std::string& folder) {
   std::filesystem::create_directories(folder);
-  for (const std::string name : {"/read", "/laz"}) {
+  for (const std::string name : {"/read", "/laz", "/e57"}) {
     if (!std::filesystem::exists(from + name)) continue;
     for (const auto& file : std::filesystem::directory_iterator(from + name)) {
-      const std::string bytes = g3r::samples::slurp(file.path());
-      const bool streams =
-          bytes.starts_with("ply") || bytes.starts_with("# .PCD") || bytes.starts_with("\x93NUMPY") || bytes.starts_with("LASF");
-      if (streams) spill(folder + "/" + file.path().filename().string(), bytes);
+      spill(folder + "/" + file.path().filename().string(), g3r::samples::slurp(file.path()));
     }
   }
 }

@@ -1,6 +1,6 @@
 // Gaussian splats: floaters and splats inside are distinguished from those of a surface, one by one and in a scene, from the file to the
 // mesh.
-#include "cloud/splat_light.h"
+#include "io/splat_light.h"
 
 #include "io_samples.h"
 #include "sanitized.h"
@@ -17,6 +17,11 @@
 
 namespace g3r {
 namespace {
+
+using io::axes_of;
+using io::places_of;
+using io::Splat;
+using io::SplatPlace;
 
 using samples::raw;
 

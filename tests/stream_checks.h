@@ -38,6 +38,16 @@ inline Streamed streamed(const std::string& path) {
   return all;
 }
 
+/// What read_cloud() refuses the file with, "" if it does not.
+inline std::string refusal_of_read_cloud(const std::string& path) {
+  try {
+    (void)read_cloud(path);
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+  return {};
+}
+
 inline bool same_bits(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0;
 }

@@ -135,7 +135,7 @@ struct Held {
   Vec3 middle{0, 0, 0};  // of them, in the same frame
   PlaneFit fit;
 
-  [[nodiscard]] ExactPlane plane() { return {std::move(points), fit.normal, fit.breadth}; }
+  [[nodiscard]] ExactPlane plane() const { return {points, fit.normal, fit.breadth}; }
 };
 
 Held fit_to_held(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, const Around& around, const Vec3& normal,
@@ -170,10 +170,11 @@ Scattered search_scattered(const std::vector<Vec3>& points, const std::vector<st
     return held >= needed ? Candidate{normal, within, held, 0} : Candidate{};
   });
   if (best.held == 0) return {};
-  Held held = fit_to_held(points, index, around, best.normal, {0, 0, 0}, within);
-  for (int round = 0; round <= kRefits; ++round) {
+  Held held;
+  held.fit.normal = best.normal;
+  for (int fit = 0; fit <= kRefits; ++fit) {
+    held = fit_to_held(points, index, around, held.fit.normal, held.middle, within);
     if (static_cast<int>(held.points.size()) < needed || held.points.front() != index[0]) return {};
-    if (round < kRefits) held = fit_to_held(points, index, around, held.fit.normal, held.middle, within);
   }
   if (held.fit.breadth < kNarrowest || is_bent(points, held.points, held.fit, spacing)) return {};
   return {held.plane(), std::abs(vector::dot(held.fit.normal, held.middle))};
@@ -185,7 +186,7 @@ ExactPlane find_exact_plane(const std::vector<Vec3>& points, const std::vector<s
   const Around around = around_first(points, index, spacing);
   const Candidate best = best_plane(around, towards, [&](const Vec3& normal) { return held_by(around, normal); });
   if (best.held == 0) return {};
-  Held held = fit_to_held(points, index, around, best.normal, {0, 0, 0}, best.within);
+  const Held held = fit_to_held(points, index, around, best.normal, {0, 0, 0}, best.within);
   return held.fit.breadth < kNarrowest ? ExactPlane{} : held.plane();
 }
 
@@ -225,7 +226,7 @@ LikeliestPlane find_likeliest_plane(const std::vector<Vec3>& points, const std::
     if (best.held <= kFewest) continue;
     const double expected = false_alarms(around.count, within)[static_cast<std::size_t>(best.held)];
     if (expected >= least) continue;
-    Held held = fit_to_held(points, index, around, best.normal, {0, 0, 0}, within);
+    const Held held = fit_to_held(points, index, around, best.normal, {0, 0, 0}, within);
     if (held.points.size() <= static_cast<std::size_t>(kFewest)) continue;  // rounding
     if (held.fit.breadth < kFacetBreadth || is_bent(points, held.points, held.fit, spacing)) continue;
     least = expected;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace g3r::io {
 
@@ -22,6 +23,11 @@ class OutputFile {
   /// Appends bytes. Throws IoError (kFailed).
   void write(const void* bytes, std::size_t size);
   void write(std::string_view text) { write(text.data(), text.size()); }
+  /// Appends records as they are in memory.
+  template <class T>
+  void write_records(const std::vector<T>& records) {
+    write(records.data(), records.size() * sizeof(T));
+  }
   /// Whether overwrite() can be called: not where the bytes go to a device or a pipe.
   [[nodiscard]] bool can_overwrite() const { return !temporary_.empty(); }
   /// Puts bytes in the place of some that have been written, from `offset` on. Throws IoError (kFailed).

@@ -1,7 +1,7 @@
 #include "io/splats.h"
 
-#include "cloud/splat_light.h"
 #include "io/cloud_from_table.h"
+#include "io/splat_light.h"
 
 #include <algorithm>
 #include <array>

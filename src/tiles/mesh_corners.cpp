@@ -149,7 +149,7 @@ void write_corners(const MeshFolder& folder, std::size_t tile, const std::atomic
 
   const std::vector<CornerValue> values = worth_saying(around, owned, corners.value, inside);
   io::OutputFile out(mesh_corners_path(folder.folder, tile), cancel);
-  out.write(values.data(), values.size() * sizeof(CornerValue));
+  out.write_records(values);
   out.commit();
 }
 

@@ -107,11 +107,6 @@ std::vector<MovedVertex> untangle(TileSurface& surface, const std::atomic<bool>*
   return moved;
 }
 
-template <class T>
-void append(io::OutputFile& out, const std::vector<T>& records) {
-  out.write(records.data(), records.size() * sizeof(T));
-}
-
 }  // namespace
 
 void write_parts(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel) {
@@ -136,10 +131,10 @@ void write_parts(const MeshFolder& folder, std::size_t tile, const std::atomic<b
   const PartsHeader header{parts.size(), moved.size(), foreign.size(), own.size(), strays.size()};
   io::OutputFile out(mesh_parts_path(folder.folder, tile), cancel);
   out.write(&header, sizeof header);
-  append(out, parts);
-  append(out, moved);
-  append(out, foreign);
-  append(out, own);
+  out.write_records(parts);
+  out.write_records(moved);
+  out.write_records(foreign);
+  out.write_records(own);
   out.commit();
 }
 

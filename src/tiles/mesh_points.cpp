@@ -88,7 +88,7 @@ std::vector<FarNode> far_nodes(const std::vector<Vec3>& raw, const std::vector<M
 template <class T>
 void write_file(const std::string& path, const std::vector<T>& records, const std::atomic<bool>* cancel) {
   io::OutputFile out(path, cancel);
-  out.write(records.data(), records.size() * sizeof(T));
+  out.write_records(records);
   out.commit();
 }
 

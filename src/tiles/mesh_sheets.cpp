@@ -142,11 +142,6 @@ Sheets sheets_of(const Names& names, const mesh::DualSurface& surface, std::size
   return out;
 }
 
-template <class T>
-void append(io::OutputFile& out, const std::vector<T>& records) {
-  out.write(records.data(), records.size() * sizeof(T));
-}
-
 }  // namespace
 
 void write_sheets(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel) {
@@ -172,10 +167,10 @@ void write_sheets(const MeshFolder& folder, std::size_t tile, const std::atomic<
   }
   io::OutputFile out(mesh_sheets_path(folder.folder, tile), cancel);
   out.write(&sheets.header, sizeof sheets.header);
-  append(out, vertices);
-  append(out, sheets.foreign);
-  append(out, sheets.sizes);
-  append(out, sheets.corners);
+  out.write_records(vertices);
+  out.write_records(sheets.foreign);
+  out.write_records(sheets.sizes);
+  out.write_records(sheets.corners);
   out.commit();
 }
 

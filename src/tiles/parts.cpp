@@ -61,10 +61,11 @@ void PartsFile::fail() const { throw InvalidInput(escape_text(file_.path()) + ":
 KeptParts::KeptParts(const MeshFolder& folder, const MeshOptions& options, Dropped& dropped) {
   std::vector<Part> parts;
   for (std::size_t t = 0; t < folder.tiles(); ++t) {
-    const std::vector<Part> of_tile = PartsFile(folder, t).parts();
+    const PartsFile file(folder, t);
+    const std::vector<Part> of_tile = file.parts();
     first_.push_back(parts.size());
     parts.insert(parts.end(), of_tile.begin(), of_tile.end());
-    dropped.points += PartsFile(folder, t).header().strays;
+    dropped.points += file.header().strays;
   }
   first_.push_back(parts.size());
   DisjointSets sets(parts.size());

@@ -59,7 +59,7 @@ void solve_tile(const std::string& folder, const Manifest& m, const Cells& cells
   }
   std::sort(results.begin(), results.end(), [](const Result& a, const Result& b) { return a.index < b.index; });
   io::OutputFile out(result_path(folder, t), monitor.cancel);
-  out.write(results.data(), results.size() * sizeof(Result));
+  out.write_records(results);
   out.commit();
 }
 

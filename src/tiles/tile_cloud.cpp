@@ -33,7 +33,7 @@ Cells find_cells(const std::string& folder, const Manifest& manifest, Stages& st
     }
   }
   io::OutputFile out(cells_path(folder), stages.cancel());
-  out.write(cells.cells.data(), cells.cells.size() * sizeof(Cell));
+  out.write_records(cells.cells);
   out.commit();
   return cells;
 }

