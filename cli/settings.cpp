@@ -497,8 +497,9 @@ void add_tiles(CLI::App& app, Settings& s) {
       add_tile_step(*sub, s, "merge", TileStep::kMerge, "Write all points in their order with normals and confidence, or the mesh");
   for (CLI::App* step : {run, mesh, status, merge}) step->add_option("DIR", s.tile_folder, "The work folder")->required()->type_name("");
   merge->add_option("OUT", s.output, "Oriented cloud (.ply, .las, .laz), or mesh (.ply)")->required()->type_name("");
-  merge->add_flag("--mesh", s.merge_mesh, "Write the mesh instead of the points")->disable_flag_override();
+  CLI::Option* mesh_flag = merge->add_flag("--mesh", s.merge_mesh, "Write the mesh instead of the points")->disable_flag_override();
   add_component_options(*merge, s.mesh_options);
+  for (const char* name : {"--keep-largest", "--min-component", "--keep-all"}) merge->get_option(name)->needs(mesh_flag);
   add_run_options(*merge, s);
 }
 

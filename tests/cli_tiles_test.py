@@ -66,6 +66,8 @@ class Tiles(ProgramTest):
         self.assertIn("2 of 2 tiles have no normals yet", self.expect(BAD_DATA, "tiles", "mesh", "work").err)
         self.assertIn("not meshed", self.expect(BAD_DATA, "tiles", "merge", "work", "out.ply", "--mesh").err)
         self.assertIn("ends in .ply, .las or .laz", self.expect(BAD_DATA, "tiles", "merge", "work", "out.xyz").err)
+        for option in (["--keep-largest", "1"], ["--min-component", "5"], ["--keep-all"]):  # of meshes
+            self.assertIn("--mesh", self.expect(USAGE, "tiles", "merge", "work", "out.ply", *option).err)
         self.assertFalse(os.path.exists(self.path("out.ply")))
 
     def test_damage_in_a_text_names_the_line(self):
