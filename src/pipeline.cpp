@@ -172,7 +172,8 @@ void judge(const CanonicalCloud& cloud, const std::vector<float>& confidence, St
 struct Oriented {
   Solution solution;
   std::vector<float> confidence;
-  double doubt = 0;  // share of the points that could face either way by their own equations, or lie on open surfaces
+  double doubt = 0;   // share of the points that could face either way by their own equations, or lie on open surfaces
+  double agreed = 0;  // share of the points that lie on open surfaces whose sides agree: these could face either way, but together
 };
 
 Oriented orient_problem(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
@@ -185,16 +186,18 @@ Oriented orient_problem(const Problem& problem, const Options& options, Stages& 
   const std::vector<double>& spacing = problem.is_clean() ? problem.cloud.set.smoothed_spacing() : none;
   out.confidence = side_confidence(vectors, refined.normals, refined.strength, spacing);
   add_sheets(out.solution.sheets, out.confidence, stats);
-  out.doubt = unsure_share(out.confidence) + stats.open_share;  // what is called open at one noise may be closed at another
+  out.doubt = unsure_share(out.confidence) + stats.open_share;
+  if (out.solution.sheets.worst_defect < kSidesAgree) out.agreed = stats.open_share;
   if (!contains(problem.settings.without, Step::kCertificate)) certify_sides(out.solution.sheets, out.confidence);
   judge(problem.cloud, out.confidence, stats);
   return out;
 }
 
 bool may_try_noises(const Problem& problem, const Options& options) {
-  return problem.settings.method == Method::kEnergy && options.preset != Preset::kPaper && options.epsilon.unit == Length::Unit::kAuto &&
-         options.noise.unit == Length::Unit::kAuto && options.schedule.empty() && !contains(problem.settings.without, Step::kNoise) &&
-         !contains(problem.settings.without, Step::kNoiseChoice);
+  const bool on_points = problem.line_distance == 0;  // sites have a noise of their own
+  return on_points && problem.settings.method == Method::kEnergy && options.preset != Preset::kPaper &&
+         options.epsilon.unit == Length::Unit::kAuto && options.noise.unit == Length::Unit::kAuto && options.schedule.empty() &&
+         !contains(problem.settings.without, Step::kNoise) && !contains(problem.settings.without, Step::kNoiseChoice);
 }
 
 struct OtherNoise {
@@ -204,16 +207,20 @@ struct OtherNoise {
 
 // What to try where the sides of many points are in doubt. No noise: few points on much shape look noisy. More: what scatters most, of
 // noise that differs from place to place and of scans that do not fit onto each other, looks like shape beside what scatters least, which
-// the estimate goes by; and noise of a spacing or so can turn whole shells, in cavities for example, in the narrow polish.
-std::vector<OtherNoise> other_noises(const Problem& problem, const Options& options, double doubt) {
-  if (!may_try_noises(problem, options) || doubt < kDoubtful) return {};
+// the estimate goes by; and noise of a spacing or so can turn whole shells, in cavities for example, in the narrow polish. A surface that
+// is open at the estimate may be closed at such a scatter, but not at one that kernels hide anyway.
+std::vector<OtherNoise> other_noises(const Problem& problem, const Options& options, const Oriented& found) {
+  if (!may_try_noises(problem, options) || found.doubt < kDoubtful) return {};
   const PointSet& set = problem.cloud.set;
+  const double scatter = largest_scatter(set);
+  const double least = kLeastTried * problem.spacing;
+  const double unsure = found.doubt - found.agreed;
+  if (kAboveScatter * scatter <= least && unsure < kDoubtful) return {};
   std::vector<OtherNoise> noises;
   if (problem.noise > 0 && set.size() <= kFewPoints) noises.push_back({0, kFarLess});
-  const double scatter = largest_scatter(set);
   if (scatter > kFarMore * problem.noise) {
-    noises.push_back({std::max(kAboveScatter * scatter, kLeastTried * problem.spacing), kFarLess});
-  } else if (problem.noise > 0 && doubt >= kManyDoubtful) {
+    noises.push_back({std::max(kAboveScatter * scatter, least), kFarLess});
+  } else if (problem.noise > 0 && unsure >= kManyDoubtful) {
     noises.push_back({kAboveScatter * problem.noise, kHardlyAny});
   }
   return noises;
@@ -239,7 +246,7 @@ Attempt attempt(Problem problem, const PointsView& points, const Options& option
 Attempt orient_with_best_noise(const PointsView& points, const Options& options, Stages& stages) {
   Attempt best = attempt(prepare(points, options, stages), points, options, stages);
   const double doubt = best.oriented.doubt;
-  for (const OtherNoise& other : other_noises(best.problem, options, doubt)) {
+  for (const OtherNoise& other : other_noises(best.problem, options, best.oriented)) {
     Attempt tried = attempt(with_noise(best.problem, other.noise, options), points, options, stages);
     const double most = std::min(other.most_doubt * doubt, best.oriented.doubt);
     if (tried.oriented.doubt <= most) best = std::move(tried);

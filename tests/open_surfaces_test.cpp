@@ -104,6 +104,18 @@ TEST(OpenSurfaces, NoiseIsNoObstacle) {
   }
 }
 
+// How often the run solves for all points.
+std::ptrdiff_t solves(const Orientation& o) {
+  return std::count_if(o.stats.seconds.begin(), o.stats.seconds.end(), [](const auto& stage) { return stage.first == "solve"; });
+}
+
+// What noise could hide is a closed surface, or layers that do not fit: not the inside of a sheet whose sides agree.
+TEST(OpenSurfaces, AreSolvedForOnce) {
+  for (const double scatter : {0.0, 0.1, 0.5, 1.5}) {
+    EXPECT_EQ(solves(orient(terrain(scatter < 1 ? 6000 : 16000, waves, scatter).points)), 1) << scatter;
+  }
+}
+
 TEST(OpenSurfaces, TakeTheOutsideTheEquationsFind) {
   const Surface half = upper_part(shapes::sphere(8000), 0);
   const Orientation o = orient(half.points);
