@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 namespace g3r {
@@ -41,6 +42,21 @@ TEST(SolveCoarseToFine, FindsTheSidesOfABall) {
   EXPECT_TRUE(found.result.converged);
   settings.refinement_width = 0;
   EXPECT_TRUE(solved(cloud, settings).refinement.normals.empty());
+}
+
+// The equations are not true of a sheet: more steps would fit what is wrong.
+TEST(SolveCoarseToFine, TakesNoMoreStepsForOpenSurfaces) {
+  constexpr std::size_t kPoints = 40000;
+  shapes::Random random(2);
+  std::vector<Vec3> sheet(kPoints);
+  for (Vec3& p : sheet) {
+    const double x = random.uniform(-1, 1);
+    p = {x, random.uniform(-1, 1), 0.15 * std::sin(5 * x)};
+  }
+  const CanonicalCloud cloud = canonical_cloud(sheet);
+  const Settings settings = choose_settings({}, cloud, cloud.set.spacing(), 0, 0);
+  ASSERT_TRUE(starts_coarse(settings, cloud.size()));
+  EXPECT_LE(solved(cloud, settings).result.residuals.size(), 10U);
 }
 
 }  // namespace

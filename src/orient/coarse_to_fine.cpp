@@ -1,12 +1,15 @@
 #include "orient/coarse_to_fine.h"
 
 #include "orient/confidence.h"
+#include "orient/open_surfaces.h"
 #include "orient/polish.h"
 #include "solve/energy_system.h"
 #include "solve/green_system.h"
 #include "sum/fast_sum.h"
 
+#include <algorithm>
 #include <memory>
+#include <utility>
 
 namespace g3r {
 namespace {
@@ -15,7 +18,8 @@ constexpr double kSpacingRatio = 2;
 constexpr double kCubeRatio = kSpacingRatio * kSpacingRatio * kSpacingRatio;  // of the weights of the winding number
 constexpr double kCoarseShare = 0.2;                                          // of the progress bar
 constexpr double kDoubtfulShare = 0.04;                                       // share of the points from which more steps are tried
-constexpr double kWorse = 1.25;                                               // of that share after them, from which they are undone
+constexpr std::size_t kOpenPoints = 10000;  // whose field tells open surfaces from closed ones: more cost time
+constexpr double kWorse = 1.25;             // of that share after them, from which they are undone
 
 Settings coarser(Settings settings) {
   settings.spacing *= kSpacingRatio;
@@ -52,9 +56,26 @@ std::vector<Vec3> coarse_gradient(const std::vector<Vec3>& points, const std::ve
   return coarse.field->winding_gradient_at(coarse.result.eta, points, stages.cancel());
 }
 
-double unsure_share_of(FastSum& field, const std::vector<Vec3>& eta) {
-  const Refinement refined = refine_normals(field, eta);
+double unsure_share_of(const std::vector<Vec3>& eta, const Refinement& refined) {
   return unsure_share(side_confidence(eta, refined.normals, refined.strength, {}));
+}
+
+// Whether most of the points lie on surfaces without an inside, by the field of some of them.
+bool is_mostly_open(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
+                    const std::vector<Vec3>& normals, const Stages& stages) {
+  const std::size_t step = std::max<std::size_t>(1, points.size() / kOpenPoints);
+  std::vector<Vec3> some;
+  std::vector<Vec3> sides;
+  std::vector<std::uint64_t> codes;
+  for (std::size_t i = step / 2; i < points.size(); i += step) {
+    some.push_back(points[i]);
+    sides.push_back(normals[i]);
+    codes.push_back(morton[i]);
+  }
+  const PointSet set(std::move(some), std::move(codes));
+  const OpenSurfaces sheets = find_open_surfaces(set, settings.noise, settings.sums, sides, stages.cancel());
+  const auto closed = std::count(sheets.part.begin(), sheets.part.end(), OpenSurfaces::kNone);
+  return !sheets.part.empty() && 2 * static_cast<std::size_t>(closed) < set.size();
 }
 
 std::unique_ptr<LinearSystem> system_of(FastSum& sum, const std::vector<Vec3>& points, const Settings& settings) {
@@ -85,16 +106,18 @@ IterativeResult solve_on(FastSum& field, const std::vector<Vec3>& points, const 
       [&](int step, int steps, double) { stages.progress(share * (kCoarseShare + (1 - kCoarseShare) * step / steps)); });
 }
 
-// More steps where the sides of many points are unsure.
+// More steps where the sides of many points are unsure, but for surfaces of which the equations are not true.
 void settle_doubtful(FastSum& field, const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
                      Stages& stages, IterativeResult& result) {
-  const double unsure = unsure_share_of(field, result.eta);
+  const Refinement refined = refine_normals(field, result.eta);
+  const double unsure = unsure_share_of(result.eta, refined);
   if (unsure < kDoubtfulShare + settings.unsure_of_noise) return;
+  if (is_mostly_open(points, morton, settings, refined.normals, stages)) return;
   FastSum wider(points, morton, Widths(settings.coarsest_epsilon), settings.first_sums, stages.cancel());
   EnergySystem heavier(wider, settings.damping, settings.doubtful_winding_weight);
   IterativeResult more = solve_iteratively(heavier, settings.doubtful_schedule, settings.doubtful_tolerance, result.eta,
                                            [&](int, int, double) { stages.still_going(); });
-  if (settings.unsure_of_noise == 0 && unsure_share_of(field, more.eta) > kWorse * unsure) return;
+  if (settings.unsure_of_noise == 0 && unsure_share_of(more.eta, refine_normals(field, more.eta)) > kWorse * unsure) return;
   more.kinds.insert(more.kinds.begin(), result.kinds.begin(), result.kinds.end());
   more.residuals.insert(more.residuals.begin(), result.residuals.begin(), result.residuals.end());
   result = std::move(more);

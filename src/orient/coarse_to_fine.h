@@ -24,8 +24,9 @@ struct Solved {
 /// The smooth part of the error, which conjugate gradients reduce slowest, is gone from the start, so the tolerances of starts and of
 /// continued solves are wider. Measured: docs/evidence/formulation.md.
 /// Where the sides of many points are unsure in the end (thin walls, narrow gaps), more steps are tried, wider and with more weight on the
-/// winding number, which turns parts that are wrong as a whole. They are undone if a quarter more points are unsure then; not under noise,
-/// of which every step makes more of them unsure, right or wrong.
+/// winding number, which turns parts that are wrong as a whole; not where most points lie on open surfaces (find_open_surfaces()), of which
+/// the equations are not true. They are undone if a quarter more points are unsure then; not under noise, of which every step makes more of
+/// them unsure, right or wrong.
 /// The returned residuals are those of the finest level. Begins the stage "refine" after the solve. Throws like solve_iteratively().
 [[nodiscard]] Solved solve_coarse_to_fine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton,
                                           const Settings& settings, Stages& stages);
