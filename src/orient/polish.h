@@ -28,7 +28,8 @@ struct Polished {
 
 /// settings.polish_steps of conjugate gradients on the energy form at settings.polish_epsilon, started from `refined`, and the refinement
 /// at settings.polish_width. The start has the right areas, which the first solve does not (its eta are 0.6 to 1.3 of them), so a few
-/// steps suffice. Once: a second round rounds edges. Measured: docs/evidence/formulation.md.
+/// steps suffice. Once: a second round rounds edges. This step is ours, not the paper's. Measured:
+/// docs/evidence/formulation.md.
 /// `spacing`: smoothed_spacing(); both widths follow it, in proportion to settings.spacing. Or empty: the same widths everywhere; then
 /// `multiplicity` says how many points each one stands for (empty: ones).
 [[nodiscard]] Polished polish(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
