@@ -15,7 +15,8 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-// The distance in spacings from the nearest point beyond which the fit says nothing and the field alone places the vertex.
+// The distance in spacings from the nearest point beyond which the fit says nothing and the field alone places the vertex: surface that
+// closes an open scan is so far away, and nothing on seven closed models.
 constexpr double kTrust = 3.0;
 // The share of its leaf's side that a vertex may leave the leaf by: with more, triangles fold over each other.
 constexpr double kReach = 0.3;

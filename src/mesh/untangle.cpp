@@ -20,7 +20,8 @@ constexpr int kRounds = 12;
 constexpr int kWider = 4;
 // The share of the way to the mean of its neighbours that a vertex goes: with all of it, neighbours swing about each other.
 constexpr double kStep = 0.5;
-// The rings of triangles around the crossing ones that are searched for new crossings: moved vertices reach no farther.
+// The rings of triangles around the crossing ones that are searched for new crossings: moved vertices reach no farther. With one ring gears
+// come out otherwise, with two they do not.
 constexpr int kRings = 3;
 constexpr std::uint32_t kOutside = std::numeric_limits<std::uint32_t>::max();
 
