@@ -14,12 +14,12 @@
 namespace g3r::cli {
 namespace {
 
-constexpr std::size_t kBarWidth = 32;
-constexpr std::size_t kStageWidth = 10;   // of the indented name, so that bars stand below each other
-constexpr std::size_t kPercentWidth = 8;  // of what follows the bar at least: brackets and " 100 %"
-constexpr std::size_t kLeastBar = 5;      // where a bar is no help, the share alone is shown
-constexpr std::size_t kColumns = 80;      // where the terminal does not tell
-constexpr auto kRedrawInterval = std::chrono::milliseconds(100);
+constexpr std::size_t kBarWidth = 32;     // The bar has so many characters where the terminal has room.
+constexpr std::size_t kStageWidth = 10;   // The indented name of a stage has so many, so that bars stand below each other.
+constexpr std::size_t kPercentWidth = 8;  // Brackets and " 100 %" take so many beside the bar.
+constexpr std::size_t kLeastBar = 5;      // A shorter bar is no help: the share alone is shown then.
+constexpr std::size_t kColumns = 80;      // Terminals that do not say how wide they are get so many columns.
+constexpr auto kRedrawInterval = std::chrono::milliseconds(100);  // Faster is not seen, and costs time where the terminal is far away.
 // A time left extrapolated from less than these is a guess that jumps about.
 constexpr double kMinSecondsForEstimate = 1;
 constexpr double kMinFractionForEstimate = 0.05;

@@ -6,8 +6,8 @@
 namespace g3r::cli {
 namespace {
 
-constexpr std::size_t kLineWidth = 80;  // of the narrowest terminals in use
-constexpr std::size_t kNameWidth = 29;  // "  --epsilon auto|X[%|h|n]" and some space
+constexpr std::size_t kLineWidth = 80;  // The narrowest terminals in use have so many columns.
+constexpr std::size_t kNameWidth = 29;  // "  --epsilon auto|X[%|h|n]" and some space have room in it.
 
 /// The words in lines short enough for the right column.
 std::string wrapped(const std::string& text) {

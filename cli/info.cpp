@@ -15,7 +15,7 @@
 namespace g3r::cli {
 namespace {
 
-constexpr int kCoordinateDigits = 10;  // a millimetre on the far side of the Earth
+constexpr int kCoordinateDigits = 10;  // With so many digits coordinates of the whole Earth in metres show millimetres.
 
 std::string line(const char* label, const std::string& text) {
   std::string padded = std::string("  ") + label;

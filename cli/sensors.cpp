@@ -7,8 +7,9 @@
 namespace g3r::cli {
 namespace {
 
-constexpr double kSurrounded =
-    2.0 / 3;  // of the points, by the cosine under which they are seen; a solid seen from outside has a half or less
+// The share of the points, weighed by the cosine under which they are seen, that face away from the scanner where it stood inside: of a
+// solid seen from outside a half or less do.
+constexpr double kSurrounded = 2.0 / 3;
 
 double share_facing_away(const Cloud& cloud, const std::vector<Vec3>& normals) {
   double towards = 0;

@@ -26,11 +26,11 @@
 namespace g3r::cli {
 namespace {
 
-constexpr int kMaxThreads = 4096;             // more is a typing error, not a machine
-constexpr int kMaxDegree = 8;                 // Options::degree
-constexpr int kMinDepth = 4, kMaxDepth = 12;  // MeshOptions::depth
+constexpr int kMaxThreads = 4096;  // No machine has more, so a larger number is a typing error.
+// The most points that can be drawn from a mesh: more need not fit into memory, so a larger number is most likely a typing error.
 constexpr std::size_t kMaxSamples = 1'000'000'000;
-constexpr std::size_t kEvalSamples = 200'000;  // per mesh, as in the paper
+// The points drawn from each mesh to score it, which is the number of the paper: scores with another are not those of its tables.
+constexpr std::size_t kEvalSamples = 200'000;
 
 /// A number of type T from `low` to `high`. It says what it expects, and leaves the help text alone: the descriptions say the range.
 template <class T>
@@ -195,7 +195,7 @@ void add_mesh_options(CLI::App& app, Settings& s) {
   add_choice(app, "--mesher", s.mesh_options.mesher,
              "field: contours the winding field; poisson: screened Poisson, in builds with Open3D; auto: the preset's");
   app.add_option("--depth", s.mesh_options.depth, "Octree depth of the mesher, 4 to 12 (default: from the density of the points)")
-      ->check(range(kMinDepth, kMaxDepth))
+      ->check(range(kLeastMeshDepth, kMostMeshDepth))
       ->type_name("D");
 }
 
@@ -207,7 +207,7 @@ void add_component_options(CLI::App& app, MeshOptions& o) {
                  "Drop components of less area than N points stand for (default 8, more under noise; 0 keeps all)")
       ->check(range(0.0, 1e15))
       ->type_name("N");
-  app.add_flag("--keep-all", o.keep_all, "Keep what too few points hold: specks, and points that no surface goes through");
+  app.add_flag("--keep-all", o.keep_all, "Keep what too few points hold: spurious components, and points that no surface goes through");
 }
 
 void add_finish_options(CLI::App& app, Settings& s) {
@@ -255,16 +255,17 @@ void add_method_options(CLI::App& app, Settings& s) {
   add_choice(app, "--preset", o.preset, "default, or paper: the published method");
   add_choice(app, "--method", o.method,
              "Equations to solve: energy, green (as published), auto: the preset's; wnnc, agr, pgr: earlier methods, to compare with");
-  app.add_option("--wnnc-widths", o.wnnc_widths, "Of wnnc: density (default), clean, scan, noise-0.25, noise-0.5, noise-1 or sparse")
+  app.add_option("--wnnc-widths", o.wnnc_widths,
+                 "Method wnnc: its widths; density (default), clean, scan, noise-0.25, noise-0.5, noise-1 or sparse")
       ->type_name("NAME");
   add_length(app, "--epsilon", o.epsilon, false,
              "Width of the smoothing: X input units, X% of the box diagonal, Xh point spacings, Xn in the paper's unit box");
   add_length(app, "--noise", o.noise, true,
              "Standard deviation of the points from their surface, in the units of --epsilon; 0: clean (default: estimated)");
-  CLI::Option* degree = app.add_option("--degree", o.degree, "Of green: highest degree of the harmonic polynomials, 0 to 8")
-                            ->check(range(0, kMaxDegree))
+  CLI::Option* degree = app.add_option("--degree", o.degree, "Method green: highest degree of the harmonic polynomials, 0 to 8")
+                            ->check(range(0, kMostDegree))
                             ->type_name("L");
-  app.add_option("--harmonics", o.harmonics, "Of green, instead of --degree: \"1,x,y,z\" or \"degree:0-2\"")
+  app.add_option("--harmonics", o.harmonics, "Method green, instead of --degree: \"1,x,y,z\" or \"degree:0-2\"")
       ->excludes(degree)
       ->type_name("LIST");
   add_choice(app, "--solver", o.solver, "auto, dense (O(N^2) memory) or cg");
@@ -320,7 +321,7 @@ void add_hint_options(CLI::App& app, Settings& s) {
            hints.up = parse_direction(text);
            if (!hints.up) reject("--up", text, "X,Y,Z, or an axis such as +z or -y");
          },
-         "Open sheets face this way: a direction, or an axis such as +z or -y")
+         "Open surfaces face this way: a direction, or an axis such as +z or -y")
       ->type_name("X,Y,Z");
   const auto take_sensor = [&s, &hints](const std::string& text) {
     if (text == "file") {
@@ -332,7 +333,7 @@ void add_hint_options(CLI::App& app, Settings& s) {
     }
   };
   add_repeated(app, "--sensor", take_sensor, "X,Y,Z|file",
-               "Open sheets face the scanner, which stood here; may be repeated. file: where IN says that it stood (PCD, E57)");
+               "Open surfaces face the scanner, which stood here; may be repeated. file: where IN says that it stood (PCD, E57, PTX)");
   const auto take_inside = [&hints](const std::string& text) {
     const auto place = parse_vector(text);
     if (!place) reject("--inside", text, "X,Y,Z");
@@ -566,7 +567,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 /// "; did you mean WORD?" if one of the words is near, else nothing.
 std::string suggestion(const std::string& found, const std::vector<std::string>& words) {
-  constexpr std::size_t kNear = 2;
+  constexpr std::size_t kNear = 2;  // Two letters are a slip; with more, words that mean something else are near.
   std::string nearest;
   std::size_t least = kNear + 1;
   for (const std::string& word : words) {

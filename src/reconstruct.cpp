@@ -11,6 +11,7 @@
 #include "mesh/screened_poisson.h"
 #include "mesh/separate_vertices.h"
 #include "mesh/smooth_spacing.h"
+#include "mesh/trim.h"
 #include "orient/settings.h"
 #include "sum/device_scope.h"
 
@@ -26,13 +27,18 @@
 namespace g3r {
 namespace {
 
-constexpr double kFarSpacings = 4;  // surface farther than this from every point is a guess;
-constexpr double kFarShare = 0.05;  // more of it is worth a warning
-constexpr double kMostFar = 0.25;   // of the surface, beyond which the mesh is not what was measured
-constexpr double kWidest = 8e5;     // spacings; the octree has at most 2^20 cells of 0.8 spacings
+// The share of the surface farther than kFarSpacings from every point that is worth a warning: closed scans have less, and most open ones
+// more.
+constexpr double kFarShare = 0.05;
+// The share of such surface from which the result is called doubtful: most of a hole this large is invented.
+constexpr double kMostFar = 0.25;
+// The width of a cloud in spacings from which the mesh is coarser than the points: the octree has at most 2^20 cells of 0.8 spacings.
+constexpr double kWidest = 8e5;
+// The depth of screened Poisson in the paper preset, which is that of the comparisons in docs/evidence/meshes.md.
 constexpr int kPaperDepth = 10;
-constexpr double kLargestCoordinate = 1e50;  // areas, volumes and their products of a mesh stay finite,
-constexpr double kLeastExtent = 1e-140;      // and greater than 0
+// The bounds of coordinates and extents within which areas, volumes and their products are finite and greater than 0.
+constexpr double kLargestCoordinate = 1e50;
+constexpr double kLeastExtent = 1e-140;
 
 // Throws before the work what the mesh could not be measured with. O(N).
 void require_meshable(const PointsView& points) {
@@ -93,7 +99,7 @@ void turn(std::vector<Vec3>& vectors) {
 
 // Meshes in normalised units, so that georeferenced coordinates lose nothing, and maps back. What is inside out is meshed as the solid that
 // it surrounds, and the triangles are turned.
-// `far_share` (may be null): share of the surface farther than kFarSpacings from every point.
+// `far_share` (may be null): share of the surface farther than mesh::kFarSpacings from every point.
 Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor& monitor, mesh::LeftOut& left_out,
                std::size_t max_memory = 0, double* far_share = nullptr) {
   for (Vec3& p : left_out.strays) p = oriented.cloud.frame.to_unit(p);
@@ -121,7 +127,7 @@ Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor
   if (inside_out) {
     for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
   }
-  if (far_share != nullptr) *far_share = mesh::far_share(mesh, oriented.cloud.points(), kFarSpacings);
+  if (far_share != nullptr) *far_share = mesh::far_share(mesh, oriented.cloud.points(), mesh::kFarSpacings);
   for (Vec3& v : mesh.vertices) {
     for (std::size_t a = 0; a < 3; ++a) v[a] = v[a] / frame.scale + frame.centre[a];
   }

@@ -27,7 +27,7 @@ TEST(LocalFit, OfAPlaneIsThePlane) {
   add_square(points, 0.5, 1);
   const Neighbours neighbours(points.positions);
   const std::vector<std::uint32_t> near = neighbours.of_all(17);
-  const LocalFit local(points, neighbours, near, {});
+  const LocalFit local(points, neighbours, near);
   for (const double z : {0.45, 0.5, 0.56}) {
     const LocalSurface surface = local.fit({1.01, 0.98, z}, 4);
     ASSERT_EQ(surface.count, 1);
@@ -40,7 +40,7 @@ TEST(LocalFit, OfASphereHasItsDistance) {
   const OrientedPoints points = oriented(shapes::sphere(3000));
   const Neighbours neighbours(points.positions);
   const std::vector<std::uint32_t> near = neighbours.of_all(17);
-  const LocalFit local(points, neighbours, near, {});
+  const LocalFit local(points, neighbours, near);
   shapes::Random random(4);
   for (int i = 0; i < 50; ++i) {
     const Eigen::Vector3d x = to_eigen(random.direction()) * 0.92;
@@ -55,7 +55,7 @@ TEST(LocalFit, HasNoSheetBeyondItsReach) {
   add_square(points, 0, 1);
   const Neighbours neighbours(points.positions);
   const std::vector<std::uint32_t> near = neighbours.of_all(17);
-  EXPECT_EQ(LocalFit(points, neighbours, near, {}).fit({1, 1, 0.5}, 4).count, 0);
+  EXPECT_EQ(LocalFit(points, neighbours, near).fit({1, 1, 0.5}, 4).count, 0);
 }
 
 TEST(WallThickness, IsTheDistanceOfWallsThatFaceApart) {

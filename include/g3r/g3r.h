@@ -219,7 +219,7 @@ void carry_attributes(Mesh& mesh, const PointsView& points, const std::vector<st
                       const std::vector<float>& confidence);
 
 /// What orient() would begin with, without solving: counts, box, spacing, noise, epsilon, memory plan. Where the result of that leaves many
-/// sides in doubt, orient() tries another noise, and its report has the noise and epsilon of what it took.
+/// signs unsure, orient() tries another noise, and its report has the noise and epsilon of what it took.
 [[nodiscard]] Stats plan(const PointsView& points, const Options& options = {});
 
 /// What reconstruct() would do with this cloud: the same, with the mesher's memory in the plan.

@@ -15,7 +15,7 @@ namespace G3R_PUBLIC g3r {
 inline constexpr std::uint32_t kNoSensor = 0xffffffff;
 
 /// Hints for orient(); all are optional. They vote where the points leave the side open - on every open surface as a whole, each point with
-/// the cosine under which it is seen - and settle it with the share of the votes that agree as its confidence. The sides of closed parts
+/// the cosine under which it is seen - and decide it with the share of the votes that agree as its confidence. The sides of closed parts
 /// follow from the points; a hint that contradicts them is a warning with its share. Two hints do turn closed parts: `seen_from_inside`,
 /// and a sensor inside a closed part, from which nobody could have seen its outside; of the latter a warning tells.
 struct Hints {
@@ -40,7 +40,7 @@ struct HintStats {
   std::vector<std::string> given;  ///< of "up", "sensor", "inside", "seen_from_inside", "flip"
   double settled_share = 0;        ///< their side was a choice and is one no longer
   double turned_share = 0;         ///< turned by a hint, flip included
-  double agreement = 0;            ///< share of the votes on settled parts that agree with the side they got; 0 if nothing was settled
+  double agreement = 0;            ///< share of the votes on decided parts that agree with the side they got; 0 if none was
   double contradicted_share = 0;   ///< share of the votes on closed parts that were against their side; 0 up to 1/5, which is usual
 };
 

@@ -1,4 +1,4 @@
-// The words that options are given by, one list for the library, the program, Python and the reports.
+// The words that options are given by, one list for the library, the program, Python and the reports; and the bounds of their numbers.
 //
 //   g3r::name_of(g3r::Method::kGreen)          // "green"
 //   g3r::parse<g3r::Method>("green")           // Method::kGreen; empty for another word
@@ -78,6 +78,11 @@ template <class Value>
   }
   return out;
 }
+
+/// The largest Options::degree: it has 81 harmonics, and 16 already have only 8 % less error than 4 (docs/evidence/formulation.md).
+inline constexpr int kMostDegree = 8;
+/// The bounds of MeshOptions::depth: no leaf is larger than at depth 4, and depth 12 may take tens of gigabytes.
+inline constexpr int kLeastMeshDepth = 4, kMostMeshDepth = 12;
 
 /// "auto", or a finite number, 0 or more, and a unit: "0.8h", "0.5%", "2". Empty for anything else.
 [[nodiscard]] std::optional<Length> parse_length(std::string_view text);

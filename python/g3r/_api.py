@@ -204,7 +204,7 @@ def run(points: Any, *, colors: Any = None, epsilon: Union[str, float] = "auto",
     faces: simplify the mesh to about this many triangles. keep_largest: keep only so many components. keep_all: True keeps surface that too
         few points hold; stats["mesh"]["dropped"] says what was left out.
     noise: standard deviation of the points from their surface, in the units of epsilon; 0: clean. Estimated unless given.
-    Hints, what you know and the points cannot say; they settle the sides of open surfaces, and stats["hints"] says what they did:
+    Hints, what you know and the points cannot say; they decide the sides of open surfaces, and stats["hints"] says what they did:
     up: the direction that open surfaces face, three numbers or an axis such as "+z" or "-y".
     sensor: where the scanner stood, (3,) or (k, 3), or "file": where the file that the points come from says it. sensor_of_point: (n,) the
         number of the sensor of each point, negative for none; without it a point faces the nearest.

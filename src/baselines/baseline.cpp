@@ -10,10 +10,13 @@
 namespace g3r {
 namespace {
 
-// PGR and AGR
-constexpr double kEpsilon = 0.4;     // spacings; -grad w of a flat patch then is that of the published clamp at 0.75 spacings
-constexpr double kPgrDamping = 0.2;  // alpha - 1; the authors advise 0.05 to 1 from many points to few. Better than both at 50,000 points
-constexpr double kAgrDamping = 1;    // mean AE_p of five models at 5000 points, 1e-2: 7.98 (0.05), 5.10 (0.2), 3.71 (1), 4.41 (5)
+// The width of PGR and AGR in spacings: with it -grad w of a flat patch is that of the published clamp at 0.75 spacings.
+constexpr double kEpsilon = 0.4;
+// The damping of PGR, alpha - 1: the authors advise 0.05 to 1 from many points to few; this is better than both at 50,000 points.
+constexpr double kPgrDamping = 0.2;
+// The damping of AGR: the mean AE_p of five models at 5,000 points is 7.98e-2 (with 0.05), 5.10e-2 (0.2), 3.71e-2 (1), 4.41e-2 (5).
+constexpr double kAgrDamping = 1;
+// PGR and AGR stop at this residual, or after these steps: their damped systems are there before.
 constexpr double kTolerance = 1e-3;
 constexpr const char* kSchedule = "100 cg";
 const std::vector<Vec3> kNoStretch{{1, 1, 1}};
@@ -62,7 +65,7 @@ BaselineSettings choose_baseline(const Options& options, double given_epsilon, d
 }
 
 std::size_t baseline_memory(const BaselineSettings& settings, double spacing, std::size_t points) {
-  constexpr std::size_t kPerSum = 1100;  // as planned_memory(), without neighbours
+  constexpr std::size_t kPerSum = 1100;  // Bytes of a point in a sum: those of planned_memory() without the neighbours.
   if (settings.method == Method::kAgr) return 2 * kPerSum * points;
   const double reach = settings.widths.widest / spacing;  // 0 for pgr
   return static_cast<std::size_t>(static_cast<double>(points) * 2 * sizeof(std::uint32_t) * std::numbers::pi * reach * reach);

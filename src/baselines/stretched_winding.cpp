@@ -11,8 +11,11 @@
 namespace g3r {
 namespace {
 
-constexpr double kRowReach = 8;     // widths; row_norms() sums squares, which fall off as 1/rho^4
-constexpr double kLeastRow = 1e-5;  // of the largest row: about what the far points add to a point without neighbours
+// The widths up to which row_norms() sums: it sums squares, which fall off as 1/rho^4, so what is beyond hardly counts.
+constexpr double kRowReach = 8;
+// The least norm of a row, of the largest: about what the far points add to a point without neighbours, which are not summed. Without it
+// such a point would be weighed without bound.
+constexpr double kLeastRow = 1e-5;
 
 Vec3 multiplied(const Vec3& a, const Vec3& b) { return {a[0] * b[0], a[1] * b[1], a[2] * b[2]}; }
 

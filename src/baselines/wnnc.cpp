@@ -13,7 +13,8 @@
 namespace g3r {
 namespace {
 
-constexpr WnncWidths kRelativeWidths{2.8, 0.35};  // spacings; reproduces the authors' clean preset near 50,000 points
+// The first and the last width in spacings: near 50,000 points they are those of the authors' clean preset, which fits that density alone.
+constexpr WnncWidths kRelativeWidths{2.8, 0.35};
 constexpr std::array<std::pair<const char*, WnncWidths>, 6> kPublishedWidths{{{"clean", {0.016, 0.002}},
                                                                               {"scan", {0.04, 0.01}},
                                                                               {"noise-0.25", {0.08, 0.02}},

@@ -1,6 +1,7 @@
 #include "field/areas.h"
 
 #include "base/median.h"
+#include "field/winding_sampler.h"
 #include "mesh/held_points.h"
 #include "sum/fast_sum.h"
 
@@ -10,10 +11,10 @@
 namespace g3r {
 namespace {
 
-constexpr double kWidth = 0.35;     // of the field, in spacings
-constexpr double kAccuracy = 1e-2;  // of its sums
-constexpr double kLeast = 1.0 / 3;  // of c; under noise of 3 h it is 0.35
-constexpr double kMost = 1.3;       // a square grid has 1.27; the w of open surfaces is no reason for more
+// The bounds of c. It is 0.35 under noise of 3 h and 1.27 on a square grid; beyond them w is not that of a closed surface, and areas would
+// follow it.
+constexpr double kLeast = 1.0 / 3;
+constexpr double kMost = 1.3;
 
 }  // namespace
 
@@ -28,9 +29,9 @@ std::vector<Vec3> area_vectors(const PointSet& set, const std::vector<Vec3>& nor
   std::vector<double> widths = spacing;
   for (std::size_t i = 0; i < eta.size(); ++i) {
     for (double& c : eta[i]) c *= spacing[i] * spacing[i];
-    widths[i] *= kWidth;
+    widths[i] *= kFieldWidth;
   }
-  FastSum sum(set.points(), set.morton(), Widths(std::move(widths)), sum_plan(kAccuracy, set.size()), cancel);
+  FastSum sum(set.points(), set.morton(), Widths(std::move(widths)), sum_plan(kFieldAccuracy, set.size()), cancel);
   std::vector<double> winding = sum.winding(eta);
   if (!sheets.part.empty()) {
     std::vector<double> closed;

@@ -11,8 +11,10 @@
 namespace g3r {
 namespace {
 
-constexpr double kDefaultWidth = 0.55;  // spacings; the width of the refinement
-constexpr double kAccuracy = 1e-3;      // of the sums
+// The width of the field in spacings, unless one is given: that of the refinement, so that -grad w at a point is its refined normal.
+constexpr double kDefaultWidth = 0.55;
+// The accuracy of its sums: what callers get is the value itself, not only the side of a level.
+constexpr double kAccuracy = 1e-3;
 
 }  // namespace
 

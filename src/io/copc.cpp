@@ -49,7 +49,7 @@ class Hierarchy {
     const auto level = load<std::int32_t>(entry);
     const auto bytes = load<std::int32_t>(entry + 24);
     const auto points = load<std::int32_t>(entry + 28);
-    constexpr std::int32_t kDeepest = 60;
+    constexpr std::int32_t kDeepest = 60;  // Cells of deeper levels are smaller than the steps of double; 2^level stays a whole number.
     if (level < 0 || level > kDeepest || bytes < 0 || points < kPage) fail_at_byte(source_, at, "damaged: no entry of a COPC hierarchy");
     if (options_.levels != 0 && level >= options_.levels) return;
     if (!meets_box(level, entry + 4)) return;

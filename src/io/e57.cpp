@@ -24,7 +24,7 @@ namespace {
 // What unpacks to more than this many times the size of its file is refused: half a byte for a point's three doubles. Scans have at least
 // 4 bytes for one. Larger: more memory for hostile files.
 constexpr std::uint64_t kMostRatio = 64;
-constexpr std::size_t kBlock = 4096;  // records unpacked at a time
+constexpr std::size_t kBlock = 4096;  // Records are unpacked so many at a time, which bounds the memory beside the cloud.
 
 constexpr std::array<const char*, 9> kNames = {"x", "y", "z", "nx", "ny", "nz", "red", "green", "blue"};  // of the table
 
@@ -269,7 +269,7 @@ class E57Records : public FixedRecords {
   }
 
   std::unique_ptr<Opened> opened_;
-  Element block_;  // with the records that have not been handed out
+  Element block_;  // with the records that have not been returned
 };
 
 }  // namespace

@@ -14,7 +14,7 @@ using namespace std::string_view_literals;
 
 constexpr std::size_t kPage = 1024;           // bytes of a page in the file ("physical")
 constexpr std::size_t kPayload = 1020;        // of them all but a checksum ("logical")
-constexpr std::size_t kAtOnce = 256 * kPage;  // bytes checked at once
+constexpr std::size_t kAtOnce = 256 * kPage;  // bytes checked at once; memory does not grow with the file
 constexpr std::size_t kFileHeader = 48;
 constexpr std::size_t kVersion = 8;
 constexpr std::size_t kFileLength = 16;
@@ -138,7 +138,7 @@ class XmlCheck {
   };
 
   void check_encoding() {
-    constexpr std::size_t kDeclaration = 256;
+    constexpr std::size_t kDeclaration = 256;  // The declaration ends within so many bytes, so that no more are searched.
     if (!xml_.starts_with("<?xml ")) refuse("expected \"<?xml \" at its begin, in UTF-8");
     const std::string_view declaration = xml_.substr(0, std::min(xml_.find("?>"), kDeclaration));
     const std::size_t encoding = declaration.find("encoding");

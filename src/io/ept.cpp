@@ -28,7 +28,8 @@ namespace fs = std::filesystem;
 
 using Key = std::array<std::uint32_t, 4>;  // level, x, y, z
 
-constexpr std::uint32_t kDeepest = 31;  // cells of 2^-31 of the cube are smaller than the steps of its coordinates
+// The deepest level: cells of 2^-31 of the cube are smaller than the steps of its coordinates, so what names deeper ones is damaged.
+constexpr std::uint32_t kDeepest = 31;
 
 /// A dimension of binary records.
 struct Dimension {
@@ -73,10 +74,8 @@ std::optional<Key> parse_key(std::string_view text) {
   return key;
 }
 
-// The description, which is short: more values than the memory law pays for (read_gltf.cpp) are refused.
 Json parse(const Source& source) {
-  constexpr std::size_t kAllowance = 2000;
-  std::optional<Json> json = parse_json(source.bytes, source.bytes.size() / 30 + kAllowance);
+  std::optional<Json> json = parse_json(source.bytes, affordable_values(source.bytes.size()));
   if (!json || !json->is_object()) fail(source, "damaged: no JSON object, or too many values for its size");
   return std::move(*json);
 }

@@ -8,7 +8,7 @@ namespace g3r::io {
 
 namespace {
 
-constexpr int kDeepest = 64;
+constexpr int kDeepest = 64;  // Deeper nesting would use up the stack; descriptions of clouds and glTF need about ten.
 
 class Parser {
  public:
@@ -109,7 +109,7 @@ class Parser {
 }  // namespace
 
 std::optional<std::uint64_t> Json::whole() const {
-  constexpr double kMost = 9007199254740992.0;
+  constexpr double kMost = 9007199254740992.0;  // 2^53: above it, a double does not hold every whole number.
   if (kind != Kind::kNumber || !(number >= 0 && number <= kMost) || number != std::floor(number)) return std::nullopt;
   return static_cast<std::uint64_t>(number);
 }

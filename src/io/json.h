@@ -28,6 +28,10 @@ struct Json {
   [[nodiscard]] const Json* find(std::string_view key) const;
 };
 
+/// The most values that a file of so many bytes may have under the memory law: a value takes 96 bytes, twice or thrice that while its array
+/// grows, and 2000 values fit into what is allowed beside the size of the file.
+[[nodiscard]] inline std::size_t affordable_values(std::size_t bytes) { return bytes / 30 + 2000; }
+
 /// Parses a text; nullopt if it is not well formed, deeper than 64 levels, or has more than `most_values` values.
 std::optional<Json> parse_json(std::string_view text, std::size_t most_values);
 

@@ -8,6 +8,7 @@ namespace g3r::io {
 
 namespace {
 
+// The format: bytes in a literal run, bytes of a match, and how far back it begins, at most.
 constexpr std::size_t kLiteralRun = 32;
 constexpr std::size_t kLongestMatch = 264;
 constexpr std::size_t kFarthest = 8192;

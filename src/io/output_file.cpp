@@ -17,9 +17,9 @@ namespace g3r::io {
 
 namespace {
 
-constexpr std::size_t kBuffer = std::size_t{1} << 16;
-constexpr std::size_t kLongestStem = 200;  // of the 255 bytes a name may have
-constexpr int kAttempts = 100;             // names for writers of the same file at the same time
+constexpr std::size_t kBuffer = std::size_t{1} << 16;  // Bytes that are written at once.
+constexpr std::size_t kLongestStem = 200;              // A name may have 255 bytes; the rest is for what makes it temporary.
+constexpr int kAttempts = 100;                         // So many writers of one file at the same time find a name each.
 
 // The path with links resolved, or the path itself if it does not exist.
 std::string resolve(const std::string& path) {

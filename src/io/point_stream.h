@@ -35,7 +35,7 @@ class PointStream {
   /// Replaces `points` with the positions of the next ones, at most `most` (> 0); none at the end. `records` (null unless the stream was
   /// opened with them) gets their records, back to back, as table() lays them out. Throws IoError, and InvalidInput for what is damaged.
   virtual void next(std::size_t most, std::vector<Vec3>& points, std::string* records = nullptr) = 0;
-  /// How many have not been handed out yet.
+  /// How many have not been returned yet.
   [[nodiscard]] virtual std::uint64_t left() const = 0;
   /// Precision of the coordinates in the file.
   [[nodiscard]] virtual Scalar scalar() const = 0;

@@ -9,7 +9,7 @@ namespace g3r::io {
 namespace {
 
 constexpr const char* kAxes[] = {"x", "y", "z"};
-constexpr std::size_t kMostColumns = 1000;  // more means that the file has no line ends
+constexpr std::size_t kMostColumns = 1000;  // More columns mean that the file has no line ends.
 
 // A column with a word in more than one line of so many holds text; fewer words are damage, which is an error.
 constexpr std::uint64_t kLinesPerWord = 100;
@@ -194,7 +194,7 @@ class Finder {
 
   // Leaves out the columns with text, and says so. Returns how many of the first `known` columns are left.
   std::size_t leave_out_text(std::size_t known) {
-    constexpr std::size_t kMostNamed = 8;
+    constexpr std::size_t kMostNamed = 8;  // The warning names so many columns, and counts the others.
     std::vector<std::size_t>& kept = found_.kept;
     std::string names;
     for (std::size_t c = 0; c < words_.size(); ++c) {

@@ -1,5 +1,5 @@
 // Text with one point per line, before it becomes a cloud: where its points are and what its columns are. Blanks, commas or semicolons
-// separate the columns; a header line may name them; PTS files start with the number of points. Columns without names are told apart by
+// separate the columns; a header line may name them; PTS files start with the number of points. Columns without names are distinguished by
 // their values; those that hold text are left out.
 #pragma once
 

@@ -62,7 +62,7 @@ void drop_black(Cloud& cloud) {
 // Coordinates in float32 far from the origin have lost their last digits before we see them.
 void warn_about_precision(Cloud& cloud) {
   if (cloud.scalar != Scalar::kFloat32) return;
-  constexpr double kStepPerExtent = 1e-4;  // steps of the numbers that are visible as steps of the surface
+  constexpr double kStepPerExtent = 1e-4;  // From this share of the extent on, steps of the numbers are visible as steps of the surface.
   for (int axis = 0; axis < 3; ++axis) {
     double low = std::numeric_limits<double>::infinity();
     double high = -low;

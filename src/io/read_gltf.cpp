@@ -41,9 +41,7 @@ std::optional<std::string> decode_base64(std::string_view text) {
 class GltfReader {
  public:
   GltfReader(const Source& source, std::string_view text, std::optional<std::string_view> binary) : source_(source), binary_(binary) {
-    // A value takes 96 bytes, twice or thrice that while its array grows: more values than the memory law pays for are refused.
-    constexpr std::size_t kAllowance = 2000;
-    std::optional<Json> root = parse_json(text, source.bytes.size() / 30 + kAllowance);
+    std::optional<Json> root = parse_json(text, affordable_values(source.bytes.size()));
     if (!root) fail(source, "damaged: the JSON of this glTF file is not well formed (truncated?), or has too many values for its size");
     root_ = std::move(*root);
     if (!root_.is_object()) fail(source, "expected a JSON object at the root of a glTF file");
@@ -89,7 +87,7 @@ class GltfReader {
   }
 
   void visit(std::size_t i, const Matrix& parent, int depth, Cloud& cloud) {
-    constexpr int kDeepest = 1000;
+    constexpr int kDeepest = 1000;  // Deeper trees would use up the stack.
     if (visited_[i] || depth > kDeepest) fail(source_, "the nodes of this glTF file are no tree");
     visited_[i] = true;
     const Json& node = list("nodes")[i];
@@ -127,7 +125,7 @@ class GltfReader {
     if (count != 0 && (room < 12 || count - 1 > (room - 12) / stride))
       fail(source_, "truncated: an accessor of " + std::to_string(count) + " points does not fit in its buffer view (count too large)");
     total_ += measuring_ ? count : 0;
-    constexpr std::uint64_t kUses = 4;  // of the same bytes by several meshes or nodes
+    constexpr std::uint64_t kUses = 4;  // So many meshes or nodes may use the same bytes: memory is bounded by the size of the file.
     if (total_ > kUses * source_.bytes.size() / 12) fail(source_, "the meshes refer to the same points too many times (instances)");
     if (measuring_) return;
     const char* bytes = buffer.data() + view_at + at;

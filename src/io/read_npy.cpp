@@ -171,7 +171,7 @@ class NpyParser {
     }
   }
 
-  static constexpr std::size_t kMostFields = 10000;
+  static constexpr std::size_t kMostFields = 10000;  // Nested types may repeat fields without end; more than this is damage.
   const Source& source_;
   NpyHeader header_;
 };
@@ -208,8 +208,8 @@ Element describe_points(const Source& source, const NpyHeader& header) {
   } else {
     if (header.shape.size() != 2)
       fail(source, "expected the shape (N, 3) with two dimensions, found " + std::to_string(header.shape.size()) + " dimensions");
-    constexpr std::uint64_t kMostColumns = 1000;
-    constexpr std::uint64_t kWide = 16;  // three rows of more columns than that are three coordinates of as many points
+    constexpr std::uint64_t kMostColumns = 1000;  // Wider arrays are no points.
+    constexpr std::uint64_t kWide = 16;           // Three rows of more columns than this are three coordinates of as many points.
     const std::uint64_t columns = header.shape[1];
     if (columns < 3 || columns > kMostColumns || (header.shape[0] == 3 && columns > kWide)) {
       fail(source, "expected the shape (N, 3) with 3 to 1000 columns, found " + std::to_string(columns) + " columns" +

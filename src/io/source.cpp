@@ -69,8 +69,8 @@ namespace io {
 
 namespace {
 
-constexpr std::size_t kBlock = std::size_t{1} << 20;
-constexpr std::size_t kHeadBytes = std::size_t{1} << 16;  // enough to recognise every format
+constexpr std::size_t kBlock = std::size_t{1} << 20;      // Bytes read at once: a file's size is not trusted, so memory grows as they come.
+constexpr std::size_t kHeadBytes = std::size_t{1} << 16;  // So many bytes are enough to recognise every format.
 
 class Descriptor {
  public:
@@ -130,7 +130,7 @@ std::string read_bytes(const std::string& path) {
 }
 
 std::string quote(std::string_view text) {
-  constexpr std::size_t kClip = 40;
+  constexpr std::size_t kClip = 40;  // Bytes shown of a text: a message stays one line.
   const bool clipped = text.size() > kClip;
   return '"' + escape_text(std::string(text.substr(0, kClip))) + (clipped ? "...\"" : "\"");
 }

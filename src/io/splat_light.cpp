@@ -13,18 +13,24 @@ namespace {
 
 using vector::dot;
 
-constexpr double kHalf = 0.5;                // of the light: where so much is stopped is the surface
-constexpr double kFaintest = 1.0 / 255;      // what renderers do not draw
-constexpr std::size_t kAxes = 32;            // of rays; with half as many, hollows lose splats that pictures show
-constexpr double kMostHidden = 1.0 / 3;      // of the splats
-constexpr std::size_t kMostLookedAt = 4096;  // bounds the time that hostile files take; in scans, rays end after tens
-constexpr double kPerTile = 8;               // splats whose centres are in a tile, on the average
-constexpr std::size_t kMostTiles = 16;       // that a splat is in, on the average: large ones make tiles larger
-constexpr double kOuter = 0.01;              // of the splats, at either end of an axis of the picture, that tiles do not resolve: sky
-constexpr double kEdgeOn = 1e-6;             // share of the spread of a disc seen from its edge that it has across
-constexpr double kLargest = 1e100;           // of coordinates and scales: squares of products stay finite,
-constexpr double kSmallest = 1e-100;         // and above 0
-constexpr std::size_t kBlock = 256;          // splats per parallel block
+constexpr double kHalf = 0.5;            // The surface is where so much of the light is stopped (Gaussian Opacity Fields).
+constexpr double kFaintest = 1.0 / 255;  // Renderers do not draw what stops less, so it stops no light here.
+constexpr std::size_t kAxes = 32;  // Rays run along so many lines, both ways; with half as many, hollows lose splats that pictures show.
+// The share of the splats from which hidden ones are not inside a solid: pictures taken from within have more.
+constexpr double kMostHidden = 1.0 / 3;
+// The splats that a ray meets at most: it bounds the time that hostile files take, and in scans rays meet tens.
+constexpr std::size_t kMostLookedAt = 4096;
+// The splats whose centres are in a tile, and the tiles that a splat is in, on the average: large splats make tiles larger. Both trade
+// lists that are short for lists that are few.
+constexpr double kPerTile = 8;
+constexpr std::size_t kMostTiles = 16;
+// The share of the splats at either end of an axis of the picture that tiles do not resolve: a few in the sky would make all tiles too
+// large.
+constexpr double kOuter = 0.01;
+constexpr double kEdgeOn = 1e-6;      // A disc seen from its edge has this share of its spread across: it keeps a place in the picture.
+constexpr double kLargest = 1e100;    // Coordinates and scales up to this have squares of products that are finite,
+constexpr double kSmallest = 1e-100;  // and from this on such that are above 0.
+constexpr std::size_t kBlock = 256;   // Splats per parallel block.
 
 bool is_drawn(const Splat& splat) {
   const auto sound = [](double value) { return std::abs(value) <= kLargest; };

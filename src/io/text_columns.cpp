@@ -170,7 +170,7 @@ ColumnFacts::ColumnFacts(std::size_t columns)
     : whole_(columns, true), channel_(columns, true), any_unit_(columns, false), any_other_(columns, false) {}
 
 void ColumnFacts::add(const double* row) {
-  constexpr double kSlack = 0.01;  // of squares of lengths: two decimals are common
+  constexpr double kSlack = 0.01;  // Squared lengths of unit normals may be off by this: two decimals are common.
   const std::size_t columns = whole_.size();
   for (std::size_t c = 0; c < columns; ++c) {
     if (!whole_[c]) continue;
@@ -196,7 +196,7 @@ void ColumnFacts::add(const double* row) {
 bool ColumnFacts::are_colors(std::size_t column) const { return channel_[column] && channel_[column + 1] && channel_[column + 2]; }
 
 bool ColumnFacts::count_points() const {
-  constexpr std::uint64_t kLeast = 10;  // fewer lines may count by chance
+  constexpr std::uint64_t kLeast = 10;  // Fewer lines may count by chance.
   return points_ >= kLeast && by_one_;
 }
 

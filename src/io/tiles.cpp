@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 // No .txt and .obj: folders hold texts that are no points, and meshes.
 constexpr std::array<std::string_view, 11> kExtensions = {"las", "laz", "ply", "pcd", "e57", "ptx", "pts", "xyz", "csv", "npy", "spz"};
 
-constexpr std::size_t kMostWarnings = 8;  // of all files together
+constexpr std::size_t kMostWarnings = 8;  // All files together give so many: a thousand with the same oddity would hide what is said else.
 
 std::vector<std::string> files_of_folder(const std::string& path) {
   std::vector<std::string> files;

@@ -45,7 +45,7 @@ constexpr const char* kFieldNames[] = {"x",
 
 // Steps of a power of ten, so small that the extent takes about 30 bits; the offset is a whole number of them.
 void choose_scale(double low, double high, double& scale, double& offset) {
-  constexpr double kSteps = 2e9;
+  constexpr double kSteps = 2e9;  // The extent has so many steps at most: the numbers of LAS have 32 bits, half of them negative.
   const double extent = std::max(high - low, 1e-6 * std::max(std::abs(low), std::abs(high)));
   scale = extent > 0 && std::isfinite(extent) ? std::pow(10.0, std::ceil(std::log10(extent / kSteps))) : 1e-9;
   if (!(scale > 0)) scale = std::numeric_limits<double>::min();
@@ -55,7 +55,7 @@ void choose_scale(double low, double high, double& scale, double& offset) {
 
 std::string new_header(std::uint64_t count, const Box& bounds, bool colored, const std::string& descriptors, std::size_t record_bytes,
                        Vec3& scale, Vec3& offset) {
-  constexpr std::size_t kSize = 375;
+  constexpr std::size_t kSize = 375;  // Bytes of the header of LAS 1.4.
   std::string text(kSize, '\0');
   text.replace(0, 4, "LASF");
   text[24] = 1;

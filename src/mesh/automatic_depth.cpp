@@ -1,5 +1,7 @@
 #include "mesh/screened_poisson.h"
 
+#include <g3r/names.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,16 +9,14 @@ namespace g3r {
 
 namespace {
 
-// The octree's cube is this much wider than the box of the points.
-constexpr double kCubePerBox = 1.1;
-// Deeper than this costs minutes and gigabytes, which nobody asked for by default.
+// The largest depth that is chosen without being asked for: more costs minutes and gigabytes.
 constexpr int kMaxAutomaticDepth = 10;
 
 }  // namespace
 
 int automatic_depth(double spacing, double box_side) {
-  const double depth = std::round(std::log2(kCubePerBox * box_side / spacing));
-  if (!(depth > kMinPoissonDepth)) return kMinPoissonDepth;  // also for a ratio that is no number
+  const double depth = std::round(std::log2(kPoissonCube * box_side / spacing));
+  if (!(depth > kLeastMeshDepth)) return kLeastMeshDepth;  // also for a ratio that is no number
   return static_cast<int>(std::min<double>(depth, kMaxAutomaticDepth));
 }
 

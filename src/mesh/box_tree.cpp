@@ -5,8 +5,10 @@
 namespace g3r::mesh {
 namespace {
 
-constexpr std::size_t kPairJobs = 256;  // about as many jobs, whatever the number of threads
-constexpr int kTop = 8;                 // levels that are split one after the other; below, every subtree by itself
+// About so many jobs share the pairs, whatever the number of threads, so that their order is the same.
+constexpr std::size_t kPairJobs = 256;
+// The levels that are split one after the other: below, every subtree is a job, and fewer would leave threads idle.
+constexpr int kTop = 8;
 
 // A box while the tree is built.
 struct Item {

@@ -10,8 +10,10 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kPoints = 4;  // whose colours are mixed; more would blur, one would look blocky
-constexpr double kSoften = 1e-6;    // of the squared distance of the farthest of them: a vertex on a point takes that point's colour
+// The points whose colours are mixed: more would blur, and one would look blocky.
+constexpr std::size_t kPoints = 4;
+// What is added to squared distances, of the farthest of them: a vertex on a point takes that point's colour, and nothing is divided by 0.
+constexpr double kSoften = 1e-6;
 
 }  // namespace
 

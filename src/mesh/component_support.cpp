@@ -14,12 +14,17 @@
 namespace g3r::mesh {
 namespace {
 
-constexpr double kAtSpacings = 1.5;    // of a point and of noise, from it to the centre of a triangle that it holds
-constexpr double kBesideSpacings = 3;  // of a point, up to which a stray is beside it
+// The distance in spacings, plus as many standard deviations, from a point to the centre of a triangle that it holds at most: leaves are
+// 0.8 spacings wide, so a point on the surface has one well within it.
+constexpr double kAtSpacings = 1.5;
+// The distance in spacings up to which a stray is beside a point: the parts that strays make are no farther from them.
+constexpr double kBesideSpacings = 3;
+// The points that a component stands for at least: smaller ones are spurious, as signs of single corners make them.
+constexpr double kLeastComponent = 8;
+// The squared noise in squared spacings for which as many points more are asked for: noise makes spheres of 1.7 standard deviations.
+constexpr double kLeastPerNoise = 4;
 constexpr std::uint32_t kNothing = 0xffffffff;
-constexpr double kAnywhere = 1e150;    // its square is a number still
-constexpr double kLeastComponent = 8;  // points: smaller ones are specks of the sign
-constexpr double kLeastPerNoise = 4;   // squared noise for which one point more is asked: it leaves spheres of 1.7 standard deviations
+constexpr double kAnywhere = 1e150;  // A reach that holds all: its square is a number still.
 
 // For every place the nearest of some points within its reach, or kNothing.
 template <class Reach>

@@ -23,19 +23,30 @@ using vector::dot;
 using vector::scale;
 using vector::subtract;
 
-constexpr std::size_t kAlong = 9;     // nearest points, itself one, that show whether they lie along a curve: more reach the next one
-constexpr double kThin = 0.05;        // second over largest variance of these up to which they do; on surfaces 1 in 1,000 is below 0.1
-constexpr std::size_t kVotes = 16;    // nearest points
-constexpr double kShare = 0.25;       // of them along curves, from which a place is sampled in lines: at crossings few are
-constexpr double kMostly = 0.5;       // of all points marked, from which all are: where lines meet they look like a surface
-constexpr double kPointWeight = 0.5;  // of the distance of a point from the surface, against the Laplacian of a vertex
-constexpr int kRounds = 3;            // of finding where the points meet the surface
-constexpr int kSteps = 300;           // of conjugate gradients in each, at most
-constexpr double kTolerance = 1e-4;   // of the first residual
-constexpr std::size_t kNearTriangles = 12;  // by their centres, among which the nearest to a point is looked for
-constexpr int kAttempts = 4;                // each with the surroundings of what crossed in the one before held
-constexpr int kHeldRings = 3;               // of vertices around triangles that cross
-constexpr std::size_t kBlock = 1024;        // per parallel block
+// The nearest points, itself one, that show whether they lie along a curve: more reach the next one.
+constexpr std::size_t kAlong = 9;
+// The second variance of these over the largest up to which they do: on surfaces one point in 1,000 is below 0.1.
+constexpr double kThin = 0.05;
+// The nearest points of a place, and the share of them along curves from which it is sampled in lines: where lines cross few are.
+constexpr std::size_t kVotes = 16;
+constexpr double kShare = 0.25;
+// The share of all points from which all count as in lines: where lines meet they look like a surface, and would stay rough.
+constexpr double kMostly = 0.5;
+// The weight of the distance of a point from the surface against the Laplacian of a vertex: less smooths, and leaves the points.
+constexpr double kPointWeight = 0.5;
+// Rounds of finding where the points meet the surface, which moves in each.
+constexpr int kRounds = 3;
+// Conjugate gradients in each: so many steps at most, or until the residual is this share of the first. What is left moves no vertex
+// visibly.
+constexpr int kSteps = 300;
+constexpr double kTolerance = 1e-4;
+// The triangles, by their centres, among which the nearest to a point is looked for: long ones have far centres.
+constexpr std::size_t kNearTriangles = 12;
+// Attempts without crossing triangles, each with what crossed in the one before held, and so many rings of vertices around it; then it
+// stays.
+constexpr int kAttempts = 4;
+constexpr int kHeldRings = 3;
+constexpr std::size_t kBlock = 1024;  // points or vertices per parallel block
 
 // A point, and where the surface should meet it.
 struct Pin {

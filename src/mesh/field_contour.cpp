@@ -13,9 +13,11 @@ namespace g3r::mesh {
 namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-constexpr std::size_t kLeafBlock = 4096;
-constexpr std::size_t kFewEdges = 32;   // leaves for each, from which on sorting the edges costs less than counting those of every leaf
-constexpr std::size_t kMinTasks = 256;  // the traversal is cut into at least this many independent tasks where the tree allows it
+constexpr std::size_t kLeafBlock = 4096;  // leaves per parallel block
+// The leaves for each edge from which on sorting the edges takes less time than counting those of every leaf.
+constexpr std::size_t kFewEdges = 32;
+// The independent tasks that the traversal is cut into at least, where the tree allows it: fewer would leave threads idle.
+constexpr std::size_t kMinTasks = 256;
 
 // Order of the four quadrants around an edge along axis d, counter-clockwise seen from +d: bit 0 = upper along d+1, bit 1 = along d+2.
 // MinimalEdge::leaf is in this order.

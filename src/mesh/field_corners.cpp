@@ -9,16 +9,21 @@
 namespace g3r::mesh {
 namespace {
 
-constexpr double kLocalReach = 1.8;    // spacings from the nearest point within which the fitted surface gives the side
-constexpr double kFieldSure = 0.2;     // |w - level| from which the field overrules the fitted surface
-constexpr double kBeyond = 0.05;       // of the side of the cube of the points: so far from it
-constexpr double kBeyondSpacings = 2;  // (and so many spacings) all is outside; fast sums end there, single ones are slow
-
-constexpr std::size_t kCornersAtOnce = std::size_t{1} << 17;  // of which more than the side is kept in memory
-
-constexpr double kFitSay = 2 * kFieldSure;  // in opinions the field counts 2 (w - level), the fitted surface at most this,
-constexpr double kFitFar = 0.3;             // and that from so many spacings away
-constexpr double kFlipped = 0.1;            // spacings: distance from the surface of corners that were flipped to remove a handle
+// The distance in spacings from the nearest point within which the fitted surface gives the side: farther away it bends off by itself.
+constexpr double kLocalReach = 1.8;
+// |w - level| from which the field overrules the fitted surface: with 0.4 the sword has 44 handles instead of 5 (docs/evidence/meshes.md).
+constexpr double kFieldSure = 0.2;
+// The distance from the cube of the points, of its side, beyond which all is outside: fast sums end there, and single ones are slow.
+constexpr double kBeyond = 0.05;
+// The corners of which more than the side is in memory at the same time.
+constexpr std::size_t kCornersAtOnce = std::size_t{1} << 17;
+// The value of an ambiguous corner is 2 (w - level) and, of the fitted surface, this at most, so that the two weigh alike where the field
+// is sure,
+constexpr double kFitSay = 2 * kFieldSure;
+// which it has from so many spacings away on.
+constexpr double kFitFar = 0.3;
+// The distance in spacings from the surface at which a corner counts whose sign was changed to remove a handle: vertices are placed by it.
+constexpr double kFlipped = 0.1;
 
 }  // namespace
 
@@ -33,7 +38,7 @@ struct CornerSides::Place {
 CornerSides::CornerSides(const LocalFit& local, const FieldSampler& sampler, double typical, const Cube& cube,
                          const std::vector<Vec3>& places, std::size_t asked_at_once)
     : local_(local), sampler_(sampler), spacing_(typical), cube_(cube), asked_at_once_(std::max(kCornersAtOnce, asked_at_once)) {
-  reach_ = 0.5 * cube_.side + std::max(kBeyond * cube_.side, kBeyondSpacings * spacing_);
+  reach_ = (0.5 + kBeyond) * cube_.side;
   std::vector<double> field;
   sampler_.sample(places, field, nullptr);
   level_ = median(std::move(field));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/median.h"
 #include "cpu/parallel.h"
 
 namespace g3r::mesh {
@@ -11,13 +12,20 @@ namespace {
 
 using Eigen::Vector3d;
 
+// The points that the noise is estimated at, evenly from all: the median of so many is good to a few percent.
 constexpr std::size_t kSampled = 2000;
-constexpr double kEstimateWidth = 1.8;  // spacings; wide against noise of one spacing
-constexpr double kWidthFloor = 0.8;     // spacings: width of the smoothing at no noise,
-constexpr double kWidthPerNoise = 2.0;  // plus this many standard deviations
-constexpr double kWidthMost = 4.0;      // spacings; wider costs too much and rounds too much
-constexpr double kSameSide = 0.3;       // cosine: points that face elsewhere belong to another part of the surface
-constexpr double kReach = 2.0;          // widths: points beyond weigh less than 14 %
+// The width of the fits that estimate it, in spacings: they have about 40 points, so that noise of a spacing does not bend them.
+constexpr double kEstimateWidth = 1.8;
+// The width of the fits that points move onto, in spacings: so much at no noise, more for each standard deviation, and this at most.
+// Narrower leaves noise; wider rounds detail and costs its square in time.
+constexpr double kWidthFloor = 0.8;
+constexpr double kWidthPerNoise = 2.0;
+constexpr double kWidthMost = 4.0;
+// Cosine of two normals below which a point belongs to another part of the surface and does not count.
+constexpr double kSameSide = 0.3;
+// The widths within which points are looked for: those beyond would weigh less than 14 %.
+constexpr double kReach = 2.0;
+// The most that slopes weigh against heights: normals that are far better than positions would leave these without a say.
 constexpr double kMostNormalWeight = 4.0;
 
 // The points near point i that face the same way, weighed by their distance along the surface.
@@ -58,12 +66,6 @@ class Neighbourhood {
   std::vector<FitPoint> members_;
 };
 
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
 
 Noise estimate_noise(const OrientedPoints& points, const Neighbours& neighbours) {
@@ -75,7 +77,7 @@ Noise estimate_noise(const OrientedPoints& points, const Neighbours& neighbours)
       const auto i = static_cast<std::size_t>(std::uint64_t{s} * n / count);
       const double h = points.spacing[i];
       const std::vector<FitPoint>& members = near.gather(i, kEstimateWidth);
-      const Sheet sheet = fit_sheet(members, 0, h, 0.25);
+      const Sheet sheet = fit_sheet(members, 0, h, kSlopeWeight);
       double height = 0, slope = 0, total = 0, squares = 0;
       for (const FitPoint& m : members) {
         Vector3d g;
@@ -91,13 +93,13 @@ Noise estimate_noise(const OrientedPoints& points, const Neighbours& neighbours)
       normal[s] = std::sqrt(slope / total);
     }
   });
-  return {median(position), median(normal)};
+  return {median(std::move(position)), median(std::move(normal))};
 }
 
 void denoise(OrientedPoints& points, const Neighbours& neighbours, const Noise& noise, const std::atomic<bool>* cancel) {
   const double width = std::min(kWidthFloor + kWidthPerNoise * noise.position, kWidthMost);
   const double ratio = noise.position / std::max(noise.normal, 1e-3);
-  const double normal_weight = std::clamp(ratio * ratio, 0.25, kMostNormalWeight);
+  const double normal_weight = std::clamp(ratio * ratio, kSlopeWeight, kMostNormalWeight);
   std::vector<Vec3> positions(points.positions.size()), normals(points.positions.size());
   parallel::for_blocks(
       positions.size(), 64,

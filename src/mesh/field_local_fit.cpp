@@ -12,21 +12,39 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kSameSheet = 0.85;     // cosine: normals within about 32 degrees belong to one sheet
-constexpr std::size_t kMinSheet = 3;    // points; fewer are noise
-constexpr std::size_t kFitPoints = 16;  // that take part in a fit: the nearest ones
-constexpr double kFaint = 16;           // points weigh about exp(-t) for t up to this and nothing beyond
-constexpr double kJointClear = 0.03;    // spacings: sheets closer than this to each other's points do not form a crease
+// Cosine of two normals, 32 degrees, up to which points are on one patch: creases of CAD models turn more, and smooth surfaces less from
+// one point to the next.
+constexpr double kSameSheet = 0.85;
+// Points of a patch beside the first, at least: fewer are noise, and a patch of their own would make a crease of it.
+constexpr std::size_t kMinSheet = 3;
+// Points of a fit, the nearest ones to the place. A quadratic has six numbers and normals double the data; more reach across walls.
+constexpr std::size_t kFitPoints = 16;
+// About the standard deviation of the weights in spacings: with 1 the dragon's CD is 0.29 instead of 0.24 (docs/evidence/meshes.md).
+constexpr double kWidth = 0.7;
+// Weights are about exp(-t) for t up to this and 0 beyond; it is a power of two, for bell().
+constexpr double kFaint = 16;
+// Spacings that the points of each of two patches are beside the other, on one side, for them to meet in a crease: closer ones, and such on
+// both sides, are one surface.
+constexpr double kJointClear = 0.03;
 
-constexpr double kAgainst = -0.2;    // cosine between a normal and the wanted direction from which they are against each other
-constexpr double kOpposite = -0.7;   // cosine: points whose normals differ by more than about 135 degrees are on opposite walls
-constexpr double kAgree = 0.5;       // spacings: tangent planes this near do not count when asked whether a place has all on one side
-constexpr double kClear = 0.2;       // spacings: from tangent planes, beyond which curvature cannot change the side of a place
-constexpr double kFacing = -0.3;     // cosine: sheets that face away from each other this much are two walls, not one bend
-constexpr int kSteps = 3;            // of the search for the nearest point; then the tree is faster
-constexpr double kWider = 1 + 1e-9;  // more than rounding can make of a squared distance
+// Cosine between a normal and the wanted direction from which a point does not count: it is on the other wall.
+constexpr double kAgainst = -0.2;
+// Cosine of two normals, 135 degrees, from which their points are on opposite walls: sharp edges turn less.
+constexpr double kOpposite = -0.7;
+// Spacings: tangent planes nearer than this may have the place on the other side of theirs, as curvature does that to them.
+constexpr double kAgree = 0.5;
+// Spacings from all tangent planes from which curvature cannot change the side of a place, so that nothing is fitted: half of the time.
+constexpr double kClear = 0.2;
+// Cosine of two patches from which they are two walls and not one bend, so that both are kept whatever the misfit of one is.
+constexpr double kFacing = -0.3;
+// Steps of the search for the nearest point from one to the next: after so many the tree is faster.
+constexpr int kSteps = 3;
+// A factor larger than what rounding can make of a squared distance: without it the search might miss a point as near.
+constexpr double kWider = 1 + 1e-9;
+// The share of one patch's squared misfit that several ones may leave at most: a crease of a CAD model passes, undersampled detail does not
+// (without, the dragon's AE_m is 1.05 instead of 0.88, docs/evidence/meshes.md).
+constexpr double kSplitGain = 0.05;
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-constexpr double kSplitGain = 0.05;  // several sheets must reduce the squared misfit of one sheet to this share
 
 using Member = FitPoint;
 
@@ -37,10 +55,10 @@ double bell(double t) {
 }
 
 // Squared misfit of a member to a sheet, positions and slopes weighed as in the fit, in units of h^2.
-double misfit(const Sheet& s, const Member& m, double h, double normal_weight) {
+double misfit(const Sheet& s, const Member& m, double h) {
   Vector3d g;
   const double d = s.distance(m.p, &g) / h;
-  return m.weight * (d * d + normal_weight * (g - m.n).squaredNorm());
+  return m.weight * (d * d + kSlopeWeight * (g - m.n).squaredNorm());
 }
 
 Joint joint_of(const LocalSurface& s, const std::vector<Member>& members, int a, int b) {
@@ -64,18 +82,18 @@ Joint joint_of(const LocalSurface& s, const std::vector<Member>& members, int a,
 
 // Undersampled detail also makes normals differ. Several sheets are kept only if they explain the points far better than one smooth
 // sheet does; sheets that face each other are always kept.
-void prefer_one_sheet(LocalSurface& s, std::vector<Member>& members, double normal_weight) {
+void prefer_one_sheet(LocalSurface& s, std::vector<Member>& members) {
   if (s.walls) return;
   double split = 0, whole = 0;
   std::array<int, kFitPoints> sheet{};
   for (std::size_t i = 0; i < members.size(); ++i) {
     Member& m = members[i];
-    if (m.sheet >= 0) split += misfit(s.sheet[static_cast<std::size_t>(m.sheet)], m, s.spacing, normal_weight);
+    if (m.sheet >= 0) split += misfit(s.sheet[static_cast<std::size_t>(m.sheet)], m, s.spacing);
     sheet[i] = m.sheet;
     if (m.sheet >= 0) m.sheet = 0;
   }
-  const Sheet one = fit_sheet(members, 0, s.spacing, normal_weight);
-  for (const Member& m : members) whole += m.sheet == 0 ? misfit(one, m, s.spacing, normal_weight) : 0;
+  const Sheet one = fit_sheet(members, 0, s.spacing, kSlopeWeight);
+  for (const Member& m : members) whole += m.sheet == 0 ? misfit(one, m, s.spacing) : 0;
   if (split > kSplitGain * whole) {
     s.count = 1;
     s.sheet[0] = one;
@@ -121,12 +139,10 @@ double LocalSurface::distance(const Vector3d& x, int* active) const {
   return result.f;
 }
 
-LocalFit::LocalFit(const OrientedPoints& points, const Neighbours& neighbours, const std::vector<std::uint32_t>& near,
-                   const LocalFitOptions& options)
+LocalFit::LocalFit(const OrientedPoints& points, const Neighbours& neighbours, const std::vector<std::uint32_t>& near)
     : points_(points),
       near_(near),
       count_(near_.size() / points.positions.size()),
-      options_(options),
       neighbours_(neighbours),
       widest_(*std::max_element(points.spacing.begin(), points.spacing.end())) {}
 
@@ -202,7 +218,7 @@ LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* dire
   out.spacing = points_.spacing[nearest];
   const double h = out.spacing;
   if (std::sqrt(squared) > reach * h) return out;
-  const double scale = 1 / (2 * options_.width * options_.width * h * h);
+  const double scale = 1 / (2 * kWidth * kWidth * h * h);
   if (detail == Detail::kSide && clear_of(nearest, x, scale, out.sheet[0])) {
     out.count = 1;
     out.simple = true;
@@ -241,7 +257,7 @@ LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* dire
       taken = 0;
       for (Member& m : members) {
         if (m.sheet != -1 && m.sheet != out.count) continue;
-        const bool same = m.n.dot(axis) > (options_.sharp ? kSameSheet : 0.0) || &m == &*seed;
+        const bool same = m.n.dot(axis) > kSameSheet || &m == &*seed;
         m.sheet = same ? out.count : -1;
         if (!same) continue;
         if (pass == 0) mean += m.weight * m.n;
@@ -255,9 +271,8 @@ LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* dire
       }
       continue;
     }
-    out.sheet[static_cast<std::size_t>(out.count)] = fit_sheet(members, out.count, h, options_.normal_weight);
+    out.sheet[static_cast<std::size_t>(out.count)] = fit_sheet(members, out.count, h, kSlopeWeight);
     ++out.count;
-    if (!options_.sharp) break;
   }
   for (int a = 0; a < out.count; ++a) {
     for (int b = 0; b < a; ++b) {
@@ -266,7 +281,7 @@ LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* dire
     }
   }
   const bool alike = out.count == 1;
-  if (out.count > 1 && options_.sharp) prefer_one_sheet(out, members, options_.normal_weight);
+  if (out.count > 1) prefer_one_sheet(out, members);
   if (alike) {
     const double f = out.sheet[0].distance(x);
     out.simple = std::all_of(members.begin(), members.end(), [&](const Member& m) {

@@ -46,11 +46,8 @@ struct LocalSurface {
   double distance(const Eigen::Vector3d& x, int* active = nullptr) const;
 };
 
-struct LocalFitOptions {
-  double width = 0.7;           ///< about the standard deviation of the weights, in spacings
-  double normal_weight = 0.25;  ///< of the normals against the positions, dimensionless
-  bool sharp = true;            ///< several sheets; false under noise
-};
+/// The weight of squared slopes against squared heights in spacings: normals double the data, so that three points are enough for a fit.
+inline constexpr double kSlopeWeight = 0.25;
 
 class LocalFit {
  public:
@@ -59,9 +56,8 @@ class LocalFit {
     kSide      ///< a plane is enough where the place is clearly on one side of the surface
   };
 
-  /// All but the options must outlive this. `neighbours`: of the positions, `near`: its of_all(k), k > 16. O(N).
-  LocalFit(const OrientedPoints& points, const Neighbours& neighbours, const std::vector<std::uint32_t>& near,
-           const LocalFitOptions& options);
+  /// All must outlive this. `neighbours`: of the positions, `near`: its of_all(k), k > 16. O(N).
+  LocalFit(const OrientedPoints& points, const Neighbours& neighbours, const std::vector<std::uint32_t>& near);
 
   /// The surface near `x`, fitted to the 16 nearest of the neighbours of the point nearest to it; no sheet if that is farther than `reach`
   /// spacings. If `direction` is not null, points whose normals point against it are left out. O(log N).
@@ -75,7 +71,6 @@ class LocalFit {
   const OrientedPoints& points_;
   const std::vector<std::uint32_t>& near_;
   std::size_t count_;  // neighbours of each point
-  LocalFitOptions options_;
   const Neighbours& neighbours_;
   double widest_;  // spacing
 };

@@ -7,6 +7,7 @@
 
 #include "base/whole_bytes.h"
 #include "g3r/error.h"
+#include "g3r/names.h"
 #include "mesh/fair.h"
 #include "mesh/field_contour.h"
 #include "mesh/field_corners.h"
@@ -27,19 +28,25 @@ using mesh::Octree;
 using mesh::Prepared;
 using mesh::RefineDisc;
 
-constexpr double kMargin = 1.15;  // side of the octree over the longest side of the bounding box, at least
+// The side of the octree over the longest side of the bounding box, to which 8 spacings are added: surface that closes an open scan may lie
+// 0.05 of that side outside of the box (CornerSides), and the octree's boundary is outside of all.
+constexpr double kMargin = 1.15;
 
-constexpr std::size_t kAskedPerPoint = 2;  // places whose field is asked at once: fewer, and the points are summed anew more often
+// The places, per point, at which the field is evaluated at once: every evaluation sums the points anew, so fewer take longer, and more
+// take memory.
+constexpr std::size_t kAskedPerPoint = 2;
 
-constexpr double kBaseBytes = 26 << 20;  // code, libraries (those of E57 are a third), thread stacks;
-constexpr double kBytesPerPoint = 500;   // with those of the winding field;
-constexpr double kBytesPerLeaf = 210;    // measured, docs/evidence/meshes.md,
-constexpr double kBytesPerThin = 430;    // for those that thin walls and gaps add: most of their corners are in doubt
-constexpr double kBytesPerAsked = 200;   // and for all where the depth is given;
-constexpr double kPlainLeaves = 8.5;     // per point of a shape without thin walls: 5.7 to 8.6 measured,
-constexpr double kLeavesPerPoint = 9.5;  // and what is planned
-constexpr double kThickness = 0.75;      // of the refined layer, in cells of the automatic depth,
-constexpr double kLayers = 2;            // and cells around it whatever their size
+// Peak memory, measured (docs/evidence/meshes.md). If it is planned too small a run is killed, if too large it is refused for nothing.
+constexpr double kBaseBytes = 26 << 20;  // Code, libraries (those of E57 are a third) and the stacks of threads take so many.
+constexpr double kBytesPerPoint = 500;   // A point takes so many, those of the winding field included.
+constexpr double kBytesPerLeaf = 210;    // A leaf takes so many,
+constexpr double kBytesPerThin = 430;    // but one that a thin wall or gap adds more, because most of its corners are ambiguous.
+constexpr double kPlainLeaves = 8.5;     // A point of a shape without thin walls has 5.7 to 8.6 leaves; what exceeds this is thin.
+constexpr double kLeavesPerPoint = 9.5;  // The plan before the solve, which knows of no thin walls, takes so many.
+// A given depth that is finer than the automatic one refines a layer of this thickness, in cells of the automatic depth, and as many cells
+// of its own around it: nine points at depth 10 took 2.3 GiB of 3.3 planned so.
+constexpr double kThickness = 0.75;
+constexpr double kLayers = 2;
 
 void report(const Monitor& monitor, double fraction) {
   if (monitor.cancel != nullptr && monitor.cancel->load()) throw Cancelled();
@@ -49,7 +56,7 @@ void report(const Monitor& monitor, double fraction) {
 // `depth`: 0 for the automatic one.
 std::size_t memory_for(std::size_t points, double leaves, int depth) {
   const double plain = std::min(leaves, kPlainLeaves * static_cast<double>(points));
-  const double octree = depth > 0 ? kBytesPerAsked * leaves : kBytesPerLeaf * plain + kBytesPerThin * (leaves - plain);
+  const double octree = kBytesPerLeaf * plain + (depth > 0 ? kBytesPerLeaf : kBytesPerThin) * (leaves - plain);
   return whole_bytes(kBaseBytes + kBytesPerPoint * static_cast<double>(points) + octree);
 }
 
@@ -99,7 +106,7 @@ void require_memory_for(std::size_t points, const Octree& octree, int depth, std
 Mesh raw_mesh(const Prepared& prepared, const FieldSampler& sampler, const MeshOptions& options, const Monitor& monitor,
               std::size_t max_memory) {
   const mesh::OrientedPoints& oriented = prepared.points;
-  const mesh::LocalFit local(oriented, *prepared.neighbours, prepared.near, mesh::LocalFitOptions{});
+  const mesh::LocalFit local(oriented, *prepared.neighbours, prepared.near);
   const Octree octree = make_octree(prepared, options, monitor);
   require_memory_for(oriented.positions.size(), octree, options.depth, max_memory);
   report(monitor, 0.3);
@@ -142,7 +149,8 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
                 const Monitor& monitor, std::size_t max_memory, mesh::LeftOut* left_out) {
   if (points.size() != normals.size()) throw InvalidInput("points and normals differ in number");
   if (points.size() < 4) throw InvalidInput("a mesh needs at least 4 points");
-  if (options.depth != 0 && (options.depth < 4 || options.depth > 12)) throw InvalidInput("mesh depth must be 4 to 12");
+  if (options.depth != 0 && (options.depth < kLeastMeshDepth || options.depth > kMostMeshDepth))
+    throw InvalidInput("mesh depth must be 4 to 12");
   report(monitor, 0);
   Prepared prepared;
   mesh::prepare(points, normals, 0, prepared);

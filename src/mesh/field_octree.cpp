@@ -12,7 +12,7 @@
 namespace g3r::mesh {
 namespace {
 
-constexpr int kKeyBits = 21;  // a corner coordinate is 0..2^20 inclusive
+constexpr int kKeyBits = kMaxOctreeLevel + 1;  // A corner coordinate is 0 to 2^kMaxOctreeLevel, the last included.
 
 std::uint64_t corner_key(const std::array<std::uint32_t, 3>& c) {
   return (std::uint64_t{c[2]} << (2 * kKeyBits)) | (std::uint64_t{c[1]} << kKeyBits) | c[0];

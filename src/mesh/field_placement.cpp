@@ -15,13 +15,22 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-constexpr double kTrust = 3.0;          // spacings: with no point nearer than this the fit says nothing and the field alone decides
-constexpr double kReach = 0.3;          // cells that a vertex may leave its leaf by
-constexpr double kFeatureReach = 0.05;  // the same for vertices on creases: a crease belongs to the leaves it passes through
-constexpr double kApart = 0.05;         // smallest cells: of two vertices on creases that are nearer, one steps aside
-constexpr double kAside = 0.3;          // of the way to where it would be without the crease
-constexpr double kOnSurface = 0.05;     // spacings: a point on a crease must also lie on the joined surface
-constexpr double kMinSine = 0.3;        // sheets at less than about 17 degrees have no well placed intersection
+// The distance in spacings from the nearest point beyond which the fit says nothing and the field alone places the vertex: surface that
+// closes an open scan is so far away, and nothing on seven closed models.
+constexpr double kTrust = 3.0;
+// The share of its leaf's side that a vertex may leave the leaf by: with more, triangles fold over each other.
+constexpr double kReach = 0.3;
+// The same for a vertex on a crease, which belongs to the leaves it passes through: with none, a crease between two leaves is in neither.
+constexpr double kFeatureReach = 0.05;
+// The distance in sides of the smallest leaves below which one of two vertices on creases steps aside, and the share of the way to where it
+// would be without the crease that it goes: else they coincide, and triangles have no area.
+constexpr double kApart = 0.05;
+constexpr double kAside = 0.3;
+// The distance in spacings from the joined surface up to which a point counts as on its crease: patches may cross where they do not meet.
+constexpr double kOnSurface = 0.05;
+// The sine of the angle of two patches, 17 degrees, below which their intersection is too far off to be one.
+constexpr double kMinSine = 0.3;
+// Steps towards a surface or an intersection: each squares the error, so that fewer suffice but where patches bend.
 constexpr int kNewtonSteps = 5;
 
 Vec3 array(const Vector3d& p) { return {p[0], p[1], p[2]}; }

@@ -10,15 +10,26 @@
 namespace g3r::mesh {
 namespace {
 
-constexpr std::size_t kNear = 28;  // neighbours kept of each point; the 16 nearest to a place are nearly always among those of its nearest
-constexpr double kDisc = 1.4;      // spacings: radius of the disc around each point that is refined; spans the holes of random sampling
-constexpr double kDiscHalf = 0.3;  // spacings: its half thickness; covers curvature within the disc
-constexpr int kMaxSpread = 4;      // levels that locally dense or sparse sampling may add or take away
-constexpr double kThin = 1.3;      // walls and gaps get cells of at most their thickness over this,
-constexpr double kMaxThin = 2.0;   // but not smaller than a normal cell over this
-constexpr double kLeastSpacing = 1e-2;       // of the typical; clusters of almost equal points are no denser for the fits than this
-constexpr std::size_t kLevelPoints = 10000;  // the median of so many values is good to 1 % of their scatter
-constexpr double kNoisy = 0.15;              // spacings: positions that scatter more than this are smoothed first
+// Neighbours kept of each point: the 16 nearest to a place are nearly always among those of its nearest point. With 24 AE_m is 2.9 %
+// larger.
+constexpr std::size_t kNear = 28;
+// The radius in spacings of the disc around each point whose leaves are refined: with less, the holes of random sampling would be coarse.
+constexpr double kDisc = 1.4;
+// Its half thickness in spacings: the surface curves away from the tangent plane by so much within the disc.
+constexpr double kDiscHalf = 0.3;
+// The levels that locally dense or sparse sampling may add or take away: without a bound, points at almost one place would make leaves as
+// small.
+constexpr int kMaxSpread = 4;
+// Walls and gaps get leaves of at most their thickness over this, lest both walls cross one edge, but none smaller than half of the others:
+// thin walls cost four times the vertices already.
+constexpr double kThin = 1.3;
+constexpr double kMaxThin = 2.0;
+// The least spacing of a point, of the typical one: clusters of almost equal points are no denser for the fits than this.
+constexpr double kLeastSpacing = 1e-2;
+// The points at which the level of the field is taken: the median of so many values is good to 1 % of their scatter.
+constexpr std::size_t kLevelPoints = 10000;
+// The noise in spacings from which points are smoothed first: fits hide less of it by themselves, and smoothing would round detail.
+constexpr double kNoisy = 0.15;
 
 }  // namespace
 

@@ -15,8 +15,10 @@
 
 namespace g3r::mesh {
 
-inline constexpr double kFinestCell = 0.8;  ///< finest cell, in typical spacings
-inline constexpr int kBaseLevel = 4;        ///< coarsest leaves
+/// The side of the leaves around points, in typical spacings: smaller ones add vertices and no detail, larger ones lose some.
+inline constexpr double kFinestCell = 0.8;
+/// The level of the largest leaves: 16 along each axis, so that coarse places of the field are seen too.
+inline constexpr int kBaseLevel = 4;
 
 /// What the fits see of the cloud.
 struct Prepared {

@@ -12,21 +12,34 @@
 namespace g3r {
 namespace {
 
-constexpr double kInLines = 0.2;            // share of the points along curves: none of a random sample are; wireframes 0.25 and more
-constexpr std::size_t kLooks = 20000;       // points looked at for terraces,
-constexpr std::size_t kPairs = 8;           // each with so many nearest
-constexpr double kAcross = 0.7;             // of a unit normal along an axis, from which the surface is across it
-constexpr std::size_t kFewestPairs = 200;   // fewer tell nothing
-constexpr double kSame = 1e-9;              // spacings between coordinates that are the same
-constexpr double kLeastSame = 0.05;         // share of the pairs with the same coordinate: none on a surface that is not flat,
-constexpr double kMostSame = 0.9;           // and more on flat ones, where single steps are shape
-constexpr double kLowStep = 0.05;           // quantile of the differences that is the step,
-constexpr double kStepToMedian = 0.3;       // at least so much of their median: without steps they come in all sizes
-constexpr double kLeastStep = 0.15;         // spacings; smaller ones are below the noise of clean clouds
-constexpr double kMostStep = 3;             // spacings; larger ones are stairs
-constexpr std::size_t kFewestOdd = 10;      // handles or parts; fewer may be the shape's own
-constexpr std::size_t kHandlePoints = 150;  // for each handle: of the smallest that was right, in a lattice of rods, 156
-constexpr std::size_t kPartPoints = 100;    // for each part
+// These decide on warnings alone. The share of the points along curves from which a cloud is sampled in lines: none of a random sample are,
+// of wireframes a quarter and more.
+constexpr double kInLines = 0.2;
+// Terraces are looked for at so many points, evenly from all, each with so many nearest: more take time, and shares of so many are good to
+// a percent.
+constexpr std::size_t kLooks = 20000;
+constexpr std::size_t kPairs = 8;
+// The part of a unit normal along an axis from which the surface is across it.
+constexpr double kAcross = 0.7;
+// The pairs of such points below which nothing is said.
+constexpr std::size_t kFewestPairs = 200;
+// The difference in spacings up to which two coordinates are the same: rounding.
+constexpr double kSame = 1e-9;
+// The share of the pairs with the same coordinate that terraces have: surfaces that are not flat have none, flat ones more, and single
+// steps on them are shape.
+constexpr double kLeastSame = 0.05;
+constexpr double kMostSame = 0.9;
+// The step is this quantile of the differences, and so much of their median at least: without steps they come in all sizes.
+constexpr double kLowStep = 0.05;
+constexpr double kStepToMedian = 0.3;
+// The steps in spacings that are terraces: smaller ones are below the noise of clean clouds, and larger ones are stairs.
+constexpr double kLeastStep = 0.15;
+constexpr double kMostStep = 3;
+// The handles or parts below which nothing is said: so few may be the shape's own.
+constexpr std::size_t kFewestOdd = 10;
+// The points for each handle, and for each part, that a mesh needs: the smallest handle that was right, in a lattice of rods, had 156.
+constexpr std::size_t kHandlePoints = 150;
+constexpr std::size_t kPartPoints = 100;
 
 std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 

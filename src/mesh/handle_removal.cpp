@@ -11,8 +11,11 @@
 namespace g3r::mesh {
 namespace {
 
-constexpr long kMostPerHandle = 60;  // corners: more are a change of shape, not of a doubtful spot
-constexpr int kRounds = 4;           // groups change what others do; what has not settled by then is left as it is
+// The corners that may change sides for each handle that goes: more change the shape. With 100 the 28 models have a genus of 265 instead of
+// 287, but gears a CD of 0.702 instead of 0.677.
+constexpr long kMostPerHandle = 60;
+// Rounds of looking at all groups, as groups change what others do: what still changes after them is left as it is.
+constexpr int kRounds = 4;
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 // Whether a group of so many corners may be taken for so many handles.

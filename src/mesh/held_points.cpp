@@ -14,18 +14,29 @@ namespace {
 
 using vector::dot;
 
-constexpr std::size_t kNear = 8;     // nearest points that have a say; more reach across thin walls
-constexpr double kSlope = 0.35;      // height over distance of points on one sheet; random directions have less once in eight times
-constexpr std::size_t kHolding = 3;  // of the nearest, on one sheet with the point; corners of cubes have so many, random points one
-constexpr double kBends = 0.9;       // n_i . (n_j mirrored in the middle between them) where the sheet goes on round a bend or crease
-constexpr double kUsual = 0.9;       // quantile of the heights: up to a tenth of the points may be strays
-constexpr double kTimesUsual = 2;    // four standard deviations of noise
-constexpr double kAlone = 2;         // spacing over that of the nearest; 1.5 is the most in a thousand points of uneven surfaces
-constexpr int kRounds = 4;           // strays that hold each other go one after the other; the fifth finds none
-constexpr std::size_t kFewestPoints = 100;  // below, sparse parts are a matter of chance
-constexpr std::size_t kBlock = 256;         // points per parallel block
-constexpr double kLooksLikeSurface = 4;     // one in so many strays seems to be held by the one next to it; measured 1 in 4 to 1 in 50
-constexpr double kRare = 100;               // clouds in which it may happen once
+// The nearest points that have a say: more reach across thin walls.
+constexpr std::size_t kNear = 8;
+// The height over the distance up to which two points are on one patch, at both: random directions have less once in eight times.
+constexpr double kSlope = 0.35;
+// The points on one patch with a point that hold it: corners of cubes have so many, random points one.
+constexpr std::size_t kHolding = 3;
+// n_i . (n_j mirrored in the middle between them) from which the patch goes on round a bend or crease.
+constexpr double kBends = 0.9;
+// The quantile of the heights that is the usual one: up to a tenth of the points may be strays, and do not change it.
+constexpr double kUsual = 0.9;
+// How many times the usual height a point may be beside the patch: about four standard deviations of noise.
+constexpr double kTimesUsual = 2;
+// The spacing of a point over that of its nearest ones from which it is alone: 1.5 is the most in a thousand points of uneven surfaces.
+constexpr double kAlone = 2;
+// Rounds of leaving out strays, as those that hold each other go one after the other: a fifth finds none.
+constexpr int kRounds = 4;
+// The points of a cloud below which none is left out: sparse parts of it are a matter of chance.
+constexpr std::size_t kFewestPoints = 100;
+// One stray in so many seems to be held by the one next to it, measured 1 in 4 to 1 in 50; and the clouds in which chance may make a part
+// of strays once. They decide how many points a part needs: with less, strays become parts, with more, small parts are lost.
+constexpr double kLooksLikeSurface = 4;
+constexpr double kRare = 100;
+constexpr std::size_t kBlock = 256;  // points per parallel block
 
 // How a point and its nearest ones see each other.
 struct Look {

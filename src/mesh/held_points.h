@@ -10,7 +10,8 @@
 
 namespace g3r::mesh {
 
-inline constexpr double kMostStrays = 1.0 / 3;  ///< of the points: where they would be more, none is
+/// The share of the points above which none is a stray: such a cloud has no surface that these tests know, and would be lost.
+inline constexpr double kMostStrays = 1.0 / 3;
 
 /// Marks (1) the points that the surface of the others goes through. A point is a stray
 ///   - if less than 3 of its 8 nearest points are on one sheet with it: its distance from their plane, and theirs from its own, is at most

@@ -4,6 +4,7 @@
 #include "mesh/split_nonmanifold.h"
 
 #include <g3r/error.h>
+#include <g3r/names.h>
 
 #include <cstdio>
 #include <iostream>
@@ -22,8 +23,7 @@ namespace g3r {
 
 namespace {
 
-constexpr float kCubePerBox = 1.1f;  // the method's usual margin around the points
-constexpr int kThreads = 1;          // more are not deterministic
+constexpr int kThreads = 1;  // more are not deterministic
 constexpr std::size_t kMinPoints = 4;
 
 /// p -> (p - centre) / side: all coordinates within +-1/2, whatever the unit and the origin of the input.
@@ -45,7 +45,7 @@ UnitBox validated_box(const std::vector<Vec3>& points, const std::vector<Vec3>& 
     throw InvalidInput("cannot mesh " + std::to_string(points.size()) + " points with " + std::to_string(normals.size()) + " normals");
   }
   if (points.size() < kMinPoints) throw InvalidInput("meshing needs at least 4 points, got " + std::to_string(points.size()));
-  if (depth < kMinPoissonDepth || depth > kMaxPoissonDepth) {
+  if (depth < kLeastMeshDepth || depth > kMostMeshDepth) {
     throw InvalidInput("the octree depth must be in 4..12, got " + std::to_string(depth));
   }
   vector::Box box;
@@ -86,8 +86,8 @@ std::shared_ptr<open3d::geometry::TriangleMesh> run_open3d(const open3d::geometr
   const std::lock_guard lock(one_at_a_time);
   const SilentErrorStream silence;
   try {
-    return std::get<0>(open3d::geometry::TriangleMesh::CreateFromPointCloudPoisson(cloud, static_cast<std::size_t>(depth), 0, kCubePerBox,
-                                                                                   false, kThreads));
+    return std::get<0>(open3d::geometry::TriangleMesh::CreateFromPointCloudPoisson(cloud, static_cast<std::size_t>(depth), 0,
+                                                                                   static_cast<float>(kPoissonCube), false, kThreads));
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {

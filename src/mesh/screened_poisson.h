@@ -10,9 +10,9 @@
 
 namespace g3r {
 
-/// Octree depths that screened_poisson() takes. Depth 12 can need tens of gigabytes.
-inline constexpr int kMinPoissonDepth = 4;
-inline constexpr int kMaxPoissonDepth = 12;
+/// The side of the octree's cube over that of the box of the points. It is the margin of the method's authors; without one the surface
+/// would leave the cube.
+inline constexpr double kPoissonCube = 1.1;
 
 /// Octree depth whose cells are about as wide as the points are apart.
 /// `spacing`: square root of area per point, > 0; `box_side`: longest side of the bounding box, same unit. Result in 4..10.

@@ -15,8 +15,10 @@
 namespace g3r::mesh {
 namespace {
 
-constexpr double kFirstStep = 2;    // steps of float; a move by less than one may round to the old place
-constexpr double kMostMove = 0.25;  // of the shortest edge: no triangle turns over
+// The first move in steps of float: one by less than a step may round to the old place.
+constexpr double kFirstStep = 2;
+// The largest move, of the shortest edge: with it no triangle turns over.
+constexpr double kMostMove = 0.25;
 constexpr double kFloatStep = std::numeric_limits<float>::epsilon();
 
 using Place = std::array<float, 3>;

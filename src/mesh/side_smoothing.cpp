@@ -9,9 +9,13 @@
 namespace g3r::mesh {
 namespace {
 
-constexpr double kOwn = 0.5;      // weight of a corner's own opinion against the mean of its neighbours
-constexpr double kAcross = 0.25;  // leaves: standard deviation, across the sheet, of the places that count as along it
-constexpr std::size_t kBlock = 4096;
+// The weight of a corner's own value against the mean of its neighbours: with more, smoothing needs more passes; with less, single corners
+// have no say.
+constexpr double kOwn = 0.5;
+// The standard deviation in leaves, across the patch, of the places that count as along it: corners of the next layer are on the other side
+// of the surface, and must not count.
+constexpr double kAcross = 0.25;
+constexpr std::size_t kBlock = 4096;  // corners per parallel block
 constexpr std::uint32_t kStands = std::numeric_limits<std::uint32_t>::max();
 
 // The leaves around a corner: 8 at most, each with the corner's place in it.

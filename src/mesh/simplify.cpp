@@ -11,8 +11,10 @@
 namespace g3r::mesh {
 namespace {
 
-constexpr int kAttempts = 5;       // each aims at more triangles than the one before
-constexpr float kAnyError = 1.0F;  // relative to the extent of the mesh: the number of triangles alone decides
+// The targets that are tried, each of more triangles than the one before, until topology stays: each costs a simplification.
+constexpr int kAttempts = 5;
+// The error allowed, of the extent of the mesh: all of it, so that the number of triangles alone decides.
+constexpr float kAnyError = 1.0F;
 
 // Positions in single precision relative to the box, as meshoptimizer takes them.
 std::vector<float> relative_positions(const Mesh& mesh) {

@@ -15,12 +15,17 @@ using vector::dot;
 using vector::scale;
 using vector::subtract;
 
-constexpr int kPasses = 10;       // steps of the triangulation, up to three edges long, go; fewer leave rags, more round corners
-constexpr double kStep = 0.5;     // of the way in each
-constexpr int kRings = 2;         // that follow
-constexpr double kTurned = 0.3;   // cosine between a triangle's normals before and after, from which it counts as turned over
-constexpr int kTakenBack = 20;    // rounds of taking vertices back; then all are
-constexpr std::uint8_t kRim = 1;  // mark of a vertex on the boundary; those that follow are above
+// Passes of smoothing: steps of the triangulation, up to three edges long, go; fewer leave rags, more round corners.
+constexpr int kPasses = 10;
+// The share of the way to the mean that a vertex goes in each: with all of it, every other vertex swings.
+constexpr double kStep = 0.5;
+// The rings of vertices beside the rim that follow it: with none, triangles there would be squeezed.
+constexpr int kRings = 2;
+// Cosine between a triangle's normals before and after below which it counts as turned over, so that its vertices go back.
+constexpr double kTurned = 0.3;
+// Rounds of taking vertices back, each of which may turn others; after them all are.
+constexpr int kTakenBack = 20;
+constexpr std::uint8_t kRim = 1;  // The mark of a vertex on the boundary; those that follow it have larger ones.
 
 using Side = std::pair<std::uint32_t, std::uint32_t>;
 

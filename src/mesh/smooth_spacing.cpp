@@ -12,7 +12,7 @@ namespace g3r::mesh {
 namespace {
 
 constexpr std::size_t kBlock = 256;            // points per parallel block
-constexpr std::size_t kSpacingNeighbours = 8;  // as in the definition of the spacing
+constexpr std::size_t kSpacingNeighbours = 8;  // The definition of the spacing has so many (docs/math.md).
 
 }  // namespace
 

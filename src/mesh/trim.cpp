@@ -16,10 +16,14 @@
 namespace g3r::mesh {
 namespace {
 
-constexpr double kGap = 1.5;        // spacings: half of the widest gap between points of a random sample of a surface
-constexpr double kSmallSide = 0.5;  // of the limit: no place of such a triangle is much farther from a point than its corners
-constexpr double kRim = 1.2;        // spacings that a rim may reach beyond its points; one gap in a hundred of a random sample is wider
-constexpr int kEarPasses = 2;       // of removing triangles that hang on by one edge, for a smoother boundary
+// The least limit in local spacings: half of the widest gap between points of a random sample of a surface, which is no hole.
+constexpr double kGap = 1.5;
+// The sides, of the limit, up to which a triangle's corners tell for all of it: no place of it is much farther from a point.
+constexpr double kSmallSide = 0.5;
+// The spacings that a rim may reach beyond its points: one gap in a hundred of a random sample is wider.
+constexpr double kRim = 1.2;
+// Rounds of removing triangles that hang on by one edge, which make the boundary ragged.
+constexpr int kEarPasses = 2;
 
 using Triangle = std::array<std::uint32_t, 3>;
 

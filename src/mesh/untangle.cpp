@@ -14,10 +14,15 @@
 namespace g3r::mesh {
 namespace {
 
+// Rounds of moving vertices of crossing triangles: what still crosses after them hardly comes apart.
 constexpr int kRounds = 12;
-constexpr int kWider = 4;      // after so many rounds the neighbours of a crossing triangle move too
-constexpr double kStep = 0.5;  // of the way to the mean of the neighbours
-constexpr int kRings = 3;      // of triangles around the crossing ones in which moved vertices may meet something
+// The rounds after which the neighbours of a crossing triangle move too: few crossings need it, and it smooths more.
+constexpr int kWider = 4;
+// The share of the way to the mean of its neighbours that a vertex goes: with all of it, neighbours swing about each other.
+constexpr double kStep = 0.5;
+// The rings of triangles around the crossing ones that are searched for new crossings: moved vertices reach no farther. With one ring gears
+// come out otherwise, with two they do not.
+constexpr int kRings = 3;
 constexpr std::uint32_t kOutside = std::numeric_limits<std::uint32_t>::max();
 
 // Marks the corners of all triangles that have a marked corner.

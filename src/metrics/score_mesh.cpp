@@ -14,7 +14,7 @@ namespace g3r {
 
 namespace {
 
-constexpr std::size_t kBlock = 1024;
+constexpr std::size_t kBlock = 1024;  // Samples per parallel block: a fixed number gives sums one order.
 
 /// Sums over the samples of one mesh of what its closest points on the other mesh give.
 struct Side {

@@ -14,8 +14,10 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kRowPoints = 64;  // points whose rows are assembled together
-constexpr Eigen::Index kTile = 192;     // columns per tile of the normal matrix
+// The points whose rows are assembled together, and the columns of a tile of the normal matrix: both bound what a step has in the cache.
+// They fix the order of additions, so another number changes the last digits.
+constexpr std::size_t kRowPoints = 64;
+constexpr Eigen::Index kTile = 192;
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 

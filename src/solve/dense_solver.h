@@ -11,7 +11,8 @@
 
 namespace g3r {
 
-inline constexpr std::size_t kMostDensePoints = 4000;  ///< 3N x 3N doubles: 1.2 GB
+/// The most points of the dense solver: their 3N x 3N doubles take 1.2 GB, and more grow with N^2, the time with N^3.
+inline constexpr std::size_t kMostDensePoints = 4000;
 
 struct DenseResult {
   std::vector<Vec3> eta;

@@ -2,6 +2,7 @@
 #include "solve/harmonics.h"
 
 #include <g3r/error.h>
+#include <g3r/names.h>
 
 #include <algorithm>
 #include <array>
@@ -14,6 +15,7 @@
 namespace g3r {
 namespace {
 
+static_assert(kMaxHarmonicDegree == kMostDegree);
 constexpr int kStride = kMaxHarmonicDegree + 1;
 
 struct NamedHarmonic {

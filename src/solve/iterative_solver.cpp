@@ -10,7 +10,9 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kBlock = 4096;  // points per block of a reduction; fixed, so sums have one order
+// The points in a block of a reduction: a fixed number gives sums one order, whatever the number of threads.
+constexpr std::size_t kBlock = 4096;
+// The most steps of a schedule: more would run for days, so a larger number is a typing error.
 constexpr int kMostSteps = 100000;
 
 double dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {

@@ -128,7 +128,7 @@ void write_corners(const MeshFolder& folder, std::size_t tile, const std::atomic
   std::vector<Vec3> own;
   for (const std::uint32_t i : around.own) own.push_back(prepared.points.positions[i]);
   const std::vector<Vec3> places = mesh::level_places(own);
-  const mesh::LocalFit local(prepared.points, *prepared.neighbours, prepared.near, mesh::LocalFitOptions{});
+  const mesh::LocalFit local(prepared.points, *prepared.neighbours, prepared.near);
   mesh::Corners corners;
   {
     OrientedCloud sources = field_sources(folder, around);

@@ -148,7 +148,7 @@ void write_sheets(const MeshFolder& folder, std::size_t tile, const std::atomic<
   const Surroundings around(folder, tile, cancel);
   const mesh::Octree& octree = *around.octree;
   const mesh::Prepared& prepared = around.prepared;
-  const mesh::LocalFit local(prepared.points, *prepared.neighbours, prepared.near, mesh::LocalFitOptions{});
+  const mesh::LocalFit local(prepared.points, *prepared.neighbours, prepared.near);
   const std::vector<float> value = read_corners(folder, around, tile);
   std::vector<std::uint8_t> inside(value.size());
   for (std::size_t c = 0; c < inside.size(); ++c) inside[c] = value[c] > 0 ? 1 : 0;

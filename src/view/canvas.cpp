@@ -14,13 +14,15 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr int kSupersampling = 2;  // per axis; 4 samples a pixel leave no visible steps
-constexpr int kTaps = 24;          // of the ambient occlusion; fewer show as grain
-constexpr float kReach = 0.12F;    // of the ambient occlusion, in scene radii
-constexpr float kStrength = 1.1F;  // of the ambient occlusion
-constexpr float kBias = 0.06F;     // sine of the slope below which a neighbour does not occlude
-constexpr float kGrazing = 0.2F;   // least cosine of a disc: keeps discs seen from the edge from vanishing
-constexpr float kNearest = 1e-6F;  // nothing closer to the eye than this is drawn
+constexpr int kSupersampling = 2;  // Samples per pixel and axis: 4 samples a pixel leave no visible steps.
+// Ambient occlusion: places looked at (fewer show as grain), how far away in radii of the scene (farther, all becomes grey), how much it
+// darkens, and the sine of the slope below which a neighbour does not occlude (with less, flat discs shade each other).
+constexpr int kTaps = 24;
+constexpr float kReach = 0.12F;
+constexpr float kStrength = 1.1F;
+constexpr float kBias = 0.06F;
+constexpr float kGrazing = 0.2F;   // The least cosine that a disc is drawn with: without it discs seen from the edge would vanish.
+constexpr float kNearest = 1e-6F;  // Nothing closer to the eye than this is drawn, where the perspective has no place for it.
 
 float srgb_from_linear(float c) { return c <= 0.0031308F ? 12.92F * c : 1.055F * std::pow(c, 1 / 2.4F) - 0.055F; }
 float linear_from_srgb(float c) { return c <= 0.04045F ? c / 12.92F : std::pow((c + 0.055F) / 1.055F, 2.4F); }
@@ -174,7 +176,7 @@ std::vector<float> Canvas::occlusion_map() const {
     }
   }
   // Blur over samples of the same surface.
-  constexpr int kBlur = 3;
+  constexpr int kBlur = 3;  // Samples to either side: the grain of kTaps places goes, edges of shadows stay.
   std::vector<float> smooth(samples_.size(), 0);
   for (int y = 0; y < side_; ++y) {
     for (int x = 0; x < side_; ++x) {

@@ -19,16 +19,20 @@ using view::Canvas;
 using view::Corner;
 using view::Image;
 
-constexpr int kViews = 4;                 // at most
-constexpr double kHalfAngle = 0.21;       // 24 degrees in all: depth is felt, proportions stay true
-constexpr double kMargin = 1.08;          // empty border around the object
-constexpr double kDiscPerSpacing = 0.85;  // discs just overlap
-constexpr double kDotPerSpacing = 0.45;   // points without normals stay apart
-// Random points leave holes through which the far side would be seen, from its inside: behind every disc lies a larger one.
+constexpr int kViews = 4;  // There are so many views: three-quarter, front, side and top.
+// Half of the camera's angle, in radians: with 24 degrees in all, depth is felt and proportions stay true.
+constexpr double kHalfAngle = 0.21;
+constexpr double kMargin = 1.08;  // The picture is so many times as wide as the object, for a border.
+// With this radius in spacings discs just overlap; smaller ones leave holes, larger ones hide shape.
+constexpr double kDiscPerSpacing = 0.85;
+constexpr double kDotPerSpacing = 0.45;  // With this radius points without normals stay apart.
+// Random points leave holes through which the far side would be seen, from its inside: behind every disc lies a larger one, by this factor
+// and so many spacings behind, where it does not cut through its neighbours.
 constexpr double kFillPerDisc = 2.2;
-constexpr double kFillBehind = 1.5;    // spacings
-constexpr float kHorizon = -0.2F;      // a disc is told to face away below this cosine: at the silhouette, noise alone turns it
-constexpr double kSmoothCosine = 0.8;  // edges sharper than this (37 degrees) stay sharp when shaded
+constexpr double kFillBehind = 1.5;
+// The cosine below which a disc is shown as facing away: at the silhouette noise alone turns it, and would make a red rim.
+constexpr float kHorizon = -0.2F;
+constexpr double kSmoothCosine = 0.8;  // Edges sharper than this cosine, 37 degrees, stay sharp when shaded.
 
 constexpr unsigned kNearGrey = 0x7d838c;
 constexpr unsigned kFarGrey = 0xd5d9df;

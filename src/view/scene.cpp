@@ -43,8 +43,8 @@ Box check_scene(const Scene& scene) {
 double estimate_spacing(const std::vector<Vec3>& points, const Box& box) {
   // A cell of a random plane grid section has about 2/3 of the area of a cell face: mean over directions of the cut area.
   constexpr double kAreaPerCell = 2.0 / 3.0;
-  constexpr double kPointsPerCell = 4;  // below this, empty cells inside the surface make the count too small
-  constexpr std::size_t kFinest = 512;  // cells per side; 16 MiB of bits
+  constexpr double kPointsPerCell = 4;  // With fewer points in a cell, empty cells inside the surface would make the count too small.
+  constexpr std::size_t kFinest = 512;  // More cells per side would take more than 16 MiB of bits.
   const double side = box.longest_side();
   std::uint64_t count = 0;
   for (const Vec3& p : points) count += is_finite(p) ? 1 : 0;
