@@ -40,7 +40,10 @@ Tested test(const Surface& s) {
     normals.push_back(s.normals[i]);
   }
   const Sites sites = place_sites(PointSet(points, order.code), 0);
-  return {certify(sites, normals, std::vector<double>(points.size(), 10), sum_plan(1e-3, points.size()), nullptr), points};
+  const SumPlan sums = sum_plan(1e-3, points.size());
+  Tested tested{certify(sites, normals, std::vector<double>(points.size(), 10), sums, nullptr), points};
+  EXPECT_EQ(tested.certificate.jump_defect, jump_defects(sites, normals, sums, nullptr));
+  return tested;
 }
 
 Surface half(const Surface& whole) {

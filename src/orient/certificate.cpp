@@ -14,40 +14,90 @@
 namespace g3r {
 namespace {
 
-constexpr std::array<double, 4> kDistances = {1, 2, 4, 8};  // spacings: walls are seen at the smaller ones, emptiness at the larger
-constexpr double kFarthestJump = 4;                         // spacings: farther away the surface bends
+// Spacings between a site and the probes beside it. The jump is looked at up to the third: farther away the surface bends. Walls are seen
+// at the smaller ones, emptiness at the larger.
+constexpr std::array<double, 4> kDistances = {1, 2, 4, 8};
+constexpr std::size_t kJumps = 3;
 constexpr double kWidth = 0.4;  // typical spacings, of the field: single sites are not seen at the nearest probes, walls of a spacing are
 constexpr double kApart = 1.9;  // spacings between a probe and any site, so that the field there knows of no single ones
 constexpr double kMostFactor = 1.3;  // of the areas: those of points that scatter are too large, of a grid too small
 constexpr std::size_t kBlock = 256;  // sites per parallel block
 
+// The field of the sites with the given normals, at probes on either side of them.
+class Probed {
+ public:
+  Probed(const Sites& sites, const std::vector<Vec3>& normals, const SumPlan& sums, const std::atomic<bool>* cancel)
+      : sites_(sites),
+        cancel_(cancel),
+        field_(sites.points(), sites.set.morton(), Widths(kWidth * sites.set.spacing()), sums, cancel),
+        eta_(sites.size()),
+        axis_(sites.size()) {
+    for (std::size_t i = 0; i < eta_.size(); ++i) {
+      eta_[i] = vector::scale(normals[i], sites.spacing()[i] * sites.spacing()[i]);
+      axis_[i] = vector::scale(sites.axis[i], vector::dot(normals[i], sites.axis[i]) < 0 ? -1 : 1);
+    }
+  }
+
+  // So many spacings behind every site, then before every site.
+  [[nodiscard]] std::vector<Vec3> at(double distance) const {
+    const std::size_t count = eta_.size();
+    std::vector<Vec3> probes(2 * count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3 step = vector::scale(axis_[i], distance * sites_.spacing()[i]);
+      probes[i] = vector::subtract(sites_.points()[i], step);
+      probes[count + i] = vector::add(sites_.points()[i], step);
+    }
+    return probes;
+  }
+
+  [[nodiscard]] std::vector<double> winding(const std::vector<Vec3>& probes) const { return field_.winding_at(eta_, probes, cancel_); }
+
+ private:
+  const Sites& sites_;
+  const std::atomic<bool>* cancel_;
+  FastSum field_;
+  std::vector<Vec3> eta_;
+  std::vector<Vec3> axis_;  // on the side of the normals
+};
+
+void add_jumps(const std::vector<double>& w, std::vector<double>& largest, std::vector<double>& defect) {
+  const std::size_t count = defect.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const double jump = w[i] - w[count + i];
+    largest[i] = std::max(largest[i], jump);
+    defect[i] += std::abs(1 - jump) / static_cast<double>(kJumps);
+  }
+}
+
 }  // namespace
+
+std::vector<double> jump_defects(const Sites& sites, const std::vector<Vec3>& normals, const SumPlan& sums,
+                                 const std::atomic<bool>* cancel) {
+  const Probed probed(sites, normals, sums, cancel);
+  std::vector<double> largest(sites.size(), -HUGE_VAL);
+  std::vector<double> defect(sites.size(), 0);
+  for (std::size_t d = 0; d < kJumps; ++d) add_jumps(probed.winding(probed.at(kDistances[d])), largest, defect);
+  return defect;
+}
 
 Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const std::vector<double>& reach, const SumPlan& sums,
                     const std::atomic<bool>* cancel) {
   const std::size_t count = sites.size();
-  const std::vector<Vec3>& points = sites.points();
   const std::vector<double>& spacing = sites.spacing();
-  std::vector<Vec3> eta(count);
-  for (std::size_t i = 0; i < count; ++i) eta[i] = vector::scale(normals[i], spacing[i] * spacing[i]);
-  const FastSum field(points, sites.set.morton(), Widths(kWidth * sites.set.spacing()), sums, cancel);
   const Neighbours& tree = sites.set.tree();
+  const Probed probed(sites, normals, sums, cancel);
   Certificate out;
   out.jump.assign(count, -HUGE_VAL);
   out.jump_defect.assign(count, 0);
   out.unrest.assign(count, 0);
   std::vector<double> quiet(count, 0);
-  const auto side_of = [&](std::size_t i) { return vector::dot(normals[i], sites.axis[i]) < 0 ? -1.0 : 1.0; };
   std::array<std::vector<double>, kDistances.size()> w;
   std::vector<std::uint8_t> is_quiet(2 * count * kDistances.size(), 0);
-  std::vector<Vec3> probes(2 * count);
   for (std::size_t d = 0; d < kDistances.size(); ++d) {
-    for (std::size_t i = 0; i < count; ++i) {
-      const Vec3 step = vector::scale(sites.axis[i], side_of(i) * kDistances[d] * spacing[i]);
-      probes[i] = vector::subtract(points[i], step);
-      probes[count + i] = vector::add(points[i], step);
-    }
-    w[d] = field.winding_at(eta, probes, cancel);
+    const std::vector<Vec3> probes = probed.at(kDistances[d]);
+    w[d] = probed.winding(probes);
+    if (d < kJumps) add_jumps(w[d], out.jump, out.jump_defect);
+    if (kDistances[d] < kApart) continue;  // its own site is too near
     parallel::for_blocks(2 * count, kBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         const double apart = kApart * spacing[k % count];
@@ -66,13 +116,6 @@ Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const 
   }
   const double factor = inside.empty() ? 1 : std::clamp(1 / median(inside), 1 / kMostFactor, kMostFactor);
   for (std::size_t d = 0; d < kDistances.size(); ++d) {
-    for (std::size_t i = 0; i < count; ++i) {
-      const double jump = w[d][i] - w[d][count + i];
-      if (kDistances[d] <= kFarthestJump) {
-        out.jump[i] = std::max(out.jump[i], jump);
-        out.jump_defect[i] += std::abs(1 - jump) / 3;
-      }
-    }
     for (std::size_t k = 0; k < 2 * count; ++k) {
       if (is_quiet[2 * count * d + k] == 0) continue;
       const double value = factor * w[d][k];

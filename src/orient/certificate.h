@@ -31,4 +31,8 @@ struct Certificate {
 [[nodiscard]] Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const std::vector<double>& reach,
                                   const SumPlan& sums, const std::atomic<bool>* cancel);
 
+/// Certificate::jump_defect alone: six evaluations of the field.
+[[nodiscard]] std::vector<double> jump_defects(const Sites& sites, const std::vector<Vec3>& normals, const SumPlan& sums,
+                                               const std::atomic<bool>* cancel);
+
 }  // namespace g3r

@@ -118,6 +118,10 @@ class Search {
     return certify(finest_, at_sites(normals), reach_, sums_, cancel_);
   }
 
+  [[nodiscard]] std::vector<double> jump_defects(const std::vector<Vec3>& normals) const {
+    return g3r::jump_defects(finest_, at_sites(normals), sums_, cancel_);
+  }
+
   // Whether the points of a part lie on two walls closer together than the field can tell: the heights over the planes of the sites are
   // likelier from two parallel quadratics than from one. n points on two walls, each with a label that costs ln 2, have the log likelihood
   // -n ln s2 - n ln 2, on one -n ln s1, with s the standard deviation from the fit.
@@ -295,7 +299,7 @@ Verdict suspect(const Search& search, const std::vector<double>& unrest, const s
 void choose(const Search& search, const std::vector<std::vector<Vec3>>& tried, const std::vector<double>& unrest,
             const std::vector<double>& defect, double noise, Verdict& verdict) {
   for (std::size_t h = 0; h < tried.size(); ++h) {
-    const std::vector<double> here = search.mean_of_parts(search.test(tried[h]).jump_defect);
+    const std::vector<double> here = search.mean_of_parts(search.jump_defects(tried[h]));
     for (std::size_t p = 0; p < here.size(); ++p) {
       if (here[p] >= kClearlyLess * verdict.defect[p]) continue;
       verdict.defect[p] = here[p];

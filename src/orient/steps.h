@@ -8,7 +8,7 @@
 
 namespace g3r {
 
-/// In the order of the run. What each does and is worth: docs/evidence/steps.md.
+/// In the order of the run, but for the certificate, which every solve ends with. What each does and is worth: docs/evidence/steps.md.
 enum class Step {
   kOutliers,      ///< points far from all others are taken out
   kNoise,         ///< the noise is estimated; without it every cloud is taken for clean
