@@ -358,7 +358,11 @@ OpenSurfaces settle(const Search& search, const std::vector<std::vector<Vec3>>& 
 
 OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan& sums, std::vector<Vec3>& normals,
                                 const std::atomic<bool>* cancel) {
-  if (set.size() < kFewestSites) return {};
+  if (set.size() < kFewestSites) {  // no side can be certified
+    OpenSurfaces unknown;
+    unknown.certified.assign(set.size(), 0);
+    return unknown;
+  }
   const Search search(set, noise, sums, cancel);
   const Certificate given = search.test(normals);
   const std::vector<double> unrest = search.mean_of_parts(given.unrest);
