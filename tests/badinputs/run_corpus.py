@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Judge any command-line tool on the corpus of badinputs.py (standard library only).
 
-run_corpus.py [--corpus DIR] [--out-ext ply] [--read] [--only SUBSTR] [--json OUT] [--seconds S] [--any-rss] -- CMD... {in} ... {out}
+run_corpus.py [--corpus DIR] [--out-ext ply] [--read] [--only START,START] [--json OUT] [--seconds S] [--any-rss] -- CMD... {in} ... {out}
 
 --seconds, --any-rss   another time limit; no memory limit (sanitizers keep shadow memory)
 --read   judge against expect_read (tools that only read/convert) instead of expect
@@ -16,7 +16,7 @@ a = sys.argv[1:]
 cut = a.index('--'); opt, cmd = a[:cut], a[cut + 1:]
 def get(k, d=None): return opt[opt.index(k) + 1] if k in opt else d
 here = os.path.dirname(os.path.abspath(__file__))
-corpus = get('--corpus', here + '/badinputs'); ext = get('--out-ext', 'ply'); only = get('--only', '')
+corpus = get('--corpus', here + '/badinputs'); ext = get('--out-ext', 'ply'); only = tuple(get('--only', '').split(','))
 man = json.load(open(corpus + '/manifest.json')); B = man['budget']
 B['seconds'] = float(get('--seconds', B['seconds']))
 key = 'expect_read' if '--read' in opt else 'expect'
@@ -53,7 +53,7 @@ def ply_bad(path, e):
     return None
 res, tot = [], collections.Counter()
 for e in man['files']:
-    if only not in e['file']: continue
+    if not e['file'].startswith(only): continue
     d = tempfile.mkdtemp(prefix='corpus'); inp = os.path.join(d, e['file']); out = os.path.join(d, 'out.' + ext)
     shutil.copy(os.path.join(corpus, e['file']), inp)
     argv = [c.replace('{in}', inp).replace('{out}', out) for c in cmd]
