@@ -148,6 +148,13 @@ TEST(Cells, PartsThatDoNotTouchAreApart) {
   EXPECT_EQ(parts[3], tiles::kNoPart);
 }
 
+TEST(TileCloud, ThinnedPointsInDoubtDoNotCount) {
+  tiles::TileCloud cloud;
+  cloud.own = {1, 0, 0, 1, 0, 1, 1};
+  EXPECT_EQ(tiles::unsure_share_of_own(cloud, {0.9F, 0, 0.1F, 1, 0, 0.8F, 1}), 0);
+  EXPECT_EQ(tiles::unsure_share_of_own(cloud, {0.9F, 1, 1, 0.1F, 1, 0.8F, 1}), 0.25);
+}
+
 class Tiles : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -290,6 +297,20 @@ TEST(TilesPlan, NamesTheFileThatIsGarbage) {
   write_bytes(folder.file("b.ply"), bytes.substr(0, bytes.size() - 9));
   EXPECT_NE(complaint(plan).find("b.ply: byte "), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(folder.file("work")));
+}
+
+TEST(TilesPlan, ProgressGoesOnWithinAFile) {
+  const TemporaryFolder folder;
+  write_points(folder.file("in.npy"), shapes::sphere(140000).points);  // more than are read at once
+  double most = 0;
+  Monitor monitor;
+  monitor.progress = [&](std::string_view stage, double fraction) {
+    EXPECT_TRUE(fraction >= 0 && fraction <= 1) << stage;
+    if (stage == "read") most = std::max(most, fraction);
+    return stage == "read";
+  };
+  EXPECT_THROW((void)plan_tiles({folder.file("in.npy")}, folder.file("work"), {}, monitor), Cancelled);
+  EXPECT_GT(most, 0.9);
 }
 
 TEST(TilesPlan, TellsWhatItCannotDo) {

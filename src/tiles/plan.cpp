@@ -42,15 +42,18 @@ constexpr double kLargest = 1e50;                // coordinates, whose squares a
 constexpr std::size_t kMostTiles = 1000000;
 constexpr std::size_t kMostWarnings = 8;  // of all files together
 
-// Calls begin(file, stream) for each file, take(file, point) for all points in order, and between(share of the files) now and then.
+// Calls begin(file, stream) for each file, take(file, point) for all points in order, and between(share of the work) now and then: files
+// count alike, as only one of them is open.
 template <class Begin, class Between, class Take>
 void for_all_points(const std::vector<std::string>& files, const Begin& begin, const Between& between, const Take& take) {
   std::vector<Vec3> points;
   for (std::size_t f = 0; f < files.size(); ++f) {
     const std::unique_ptr<io::PointStream> stream = io::open_points(files[f]);
     begin(f, *stream);
+    const auto all = static_cast<double>(stream->left());
     for (stream->next(kAtOnce, points); !points.empty(); stream->next(kAtOnce, points)) {
-      between(static_cast<double>(f) / static_cast<double>(files.size()));
+      const double of_file = 1 - static_cast<double>(stream->left() + points.size()) / all;
+      between((static_cast<double>(f) + of_file) / static_cast<double>(files.size()));
       for (const Vec3& p : points) take(f, p);
     }
   }

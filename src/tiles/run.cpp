@@ -1,6 +1,7 @@
 // Each tile: a solve in core of its cloud, turned part by part to the sides of the thinned cloud.
 #include "cpu/parallel.h"
 #include "io/output_file.h"
+#include "orient/steps.h"
 #include "tiles/manifest.h"
 #include "tiles/records.h"
 #include "tiles/tile_cloud.h"
@@ -35,18 +36,27 @@ std::map<std::uint32_t, double> signs_of_parts(const TileCloud& cloud, const std
   return votes;
 }
 
+// Other noises than the estimate are tried where the tile's own points ask for it, or the thinned cloud is open, as in core.
+Orientation solve(const TileCloud& cloud, const Manifest& m, const TileWorker& worker, const Monitor& monitor) {
+  std::vector<Vec3> points(cloud.records.size());
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] = cloud.records[i].point;
+  Options options;
+  options.threads = worker.threads;
+  options.device = worker.device;
+  if (m.open_share < kDoubtful) {
+    Options one_noise = options;
+    one_noise.without = kStepNames[static_cast<std::size_t>(Step::kNoiseChoice)];
+    Orientation solved = orient(points, one_noise, monitor);
+    if (unsure_share_of_own(cloud, solved.confidence) < kDoubtful) return solved;
+  }
+  return orient(points, options, monitor);
+}
+
 void solve_tile(const std::string& folder, const Manifest& m, const Cells& cells, std::size_t t, const TileWorker& worker,
                 const Monitor& monitor) {
   const TileCloud cloud = read_tile_cloud(folder, m, cells, m.tiles[t]);
-  Orientation solved;
-  {
-    std::vector<Vec3> points(cloud.records.size());
-    for (std::size_t i = 0; i < points.size(); ++i) points[i] = cloud.records[i].point;
-    Options options;
-    options.threads = worker.threads;
-    options.device = worker.device;
-    solved = orient(points, options, named(monitor, "tile " + std::to_string(t + 1) + " of " + std::to_string(m.tiles.size())));
-  }
+  const Orientation solved =
+      solve(cloud, m, worker, named(monitor, "tile " + std::to_string(t + 1) + " of " + std::to_string(m.tiles.size())));
   std::map<std::uint32_t, double> signs = signs_of_parts(cloud, solved.normals, folder);
   std::vector<Result> results;
   for (std::size_t i = 0; i < cloud.records.size(); ++i) {
