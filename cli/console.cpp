@@ -4,11 +4,8 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 
-#include <sys/ioctl.h>
-#include <unistd.h>
-
+#include "terminal.h"
 #include "text.h"
 
 namespace g3r::cli {
@@ -27,16 +24,10 @@ constexpr const char* kClearLine = "\r\x1b[K";
 
 void print(const std::string& text) { std::fputs(text.c_str(), stderr); }
 
-bool is_capable_terminal() {
-  const char* term = std::getenv("TERM");  // NOLINT(concurrency-mt-unsafe): no thread changes the environment
-  return isatty(STDERR_FILENO) != 0 && term != nullptr && std::string_view(term) != "dumb";
-}
-
 // One less than the terminal has: a character in the last one makes some terminals begin another line, which nothing clears.
 std::size_t usable_columns() {
-  winsize size{};
-  const bool told = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-  return (told ? size.ws_col : kColumns) - 1;
+  const std::size_t columns = terminal_columns();
+  return (columns > 0 ? columns : kColumns) - 1;
 }
 
 }  // namespace

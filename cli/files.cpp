@@ -1,13 +1,13 @@
 #include "files.h"
 
+#include "base/platform.h"
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
 #include <vector>
-
-#include <unistd.h>
 
 #include "exit_code.h"
 
@@ -20,12 +20,12 @@ void check_input(const std::string& path) {
   if (path.empty() || path == "-") return;
   if (path.find_first_of("*?") != std::string::npos) return;  // a pattern of names, which reading looks for
   // Not by opening it: the writer of a named pipe would see its reader come and go.
-  if (access(path.c_str(), R_OK) != 0) throw IoError(IoError::Kind::kNotFound, "cannot read " + escape_text(path) + ": " + reason());
+  if (!platform::may_read(path)) throw IoError(IoError::Kind::kNotFound, "cannot read " + escape_text(path) + ": " + reason());
 }
 
 /// `g3r oriend scan.ply` asks for a file named oriend.
 void check_not_a_command(const std::string& input) {
-  if (std::all_of(input.begin(), input.end(), [](char c) { return c >= 'a' && c <= 'z'; }) && access(input.c_str(), F_OK) != 0) {
+  if (std::all_of(input.begin(), input.end(), [](char c) { return c >= 'a' && c <= 'z'; }) && !platform::exists(input)) {
     throw UsageError("there is no file and no command named " + input);
   }
 }
@@ -34,9 +34,9 @@ bool same_file(const std::string& a, const std::string& b) {
   if (a.empty() || a == "-" || b.empty() || b == "-") return false;
   std::error_code ignored;
   const auto place = [&](const std::string& path) {
-    return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored);
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(platform::path_of(path), ignored), ignored);
   };
-  return place(a) == place(b) || std::filesystem::equivalent(a, b, ignored);
+  return place(a) == place(b) || std::filesystem::equivalent(platform::path_of(a), platform::path_of(b), ignored);
 }
 
 /// A report or a page, which check_output() cannot judge by its extension.
@@ -47,10 +47,11 @@ void check_text_output(const std::string& path, const std::vector<std::string>& 
     if (same_file(path, other)) throw IoError(IoError::Kind::kCannotCreate, refused + "it is also the input or the result");
   }
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw IoError(IoError::Kind::kCannotCreate, refused + "it is a folder");
-  std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  if (std::filesystem::is_directory(platform::path_of(path), ignored))
+    throw IoError(IoError::Kind::kCannotCreate, refused + "it is a folder");
+  std::filesystem::path folder = platform::path_of(path).parent_path();
   if (folder.empty()) folder = ".";
-  if (access(folder.c_str(), W_OK | X_OK) != 0) {
+  if (!platform::may_create_in(platform::name_of(folder))) {
     throw IoError(IoError::Kind::kCannotCreate, refused + (errno == ENOENT ? "there is no such folder" : reason()));
   }
 }
@@ -100,7 +101,7 @@ void check_files(const Settings& settings) {
 
 std::optional<Mesh> mesh_if_any(const std::string& path) {
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return std::nullopt;
+  if (!std::filesystem::is_regular_file(platform::path_of(path), ignored)) return std::nullopt;
   try {
     return read_mesh(path);
   } catch (const InvalidInput&) {

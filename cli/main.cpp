@@ -10,9 +10,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
-
-#include <fcntl.h>
-#include <unistd.h>
+#include <vector>
 
 #include "commands.h"
 #include "exit_code.h"
@@ -20,6 +18,7 @@
 #include "interrupts.h"
 #include "session.h"
 #include "settings.h"
+#include "terminal.h"
 
 namespace g3r::cli {
 namespace {
@@ -63,13 +62,6 @@ int exit_code(IoError::Kind kind) {
   return kInputOutput;
 }
 
-/// Standard streams that the caller has closed become /dev/null: an output file must not get their numbers and be written to by accident.
-void open_missing_streams() {
-  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    if (fcntl(stream, F_GETFD) < 0) (void)open("/dev/null", O_RDWR);  // takes the lowest free number, which is this one
-  }
-}
-
 // Errors of the solve know nothing of files: the user is told which input they are about.
 int complain_of_input(const std::string& input, const std::string& what) {
   const std::string name = escape_text(input == "-" ? "standard input" : input);
@@ -82,11 +74,13 @@ bool is_lack_of_threads(const std::exception& error) {
          std::string_view(error.what()).find("pthread_create") != std::string_view::npos;
 }
 
-int run_program(int argc, const char* const* argv) {
+int run_program(const std::vector<std::string>& words) {
+  std::vector<const char*> argv;
+  for (const std::string& word : words) argv.push_back(word.c_str());
   std::optional<Interrupts> interrupts;
   try {
     interrupts.emplace();
-    const std::optional<Settings> settings = parse_command_line(argc, argv);
+    const std::optional<Settings> settings = parse_command_line(static_cast<int>(argv.size()), argv.data());
     if (!settings) {  // help or version
       if (!std::cout.flush()) throw IoError(IoError::Kind::kFailed, "cannot write to standard output");
       return kOk;
@@ -120,6 +114,6 @@ int run_program(int argc, const char* const* argv) {
 }  // namespace g3r::cli
 
 int main(int argc, char** argv) {
-  g3r::cli::open_missing_streams();
-  return g3r::cli::run_program(argc, argv);
+  g3r::cli::prepare_streams();
+  return g3r::cli::run_program(g3r::cli::command_line(argc, argv));
 }

@@ -1,8 +1,8 @@
 #include "session.h"
 
-#include <algorithm>
+#include "base/platform.h"
 
-#include <sys/resource.h>
+#include <algorithm>
 
 namespace g3r::cli {
 
@@ -20,10 +20,7 @@ void Session::complete(Stats& stats) const {
   stats.seconds.insert(stats.seconds.end(), seconds_.begin(), seconds_.end());
   std::erase_if(stats.seconds, [](const auto& entry) { return entry.first == "total"; });
   stats.seconds.emplace_back("total", std::chrono::duration<double>(Clock::now() - start_).count());
-  rusage usage{};
-  if (getrusage(RUSAGE_SELF, &usage) == 0) {
-    stats.peak_memory_bytes = std::max(stats.peak_memory_bytes, static_cast<std::size_t>(usage.ru_maxrss) * 1024);
-  }
+  stats.peak_memory_bytes = std::max(stats.peak_memory_bytes, platform::peak_memory());
 }
 
 }  // namespace g3r::cli

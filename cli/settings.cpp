@@ -1,5 +1,7 @@
 #include "settings.h"
 
+#include "base/platform.h"
+
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
@@ -538,8 +540,9 @@ void add_view(CLI::App& app, Settings& s) {
 
 /// scan.ply -> scan.mesh.ply
 std::string default_output(const std::string& input) {
-  const std::size_t end = input.find_last_not_of('/');  // of a folder
-  return std::filesystem::path(input.substr(0, end == std::string::npos ? input.size() : end + 1)).replace_extension(".mesh.ply").string();
+  const std::size_t end = input.find_last_not_of(platform::kSeparators);  // of a folder
+  std::filesystem::path path = platform::path_of(input.substr(0, end == std::string::npos ? input.size() : end + 1));
+  return platform::name_of(path.replace_extension(".mesh.ply"));
 }
 
 Command parsed_command(const CLI::App& app) {
@@ -618,7 +621,7 @@ void complete(const CLI::App& app, Settings& s) {
     throw UsageError("expected the command '" + app.get_subcommands().front()->get_name() + "' before its files");
   }
   if (s.command == Command::kView) {
-    const std::string extension = std::filesystem::path(s.output).extension().string();
+    const std::string extension = platform::name_of(platform::path_of(s.output).extension());
     if (s.output != "-" && extension != ".html" && extension != ".htm" && extension != ".png") {
       throw UsageError("unknown extension '" + extension + "' of " + s.output + ": view writes .html or .png");
     }
@@ -671,6 +674,7 @@ std::optional<Settings> parse_command_line(int argc, const char* const* argv) {
   app.set_version_flag("--version", version_text, "Print the version, what this build has and what it runs on, and exit");
   app.set_help_flag("-h,--help", "Print this text and exit");
   app.footer(std::string(kFormatHelp) + kExitCodeHelp);
+  app.allow_windows_style_options(false);  // there /folder/file would be options
   app.require_subcommand(0, 1);
   add_reconstruct(app, settings);
   add_orient(app, settings);

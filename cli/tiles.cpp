@@ -1,4 +1,6 @@
 // g3r tiles plan, run, mesh, status, merge; and g3r orient and g3r IN OUT with --max-memory where the cloud does not fit.
+#include "base/platform.h"
+
 #include <g3r/g3r.h>
 #include <g3r/io.h>
 #include <g3r/tiles.h>
@@ -71,14 +73,15 @@ bool is_default_method(const Options& o) {
 
 // Whether tiles can do what is asked for, and end in a file with one of these extensions.
 bool can_be_tiled(const Settings& s, std::initializer_list<const char*> extensions) {
-  const std::string extension = std::filesystem::path(s.output).extension().string();
+  const std::string extension = platform::name_of(platform::path_of(s.output).extension());
   const bool simple_output = s.also.empty() && !s.write_options.ascii && !s.write_options.cloud_compare_names &&
                              std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
   const ReadOptions& read = s.read_options;
   const bool whole_input =
       s.input != "-" && !read.box && read.levels == 0 && !read.all_splats && read.min_opacity == ReadOptions{}.min_opacity;
   std::error_code ignored;
-  const bool has_files = std::filesystem::is_regular_file(s.input, ignored) || std::filesystem::is_directory(s.input, ignored) ||
+  const bool has_files = std::filesystem::is_regular_file(platform::path_of(s.input), ignored) ||
+                         std::filesystem::is_directory(platform::path_of(s.input), ignored) ||
                          s.input.find_first_of("*?") != std::string::npos;
   return simple_output && whole_input && has_files && !s.sensors_of_file && is_default_method(s.options);
 }
@@ -122,7 +125,7 @@ int work_in_tiles(const Settings& settings, Session& session, bool mesh, const M
   Stats stats = stats_of(status, settings);
   const std::string left_out = merge(folder, monitor, stats);
   std::error_code ignored;  // a folder that cannot be removed does no harm
-  std::filesystem::remove_all(folder, ignored);
+  std::filesystem::remove_all(platform::path_of(folder), ignored);
   stats.warnings.push_back("beyond --max-memory in one piece: worked in " + counted(status.tiles, "tile") +
                            (left_out.empty() ? "" : "; " + left_out));
   return finish(settings, session, stats, nullptr);

@@ -1,4 +1,6 @@
 // g3r view IN... -o OUT: a page (.html) or a picture (.png) of a cloud, a mesh, or both.
+#include "base/platform.h"
+
 #include <g3r/io.h>
 #include <g3r/view.h>
 
@@ -44,14 +46,14 @@ void add_truth(const std::string& path, const Settings& settings, Scene& scene) 
 
 std::string read_text(const std::string& path) {
   std::stringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
+  text << std::ifstream(platform::path_of(path), std::ios::binary).rdbuf();
   return text.str();
 }
 
 Scene read_scene(const Settings& settings) {
   Scene scene;
   for (const std::string& path : settings.shown) {
-    scene.title += (scene.title.empty() ? "" : ", ") + std::filesystem::path(path).filename().string();
+    scene.title += (scene.title.empty() ? "" : ", ") + platform::name_of(platform::path_of(path).filename());
     add_file(path, settings, scene);
   }
   if (!settings.truth.empty()) add_truth(settings.truth, settings, scene);
@@ -64,7 +66,7 @@ Scene read_scene(const Settings& settings) {
 int run_view(const Settings& settings, Session& session) {
   const Scene scene = session.stage("read", [&] { return read_scene(settings); });
   const std::string bytes = session.stage("draw", [&] {
-    if (std::filesystem::path(settings.output).extension() != ".png") return view_html(scene, settings.page);
+    if (platform::path_of(settings.output).extension() != ".png") return view_html(scene, settings.page);
     PictureOptions picture = settings.picture;
     picture.threads = settings.options.threads;
     const std::vector<std::uint8_t> png = view_png(scene, picture);

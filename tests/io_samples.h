@@ -15,6 +15,7 @@
 
 #include "io/lzf.h"
 #include "io/table.h"
+#include "temporary_folder.h"
 
 namespace g3r::samples {
 
@@ -28,11 +29,7 @@ struct Sample {
 /// A folder of its own, removed at the end.
 class Folder {
  public:
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "g3r-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    path_ = name;
-  }
+  Folder() = default;
   ~Folder() { std::filesystem::remove_all(path_); }
   Folder(const Folder&) = delete;
   Folder& operator=(const Folder&) = delete;
@@ -42,7 +39,7 @@ class Folder {
   }
 
  private:
-  std::string path_;
+  std::string path_ = make_temporary_folder();
 };
 
 inline std::string slurp(const std::string& path) {

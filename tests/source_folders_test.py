@@ -1,4 +1,5 @@
-"""Folders of src/ and modules of the Python package build on one another, never in a circle: read off includes and imports."""
+"""Folders of src/ and modules of the Python package build on one another, never in a circle, and headers of an operating system stay in the
+sources that are for it: read off includes and imports."""
 
 import pathlib
 import re
@@ -6,6 +7,10 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SOURCES = ROOT / "src"
+# Headers that not every system has.
+OF_A_SYSTEM = re.compile(r"^#include <((?:arpa|linux|mach|net|netinet|sys)/.*|csignal|signal\.h|dirent\.h|dlfcn\.h|fcntl\.h|ftw\.h|glob\.h|io\.h|langinfo\.h|"
+                         r"malloc\.h|poll\.h|psapi\.h|pthread\.h|pwd\.h|sched\.h|share\.h|shellapi\.h|spawn\.h|termios\.h|unistd\.h|windows\.h)>", re.MULTILINE)
+FOR_A_SYSTEM = re.compile(r"_(posix|windows)\.cpp$")
 ENTRY = "src"  # files of src/ itself: the public entry points, which may use every folder
 
 
@@ -54,7 +59,21 @@ def circle(graph):
     return next(filter(None, (walk(folder, []) for folder in graph)), [])
 
 
+def strayed():
+    """Headers of an operating system that sources of the library or the program include though they are for all systems."""
+    found = []
+    for folder in ("src", "cli", "include"):
+        for path in sorted((ROOT / folder).rglob("*")):
+            if path.suffix in (".h", ".cpp") and not FOR_A_SYSTEM.search(path.name):
+                found += [f"{path.relative_to(ROOT)} includes {header}" for header in OF_A_SYSTEM.findall(path.read_text())]
+    return found
+
+
 class SourceFolders(unittest.TestCase):
+    def test_headers_of_an_operating_system_stay_in_its_sources(self):
+        self.assertEqual(OF_A_SYSTEM.findall("#include <sys/stat.h>\n#include <unistd.h>\n#include <system_error>\n"), ["sys/stat.h", "unistd.h"])
+        self.assertEqual(strayed(), [])
+
     def test_a_circle_is_found(self):
         graph = {"a": {"b": "a/1 includes b/2"}, "b": {"c": "b/2 includes c/3"}, "c": {"b": "c/3 includes b/1"}}
         self.assertEqual(circle(graph), ["b/2 includes c/3", "c/3 includes b/1"])

@@ -1,22 +1,27 @@
 // A folder for the files of a test, and files as bytes.
 #pragma once
 
-#include <stdlib.h>
-
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <random>
 #include <string>
 
 namespace g3r {
 
+/// Makes a folder of a name that no other has. Its path has slashes only.
+inline std::string make_temporary_folder() {
+  std::random_device number;
+  for (;;) {
+    const std::filesystem::path path = std::filesystem::temp_directory_path() / ("g3r-test-" + std::to_string(number()));
+    if (std::filesystem::create_directory(path)) return path.generic_string();
+  }
+}
+
 /// Made anew, and gone with all it holds at the end of the scope.
 class TemporaryFolder {
  public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "g3r-test-XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
+  TemporaryFolder() = default;
   ~TemporaryFolder() { std::filesystem::remove_all(path_); }
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
@@ -24,7 +29,7 @@ class TemporaryFolder {
   [[nodiscard]] std::string file(const std::string& name) const { return path_ + "/" + name; }
 
  private:
-  std::string path_;
+  std::string path_ = make_temporary_folder();
 };
 
 inline std::string bytes_of(const std::string& path) {

@@ -1,9 +1,9 @@
 // The clock, progress and cancellation of one run.
 #pragma once
 
-#include <g3r/g3r.h>
+#include "base/platform.h"
 
-#include <sys/resource.h>
+#include <g3r/g3r.h>
 
 #include <chrono>
 #include <string>
@@ -42,9 +42,7 @@ class Stages {
     end_stage();
     stats.seconds.insert(stats.seconds.end(), seconds_.begin(), seconds_.end());
     seconds_.clear();
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    stats.peak_memory_bytes = static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+    stats.peak_memory_bytes = platform::peak_memory();
   }
 
  private:

@@ -1,14 +1,13 @@
 #include "gpu/kernel_cache.h"
 
+#include "base/platform.h"
+
 #include <array>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <system_error>
-
-#include <unistd.h>
 
 namespace g3r::gpu {
 namespace {
@@ -33,19 +32,11 @@ std::string hex(std::uint64_t a, std::uint64_t b) {
 
 std::string digest(std::string_view bytes) { return hex(hash(bytes, 0xcbf29ce484222325ULL), hash(bytes, 0x9e3779b97f4a7c15ULL)); }
 
-fs::path folder() {
-  const char* cache = std::getenv("XDG_CACHE_HOME");  // NOLINT(concurrency-mt-unsafe): nothing here sets variables
-  if (cache != nullptr && *cache == '/') return fs::path(cache) / "g3r";
-  const char* home = std::getenv("HOME");  // NOLINT(concurrency-mt-unsafe)
-  if (home != nullptr && *home == '/') return fs::path(home) / ".cache" / "g3r";
-  return {};
-}
-
 }  // namespace
 
 KernelCache::KernelCache(std::string_view everything) : key_(digest(everything)) {
-  const fs::path where = folder();
-  if (!where.empty()) file_ = where / ("kernels-" + key_);
+  const fs::path where = platform::cache_folder();
+  if (!where.empty()) file_ = where / "g3r" / ("kernels-" + key_);
 }
 
 // The file: magic, key, digest of the binary, each a line, and the binary.
@@ -69,7 +60,7 @@ void KernelCache::write(const std::vector<unsigned char>& binary) const {
   std::error_code error;
   fs::create_directories(file_.parent_path(), error);
   fs::path unfinished = file_;
-  unfinished += hex(static_cast<std::uint64_t>(getpid()), reinterpret_cast<std::uintptr_t>(this));  // of this writer alone
+  unfinished += hex(platform::process(), reinterpret_cast<std::uintptr_t>(this));  // of this writer alone
   {
     std::ofstream out(unfinished, std::ios::binary | std::ios::trunc);
     const std::string_view bytes(reinterpret_cast<const char*>(binary.data()), binary.size());

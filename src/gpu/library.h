@@ -1,4 +1,4 @@
-// A shared library found at run time.
+// A shared library found at run time. One source per kind of system: library_posix.cpp, library_windows.cpp, library_none.cpp.
 #pragma once
 
 #include <initializer_list>

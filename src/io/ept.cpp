@@ -1,6 +1,7 @@
 // Source: entwine.io, "Entwine Point Tile".
 #include "io/ept.h"
 
+#include "base/platform.h"
 #include "io/cloud_from_table.h"
 #include "io/json.h"
 #include "io/readers.h"
@@ -126,7 +127,7 @@ void read_schema(const Json& json, Ept& ept) {
 Ept read_description(const std::string& path, const std::string& bytes) {
   Ept ept;
   ept.file = {bytes, path};
-  ept.folder = fs::path(path).parent_path();
+  ept.folder = platform::path_of(path).parent_path();
   const Json json = parse(ept.file);
   const Json* data = json.find("dataType");
   if (data == nullptr || (data->text != "laszip" && data->text != "binary")) {
@@ -166,7 +167,7 @@ class Hierarchy {
  private:
   // Entries are taken as they are read, without a tree of them.
   void read_page(const Key& page) {
-    const std::string path = (ept_.folder / "ept-hierarchy" / (name_of(page) + ".json")).string();
+    const std::string path = platform::name_of(ept_.folder / "ept-hierarchy" / (name_of(page) + ".json"));
     const std::string bytes = read_bytes(path);
     const Source source{bytes, path};
     const auto damaged = [&] { fail(source, "damaged: no JSON object of cells"); };
@@ -250,7 +251,7 @@ Cloud read_records(const Ept& ept, const Source& source, std::uint64_t count) {
 }
 
 Cloud read_node(const Ept& ept, const Node& node, std::string& path) {
-  path = (ept.folder / "ept-data" / (name_of(node.key) + (ept.binary ? ".bin" : ".laz"))).string();
+  path = platform::name_of(ept.folder / "ept-data" / (name_of(node.key) + (ept.binary ? ".bin" : ".laz")));
   const std::string bytes = read_bytes(path);
   const Source source{bytes, path};
   if (ept.binary) return read_records(ept, source, node.points);
@@ -267,8 +268,9 @@ Cloud read_node(const Ept& ept, const Node& node, std::string& path) {
 
 std::string find_ept(const std::string& path) {
   std::error_code ignored;
-  const fs::path file = fs::is_directory(path, ignored) ? fs::path(path) / "ept.json" : fs::path(path);
-  return file.filename() == "ept.json" && fs::is_regular_file(file, ignored) ? file.string() : "";
+  const fs::path there = platform::path_of(path);
+  const fs::path file = fs::is_directory(there, ignored) ? there / "ept.json" : there;
+  return file.filename() == "ept.json" && fs::is_regular_file(file, ignored) ? platform::name_of(file) : "";
 }
 
 Cloud read_ept(const std::string& path, const ReadOptions& options) {

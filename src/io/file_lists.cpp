@@ -1,6 +1,7 @@
 // Source: STAC 1.0, and "Virtual Point Clouds (VPC)", github.com/PDAL/wrench.
 #include "io/file_lists.h"
 
+#include "base/platform.h"
 #include "io/source.h"
 #include "io/text.h"
 
@@ -23,11 +24,11 @@ constexpr int kDeepest = 64;  // nesting of a virtual point cloud, which has 10;
 
 std::string located(const Source& source, const std::string& name) {
   if (name.find("://") != std::string::npos) fail(source, "names " + quote(name) + ", which is not on this machine: get the files first");
-  const std::filesystem::path path = (std::filesystem::path(source.name).parent_path() / name).lexically_normal();
+  const std::filesystem::path path = (platform::path_of(source.name).parent_path() / platform::path_of(name)).lexically_normal();
   std::error_code ignored;
   if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
     fail(source, "names " + quote(name) + ", which is no file: expected files of points");
-  return path == "-" ? "./-" : path.string();  // the name alone is standard input
+  return path == "-" ? "./-" : platform::name_of(path);  // the name alone is standard input
 }
 
 void add(const Source& source, const std::string& name, std::vector<std::string>& files) {

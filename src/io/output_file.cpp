@@ -1,17 +1,12 @@
 #include "io/output_file.h"
 
+#include "base/platform.h"
+
 #include <g3r/io.h>
 
 #include <cerrno>
-#include <cstdlib>
-#include <memory>
 #include <system_error>
 #include <utility>
-
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace g3r::io {
 
@@ -21,19 +16,13 @@ constexpr std::size_t kBuffer = std::size_t{1} << 16;  // Bytes that are written
 constexpr std::size_t kLongestStem = 200;              // A name may have 255 bytes; the rest is for what makes it temporary.
 constexpr int kAttempts = 100;                         // So many writers of one file at the same time find a name each.
 
-// The path with links resolved, or the path itself if it does not exist.
-std::string resolve(const std::string& path) {
-  const std::unique_ptr<char, void (*)(void*)> real(::realpath(path.c_str(), nullptr), std::free);
-  return real != nullptr ? std::string(real.get()) : path;
-}
-
 std::string folder_of(const std::string& path) {
-  const std::size_t slash = path.find_last_of('/');
-  return slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
+  const std::size_t slash = path.find_last_of(platform::kSeparators);
+  return slash == std::string::npos ? "." : slash == 0 ? path.substr(0, 1) : path.substr(0, slash);
 }
 
 std::string temporary_name(const std::string& target, int attempt) {
-  const std::size_t slash = target.find_last_of('/');
+  const std::size_t slash = target.find_last_of(platform::kSeparators);
   const std::size_t begin = slash == std::string::npos ? 0 : slash + 1;
   return target.substr(0, begin) + "." + target.substr(begin, kLongestStem) + (attempt == 0 ? "" : '-' + std::to_string(attempt)) +
          ".g3r.tmp";
@@ -45,34 +34,35 @@ OutputFile::OutputFile(const std::string& path, const std::atomic<bool>* cancel)
   buffer_.reserve(kBuffer);
   if (path == "-") {
     path_ = "standard output";
-    fd_ = STDOUT_FILENO;
+    fd_ = platform::standard_output();
     return;
   }
-  struct stat status {};
-  const bool exists = ::stat(path.c_str(), &status) == 0;
+  using Kind = platform::FileStatus::Kind;
+  platform::FileStatus status;
+  const bool exists = platform::get_status(path, status);
   if (!exists && errno != ENOENT) fail(true, errno);
-  if (exists && S_ISDIR(status.st_mode)) fail(true, EISDIR);
-  if (exists && !S_ISREG(status.st_mode)) {
-    fd_ = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  if (exists && status.kind == Kind::kFolder) fail(true, EISDIR);
+  if (exists && status.kind == Kind::kOther) {
+    fd_ = platform::open_to_write(path);
     if (fd_ < 0) fail(true, errno);
     return;
   }
-  if (exists && ::access(path.c_str(), W_OK) != 0) fail(true, errno);
-  target_ = resolve(path);
-  create_temporary(exists ? status.st_mode & 07777U : 0666U, exists);
+  if (exists && !platform::may_write(path)) fail(true, errno);
+  target_ = platform::resolve(path);
+  create_temporary(exists ? status.permissions : 0666U, exists);
 }
 
 void OutputFile::create_temporary(unsigned mode, bool keep_mode) {
   for (int attempt = 0; attempt < kAttempts;) {
     temporary_ = temporary_name(target_, attempt);
-    fd_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, mode & 0777U);
+    fd_ = platform::create_file(temporary_, mode);
     const int error = errno;
     if (fd_ >= 0) {
-      if (lock_temporary()) {
-        if (keep_mode && ::fchmod(fd_, mode) != 0) fail(true, errno);
+      if (platform::mark_in_use(fd_, temporary_)) {
+        if (keep_mode && !platform::set_permissions(fd_, mode)) fail(true, errno);
         return;
       }
-      ::close(fd_);  // another process took it for a leftover
+      platform::close_file(fd_);  // another process took it for a leftover
       fd_ = -1;
       ++attempt;
       continue;
@@ -81,30 +71,16 @@ void OutputFile::create_temporary(unsigned mode, bool keep_mode) {
       temporary_.clear();
       fail(true, error);
     }
-    // Someone's: alive if locked, else left behind by a killed process.
-    const int old = ::open(temporary_.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
-    struct stat status {};
-    const bool stale = old >= 0 && ::fstat(old, &status) == 0 && S_ISREG(status.st_mode) && ::flock(old, LOCK_EX | LOCK_NB) == 0;
-    if (!stale || ::unlink(temporary_.c_str()) != 0) ++attempt;
-    if (old >= 0) ::close(old);
+    // Someone's, or left behind by a killed process.
+    if (!platform::remove_if_left_behind(temporary_)) ++attempt;
   }
   temporary_.clear();
   fail(true, EEXIST);
 }
 
-// Locks the new temporary file; false if it was removed in between.
-bool OutputFile::lock_temporary() {
-  struct stat opened {};
-  struct stat named {};
-  // A file system without locks (ENOTSUP, ENOLCK) is accepted: then leftovers just stay.
-  if (::flock(fd_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return false;
-  return ::fstat(fd_, &opened) == 0 && ::stat(temporary_.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
-         opened.st_dev == named.st_dev;
-}
-
 OutputFile::~OutputFile() {
-  if (fd_ > STDOUT_FILENO) ::close(fd_);
-  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  if (fd_ > platform::kStandardOutput) platform::close_file(fd_);
+  if (!temporary_.empty()) platform::remove_file(temporary_);
 }
 
 void OutputFile::write(const void* bytes, std::size_t size) {
@@ -115,11 +91,8 @@ void OutputFile::write(const void* bytes, std::size_t size) {
 void OutputFile::flush() {
   if (cancel_ != nullptr && *cancel_) throw Cancelled();
   for (std::size_t done = 0; done < buffer_.size();) {
-    const ssize_t written = ::write(fd_, buffer_.data() + done, buffer_.size() - done);
-    if (written < 0) {
-      if (errno == EINTR) continue;
-      fail(false, errno);
-    }
+    const std::ptrdiff_t written = platform::write_some(fd_, buffer_.data() + done, buffer_.size() - done);
+    if (written < 0) fail(false, errno);
     done += static_cast<std::size_t>(written);
   }
   buffer_.clear();
@@ -128,11 +101,8 @@ void OutputFile::flush() {
 void OutputFile::overwrite(std::size_t offset, std::string_view bytes) {
   flush();
   for (std::size_t done = 0; done < bytes.size();) {
-    const ssize_t written = ::pwrite(fd_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
-    if (written < 0) {
-      if (errno == EINTR) continue;
-      fail(false, errno);
-    }
+    const std::ptrdiff_t written = platform::write_at(fd_, offset + done, bytes.data() + done, bytes.size() - done);
+    if (written < 0) fail(false, errno);
     done += static_cast<std::size_t>(written);
   }
 }
@@ -140,24 +110,13 @@ void OutputFile::overwrite(std::size_t offset, std::string_view bytes) {
 void OutputFile::commit() {
   flush();
   if (temporary_.empty()) {
-    if (fd_ > STDOUT_FILENO) {
-      const int fd = std::exchange(fd_, -1);
-      if (::close(fd) != 0) fail(false, errno);
-    }
+    if (fd_ > platform::kStandardOutput && !platform::close_file(std::exchange(fd_, -1))) fail(false, errno);
     return;
   }
-  while (::fsync(fd_) != 0) {
-    if (errno != EINTR) fail(false, errno);
-  }
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(false, errno);
+  if (!platform::sync(fd_) || !platform::replace(fd_, temporary_, target_)) fail(false, errno);
   temporary_.clear();
-  const int fd = std::exchange(fd_, -1);
-  if (::close(fd) != 0) fail(false, errno);
-  const int folder = ::open(folder_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder < 0) return;  // a folder that may be written but not read: the rename stands
-  const int error = ::fsync(folder) != 0 && errno != EINVAL && errno != EROFS ? errno : 0;
-  ::close(folder);
-  if (error != 0) fail(false, error);
+  if (fd_ >= 0 && !platform::close_file(std::exchange(fd_, -1))) fail(false, errno);
+  if (!platform::sync_folder(folder_of(target_))) fail(false, errno);
 }
 
 void OutputFile::fail(bool creating, int error) const {

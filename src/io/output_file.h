@@ -37,7 +37,6 @@ class OutputFile {
 
  private:
   void create_temporary(unsigned mode, bool keep_mode);
-  bool lock_temporary();
   void flush();
   [[noreturn]] void fail(bool creating, int error) const;
 

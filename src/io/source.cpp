@@ -1,15 +1,12 @@
 #include "io/source.h"
 
+#include "base/platform.h"
 #include "io/recognise.h"
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <system_error>
-
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 namespace g3r {
 
@@ -76,7 +73,7 @@ class Descriptor {
  public:
   explicit Descriptor(int fd) : fd_(fd) {}
   ~Descriptor() {
-    if (fd_ > 0) ::close(fd_);
+    if (fd_ > 0) platform::close_file(fd_);
   }
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
@@ -94,10 +91,7 @@ class Descriptor {
 bool append_block(int fd, const std::string& path, std::size_t count, std::string& bytes) {
   const std::size_t before = bytes.size();
   bytes.resize(before + count);
-  ssize_t got = 0;
-  do {
-    got = ::read(fd, bytes.data() + before, count);
-  } while (got < 0 && errno == EINTR);
+  const std::ptrdiff_t got = platform::read_some(fd, bytes.data() + before, count);
   if (got < 0) fail_io(IoError::Kind::kFailed, path, errno);
   bytes.resize(before + static_cast<std::size_t>(got));
   return got > 0;
@@ -107,16 +101,17 @@ bool append_block(int fd, const std::string& path, std::size_t count, std::strin
 
 std::string read_bytes(const std::string& path) {
   const bool standard_input = path == "-";
-  const Descriptor file(standard_input ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  const Descriptor file(standard_input ? platform::standard_input() : platform::open_to_read(path));
   if (file.get() < 0) fail_io(IoError::Kind::kNotFound, path, errno);
-  struct stat status {};
-  if (::fstat(file.get(), &status) != 0) fail_io(IoError::Kind::kFailed, path, errno);
-  if (S_ISDIR(status.st_mode)) throw IoError(IoError::Kind::kNotFound, escape_text(path) + ": a folder, not a file");
+  platform::FileStatus status;
+  if (!platform::get_status(file.get(), status)) fail_io(IoError::Kind::kFailed, path, errno);
+  if (status.kind == platform::FileStatus::Kind::kFolder)
+    throw IoError(IoError::Kind::kNotFound, escape_text(path) + ": a folder, not a file");
 
   std::string bytes;
-  if (S_ISREG(status.st_mode)) {
+  if (status.kind == platform::FileStatus::Kind::kRegular) {
     // One byte more than the size, so that the end of the file is seen without growing.
-    bytes.reserve(static_cast<std::size_t>(status.st_size) + 1);
+    bytes.reserve(static_cast<std::size_t>(status.bytes) + 1);
     while (append_block(file.get(), path, std::min(kBlock, std::max<std::size_t>(bytes.capacity() - bytes.size(), 1)), bytes)) {
     }
     return bytes;
@@ -146,7 +141,7 @@ void fail_at_line(const Source& source, std::size_t line, const std::string& wha
 }
 
 std::string extension(const std::string& path) {
-  const std::size_t slash = path.find_last_of('/');
+  const std::size_t slash = path.find_last_of(platform::kSeparators);
   const std::string name = slash == std::string::npos ? path : path.substr(slash + 1);
   const std::size_t dot = name.find_last_of('.');
   if (dot == std::string::npos || dot + 1 == name.size()) return "";

@@ -1,5 +1,6 @@
 #include "io/tiles.h"
 
+#include "base/platform.h"
 #include "io/cloud_from_table.h"
 #include "io/file_lists.h"
 #include "io/merger.h"
@@ -10,8 +11,6 @@
 #include <filesystem>
 #include <system_error>
 #include <utility>
-
-#include <glob.h>
 
 namespace g3r::io {
 
@@ -27,9 +26,9 @@ constexpr std::size_t kMostWarnings = 8;  // All files together give so many: a 
 std::vector<std::string> files_of_folder(const std::string& path) {
   std::vector<std::string> files;
   std::error_code error;
-  fs::directory_iterator entry(path, error);
+  fs::directory_iterator entry(platform::path_of(path), error);
   for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
-    const std::string name = entry->path().string();
+    const std::string name = platform::name_of(entry->path());
     std::error_code ignored;
     const bool points = std::find(kExtensions.begin(), kExtensions.end(), extension(name)) != kExtensions.end();
     if (points && entry->is_regular_file(ignored)) files.push_back(name);
@@ -44,17 +43,11 @@ std::vector<std::string> files_of_folder(const std::string& path) {
 }
 
 std::vector<std::string> files_of_pattern(const std::string& path) {
-  struct Matches {
-    ~Matches() { ::globfree(&found); }
-    glob_t found{};
-  } matches;
-  const int result = ::glob(path.c_str(), GLOB_NOSORT, nullptr, &matches.found);
-  if (result == GLOB_NOSPACE) throw std::bad_alloc();
-  std::vector<std::string> files;
-  for (std::size_t i = 0; result == 0 && i < matches.found.gl_pathc; ++i) {
+  std::vector<std::string> files = platform::matching(path);
+  std::erase_if(files, [](const std::string& file) {
     std::error_code ignored;
-    if (fs::is_regular_file(matches.found.gl_pathv[i], ignored)) files.emplace_back(matches.found.gl_pathv[i]);
-  }
+    return !fs::is_regular_file(platform::path_of(file), ignored);
+  });
   if (files.empty()) throw IoError(IoError::Kind::kNotFound, escape_text(path) + ": no file has such a name");
   std::sort(files.begin(), files.end());
   return files;
@@ -89,9 +82,10 @@ void merge_warnings(const std::vector<Cloud>& clouds, const std::vector<std::str
 
 std::vector<std::string> find_tiles(const std::string& path) {
   std::error_code ignored;
-  if (fs::is_directory(path, ignored)) return files_of_folder(path);
-  if (is_file_list(path) && fs::is_regular_file(path, ignored)) return files_of_list(path);
-  if (path.find_first_of("*?") == std::string::npos || fs::exists(path, ignored)) return {};
+  const fs::path there = platform::path_of(path);
+  if (fs::is_directory(there, ignored)) return files_of_folder(path);
+  if (is_file_list(path) && fs::is_regular_file(there, ignored)) return files_of_list(path);
+  if (path.find_first_of("*?") == std::string::npos || fs::exists(there, ignored)) return {};
   return files_of_pattern(path);
 }
 

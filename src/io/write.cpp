@@ -1,4 +1,5 @@
 // From a cloud or a mesh to a file: choose the format by the extension, check, write, commit.
+#include "base/platform.h"
 #include "io/laz.h"
 #include "io/source.h"
 #include "io/writers.h"
@@ -7,8 +8,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-
-#include <sys/stat.h>
 
 namespace g3r {
 
@@ -104,18 +103,19 @@ void write_mesh(const std::string& path, const Mesh& mesh, const WriteOptions& o
 void check_output(const std::string& path, const std::vector<std::string>& inputs, bool for_mesh) {
   for_mesh ? mesh_format(path) : point_format(path);
   if (path == "-") return;
-  struct stat output {};
-  if (::stat(path.c_str(), &output) == 0) {
+  using Kind = platform::FileStatus::Kind;
+  platform::FileStatus output;
+  if (platform::get_status(path, output)) {
     for (const std::string& input : inputs) {
-      struct stat status {};
-      if (input != "-" && ::stat(input.c_str(), &status) == 0 && S_ISREG(status.st_mode) && status.st_dev == output.st_dev &&
-          status.st_ino == output.st_ino) {
+      platform::FileStatus status;
+      if (input != "-" && platform::get_status(input, status) && status.kind == Kind::kRegular && status.device == output.device &&
+          status.index == output.index) {
         throw IoError(IoError::Kind::kCannotCreate,
                       escape_text(path) + ": the output is the input " + escape_text(input) + ": choose another name");
       }
     }
     // A device or a pipe may wait for its other end, or act, when it is opened: that is left to the write.
-    if (!S_ISREG(output.st_mode) && !S_ISDIR(output.st_mode)) return;
+    if (output.kind == Kind::kOther) return;
   }
   io::check_creatable(path);
 }

@@ -1,10 +1,10 @@
 #include "tiles/external_sort.h"
 
+#include "base/platform.h"
 #include "cpu/parallel.h"
 #include "io/output_file.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <queue>
 #include <utility>
@@ -43,14 +43,14 @@ class Run {
 
 ExternalSort::ExternalSort(std::string folder, const Frame& frame, std::size_t memory, const std::atomic<bool>* cancel)
     : folder_(std::move(folder)), frame_(frame), capacity_(std::max(kLeastRecords, memory / sizeof(Keyed))), cancel_(cancel) {
-  for (std::size_t run = 0; std::remove(run_path(run).c_str()) == 0; ++run) {  // of a killed process
+  for (std::size_t run = 0; platform::remove_file(run_path(run)); ++run) {  // of a killed process
   }
 }
 
 std::string ExternalSort::run_path(std::size_t run) const { return folder_ + "/run-" + std::to_string(run) + ".bin"; }
 
 ExternalSort::~ExternalSort() {
-  for (const std::string& run : runs_) std::remove(run.c_str());
+  for (const std::string& run : runs_) platform::remove_file(run);
 }
 
 bool ExternalSort::before(const Keyed& a, const Keyed& b) {

@@ -1,5 +1,6 @@
 #include "tiles/manifest.h"
 
+#include "base/platform.h"
 #include "io/output_file.h"
 #include "io/source.h"
 #include "tiles/records.h"
@@ -25,7 +26,7 @@ using nlohmann::json;
 
 std::uint64_t size_of_file(const std::string& path) {
   std::error_code error;
-  const std::uint64_t size = std::filesystem::file_size(path, error);
+  const std::uint64_t size = std::filesystem::file_size(platform::path_of(path), error);
   return error ? 0 : size;
 }
 
@@ -120,7 +121,7 @@ bool can_be_stored(const std::string& path) {
 
 bool has_manifest(const std::string& folder) {
   std::error_code ignored;
-  return std::filesystem::exists(manifest_path(folder), ignored);
+  return std::filesystem::exists(platform::path_of(manifest_path(folder)), ignored);
 }
 
 void write_manifest(const std::string& folder, const Manifest& m) {

@@ -1,4 +1,5 @@
 // The inputs once more, with the results beside them: tiles list theirs in the order of the input, so all files are read front to back.
+#include "base/platform.h"
 #include "base/stages.h"
 #include "io/point_stream.h"
 #include "tiles/manifest.h"
@@ -82,7 +83,7 @@ void require_done(const std::string& folder, const Manifest& m) {
 
 void require_unchanged(const Input& input, bool right_count) {
   std::error_code ignored;
-  if (std::filesystem::file_size(input.path, ignored) == input.bytes && right_count) return;
+  if (std::filesystem::file_size(platform::path_of(input.path), ignored) == input.bytes && right_count) return;
   throw InvalidInput(escape_text(input.path) + ": not the file that the plan was made of; make the plan anew");
 }
 

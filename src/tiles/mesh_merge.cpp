@@ -1,5 +1,6 @@
 // The sheets of all tiles into one mesh, without the components that nothing holds: vertices by tile, then those in the middle of polygons
 // by tile, then the triangles.
+#include "base/platform.h"
 #include "base/stages.h"
 #include "io/output_file.h"
 #include "io/source.h"
@@ -144,7 +145,7 @@ void require_parts(const MeshFolder& folder) {
   std::size_t missing = 0;
   for (std::size_t t = 0; t < folder.tiles(); ++t) {
     std::error_code ignored;
-    missing += std::filesystem::exists(mesh_parts_path(folder.folder, t), ignored) ? 0 : 1;
+    missing += std::filesystem::exists(platform::path_of(mesh_parts_path(folder.folder, t)), ignored) ? 0 : 1;
   }
   if (missing == 0) return;
   throw InvalidInput(escape_text(folder.folder) + ": " + std::to_string(missing) + " of " + std::to_string(folder.tiles()) +

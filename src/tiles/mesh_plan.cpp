@@ -1,6 +1,7 @@
 #include "tiles/mesh_plan.h"
 
 #include "base/median.h"
+#include "base/platform.h"
 #include "base/vector.h"
 #include "cpu/parallel.h"
 #include "field/oriented_cloud.h"
@@ -173,7 +174,7 @@ mesh::LevelRule MeshFolder::levels() const {
 
 MeshFolder read_mesh_folder(const std::string& folder, const Manifest& manifest) {
   std::error_code ignored;
-  if (!std::filesystem::exists(mesh_plan_path(folder), ignored)) {
+  if (!std::filesystem::exists(platform::path_of(mesh_plan_path(folder)), ignored)) {
     throw InvalidInput(escape_text(folder) + ": its tiles are not meshed; g3r tiles mesh FOLDER does that");
   }
   MeshFolder out{folder, manifest, read_cells(folder, manifest), {}, {}};
@@ -199,7 +200,7 @@ MeshFolder with_mesh_tiles(const std::string& folder, const Manifest& manifest) 
 
 MeshFolder open_mesh_folder(const std::string& folder, const Manifest& manifest, const std::atomic<bool>* cancel) {
   std::error_code ignored;
-  if (!std::filesystem::exists(mesh_plan_path(folder), ignored)) {
+  if (!std::filesystem::exists(platform::path_of(mesh_plan_path(folder)), ignored)) {
     MeshFolder made = with_mesh_tiles(folder, manifest);
     sample_cloud(folder, manifest, made.cells, made.plan, cancel);
     made.plan.inside_out = is_turned(folder, manifest, cancel);

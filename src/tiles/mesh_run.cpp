@@ -1,4 +1,5 @@
 // The passes over the tiles of one worker; what they need of other tiles is made here where it is not there.
+#include "base/platform.h"
 #include "base/stages.h"
 #include "cpu/parallel.h"
 #include "tiles/mesh_passes.h"
@@ -16,7 +17,7 @@ namespace {
 
 bool is_there(const std::string& path) {
   std::error_code ignored;
-  return std::filesystem::exists(path, ignored);
+  return std::filesystem::exists(platform::path_of(path), ignored);
 }
 
 class MeshRun {

@@ -1,4 +1,5 @@
 // Two readings of the inputs (extent, then sort), one scan of the sorted points, one solve of the thinned cloud.
+#include "base/platform.h"
 #include "base/stages.h"
 #include "cpu/parallel.h"
 #include "io/output_file.h"
@@ -21,8 +22,6 @@
 #include <sstream>
 #include <system_error>
 #include <utility>
-
-#include <unistd.h>
 
 namespace g3r::tiles {
 namespace {
@@ -72,7 +71,7 @@ std::vector<std::string> files_of(const std::vector<std::string>& inputs) {
   if (files.empty()) throw InvalidInput("plan_tiles: no input");
   for (std::string& file : files) {
     if (!can_be_stored(file)) throw InvalidInput(escape_text(file) + ": tiles expect names of files in UTF-8; rename it");
-    file = std::filesystem::absolute(file).string();
+    file = platform::name_of(std::filesystem::absolute(platform::path_of(file)));
   }
   return files;
 }
@@ -105,7 +104,7 @@ Manifest survey(const std::vector<std::string>& files, const TileOptions& option
   m.single_precision = true;
   for (const std::string& file : files) {
     std::error_code ignored;  // of a file that is gone again; reading it says so
-    m.inputs.push_back({file, std::filesystem::file_size(file, ignored), 0});
+    m.inputs.push_back({file, std::filesystem::file_size(platform::path_of(file), ignored), 0});
   }
   std::vector<std::uint64_t> non_finite(files.size());
   SpacingSample sample;
@@ -167,8 +166,7 @@ std::size_t memory_for(std::uint64_t points) { return kFixed + kPerPoint * stati
 
 std::size_t memory_limit(const TileOptions& options) {
   if (options.max_memory > 0) return options.max_memory;
-  const double free = static_cast<double>(::sysconf(_SC_AVPHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
-  return static_cast<std::size_t>(kFreeShare * free);
+  return static_cast<std::size_t>(kFreeShare * platform::free_memory());
 }
 
 [[noreturn]] void refuse_memory(std::size_t limit, std::uint64_t needed) {
@@ -269,7 +267,7 @@ void solve_coarse(const std::string& folder, const TileOptions& options, Manifes
 
 void make_folder(const std::string& folder) {
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
+  std::filesystem::create_directories(platform::path_of(folder), error);
   if (error) throw IoError(IoError::Kind::kCannotCreate, "cannot create " + escape_text(folder) + ": " + error.message());
 }
 
@@ -307,7 +305,7 @@ TileStatus plan_tiles(const std::vector<std::string>& inputs, const std::string&
     bool same = there.asked == tiles::asked_of(options) && there.inputs.size() == files.size();
     for (std::size_t f = 0; same && f < files.size(); ++f) {
       std::error_code ignored;
-      same = there.inputs[f].path == files[f] && there.inputs[f].bytes == std::filesystem::file_size(files[f], ignored);
+      same = there.inputs[f].path == files[f] && there.inputs[f].bytes == std::filesystem::file_size(platform::path_of(files[f]), ignored);
     }
     if (!same) throw InvalidInput(escape_text(folder) + ": holds the plan of other files or options; take another folder, or remove it");
     return tiles::status_of(folder, there);

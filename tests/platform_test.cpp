@@ -1,0 +1,137 @@
+// What the library asks of the operating system, the same on all of them: names of files in UTF-8, files that are replaced at once,
+// patterns.
+#include "base/platform.h"
+
+#include "io/output_file.h"
+#include "io/source.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <string>
+#include <vector>
+
+#include "temporary_folder.h"
+
+namespace g3r {
+namespace {
+
+using platform::FileStatus;
+
+// "Pünktchen 点.xyz": two and three bytes a character.
+const std::string kForeign = "P\xC3\xBCnktchen \xE7\x82\xB9.xyz";
+
+void write_whole(const std::string& path, const std::string& text) {
+  io::OutputFile file(path);
+  file.write(text);
+  file.commit();
+}
+
+TEST(Platform, NamesOfFilesAreUtf8) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file(kForeign);
+  write_whole(path, "0 0 0\n");
+  EXPECT_EQ(platform::name_of(platform::path_of(path).filename()), kForeign);
+  EXPECT_TRUE(std::filesystem::exists(platform::path_of(path)));
+  EXPECT_EQ(io::read_bytes(path), "0 0 0\n");
+  EXPECT_EQ(platform::matching(folder.file("P*.xyz")).size(), 1U);
+}
+
+TEST(Platform, BytesAreWrittenAsTheyAre) {
+  const TemporaryFolder folder;
+  write_whole(folder.file("a.txt"), "1\r\n2\n\x1A 3");
+  EXPECT_EQ(io::read_bytes(folder.file("a.txt")), "1\r\n2\n\x1A 3");
+}
+
+// Windows may refuse while others have the file open.
+TEST(Platform, AFileThatIsReadIsReplacedOrStays) {
+  const TemporaryFolder folder;
+  write_whole(folder.file("a.txt"), "old");
+  const int reader = platform::open_to_read(folder.file("a.txt"));
+  std::string expected = "new";
+  try {
+    write_whole(folder.file("a.txt"), "new");
+  } catch (const IoError&) {
+    expected = "old";
+  }
+  platform::close_file(reader);
+  EXPECT_EQ(io::read_bytes(folder.file("a.txt")), expected);
+#ifndef _WIN32
+  EXPECT_EQ(expected, "new");
+#endif
+}
+
+TEST(Platform, AFileInUseIsNotTakenForLeftBehind) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.tmp");
+  const int file = platform::create_file(path, 0666);
+  ASSERT_GE(file, 0);
+  EXPECT_TRUE(platform::mark_in_use(file, path));
+  EXPECT_FALSE(platform::remove_if_left_behind(path));
+  EXPECT_LT(platform::create_file(path, 0666), 0);
+  EXPECT_EQ(errno, EEXIST);
+  platform::close_file(file);
+  EXPECT_TRUE(platform::remove_if_left_behind(path));
+  EXPECT_FALSE(platform::exists(path));
+}
+
+TEST(Platform, BytesAreReadAndWrittenAtAPlace) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.txt");
+  const int file = platform::create_file(path, 0666);
+  ASSERT_GE(file, 0);
+  EXPECT_EQ(platform::write_some(file, "abcdef", 6), 6);
+  EXPECT_EQ(platform::write_at(file, 2, "XY", 2), 2);
+  EXPECT_EQ(platform::write_some(file, "gh", 2), 2);  // where it had ended
+  EXPECT_TRUE(platform::sync(file));
+  platform::close_file(file);
+  const int reader = platform::open_to_read(path);
+  std::string text(4, ' ');
+  EXPECT_EQ(platform::read_at(reader, 1, text.data(), 4), 4);
+  EXPECT_EQ(text, "bXYe");
+  EXPECT_EQ(platform::read_at(reader, 8, text.data(), 4), 0);  // the end
+  platform::close_file(reader);
+  EXPECT_EQ(io::read_bytes(path), "abXYefgh");
+}
+
+TEST(Platform, PatternsMatchInEveryPart) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a1", "a2", "b1"}) {
+    std::filesystem::create_directory(folder.file(name));
+    write_bytes(folder.file(name) + "/tile_10.las", "");
+    write_bytes(folder.file(name) + "/tile_2.las", "");
+  }
+  EXPECT_EQ(platform::matching(folder.file("a*/tile_??.las")).size(), 2U);
+  EXPECT_EQ(platform::matching(folder.file("*/tile*2*.las")).size(), 3U);
+  EXPECT_EQ(platform::matching(folder.file("a1/*.l*s")).size(), 2U);
+  EXPECT_TRUE(platform::matching(folder.file("c*/tile_2.las")).empty());
+}
+
+TEST(Platform, StatusTellsFilesFoldersAndWhatIsTheSame) {
+  const TemporaryFolder folder;
+  write_bytes(folder.file("a"), "123");
+  write_bytes(folder.file("b"), "123");
+  FileStatus a;
+  FileStatus again;
+  FileStatus b;
+  ASSERT_TRUE(platform::get_status(folder.file("a"), a) && platform::get_status(folder.file("./a"), again));
+  ASSERT_TRUE(platform::get_status(folder.file("b"), b));
+  EXPECT_EQ(a.kind, FileStatus::Kind::kRegular);
+  EXPECT_EQ(a.bytes, 3U);
+  EXPECT_TRUE(a.device == again.device && a.index == again.index);
+  EXPECT_FALSE(a.device == b.device && a.index == b.index);
+  ASSERT_TRUE(platform::get_status(folder.file("."), b));
+  EXPECT_EQ(b.kind, FileStatus::Kind::kFolder);
+  EXPECT_FALSE(platform::get_status(folder.file("c"), b));
+  EXPECT_EQ(errno, ENOENT);
+}
+
+TEST(Platform, MemoryIsTold) {
+  EXPECT_GT(platform::peak_memory(), std::size_t{1} << 20);
+  EXPECT_LT(platform::peak_memory(), std::size_t{1} << 32);
+  EXPECT_GT(platform::free_memory(), 1 << 20);
+}
+
+}  // namespace
+}  // namespace g3r
