@@ -113,10 +113,11 @@ void OutputFile::commit() {
     if (fd_ > platform::kStandardOutput && !platform::close_file(std::exchange(fd_, -1))) fail(false, errno);
     return;
   }
+  const std::string folder = folder_of(target_);  // before the file is in place: from then on nothing may fail for want of memory
   if (!platform::sync(fd_) || !platform::replace(fd_, temporary_, target_)) fail(false, errno);
   temporary_.clear();
   if (fd_ >= 0 && !platform::close_file(std::exchange(fd_, -1))) fail(false, errno);
-  if (!platform::sync_folder(folder_of(target_))) fail(false, errno);
+  if (!platform::sync_folder(folder)) fail(false, errno);
 }
 
 void OutputFile::fail(bool creating, int error) const {
