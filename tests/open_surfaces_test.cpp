@@ -162,6 +162,13 @@ TEST(OpenSurfaces, FinsThinnerThanTheNoiseAreNoSureSides) {
   }
 }
 
+TEST(OpenSurfaces, OfFewPointsNoSideIsSure) {
+  const Orientation few = orient(shapes::sphere(29).points);
+  EXPECT_LE(*std::max_element(few.confidence.begin(), few.confidence.end()), 0.5F);
+  const Orientation more = orient(shapes::sphere(100).points);
+  EXPECT_GT(*std::min_element(more.confidence.begin(), more.confidence.end()), 0.9F);
+}
+
 TEST(OpenSurfaces, SolidsHaveNone) {
   for (const Surface& s : {shapes::sphere(3000), shapes::torus(5000, 0.6, 0.25, 2),
                            shapes::join(shapes::sphere(4000, 0.8), shapes::sphere(2000, 0.5), true)}) {

@@ -42,7 +42,8 @@ struct OpenSurfaces {
 /// Under noise a part with |e| above 0.7 is closed: noise makes one wall of two, and what is left encloses nearly everything.
 /// Where the solution stays as it is, J = max(0, jump of its site) certifies a side: where walls are too close for the sampling the field
 /// does not jump from 0 to 1, whatever the sides. Of exact points J is the largest jump; under noise, which makes sheets of single wrong
-/// patches, it is the mean of the jumps. Points that face the other way than the mean of their site have 0.
+/// patches, it is the mean of the jumps. Points that face the other way than the mean of their site have 0, and all points of a cloud of
+/// fewer than 30.
 /// `noise`: standard deviation; `normals`: N unit vectors, in: the solution,
 /// out: changed on open surfaces. O(N log N).
 [[nodiscard]] OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan& sums, std::vector<Vec3>& normals,
