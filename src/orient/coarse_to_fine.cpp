@@ -42,7 +42,7 @@ struct Level {
 };
 
 Level solve_level(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings, double share,
-                  Stages& stages);
+                  Stages& stages, const std::vector<Vec3>& start);
 
 // The winding gradient at `points` of the solution on a quarter of them.
 std::vector<Vec3> coarse_gradient(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
@@ -53,7 +53,7 @@ std::vector<Vec3> coarse_gradient(const std::vector<Vec3>& points, const std::ve
     some.push_back(points[i]);
     codes.push_back(morton[i]);
   }
-  const Level coarse = solve_level(some, codes, coarser(settings), kCoarseShare * share, stages);
+  const Level coarse = solve_level(some, codes, coarser(settings), kCoarseShare * share, stages, {});
   return coarse.field->winding_gradient_at(coarse.result.eta, points, stages.cancel());
 }
 
@@ -94,10 +94,9 @@ IterativeResult solve_from_zero(const std::vector<Vec3>& points, const std::vect
                            [&](int step, int steps, double) { stages.progress(share * step / steps); });
 }
 
-// From the solution on fewer points.
+// From a winding gradient at the points.
 IterativeResult solve_on(FastSum& field, const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton,
-                         const Settings& settings, double share, Stages& stages) {
-  std::vector<Vec3> start = coarse_gradient(points, morton, settings, share, stages);
+                         const Settings& settings, double share, Stages& stages, std::vector<Vec3> start) {
   FastSum sum = settings.epsilon <= settings.refinement_width
                     ? FastSum(field, Widths(settings.epsilon))
                     : FastSum(points, morton, Widths(settings.epsilon), settings.sums, stages.cancel());
@@ -124,9 +123,10 @@ void settle_doubtful(FastSum& field, const std::vector<Vec3>& points, const std:
   result = std::move(more);
 }
 
-// `share`: of all progress, where this level ends; the coarser ones take kCoarseShare of it.
+// `share`: of all progress, where this level ends; the coarser ones take kCoarseShare of it. `start`: a winding gradient, empty for that of
+// the coarser ones.
 Level solve_level(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings, double share,
-                  Stages& stages) {
+                  Stages& stages, const std::vector<Vec3>& start) {
   Level level;
   const auto make_field = [&] {
     level.field = std::make_unique<FastSum>(points, morton, Widths(settings.refinement_width), settings.sums, stages.cancel());
@@ -137,7 +137,8 @@ Level solve_level(const std::vector<Vec3>& points, const std::vector<std::uint64
     return level;
   }
   make_field();
-  level.result = solve_on(*level.field, points, morton, settings, share, stages);
+  level.result = solve_on(*level.field, points, morton, settings, share, stages,
+                          start.empty() ? coarse_gradient(points, morton, settings, share, stages) : start);
   if (!level.result.converged && !settings.doubtful_schedule.empty()) {
     settle_doubtful(*level.field, points, morton, settings, stages, level.result);
   }
@@ -147,8 +148,8 @@ Level solve_level(const std::vector<Vec3>& points, const std::vector<std::uint64
 }  // namespace
 
 Solved solve_coarse_to_fine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
-                            Stages& stages) {
-  Level level = solve_level(points, morton, settings, 1, stages);
+                            Stages& stages, const std::vector<Vec3>& start) {
+  Level level = solve_level(points, morton, settings, 1, stages, start);
   stages.begin("refine");
   if (settings.refinement_width == 0) return {std::move(level.result), {}};
   Refinement refinement = refine_normals(*level.field, level.result.eta);

@@ -27,8 +27,9 @@ struct Solved {
 /// winding number, which turns parts that are wrong as a whole; not where most points lie on open surfaces (find_open_surfaces()), of which
 /// the equations are not true. They are undone if a quarter more points are unsure then; not under noise, of which every step makes more of
 /// them unsure, right or wrong.
+/// `start`: N vectors that take the place of that winding gradient, or empty.
 /// The returned residuals are those of the finest level. Begins the stage "refine" after the solve. Throws like solve_iteratively().
 [[nodiscard]] Solved solve_coarse_to_fine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton,
-                                          const Settings& settings, Stages& stages);
+                                          const Settings& settings, Stages& stages, const std::vector<Vec3>& start = {});
 
 }  // namespace g3r

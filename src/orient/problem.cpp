@@ -62,6 +62,7 @@ Problem with_noise(const Problem& problem, double noise, const Options& options)
   same.spacing = problem.spacing;
   same.noise = noise;
   same.scatter = problem.scatter;
+  same.start = problem.start;
   choose_scales(same, options);
   return same;
 }
@@ -85,6 +86,7 @@ Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, 
   for (const std::uint32_t i : some) {
     points.push_back(problem.cloud.points()[i]);
     morton.push_back(problem.cloud.morton()[i]);
+    if (!problem.start.empty()) part.start.push_back(problem.start[i]);
   }
   part.cloud.set = PointSet(std::move(points), std::move(morton));
   part.spacing = part.cloud.set.spacing();

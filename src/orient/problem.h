@@ -22,6 +22,7 @@ struct Problem {
   double noise = 0;            ///< given_noise() or estimate_noise()
   double scatter = 0;          ///< facet_scatter(), where planes are fitted
   double line_distance = 0;    ///< surface_distance(): 0, or the distance of the sites that are solved for where the samples are lines
+  std::vector<Vec3> start;  ///< of the points: where the solve starts, instead of on fewer points; empty: nothing is known (orient_from())
   Settings settings;
 
   /// Whether the points are exact, so that steps follow the local spacing and prove directions from the points alone.

@@ -53,7 +53,7 @@ Solution solve_equations(const Problem& problem, const Options& options, Stages&
   const std::vector<Vec3>& points = problem.cloud.points();
   stages.begin("solve");
   if (!s.dense) {
-    Solved solved = solve_coarse_to_fine(points, problem.cloud.morton(), s, stages);
+    Solved solved = solve_coarse_to_fine(points, problem.cloud.morton(), s, stages, problem.start);
     record(s, solved.result, stats);
     return {std::move(solved.result.eta), std::move(solved.refinement), {}};
   }

@@ -1,7 +1,10 @@
 // Each tile: a solve in core of its cloud, turned part by part to the sides of the thinned cloud.
 #include "cpu/parallel.h"
+#include "field/oriented_cloud.h"
 #include "io/output_file.h"
+#include "orient/start.h"
 #include "orient/steps.h"
+#include "sum/fast_sum.h"
 #include "tiles/manifest.h"
 #include "tiles/records.h"
 #include "tiles/tile_cloud.h"
@@ -13,6 +16,11 @@
 
 namespace g3r::tiles {
 namespace {
+
+// The field that a tile starts from: the width, in spacings of the thinned cloud, is that of the first refinement (narrower is noisy, wider
+// rounds edges), and a start needs no more accuracy.
+constexpr double kStartWidth = 0.55;
+constexpr double kStartAccuracy = 2e-2;
 
 double dot(const Vec3& a, const std::array<float, 3>& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -36,27 +44,52 @@ std::map<std::uint32_t, double> signs_of_parts(const TileCloud& cloud, const std
   return votes;
 }
 
+// The winding gradient of the thinned cloud at the points of the tile: its own solve starts there, as in core from a quarter of the points.
+std::vector<Vec3> start_from_coarse(const std::string& folder, const Manifest& m, const std::vector<Vec3>& points, const Monitor& monitor) {
+  const RecordFile<Record> places(points_path(folder, m.stride));
+  const RecordFile<CoarseNormal> found(coarse_path(folder));
+  std::vector<Record> records;
+  std::vector<CoarseNormal> coarse;
+  places.append(0, places.size(), records);
+  found.append(0, places.size(), coarse);
+  std::vector<Vec3> thinned(records.size());
+  std::vector<Vec3> normals(records.size());
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    thinned[i] = records[i].point;
+    for (std::size_t a = 0; a < 3; ++a) normals[i][a] = coarse[i].normal[a];
+  }
+  std::vector<Record>().swap(records);
+  std::vector<CoarseNormal>().swap(coarse);
+  const OrientedCloud oriented = oriented_cloud(thinned, normals);
+  std::vector<Vec3> targets(points.size());
+  std::transform(points.begin(), points.end(), targets.begin(), [&](const Vec3& p) { return oriented.cloud.frame.to_unit(p); });
+  const FastSum field(oriented.cloud.points(), oriented.cloud.morton(), Widths(kStartWidth * oriented.spacing),
+                      sum_plan(kStartAccuracy, oriented.cloud.size()), monitor.cancel);
+  return field.winding_gradient_at(oriented.eta, targets, monitor.cancel);
+}
+
 // Other noises than the estimate are tried where the tile's own points ask for it, or the thinned cloud is open, as in core.
-Orientation solve(const TileCloud& cloud, const Manifest& m, const TileWorker& worker, const Monitor& monitor) {
+Orientation solve(const std::string& folder, const TileCloud& cloud, const Manifest& m, const TileWorker& worker, const Monitor& monitor) {
   std::vector<Vec3> points(cloud.records.size());
   for (std::size_t i = 0; i < points.size(); ++i) points[i] = cloud.records[i].point;
   Options options;
   options.threads = worker.threads;
   options.device = worker.device;
+  const std::vector<Vec3> start = parallel::with_threads(worker.threads, [&] { return start_from_coarse(folder, m, points, monitor); });
   if (m.open_share < kDoubtful) {
     Options one_noise = options;
     one_noise.without = kStepNames[static_cast<std::size_t>(Step::kNoiseChoice)];
-    Orientation solved = orient(points, one_noise, monitor);
+    Orientation solved = orient_from(points, start, one_noise, monitor);
     if (unsure_share_of_own(cloud, solved.confidence) < kDoubtful) return solved;
   }
-  return orient(points, options, monitor);
+  return orient_from(points, start, options, monitor);
 }
 
 void solve_tile(const std::string& folder, const Manifest& m, const Cells& cells, std::size_t t, const TileWorker& worker,
                 const Monitor& monitor) {
   const TileCloud cloud = read_tile_cloud(folder, m, cells, m.tiles[t]);
   const Orientation solved =
-      solve(cloud, m, worker, named(monitor, "tile " + std::to_string(t + 1) + " of " + std::to_string(m.tiles.size())));
+      solve(folder, cloud, m, worker, named(monitor, "tile " + std::to_string(t + 1) + " of " + std::to_string(m.tiles.size())));
   std::map<std::uint32_t, double> signs = signs_of_parts(cloud, solved.normals, folder);
   std::vector<Result> results;
   for (std::size_t i = 0; i < cloud.records.size(); ++i) {
