@@ -28,7 +28,6 @@ namespace {
 
 constexpr double kSidesAgree = 0.45;  // mean jump defect of an open surface up to which its sides are called consistent; 1: none agree
 // Other noises than the estimate.
-constexpr double kDoubtful = 0.05;        // share of the sides in doubt from which others are tried: few clean clouds leave as many
 constexpr double kFarLess = 0.5;          // of that share, up to which another is taken: chance changes it by less
 constexpr double kFarMore = 2;            // times the estimate, scatter that speaks against it
 constexpr double kAboveScatter = 1.4;     // times the scatter, the noise that is tried: kernels have to hide all of it,

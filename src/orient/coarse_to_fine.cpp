@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <memory>
 #include <utility>
+#include <vector>
 
 namespace g3r {
 namespace {
@@ -35,6 +36,13 @@ Settings coarser(Settings settings) {
   return settings;
 }
 
+template <class T>
+std::vector<T> every(std::size_t step, const std::vector<T>& values) {
+  std::vector<T> some;
+  for (std::size_t i = step / 2; i < values.size(); i += step) some.push_back(values[i]);
+  return some;
+}
+
 // A solution and the sum, of width settings.refinement_width, that evaluates its field.
 struct Level {
   IterativeResult result;
@@ -47,13 +55,7 @@ Level solve_level(const std::vector<Vec3>& points, const std::vector<std::uint64
 // The winding gradient at `points` of the solution on a quarter of them.
 std::vector<Vec3> coarse_gradient(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
                                   double share, Stages& stages) {
-  std::vector<Vec3> some;
-  std::vector<std::uint64_t> codes;
-  for (std::size_t i = kThinning / 2; i < points.size(); i += kThinning) {
-    some.push_back(points[i]);
-    codes.push_back(morton[i]);
-  }
-  const Level coarse = solve_level(some, codes, coarser(settings), kCoarseShare * share, stages, {});
+  const Level coarse = solve_level(every(kThinning, points), every(kThinning, morton), coarser(settings), kCoarseShare * share, stages, {});
   return coarse.field->winding_gradient_at(coarse.result.eta, points, stages.cancel());
 }
 
@@ -65,15 +67,8 @@ double unsure_share_of(const std::vector<Vec3>& eta, const Refinement& refined) 
 bool is_mostly_open(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
                     const std::vector<Vec3>& normals, const Stages& stages) {
   const std::size_t step = std::max<std::size_t>(1, points.size() / kOpenPoints);
-  std::vector<Vec3> some;
-  std::vector<Vec3> sides;
-  std::vector<std::uint64_t> codes;
-  for (std::size_t i = step / 2; i < points.size(); i += step) {
-    some.push_back(points[i]);
-    sides.push_back(normals[i]);
-    codes.push_back(morton[i]);
-  }
-  const PointSet set(std::move(some), std::move(codes));
+  const PointSet set(every(step, points), every(step, morton));
+  std::vector<Vec3> sides = every(step, normals);
   const OpenSurfaces sheets = find_open_surfaces(set, settings.noise, settings.sums, sides, stages.cancel());
   const auto closed = std::count(sheets.part.begin(), sheets.part.end(), OpenSurfaces::kNone);
   return !sheets.part.empty() && 2 * static_cast<std::size_t>(closed) < set.size();

@@ -56,13 +56,8 @@ Problem prepare(const PointsView& points, const Options& options, Stages& stages
 }
 
 Problem with_noise(const Problem& problem, double noise, const Options& options) {
-  Problem same;
-  same.cloud = problem.cloud;
-  same.outliers = problem.outliers;
-  same.spacing = problem.spacing;
+  Problem same = problem;
   same.noise = noise;
-  same.scatter = problem.scatter;
-  same.start = problem.start;
   choose_scales(same, options);
   return same;
 }

@@ -60,15 +60,13 @@ constexpr double kNoisyWindingWeight = 200;
 constexpr double kNoisyPolishWindingWeight = 70;  // more costs sides, less costs narrow gaps
 constexpr double kWeightFall = 0.28;              // the weights fall with (1 + this (sigma / h)^2)^3
 constexpr const char* kNoisySchedule = "10 cg";   // semi-convergence: more steps fit the noise
-// Of the sums. Solves from 0 amplify errors with every step; starts, and steps from them, give the same normals with 2e-2 as with 1e-3.
+// Of the sums. Solves from 0 amplify errors with every step; with a start kContinuedAccuracy does.
 constexpr double kAccuracy = 1e-2;
-constexpr double kContinuedAccuracy = 2e-2;
 // The default for least squares over the harmonics.
 constexpr double kGreenEpsilon = 0.4;       // converges in 10-15 iterations
 constexpr double kGreenConstantWeight = 2;  // the row u = 1 alone tells inside from outside
 constexpr double kGreenTolerance = 2.5e-3;
 constexpr const char* kGreenSchedule = "20 cg";
-constexpr double kRefinementWidth = 0.55;  // of the winding gradient; narrower is noisy, wider rounds edges
 // The polish: narrower than the solve and the refinement it starts from.
 constexpr double kPolishEpsilon = 0.2;
 constexpr double kPolishWidth = 0.3;

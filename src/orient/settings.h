@@ -64,6 +64,10 @@ struct Settings {
 /// The paper's mollifier for clean input: 0.8 x the leaf side of an octree with at most one point per leaf, at its deepest level.
 [[nodiscard]] double paper_epsilon(const CanonicalCloud& cloud);
 
+/// Width in spacings of the winding gradient that solves end with, and that finer ones start from: narrower is noisy, wider rounds edges.
+inline constexpr double kRefinementWidth = 0.55;
+/// Accuracy of the sums of a solve that has a start: it gives the same normals with 2e-2 as with 1e-3, while one from 0 amplifies errors.
+inline constexpr double kContinuedAccuracy = 2e-2;
 /// Points per point of the coarse cloud that solve_coarse_to_fine() starts from: twice the spacing.
 inline constexpr std::size_t kThinning = 4;
 /// Whether solve_coarse_to_fine() begins with fewer points.

@@ -2,6 +2,8 @@
 #include "cpu/parallel.h"
 #include "field/oriented_cloud.h"
 #include "io/output_file.h"
+#include "orient/confidence.h"
+#include "orient/settings.h"
 #include "orient/start.h"
 #include "orient/steps.h"
 #include "sum/fast_sum.h"
@@ -16,11 +18,6 @@
 
 namespace g3r::tiles {
 namespace {
-
-// The field that a tile starts from: the width, in spacings of the thinned cloud, is that of the first refinement (narrower is noisy, wider
-// rounds edges), and a start needs no more accuracy.
-constexpr double kStartWidth = 0.55;
-constexpr double kStartAccuracy = 2e-2;
 
 double dot(const Vec3& a, const std::array<float, 3>& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -63,8 +60,8 @@ std::vector<Vec3> start_from_coarse(const std::string& folder, const Manifest& m
   const OrientedCloud oriented = oriented_cloud(thinned, normals);
   std::vector<Vec3> targets(points.size());
   std::transform(points.begin(), points.end(), targets.begin(), [&](const Vec3& p) { return oriented.cloud.frame.to_unit(p); });
-  const FastSum field(oriented.cloud.points(), oriented.cloud.morton(), Widths(kStartWidth * oriented.spacing),
-                      sum_plan(kStartAccuracy, oriented.cloud.size()), monitor.cancel);
+  const FastSum field(oriented.cloud.points(), oriented.cloud.morton(), Widths(kRefinementWidth * oriented.spacing),
+                      sum_plan(kContinuedAccuracy, oriented.cloud.size()), monitor.cancel);
   return field.winding_gradient_at(oriented.eta, targets, monitor.cancel);
 }
 

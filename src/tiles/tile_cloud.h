@@ -36,8 +36,6 @@ Cells find_cells(const std::string& folder, const Manifest& manifest, Stages& st
 /// Share of the tile's own points that may face either way, by the confidence of all points of its solve. Thinned points far away, which
 /// are in doubt more often, do not count.
 [[nodiscard]] double unsure_share_of_own(const TileCloud& cloud, const std::vector<float>& confidence);
-/// That share, or that of open surfaces, from which a solve in core tries other noises than the estimate: each is one more solve.
-inline constexpr double kDoubtful = 0.05;
 
 /// The monitor with `name` before the names of stages. It must outlive what is returned.
 [[nodiscard]] Monitor named(const Monitor& monitor, const std::string& name);
