@@ -241,22 +241,10 @@ Attempt attempt(Problem problem, const PointsView& points, const Options& option
   return out;
 }
 
-// From the caller's order; of duplicates the last counts.
-std::vector<Vec3> in_canonical_order(const CanonicalCloud& cloud, const std::vector<Vec3>& vectors) {
-  if (vectors.empty()) return {};
-  std::vector<Vec3> out(cloud.size());
-  for (std::size_t i = 0; i < vectors.size(); ++i) {
-    if (cloud.point_of[i] < out.size()) out[cloud.point_of[i]] = vectors[i];  // outliers have none
-  }
-  return out;
-}
-
 // Thin walls and layers of scans that do not fit onto each other look alike from near. But few sides of walls are in doubt when they are
 // solved for as what they are, of layers when they are solved for as noise.
-Attempt orient_with_best_noise(const PointsView& points, const std::vector<Vec3>& start, const Options& options, Stages& stages) {
-  Problem problem = prepare(points, options, stages);
-  problem.start = in_canonical_order(problem.cloud, start);
-  Attempt best = attempt(std::move(problem), points, options, stages);
+Attempt orient_with_best_noise(const PointsView& points, const Known& known, const Options& options, Stages& stages) {
+  Attempt best = attempt(prepare(points, known, options, stages), points, options, stages);
   const double doubt = best.oriented.doubt;
   for (const OtherNoise& other : other_noises(best.problem, options, best.oriented)) {
     Attempt tried = attempt(with_noise(best.problem, other.noise, options), points, options, stages);
@@ -266,9 +254,9 @@ Attempt orient_with_best_noise(const PointsView& points, const std::vector<Vec3>
   return best;
 }
 
-Orientation orient_in_arena(const PointsView& points, const std::vector<Vec3>& start, const Options& options, Stages& stages) {
+Orientation orient_in_arena(const PointsView& points, const Known& known, const Options& options, Stages& stages) {
   require_sound(options.hints, points.count);
-  Attempt best = orient_with_best_noise(points, start, options, stages);
+  Attempt best = orient_with_best_noise(points, known, options, stages);
   Solution& solution = best.oriented.solution;
   std::vector<float>& confidence = best.oriented.confidence;
   Orientation out;
@@ -290,11 +278,11 @@ Orientation orient(const PointsView& points, const Options& options, const Monit
   return orient_from(points, {}, options, monitor);
 }
 
-Orientation orient_from(const PointsView& points, const std::vector<Vec3>& start, const Options& options, const Monitor& monitor) {
+Orientation orient_from(const PointsView& points, const Known& known, const Options& options, const Monitor& monitor) {
   Stages stages(monitor);
   return parallel::with_threads(options.threads, [&] {
     const gpu::Scope device(options.device, points.count);
-    Orientation out = orient_in_arena(points, start, options, stages);
+    Orientation out = orient_in_arena(points, known, options, stages);
     device.describe(out.stats);
     return out;
   });
@@ -305,7 +293,7 @@ Stats plan(const PointsView& points, const Options& options) {
   Stages stages(monitor);
   return parallel::with_threads(options.threads, [&] {
     Stats stats;
-    describe(prepare(points, options, stages), points, options, stats);
+    describe(prepare(points, {}, options, stages), points, options, stats);
     stages.finish(stats);
     return stats;
   });

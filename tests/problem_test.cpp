@@ -13,7 +13,7 @@ namespace {
 Problem prepared(const std::vector<Vec3>& points, const Options& options = {}) {
   const Monitor monitor;
   Stages stages(monitor);
-  return prepare(points, options, stages);
+  return prepare(points, {}, options, stages);
 }
 
 TEST(Prepare, DoesNotDependOnUnitsOrPlace) {
@@ -45,6 +45,26 @@ TEST(Prepare, LeavesOutPointsThatAreAlone) {
   EXPECT_EQ(problem.cloud.size(), 600U);
   EXPECT_EQ(problem.outliers.size(), 1U);
   EXPECT_NEAR(problem.spacing, prepared(shapes::sphere(600).points).spacing, 1e-9);  // the frame is that of the rest
+}
+
+// Points around a place where the cloud has been thinned are no outliers, and the spacing is that of the rest.
+TEST(Prepare, KnowsWhereTheCloudHasBeenThinned) {
+  const std::vector<Vec3> dense = shapes::torus(20000, 0.6, 0.25, 2).points;
+  std::vector<Vec3> points;
+  Known known;
+  for (std::size_t i = 0; i < dense.size(); ++i) {
+    const bool thinned = dense[i][0] > -0.2;
+    if (thinned && i % 25 != 0) continue;
+    points.push_back(dense[i]);
+    known.relative_spacing.push_back(thinned ? 5 : 1);
+  }
+  const Monitor monitor;
+  Stages stages(monitor);
+  const Problem problem = prepare(points, known, {}, stages);
+  const Problem unaware = prepare(points, {}, {}, stages);
+  EXPECT_GT(unaware.outliers.size(), 10U);
+  EXPECT_LE(problem.outliers.size(), 1U);
+  EXPECT_NEAR(problem.spacing, prepared(dense).spacing, 0.05 * problem.spacing);
 }
 
 TEST(Prepare, RefusesTooFewPoints) {

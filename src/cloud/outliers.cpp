@@ -1,5 +1,6 @@
 #include "cloud/outliers.h"
 
+#include "cloud/spacing.h"
 #include "cpu/parallel.h"
 
 #include <Eigen/Eigenvalues>
@@ -33,12 +34,13 @@ bool fills_space(const std::vector<Vec3>& points, const std::uint32_t* index, st
 
 }  // namespace
 
-std::vector<std::uint32_t> find_outliers(const PointSet& set) {
+std::vector<std::uint32_t> find_outliers(const PointSet& set, const std::vector<double>& relative_spacing) {
   if (set.size() < kFewestPoints) return {};
   const std::vector<Vec3>& points = set.points();
   const std::vector<std::uint32_t>& near = set.near();
-  const std::vector<double>& local = set.local_spacing();
-  const double typical = set.spacing();
+  std::vector<double> local = set.local_spacing();
+  for (std::size_t i = 0; i < relative_spacing.size(); ++i) local[i] /= relative_spacing[i];
+  const double typical = relative_spacing.empty() ? set.spacing() : typical_spacing(local);
   std::vector<char> outlier(points.size(), 0);
   parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

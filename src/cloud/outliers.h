@@ -16,7 +16,8 @@ namespace g3r {
 ///     sum of all three (on a surface, however sparse, below 3 %): one of many outliers.
 /// A density that changes smoothly, by whatever factor, is no reason. Never more than a third of the points: then the cloud is something
 /// else, and none is returned. O(N).
-[[nodiscard]] std::vector<std::uint32_t> find_outliers(const PointSet& set);
+/// `relative_spacing`: how many times as far apart the points of a cloud are that has been thinned, which is no reason either; or empty.
+[[nodiscard]] std::vector<std::uint32_t> find_outliers(const PointSet& set, const std::vector<double>& relative_spacing = {});
 
 /// Takes the points with these indices out of the cloud and returns them. point_of and multiplicity number them after those that stay, and
 /// before those taken out earlier.

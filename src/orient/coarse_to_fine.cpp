@@ -8,6 +8,7 @@
 #include "sum/fast_sum.h"
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -43,20 +44,39 @@ std::vector<T> every(std::size_t step, const std::vector<T>& values) {
   return some;
 }
 
+// The points of a level, and how many times as far apart each is as the densest ones; empty: all are equally far apart.
+struct LevelCloud {
+  const std::vector<Vec3>& points;
+  const std::vector<std::uint64_t>& morton;
+  const std::vector<double>& relative_spacing;
+};
+
+std::vector<double> spacing_of(const LevelCloud& cloud, const Settings& settings) {
+  std::vector<double> spacing = cloud.relative_spacing;
+  for (double& h : spacing) h *= settings.spacing;
+  return spacing;
+}
+
+// A sum of this width where the points are densest.
+FastSum sum_over(const LevelCloud& cloud, const Settings& settings, double width, const SumPlan& plan, const Stages& stages) {
+  return {cloud.points, cloud.morton, local_widths(width, settings, spacing_of(cloud, settings)), plan, stages.cancel()};
+}
+
 // A solution and the sum, of width settings.refinement_width, that evaluates its field.
 struct Level {
   IterativeResult result;
   std::unique_ptr<FastSum> field;
 };
 
-Level solve_level(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings, double share,
-                  Stages& stages, const std::vector<Vec3>& start);
+Level solve_level(const LevelCloud& cloud, const Settings& settings, double share, Stages& stages, const std::vector<Vec3>& gradient);
 
-// The winding gradient at `points` of the solution on a quarter of them.
-std::vector<Vec3> coarse_gradient(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
-                                  double share, Stages& stages) {
-  const Level coarse = solve_level(every(kThinning, points), every(kThinning, morton), coarser(settings), kCoarseShare * share, stages, {});
-  return coarse.field->winding_gradient_at(coarse.result.eta, points, stages.cancel());
+// The winding gradient at the points of the solution on a quarter of them.
+std::vector<Vec3> coarse_gradient(const LevelCloud& cloud, const Settings& settings, double share, Stages& stages) {
+  const std::vector<Vec3> points = every(kThinning, cloud.points);
+  const std::vector<std::uint64_t> morton = every(kThinning, cloud.morton);
+  const std::vector<double> relative_spacing = every(kThinning, cloud.relative_spacing);
+  const Level coarse = solve_level({points, morton, relative_spacing}, coarser(settings), kCoarseShare * share, stages, {});
+  return coarse.field->winding_gradient_at(coarse.result.eta, cloud.points, stages.cancel());
 }
 
 double unsure_share_of(const std::vector<Vec3>& eta, const Refinement& refined) {
@@ -64,87 +84,99 @@ double unsure_share_of(const std::vector<Vec3>& eta, const Refinement& refined) 
 }
 
 // Whether most of the points lie on surfaces without an inside, by the field of some of them.
-bool is_mostly_open(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
-                    const std::vector<Vec3>& normals, const Stages& stages) {
-  const std::size_t step = std::max<std::size_t>(1, points.size() / kOpenPoints);
-  const PointSet set(every(step, points), every(step, morton));
+bool is_mostly_open(const LevelCloud& cloud, const Settings& settings, const std::vector<Vec3>& normals, const Stages& stages) {
+  const std::size_t step = std::max<std::size_t>(1, cloud.points.size() / kOpenPoints);
+  const PointSet set(every(step, cloud.points), every(step, cloud.morton));
   std::vector<Vec3> sides = every(step, normals);
   const OpenSurfaces sheets = find_open_surfaces(set, settings.noise, settings.sums, sides, stages.cancel());
   const auto closed = std::count(sheets.part.begin(), sheets.part.end(), OpenSurfaces::kNone);
   return !sheets.part.empty() && 2 * static_cast<std::size_t>(closed) < set.size();
 }
 
-std::unique_ptr<LinearSystem> system_of(FastSum& sum, const std::vector<Vec3>& points, const Settings& settings) {
+// What a solve starts from, how long it goes on, and whom it tells.
+struct Course {
+  std::vector<Vec3> start;
+  std::vector<Steps> schedule;
+  double tolerance = 0;
+  std::function<void(int, int, double)> observe;
+};
+
+// Area vectors by settings.method, with this weight of the winding number.
+IterativeResult solve_for_areas(FastSum& sum, const LevelCloud& cloud, const Settings& settings, double winding_weight, Course course) {
   if (settings.method == Method::kGreen) {
-    return std::make_unique<GreenSystem>(sum, points, settings.harmonics, settings.constant_weight);
+    GreenSystem system(sum, cloud.points, settings.harmonics, settings.constant_weight);
+    return solve_iteratively(system, course.schedule, course.tolerance, std::move(course.start), course.observe);
   }
-  return std::make_unique<EnergySystem>(sum, settings.damping, settings.winding_weight);
+  std::vector<double> multiplicity = cloud.relative_spacing;
+  for (double& m : multiplicity) m *= m;
+  EnergySystem system(sum, settings.damping, winding_weight, multiplicity);
+  IterativeResult result =
+      solve_iteratively(system, course.schedule, course.tolerance, system.from_areas(std::move(course.start)), course.observe);
+  result.eta = system.to_areas(std::move(result.eta));
+  return result;
 }
 
 // From eta = 0.
-IterativeResult solve_from_zero(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
-                                double share, Stages& stages) {
-  FastSum sum(points, morton, Widths(settings.coarsest_epsilon), settings.first_sums, stages.cancel());
-  return solve_iteratively(*system_of(sum, points, settings), settings.schedule, settings.tolerance, {},
-                           [&](int step, int steps, double) { stages.progress(share * step / steps); });
+IterativeResult solve_from_zero(const LevelCloud& cloud, const Settings& settings, double share, Stages& stages) {
+  FastSum sum = sum_over(cloud, settings, settings.coarsest_epsilon, settings.first_sums, stages);
+  return solve_for_areas(
+      sum, cloud, settings, settings.winding_weight,
+      {{}, settings.schedule, settings.tolerance, [&](int step, int steps, double) { stages.progress(share * step / steps); }});
 }
 
 // From a winding gradient at the points.
-IterativeResult solve_on(FastSum& field, const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton,
-                         const Settings& settings, double share, Stages& stages, std::vector<Vec3> start) {
-  FastSum sum = settings.epsilon <= settings.refinement_width
-                    ? FastSum(field, Widths(settings.epsilon))
-                    : FastSum(points, morton, Widths(settings.epsilon), settings.sums, stages.cancel());
-  gradient_to_areas(sum, {settings.spacing * settings.spacing}, start);
-  return solve_iteratively(
-      *system_of(sum, points, settings), settings.continued_schedule, settings.continued_tolerance, std::move(start),
-      [&](int step, int steps, double) { stages.progress(share * (kCoarseShare + (1 - kCoarseShare) * step / steps)); });
+IterativeResult solve_on(FastSum& field, const LevelCloud& cloud, const Settings& settings, double share, Stages& stages,
+                         std::vector<Vec3> gradient) {
+  const std::vector<double> spacing = spacing_of(cloud, settings);
+  FastSum sum = settings.epsilon <= settings.refinement_width ? FastSum(field, local_widths(settings.epsilon, settings, spacing))
+                                                              : sum_over(cloud, settings, settings.epsilon, settings.sums, stages);
+  gradient_to_areas(sum, point_areas(settings, spacing, {}), gradient);
+  return solve_for_areas(sum, cloud, settings, settings.winding_weight,
+                         {std::move(gradient), settings.continued_schedule, settings.continued_tolerance, [&](int step, int steps, double) {
+                            stages.progress(share * (kCoarseShare + (1 - kCoarseShare) * step / steps));
+                          }});
 }
 
 // More steps where the sides of many points are unsure, but for surfaces of which the equations are not true.
-void settle_doubtful(FastSum& field, const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
-                     Stages& stages, IterativeResult& result) {
+void settle_doubtful(FastSum& field, const LevelCloud& cloud, const Settings& settings, Stages& stages, IterativeResult& result) {
   const Refinement refined = refine_normals(field, result.eta);
   const double unsure = unsure_share_of(result.eta, refined);
   if (unsure < kDoubtfulShare + settings.unsure_of_noise) return;
-  if (is_mostly_open(points, morton, settings, refined.normals, stages)) return;
-  FastSum wider(points, morton, Widths(settings.coarsest_epsilon), settings.first_sums, stages.cancel());
-  EnergySystem heavier(wider, settings.damping, settings.doubtful_winding_weight);
-  IterativeResult more = solve_iteratively(heavier, settings.doubtful_schedule, settings.doubtful_tolerance, result.eta,
-                                           [&](int, int, double) { stages.still_going(); });
+  if (is_mostly_open(cloud, settings, refined.normals, stages)) return;
+  FastSum wider = sum_over(cloud, settings, settings.coarsest_epsilon, settings.first_sums, stages);
+  IterativeResult more = solve_for_areas(
+      wider, cloud, settings, settings.doubtful_winding_weight,
+      {result.eta, settings.doubtful_schedule, settings.doubtful_tolerance, [&](int, int, double) { stages.still_going(); }});
   if (settings.unsure_of_noise == 0 && unsure_share_of(more.eta, refine_normals(field, more.eta)) > kWorse * unsure) return;
   more.kinds.insert(more.kinds.begin(), result.kinds.begin(), result.kinds.end());
   more.residuals.insert(more.residuals.begin(), result.residuals.begin(), result.residuals.end());
   result = std::move(more);
 }
 
-// `share`: of all progress, where this level ends; the coarser ones take kCoarseShare of it. `start`: a winding gradient, empty for that of
-// the coarser ones.
-Level solve_level(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings, double share,
-                  Stages& stages, const std::vector<Vec3>& start) {
+// `share`: of all progress, where this level ends; the coarser ones take kCoarseShare of it. `gradient`: a winding gradient to start from,
+// empty for that of the coarser ones.
+Level solve_level(const LevelCloud& cloud, const Settings& settings, double share, Stages& stages, const std::vector<Vec3>& gradient) {
   Level level;
   const auto make_field = [&] {
-    level.field = std::make_unique<FastSum>(points, morton, Widths(settings.refinement_width), settings.sums, stages.cancel());
+    level.field = std::make_unique<FastSum>(sum_over(cloud, settings, settings.refinement_width, settings.sums, stages));
   };
-  if (!starts_coarse(settings, points.size())) {
-    level.result = solve_from_zero(points, morton, settings, share, stages);
+  if (!starts_coarse(settings, cloud.points.size())) {
+    level.result = solve_from_zero(cloud, settings, share, stages);
     if (settings.refinement_width > 0) make_field();
     return level;
   }
   make_field();
-  level.result = solve_on(*level.field, points, morton, settings, share, stages,
-                          start.empty() ? coarse_gradient(points, morton, settings, share, stages) : start);
-  if (!level.result.converged && !settings.doubtful_schedule.empty()) {
-    settle_doubtful(*level.field, points, morton, settings, stages, level.result);
-  }
+  level.result =
+      solve_on(*level.field, cloud, settings, share, stages, gradient.empty() ? coarse_gradient(cloud, settings, share, stages) : gradient);
+  if (!level.result.converged && !settings.doubtful_schedule.empty()) settle_doubtful(*level.field, cloud, settings, stages, level.result);
   return level;
 }
 
 }  // namespace
 
 Solved solve_coarse_to_fine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
-                            Stages& stages, const std::vector<Vec3>& start) {
-  Level level = solve_level(points, morton, settings, 1, stages, start);
+                            Stages& stages, const Known& known) {
+  Level level = solve_level({points, morton, known.relative_spacing}, settings, 1, stages, known.gradient);
   stages.begin("refine");
   if (settings.refinement_width == 0) return {std::move(level.result), {}};
   Refinement refinement = refine_normals(*level.field, level.result.eta);

@@ -13,16 +13,6 @@ namespace {
 
 constexpr double kMostArea = 3;  // of the areas handed in, and its inverse the least
 
-std::vector<double> areas_of(const Settings& settings, const std::vector<double>& spacing, const std::vector<double>& multiplicity) {
-  if (spacing.empty() && multiplicity.empty()) return {settings.spacing * settings.spacing};
-  std::vector<double> areas(std::max(spacing.size(), multiplicity.size()));
-  for (std::size_t i = 0; i < areas.size(); ++i) {
-    const double h = spacing.empty() ? settings.spacing : spacing[i];
-    areas[i] = h * h * (multiplicity.empty() ? 1 : multiplicity[i]);
-  }
-  return areas;
-}
-
 }  // namespace
 
 Widths local_widths(double width, const Settings& settings, const std::vector<double>& spacing) {
@@ -47,6 +37,16 @@ void gradient_to_areas(FastSum& sum, const std::vector<double>& areas, std::vect
   }
 }
 
+std::vector<double> point_areas(const Settings& settings, const std::vector<double>& spacing, const std::vector<double>& multiplicity) {
+  if (spacing.empty() && multiplicity.empty()) return {settings.spacing * settings.spacing};
+  std::vector<double> areas(std::max(spacing.size(), multiplicity.size()));
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    const double h = spacing.empty() ? settings.spacing : spacing[i];
+    areas[i] = h * h * (multiplicity.empty() ? 1 : multiplicity[i]);
+  }
+  return areas;
+}
+
 Polished polish(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
                 const std::vector<double>& spacing, const std::vector<double>& multiplicity, const Refinement& refined, Stages& stages) {
   FastSum wider(points, morton, local_widths(settings.polish_width, settings, spacing), settings.sums, stages.cancel());
@@ -56,7 +56,7 @@ Polished polish(const std::vector<Vec3>& points, const std::vector<std::uint64_t
   for (std::size_t i = 0; i < start.size(); ++i) {
     for (double& c : start[i]) c *= refined.strength[i];
   }
-  gradient_to_areas(sum, areas_of(settings, spacing, multiplicity), start);
+  gradient_to_areas(sum, point_areas(settings, spacing, multiplicity), start);
   const std::vector<Steps> schedule{{settings.polish_steps, StepKind::kConjugateGradient}};
   const auto still_going = [&stages](int, int, double) { stages.still_going(); };
   Polished polished;

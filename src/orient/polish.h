@@ -15,6 +15,10 @@ namespace g3r {
 /// `width` at settings.spacing and in proportion to the local `spacing` elsewhere; the same everywhere if that is empty.
 [[nodiscard]] Widths local_widths(double width, const Settings& settings, const std::vector<double>& spacing);
 
+/// The square of `spacing` at every point, or that of settings.spacing for all if that is empty; times `multiplicity` unless that is empty.
+[[nodiscard]] std::vector<double> point_areas(const Settings& settings, const std::vector<double>& spacing,
+                                              const std::vector<double>& multiplicity);
+
 /// Area vectors from a winding gradient: directions kept, lengths linear up to the median and constant beyond, so that thin parts whose
 /// sides the gradient cannot tell apart start near zero and not on the wrong side; times `areas`, what one point stands for (one for
 /// each, or one for all). One factor makes the median of W eta 1/2, what it is on the true surface; it is bounded to [1/3, 3], because an

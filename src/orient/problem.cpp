@@ -2,6 +2,7 @@
 
 #include "cloud/noise.h"
 #include "cloud/outliers.h"
+#include "cloud/spacing.h"
 
 #include <g3r/error.h>
 
@@ -21,9 +22,27 @@ void choose_scales_and_scatter(Problem& problem, const Options& options) {
   if (fits_planes) problem.scatter = facet_scatter(problem.cloud.set);
 }
 
+// Of the points of a cloud, from the caller's order; of duplicates the last counts, and outliers have none.
+template <class T>
+std::vector<T> in_canonical_order(const CanonicalCloud& cloud, const std::vector<T>& values) {
+  std::vector<T> out(values.empty() ? 0 : cloud.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (cloud.point_of[i] < out.size()) out[cloud.point_of[i]] = values[i];
+  }
+  return out;
+}
+
+// The spacing of the points, and what it would be had none been thinned.
+double spacing_before_thinning(const PointSet& set, const std::vector<double>& relative_spacing) {
+  if (relative_spacing.empty()) return set.spacing();
+  std::vector<double> local = set.local_spacing();
+  for (std::size_t i = 0; i < local.size(); ++i) local[i] /= relative_spacing[i];
+  return typical_spacing(std::move(local));
+}
+
 }  // namespace
 
-Problem prepare(const PointsView& points, const Options& options, Stages& stages) {
+Problem prepare(const PointsView& points, const Known& known, const Options& options, Stages& stages) {
   Problem problem;
   stages.begin("build");
   problem.cloud = canonical_cloud(points);
@@ -31,13 +50,15 @@ Problem prepare(const PointsView& points, const Options& options, Stages& stages
   const StepSet without = parse_steps(options.without);
   bool outliers_wanted = options.preset != Preset::kPaper && !is_baseline(options.method) && !contains(without, Step::kOutliers);
   while (outliers_wanted) {
-    std::vector<Vec3> removed = remove_points(problem.cloud, find_outliers(problem.cloud.set));
+    const std::vector<double> relative_spacing = in_canonical_order(problem.cloud, known.relative_spacing);
+    std::vector<Vec3> removed = remove_points(problem.cloud, find_outliers(problem.cloud.set, relative_spacing));
     if (removed.empty()) break;
     problem.outliers.insert(problem.outliers.begin(), removed.begin(), removed.end());
     outliers_wanted = refit_frame(problem.cloud, problem.outliers);  // far ones may have hidden nearer ones
   }
   const PointSet& set = problem.cloud.set;
-  problem.spacing = set.spacing();
+  problem.known = {in_canonical_order(problem.cloud, known.gradient), in_canonical_order(problem.cloud, known.relative_spacing)};
+  problem.spacing = spacing_before_thinning(set, problem.known.relative_spacing);
   if (const std::optional<double> given = given_noise(options.noise, problem.cloud, problem.spacing)) {
     problem.noise = *given;
   } else if (options.preset != Preset::kPaper && !contains(without, Step::kNoise)) {
@@ -81,10 +102,11 @@ Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, 
   for (const std::uint32_t i : some) {
     points.push_back(problem.cloud.points()[i]);
     morton.push_back(problem.cloud.morton()[i]);
-    if (!problem.start.empty()) part.start.push_back(problem.start[i]);
+    if (!problem.known.gradient.empty()) part.known.gradient.push_back(problem.known.gradient[i]);
+    if (!problem.known.relative_spacing.empty()) part.known.relative_spacing.push_back(problem.known.relative_spacing[i]);
   }
   part.cloud.set = PointSet(std::move(points), std::move(morton));
-  part.spacing = part.cloud.set.spacing();
+  part.spacing = spacing_before_thinning(part.cloud.set, part.known.relative_spacing);
   part.noise = problem.noise;
   part.outliers = problem.outliers;  // those of the whole cloud: the part was solved for among them
   Options same = options;

@@ -6,6 +6,7 @@
 #include "cloud/canonical_cloud.h"
 #include "cloud/sites.h"
 #include "orient/settings.h"
+#include "orient/start.h"
 
 #include <g3r/g3r.h>
 
@@ -22,7 +23,7 @@ struct Problem {
   double noise = 0;            ///< given_noise() or estimate_noise()
   double scatter = 0;          ///< facet_scatter(), where planes are fitted
   double line_distance = 0;    ///< surface_distance(): 0, or the distance of the sites that are solved for where the samples are lines
-  std::vector<Vec3> start;  ///< of the points: where the solve starts, instead of on fewer points; empty: nothing is known (orient_from())
+  Known known;                 ///< of the points of the cloud, in its order
   Settings settings;
 
   /// Whether the points are exact, so that steps follow the local spacing and prove directions from the points alone.
@@ -30,9 +31,9 @@ struct Problem {
   std::optional<BaselineSettings> baseline;  ///< with the methods wnnc, agr and pgr
 };
 
-/// Canonical order, outliers, spacing, noise and settings of a cloud. Throws InvalidInput for a cloud or an option out of range, Cancelled.
-/// O(N log N).
-[[nodiscard]] Problem prepare(const PointsView& points, const Options& options, Stages& stages);
+/// Canonical order, outliers, spacing, noise and settings of a cloud; `known`: in the order of `points`. Throws InvalidInput for a cloud or
+/// an option out of range, Cancelled. O(N log N).
+[[nodiscard]] Problem prepare(const PointsView& points, const Known& known, const Options& options, Stages& stages);
 
 /// The same problem with this noise instead of the estimate.
 [[nodiscard]] Problem with_noise(const Problem& problem, double noise, const Options& options);

@@ -53,7 +53,7 @@ Solution solve_equations(const Problem& problem, const Options& options, Stages&
   const std::vector<Vec3>& points = problem.cloud.points();
   stages.begin("solve");
   if (!s.dense) {
-    Solved solved = solve_coarse_to_fine(points, problem.cloud.morton(), s, stages, problem.start);
+    Solved solved = solve_coarse_to_fine(points, problem.cloud.morton(), s, stages, problem.known);
     record(s, solved.result, stats);
     return {std::move(solved.result.eta), std::move(solved.refinement), {}};
   }
@@ -126,8 +126,9 @@ Solution solve_on_points(const Problem& problem, const Options& options, Stages&
   Solution solution = solve_equations(problem, options, stages, stats);
   if (s.refinement_width == 0) solution.refinement.normals = normalised(solution.eta);
   if (s.polish_steps == 0) return solution;
-  const std::vector<double> none;
-  const std::vector<double>& local = problem.is_clean() && runs(problem, Step::kLocalWidths) ? set.smoothed_spacing() : none;
+  std::vector<double> thinned = problem.known.relative_spacing;
+  for (double& h : thinned) h *= problem.spacing;
+  const std::vector<double>& local = problem.is_clean() && runs(problem, Step::kLocalWidths) ? set.smoothed_spacing() : thinned;
   Polished polished = polish(set.points(), set.morton(), s, local, {}, solution.refinement, stages);
   std::vector<Vec3>& normals = polished.refinement.normals;
   const auto find_open = [&](std::vector<Vec3>& sides) {

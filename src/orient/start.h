@@ -1,4 +1,4 @@
-// orient() where a field of the surface is known already.
+// orient() where something is known of the points and of their surface already.
 #pragma once
 
 #include <g3r/g3r.h>
@@ -7,10 +7,17 @@
 
 namespace g3r {
 
-/// orient(points, options, monitor), with `start` in the place of the winding gradient of the solution on a quarter of the points, where
-/// the solve would begin with that (starts_coarse()); elsewhere `start` has no effect. N vectors in the order of the points, along the
-/// normals, their lengths in proportion to those of one winding gradient. src/pipeline.cpp.
-[[nodiscard]] Orientation orient_from(const PointsView& points, const std::vector<Vec3>& start, const Options& options,
-                                      const Monitor& monitor);
+/// What is known of N points, in their order. Each may be empty: nothing is known.
+struct Known {
+  /// A winding gradient: vectors along the normals, their lengths in proportion. It takes the place of that of the solution on a quarter of
+  /// the points, where the solve would begin with that (starts_coarse()); elsewhere it has no effect.
+  std::vector<Vec3> gradient;
+  /// How many times as far apart the points are as the densest ones, at least 1, where the cloud has been thinned more at some places than
+  /// at others: the square root of the number of points that each one stands for. Kernels are as much wider there.
+  std::vector<double> relative_spacing;
+};
+
+/// orient(points, options, monitor) with what is known. src/pipeline.cpp.
+[[nodiscard]] Orientation orient_from(const PointsView& points, const Known& known, const Options& options, const Monitor& monitor);
 
 }  // namespace g3r

@@ -72,14 +72,16 @@ Orientation solve(const std::string& folder, const TileCloud& cloud, const Manif
   Options options;
   options.threads = worker.threads;
   options.device = worker.device;
-  const std::vector<Vec3> start = parallel::with_threads(worker.threads, [&] { return start_from_coarse(folder, m, points, monitor); });
+  Known known;
+  known.gradient = parallel::with_threads(worker.threads, [&] { return start_from_coarse(folder, m, points, monitor); });
+  known.relative_spacing = cloud.relative_spacing;
   if (m.open_share < kDoubtful) {
     Options one_noise = options;
     one_noise.without = kStepNames[static_cast<std::size_t>(Step::kNoiseChoice)];
-    Orientation solved = orient_from(points, start, one_noise, monitor);
+    Orientation solved = orient_from(points, known, one_noise, monitor);
     if (unsure_share_of_own(cloud, solved.confidence) < kDoubtful) return solved;
   }
-  return orient_from(points, start, options, monitor);
+  return orient_from(points, known, options, monitor);
 }
 
 void solve_tile(const std::string& folder, const Manifest& m, const Cells& cells, std::size_t t, const TileWorker& worker,

@@ -4,6 +4,7 @@
 #include "orient/confidence.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 namespace g3r::tiles {
@@ -67,6 +68,7 @@ TileCloud read_tile_cloud(const std::string& folder, const Manifest& manifest, c
         const std::uint64_t in_order = place * stride;
         cloud.own.push_back(c >= tile.first_cell && c < tile.last_cell ? 1 : 0);
         cloud.part.push_back(parts[c]);
+        cloud.relative_spacing.push_back(std::sqrt(static_cast<double>(stride)));
         cloud.coarse.push_back(in_order % manifest.stride == 0 ? in_order / manifest.stride : kNotCoarse);
       }
     }

@@ -18,9 +18,10 @@ namespace g3r::tiles {
 /// The points of a solve, and what is known of each.
 struct TileCloud {
   std::vector<Record> records;
-  std::vector<std::uint8_t> own;      ///< 1: the tile solves for it
-  std::vector<std::uint32_t> part;    ///< of ring 0, kNoPart beyond; see parts_of_ring()
-  std::vector<std::uint64_t> coarse;  ///< its place in the thinned cloud, kNotCoarse if it is not there
+  std::vector<std::uint8_t> own;         ///< 1: the tile solves for it
+  std::vector<std::uint32_t> part;       ///< of ring 0, kNoPart beyond; see parts_of_ring()
+  std::vector<double> relative_spacing;  ///< square root of the number of points that each one stands for
+  std::vector<std::uint64_t> coarse;     ///< its place in the thinned cloud, kNotCoarse if it is not there
 };
 inline constexpr std::uint64_t kNotCoarse = 0xffffffffffffffffULL;
 
