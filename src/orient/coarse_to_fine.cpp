@@ -31,7 +31,6 @@ Settings coarser(Settings settings) {
   settings.refinement_width *= kSpacingRatio;
   settings.winding_weight *= kCubeRatio;
   settings.doubtful_winding_weight *= kCubeRatio;
-  settings.damping /= kSpacingRatio;
   settings.tolerance = settings.start_tolerance;
   settings.first_sums = settings.sums;
   return settings;
@@ -109,7 +108,7 @@ IterativeResult solve_for_areas(FastSum& sum, const LevelCloud& cloud, const Set
   }
   std::vector<double> multiplicity = cloud.relative_spacing;
   for (double& m : multiplicity) m *= m;
-  EnergySystem system(sum, settings.damping, winding_weight, multiplicity);
+  EnergySystem system(sum, 0, winding_weight, multiplicity);
   IterativeResult result =
       solve_iteratively(system, course.schedule, course.tolerance, system.from_areas(std::move(course.start)), course.observe);
   result.eta = system.to_areas(std::move(result.eta));

@@ -149,7 +149,7 @@ void choose_facet_sides(const PointSet& set, const Settings& settings, const Fac
     if (facets.of[i] != Facets::kNone && vector::dot(normals[i], first[facets.of[i]]) < 0) turned[i] = vector::scale(normals[i], -1);
   }
   FastSum sum(set.points(), set.morton(), local_widths(kEpsilon * h, settings, spacing), settings.first_sums, stages.cancel());
-  EnergySystem free(sum, settings.damping, kWindingWeight * h * h * h);
+  EnergySystem free(sum, 0, kWindingWeight * h * h * h);
   OnFacets system(free, facets, areas, turned);
   SettledSides settled(facets, turned);
   const auto still_going = [&stages](int, int, double) { stages.still_going(); };

@@ -34,32 +34,27 @@ constexpr Steps kDoubtful{60, StepKind::kConjugateGradient};
 constexpr double kDoubtfulTolerance = 2.5e-3;
 constexpr double kContinuedTolerance = 1.5e-2;
 constexpr double kFewOutliers = 1e-2;  // of the points; clean clouds lose one point, very uneven ones 0.6 %
-// The default on noisy input: the field must not see single points. Noise sigma turns the normal of an area s^2 of points h apart by about
-// sigma h / s^2, so widths for one accuracy are in proportion to sqrt(sigma h).
-constexpr double kNoisyWidth = 3;  // sigma, of epsilon and of the refinement
-// The more the points scatter beside their spacing, the more of the scatter the kernels have to hide.
-constexpr double kWidened = 1.4;                          // times the noise
-constexpr double kWidenedFrom = 0.4, kWidenedFull = 0.9;  // h, of the noise: where the factor begins and where it is reached
-// Noise below the distances between points: walls of a few sigma are still told apart, by narrower kernels and more steps.
-constexpr double kMildNoise = 0.7;    // h
-constexpr double kMildWidth = 2;      // sigma, of epsilon and of the refinement
-constexpr double kMildEpsilon = 0.5;  // h, at least
-constexpr const char* kMildSchedule = "20 cg";
-// Less still: the solve of clean clouds tells more sides of thin walls right, and only the polish has to know of the noise.
-constexpr double kSlightNoise = 0.35;    // h
-constexpr double kUnsurePerNoise = 0.9;  // share of the points whose sides a noise of one h makes unsure, about
+// The default on noisy input, sigma in spacings h: the field must not see single points. Kernels of a given number of sigma hide the
+// scatter of points, and blur walls as thin as that; below a spacing fewer points share the scatter, and walls matter more. So the width
+// grows with the square of sigma first and in proportion later, w = A s^2 / (s + B) for s = sigma / h: a larger A blurs, a smaller one fits
+// the noise.
+constexpr double kNoisyWidth = 4.2;    // A; nearly that many sigma in the end
+constexpr double kSharesNoise = 0.25;  // B; below this noise the width falls off: less costs thin walls, more turns shells in cavities
+// Raw solutions fit the noise with every step, and the more noise there is the sooner: h / sigma times this many steps.
+constexpr double kStepsPerNoise = 7;
+constexpr double kFewestNoisySteps = 10;  // fewer leave far sides undecided
+constexpr double kUnsurePerNoise = 0.9;   // share of the points whose sides a noise of one h makes unsure, about
 constexpr Steps kDoubtfulNoisy{30, StepKind::kConjugateGradient};
+// Noise turns the normal of a patch of side s by about sigma h / s^2, so widths for one accuracy are in proportion to sqrt(sigma h).
 constexpr double kNoisyPolishEpsilon = 1.8;  // sqrt(sigma h)
 constexpr double kNoisyPolishWidth = 2.25;   // sqrt(sigma h)
 constexpr int kNoisyPolishSteps = 9;
 constexpr double kClusterSide = 0.9;    // epsilon; the kernel at width epsilon cannot tell points of one cluster apart
 constexpr double kWideEpsilon = 1.5;    // h; from here on clusters pay, and an epsilon that is asked for is taken to mean noise
-constexpr double kNoisyDamping = 0.28;  // 1/h: the self term of a flat patch
-// W eta = 1/2 is wrong at points off the surface, and the more so the farther off they are. Both for little noise, in h^3.
-constexpr double kNoisyWindingWeight = 200;
-constexpr double kNoisyPolishWindingWeight = 70;  // more costs sides, less costs narrow gaps
-constexpr double kWeightFall = 0.28;              // the weights fall with (1 + this (sigma / h)^2)^3
-constexpr const char* kNoisySchedule = "10 cg";   // semi-convergence: more steps fit the noise
+constexpr double kNoisyDamping = 0.28;  // 1/h: the self term of a flat patch; without it the polish turns shells in cavities
+// W eta = 1/2 is wrong at points off the surface, and the more so the farther off they are: all weights fall with (1 + this s^2)^3.
+constexpr double kWeightFall = 0.28;
+constexpr double kNoisyPolishWindingWeight = 70;  // h^3, for little noise; more costs sides, less costs narrow gaps
 // Of the sums. Solves from 0 amplify errors with every step; with a start kContinuedAccuracy does.
 constexpr double kAccuracy = 1e-2;
 // The default for least squares over the harmonics.
@@ -102,16 +97,51 @@ double in_frame(const Length& length, const CanonicalCloud& cloud, double spacin
   }
 }
 
-// The noise that the widths are made for.
-double widened(double noise, double spacing) {
-  const double share = std::clamp((noise / spacing - kWidenedFrom) / (kWidenedFull - kWidenedFrom), 0.0, 1.0);
-  return noise * (1 + (kWidened - 1) * share);
+// Width in spacings of the kernels that hide this noise, in spacings too.
+double noisy_width(double noise) { return kNoisyWidth * noise * noise / (noise + kSharesNoise); }
+
+// The noise that kernels of this width hide.
+double hidden_noise(double width) {
+  return (width + std::sqrt(width * width + 4 * kNoisyWidth * kSharesNoise * width)) / (2 * kNoisyWidth);
 }
 
 double cube(double x) { return x * x * x; }
 
 void require(bool good, const std::string& message) {
   if (!good) throw InvalidInput(message);
+}
+
+// What W eta = 1/2 counts under this noise, in spacings.
+double believed(double noise) { return cube(1 / (1 + kWeightFall * noise * noise)); }
+
+// Widths, steps and the polish of the default for noise of this many spacings.
+void follow_noise(double noise, const Options& options, std::size_t points, Settings& s) {
+  const double width = noisy_width(noise) * s.spacing;
+  const double patch = std::sqrt(noise) * s.spacing;
+  s.noise = noise * s.spacing;
+  s.refinement_width = std::max(s.refinement_width, width);
+  if (options.epsilon.unit == Length::Unit::kAuto) {
+    s.epsilon = std::max(s.epsilon, width);
+    s.coarsest_epsilon = std::max(s.coarsest_epsilon, s.epsilon);
+  }
+  s.polish_epsilon = std::max(s.polish_epsilon, kNoisyPolishEpsilon * patch);
+  s.polish_width = std::max(s.polish_width, kNoisyPolishWidth * patch);
+  if (s.polish_steps > 0) s.polish_steps = kNoisyPolishSteps;
+  s.polish_damping = kNoisyDamping / s.spacing;
+  s.polish_winding_weight = kNoisyPolishWindingWeight * believed(noise) * cube(s.spacing);
+  s.unsure_of_noise = kUnsurePerNoise * noise;
+  if (!s.doubtful_schedule.empty()) s.doubtful_schedule = {kDoubtfulNoisy};
+  if (s.epsilon > kWideEpsilon * s.spacing) {
+    s.cluster_side = kClusterSide * s.epsilon;
+    s.coarse_to_fine = false;
+  }
+  if (options.schedule.empty() && !starts_coarse(s, points)) {
+    const int most = s.schedule.front().count;
+    const auto steps = static_cast<int>(std::max(kFewestNoisySteps, kStepsPerNoise / noise));
+    s.schedule_text = std::to_string(std::min(most, steps)) + " cg";
+    s.schedule = parse_schedule(s.schedule_text);
+    if (options.tolerance < 0) s.tolerance = 0;
+  }
 }
 
 }  // namespace
@@ -176,8 +206,6 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   const bool among_outliers = static_cast<double>(outliers) > kFewOutliers * static_cast<double>(cloud.size());
   s.continued_schedule = {kContinued};
   if (!among_outliers && !contains(s.without, Step::kMoreSteps)) s.doubtful_schedule = {kDoubtful};
-  const bool light = starts_coarse(s, cloud.size()) || among_outliers;
-  s.winding_weight = (light ? kContinuedWindingWeight : kWindingWeight) * cube(spacing);
   s.tolerance = options.tolerance >= 0 ? options.tolerance : paper ? 0 : green ? kGreenTolerance : kEnergyTolerance;
   s.accepted_residual = options.tolerance >= 0           ? options.tolerance
                         : starts_coarse(s, cloud.size()) ? kAcceptedContinued
@@ -187,36 +215,10 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   s.doubtful_tolerance = options.tolerance >= 0 ? options.tolerance : kDoubtfulTolerance;
   s.start_tolerance = std::max(s.tolerance, kStartTolerance);
   const bool wide = s.epsilon > kWideEpsilon * spacing && options.noise.unit == Length::Unit::kAuto;
-  if (!paper && !green && (noise > 0 || wide)) {
-    const double sigma = wide ? s.epsilon / kNoisyWidth : widened(noise, spacing);
-    s.noise = sigma;
-    const double size = std::sqrt(sigma * spacing);
-    const double believed = cube(spacing / (1 + kWeightFall * (noise / spacing) * (noise / spacing)));
-    const bool mild = sigma <= kMildNoise * spacing;
-    const double width = mild ? std::max(kMildEpsilon * spacing, kMildWidth * sigma) : kNoisyWidth * sigma;
-    s.refinement_width = std::max(s.refinement_width, width);
-    s.polish_epsilon = std::max(s.polish_epsilon, kNoisyPolishEpsilon * size);
-    s.polish_width = std::max(kRefinementWidth * spacing, kNoisyPolishWidth * size);
-    if (s.polish_steps > 0) s.polish_steps = kNoisyPolishSteps;
-    s.polish_damping = kNoisyDamping / spacing;
-    s.polish_winding_weight = kNoisyPolishWindingWeight * believed;
-    if (sigma <= kSlightNoise * spacing) {
-      s.unsure_of_noise = kUnsurePerNoise * sigma / spacing;
-      if (!s.doubtful_schedule.empty()) s.doubtful_schedule = {kDoubtfulNoisy};
-    } else {
-      s.damping = s.polish_damping;
-      s.winding_weight = kNoisyWindingWeight * believed;
-      if (options.epsilon.unit == Length::Unit::kAuto) s.epsilon = width;
-      s.coarsest_epsilon = s.epsilon;
-      s.coarse_to_fine = false;
-      if (s.epsilon > kWideEpsilon * spacing) s.cluster_side = kClusterSide * s.epsilon;
-      if (options.schedule.empty()) {
-        s.schedule_text = mild ? kMildSchedule : kNoisySchedule;
-        s.schedule = parse_schedule(s.schedule_text);
-        if (options.tolerance < 0) s.tolerance = 0;
-      }
-    }
-  }
+  const double scatter = paper || green ? 0 : wide ? hidden_noise(s.epsilon / spacing) : noise / spacing;
+  if (scatter > 0) follow_noise(scatter, options, cloud.size(), s);
+  const bool light = starts_coarse(s, cloud.size()) || among_outliers;
+  s.winding_weight = (light ? kContinuedWindingWeight : kWindingWeight) * believed(scatter) * cube(spacing);
   s.accuracy = options.accuracy != -1 ? options.accuracy : kAccuracy;
   s.first_sums = sum_plan(s.accuracy, cloud.size());
   const bool continued = options.accuracy == -1 && s.method == Method::kEnergy;

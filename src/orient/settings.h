@@ -23,10 +23,9 @@ struct Settings {
   bool dense = false;
   std::vector<Harmonic> harmonics;  ///< green only
   double constant_weight = 1;       ///< green: weight of the row u = 1
-  double damping = 0;               ///< energy: d
   double winding_weight = 0;        ///< energy: l, length^3
   double spacing = 0;
-  double noise = 0;  ///< that the widths are made for: up to 1.4 times that of the points, 0 when clean
+  double noise = 0;  ///< that the widths are made for, 0 when clean
   double epsilon = 0;
   double coarsest_epsilon = 0;            ///< of the first solve, at its own spacing: without a start a wider one does better
   double refinement_width = 0;            ///< 0: no refinement

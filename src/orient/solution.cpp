@@ -149,7 +149,7 @@ Solution solve_on_points(const Problem& problem, const Options& options, Stages&
 Refinement solve_clusters(const Clusters& clusters, const Settings& s, Stages& stages, Stats& stats) {
   stages.begin("solve");
   FastSum sum(clusters.points, clusters.morton, Widths(s.epsilon), s.first_sums, stages.cancel());
-  EnergySystem system(sum, s.damping, s.winding_weight, clusters.multiplicity);
+  EnergySystem system(sum, 0, s.winding_weight, clusters.multiplicity);
   IterativeResult result = solve_iteratively(system, s.schedule, s.tolerance, {},
                                              [&](int step, int steps, double) { stages.progress(static_cast<double>(step) / steps); });
   record(s, result, stats);
