@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kPoints = 500;
 constexpr long kMostAllocations = 10'000'000;     // more are a loop without end
 constexpr long kEvery = kSanitized ? 100 : 1000;  // allocations that fail one by one; the later ones are sampled
-constexpr long kSparseness = 20;
+constexpr long kSparseness = kSanitized ? 8 : 20;
 
 Options options_for(int threads) {
   Options options;

@@ -14,7 +14,7 @@ from cli_support import *
 
 LOADER_FAILED = 127  # not even the program's own code fits
 LOADER_STEP = 4 << 20  # bytes of address space, in which the least that the program and its libraries need is looked for
-COUNT = 3000
+COUNT = thinned(3000)
 
 
 class Memory(ProgramTest):

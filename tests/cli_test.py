@@ -221,7 +221,7 @@ class ExitCodes(ProgramTest):
 
     def test_a_cloud_without_an_inside_is_told(self):
         random_ = random.Random(3)
-        write_points(self.path("dust.ply"), [[random_.random() for _ in range(3)] for _ in range(3000)])
+        write_points(self.path("dust.ply"), [[random_.random() for _ in range(3)] for _ in range(thinned(3000))])
         result = self.expect(OK, "orient", "dust.ply", "out.ply", "--report", "r.json")
         self.assertIn("warning", result.err)
         self.assertFalse(self.json_of("r.json")["consistent"])
@@ -438,7 +438,7 @@ class Points(ProgramTest):
                 self.assertEqual(vertex["red"], 200 if vertex["z"] > 0 else 10)
 
     def test_an_open_scan_can_stay_open(self):
-        write_points(self.path("in.ply"), [p for p in sphere(3000) if p[2] > 0])
+        write_points(self.path("in.ply"), [p for p in sphere(thinned(3000)) if p[2] > 0])
         self.expect(OK, "in.ply", "closed.ply", "--report", "r.json")
         self.assertTrue(self.json_of("r.json")["mesh"]["closed"])
         self.expect(OK, "in.ply", "open.ply", "--open", "--report", "r.json")
@@ -447,12 +447,12 @@ class Points(ProgramTest):
 
     def test_outliers_leave_no_surface_unless_asked(self):
         random_ = random.Random(4)
-        outliers = [[3 * random_.random() - 1.5 for _ in range(3)] for _ in range(500)]
-        write_points(self.path("in.ply"), sphere(3000) + outliers)
+        outliers = [[3 * random_.random() - 1.5 for _ in range(3)] for _ in range(thinned(500))]
+        write_points(self.path("in.ply"), sphere(thinned(3000)) + outliers)
         self.expect(OK, "in.ply", "out.ply", "--report", "r.json")
         report = self.json_of("r.json")
         self.assertEqual((report["mesh"]["components"], report["mesh"]["closed"]), (1, True))
-        self.assertGreaterEqual(report["mesh"]["dropped"]["points"], max(400, report["input"]["outliers"]))
+        self.assertGreaterEqual(report["mesh"]["dropped"]["points"], max(0.8 * len(outliers), report["input"]["outliers"]))
         self.expect(OK, "in.ply", "all.ply", "--keep-all", "--report", "r.json")
         kept = self.json_of("r.json")
         self.assertEqual((kept["mesh"]["dropped"]["components"], kept["mesh"]["dropped"]["points"]), (0, kept["input"]["outliers"]))
@@ -491,7 +491,7 @@ class Hints(ProgramTest):
         points = []
         for axis, area in ((0, 6), (1, 8), (2, 12)):
             for side in (0, 1):
-                for _ in range(60 * area):
+                for _ in range(thinned(60) * area):
                     p = [4 * random_.random(), 3 * random_.random(), 2 * random_.random()]
                     p[axis] = side * (4, 3, 2)[axis]
                     points.append(p)
@@ -500,8 +500,9 @@ class Hints(ProgramTest):
     def depth_frame(self):
         """A ball before a wall as a camera at the origin sees them: one sheet on the other, with a gap in depth between them."""
         points = []
-        for u in range(-40, 41):
-            for v in range(-30, 31):
+        step = 2 if is_sanitized() else 1
+        for u in range(-40, 41, step):
+            for v in range(-30, 31, step):
                 ray = (u / 66, v / 66, 1.0)
                 a, b = sum(c * c for c in ray), 2 * ray[2]
                 discriminant = b * b - a * (4 - 0.16)
@@ -519,7 +520,7 @@ class Hints(ProgramTest):
 
     def test_terrain_faces_up_whatever_up_is(self):
         random_ = random.Random(5)
-        plan = [(2 * random_.random() - 1, 2 * random_.random() - 1) for _ in range(2000)]
+        plan = [(2 * random_.random() - 1, 2 * random_.random() - 1) for _ in range(thinned(2000))]
         write_points(self.path("terrain.ply"), [(x, y, 0.1 * math.sin(4 * x) * math.cos(3 * y)) for x, y in plan])
         self.assertIn("is a choice", self.expect(OK, "orient", "terrain.ply", "out.ply").err)
         for up, place in (("+z", (0, 0, 9)), ("-z", (0, 0, -9)), ("0.1,0,-3", (0, 0, -9))):

@@ -22,6 +22,8 @@ namespace {
 using namespace sum_cases;  // NOLINT(google-build-using-namespace)
 using shapes::Random;
 
+constexpr std::size_t kFew = kSanitized ? 1000 : 2500;  // points that sums to 1e-3 are compared at: the direct ones grow with the square
+
 TEST(FastSum, ErrorStaysBelowTheAccuracy) {
   for (const std::size_t n : {1UL, 2UL, 9UL, 100UL, 2000UL}) {
     for (const Case& c : clouds(n)) {
@@ -80,7 +82,7 @@ TEST(FastSum, ErrorStaysBelowTheAccuracyForWideMollifiers) {
 }
 
 TEST(FastSum, PointsMayHaveTheirOwnWidths) {
-  const std::vector<Vec3> points = unit_points(shapes::torus(2500, 0.6, 0.25, 3).points);
+  const std::vector<Vec3> points = unit_points(shapes::torus(kFew, 0.6, 0.25, 3).points);
   Random random(5);
   std::vector<double> widths(points.size());
   for (double& w : widths) w = random.uniform(0.005, 0.03);
@@ -89,7 +91,7 @@ TEST(FastSum, PointsMayHaveTheirOwnWidths) {
 }
 
 TEST(FastSum, NarrowerWidthsMayShareATree) {
-  const std::vector<Vec3> points = unit_points(shapes::torus(2500, 0.6, 0.25, 3).points);
+  const std::vector<Vec3> points = unit_points(shapes::torus(kFew, 0.6, 0.25, 3).points);
   const std::vector<Vec3> eta = random_vectors(points.size(), 1);
   const std::vector<double> q = random_values(points.size(), 2);
   Random random(5);
@@ -155,6 +157,7 @@ TEST(FastSum, QueriesMayBeFarAway) {
     plan.double_precision = double_precision;
     const FastSum sum(points, codes(points), Widths(width), plan);
     for (const double far : {1.01, 2.0, 5.0, 1e2, 1e4, 1e8}) {
+      if (kSanitized && far != 5.0 && far != 1e8) continue;
       Random random(2);
       std::vector<Vec3> queries;
       for (int i = 0; i < 300; ++i) {

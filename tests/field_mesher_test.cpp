@@ -10,6 +10,7 @@
 #include "cpu/parallel.h"
 #include "field_shapes.h"
 #include "mesh_topology.h"
+#include "sanitized.h"
 
 namespace {
 
@@ -33,6 +34,7 @@ double sphere_error(std::size_t n) {
 }
 
 TEST(FieldMesher, SphereConvergesAtThirdOrderInTheSpacing) {
+  if (kSanitized) GTEST_SKIP() << "the meshes are like those of the other tests, but larger";
   const double coarse = sphere_error(1000), fine = sphere_error(16000);
   const double order = std::log(coarse / fine) / std::log(4.0);  // the spacing falls by 4
   EXPECT_GT(order, 2.7) << coarse << " -> " << fine;
@@ -107,6 +109,7 @@ TEST(FieldMesher, CubeKeepsItsEdgesAndMostCorners) {
 // The cube is centred like its octree, so that edges run between cells, which must not both take them.
 TEST(FieldMesher, CreasesBetweenCellsMakeNoTwoVerticesAtOnePlace) {
   for (const std::size_t n : {std::size_t{3000}, std::size_t{6000}, std::size_t{12000}}) {
+    if (kSanitized && n > 3000) continue;
     const OrientedSample s = cube_sample(n, 0.5, 3);
     const DistanceSampler field([](const Vec3& p) { return cube_distance(p, 0.5); }, 1.0 / std::sqrt(static_cast<double>(n) / 6));
     std::vector<Vec3> at = field_mesh(s.points, s.normals, field).vertices;
@@ -128,7 +131,7 @@ TEST(FieldMesher, SameBytesForAnyNumberOfThreads) {
 }
 
 TEST(FieldMesher, RandomNormalsStillGiveAClosedManifold) {
-  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+  for (std::uint64_t seed = 0; seed < (kSanitized ? 2 : 8); ++seed) {
     OrientedSample s = sphere_sample(300, 1, seed);
     s.normals = sphere_sample(300, 1, seed + 1000).normals;
     const Mesh mesh = field_mesh(s.points, s.normals, DirectSampler(s, 4 * M_PI / 300, 0.06));

@@ -42,6 +42,12 @@ struct TwoSpheres {
   }
 };
 
+// Made once: most tests start from them.
+const TwoSpheres& two_spheres() {
+  static const TwoSpheres kMade;
+  return kMade;
+}
+
 // For every vertex of the boundary the next one.
 std::map<std::uint32_t, std::uint32_t> rim_of(const Mesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
@@ -56,7 +62,7 @@ std::map<std::uint32_t, std::uint32_t> rim_of(const Mesh& mesh) {
 }
 
 TEST(MeshFinish, ComponentsAreFoundAndRemoved) {
-  TwoSpheres two;
+  TwoSpheres two = two_spheres();
   EXPECT_EQ(topology(two.mesh).components, 2U);
   Mesh one = two.mesh;
   const mesh::Components components = mesh::find_components(one);
@@ -73,7 +79,7 @@ TEST(MeshFinish, ComponentsAreFoundAndRemoved) {
 
 // What noise makes grows with it, so what goes unasked does too.
 TEST(MeshFinish, SpecksMayBeLargerUnderNoise) {
-  TwoSpheres two;
+  TwoSpheres two = two_spheres();
   const std::vector<double> spacing = mesh::smooth_spacing(two.sample.points);
   const double h = median(spacing);
   const double points = 1.13 / (h * h);  // that the small sphere stands for
@@ -94,7 +100,7 @@ TEST(MeshFinish, SpecksMayBeLargerUnderNoise) {
 
 // A small thing with many points is no speck, however large the others' spacing is.
 TEST(MeshFinish, ComponentsAreMeasuredByTheirOwnSpacing) {
-  TwoSpheres two;
+  TwoSpheres two = two_spheres();
   std::vector<double> spacing(two.sample.points.size(), 1.0);  // 1.13 is the area of one such point
   const MeshOptions options;
   Mesh mesh = two.mesh;
@@ -106,7 +112,7 @@ TEST(MeshFinish, ComponentsAreMeasuredByTheirOwnSpacing) {
 }
 
 TEST(MeshFinish, LargestComponentsAreKept) {
-  TwoSpheres two;
+  TwoSpheres two = two_spheres();
   MeshOptions options;
   options.keep_largest = 1;
   mesh::finish_mesh(two.mesh, two.sample.points, mesh::smooth_spacing(two.sample.points), 0, options);
@@ -115,7 +121,7 @@ TEST(MeshFinish, LargestComponentsAreKept) {
 }
 
 TEST(MeshFinish, TrimmingOpensTheMeshWherePointsAreMissing) {
-  TwoSpheres two;
+  TwoSpheres two = two_spheres();
   std::vector<Vec3> half;
   for (const Vec3& p : two.sample.points) {
     if (p[2] > 0) half.push_back(p);
@@ -134,7 +140,7 @@ TEST(MeshFinish, TrimmingOpensTheMeshWherePointsAreMissing) {
 // At a rim trimmed surface ends with its points, and no place of it is farther from them than four spacings of the cloud, even if a sparse
 // point far away has a larger spacing of its own.
 TEST(MeshFinish, TrimmedSurfaceEndsWithItsPoints) {
-  TwoSpheres two;
+  TwoSpheres two = two_spheres();
   std::vector<Vec3> half;
   for (const Vec3& p : two.sample.points) {
     if (p[2] > 0 && norm(p) < 1.1) half.push_back(p);
@@ -185,7 +191,7 @@ TEST(MeshFinish, RimsAreCleanLines) {
 
 // The largest component is the one that points hold, not the one that fills emptiness.
 TEST(MeshFinish, LargestIsWhatPointsHold) {
-  TwoSpheres two;
+  TwoSpheres two = two_spheres();
   const std::vector<Vec3> small(two.sample.points.begin() + 2000, two.sample.points.end());
   MeshOptions options;
   options.keep_largest = 1;
@@ -196,7 +202,7 @@ TEST(MeshFinish, LargestIsWhatPointsHold) {
 // A part that fewer points hold than strays lie beside is chance; one with few strays beside it is a part.
 TEST(MeshFinish, PartsAmongStraysAreChance) {
   for (const std::size_t strays : {std::size_t{100}, std::size_t{300}}) {
-    TwoSpheres two;
+    TwoSpheres two = two_spheres();
     mesh::LeftOut left_out;
     for (std::size_t i = 0; i < strays; ++i) {
       const Vec3& p = two.sample.points[2000 + i % 180];
@@ -209,7 +215,7 @@ TEST(MeshFinish, PartsAmongStraysAreChance) {
 }
 
 TEST(MeshFinish, TrimmingClosedDataChangesNothing) {
-  TwoSpheres two;
+  TwoSpheres two = two_spheres();
   const Mesh before = two.mesh;
   MeshOptions options;
   options.trim = MeshOptions::Trim::kAuto;
@@ -218,7 +224,7 @@ TEST(MeshFinish, TrimmingClosedDataChangesNothing) {
 }
 
 TEST(MeshFinish, TrimDistanceMustBePositiveAndLeaveSomething) {
-  TwoSpheres two;
+  TwoSpheres two = two_spheres();
   MeshOptions options;
   options.trim = MeshOptions::Trim::kDistance;
   EXPECT_THROW(mesh::finish_mesh(two.mesh, two.sample.points, mesh::smooth_spacing(two.sample.points), 0, options), InvalidInput);
@@ -236,7 +242,7 @@ TEST(MeshFinish, TouchingTrianglesAreSeparatedAtTheirCommonVertex) {
 }
 
 TEST(MeshFinish, SimplifyingKeepsAClosedManifold) {
-  TwoSpheres two;
+  TwoSpheres two = two_spheres();
   const std::size_t before = two.mesh.triangles.size();
   mesh::simplify(two.mesh, before / 5);
   const MeshCheck check = check_mesh(two.mesh);
@@ -248,7 +254,7 @@ TEST(MeshFinish, SimplifyingKeepsAClosedManifold) {
 }
 
 TEST(MeshFinish, ColoursAndConfidenceFollowTheNearestPoints) {
-  TwoSpheres two;
+  TwoSpheres two = two_spheres();
   std::vector<std::array<std::uint8_t, 3>> colors;
   std::vector<float> confidence;
   for (const Vec3& p : two.sample.points) {
