@@ -4,6 +4,7 @@
 #include <g3r/metrics.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <functional>
@@ -20,6 +21,11 @@ namespace {
 
 constexpr double kOutlierBox = 1.2;    // outliers fill the bounding box, enlarged by this factor about its centre
 constexpr double kPatchRadius = 0.05;  // of the box diagonal
+constexpr double kStripes = 10;        // as many dense as sparse
+constexpr std::size_t kPcpnetPoints = 100000;
+constexpr std::array<const char*, 6> kPcpnet = {"pcpnet:clean", "pcpnet:0.12",    "pcpnet:0.6",
+                                                "pcpnet:1.2",   "pcpnet:stripes", "pcpnet:gradient"};
+constexpr double kPcpnetRatio = 10;  // of the densities
 constexpr std::size_t kMaxChunks = 1000;
 
 constexpr double kOppositeCosine = -0.5;  // 120 degrees: another side, not the other face of an edge
@@ -69,8 +75,9 @@ Input with_outliers(const Mesh& mesh, std::size_t count, std::uint64_t seed, dou
   return input;
 }
 
-/// The density falls exponentially by `ratio` along the longest side of the box.
-Input with_gradient(const Mesh& mesh, std::size_t count, std::uint64_t seed, double ratio, const vector::Box& box) {
+/// Samples kept with probability ratio^-exponent(t), where t is the position along the longest side of the box from 0 to 1.
+Input thinned(const Mesh& mesh, std::size_t count, std::uint64_t seed, double ratio, const vector::Box& box,
+              const std::function<double(double)>& exponent) {
   std::size_t axis = 0;
   for (std::size_t k = 1; k < 3; ++k) {
     if (box.high[k] - box.low[k] > box.high[axis] - box.low[axis]) axis = k;
@@ -79,10 +86,13 @@ Input with_gradient(const Mesh& mesh, std::size_t count, std::uint64_t seed, dou
   Random random(seed, kKeepStream);
   return selected(mesh, count, seed, [&](const Vec3& p) {
     const double t = (p[axis] - box.low[axis]) / (box.high[axis] - box.low[axis]);
-    // uniform < ratio^-t, with a logarithm that is the same on every machine
-    return Random::natural_log(1 - random.uniform()) < -t * log_ratio;
+    // uniform < ratio^-exponent, with a logarithm that is the same on every machine
+    return Random::natural_log(1 - random.uniform()) < -exponent(t) * log_ratio;
   });
 }
+
+// 0 in dense stripes, 1 in sparse ones. The first is dense.
+double is_sparse(double t) { return std::fmod(std::floor(kStripes * t), 2); }
 
 /// Balls about random points of the surface stay empty.
 Input with_patches(const Mesh& mesh, std::size_t count, std::uint64_t seed, std::size_t patches, const vector::Box& box) {
@@ -104,7 +114,9 @@ Input made(const Mesh& mesh, const InputKind& kind, std::size_t count, std::uint
     case InputKind::Defect::kOutliers:
       return with_outliers(mesh, count, seed, kind.value, box);
     case InputKind::Defect::kGradient:
-      return with_gradient(mesh, count, seed, kind.value, box);
+      return thinned(mesh, count, seed, kind.value, box, [](double t) { return t; });
+    case InputKind::Defect::kStripes:
+      return thinned(mesh, count, seed, kind.value, box, is_sparse);
     case InputKind::Defect::kPatches:
       return with_patches(mesh, count, seed, static_cast<std::size_t>(kind.value), box);
     case InputKind::Defect::kNone:
@@ -151,7 +163,14 @@ std::vector<std::filesystem::path> find_models(const std::string& folder, const 
 
 InputKind parse_input_kind(const std::string& text) {
   using Defect = InputKind::Defect;
+  const auto pcpnet = [&text](Defect defect, double value) { return InputKind{text, defect, value, kPcpnetPoints}; };
   if (text == "clean") return {text, Defect::kNone, 0};
+  if (text == "pcpnet:clean") return pcpnet(Defect::kNone, 0);
+  if (text == "pcpnet:0.12") return pcpnet(Defect::kNoise, 0.12);
+  if (text == "pcpnet:0.6") return pcpnet(Defect::kNoise, 0.6);
+  if (text == "pcpnet:1.2") return pcpnet(Defect::kNoise, 1.2);
+  if (text == "pcpnet:stripes") return pcpnet(Defect::kStripes, kPcpnetRatio);
+  if (text == "pcpnet:gradient") return pcpnet(Defect::kGradient, kPcpnetRatio);
   const std::size_t colon = text.find(':');
   const std::string name = text.substr(0, colon);
   double value = 0;
@@ -160,8 +179,23 @@ InputKind parse_input_kind(const std::string& text) {
   if (number && name == "noise" && value > 0 && value <= 10) return {text, Defect::kNoise, value};
   if (number && name == "outliers" && value > 0 && value <= 90) return {text, Defect::kOutliers, value};
   if (number && name == "gradient" && value > 1 && value <= 1000) return {text, Defect::kGradient, value};
+  if (number && name == "stripes" && value > 1 && value <= 1000) return {text, Defect::kStripes, value};
   if (number && name == "patches" && value >= 1 && value <= 100) return {text, Defect::kPatches, std::floor(value)};
-  throw InvalidInput("input '" + text + "' is none of clean, noise:0..10, outliers:0..90, gradient:1..1000, patches:1..100");
+  throw InvalidInput("input '" + text +
+                     "' is none of clean, noise:0..10, outliers:0..90, gradient:1..1000, stripes:1..1000, patches:1..100, pcpnet, "
+                     "pcpnet:clean|0.12|0.6|1.2|stripes|gradient");
+}
+
+std::vector<InputKind> parse_input_kinds(const std::vector<std::string>& texts) {
+  std::vector<InputKind> kinds;
+  for (const std::string& text : texts) {
+    if (text == "pcpnet") {
+      for (const char* const each : kPcpnet) kinds.push_back(parse_input_kind(each));
+    } else {
+      kinds.push_back(parse_input_kind(text));
+    }
+  }
+  return kinds;
 }
 
 Input make_input(const Mesh& mesh, const InputKind& kind, std::size_t count, std::uint64_t seed) {

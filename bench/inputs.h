@@ -1,4 +1,9 @@
 // The clouds that the benchmark measures on: samples of a ground-truth mesh, made worse in a named way. README.md defines each kind.
+// Source of the six conditions pcpnet:NAME: Guerrero, Kleiman, Ovsjanikov, Mitra, "PCPNet: Learning Local Shape Properties from Raw Point
+// Clouds", Computer Graphics Forum 37(2), 2018, doi 10.1111/cgf.13343. Its test set has 100,000 points of every shape: without noise, with
+// Gaussian noise of 0.12, 0.6 and 1.2 percent of the diagonal of the bounding box, and without noise but of a density that falls from one
+// end to the other (gradient) or is high and low by turns (stripes). How much denser, and in how many stripes, is not published: here it is
+// 10 to 1, and five stripes of each kind along the longest side of the box.
 #pragma once
 
 #include <g3r/mesh.h>
@@ -16,15 +21,20 @@ namespace g3r::bench {
 
 /// How a cloud is made from a mesh.
 struct InputKind {
-  enum class Defect { kNone, kNoise, kOutliers, kGradient, kPatches };
+  enum class Defect { kNone, kNoise, kOutliers, kGradient, kStripes, kPatches };
   std::string name;  ///< as given, for example "noise:0.5"
   Defect defect = Defect::kNone;
   double value = 0;
+  std::size_t points = 5000;  ///< where nobody says how many
 };
 
 /// "clean", "noise:P" (standard deviation in percent of the box diagonal), "outliers:P" (percent of the points), "gradient:R" (ratio of the
-/// highest to the lowest density), "patches:K" (number of holes). Throws InvalidInput for anything else.
+/// highest to the lowest density), "stripes:R" (the same, in bands), "patches:K" (number of holes), "pcpnet:NAME" with NAME one of clean,
+/// 0.12, 0.6, 1.2, stripes, gradient. Throws InvalidInput for anything else.
 [[nodiscard]] InputKind parse_input_kind(const std::string& text);
+
+/// Each of several; "pcpnet" stands for its six.
+[[nodiscard]] std::vector<InputKind> parse_input_kinds(const std::vector<std::string>& texts);
 
 inline constexpr double kThinSpacings = 1.5;  ///< nearly all wrong sides are this near another one: docs/evidence/thin_parts.md
 inline constexpr double kThinDeviations = 4;  ///< of the noise

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 struct Arguments {
   std::string data;
-  std::vector<std::size_t> points = {5000};
+  std::vector<std::size_t> points;  ///< empty: as many as each input has by itself
   std::vector<std::string> inputs = {"clean"};
   std::vector<std::string> methods = {"paper", "default"};
   std::vector<std::string> models;  ///< empty: all
@@ -33,8 +33,12 @@ Arguments parse_arguments(int argc, char** argv) {
   Arguments arguments;
   CLI::App app("Scores normals and meshes against ground-truth meshes (protocol: bench/README.md)");
   app.add_option("--data", arguments.data, "folder of closed, outward oriented triangle meshes")->required()->check(CLI::ExistingDirectory);
-  app.add_option("--points", arguments.points, "numbers of points, comma separated")->delimiter(',')->check(CLI::Range(4, 100000000));
-  app.add_option("--inputs", arguments.inputs, "clean, noise:P, outliers:P, gradient:R, patches:K; comma separated")->delimiter(',');
+  app.add_option("--points", arguments.points, "numbers of points, comma separated; 5000, and 100000 for pcpnet, unless given")
+      ->delimiter(',')
+      ->check(CLI::Range(4, 100000000));
+  app.add_option("--inputs", arguments.inputs,
+                 "clean, noise:P, outliers:P, gradient:R, stripes:R, patches:K, pcpnet (six) or one pcpnet:NAME; comma separated")
+      ->delimiter(',');
   app.add_option("--method", arguments.methods,
                  "default, paper, wnnc, agr, pgr or true (normals), then ;KEY=VALUE for ablations; may be given several times");
   app.add_option("--models", arguments.models, "only these models (file names without extension), comma separated")->delimiter(',');
@@ -70,9 +74,9 @@ void measure_model(const fs::path& path, const Arguments& arguments, const std::
   const std::string model = path.stem().string();
   try {
     const Mesh truth = read_mesh(path.string());
-    for (const std::size_t count : arguments.points) {
+    for (const std::size_t count : arguments.points.empty() ? std::vector<std::size_t>{0} : arguments.points) {
       for (const InputKind& kind : kinds) {
-        const Input input = make_input(truth, kind, count, arguments.run.seed);
+        const Input input = make_input(truth, kind, count > 0 ? count : kind.points, arguments.run.seed);
         for (const Variant& variant : variants) {
           rows.push_back(measure(model, truth, input, kind, variant, arguments.mesh, arguments.run.seed));
           show(rows.back());
@@ -89,8 +93,7 @@ void measure_model(const fs::path& path, const Arguments& arguments, const std::
 }
 
 void run(const Arguments& arguments) {
-  std::vector<InputKind> kinds;
-  for (const std::string& text : arguments.inputs) kinds.push_back(parse_input_kind(text));
+  const std::vector<InputKind> kinds = parse_input_kinds(arguments.inputs);
   std::vector<Variant> variants;
   for (const std::string& text : arguments.methods) {
     variants.push_back(parse_variant(text));

@@ -19,8 +19,8 @@ using Json = nlohmann::ordered_json;
 // Positions that went through a float file differ by 1e-7 of the box; points that are further apart than this are other points.
 constexpr double kSamePointShare = 1e-5;
 
-Cloud oriented_cloud(const std::string& path) {
-  Cloud cloud = read_cloud(path);
+Cloud oriented_cloud(const std::string& path, const ReadOptions& options) {
+  Cloud cloud = read_cloud(path, options);
   if (cloud.normals.empty()) throw InvalidInput(escape_text(path) + " has neither faces nor normals");
   return cloud;
 }
@@ -38,14 +38,15 @@ void warn_if_moved(const Cloud& result, const Cloud& truth, Console& console) {
   }
 }
 
-Json score_points(const Settings& settings, Console& console) {
-  const Cloud result = oriented_cloud(settings.input);
-  const Cloud truth = oriented_cloud(settings.truth);
+Json score_points(const Settings& settings, Session& session) {
+  const ReadOptions options = session.cancellable(settings.read_options);
+  const Cloud result = oriented_cloud(settings.input, options);
+  const Cloud truth = oriented_cloud(settings.truth, options);
   if (result.positions.size() != truth.positions.size()) {
     throw InvalidInput("the result has " + counted(result.positions.size(), "point") + ", the truth " +
                        counted(truth.positions.size(), "point"));
   }
-  warn_if_moved(result, truth, console);
+  warn_if_moved(result, truth, session.console());
   const NormalScore score = score_normals(result.normals, truth.normals);
   return {{"kind", "points"},   {"points", score.points}, {"ae_p", score.ae},
           {"pco", score.pco},   {"rmse", score.rmse},     {"rmse_unoriented", score.rmse_unoriented},
@@ -70,7 +71,7 @@ int run_eval(const Settings& settings, Session& session) {
   const Json scores = session.stage("evaluate", [&] {
     const auto result = mesh_if_any(settings.input);
     const auto truth = mesh_if_any(settings.truth);
-    if (!result && !truth) return score_points(settings, session.console());
+    if (!result && !truth) return score_points(settings, session);
     if (result && truth) return score_meshes(settings, *result, *truth);
     throw InvalidInput("one of the files is a mesh and the other is not: `g3r sample` makes points with true normals from a mesh");
   });

@@ -97,7 +97,7 @@ std::string plan_text(const Stats& stats) {
 }  // namespace
 
 int run_info(const Settings& settings, Session& session) {
-  const Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, settings.read_options); });
+  const Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, session.cancellable(settings.read_options)); });
   const std::optional<Mesh> mesh = mesh_if_any(settings.input);
   std::string text = file_text(settings, cloud);
   MeshCheck check;

@@ -8,7 +8,7 @@
 namespace g3r::cli {
 
 int run_mesh(const Settings& settings, Session& session) {
-  const Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, settings.read_options); });
+  const Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, session.cancellable(settings.read_options)); });
   if (cloud.normals.empty()) {
     throw InvalidInput(escape_text(settings.input) + " has no normals: `g3r orient` makes them, `g3r IN OUT` goes all the way");
   }

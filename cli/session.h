@@ -29,6 +29,10 @@ class Session {
     options.cancel = &interrupts_.requested();
     return options;
   }
+  [[nodiscard]] ReadOptions cancellable(ReadOptions options) const {
+    options.cancel = &interrupts_.requested();
+    return options;
+  }
 
   /// Does `work`, shows `name` meanwhile and remembers the time it took. Throws Cancelled instead if the user has asked to stop.
   template <class Work>

@@ -611,6 +611,7 @@ std::string about_extras(const CLI::App& app) {
 /// What CLI11 cannot check: rules over several arguments.
 void complete(const CLI::App& app, Settings& s) {
   s.command = parsed_command(app);
+  s.read_options.threads = s.options.threads;
   if (s.command == Command::kReconstruct) {
     if (s.input.empty()) throw UsageError("expected a point cloud");
     if (s.output.empty() && s.input == "-") throw UsageError("standard input has no name to derive OUT from: give OUT");

@@ -18,24 +18,24 @@
 namespace g3r::cli {
 namespace {
 
-void add_cloud(const std::string& path, const Settings& settings, Scene& scene) {
+void add_cloud(const std::string& path, const ReadOptions& options, Scene& scene) {
   if (!scene.points.empty()) throw UsageError("view shows one cloud and one mesh; " + path + " is a second cloud");
-  Cloud cloud = read_cloud(path, settings.read_options);
+  Cloud cloud = read_cloud(path, options);
   scene.points = std::move(cloud.positions);
   scene.normals = std::move(cloud.normals);
   scene.confidence = std::move(cloud.confidence);
   scene.colors = std::move(cloud.colors);
 }
 
-void add_file(const std::string& path, const Settings& settings, Scene& scene) {
+void add_file(const std::string& path, const ReadOptions& options, Scene& scene) {
   std::optional<Mesh> mesh = mesh_if_any(path);
-  if (!mesh) return add_cloud(path, settings, scene);
+  if (!mesh) return add_cloud(path, options, scene);
   if (!scene.mesh.triangles.empty()) throw UsageError("view shows one cloud and one mesh; " + path + " is a second mesh");
   scene.mesh = std::move(*mesh);
 }
 
-void add_truth(const std::string& path, const Settings& settings, Scene& scene) {
-  Cloud truth = read_cloud(path, settings.read_options);
+void add_truth(const std::string& path, const ReadOptions& options, Scene& scene) {
+  Cloud truth = read_cloud(path, options);
   if (truth.normals.empty()) throw InvalidInput(path + ": has no normals to compare with");
   if (truth.normals.size() != scene.points.size()) {
     throw InvalidInput(path + ": " + std::to_string(truth.normals.size()) + " points, but the cloud has " +
@@ -50,13 +50,13 @@ std::string read_text(const std::string& path) {
   return text.str();
 }
 
-Scene read_scene(const Settings& settings) {
+Scene read_scene(const Settings& settings, const ReadOptions& options) {
   Scene scene;
   for (const std::string& path : settings.shown) {
     scene.title += (scene.title.empty() ? "" : ", ") + platform::name_of(platform::path_of(path).filename());
-    add_file(path, settings, scene);
+    add_file(path, options, scene);
   }
-  if (!settings.truth.empty()) add_truth(settings.truth, settings, scene);
+  if (!settings.truth.empty()) add_truth(settings.truth, options, scene);
   if (!settings.figures.empty()) scene.report = read_text(settings.figures);
   return scene;
 }
@@ -64,7 +64,7 @@ Scene read_scene(const Settings& settings) {
 }  // namespace
 
 int run_view(const Settings& settings, Session& session) {
-  const Scene scene = session.stage("read", [&] { return read_scene(settings); });
+  const Scene scene = session.stage("read", [&] { return read_scene(settings, session.cancellable(settings.read_options)); });
   const std::string bytes = session.stage("draw", [&] {
     if (platform::path_of(settings.output).extension() != ".png") return view_html(scene, settings.page);
     PictureOptions picture = settings.picture;

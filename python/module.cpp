@@ -157,14 +157,19 @@ auto field_gradient(const Field& field, const PointsArray& queries) {
 }
 
 std::shared_ptr<Cloud> read_points(const Text& path, double min_opacity, bool all_splats, const std::optional<std::array<double, 6>>& box,
-                                   int levels) {
-  const nb::gil_scoped_release release;
+                                   int levels, int threads) {
   ReadOptions options;
   options.min_opacity = min_opacity;
   options.all_splats = all_splats;
   if (box) options.box = Box{{(*box)[0], (*box)[1], (*box)[2]}, {(*box)[3], (*box)[4], (*box)[5]}};
   options.levels = levels;
-  return std::make_shared<Cloud>(read_cloud(path, options));
+  options.threads = threads;
+  std::shared_ptr<Cloud> cloud;
+  run_job(nb::none(), [&](const Monitor& monitor) {
+    options.cancel = monitor.cancel;
+    cloud = std::make_shared<Cloud>(read_cloud(path, options));
+  });
+  return cloud;
 }
 
 void write_points(const Text& path, const std::shared_ptr<Cloud>& source, const std::optional<PointsArray>& positions,
@@ -329,7 +334,7 @@ void bind(nb::module_& m) {
   m.def("build_info", &module_build_info);
   m.def("field", &make_field, nb::arg("points"), nb::arg("normals"), nb::arg("areas"), nb::arg("width"));
   m.def("read_cloud", &read_points, nb::arg("path"), nb::arg("min_opacity"), nb::arg("all_splats"), nb::arg("box").none(),
-        nb::arg("levels"));
+        nb::arg("levels"), nb::arg("threads"));
   m.def("write_cloud", &write_points, nb::arg("path"), nb::arg("source").none(), nb::arg("positions").none(), nb::arg("normals").none(),
         nb::arg("colors").none(), nb::arg("confidence").none(), nb::arg("ascii"), nb::arg("cloud_compare_names"));
   m.def("score_normals", &score_directions, nb::arg("normals"), nb::arg("truth"));

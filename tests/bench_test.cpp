@@ -27,7 +27,7 @@ TEST(BenchInputs, CleanIsTheSampleOfTheMesh) {
 }
 
 TEST(BenchInputs, EveryKindHasTheCountAskedForAndDependsOnTheSeed) {
-  for (const char* text : {"clean", "noise:0.5", "outliers:5", "gradient:10", "patches:5"}) {
+  for (const char* text : {"clean", "noise:0.5", "outliers:5", "gradient:10", "stripes:10", "patches:5", "pcpnet:stripes"}) {
     const InputKind kind = parse_input_kind(text);
     const Input first = make_input(shapes::sphere(1, 40), kind, 1000, 3);
     EXPECT_EQ(first.points.size(), 1000u) << text;
@@ -37,15 +37,25 @@ TEST(BenchInputs, EveryKindHasTheCountAskedForAndDependsOnTheSeed) {
   }
 }
 
-TEST(BenchInputs, NoiseIsInPercentOfTheDiagonal) {
+// Standard deviation of a coordinate's displacement, in percent of the cube's diagonal.
+double noise_of(const char* kind) {
   const Input clean = make_input(shapes::cube(), parse_input_kind("clean"), kCount, 1);
-  const Input noisy = make_input(shapes::cube(), parse_input_kind("noise:1"), kCount, 1);
+  const Input noisy = make_input(shapes::cube(), parse_input_kind(kind), kCount, 1);
   double sum = 0;
   for (std::size_t i = 0; i < kCount; ++i) {
     const Vec3 d = vector::subtract(noisy.points[i], clean.points[i]);
     sum += vector::dot(d, d);
   }
-  EXPECT_NEAR(std::sqrt(sum / (3 * kCount)), 0.01 * std::sqrt(3.0), 0.02 * 0.01);
+  return 100 * std::sqrt(sum / (3 * kCount)) / std::sqrt(3.0);
+}
+
+TEST(BenchInputs, NoiseIsInPercentOfTheDiagonal) { EXPECT_NEAR(noise_of("noise:1"), 1, 0.02); }
+
+TEST(BenchInputs, PcpnetHasItsLevelsOfNoise) {
+  EXPECT_EQ(noise_of("pcpnet:clean"), 0);
+  EXPECT_NEAR(noise_of("pcpnet:0.12"), 0.12, 0.02 * 0.12);
+  EXPECT_NEAR(noise_of("pcpnet:0.6"), 0.6, 0.02 * 0.6);
+  EXPECT_NEAR(noise_of("pcpnet:1.2"), 1.2, 0.02 * 1.2);
 }
 
 TEST(BenchInputs, OutliersComeLastAndFillALargerBox) {
@@ -65,6 +75,27 @@ TEST(BenchInputs, GradientHasTheRatioOfDensitiesAtItsEnds) {
     high += p[0] > 3.8 ? 1 : 0;
   }
   EXPECT_NEAR(low / high, std::pow(10, 0.9), 0.8);  // tenths of the side, 0.9 sides apart
+}
+
+TEST(BenchInputs, StripesAreDenseAndSparseByTurns) {
+  const Input input = make_input(bar(), parse_input_kind("pcpnet:stripes"), kCount, 1);
+  std::array<double, 10> stripes{};
+  for (const Vec3& p : input.points) {
+    if (p[0] > 2 && p[0] < 4) ++stripes[static_cast<std::size_t>((p[0] - 2) / 0.2)];  // without the ends, which have a face more
+  }
+  for (std::size_t k = 0; k < 10; k += 2) EXPECT_NEAR(stripes[k] / stripes[k + 1], 10, 1.5) << k;
+}
+
+TEST(BenchInputs, PcpnetStandsForSixOf100000Points) {
+  const std::vector<InputKind> kinds = parse_input_kinds({"clean", "pcpnet"});
+  ASSERT_EQ(kinds.size(), 7u);
+  EXPECT_EQ(kinds[0].points, 5000u);
+  for (std::size_t k = 1; k < 7; ++k) {
+    EXPECT_EQ(kinds[k].points, 100000u) << kinds[k].name;
+    EXPECT_EQ(kinds[k].name.rfind("pcpnet:", 0), 0u) << kinds[k].name;
+  }
+  const Input gradient = make_input(bar(), parse_input_kind("pcpnet:gradient"), 1000, 1);
+  EXPECT_EQ(gradient.points, make_input(bar(), parse_input_kind("gradient:10"), 1000, 1).points);
 }
 
 TEST(BenchInputs, PatchesAreEmpty) {
@@ -97,7 +128,8 @@ TEST(BenchInputs, ThinPartsFaceAnotherSideNearby) {
 }
 
 TEST(BenchInputs, UnknownKindsAreRefused) {
-  for (const char* text : {"", "noise", "noise:", "noise:x", "noise:0", "noise:1%", "holes:3", "clean:1", "outliers:99", "gradient:nan"}) {
+  for (const char* text : {"", "noise", "noise:", "noise:x", "noise:0", "noise:1%", "holes:3", "clean:1", "outliers:99", "gradient:nan",
+                           "stripes:1", "pcpnet", "pcpnet:", "pcpnet:0.5"}) {
     EXPECT_THROW((void)parse_input_kind(text), InvalidInput) << text;
   }
 }

@@ -6,6 +6,7 @@ Run by ctest with G3R_PROGRAM set to the program. For measuring, G3R_KILLS and G
 import os
 import random
 import signal
+import struct
 import sys
 import threading
 import time
@@ -16,6 +17,7 @@ from cli_support import *
 # The promise is half a second. A loaded machine and a sanitizer add to it; a program that ignores the signal takes far longer.
 STOPS_WITHIN_SECONDS = 3
 LARGE_COUNT = 150_000
+SPLATS = 300_000  # the search for those inside takes some ten seconds of a core
 KILLS = int(os.environ.get("G3R_KILLS", "12"))
 INTERRUPTS = int(os.environ.get("G3R_INTERRUPTS", "1"))
 
@@ -57,6 +59,18 @@ class Interrupts(ProgramTest):
                     self.assertEqual(self.interrupt("orient", self.large.name, "out.ply", number=number, stage=stage), code)
                     self.assertEqual(os.listdir(self.folder), [])
         print("stopped after at most %.3f s in %d runs" % (max(self.times), len(self.times)))
+
+    def test_ctrl_c_stops_the_search_for_splats_inside(self):
+        self.times = []
+        numbers = random.Random(1)
+        names = "x y z f_dc_0 f_dc_1 f_dc_2 opacity scale_0 scale_1 scale_2 rot_0 rot_1 rot_2 rot_3".split()
+        records = [struct.pack("<14f", *(numbers.random() for _ in range(3)), 0, 0, 0, 1, -4, -4, -4, 1, 0, 0, 0) for _ in range(SPLATS // 10)]
+        with open(self.path("splats.ply"), "wb") as file:
+            properties = "".join(f"property float {name}\n" for name in names)
+            file.write(f"ply\nformat binary_little_endian 1.0\nelement vertex {SPLATS}\n{properties}end_header\n".encode())
+            file.write(b"".join(records) * 10)
+        code = self.interrupt("info", "splats.ply", "--threads", "1", number=signal.SIGINT, stage=b"read")
+        self.assertEqual(code, INTERRUPTED)
 
     def test_an_interrupted_write_leaves_nothing(self):
         write_cube(self.path("cube.obj"))

@@ -11,7 +11,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -164,6 +168,37 @@ TEST(Splats, TheSceneIsTakenApart) {
   EXPECT_LE(number_of(places, scene, kInside, SplatPlace::kSurface), scene.count(kInside) / 20);
   EXPECT_LE(number_of(places, scene, kFloating, SplatPlace::kSurface), scene.count(kFloating) / 20);
 }
+
+// splats: the search can be stopped, also while a file is read, and of a file that is read whole nothing else is asked.
+TEST(Splats, TheSearchCanBeCancelled) {
+  const Scene scene = ellipsoid_of_splats(500);
+  std::atomic<bool> cancel = true;
+  EXPECT_THROW((void)places_of(scene.splats, 0, &cancel), Cancelled);
+  EXPECT_THROW((void)read_scene(scene, {.cancel = &cancel}), Cancelled);
+  EXPECT_EQ(read_scene(scene, {.all_splats = true, .cancel = &cancel}).positions.size(), scene.splats.size());
+  cancel = false;
+  EXPECT_EQ(places_of(scene.splats, 1, &cancel), places_of(scene.splats));
+}
+
+#ifdef GTEST_HAS_DEATH_TEST
+std::size_t threads_of_process() {
+  const std::filesystem::directory_iterator tasks("/proc/self/task");
+  return static_cast<std::size_t>(std::distance(begin(tasks), end(tasks)));
+}
+
+// splats: asked for one thread, the search starts no other. In a process of its own, as threads of earlier tests would wait for work.
+TEST(SplatsDeathTest, OneThreadStartsNoOther) {
+  if (!std::filesystem::exists("/proc/self/task")) GTEST_SKIP() << "threads are counted in /proc";
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto started = [](int threads) {
+    const Scene scene = ellipsoid_of_splats(2000);
+    const std::size_t before = threads_of_process();
+    (void)read_scene(scene, {.threads = threads});
+    return static_cast<int>(threads_of_process() - before);
+  };
+  EXPECT_EXIT(std::exit(started(1)), ::testing::ExitedWithCode(0), "");
+}
+#endif
 
 // splats: in a room, whose walls hide what stands in it, nothing is hidden.
 TEST(Splats, ARoomKeepsItsFurniture) {

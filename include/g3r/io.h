@@ -51,13 +51,16 @@ struct ReadOptions {
   bool all_splats = false;
   std::optional<Box> box{};  ///< leave out points outside of it; of COPC and EPT only cells that it meets are unpacked
   int levels = 0;            ///< COPC, EPT: levels of the octree to read, from the coarsest; 0 for all (as of other files, with a warning)
+  int threads = 0;           ///< Gaussian splats: of the search for those that are no surface, 0 for all cores; the rest takes one
+  const std::atomic<bool>* cancel = nullptr;  ///< when it becomes true that search throws Cancelled
 };
 
 /// Reads a cloud; the format is recognised by content, not by name. "-" reads standard input. A folder, or a pattern with * or ? that
 /// names no file itself, stands for all files of points in it (LAS, LAZ, PLY, PCD, E57, PTX, PTS, XYZ, CSV, NPY, SPZ; of a pattern,
 /// whatever it names), which become one cloud in the order of their names: properties of numbers that any of them has, 0 where one has
 /// not. An ept.json, or the folder that holds one, stands for the cells of its octree.
-/// Throws IoError (not found, read error), InvalidInput (damaged, unknown or unusable; says where and what to do), std::bad_alloc.
+/// Throws IoError (not found, read error), InvalidInput (damaged, unknown or unusable; says where and what to do), Cancelled,
+/// std::bad_alloc.
 [[nodiscard]] Cloud read_cloud(const std::string& path, const ReadOptions& options = {});
 
 /// The same from bytes in memory; `name` is used in messages.

@@ -79,6 +79,7 @@ def read(
     all_splats: bool = False,
     box: Optional[Sequence[Sequence[float]]] = None,
     levels: Optional[int] = None,
+    threads: int = 0,
 ) -> Cloud:
     """Reads a cloud; the format is recognised by content. A folder, or a pattern with * or ?, is read as one cloud of all its files of points;
     an EPT folder, or its ept.json, as one of all its cells.
@@ -87,6 +88,7 @@ def read(
     all_splats: keeps all Gaussian splats, also floaters and those inside, which no light from outside reaches.
     box: two corners, ((x0, y0, z0), (x1, y1, z1)): points outside are left out; of COPC and EPT only the cells that it meets are read.
     levels: of the octree of COPC or EPT, from the coarsest; None for all.
+    threads: of the search for those Gaussian splats, 0 for all cores; the result does not depend on it. Ctrl-C stops it.
 
     Raises FileMissingError, FileError, InputError (damaged or unknown; says where and what to do).
     """
@@ -98,7 +100,8 @@ def read(
         sides = (low[0], low[1], low[2], high[0], high[1], high[2])
     if levels is not None and levels < 1:
         raise InputError(f"levels: expected a number from 1, found {levels}")
-    return Cloud(_g3r.read_cloud(os.fsdecode(path), float(min_opacity), bool(all_splats), sides, 0 if levels is None else int(levels)))
+    depth = 0 if levels is None else int(levels)
+    return Cloud(_g3r.read_cloud(os.fsdecode(path), float(min_opacity), bool(all_splats), sides, depth, int(threads)))
 
 
 def read_mesh(path: Path) -> Tuple[Floats, Indices]:

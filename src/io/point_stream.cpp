@@ -71,7 +71,7 @@ class LasRecords : public FixedRecords, public LasOrigin {
 // The whole file, in memory.
 class WholeCloud : public PointStream {
  public:
-  WholeCloud(const std::string& path, bool with_records) : cloud_(read_cloud(path)) {
+  WholeCloud(const std::string& path, bool with_records, const ReadOptions& options) : cloud_(read_cloud(path, options)) {
     if (cloud_.attributes == nullptr) make_table();
     const Attributes& from = *cloud_.attributes;
     table_.dialect = from.dialect;
@@ -160,7 +160,7 @@ std::unique_ptr<PointStream> parsed_records(std::unique_ptr<RandomFile>& file, c
 
 }  // namespace
 
-std::unique_ptr<PointStream> open_points(const std::string& path, bool with_records) {
+std::unique_ptr<PointStream> open_points(const std::string& path, bool with_records, const ReadOptions& options) {
   auto file = std::make_unique<RandomFile>(path);
   std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(file->size(), kHead)), '\0');
   file->read(0, head.data(), head.size());
@@ -178,7 +178,7 @@ std::unique_ptr<PointStream> open_points(const std::string& path, bool with_reco
   } else {
     stream = parsed_records(file, source);
   }
-  if (!stream) stream = std::make_unique<WholeCloud>(path, with_records);
+  if (!stream) stream = std::make_unique<WholeCloud>(path, with_records, options);
   return stream;
 }
 

@@ -118,14 +118,18 @@ struct Ruler {
 // The splats along one axis: for every tile of the picture those that are drawn in it, from near to far.
 class View {
  public:
-  View(const std::vector<Splat>& splats, const std::vector<std::uint32_t>& drawn, const Vec3& ahead) : splats_(splats), drawn_(drawn) {
+  View(const std::vector<Splat>& splats, const std::vector<std::uint32_t>& drawn, const Vec3& ahead, const std::atomic<bool>* cancel)
+      : splats_(splats), drawn_(drawn) {
     const Vec3 other = std::abs(ahead[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
     const Vec3 right = vector::normalised(vector::cross(other, ahead));
     const Vec3 up = vector::cross(ahead, right);
     images_.resize(splats.size());
-    parallel::for_blocks(drawn.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) images_[drawn[k]] = image_of(splats[drawn[k]], right, up, ahead);
-    });
+    parallel::for_blocks(
+        drawn.size(), kBlock,
+        [&](std::size_t begin, std::size_t end) {
+          for (std::size_t k = begin; k < end; ++k) images_[drawn[k]] = image_of(splats[drawn[k]], right, up, ahead);
+        },
+        cancel);
     cut();
   }
 
@@ -225,6 +229,44 @@ class View {
   std::vector<std::uint32_t> list_;
 };
 
+std::vector<SplatPlace> find_places(const std::vector<Splat>& splats, const std::atomic<bool>* cancel) {
+  std::vector<SplatPlace> place(splats.size(), SplatPlace::kSurface);
+  std::vector<std::uint32_t> drawn;
+  for (std::uint32_t i = 0; i < splats.size(); ++i) {
+    if (is_drawn(splats[i])) drawn.push_back(i);
+    if (splats[i].opacity < kFaintest) place[i] = SplatPlace::kTranslucent;
+  }
+  if (drawn.empty()) return place;
+  const auto those_not = [cancel](const std::vector<std::uint32_t>& some, const auto& is_so) {
+    std::vector<std::uint8_t> so(some.size());
+    parallel::for_blocks(
+        some.size(), kBlock,
+        [&](std::size_t begin, std::size_t end) {
+          for (std::size_t k = begin; k < end; ++k) so[k] = is_so(some[k]) ? 1 : 0;
+        },
+        cancel);
+    std::vector<std::uint32_t> rest;
+    for (std::size_t k = 0; k < some.size(); ++k) {
+      if (so[k] == 0) rest.push_back(some[k]);
+    }
+    return rest;
+  };
+  const auto is_on_surface = [&](std::uint32_t i) { return place[i] == SplatPlace::kSurface; };
+  {
+    const View all(splats, drawn, axis_of(0), cancel);
+    for (const std::uint32_t i : those_not(drawn, [&](std::uint32_t k) { return all.is_solid(k); })) place[i] = SplatPlace::kTranslucent;
+  }
+  drawn.erase(std::remove_if(drawn.begin(), drawn.end(), [&](std::uint32_t i) { return !is_on_surface(i); }), drawn.end());
+  std::vector<std::uint32_t> dark = drawn;
+  for (std::size_t axis = 0; axis < kAxes && !dark.empty(); ++axis) {
+    const View solid(splats, drawn, axis_of(axis), cancel);
+    dark = those_not(dark, [&](std::uint32_t i) { return solid.is_lit(i); });
+  }
+  if (static_cast<double>(dark.size()) > kMostHidden * static_cast<double>(drawn.size())) return place;
+  for (const std::uint32_t i : dark) place[i] = SplatPlace::kHidden;
+  return place;
+}
+
 }  // namespace
 
 std::array<std::array<double, 3>, 3> axes_of(const std::array<double, 4>& quaternion) {
@@ -236,39 +278,8 @@ std::array<std::array<double, 3>, 3> axes_of(const std::array<double, 4>& quater
            {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}}};
 }
 
-std::vector<SplatPlace> places_of(const std::vector<Splat>& splats) {
-  std::vector<SplatPlace> place(splats.size(), SplatPlace::kSurface);
-  std::vector<std::uint32_t> drawn;
-  for (std::uint32_t i = 0; i < splats.size(); ++i) {
-    if (is_drawn(splats[i])) drawn.push_back(i);
-    if (splats[i].opacity < kFaintest) place[i] = SplatPlace::kTranslucent;
-  }
-  if (drawn.empty()) return place;
-  const auto those_not = [](const std::vector<std::uint32_t>& some, const auto& is_so) {
-    std::vector<std::uint8_t> so(some.size());
-    parallel::for_blocks(some.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) so[k] = is_so(some[k]) ? 1 : 0;
-    });
-    std::vector<std::uint32_t> rest;
-    for (std::size_t k = 0; k < some.size(); ++k) {
-      if (so[k] == 0) rest.push_back(some[k]);
-    }
-    return rest;
-  };
-  const auto is_on_surface = [&](std::uint32_t i) { return place[i] == SplatPlace::kSurface; };
-  {
-    const View all(splats, drawn, axis_of(0));
-    for (const std::uint32_t i : those_not(drawn, [&](std::uint32_t k) { return all.is_solid(k); })) place[i] = SplatPlace::kTranslucent;
-  }
-  drawn.erase(std::remove_if(drawn.begin(), drawn.end(), [&](std::uint32_t i) { return !is_on_surface(i); }), drawn.end());
-  std::vector<std::uint32_t> dark = drawn;
-  for (std::size_t axis = 0; axis < kAxes && !dark.empty(); ++axis) {
-    const View solid(splats, drawn, axis_of(axis));
-    dark = those_not(dark, [&](std::uint32_t i) { return solid.is_lit(i); });
-  }
-  if (static_cast<double>(dark.size()) > kMostHidden * static_cast<double>(drawn.size())) return place;
-  for (const std::uint32_t i : dark) place[i] = SplatPlace::kHidden;
-  return place;
+std::vector<SplatPlace> places_of(const std::vector<Splat>& splats, int threads, const std::atomic<bool>* cancel) {
+  return parallel::with_threads(threads, [&] { return find_places(splats, cancel); });
 }
 
 }  // namespace g3r::io

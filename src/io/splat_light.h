@@ -6,6 +6,7 @@
 #include <g3r/points.h>
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -31,8 +32,10 @@ enum class SplatPlace : std::uint8_t {
 /// The place of every splat. Light comes in parallel rays along 32 axes, from both ends; a splat takes from the ray through the centre of
 /// another what a renderer draws of it there, unless that centre lies within it: those are of one layer. Translucent ones take nothing, and
 /// as in renderers nothing is drawn of less than 1/255. Where more than a third would be hidden the pictures were taken from within, in a
-/// room or a landscape, and none is. Splats that are not finite are kSurface. The same for any number of threads. O(N log N), about
-/// 40 us of one core a splat: each ray looks at 4096 splats at most, and where that does not decide it the splat counts as surface.
-[[nodiscard]] std::vector<SplatPlace> places_of(const std::vector<Splat>& splats);
+/// room or a landscape, and none is. Splats that are not finite are kSurface. O(N log N), about 40 us of one core a splat: each ray looks
+/// at 4096 splats at most, and where that does not decide it the splat counts as surface. `threads`: 0 for all cores, the result does not
+/// depend on it. Throws Cancelled when `cancel` (may be null) becomes true.
+[[nodiscard]] std::vector<SplatPlace> places_of(const std::vector<Splat>& splats, int threads = 0,
+                                                const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace g3r::io

@@ -54,7 +54,7 @@ bool have_reach(const Element& points) {
          std::all_of(std::begin(kRotationNames), std::end(kRotationNames), are_numbers) && find_roles(points).position[0] != Element::npos;
 }
 
-std::vector<SplatPlace> places_in(const Element& points) {
+std::vector<SplatPlace> places_in(const Element& points, const ReadOptions& options) {
   const Roles roles = find_roles(points);
   std::vector<Column> position;
   for (const std::size_t axis : roles.position) position.emplace_back(points, points.properties[axis].name.c_str());
@@ -67,7 +67,7 @@ std::vector<SplatPlace> places_in(const Element& points) {
     splats[i].axes = axes_of({rotation[0][i], rotation[1][i], rotation[2][i], rotation[3][i]});
     splats[i].opacity = opacity_of(opacity[i]);
   }
-  return places_of(splats);
+  return places_of(splats, options.threads, options.cancel);
 }
 
 void keep_only(Element& points, const std::vector<std::uint8_t>& keep) {
@@ -82,14 +82,14 @@ void keep_only(Element& points, const std::vector<std::uint8_t>& keep) {
   points.count = end / stride;
 }
 
-void filter_splats(Element& points, double least, std::vector<std::string>& warnings) {
+void filter_splats(Element& points, const ReadOptions& options, std::vector<std::string>& warnings) {
   const Column opacity(points, "opacity");
   std::vector<SplatPlace> place(static_cast<std::size_t>(points.count), SplatPlace::kSurface);
-  if (have_reach(points)) place = places_in(points);
+  if (have_reach(points)) place = places_in(points, options);
   std::vector<std::uint8_t> keep(place.size(), 0);
   std::size_t faint = 0, translucent = 0, hidden = 0;
   for (std::size_t i = 0; i < keep.size(); ++i) {
-    if (!(opacity_of(opacity[i]) >= least)) {
+    if (!(opacity_of(opacity[i]) >= options.min_opacity)) {
       ++faint;
     } else if (place[i] == SplatPlace::kTranslucent) {
       ++translucent;
@@ -137,7 +137,7 @@ bool is_splat(const Element& points) {
 }
 
 void fill_splat_cloud(const Source& source, std::shared_ptr<Attributes> table, const ReadOptions& options, Cloud& cloud) {
-  if (!options.all_splats) filter_splats(table->elements[table->vertex], options.min_opacity, cloud.warnings);
+  if (!options.all_splats) filter_splats(table->elements[table->vertex], options, cloud.warnings);
   std::vector<std::array<std::uint8_t, 3>> colors = splat_colors(table->points());
   fill_cloud(source, std::move(table), cloud);
   cloud.colors = std::move(colors);

@@ -1,6 +1,7 @@
 #include "mesh/findings.h"
 
 #include "base/vector.h"
+#include "mesh/crossings.h"
 #include "mesh/fair.h"
 
 #include <algorithm>
@@ -92,12 +93,21 @@ void warn_of_lines(const CanonicalCloud& cloud, Stats& stats) {
       "closer lines, or keep fewer points along them");
 }
 
+void warn_of_crossings(const CanonicalCloud& cloud, const std::vector<Vec3>& normals, Stats& stats) {
+  const mesh::Crossings found = mesh::find_crossings(cloud.set, normals);
+  if (!found.is_clear) return;
+  stats.warnings.push_back("two surfaces cross: " + short_number(100 * found.share) +
+                           " % of the points are near a curve where both go on to either side, at about " + short_number(found.angle) +
+                           " degrees; between the two, inside and outside are a guess: align the scans, or mesh the parts one by one");
+}
+
 }  // namespace
 
 void warn_of_sampling(const CanonicalCloud& cloud, const std::vector<Vec3>& normals, Stats& stats) {
   if (cloud.size() < kFewestPairs) return;
   const double spacing = cloud.set.spacing();
   warn_of_lines(cloud, stats);
+  warn_of_crossings(cloud, normals, stats);
   std::string axes;
   double largest = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -15,6 +15,7 @@ namespace g3r {
 ///   - rounded coordinates: where surface across an axis is in terraces. Of the pairs of near points that face the same way along the axis,
 ///     5 to 90 % have exactly the same coordinate, and the others' differ by a step of 0.15 to 3 spacings. Not where half of these points
 ///     are at walls or gaps, as those of slats.
+///   - two surfaces that cross (mesh/crossings.h): parts whose points were put together, or scans that do not fit.
 /// `normals`: unit. O(N).
 void warn_of_sampling(const CanonicalCloud& cloud, const std::vector<Vec3>& normals, Stats& stats);
 

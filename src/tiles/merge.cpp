@@ -101,7 +101,7 @@ MergedTiles merge(const std::string& folder, const Manifest& m, const std::strin
   std::uint64_t begin = 0;
   for (std::size_t i = 0; i < m.inputs.size(); ++i) {
     const Input& input = m.inputs[i];
-    const std::unique_ptr<io::PointStream> stream = io::open_points(input.path, true);
+    const std::unique_ptr<io::PointStream> stream = io::open_points(input.path, true, {.cancel = stages.cancel()});
     const std::size_t block = PointWriter::block(*stream);
     writer.begin(*stream);
     std::uint64_t read = 0;

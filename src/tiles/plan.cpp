@@ -44,10 +44,11 @@ constexpr std::size_t kMostWarnings = 8;  // of all files together
 // Calls begin(file, stream) for each file, take(file, point) for all points in order, and between(share of the work) now and then: files
 // count alike, as only one of them is open.
 template <class Begin, class Between, class Take>
-void for_all_points(const std::vector<std::string>& files, const Begin& begin, const Between& between, const Take& take) {
+void for_all_points(const std::vector<std::string>& files, const ReadOptions& options, const Begin& begin, const Between& between,
+                    const Take& take) {
   std::vector<Vec3> points;
   for (std::size_t f = 0; f < files.size(); ++f) {
-    const std::unique_ptr<io::PointStream> stream = io::open_points(files[f]);
+    const std::unique_ptr<io::PointStream> stream = io::open_points(files[f], false, options);
     begin(f, *stream);
     const auto all = static_cast<double>(stream->left());
     for (stream->next(kAtOnce, points); !points.empty(); stream->next(kAtOnce, points)) {
@@ -122,7 +123,7 @@ Manifest survey(const std::vector<std::string>& files, const TileOptions& option
     }
   };
   for_all_points(
-      files, begin, [&](double share) { stages.progress(share); },
+      files, {.threads = options.threads, .cancel = stages.cancel()}, begin, [&](double share) { stages.progress(share); },
       [&](std::size_t file, const Vec3& p) {
         ++m.points;
         ++m.inputs[file].points;
@@ -186,12 +187,14 @@ std::uint64_t choose_stride(std::uint64_t points, std::size_t limit) {
 }
 
 // Second reading: the sorted points, the thinned files, the cells. The level of the cells is known when all points are sorted.
-Cells sort_points(const std::vector<std::string>& files, const std::string& folder, std::size_t limit, Manifest& m, Stages& stages) {
+Cells sort_points(const std::vector<std::string>& files, const std::string& folder, std::size_t limit, int threads, Manifest& m,
+                  Stages& stages) {
   stages.begin("sort");
   ExternalSort sort(folder, m.frame, limit / 4, stages.cancel());
   std::uint64_t index = 0;
   for_all_points(
-      files, [](std::size_t, const io::PointStream&) {}, [&](double share) { stages.progress(share / 2); },
+      files, {.threads = threads, .cancel = stages.cancel()}, [](std::size_t, const io::PointStream&) {},
+      [&](double share) { stages.progress(share / 2); },
       [&](std::size_t, const Vec3& p) {
         if (is_finite(p)) sort.add({p, index});
         ++index;
@@ -280,7 +283,7 @@ TileStatus make_plan(const std::vector<std::string>& files, const std::string& f
   m.coarse_points = (m.sorted() + m.stride - 1) / m.stride;
   make_folder(folder);
   {
-    const Cells cells = sort_points(files, folder, limit, m, stages);
+    const Cells cells = sort_points(files, folder, limit, options.threads, m, stages);
     choose_tiles(cells, options, limit, m);
   }
   std::uint64_t stored = 0;

@@ -31,7 +31,7 @@ std::size_t PointWriter::block(const io::PointStream& stream) {
 
 void PointWriter::look_at(const Input& input, Stages& stages) {
   Part& part = parts_.emplace_back();
-  const auto stream = io::open_points(input.path, true);
+  const auto stream = io::open_points(input.path, true, {.cancel = stages.cancel()});
   const Attributes& table = stream->table();
   part.table = table_of(table, table.points());
   if (io::LasOrigin* las = stream->las(); las != nullptr && las_file_ && alone_) {

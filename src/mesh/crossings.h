@@ -1,0 +1,27 @@
+// Places where two surfaces pass through each other: parts that were united by putting their points together, scans that do not fit.
+#pragma once
+
+#include "cloud/point_set.h"
+
+#include <g3r/points.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace g3r::mesh {
+
+struct Crossings {
+  double share = 0;       ///< of the points, near a curve where two surfaces cross, 0..1
+  double angle = 0;       ///< between the two, the median in degrees; 0 without any
+  bool is_clear = false;  ///< so many that it is no accident
+};
+
+/// Looks at 20,000 points at most, evenly from all. One is near a crossing if points around have normals of another direction, 37 degrees
+/// away or more, and on the line where the planes of the two meet each of them goes on to either side: an X seen along the line. Creases,
+/// where both end, and walls that stand on others, where one does, are none. Two layers of one wall are none either, as their normals are
+/// opposite. Not seen are crossings below some 40 degrees, and those of surfaces that curve within 8 spacings. Solids that touch along an
+/// edge look the same. Clear: half as many as a curve has that is as long as the side of a square of the same area, and a thousandth of
+/// all. `normals`: N, unit. The same for any number of threads. O(log N) per point that is looked at.
+[[nodiscard]] Crossings find_crossings(const PointSet& set, const std::vector<Vec3>& normals);
+
+}  // namespace g3r::mesh
