@@ -17,6 +17,7 @@ class Versions(unittest.TestCase):
         version = found("CMakeLists.txt", r"^project\(g3r VERSION (\S+)")
         for file, pattern in (
                 ("CITATION.cff", r"^version: (\S+)$"),
+                ("addons/blender/g3r_point_cloud_to_mesh.py", r'^    "version": \((.+)\),$'),
                 ("CHANGELOG.md", r"^## (\d\S*) - \d{4}-\d\d-\d\d$"),
                 ("docs/start.md", r"source distribution, g3r-(.+)\.tar\.gz"),
                 ("packaging/Containerfile", r"image\.version=(\S+)"),
@@ -25,7 +26,7 @@ class Versions(unittest.TestCase):
                 ("packaging/homebrew/g3r.rb", r'^  url ".*/g3r-(.+)\.tar\.gz"$'),
                 ("packaging/vcpkg/g3r/vcpkg.json", r'^  "version": "(.+)",$')):
             with self.subTest(file):
-                self.assertEqual(found(file, pattern), version)
+                self.assertEqual(found(file, pattern).replace(", ", "."), version)
 
     def test_the_shared_library_of_debian_has_its_name(self):
         major, minor = found("CMakeLists.txt", r"^project\(g3r VERSION (\d+\.\d+)").split(".")

@@ -34,7 +34,7 @@ PRIVATE_WORDS = {
 }
 LEFT_OUT = [ROOT / "docs" / "images", ROOT / "docs" / "results"]  # of source archives (pyproject.toml)
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
-PATH = re.compile(r"`((?:src|include|cli|python|tests|bench|fuzz|tools|docs)/[\w./-]+)`")
+PATH = re.compile(r"`((?:addons|src|include|cli|python|tests|bench|fuzz|tools|docs)/[\w./-]+)`")
 NAMED = re.compile(r"\bdocs/[\w/]+\.md\b")
 SOURCES = {".h", ".cpp", ".c", ".cl", ".py", ".pyi", ".sh", ".txt", ".cmake", ".cff", ".toml", ".yml"}
 PRIVATE = re.compile(r"\b(" + "|".join(PRIVATE_WORDS) + r")\b", re.I)
@@ -104,7 +104,7 @@ def complaints(path):
 
 def pages_that_are_not():
     """(file, line, page) of every page that a source names and that does not exist."""
-    for folder in ("bench", "cli", "cmake", "examples", "fuzz", "include", "packaging", "python", "src", "tests", "tools"):
+    for folder in ("addons", "bench", "cli", "cmake", "examples", "fuzz", "include", "packaging", "python", "src", "tests", "tools"):
         for path in sorted((ROOT / folder).rglob("*")):
             if path.suffix not in SOURCES or not path.is_file():
                 continue

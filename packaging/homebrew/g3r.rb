@@ -13,6 +13,7 @@ class G3r < Formula
   depends_on "pkgconf" => :build
   depends_on "highway"
   depends_on "libpng"
+  depends_on :linux # the shared library is linked with a version script
   depends_on "meshoptimizer"
   depends_on "tbb"
 
