@@ -10,6 +10,8 @@ import tempfile
 import unittest
 
 G3R = os.environ["G3R_PROGRAM"]
+RUNNER = os.environ.get("G3R_RUNNER", "").split()  # what runs a program of another system: Wine
+ON_WINDOWS = G3R.endswith(".exe")
 NOBODY = 65534
 
 OK, USAGE, BAD_DATA, NO_INPUT, UNAVAILABLE, OUT_OF_MEMORY = 0, 64, 65, 66, 69, 71
@@ -23,6 +25,11 @@ def is_sanitized():
     """Sanitizers reserve terabytes of addresses, so limits on memory mean nothing to them."""
     with open(G3R, "rb") as program:
         return b"__asan_init" in program.read()
+
+
+def needs(what):
+    """Leaves a test out where the program is one of Windows, which has no `what`."""
+    return unittest.skipIf(ON_WINDOWS, "Windows has no " + what)
 
 
 def sphere(count, radius=1.0, centre=(0.0, 0.0, 0.0)):
@@ -112,7 +119,7 @@ class ProgramTest(unittest.TestCase):
         options.setdefault("stdin", subprocess.DEVNULL)
         options.setdefault("stdout", subprocess.PIPE)
         options.setdefault("stderr", subprocess.PIPE)
-        return subprocess.Popen([G3R, *arguments], cwd=self.folder, **options)
+        return subprocess.Popen([*RUNNER, G3R, *arguments], cwd=self.folder, **options)
 
     def run_g3r(self, *arguments, data=None, **options):
         if data is not None:
