@@ -13,8 +13,8 @@ BuildInfo build_info() {
   info.e57 = G3R_HAS_E57;
   info.poisson = G3R_HAS_OPEN3D;
   info.instruction_set = cpu::instruction_set();
-  info.opencl = gpu::Library({"libOpenCL.so.1", "libOpenCL.so"}).loaded();
-  info.cuda = gpu::Library({"libcuda.so.1"}).loaded();
+  info.opencl = gpu::Library({"libOpenCL.so.1", "libOpenCL.so", "OpenCL.dll"}).loaded();
+  info.cuda = gpu::Library({"libcuda.so.1", "nvcuda.dll"}).loaded();
   return info;
 }
 

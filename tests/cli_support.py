@@ -11,6 +11,8 @@ import tempfile
 import unittest
 
 G3R = os.environ["G3R_PROGRAM"]
+RUNNER = os.environ.get("G3R_RUNNER", "").split()  # what runs a program of another system: Wine
+ON_WINDOWS = G3R.endswith(".exe")
 NOBODY = 65534
 
 OK, USAGE, BAD_DATA, NO_INPUT, UNAVAILABLE, OUT_OF_MEMORY = 0, 64, 65, 66, 69, 71
@@ -30,6 +32,11 @@ def is_sanitized():
 def thinned(count):
     """Half as many points under sanitizers, where a solve takes 20 times as long; what is asserted holds for both."""
     return count // 2 if is_sanitized() else count
+
+
+def needs(what):
+    """Leaves a test out where the program is one of Windows, which has no `what`."""
+    return unittest.skipIf(ON_WINDOWS, "Windows has no " + what)
 
 
 def sphere(count, radius=1.0, centre=(0.0, 0.0, 0.0)):
@@ -119,7 +126,7 @@ class ProgramTest(unittest.TestCase):
         options.setdefault("stdin", subprocess.DEVNULL)
         options.setdefault("stdout", subprocess.PIPE)
         options.setdefault("stderr", subprocess.PIPE)
-        return subprocess.Popen([G3R, *arguments], cwd=self.folder, **options)
+        return subprocess.Popen([*RUNNER, G3R, *arguments], cwd=self.folder, **options)
 
     def run_g3r(self, *arguments, data=None, **options):
         if data is not None:

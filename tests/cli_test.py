@@ -149,6 +149,7 @@ class ExitCodes(ProgramTest):
         self.assertFalse(os.path.exists(self.path("out.ply")))
 
     @unittest.skipIf(is_sanitized(), "a sanitizer needs the addresses")
+    @needs("limit on addresses")
     def test_out_of_memory_is_71(self):
         write_cube(self.path("cube.obj"))
         limit = 1 << 30
@@ -156,6 +157,7 @@ class ExitCodes(ProgramTest):
                     preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
         self.assertFalse(os.path.exists(self.path("out.ply")))
 
+    @needs("symbolic links that every user may make")
     def test_output_that_cannot_be_created_is_73_before_the_solve(self):
         before = self.bytes_of("ball.ply")
         os.symlink("ball.ply", self.path("link.ply"))
@@ -170,6 +172,7 @@ class ExitCodes(ProgramTest):
         self.assertTrue(self.bytes_of("ball.ply") == before)
         self.assertEqual(sorted(os.listdir(self.folder)), ["ball.ply", "folder.ply", "hard.ply", "link.ply"])
 
+    @needs("users to drop to")
     def test_permissions_count(self):
         options = dropped_to_nobody()
         program = self.path("g3r")
@@ -188,21 +191,25 @@ class ExitCodes(ProgramTest):
         self.assertEqual(code("orient", "secret.ply", "out.ply"), NO_INPUT)
         self.assertEqual(os.listdir(self.path("readonly")), [])
 
+    @needs("/dev/full")
     def test_a_full_device_is_74(self):
         for arguments in (["orient", "ball.ply", "-"], ["info", "ball.ply"], ["orient", "ball.ply", "out.ply", "--report", "-"],
                           ["--help"], ["orient", "--help"], ["--version"]):
             with self.subTest(arguments), open("/dev/full", "wb") as full:
                 self.expect(INPUT_OUTPUT, *arguments, stdout=full)
 
+    @needs("limit on the size of files")
     def test_a_file_size_limit_is_74_and_no_signal(self):
         self.expect(INPUT_OUTPUT, "orient", "ball.ply", "out.ply", preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)))
         self.assertEqual(os.listdir(self.folder), ["ball.ply"])
 
+    @needs("streams that a parent of another system can close")
     def test_closed_streams_do_not_end_up_in_the_output(self):
         self.expect(OK, "orient", "ball.ply", "open.ply")
         self.expect(OK, "orient", "ball.ply", "closed.ply", "-v", preexec_fn=lambda: os.closerange(0, 3))
         self.assertTrue(self.bytes_of("open.ply") == self.bytes_of("closed.ply"))
 
+    @needs("pipes of another system")
     def test_a_closed_pipe_is_74_and_no_signal(self):
         reading, writing = os.pipe()
         os.close(reading)
@@ -269,6 +276,7 @@ class Streams(ProgramTest):
         self.assertEqual(process.wait(), OK)
         return text
 
+    @needs("pseudo-terminals")
     def test_a_terminal_shows_a_bar_unless_told_otherwise(self):
         self.assertIn(b"\r\x1b[K", self.terminal_output())
         self.assertNotIn(b"\x1b", self.terminal_output("--no-progress"))
@@ -287,6 +295,7 @@ class Streams(ProgramTest):
                 self.assertNotIn("\x1b", result.err + result.out.decode("utf-8", "replace"))
         self.assertNotIn("\x1b", self.expect(USAGE, "--" + evil).err)
 
+    @needs("localedef")
     def test_the_locale_changes_nothing(self):
         locales = self.path("locales")
         os.mkdir(locales)

@@ -1,9 +1,9 @@
 # Sourced by the other scripts of this folder. Brings the machine to the point where the project can be built; does nothing if it is.
 
-# install_packages: installs what packages.txt lists and this machine lacks (Debian 12; as root or through sudo).
+# install_packages [FILE]: installs what FILE, by default packages.txt, lists and this machine lacks (Debian 12; as root or through sudo).
 install_packages() {
   local wanted missing=() package
-  wanted=$(sed 's/#.*//' packages.txt)
+  wanted=$(sed 's/#.*//' "${1:-packages.txt}")
   for package in $wanted; do
     dpkg-query -W -f='${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
   done

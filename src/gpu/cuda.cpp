@@ -17,7 +17,8 @@ using namespace cuda;  // NOLINT(google-build-using-namespace): its names are th
 const Api* api() {
   static const std::unique_ptr<Api> loaded = [] {
     auto functions = std::make_unique<Api>();
-    const bool usable = functions->load("libcuda.so.1") && functions->init(0) == kSuccess;
+    const bool found = functions->load("libcuda.so.1") || functions->load("nvcuda.dll");
+    const bool usable = found && functions->init(0) == kSuccess;
     return usable ? std::move(functions) : nullptr;
   }();
   return loaded.get();

@@ -27,7 +27,7 @@ struct Api {
 
   bool load() {
     const Library library({"libnvrtc.so", "libnvrtc.so.13", "libnvrtc.so.12", "libnvrtc.so.11.2", "/usr/local/cuda/lib64/libnvrtc.so",
-                           "/usr/local/cuda/lib/libnvrtc.so"});
+                           "/usr/local/cuda/lib/libnvrtc.so", "nvrtc64_130_0.dll", "nvrtc64_120_0.dll", "nvrtc64_112_0.dll"});
     return library.find("nvrtcVersion", version) && library.find("nvrtcGetNumSupportedArchs", number_of_architectures) &&
            library.find("nvrtcGetSupportedArchs", architectures) && library.find("nvrtcCreateProgram", create) &&
            library.find("nvrtcDestroyProgram", destroy) && library.find("nvrtcCompileProgram", compile) &&

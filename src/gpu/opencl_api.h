@@ -80,7 +80,7 @@ struct Api {
   std::int32_t (*release_kernel)(KernelId);
 
   bool load() {
-    const Library library({"libOpenCL.so.1", "libOpenCL.so"});
+    const Library library({"libOpenCL.so.1", "libOpenCL.so", "OpenCL.dll"});
     return library.find("clGetPlatformIDs", get_platform_ids) && library.find("clGetPlatformInfo", get_platform_info) &&
            library.find("clGetDeviceIDs", get_device_ids) && library.find("clGetDeviceInfo", get_device_info) &&
            library.find("clCreateContext", create_context) && library.find("clReleaseContext", release_context) &&
