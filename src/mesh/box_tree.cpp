@@ -1,14 +1,13 @@
 #include "mesh/box_tree.h"
 
 #include "cpu/parallel.h"
+#include "mesh/constants.h"
 
 namespace g3r::mesh {
 namespace {
 
-// About so many jobs share the pairs, whatever the number of threads, so that their order is the same.
-constexpr std::size_t kPairJobs = 256;
-// The levels that are split one after the other: below, every subtree is a job, and fewer would leave threads idle.
-constexpr int kTop = 8;
+// The levels that are split one after the other: below, every subtree is a job.
+constexpr int kTop = std::countr_zero(kTasks);
 
 // A box while the tree is built.
 struct Item {
@@ -68,7 +67,7 @@ BoxTree::BoxTree(const std::vector<FloatBox>& boxes) : order_(boxes.size()), box
 std::vector<BoxTree::PairJob> BoxTree::pair_jobs() const {
   std::vector<PairJob> jobs{{0, 0}};
   bool split = true;
-  while (split && jobs.size() < kPairJobs) {
+  while (split && jobs.size() < kTasks) {
     std::vector<PairJob> next;
     split = false;
     for (const PairJob& job : jobs) {

@@ -1,6 +1,7 @@
 #include "base/vector.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
+#include "mesh/constants.h"
 
 #include <g3r/g3r.h>
 
@@ -12,8 +13,6 @@ namespace {
 
 // The points whose colours are mixed: more would blur, and one would look blocky.
 constexpr std::size_t kPoints = 4;
-// What is added to squared distances, of the farthest of them: a vertex on a point takes that point's colour, and nothing is divided by 0.
-constexpr double kSoften = 1e-6;
 
 }  // namespace
 
@@ -34,12 +33,13 @@ void carry_attributes(Mesh& mesh, const PointsView& points, const std::vector<st
   const Neighbours neighbours(finite);
   mesh.colors.resize(colors.empty() ? 0 : mesh.vertices.size());
   mesh.confidence.resize(confidence.empty() ? 0 : mesh.vertices.size());
-  parallel::for_blocks(mesh.vertices.size(), 256, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(mesh.vertices.size(), mesh::kBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> index;
     std::vector<double> squared;
     for (std::size_t v = begin; v < end; ++v) {
       neighbours.nearest(mesh.vertices[v], kPoints, index, squared);
-      const double floor = kSoften * squared.back() + std::numeric_limits<double>::min();
+      // A vertex on a point takes that point's colour, and nothing is divided by 0.
+      const double floor = mesh::kRounding * squared.back() + std::numeric_limits<double>::min();
       double total = 0, sure = 0;
       std::array<double, 3> color{};
       for (std::size_t k = 0; k < index.size(); ++k) {

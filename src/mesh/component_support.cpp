@@ -3,42 +3,39 @@
 #include "base/vector.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
+#include "mesh/constants.h"
 #include "mesh/held_points.h"
 #include "mesh/mesh_parts.h"
 #include "mesh/trim.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace g3r::mesh {
 namespace {
 
-// The distance in spacings, plus as many standard deviations, from a point to the centre of a triangle that it holds at most: leaves are
-// 0.8 spacings wide, so a point on the surface has one well within it.
-constexpr double kAtSpacings = 1.5;
 // The distance in spacings up to which a stray is beside a point: the parts that strays make are no farther from them.
 constexpr double kBesideSpacings = 3;
-// The points that a component stands for at least: smaller ones are spurious, as signs of single corners make them.
-constexpr double kLeastComponent = 8;
 // The squared noise in squared spacings for which as many points more are asked for: noise makes spheres of 1.7 standard deviations.
 constexpr double kLeastPerNoise = 4;
-constexpr std::uint32_t kNothing = 0xffffffff;
-constexpr double kAnywhere = 1e150;  // A reach that holds all: its square is a number still.
 
-// For every place the nearest of some points within its reach, or kNothing.
+// For every place the nearest of some points within its squared reach, or kNone.
 template <class Reach>
 std::vector<std::uint32_t> nearest_of(const std::vector<Vec3>& points, const std::vector<Vec3>& places, const Reach& reach) {
   const Neighbours neighbours(points);
   std::vector<std::uint32_t> out(places.size());
-  parallel::for_blocks(places.size(), 256, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(places.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      double squared = std::pow(reach(i), 2);
-      out[i] = neighbours.nearest(places[i], squared, kNothing);
+      double squared = reach(i);
+      out[i] = neighbours.nearest(places[i], squared, kNone);
     }
   });
   return out;
 }
+
+double anywhere(std::size_t) { return std::numeric_limits<double>::max(); }
 
 std::vector<Vec3> centres_of(const Mesh& mesh) {
   std::vector<Vec3> centres;
@@ -64,7 +61,7 @@ void Support::add(const Support& other) {
 void add_areas(const Mesh& mesh, const std::vector<std::uint32_t>& component, const std::vector<Vec3>& points,
                const std::vector<double>& spacing, double scatter, std::vector<Support>& support) {
   const std::vector<Vec3> centres = centres_of(mesh);
-  const std::vector<std::uint32_t> nearest = nearest_of(points, centres, [](std::size_t) { return kAnywhere; });
+  const std::vector<std::uint32_t> nearest = nearest_of(points, centres, anywhere);
   for (std::size_t t = 0; t < centres.size(); ++t) {
     const double h2 = spacing[nearest[t]] * spacing[nearest[t]];
     const double area = area_of(mesh, mesh.triangles[t]);
@@ -81,14 +78,14 @@ void add_points(const Mesh& mesh, const std::vector<std::uint32_t>& component, c
                 const std::vector<double>& spacing, double scatter, const std::vector<Vec3>& strays, std::vector<Support>& support) {
   const std::vector<Vec3> centres = centres_of(mesh);
   const std::vector<std::uint32_t> held_by =
-      nearest_of(centres, points, [&](std::size_t i) { return kAtSpacings * (spacing[i] + scatter); });
+      nearest_of(centres, points, [&](std::size_t i) { return std::pow(kGap * (spacing[i] + scatter), 2); });
   for (const std::uint32_t t : held_by) {
-    if (t != kNothing) ++support[component[t]].points;
+    if (t != kNone) ++support[component[t]].points;
   }
-  const std::vector<std::uint32_t> beside = nearest_of(points, strays, [](std::size_t) { return kAnywhere; });
+  const std::vector<std::uint32_t> beside = nearest_of(points, strays, anywhere);
   for (std::size_t k = 0; k < strays.size(); ++k) {
     const Vec3 d = vector::subtract(strays[k], points[beside[k]]);
-    if (held_by[beside[k]] == kNothing || std::sqrt(vector::dot(d, d)) > kBesideSpacings * spacing[beside[k]]) continue;
+    if (held_by[beside[k]] == kNone || std::sqrt(vector::dot(d, d)) > kBesideSpacings * spacing[beside[k]]) continue;
     ++support[component[held_by[beside[k]]]].strays;
   }
 }
@@ -98,7 +95,8 @@ std::vector<std::uint8_t> kept_components(const std::vector<Support>& support, c
   std::vector<std::size_t> order(support.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return support[a].near_area > support[b].near_area; });
-  const double least_area = options.min_component.value_or(options.keep_all ? 0 : kLeastComponent);
+  // Components that stand for fewer points are spurious, as signs of single corners make them.
+  const double least_area = options.min_component.value_or(options.keep_all ? 0.0 : kRing);
   const bool by_points = !options.min_component && !options.keep_all;
   const double least_points = least_points_of_a_part(strays);
   std::vector<std::uint8_t> keep(support.size(), 1);

@@ -3,6 +3,7 @@
 
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
+#include "mesh/constants.h"
 
 #include <g3r/points.h>
 
@@ -18,7 +19,7 @@ template <class Unit>
 std::vector<double> distance_to_points(const std::vector<Vec3>& places, const std::vector<Vec3>& points, const Unit& unit) {
   const Neighbours neighbours(points);
   std::vector<double> out(places.size());
-  parallel::for_blocks(places.size(), 256, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(places.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> index;
     std::vector<double> squared;
     for (std::size_t i = begin; i < end; ++i) {

@@ -2,12 +2,13 @@
 
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace g3r {
 namespace {
 
-constexpr double kHalfUlp = 0x1p-53;
+constexpr double kHalfUlp = std::numeric_limits<double>::epsilon() / 2;
 constexpr double kErrorBound3 = (7 + 56 * kHalfUlp) * kHalfUlp;  // Shewchuk, section 4.3, of the rounded 3 x 3 determinant
 constexpr double kErrorBound2 = (3 + 16 * kHalfUlp) * kHalfUlp;
 

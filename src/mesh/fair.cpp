@@ -4,6 +4,7 @@
 #include "base/vector.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
+#include "mesh/constants.h"
 #include "mesh/self_intersections.h"
 
 #include <g3r/error.h>
@@ -23,30 +24,17 @@ using vector::dot;
 using vector::scale;
 using vector::subtract;
 
-// The nearest points, itself one, that show whether they lie along a curve: more reach the next one.
-constexpr std::size_t kAlong = 9;
-// The second variance of these over the largest up to which they do: on surfaces one point in 1,000 is below 0.1.
+// The second variance of a point and its ring over the largest, up to which they lie along a curve: on surfaces one point in 1,000 is below
+// 0.1.
 constexpr double kThin = 0.05;
-// The nearest points of a place, and the share of them along curves from which it is sampled in lines: where lines cross few are.
-constexpr std::size_t kVotes = 16;
-constexpr double kShare = 0.25;
-// The share of all points from which all count as in lines: where lines meet they look like a surface, and would stay rough.
-constexpr double kMostly = 0.5;
-// The weight of the distance of a point from the surface against the Laplacian of a vertex: less smooths, and leaves the points.
-constexpr double kPointWeight = 0.5;
 // Rounds of finding where the points meet the surface, which moves in each.
 constexpr int kRounds = 3;
 // Conjugate gradients in each: so many steps at most, or until the residual is this share of the first. What is left moves no vertex
 // visibly.
 constexpr int kSteps = 300;
 constexpr double kTolerance = 1e-4;
-// The triangles, by their centres, among which the nearest to a point is looked for: long ones have far centres.
-constexpr std::size_t kNearTriangles = 12;
-// Attempts without crossing triangles, each with what crossed in the one before held, and so many rings of vertices around it; then it
-// stays.
+// Attempts without crossing triangles, each with what crossed in the one before held, and the rings around it; then it stays.
 constexpr int kAttempts = 4;
-constexpr int kHeldRings = 3;
-constexpr std::size_t kBlock = 1024;  // points or vertices per parallel block
 
 // A point, and where the surface should meet it.
 struct Pin {
@@ -131,11 +119,12 @@ class Energy {
         }
       }
     });
+    // The distance of a point from the surface weighs half as much as the Laplacian of a vertex: less smooths, and leaves the points.
     for (const Pin& pin : pins) {
       Vec3 miss = home ? scale(pin.place, -1) : Vec3{0, 0, 0};
       for (std::size_t k = 0; k < 3; ++k) miss = add(miss, scale(at[pin.vertex[k]], pin.weight[k]));
       for (std::size_t k = 0; k < 3; ++k) {
-        if (free_[pin.vertex[k]] != 0) out[pin.vertex[k]] = add(out[pin.vertex[k]], scale(miss, kPointWeight * pin.weight[k]));
+        if (free_[pin.vertex[k]] != 0) out[pin.vertex[k]] = add(out[pin.vertex[k]], scale(miss, 0.5 * pin.weight[k]));
       }
     }
     return out;
@@ -193,11 +182,11 @@ std::vector<Pin> pin(const Mesh& mesh, const std::vector<Vec3>& points, const st
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (marked[i] != 0) pins.push_back({{}, {}, points[i]});
   }
-  parallel::for_blocks(pins.size(), 64, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(pins.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> index;
     std::vector<double> squared;
     for (std::size_t i = begin; i < end; ++i) {
-      neighbours.nearest(pins[i].place, std::min(kNearTriangles, centres.size()), index, squared);
+      neighbours.nearest(pins[i].place, kFitPoints, index, squared);  // of long triangles the centres are far
       double best = std::numeric_limits<double>::infinity();
       for (const std::uint32_t t : index) {
         const auto& v = mesh.triangles[t];
@@ -272,7 +261,7 @@ void hold_around(const Mesh& mesh, const std::vector<TrianglePair>& pairs, const
   for (const TrianglePair& pair : pairs) {
     for (const std::uint32_t f : pair) front.insert(front.end(), mesh.triangles[f].begin(), mesh.triangles[f].end());
   }
-  for (int ring = 0; ring <= kHeldRings; ++ring, front.swap(next)) {
+  for (int ring = 0; ring <= kRings; ++ring, front.swap(next)) {
     next.clear();
     for (const std::uint32_t v : front) {
       free[v] = 0;
@@ -286,7 +275,7 @@ void hold_around(const Mesh& mesh, const std::vector<TrianglePair>& pairs, const
 }  // namespace
 
 std::vector<std::uint8_t> points_along_curves(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near) {
-  const std::size_t n = points.size(), stride = near.size() / n, count = std::min(kAlong, stride);
+  const std::size_t n = points.size(), stride = near.size() / n, count = std::min(kRing + 1, stride);
   std::vector<std::uint8_t> out(n, 0);
   parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -307,16 +296,17 @@ std::vector<std::uint8_t> points_along_curves(const std::vector<Vec3>& points, c
 }
 
 std::vector<std::uint8_t> points_in_lines(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near) {
-  const std::size_t n = points.size(), stride = near.size() / n, voters = std::min(kVotes, stride);
+  const std::size_t n = points.size(), stride = near.size() / n, voters = std::min(kFitPoints, stride);
   const std::vector<std::uint8_t> thin = points_along_curves(points, near);
   std::vector<std::uint8_t> out(n, 0);
   for (std::size_t i = 0; i < n; ++i) {
     std::size_t votes = 0;
     for (std::size_t k = 0; k < voters; ++k) votes += thin[near[i * stride + k]];
-    out[i] = static_cast<double>(votes) >= kShare * static_cast<double>(voters) ? 1 : 0;
+    out[i] = static_cast<double>(votes) >= kInLines * static_cast<double>(voters) ? 1 : 0;
   }
-  const auto marked = std::count(out.begin(), out.end(), std::uint8_t{1});
-  if (static_cast<double>(marked) >= kMostly * static_cast<double>(n)) std::fill(out.begin(), out.end(), std::uint8_t{1});
+  // Where lines meet they look like a surface, and would stay rough.
+  const auto marked = static_cast<std::size_t>(std::count(out.begin(), out.end(), std::uint8_t{1}));
+  if (2 * marked >= n) std::fill(out.begin(), out.end(), std::uint8_t{1});
   return out;
 }
 

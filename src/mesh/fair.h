@@ -12,6 +12,10 @@
 
 namespace g3r::mesh {
 
+/// The share of points along curves from which a place, or a cloud, is sampled in lines: none of a random sample are, where lines cross
+/// few, and of wireframes a quarter and more.
+inline constexpr double kInLines = 0.25;
+
 /// Marks (1) the points that lie along a curve with their 8 nearest. `near`: Neighbours::of_all(k) of the points, k >= 9. O(N).
 [[nodiscard]] std::vector<std::uint8_t> points_along_curves(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near);
 

@@ -5,14 +5,15 @@
 // closed 2-manifold for every octree and every sign pattern whose boundary corners are outside.
 #pragma once
 
+#include "mesh/field_octree.h"
+
+#include <g3r/mesh.h>
+
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <vector>
-
-#include "g3r/mesh.h"
-#include "mesh/field_octree.h"
 
 namespace g3r::mesh {
 
@@ -49,13 +50,6 @@ using InsideTest = std::function<std::vector<std::uint8_t>(const std::vector<Vec
 /// Throws Cancelled.
 [[nodiscard]] DualSurface contour(const Octree& octree, const std::vector<std::uint8_t>& inside, const InsideTest& centre_inside,
                                   const std::atomic<bool>* cancel = nullptr);
-
-/// An edge of a leaf that no smaller leaf's edge subdivides.
-struct MinimalEdge {
-  std::uint32_t low = 0, high = 0;      ///< corners
-  std::array<std::uint32_t, 4> leaf{};  ///< around it, in order; a leaf twice as large may fill two adjacent places
-  std::uint8_t axis = 0;                ///< direction
-};
 
 /// The minimal edges with a marked leaf (one byte per leaf) around them. O(nodes + edges). Throws Cancelled.
 [[nodiscard]] std::vector<MinimalEdge> edges_around(const Octree& octree, const std::vector<std::uint8_t>& leaves,

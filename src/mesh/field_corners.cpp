@@ -1,10 +1,11 @@
 #include "mesh/field_corners.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "base/median.h"
 #include "cpu/parallel.h"
+#include "mesh/constants.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace g3r::mesh {
 namespace {
@@ -13,8 +14,6 @@ namespace {
 constexpr double kLocalReach = 1.8;
 // |w - level| from which the field overrules the fitted surface: with 0.4 the sword has 44 handles instead of 5 (docs/evidence/meshes.md).
 constexpr double kFieldSure = 0.2;
-// The distance from the cube of the points, of its side, beyond which all is outside: fast sums end there, and single ones are slow.
-constexpr double kBeyond = 0.05;
 // The corners of which more than the side is in memory at the same time.
 constexpr std::size_t kCornersAtOnce = std::size_t{1} << 17;
 // The value of an ambiguous corner is 2 (w - level) and, of the fitted surface, this at most, so that the two weigh alike where the field
@@ -52,7 +51,7 @@ Corners CornerSides::of(const Octree& octree, const std::function<bool(std::uint
   for (std::size_t first = 0; first < corners.value.size(); first += kCornersAtOnce) {
     places.resize(std::min(corners.value.size() - first, kCornersAtOnce));
     parallel::for_blocks(
-        places.size(), 256,
+        places.size(), kBlock,
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) {
             if (wanted(static_cast<std::uint32_t>(first + i))) {
@@ -124,7 +123,7 @@ bool CornerSides::is_beyond(const Vec3& x) const {
 
 std::vector<std::uint8_t> sides_by_fit(const LocalFit& local, const std::vector<Vec3>& places) {
   std::vector<std::uint8_t> inside(places.size());
-  parallel::for_blocks(places.size(), 256, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(places.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector3d x(places[i][0], places[i][1], places[i][2]);
       const LocalSurface fit = local.fit(x, kLocalReach, nullptr, LocalFit::Detail::kSide);

@@ -1,6 +1,11 @@
 // Which side of the surface the corners of an octree are on.
 #pragma once
 
+#include "mesh/field_local_fit.h"
+#include "mesh/field_octree.h"
+#include "mesh/field_sampler.h"
+#include "mesh/side_smoothing.h"
+
 #include <g3r/points.h>
 
 #include <array>
@@ -10,12 +15,10 @@
 #include <limits>
 #include <vector>
 
-#include "mesh/field_local_fit.h"
-#include "mesh/field_octree.h"
-#include "mesh/field_sampler.h"
-#include "mesh/side_smoothing.h"
-
 namespace g3r::mesh {
+
+/// The distance from the cube of the points, of its side, beyond which all is outside: fast sums end there, and single ones are slow.
+inline constexpr double kBeyond = 0.05;
 
 /// The corners of an octree.
 struct Corners {

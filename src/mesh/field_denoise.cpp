@@ -1,32 +1,23 @@
 #include "mesh/field_denoise.h"
 
+#include "base/median.h"
+#include "cpu/parallel.h"
+#include "mesh/constants.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-
-#include "base/median.h"
-#include "cpu/parallel.h"
 
 namespace g3r::mesh {
 namespace {
 
 using Eigen::Vector3d;
 
-// The points that the noise is estimated at, evenly from all: the median of so many is good to a few percent.
-constexpr std::size_t kSampled = 2000;
-// The width of the fits that estimate it, in spacings: they have about 40 points, so that noise of a spacing does not bend them.
-constexpr double kEstimateWidth = 1.8;
-// The width of the fits that points move onto, in spacings: so much at no noise, more for each standard deviation, and this at most.
-// Narrower leaves noise; wider rounds detail and costs its square in time.
+// The width in spacings of the fits that points move onto, at no noise: with 0.7, at 50,000 points, smooth models have a CD 2 to 4 %
+// larger.
 constexpr double kWidthFloor = 0.8;
-constexpr double kWidthPerNoise = 2.0;
-constexpr double kWidthMost = 4.0;
-// Cosine of two normals below which a point belongs to another part of the surface and does not count.
-constexpr double kSameSide = 0.3;
-// The widths within which points are looked for: those beyond would weigh less than 14 %.
-constexpr double kReach = 2.0;
-// The most that slopes weigh against heights: normals that are far better than positions would leave these without a say.
-constexpr double kMostNormalWeight = 4.0;
+// The width of the fits that estimate the noise, in spacings: they have about 40 points, so that noise of a spacing does not bend them.
+constexpr double kEstimateWidth = 1.8;
 
 // The points near point i that face the same way, weighed by their distance along the surface.
 class Neighbourhood {
@@ -35,7 +26,9 @@ class Neighbourhood {
 
   const std::vector<FitPoint>& gather(std::size_t i, double width) {
     const double h = points_.spacing[i];
-    const auto k = static_cast<std::size_t>(std::clamp(std::numbers::pi * kReach * kReach * width * width, 12.0, 200.0));
+    // Those within twice the width: those beyond would weigh less than 14 %.
+    const double reach = 2 * width;
+    const auto k = static_cast<std::size_t>(std::numbers::pi * reach * reach);
     const Vector3d x = to_eigen(points_.positions[i]);
     neighbours_.nearest(points_.positions[i], k, index_, squared_);
     Vector3d axis = to_eigen(points_.normals[i]);
@@ -45,7 +38,7 @@ class Neighbourhood {
       members_.clear();
       for (const std::uint32_t j : index_) {
         const Vector3d n = to_eigen(points_.normals[j]);
-        if (n.dot(axis) < kSameSide) continue;
+        if (n.dot(axis) < kSlant) continue;  // on another part of the surface
         const Vector3d p = to_eigen(points_.positions[j]);
         const double along = axis.dot(p - x);
         const double weight = std::exp(-((p - x).squaredNorm() - along * along) * scale);
@@ -69,9 +62,9 @@ class Neighbourhood {
 }  // namespace
 
 Noise estimate_noise(const OrientedPoints& points, const Neighbours& neighbours) {
-  const std::size_t n = points.positions.size(), count = std::min(n, kSampled);
+  const std::size_t n = points.positions.size(), count = std::min(n, kSample);
   std::vector<double> position(count), normal(count);
-  parallel::for_blocks(count, 64, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(count, kBlock, [&](std::size_t begin, std::size_t end) {
     Neighbourhood near(points, neighbours);
     for (std::size_t s = begin; s < end; ++s) {
       const auto i = static_cast<std::size_t>(std::uint64_t{s} * n / count);
@@ -97,12 +90,15 @@ Noise estimate_noise(const OrientedPoints& points, const Neighbours& neighbours)
 }
 
 void denoise(OrientedPoints& points, const Neighbours& neighbours, const Noise& noise, const std::atomic<bool>* cancel) {
-  const double width = std::min(kWidthFloor + kWidthPerNoise * noise.position, kWidthMost);
-  const double ratio = noise.position / std::max(noise.normal, 1e-3);
-  const double normal_weight = std::clamp(ratio * ratio, kSlopeWeight, kMostNormalWeight);
+  // Narrower fits leave noise; wider ones round detail and cost their square in time.
+  const double width = std::min(kWidthFloor + 2 * noise.position, kFarSpacings);
+  // Normals that are far better than positions would leave these without a say: slopes weigh no more against heights than heights do
+  // against slopes in a fit to clean points. Without noise of the normals the ratio is infinite.
+  const double ratio = noise.position / noise.normal;
+  const double normal_weight = std::clamp(ratio * ratio, kSlopeWeight, 1 / kSlopeWeight);
   std::vector<Vec3> positions(points.positions.size()), normals(points.positions.size());
   parallel::for_blocks(
-      positions.size(), 64,
+      positions.size(), kBlock,
       [&](std::size_t begin, std::size_t end) {
         Neighbourhood near(points, neighbours);
         for (std::size_t i = begin; i < end; ++i) {

@@ -1,9 +1,9 @@
 // Noise of an oriented cloud: how much there is, and points moved onto the smooth surface that it scatters about.
 #pragma once
 
-#include <atomic>
-
 #include "mesh/field_local_fit.h"
+
+#include <atomic>
 
 namespace g3r::mesh {
 
@@ -12,7 +12,7 @@ struct Noise {
   double normal = 0;    ///< root mean square deviation of the normals, in radians; median over the cloud
 };
 
-/// `neighbours`: of the positions. From the misfit of quadratic height fields to about 48 neighbours, at 2,000 points evenly spread over
+/// `neighbours`: of the positions. From the misfit of quadratic height fields to about 48 neighbours, at 4,000 points evenly spread over
 /// the indices.
 [[nodiscard]] Noise estimate_noise(const OrientedPoints& points, const Neighbours& neighbours);
 

@@ -1,11 +1,13 @@
 #include "mesh/field_local_fit.h"
 
-#include <Eigen/Geometry>
+#include "cpu/parallel.h"
+#include "mesh/constants.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "cpu/parallel.h"
+#include <Eigen/Geometry>
 
 namespace g3r::mesh {
 namespace {
@@ -15,38 +17,22 @@ using Eigen::Vector3d;
 // Cosine of two normals, 32 degrees, up to which points are on one patch: creases of CAD models turn more, and smooth surfaces less from
 // one point to the next.
 constexpr double kSameSheet = 0.85;
-// Points of a patch beside the first, at least: fewer are noise, and a patch of their own would make a crease of it.
-constexpr std::size_t kMinSheet = 3;
-// Points of a fit, the nearest ones to the place. A quadratic has six numbers and normals double the data; more reach across walls.
-constexpr std::size_t kFitPoints = 16;
-// About the standard deviation of the weights in spacings: with 1 the dragon's CD is 0.29 instead of 0.24 (docs/evidence/meshes.md).
-constexpr double kWidth = 0.7;
 // Weights are about exp(-t) for t up to this and 0 beyond; it is a power of two, for bell().
 constexpr double kFaint = 16;
 // Spacings that the points of each of two patches are beside the other, on one side, for them to meet in a crease: closer ones, and such on
 // both sides, are one surface.
 constexpr double kJointClear = 0.03;
-
-// Cosine between a normal and the wanted direction from which a point does not count: it is on the other wall.
-constexpr double kAgainst = -0.2;
-// Cosine of two normals, 135 degrees, from which their points are on opposite walls: sharp edges turn less.
-constexpr double kOpposite = -0.7;
-// Spacings: tangent planes nearer than this may have the place on the other side of theirs, as curvature does that to them.
-constexpr double kAgree = 0.5;
 // Spacings from all tangent planes from which curvature cannot change the side of a place, so that nothing is fitted: half of the time.
 constexpr double kClear = 0.2;
-// Cosine of two patches from which they are two walls and not one bend, so that both are kept whatever the misfit of one is.
-constexpr double kFacing = -0.3;
-// Steps of the search for the nearest point from one to the next: after so many the tree is faster.
-constexpr int kSteps = 3;
 // A factor larger than what rounding can make of a squared distance: without it the search might miss a point as near.
-constexpr double kWider = 1 + 1e-9;
+constexpr double kWider = 1 + kRounding;
 // The share of one patch's squared misfit that several ones may leave at most: a crease of a CAD model passes, undersampled detail does not
 // (without, the dragon's AE_m is 1.05 instead of 0.88, docs/evidence/meshes.md).
 constexpr double kSplitGain = 0.05;
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 using Member = FitPoint;
+// The sheet of a member that none has taken yet, and of one that makes no sheet with those like it.
+enum : int { kUndealt = -1, kLeftOut = -2 };
 
 // About exp(-t), 0 at kFaint.
 double bell(double t) {
@@ -80,6 +66,58 @@ Joint joint_of(const LocalSurface& s, const std::vector<Member>& members, int a,
   return Joint::kNone;
 }
 
+// The nearest point left seeds a sheet, which takes those with similar normals: similar to the seed's, then to their mean. False if no
+// point is left.
+bool deal_out(LocalSurface& s, std::vector<Member>& members) {
+  const auto seed = std::find_if(members.begin(), members.end(), [](const Member& m) { return m.sheet == kUndealt; });
+  if (seed == members.end()) return false;
+  Vector3d axis = seed->n;
+  std::size_t taken = 0;
+  for (int pass = 0; pass < 2; ++pass) {
+    Vector3d mean = Vector3d::Zero();
+    taken = 0;
+    for (Member& m : members) {
+      if (m.sheet != kUndealt && m.sheet != s.count) continue;
+      const bool same = m.n.dot(axis) > kSameSheet || &m == &*seed;
+      m.sheet = same ? s.count : kUndealt;
+      if (!same) continue;
+      mean += m.weight * m.n;
+      ++taken;
+    }
+    axis = mean.normalized();
+  }
+  if (taken < std::min(kPatchPoints, members.size()) && s.count > 0) {
+    for (Member& m : members) {
+      if (m.sheet == s.count) m.sheet = kLeftOut;
+    }
+    return true;
+  }
+  s.sheet[static_cast<std::size_t>(s.count)] = fit_sheet(members, s.count, s.spacing, kSlopeWeight);
+  ++s.count;
+  return true;
+}
+
+// Whether two of the sheets face each other or away from each other.
+bool has_walls(const LocalSurface& s) {
+  const auto normal = [&](int k) { return s.sheet[static_cast<std::size_t>(k)].frame.row(2); };
+  for (int a = 0; a < s.count; ++a) {
+    for (int b = 0; b < a; ++b) {
+      if (normal(a).dot(normal(b)) < -kSlant) return true;
+    }
+  }
+  return false;
+}
+
+// Whether all points belong to the one sheet, and their tangent planes have x on the side that it has it on. Planes nearer than half
+// a spacing need not: curvature does that to them.
+bool is_simple(const LocalSurface& s, const std::vector<Member>& members, const Vector3d& x) {
+  const double f = s.sheet[0].distance(x);
+  return std::all_of(members.begin(), members.end(), [&](const Member& m) {
+    const double plane = m.n.dot(x - m.p);
+    return m.sheet == 0 && ((plane > 0) == (f > 0) || std::abs(plane) < 0.5 * s.spacing);
+  });
+}
+
 // Undersampled detail also makes normals differ. Several sheets are kept only if they explain the points far better than one smooth
 // sheet does; sheets that face each other are always kept.
 void prefer_one_sheet(LocalSurface& s, std::vector<Member>& members) {
@@ -102,38 +140,36 @@ void prefer_one_sheet(LocalSurface& s, std::vector<Member>& members) {
   }
 }
 
+// The value of one sheet at a place.
+struct Part {
+  double f;
+  int sheet;
+};
+
+// Of the solid that two sheets bound; a, the nearer one, where they do not meet.
+Part combine(const Part& a, const Part& b, Joint joint) {
+  if (joint == Joint::kConvex) return a.f >= b.f ? a : b;
+  if (joint == Joint::kConcave) return a.f <= b.f ? a : b;
+  return a;
+}
+
+// The pair that is joined in another way than the other two pairs is joined first. `joint`: of a-b, a-c, b-c.
+Part join_three(const Part& a, const Part& b, const Part& c, const std::array<Joint, 3>& joint) {
+  const auto [ab, ac, bc] = joint;
+  if (bc != Joint::kNone && ab == ac) return combine(a, combine(b, c, bc), ab);
+  if (ac != Joint::kNone && ab == bc) return combine(combine(a, c, ac), b, ab);
+  return combine(combine(a, b, ab), c, ac);
+}
+
 }  // namespace
 
 double LocalSurface::distance(const Vector3d& x, int* active) const {
-  struct Part {
-    double f;
-    int sheet;
-  };
-  const auto combine = [](const Part& a, const Part& b, Joint joint) {
-    if (joint == Joint::kConvex) return a.f >= b.f ? a : b;
-    if (joint == Joint::kConcave) return a.f <= b.f ? a : b;
-    return a;
-  };
-  std::array<Part, 3> part{};
-  for (int k = 0; k < count; ++k) part[static_cast<std::size_t>(k)] = {sheet[static_cast<std::size_t>(k)].distance(x), k};
-  Part result = part[0];
+  const auto at = [&](std::size_t k) { return Part{sheet[k].distance(x), static_cast<int>(k)}; };
+  Part result = at(0);
   if (count == 2) {
-    result = combine(part[0], part[1], joint[0]);
+    result = combine(result, at(1), joint[0]);
   } else if (count == 3) {
-    // The pair that is joined in another way than the other two pairs is joined first.
-    if (joint[2] != Joint::kNone && joint[0] == joint[1]) {
-      result = combine(part[0], combine(part[1], part[2], joint[2]), joint[0]);
-    } else if (joint[1] != Joint::kNone && joint[0] == joint[2]) {
-      result = combine(combine(part[0], part[2], joint[1]), part[1], joint[0]);
-    } else if (joint[0] != Joint::kNone && joint[1] == joint[2]) {
-      result = combine(combine(part[0], part[1], joint[0]), part[2], joint[1]);
-    } else if (joint[0] == Joint::kNone) {
-      result = combine(part[0], joint[2] == Joint::kNone ? part[2] : combine(part[2], part[1], joint[2]), joint[1]);
-    } else {
-      const Part far = joint[2] == Joint::kNone ? part[1] : combine(part[1], part[2], joint[2]);
-      result = combine(part[0], far, joint[0]);
-      if (joint[2] == Joint::kNone && joint[1] != Joint::kNone) result = combine(result, part[2], joint[1]);
-    }
+    result = join_three(at(0), at(1), at(2), joint);
   }
   if (active != nullptr) *active = result.sheet;
   return result.f;
@@ -160,7 +196,7 @@ std::uint32_t LocalFit::nearest(const Vector3d& x, double reach, double& squared
   };
   const double most = reach * widest_;
   squared = kWider * most * most;
-  for (int step = 0; step < kSteps; ++step) {
+  while (true) {
     const std::uint32_t centre = last;
     const std::uint32_t* const near = near_.data() + centre * count_;
     const double to_centre = squared_distance(place, p[centre]);
@@ -224,6 +260,23 @@ LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* dire
     out.simple = true;
     return out;
   }
+  gather(x, nearest, scale, direction, members);
+  for (int seed = 0; seed < kMostSheets && deal_out(out, members); ++seed) continue;
+  out.walls = has_walls(out);
+  if (out.count == 1) {
+    out.simple = is_simple(out, members, x);
+  } else if (out.count > 1) {
+    prefer_one_sheet(out, members);
+  }
+  for (int b = 1; b < out.count; ++b) {
+    for (int a = 0; a < b; ++a) out.joint[static_cast<std::size_t>(a + b - 1)] = joint_of(out, members, a, b);
+  }
+  return out;
+}
+
+// The points that take part in the fit at x, nearest first, with their weights.
+void LocalFit::gather(const Vector3d& x, std::uint32_t nearest, double scale, const Vector3d* direction,
+                      std::vector<Member>& members) const {
   // The nearest ones, by insertion: the neighbours are nearly in order.
   std::array<std::pair<double, std::uint32_t>, kFitPoints> near;  // squared distances and points
   std::size_t used = 0;
@@ -240,72 +293,23 @@ LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* dire
   for (std::size_t k = 0; k < used; ++k) {
     const auto [r2, i] = near[k];
     const Vector3d n = to_eigen(points_.normals[i]);
-    if (direction != nullptr && n.dot(*direction) < kAgainst) continue;
+    if (direction != nullptr && n.dot(*direction) < -kSlant) continue;  // on the other wall
     if (first < 0) first = r2;
     const double exponent = (r2 - first) * scale;
     if (exponent >= kFaint) break;
-    members.push_back({to_eigen(points_.positions[i]), n, bell(exponent), -1});
+    members.push_back({to_eigen(points_.positions[i]), n, bell(exponent), kUndealt});
   }
-  // Deal the points out: the nearest one left seeds a sheet, which takes those with similar normals.
-  for (int s = 0; s < 3 && out.count < 3; ++s) {
-    const auto seed = std::find_if(members.begin(), members.end(), [](const Member& m) { return m.sheet == -1; });
-    if (seed == members.end()) break;
-    Vector3d axis = seed->n;
-    std::size_t taken = 0;
-    for (int pass = 0; pass < 2; ++pass) {
-      Vector3d mean = Vector3d::Zero();
-      taken = 0;
-      for (Member& m : members) {
-        if (m.sheet != -1 && m.sheet != out.count) continue;
-        const bool same = m.n.dot(axis) > kSameSheet || &m == &*seed;
-        m.sheet = same ? out.count : -1;
-        if (!same) continue;
-        if (pass == 0) mean += m.weight * m.n;
-        ++taken;
-      }
-      if (pass == 0) axis = mean.normalized();
-    }
-    if (taken < std::min(kMinSheet, members.size()) && out.count > 0) {
-      for (Member& m : members) {
-        if (m.sheet == out.count) m.sheet = -2;
-      }
-      continue;
-    }
-    out.sheet[static_cast<std::size_t>(out.count)] = fit_sheet(members, out.count, h, kSlopeWeight);
-    ++out.count;
-  }
-  for (int a = 0; a < out.count; ++a) {
-    for (int b = 0; b < a; ++b) {
-      const auto na = out.sheet[static_cast<std::size_t>(a)].frame.row(2), nb = out.sheet[static_cast<std::size_t>(b)].frame.row(2);
-      out.walls = out.walls || na.dot(nb) < kFacing;
-    }
-  }
-  const bool alike = out.count == 1;
-  if (out.count > 1) prefer_one_sheet(out, members);
-  if (alike) {
-    const double f = out.sheet[0].distance(x);
-    out.simple = std::all_of(members.begin(), members.end(), [&](const Member& m) {
-      const double plane = m.n.dot(x - m.p);
-      return m.sheet == 0 && ((plane > 0) == (f > 0) || std::abs(plane) < kAgree * h);
-    });
-  }
-  if (out.count > 1) out.joint[0] = joint_of(out, members, 0, 1);
-  if (out.count > 2) {
-    out.joint[1] = joint_of(out, members, 0, 2);
-    out.joint[2] = joint_of(out, members, 1, 2);
-  }
-  return out;
 }
 
 std::vector<double> wall_thickness(const OrientedPoints& points, const std::vector<std::uint32_t>& near) {
   const std::size_t n = points.positions.size(), stride = near.size() / n, k = std::min(stride, kFitPoints);
   std::vector<double> out(n, std::numeric_limits<double>::infinity());
-  parallel::for_blocks(n, 256, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vector3d p = to_eigen(points.positions[i]), normal = to_eigen(points.normals[i]);
       for (std::size_t j = 0; j < k; ++j) {
         const std::uint32_t other = near[i * stride + j];
-        if (normal.dot(to_eigen(points.normals[other])) > kOpposite) continue;
+        if (normal.dot(to_eigen(points.normals[other])) > -kAlong) continue;  // sharp edges turn less
         out[i] = std::min(out[i], std::abs(normal.dot(to_eigen(points.positions[other]) - p)));
       }
     }

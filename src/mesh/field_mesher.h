@@ -1,12 +1,12 @@
 // From oriented points and their winding field to a triangle mesh: closed, 2-manifold, outward. docs/algorithms/mesher.md explains.
 #pragma once
 
+#include "mesh/field_sampler.h"
+#include "mesh/mesh_finish.h"
+
 #include <g3r/g3r.h>
 
 #include <vector>
-
-#include "mesh/field_sampler.h"
-#include "mesh/mesh_finish.h"
 
 namespace g3r {
 

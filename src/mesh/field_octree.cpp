@@ -1,13 +1,15 @@
 #include "mesh/field_octree.h"
 
+#include "cpu/parallel.h"
+#include "mesh/constants.h"
+
+#include <g3r/error.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <new>
-
-#include "cpu/parallel.h"
-#include "g3r/error.h"
 
 namespace g3r::mesh {
 namespace {
@@ -49,7 +51,7 @@ class CornerTable {
   [[nodiscard]] std::size_t place(std::uint64_t key) const { return static_cast<std::size_t>((key * 0x9E3779B97F4A7C15U) >> shift_); }
   void resize(std::size_t size) {
     slot_.assign(size, kFree);
-    shift_ = 64 - std::countr_zero(size);
+    shift_ = std::numeric_limits<std::uint64_t>::digits - std::countr_zero(size);
   }
   void grow(const std::vector<std::uint64_t>& keys) {
     resize(2 * slot_.size());
@@ -130,7 +132,7 @@ void Octree::refine(const std::vector<RefineDisc>& requests, const SplitRule& ru
     const std::size_t children = split.size() * 8;
     next.node.resize(children);
     std::vector<std::vector<std::uint32_t>> lists(children);
-    parallel::for_blocks(split.size(), 64, [&](std::size_t first, std::size_t last) {
+    parallel::for_blocks(split.size(), kBlock, [&](std::size_t first, std::size_t last) {
       for (std::size_t s = first; s < last; ++s) {
         const auto base = static_cast<std::uint32_t>(nodes_[front.node[split[s]]].first_child);
         for (std::uint32_t c = 0; c < 8; ++c) {

@@ -4,6 +4,7 @@
 
 #include <g3r/points.h>
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -29,6 +30,13 @@ struct OctreeNode {
   std::int32_t first_child = -1;       ///< children are 8 consecutive nodes, child bit a set = upper half along axis a; -1: leaf
   std::int32_t leaf = -1;              ///< number among the leaves; -1: internal
   std::uint8_t level = 0;              ///< 0 = root
+};
+
+/// An edge of a leaf that no smaller leaf's edge subdivides.
+struct MinimalEdge {
+  std::uint32_t low = 0, high = 0;      ///< corners
+  std::array<std::uint32_t, 4> leaf{};  ///< around it, in order; a leaf twice as large may fill two adjacent places
+  std::uint8_t axis = 0;                ///< direction
 };
 
 /// Whether a node is split.

@@ -1,13 +1,16 @@
 #include "mesh/field_placement.h"
 
-#include <Eigen/Geometry>
-#include <Eigen/LU>
-#include <algorithm>
-#include <cmath>
-#include <tuple>
-
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
+#include "mesh/constants.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 
 namespace g3r::mesh {
 namespace {
@@ -15,21 +18,12 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-// The distance in spacings from the nearest point beyond which the fit says nothing and the field alone places the vertex: surface that
-// closes an open scan is so far away, and nothing on seven closed models.
-constexpr double kTrust = 3.0;
 // The share of its leaf's side that a vertex may leave the leaf by: with more, triangles fold over each other.
 constexpr double kReach = 0.3;
-// The same for a vertex on a crease, which belongs to the leaves it passes through: with none, a crease between two leaves is in neither.
-constexpr double kFeatureReach = 0.05;
-// The distance in sides of the smallest leaves below which one of two vertices on creases steps aside, and the share of the way to where it
-// would be without the crease that it goes: else they coincide, and triangles have no area.
-constexpr double kApart = 0.05;
-constexpr double kAside = 0.3;
-// The distance in spacings from the joined surface up to which a point counts as on its crease: patches may cross where they do not meet.
-constexpr double kOnSurface = 0.05;
-// The sine of the angle of two patches, 17 degrees, below which their intersection is too far off to be one.
-constexpr double kMinSine = 0.3;
+// The distance, in sides of a leaf or in spacings, which differ little, up to which two places are one. A vertex on a crease may leave its
+// leaf by so much: with none, a crease between two leaves is in neither. Nearer ones of two leaves would coincide, and one steps aside. And
+// a point is on the joined surface up to it: patches may cross where they do not meet. No crossing is nearer to a corner than this.
+constexpr double kAtOnePlace = 0.05;
 // Steps towards a surface or an intersection: each squares the error, so that fewer suffice but where patches bend.
 constexpr int kNewtonSteps = 5;
 
@@ -47,10 +41,9 @@ bool intersect(const LocalSurface& s, std::initializer_list<int> which, Vector3d
       j.row(row++) = g;
     }
     const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> gram = j * j.transpose();
-    if (gram.determinant() < kMinSine * kMinSine * (which.size() == 3 ? 0.3 : 1.0)) return false;
-    const Vector3d dx = j.transpose() * gram.fullPivLu().solve(f);
-    x -= dx;
-    if (dx.squaredNorm() < 1e-16 * s.spacing * s.spacing) break;
+    // The squared area or volume that the normals span: the intersection of nearly parallel patches is too far off to be one.
+    if (gram.determinant() < std::pow(kSlant, which.size())) return false;
+    x -= j.transpose() * gram.fullPivLu().solve(f);
   }
   return x.allFinite();
 }
@@ -72,26 +65,24 @@ class Placer {
   // A corner or the middle of the crease within the leaf.
   Feature feature(const Vector3d& start, Vector3d& x) const {
     const double cell = box_.sizes()[0];
-    const AlignedBox3d reach(box_.min().array() - kFeatureReach * cell, box_.max().array() + kFeatureReach * cell);
-    if (s_.count == 3) {
+    const AlignedBox3d reach(box_.min().array() - kAtOnePlace * cell, box_.max().array() + kAtOnePlace * cell);
+    if (s_.count == kMostSheets) {
       x = start;
       if (intersect(s_, {0, 1, 2}, x) && reach.contains(x) && on_surface(x)) return Feature::kCorner;
     }
-    constexpr std::array<std::array<int, 2>, 3> kPairs{{{0, 1}, {0, 2}, {1, 2}}};
-    bool found = false;
-    double best = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [a, b] = kPairs[k];
-      if (b >= s_.count || s_.joint[k] == Joint::kNone) continue;
-      Vector3d y = start;
-      if (!intersect(s_, {a, b}, y) || !centre_in_box(a, b, reach, y) || !on_surface(y)) continue;
-      const double d = (y - start).squaredNorm();
-      if (found && d >= best) continue;
-      found = true;
-      best = d;
-      x = y;
+    double best = std::numeric_limits<double>::infinity();
+    for (int b = 1; b < s_.count; ++b) {
+      for (int a = 0; a < b; ++a) {
+        if (s_.joint[static_cast<std::size_t>(a + b - 1)] == Joint::kNone) continue;
+        Vector3d y = start;
+        if (!intersect(s_, {a, b}, y) || !centre_in_box(a, b, reach, y) || !on_surface(y)) continue;
+        const double d = (y - start).squaredNorm();
+        if (d >= best) continue;
+        best = d;
+        x = y;
+      }
     }
-    return found ? Feature::kCrease : Feature::kNone;
+    return std::isfinite(best) ? Feature::kCrease : Feature::kNone;
   }
 
   Vector3d smooth(Vector3d x) const {
@@ -101,13 +92,12 @@ class Placer {
       Vector3d g;
       const double f = s_.sheet[static_cast<std::size_t>(active)].distance(x, &g);
       x -= f * g;
-      if (std::abs(f) < 1e-8 * s_.spacing) break;
     }
     return x;
   }
 
  private:
-  bool on_surface(const Vector3d& x) const { return std::abs(s_.distance(x)) < kOnSurface * s_.spacing; }
+  bool on_surface(const Vector3d& x) const { return std::abs(s_.distance(x)) < kAtOnePlace * s_.spacing; }
 
   // Slides a point of the crease of sheets a and b to the middle of the part within the box; false if no part is.
   bool centre_in_box(int a, int b, const AlignedBox3d& reach, Vector3d& x) const {
@@ -117,10 +107,7 @@ class Placer {
     const Vector3d t = ga.cross(gb).normalized();
     double low = -std::numeric_limits<double>::infinity(), high = -low;
     for (int k = 0; k < 3; ++k) {
-      if (std::abs(t[k]) < 1e-9) {
-        if (x[k] < reach.min()[k] || x[k] > reach.max()[k]) return false;
-        continue;
-      }
+      // Infinite where the crease runs across this axis: all of it is between the two sides then, or nothing.
       const double p = (reach.min()[k] - x[k]) / t[k], q = (reach.max()[k] - x[k]) / t[k];
       low = std::max(low, std::min(p, q));
       high = std::min(high, std::max(p, q));
@@ -158,7 +145,7 @@ class Placement {
 
     Vector3d x = start, normal = outward;
     Feature feature = Feature::kNone;
-    const LocalSurface fit = local_.fit(start, kTrust, length > 0 ? &outward : nullptr);
+    const LocalSurface fit = local_.fit(start, kFarSpacings, length > 0 ? &outward : nullptr);
     if (fit.count > 0) {
       const Placer placer(fit, box);
       if (features) feature = placer.feature(start, x);
@@ -185,7 +172,7 @@ class Placement {
   [[nodiscard]] Vector3d crossing_point(const Crossing& c) const {
     const Vector3d a = to_eigen(octree_.corner_position(c.inside)), b = to_eigen(octree_.corner_position(c.outside));
     const double va = std::max(static_cast<double>(value_[c.inside]), 0.0), vb = std::max(-static_cast<double>(value_[c.outside]), 0.0);
-    const double t = va + vb > 0 ? std::clamp(va / (va + vb), 0.01, 0.99) : 0.5;
+    const double t = va + vb > 0 ? std::clamp(va / (va + vb), kAtOnePlace, 1 - kAtOnePlace) : 0.5;
     return a + t * (b - a);
   }
 
@@ -228,7 +215,7 @@ PlacedVertices place_vertices(const Octree& octree, const DualSurface& surface, 
   const Placement placement(octree, surface, value, local);
   std::vector<Placed> placed(sheets);
   parallel::for_blocks(
-      sheets, 256,
+      sheets, kBlock,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
           if (wanted.empty() || wanted[i] != 0) placed[i] = placement.place(i, true);
@@ -236,10 +223,10 @@ PlacedVertices place_vertices(const Octree& octree, const DualSurface& surface, 
       },
       cancel);
   const double smallest = octree.unit() * static_cast<double>(std::uint32_t{1} << (kMaxOctreeLevel - octree.depth()));
-  for (const std::uint32_t i : taken_twice(placed, kApart * smallest)) {
+  for (const std::uint32_t i : taken_twice(placed, kAtOnePlace * smallest)) {
     const Vector3d taken = to_eigen(placed[i].position);
     placed[i] = placement.place(i, false);
-    placed[i].position = array(taken + kAside * (to_eigen(placed[i].position) - taken));
+    placed[i].position = array(0.5 * (taken + to_eigen(placed[i].position)));
   }
   PlacedVertices out;
   out.positions.resize(sheets + surface.midpoints.size());

@@ -1,12 +1,12 @@
 // Where the vertices of the dual surface go: on the fitted surface, on its creases and corners where a leaf holds one.
 #pragma once
 
-#include <atomic>
-#include <vector>
-
 #include "mesh/field_contour.h"
 #include "mesh/field_local_fit.h"
 #include "mesh/field_octree.h"
+
+#include <atomic>
+#include <vector>
 
 namespace g3r::mesh {
 

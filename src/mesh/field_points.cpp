@@ -1,35 +1,26 @@
 #include "mesh/field_points.h"
 
+#include "base/median.h"
+#include "mesh/constants.h"
+#include "mesh/smooth_spacing.h"
+
+#include <g3r/error.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include "base/median.h"
-#include "g3r/error.h"
-#include "mesh/smooth_spacing.h"
 
 namespace g3r::mesh {
 namespace {
 
 // Neighbours kept of each point: the 16 nearest to a place are nearly always among those of its nearest point. With 24 AE_m is 2.9 %
 // larger.
-constexpr std::size_t kNear = 28;
-// The radius in spacings of the disc around each point whose leaves are refined: with less, the holes of random sampling would be coarse.
-constexpr double kDisc = 1.4;
-// Its half thickness in spacings: the surface curves away from the tangent plane by so much within the disc.
-constexpr double kDiscHalf = 0.3;
-// The levels that locally dense or sparse sampling may add or take away: without a bound, points at almost one place would make leaves as
-// small.
-constexpr int kMaxSpread = 4;
+constexpr std::size_t kNear = 2 * kFitPoints;
 // Walls and gaps get leaves of at most their thickness over this, lest both walls cross one edge, but none smaller than half of the others:
 // thin walls cost four times the vertices already.
 constexpr double kThin = 1.3;
-constexpr double kMaxThin = 2.0;
-// The least spacing of a point, of the typical one: clusters of almost equal points are no denser for the fits than this.
-constexpr double kLeastSpacing = 1e-2;
-// The points at which the level of the field is taken: the median of so many values is good to 1 % of their scatter.
-constexpr std::size_t kLevelPoints = 10000;
-// The noise in spacings from which points are smoothed first: fits hide less of it by themselves, and smoothing would round detail.
-constexpr double kNoisy = 0.15;
+// The levels that locally dense or sparse sampling may add or take away: without a bound, points at almost one place would make leaves as
+// small.
+constexpr int kMaxSpread = 4;
 
 }  // namespace
 
@@ -50,7 +41,8 @@ void prepare(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, 
   }
   prepared.typical = typical > 0 ? typical : median(out.spacing);
   if (!(prepared.typical > 0)) throw InvalidInput("all points are at one place");
-  for (double& h : out.spacing) h = std::max(h, kLeastSpacing * prepared.typical);
+  // Clusters of almost equal points are no denser for the fits than the octree follows.
+  for (double& h : out.spacing) h = std::max(h, prepared.typical / std::exp2(kMaxSpread));
 }
 
 double noise_seen(const Noise& noise) { return noise.position > kNoisy ? noise.position : 0; }
@@ -66,9 +58,8 @@ std::vector<double> sizes_to_resolve(const Prepared& prepared) {
   std::vector<double> sizes = prepared.points.spacing;
   if (prepared.noise > 0) return sizes;  // which side points are on is not known well enough to tell walls
   const std::vector<double> thickness = wall_thickness(prepared.points, prepared.near);
-  for (std::size_t i = 0; i < sizes.size(); ++i) {
-    if (thickness[i] < kThin * kFinestCell * sizes[i]) sizes[i] = std::max(thickness[i] / (kThin * kFinestCell), sizes[i] / kMaxThin);
-  }
+  for (std::size_t i = 0; i < sizes.size(); ++i)
+    sizes[i] = std::min(sizes[i], std::max(thickness[i] / (kThin * kFinestCell), sizes[i] / 2));
   return sizes;
 }
 
@@ -76,11 +67,11 @@ RefineDisc disc_around(const Vec3& position, const Vec3& normal, double spacing,
   const int spread = static_cast<int>(std::lround(std::log2(rule.typical / size)));
   const int wanted = rule.finest + std::clamp(spread, -kMaxSpread, std::min(rule.finer, kMaxSpread));
   const double reach = std::min(spacing, rule.typical * std::exp2(kMaxSpread));  // its leaves are no larger
-  return {position, normal, kDisc * reach, kDiscHalf * reach, std::clamp(wanted, kBaseLevel, kMaxOctreeLevel)};
+  return {position, normal, kGap * reach, kDiscHalf * reach, std::clamp(wanted, kBaseLevel, kMaxOctreeLevel)};
 }
 
 std::vector<Vec3> level_places(const std::vector<Vec3>& points) {
-  const std::size_t count = std::min(points.size(), kLevelPoints);
+  const std::size_t count = std::min(points.size(), kSample);
   std::vector<Vec3> places(count);
   for (std::size_t i = 0; i < count; ++i) places[i] = points[static_cast<std::size_t>(std::uint64_t{i} * points.size() / count)];
   return places;

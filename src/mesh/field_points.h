@@ -1,24 +1,28 @@
 // What the field mesher makes of a cloud before anything else: the points that its fits see, and the discs that its octree resolves.
 #pragma once
 
+#include "cloud/neighbours.h"
+#include "mesh/field_denoise.h"
+#include "mesh/field_local_fit.h"
+#include "mesh/field_octree.h"
+
 #include <g3r/g3r.h>
+#include <g3r/names.h>
 
 #include <atomic>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
-#include "cloud/neighbours.h"
-#include "mesh/field_denoise.h"
-#include "mesh/field_local_fit.h"
-#include "mesh/field_octree.h"
-
 namespace g3r::mesh {
 
 /// The side of the leaves around points, in typical spacings: smaller ones add vertices and no detail, larger ones lose some.
 inline constexpr double kFinestCell = 0.8;
+/// The half thickness in spacings of the disc around each point whose leaves are refined: the surface curves away from the tangent plane by
+/// so much within it.
+inline constexpr double kDiscHalf = 0.3;
 /// The level of the largest leaves: 16 along each axis, so that coarse places of the field are seen too.
-inline constexpr int kBaseLevel = 4;
+inline constexpr int kBaseLevel = kLeastMeshDepth;
 
 /// What the fits see of the cloud.
 struct Prepared {

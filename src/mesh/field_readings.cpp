@@ -1,9 +1,9 @@
 #include "mesh/field_readings.h"
 
+#include "mesh/handle_removal.h"
+
 #include <algorithm>
 #include <array>
-
-#include "mesh/handle_removal.h"
 
 namespace g3r::mesh {
 namespace {

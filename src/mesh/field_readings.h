@@ -1,13 +1,13 @@
 // The doubtful signs of an octree read in other ways, where that leaves fewer handles.
 #pragma once
 
+#include "mesh/field_contour.h"
+#include "mesh/side_smoothing.h"
+
 #include <atomic>
 #include <cstdint>
 #include <functional>
 #include <vector>
-
-#include "mesh/field_contour.h"
-#include "mesh/side_smoothing.h"
 
 namespace g3r::mesh {
 

@@ -1,9 +1,9 @@
 // Polygons of the dual surface -> triangles.
-#include <algorithm>
-#include <cmath>
-
 #include "base/vector.h"
 #include "mesh/field_contour.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace g3r::mesh {
 namespace {

@@ -1,6 +1,7 @@
 #include "mesh/findings.h"
 
 #include "base/vector.h"
+#include "mesh/constants.h"
 #include "mesh/crossings.h"
 #include "mesh/fair.h"
 
@@ -13,34 +14,15 @@
 namespace g3r {
 namespace {
 
-// These decide on warnings alone. The share of the points along curves from which a cloud is sampled in lines: none of a random sample are,
-// of wireframes a quarter and more.
-constexpr double kInLines = 0.2;
-// Terraces are looked for at so many points, evenly from all, each with so many nearest: more take time, and shares of so many are good to
-// a percent.
-constexpr std::size_t kLooks = 20000;
-constexpr std::size_t kPairs = 8;
-// The part of a unit normal along an axis from which the surface is across it.
-constexpr double kAcross = 0.7;
-// The pairs of such points below which nothing is said.
-constexpr std::size_t kFewestPairs = 200;
-// The difference in spacings up to which two coordinates are the same: rounding.
-constexpr double kSame = 1e-9;
-// The share of the pairs with the same coordinate that terraces have: surfaces that are not flat have none, flat ones more, and single
-// steps on them are shape.
+// These decide on warnings alone. The share of the pairs with the same coordinate that terraces have at least: surfaces that are not flat
+// have none. Flat ones have all but twice this and more, and single steps on them are shape.
 constexpr double kLeastSame = 0.05;
-constexpr double kMostSame = 0.9;
-// The step is this quantile of the differences, and so much of their median at least: without steps they come in all sizes.
-constexpr double kLowStep = 0.05;
+// The step is as low a quantile of the differences, and so much of their median at least: without steps they come in all sizes.
 constexpr double kStepToMedian = 0.3;
-// The steps in spacings that are terraces: smaller ones are below the noise of clean clouds, and larger ones are stairs.
-constexpr double kLeastStep = 0.15;
-constexpr double kMostStep = 3;
 // The handles or parts below which nothing is said: so few may be the shape's own.
 constexpr std::size_t kFewestOdd = 10;
 // The points for each handle, and for each part, that a mesh needs: the smallest handle that was right, in a lattice of rods, had 156.
-constexpr std::size_t kHandlePoints = 150;
-constexpr std::size_t kPartPoints = 100;
+constexpr std::size_t kPointsPerOdd = 150;
 
 std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 
@@ -54,12 +36,12 @@ std::string short_number(double value) {
 double terrace_step(const PointSet& set, const std::vector<Vec3>& normals, std::size_t axis) {
   const std::vector<Vec3>& points = set.points();
   const double spacing = set.spacing();
-  const std::size_t n = points.size(), stride = set.near_count(), count = std::min(kPairs + 1, stride);
-  const std::size_t every = std::max<std::size_t>(1, n / kLooks);
+  const std::size_t n = points.size(), stride = set.near_count(), count = std::min(mesh::kRing + 1, stride);
+  const std::size_t every = std::max<std::size_t>(1, n / mesh::kSample);
   std::size_t pairs = 0, across = 0, single = 0;
   std::vector<double> steps;
   for (std::size_t i = 0; i < n; i += every) {
-    if (std::fabs(normals[i][axis]) < kAcross) continue;
+    if (std::fabs(normals[i][axis]) < mesh::kAlong) continue;
     const std::uint32_t* const around = set.near().data() + i * stride;
     const auto is_opposite = [&](std::uint32_t j) { return vector::dot(normals[i], normals[j]) < 0; };
     ++across;
@@ -67,18 +49,20 @@ double terrace_step(const PointSet& set, const std::vector<Vec3>& normals, std::
     ++single;
     for (std::size_t k = 0; k < count; ++k) {
       const std::uint32_t j = around[k];
-      if (j == i || std::fabs(normals[j][axis]) < kAcross || vector::dot(normals[i], normals[j]) < kAcross) continue;
+      if (j == i || std::fabs(normals[j][axis]) < mesh::kAlong || vector::dot(normals[i], normals[j]) < mesh::kAlong) continue;
       ++pairs;
       const double step = std::fabs(points[i][axis] - points[j][axis]);
-      if (step > kSame * spacing) steps.push_back(step);
+      if (step > mesh::kRounding * spacing) steps.push_back(step);
     }
   }
-  if (pairs < kFewestPairs || 2 * single < across || steps.empty()) return 0;
+  if (pairs < mesh::kFewestPoints || 2 * single < across || steps.empty()) return 0;
   const double same = 1 - static_cast<double>(steps.size()) / static_cast<double>(pairs);
-  if (same < kLeastSame || same > kMostSame) return 0;
+  if (same < kLeastSame || same > 1 - 2 * kLeastSame) return 0;
   std::sort(steps.begin(), steps.end());
-  const double low = steps[static_cast<std::size_t>(kLowStep * static_cast<double>(steps.size()))];
-  const bool is_step = low >= kStepToMedian * steps[steps.size() / 2] && low >= kLeastStep * spacing && low <= kMostStep * spacing;
+  const double low = steps[static_cast<std::size_t>(kLeastSame * static_cast<double>(steps.size()))];
+  // Smaller steps are below the noise of clean clouds, and larger ones are stairs.
+  const bool is_terrace = low >= mesh::kNoisy * spacing && low <= mesh::kFarSpacings * spacing;
+  const bool is_step = is_terrace && low >= kStepToMedian * steps[steps.size() / 2];
   return is_step ? low : 0;
 }
 
@@ -86,7 +70,7 @@ void warn_of_lines(const CanonicalCloud& cloud, Stats& stats) {
   const std::vector<std::uint8_t> along = mesh::points_along_curves(cloud.points(), cloud.set.near());
   const auto count = std::count(along.begin(), along.end(), std::uint8_t{1});
   const double share = static_cast<double>(count) / static_cast<double>(along.size());
-  if (share < kInLines) return;
+  if (share < mesh::kInLines) return;
   stats.warnings.push_back(
       "sampled in lines: " + percent(share) +
       " of the points lie along a curve with their neighbours; between the lines surface and sides are a guess: measure "
@@ -104,7 +88,7 @@ void warn_of_crossings(const CanonicalCloud& cloud, const std::vector<Vec3>& nor
 }  // namespace
 
 void warn_of_sampling(const CanonicalCloud& cloud, const std::vector<Vec3>& normals, Stats& stats) {
-  if (cloud.size() < kFewestPairs) return;
+  if (cloud.size() < mesh::kFewestPoints) return;
   const double spacing = cloud.set.spacing();
   warn_of_lines(cloud, stats);
   warn_of_crossings(cloud, normals, stats);
@@ -126,13 +110,13 @@ void warn_of_sampling(const CanonicalCloud& cloud, const std::vector<Vec3>& norm
 void warn_of_topology(const MeshCheck& check, Stats& stats) {
   const auto points = stats.used;
   const auto handles = static_cast<std::size_t>(std::max(0L, check.genus));
-  if (handles >= kFewestOdd && points < kHandlePoints * handles) {
+  if (handles >= kFewestOdd && points < kPointsPerOdd * handles) {
     stats.doubtful = true;
     stats.warnings.push_back("genus " + std::to_string(handles) + ": one handle for every " + std::to_string(points / handles) +
                              " points is more than they can carry: walls or gaps below the spacing, or noise taken for shape; measure more "
                              "points, or give the noise");
   }
-  if (check.components >= kFewestOdd && points < kPartPoints * check.components) {
+  if (check.components >= kFewestOdd && points < kPointsPerOdd * check.components) {
     stats.doubtful = true;
     stats.warnings.push_back(
         std::to_string(check.components) + " parts: one for every " + std::to_string(points / check.components) +

@@ -11,16 +11,16 @@
 namespace g3r {
 
 /// Warns of
-///   - sampling in lines: where a fifth of the points lie along a curve with their 8 nearest;
+///   - sampling in lines: where a quarter of the points lie along a curve with their 8 nearest;
 ///   - rounded coordinates: where surface across an axis is in terraces. Of the pairs of near points that face the same way along the axis,
-///     5 to 90 % have exactly the same coordinate, and the others' differ by a step of 0.15 to 3 spacings. Not where half of these points
+///     5 to 90 % have exactly the same coordinate, and the others' differ by a step of 0.15 to 4 spacings. Not where half of these points
 ///     are at walls or gaps, as those of slats.
 ///   - two surfaces that cross (mesh/crossings.h): parts whose points were put together, or scans that do not fit.
 /// `normals`: unit. O(N).
 void warn_of_sampling(const CanonicalCloud& cloud, const std::vector<Vec3>& normals, Stats& stats);
 
-/// Warns, and calls the result doubtful, where a closed mesh has 10 handles or more and fewer than 150 points for each, or 10 parts or more
-/// and fewer than 100 points for each: surfaces that are resolved have more.
+/// Warns, and calls the result doubtful, where a closed mesh has 10 handles or parts or more and fewer than 150 points for each: surfaces
+/// that are resolved have more.
 void warn_of_topology(const MeshCheck& check, Stats& stats);
 
 }  // namespace g3r

@@ -6,10 +6,10 @@
 #pragma once
 
 #include "mesh/field_contour.h"
+#include "mesh/open_edges.h"
 
 #include <atomic>
 #include <cstdint>
-#include <span>
 #include <unordered_set>
 #include <vector>
 
@@ -38,21 +38,15 @@ class HandleRemoval {
   [[nodiscard]] long handles() const { return handles_; }
 
  private:
-  // Numbers of edges, those of item i at begin[i] to begin[i + 1].
-  struct EdgeLists {
-    std::vector<std::uint32_t> begin, edges;
-    [[nodiscard]] std::span<const std::uint32_t> of(std::size_t i) const { return {edges.data() + begin[i], edges.data() + begin[i + 1]}; }
-  };
   // Corners where a proposal differs, those at edges around one leaf together.
   struct Groups {
-    std::vector<std::uint32_t> place, of;  // of these corners in corners_, and their groups
+    std::vector<std::uint32_t> place, of;  // of these corners among the open ones, and their groups
     std::vector<std::uint32_t> leaves;     // whose sheets depend on them; group_ has their groups
     std::vector<long> size;                // corners of each
     std::vector<std::uint64_t> name;       // of each: the same for the same corners and the same sheets in its leaves
   };
 
-  void list_edges(const std::vector<std::uint8_t>& open, const std::vector<std::uint8_t>& around);
-  void number_parts(const DualSurface& surface, const std::vector<std::uint8_t>& around);
+  void number_parts(const DualSurface& surface);
   std::size_t join_components();
   [[nodiscard]] Groups group_corners(const std::vector<std::uint8_t>& proposal, const std::vector<std::uint8_t>& inside);
   void drop_refused(Groups& groups);
@@ -68,9 +62,7 @@ class HandleRemoval {
   const Octree& octree_;
   InsideTest centre_inside_;
   const std::atomic<bool>* cancel_;
-  std::vector<std::uint32_t> corners_;    // open ones, ascending
-  std::vector<MinimalEdge> edges_;        // around all leaves with an edge that ends at an open corner
-  EdgeLists at_corner_, around_leaf_;     // by place in corners_, by leaf
+  const OpenEdges open_;
   std::size_t parts_ = 0;                 // of the surface elsewhere, which never changes
   std::vector<std::uint32_t> node_;       // of edges: the part it crosses, another number if it crosses between these leaves only, or kNone
   Sheets sheets_;                         // of the surface in these leaves

@@ -3,6 +3,7 @@
 #include "base/vector.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
+#include "mesh/constants.h"
 
 #include <algorithm>
 #include <array>
@@ -14,41 +15,28 @@ namespace {
 
 using vector::dot;
 
-// The nearest points that have a say: more reach across thin walls.
-constexpr std::size_t kNear = 8;
 // The height over the distance up to which two points are on one patch, at both: random directions have less once in eight times.
 constexpr double kSlope = 0.35;
-// The points on one patch with a point that hold it: corners of cubes have so many, random points one.
-constexpr std::size_t kHolding = 3;
 // n_i . (n_j mirrored in the middle between them) from which the patch goes on round a bend or crease.
 constexpr double kBends = 0.9;
 // The quantile of the heights that is the usual one: up to a tenth of the points may be strays, and do not change it.
 constexpr double kUsual = 0.9;
-// How many times the usual height a point may be beside the patch: about four standard deviations of noise.
-constexpr double kTimesUsual = 2;
-// The spacing of a point over that of its nearest ones from which it is alone: 1.5 is the most in a thousand points of uneven surfaces.
-constexpr double kAlone = 2;
-// Rounds of leaving out strays, as those that hold each other go one after the other: a fifth finds none.
-constexpr int kRounds = 4;
-// The points of a cloud below which none is left out: sparse parts of it are a matter of chance.
-constexpr std::size_t kFewestPoints = 100;
 // One stray in so many seems to be held by the one next to it, measured 1 in 4 to 1 in 50; and the clouds in which chance may make a part
 // of strays once. They decide how many points a part needs: with less, strays become parts, with more, small parts are lost.
 constexpr double kLooksLikeSurface = 4;
 constexpr double kRare = 100;
-constexpr std::size_t kBlock = 256;  // points per parallel block
 
 // How a point and its nearest ones see each other.
 struct Look {
-  std::array<double, kNear> height{};    // the greater distance from the plane of the other
-  std::array<bool, kNear> bends{};       // whether the sheet may go on round a bend
-  std::array<double, kNear> distance{};  // between the points
-  std::array<std::uint32_t, kNear> near{};
+  std::array<double, kRing> height{};    // the greater distance from the plane of the other
+  std::array<bool, kRing> bends{};       // whether the sheet may go on round a bend
+  std::array<double, kRing> distance{};  // between the points
+  std::array<std::uint32_t, kRing> near{};
 };
 
-double upper_median(std::array<double, kNear> values) {
-  std::nth_element(values.begin(), values.begin() + kNear / 2, values.end());
-  return values[kNear / 2];
+double upper_median(std::array<double, kRing> values) {
+  std::nth_element(values.begin(), values.begin() + kRing / 2, values.end());
+  return values[kRing / 2];
 }
 
 double quantile(std::vector<double> values, double share) {
@@ -64,13 +52,11 @@ class Search {
     for (std::uint32_t i = 0; i < points.size(); ++i) doubtful_.push_back(i);
   }
 
-  // `usual`: of the cloud, where it is known.
+  // Strays that hold each other go one after the other, until all that are left are held. `usual`: of the cloud, where it is known.
   std::vector<std::uint8_t> run(std::optional<double> usual) {
-    for (int round = 0; round < kRounds && !doubtful_.empty(); ++round) {
-      look();
-      if (round == 0) usual_ = usual ? *usual : usual_height();
-      take_strays();
-    }
+    look();
+    usual_ = usual ? *usual : usual_height();
+    for (take_strays(); !doubtful_.empty(); take_strays()) look();
     return std::move(held_);
   }
   [[nodiscard]] double usual() const { return usual_; }
@@ -85,7 +71,7 @@ class Search {
       places.push_back(points_[i]);
       number.push_back(i);
     }
-    if (places.size() <= kNear) {
+    if (places.size() <= kRing) {
       doubtful_.clear();
       return;
     }
@@ -95,10 +81,10 @@ class Search {
       std::vector<double> squared;
       for (std::size_t k = begin; k < end; ++k) {
         const std::uint32_t i = doubtful_[k];
-        neighbours.nearest(points_[i], kNear + 1, index, squared);
+        neighbours.nearest(points_[i], kRing + 1, index, squared);
         Look& look = looks_[i];
         std::size_t to = 0;
-        for (std::size_t m = 0; m <= kNear && to < kNear; ++m) {
+        for (std::size_t m = 0; m <= kRing && to < kRing; ++m) {
           const std::uint32_t j = number[index[m]];
           if (j == i) continue;
           const Vec3 d = vector::subtract(points_[i], points_[j]);
@@ -119,15 +105,17 @@ class Search {
     return quantile(std::move(heights), kUsual);
   }
 
+  // On the patch a point may be twice as high as usual: about four standard deviations of noise. It is alone where its spacing is twice
+  // that of its nearest ones: 1.5 times is the most in a thousand points of uneven surfaces.
   [[nodiscard]] bool is_stray(std::uint32_t i) const {
     const Look& look = looks_[i];
     std::size_t holding = 0;
     double spacing = 0;  // mean logarithm
-    for (std::size_t m = 0; m < kNear; ++m) {
-      holding += look.bends[m] || look.height[m] <= kSlope * look.distance[m] + kTimesUsual * usual_ ? 1 : 0;
-      spacing += std::log(looks_[look.near[m]].distance[kNear - 1]) / kNear;
+    for (std::size_t m = 0; m < kRing; ++m) {
+      holding += look.bends[m] || look.height[m] <= kSlope * look.distance[m] + 2 * usual_ ? 1 : 0;
+      spacing += std::log(looks_[look.near[m]].distance[kRing - 1]) / kRing;
     }
-    return holding < kHolding || std::log(look.distance[kNear - 1]) - spacing > std::log(kAlone);
+    return holding < kPatchPoints || std::log(look.distance[kRing - 1]) - spacing > std::log(2);
   }
 
   // Those that had one among their nearest are doubtful after.

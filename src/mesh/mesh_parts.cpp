@@ -1,6 +1,7 @@
 #include "mesh/mesh_parts.h"
 
 #include "base/disjoint_sets.h"
+#include "mesh/constants.h"
 
 #include <algorithm>
 #include <array>
@@ -10,8 +11,6 @@
 
 namespace g3r::mesh {
 namespace {
-
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 template <class T>
 void gather(std::vector<T>& values, const std::vector<std::uint32_t>& from) {

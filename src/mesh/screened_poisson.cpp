@@ -23,9 +23,6 @@ namespace g3r {
 
 namespace {
 
-constexpr int kThreads = 1;  // more are not deterministic
-constexpr std::size_t kMinPoints = 4;
-
 /// p -> (p - centre) / side: all coordinates within +-1/2, whatever the unit and the origin of the input.
 struct UnitBox {
   Vec3 centre;
@@ -44,7 +41,7 @@ UnitBox validated_box(const std::vector<Vec3>& points, const std::vector<Vec3>& 
   if (points.size() != normals.size()) {
     throw InvalidInput("cannot mesh " + std::to_string(points.size()) + " points with " + std::to_string(normals.size()) + " normals");
   }
-  if (points.size() < kMinPoints) throw InvalidInput("meshing needs at least 4 points, got " + std::to_string(points.size()));
+  if (points.size() < 4) throw InvalidInput("meshing needs at least 4 points, got " + std::to_string(points.size()));
   if (depth < kLeastMeshDepth || depth > kMostMeshDepth) {
     throw InvalidInput("the octree depth must be in 4..12, got " + std::to_string(depth));
   }
@@ -86,8 +83,8 @@ std::shared_ptr<open3d::geometry::TriangleMesh> run_open3d(const open3d::geometr
   const std::lock_guard lock(one_at_a_time);
   const SilentErrorStream silence;
   try {
-    return std::get<0>(open3d::geometry::TriangleMesh::CreateFromPointCloudPoisson(cloud, static_cast<std::size_t>(depth), 0,
-                                                                                   static_cast<float>(kPoissonCube), false, kThreads));
+    return std::get<0>(open3d::geometry::TriangleMesh::CreateFromPointCloudPoisson(
+        cloud, static_cast<std::size_t>(depth), 0, static_cast<float>(kPoissonCube), false, /*n_threads: more are not deterministic*/ 1));
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {

@@ -4,6 +4,7 @@
 #include "base/vector.h"
 #include "cpu/parallel.h"
 #include "mesh/box_tree.h"
+#include "mesh/constants.h"
 #include "mesh/exact_orientation.h"
 #include "mesh/used_vertices.h"
 
@@ -60,7 +61,6 @@ bool triangles_meet(const Corners& s, const Corners& t) {
 
 // Whether a plane across `axis` has s on one side and t on the other, by more than rounding can have moved them.
 bool separates(const Vec3& axis, const Corners& s, const Corners& t) {
-  constexpr double kRounding = 1e-14;  // of the products; some 20 times what they can lose
   double s_most = 0, t_least = std::numeric_limits<double>::infinity(), size = 0;
   const auto along = [&](const Vec3& p) {
     const Vec3 d = vector::subtract(p, s[0]);
@@ -71,7 +71,7 @@ bool separates(const Vec3& axis, const Corners& s, const Corners& t) {
     s_most = std::max(s_most, along(s[k]));
     t_least = std::min(t_least, along(t[k]));
   }
-  return t_least - s_most > kRounding * size;
+  return t_least - s_most > mesh::kRounding * size;
 }
 
 // Finds most pairs that do not meet, without exact arithmetic: planes parallel to s or through its edges. False where in doubt.

@@ -15,8 +15,6 @@
 namespace g3r::mesh {
 namespace {
 
-// The first move in steps of float: one by less than a step may round to the old place.
-constexpr double kFirstStep = 2;
 // The largest move, of the shortest edge: with it no triangle turns over.
 constexpr double kMostMove = 0.25;
 constexpr double kFloatStep = std::numeric_limits<float>::epsilon();
@@ -100,9 +98,9 @@ std::vector<Around> look_around(const Mesh& mesh, const std::vector<std::uint8_t
 bool move(const Around& around, std::vector<Rounding>& roundings, Vec3& vertex) {
   Vec3 normal = vector::normalised(around.normal);
   if (normal == Vec3{0, 0, 0}) normal = {1, 0, 0};
-  double step = 0;
+  double step = 0;  // a move by less than one may round to the old place
   for (const Rounding& rounding : roundings) step = std::max(step, rounding.step(vertex));
-  for (double length = kFirstStep * step; length <= kMostMove * around.shortest; length *= 2) {
+  for (double length = 2 * step; length <= kMostMove * around.shortest; length *= 2) {
     for (const double way : {-length, length}) {
       const Vec3 to = vector::add(vertex, vector::scale(normal, way));
       if (!std::all_of(roundings.begin(), roundings.end(), [&](const Rounding& r) { return r.is_free(to); })) continue;

@@ -1,6 +1,7 @@
 #include "mesh/side_smoothing.h"
 
 #include "cpu/parallel.h"
+#include "mesh/constants.h"
 
 #include <array>
 #include <cmath>
@@ -9,14 +10,9 @@
 namespace g3r::mesh {
 namespace {
 
-// The weight of a corner's own value against the mean of its neighbours: with more, smoothing needs more passes; with less, single corners
-// have no say.
-constexpr double kOwn = 0.5;
 // The standard deviation in leaves, across the patch, of the places that count as along it: corners of the next layer are on the other side
 // of the surface, and must not count.
 constexpr double kAcross = 0.25;
-constexpr std::size_t kBlock = 4096;  // corners per parallel block
-constexpr std::uint32_t kStands = std::numeric_limits<std::uint32_t>::max();
 
 // The leaves around a corner: 8 at most, each with the corner's place in it.
 struct Around {
@@ -31,7 +27,7 @@ std::vector<Around> leaves_around(const Octree& octree, const std::vector<std::u
   for (std::uint32_t leaf = 0; leaf < octree.leaf_count(); ++leaf) {
     for (std::uint8_t place = 0; place < 8; ++place) {
       const std::uint32_t k = number[octree.corners(leaf)[place]];
-      if (k == kStands) continue;
+      if (k == kNone) continue;
       Around& a = out[k];
       a.leaf[a.count] = leaf;
       a.place[a.count++] = place;
@@ -40,27 +36,27 @@ std::vector<Around> leaves_around(const Octree& octree, const std::vector<std::u
   return out;
 }
 
-// Weights of the corners around one, by how far they are along the sheet with normal n: at 13 + x + 3 y + 9 z for the corner (x, y, z) leaf
-// sides away, each -1, 0 or 1.
+// Weights of the corners around one, by how far they are along the sheet with normal n: at 13 + x + 3 (y + 3 z) for the corner (x, y, z)
+// leaf sides away, each -1, 0 or 1.
 std::array<double, 27> weights(const std::array<float, 3>& n) {
   std::array<double, 27> out{};
-  for (std::size_t i = 0; i <= 13; ++i) {
-    const std::size_t y = i / 3 % 3, z = i / 9;
+  for (std::size_t i = 0; i <= out.size() / 2; ++i) {
+    const std::size_t y = i / 3 % 3, z = i / 3 / 3;
     const double across =
         n[0] * (static_cast<double>(i % 3) - 1) + n[1] * (static_cast<double>(y) - 1) + n[2] * (static_cast<double>(z) - 1);
-    out[i] = out[26 - i] = std::exp(-across * across / (2 * kAcross * kAcross));
+    out[i] = out[out.size() - 1 - i] = std::exp(-across * across / (2 * kAcross * kAcross));
   }
   return out;
 }
 
 // Of a place of a leaf among the weights.
-std::size_t grid_of(std::uint32_t place) { return (place & 1U) + 3 * ((place >> 1U) & 1U) + 9 * (place >> 2U); }
+std::size_t grid_of(std::uint32_t place) { return (place & 1U) + 3 * (((place >> 1U) & 1U) + 3 * (place >> 2U)); }
 
 }  // namespace
 
 std::vector<std::vector<float>> smooth_sides(const Octree& octree, const Opinions& opinions, const std::vector<std::uint8_t>& inside,
                                              std::size_t times, const std::atomic<bool>* cancel) {
-  std::vector<std::uint32_t> number(octree.corner_count(), kStands);
+  std::vector<std::uint32_t> number(octree.corner_count(), kNone);
   for (std::uint32_t k = 0; k < opinions.corner.size(); ++k) number[opinions.corner[k]] = k;
   const std::vector<Around> around = leaves_around(octree, number, opinions.corner.size());
   const auto average = [&](std::size_t k, const std::vector<float>& side) {
@@ -71,13 +67,15 @@ std::vector<std::vector<float>> smooth_sides(const Octree& octree, const Opinion
       for (std::uint32_t other = 0; other < 8; ++other) {
         if (other == a.place[i]) continue;
         const std::uint32_t c = octree.corners(a.leaf[i])[other];
-        const double weight = along[13 + grid_of(other) - grid_of(a.place[i])];
-        sum += weight * (number[c] != kStands ? static_cast<double>(side[number[c]]) : inside[c] != 0 ? 1.0 : -1.0);
+        const double weight = along[along.size() / 2 + grid_of(other) - grid_of(a.place[i])];
+        sum += weight * (number[c] != kNone ? static_cast<double>(side[number[c]]) : inside[c] != 0 ? 1.0 : -1.0);
         total += weight;
       }
     }
+    // A corner's own value has half the weight of the mean of its neighbours: with more, smoothing needs more passes; with less, single
+    // corners have no say.
     const double own = static_cast<double>(opinions.side[k]);
-    return static_cast<float>(total > 0 ? (kOwn * own + sum / total) / (kOwn + 1) : own);
+    return static_cast<float>(total > 0 ? (0.5 * own + sum / total) / (0.5 + 1) : own);
   };
   std::vector<std::vector<float>> out(times, opinions.side);
   for (std::size_t t = 0; t < times; ++t) {

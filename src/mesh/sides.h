@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cpu/parallel.h"
+#include "mesh/constants.h"
 
 #include <g3r/mesh.h>
 
@@ -48,8 +49,7 @@ void for_each_edge(const Mesh& mesh, const Group& group) {
     const Side side = side_at(corner);
     sides[first[side.low + 1]++] = side;
   }
-  constexpr std::size_t kBlock = 4096;
-  parallel::for_blocks(mesh.vertices.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(mesh.vertices.size(), mesh::kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       std::sort(sides.begin() + static_cast<std::ptrdiff_t>(first[v]), sides.begin() + static_cast<std::ptrdiff_t>(first[v + 1]),
                 [](const Side& a, const Side& b) { return a.high != b.high ? a.high < b.high : a.corner < b.corner; });

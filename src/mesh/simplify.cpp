@@ -13,8 +13,6 @@ namespace {
 
 // The targets that are tried, each of more triangles than the one before, until topology stays: each costs a simplification.
 constexpr int kAttempts = 5;
-// The error allowed, of the extent of the mesh: all of it, so that the number of triangles alone decides.
-constexpr float kAnyError = 1.0F;
 
 // Positions in single precision relative to the box, as meshoptimizer takes them.
 std::vector<float> relative_positions(const Mesh& mesh) {
@@ -45,11 +43,12 @@ void simplify(Mesh& mesh, std::size_t faces) {
   const std::size_t index_count = mesh.triangles.size() * 3;
   const double ratio = static_cast<double>(faces) / static_cast<double>(mesh.triangles.size());
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    // The error allowed is all of the extent of the mesh, so that the number of triangles alone decides.
     const double share = std::pow(ratio, 1 - static_cast<double>(attempt) / kAttempts);
     const std::size_t target = static_cast<std::size_t>(share * static_cast<double>(mesh.triangles.size())) * 3;
     std::vector<unsigned int> out(index_count);
-    out.resize(meshopt_simplify(out.data(), indices, index_count, positions.data(), mesh.vertices.size(), 3 * sizeof(float), target,
-                                kAnyError, 0, nullptr));
+    out.resize(meshopt_simplify(out.data(), indices, index_count, positions.data(), mesh.vertices.size(), 3 * sizeof(float), target, 1.0F,
+                                0, nullptr));
     Mesh candidate = mesh;
     candidate.triangles.resize(out.size() / 3);
     for (std::size_t i = 0; i < out.size(); ++i) candidate.triangles[i / 3][i % 3] = out[i];

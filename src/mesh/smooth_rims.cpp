@@ -1,6 +1,7 @@
 #include "mesh/smooth_rims.h"
 
 #include "base/vector.h"
+#include "mesh/constants.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,15 +18,8 @@ using vector::subtract;
 
 // Passes of smoothing: steps of the triangulation, up to three edges long, go; fewer leave rags, more round corners.
 constexpr int kPasses = 10;
-// The share of the way to the mean that a vertex goes in each: with all of it, every other vertex swings.
-constexpr double kStep = 0.5;
-// The rings of vertices beside the rim that follow it: with none, triangles there would be squeezed.
-constexpr int kRings = 2;
-// Cosine between a triangle's normals before and after below which it counts as turned over, so that its vertices go back.
-constexpr double kTurned = 0.3;
-// Rounds of taking vertices back, each of which may turn others; after them all are.
-constexpr int kTakenBack = 20;
-constexpr std::uint8_t kRim = 1;  // The mark of a vertex on the boundary; those that follow it have larger ones.
+// The mark of a vertex on the boundary; those that follow it have larger ones.
+enum : std::uint8_t { kRim = 1 };
 
 using Side = std::pair<std::uint32_t, std::uint32_t>;
 
@@ -58,7 +52,7 @@ class Rim {
  public:
   Rim(const Mesh& mesh, std::vector<Side> boundary) : boundary_(std::move(boundary)), mark_(mesh.vertices.size(), 0) {
     for (const auto& [a, b] : boundary_) mark_[a] = mark_[b] = kRim;
-    std::uint8_t ring = kRim;
+    std::uint8_t ring = kRim;  // with none beside the rim that follow it, triangles there would be squeezed
     for (int i = 0; i < kRings; ++i, ++ring) {
       for (const auto& t : mesh.triangles) {
         if (std::none_of(t.begin(), t.end(), [&](std::uint32_t v) { return mark_[v] == ring; })) continue;
@@ -90,7 +84,7 @@ class Rim {
     }
     for (std::uint32_t v = 0; v < at.size(); ++v) {
       if (mark_[v] == 0 || (mark_[v] == kRim && count[v] != 2)) continue;
-      const Vec3 step = scale(subtract(scale(sum[v], 1 / count[v]), at[v]), kStep);
+      const Vec3 step = scale(subtract(scale(sum[v], 1 / count[v]), at[v]), kSmoothingStep);
       const Vec3 n = vector::normalised(normal[v]);
       at[v] = add(at[v], subtract(step, scale(n, dot(n, step))));
     }
@@ -121,18 +115,18 @@ void smooth_rims(Mesh& mesh, const std::function<std::vector<std::uint8_t>(const
   for (std::size_t k = 0; k < moved.size(); ++k) {
     if (may[k] == 0) at[moved[k]] = mesh.vertices[moved[k]];
   }
-  bool turned = true;
-  for (int round = 0; round < kTakenBack && turned; ++round) {
+  // The vertices of triangles that turn over go back. One that goes back may turn other triangles; at the latest all are back.
+  for (bool turned = true; turned;) {
     turned = false;
     for (const auto& t : rim.triangles()) {
-      if (dot(vector::normalised(normal_of(at, t)), vector::normalised(normal_of(mesh.vertices, t))) >= kTurned) continue;
+      if (dot(vector::normalised(normal_of(at, t)), vector::normalised(normal_of(mesh.vertices, t))) >= kSlant) continue;
       for (const std::uint32_t v : t) {
         turned = turned || at[v] != mesh.vertices[v];
         at[v] = mesh.vertices[v];
       }
     }
   }
-  if (!turned) mesh.vertices = std::move(at);
+  mesh.vertices = std::move(at);
 }
 
 }  // namespace g3r::mesh

@@ -3,21 +3,15 @@
 #include "base/vector.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
+#include "mesh/constants.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace g3r::mesh {
-namespace {
-
-constexpr std::size_t kBlock = 256;            // points per parallel block
-constexpr std::size_t kSpacingNeighbours = 8;  // The definition of the spacing has so many (docs/math.md).
-
-}  // namespace
-
 std::vector<double> smooth_spacing(const std::vector<Vec3>& positions, const std::vector<std::uint32_t>& near) {
-  const std::size_t n = positions.size(), stride = near.size() / n, k = std::min(kSpacingNeighbours + 1, stride);
+  const std::size_t n = positions.size(), stride = near.size() / n, k = std::min(kRing + 1, stride);
   std::vector<double> raw(n), smooth(n);
   parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -37,7 +31,7 @@ std::vector<double> smooth_spacing(const std::vector<Vec3>& positions, const std
 }
 
 std::vector<double> smooth_spacing(const std::vector<Vec3>& positions) {
-  return smooth_spacing(positions, Neighbours(positions).of_all(kSpacingNeighbours + 1));
+  return smooth_spacing(positions, Neighbours(positions).of_all(kRing + 1));
 }
 
 }  // namespace g3r::mesh

@@ -6,6 +6,7 @@
 
 #include "base/disjoint_sets.h"
 #include "base/vector.h"
+#include "mesh/constants.h"
 #include "mesh/sides.h"
 
 #include <algorithm>
@@ -18,7 +19,7 @@ namespace g3r {
 
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+using mesh::kNone;
 
 /// Removes triangles that name a vertex twice, and pairs of triangles on the same vertices that face each other: they bound nothing.
 void remove_folded(Mesh& mesh) {

@@ -2,6 +2,7 @@
 
 #include "base/median.h"
 #include "base/vector.h"
+#include "mesh/constants.h"
 #include "mesh/distance_to_points.h"
 #include "mesh/mesh_parts.h"
 #include "mesh/smooth_rims.h"
@@ -16,14 +17,8 @@
 namespace g3r::mesh {
 namespace {
 
-// The least limit in local spacings: half of the widest gap between points of a random sample of a surface, which is no hole.
-constexpr double kGap = 1.5;
-// The sides, of the limit, up to which a triangle's corners tell for all of it: no place of it is much farther from a point.
-constexpr double kSmallSide = 0.5;
 // The spacings that a rim may reach beyond its points: one gap in a hundred of a random sample is wider.
 constexpr double kRim = 1.2;
-// Rounds of removing triangles that hang on by one edge, which make the boundary ragged.
-constexpr int kEarPasses = 2;
 
 using Triangle = std::array<std::uint32_t, 3>;
 
@@ -31,8 +26,8 @@ Vec3 centre_of(const Mesh& mesh, const Triangle& t) {
   return vector::scale(vector::add(mesh.vertices[t[0]], vector::add(mesh.vertices[t[1]], mesh.vertices[t[2]])), 1.0 / 3);
 }
 
-// How far from each point surface may be. Farther than four spacings of the cloud nobody measured anything; where it is sparse, but a
-// surface, the gaps between its points are no holes.
+// How far from each point surface may be, in its own units. Farther than four spacings of the cloud nobody measured anything; where it is
+// sparse, but a surface, the gaps between its points are no holes.
 std::vector<double> limits_of(const std::vector<double>& spacing, const MeshOptions& options) {
   if (options.trim == MeshOptions::Trim::kDistance) return std::vector<double>(spacing.size(), options.trim_distance);
   const double typical = median(spacing);
@@ -55,7 +50,8 @@ double longest_side(const std::array<Vec3, 3>& corner) {
 std::vector<std::uint8_t> within(const Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>& limits) {
   const auto limit = [&](std::uint32_t i) { return limits[i]; };
   std::vector<double> distance = distance_to_points(mesh.vertices, points, limit);
-  const double small = kSmallSide * *std::min_element(limits.begin(), limits.end());
+  // No place of a smaller triangle is much farther from a point than its corners.
+  const double small = 0.5 * *std::min_element(limits.begin(), limits.end());
   std::vector<std::uint8_t> keep(mesh.triangles.size());
   std::vector<Vec3> places;
   std::vector<std::uint32_t> asker;
@@ -75,8 +71,7 @@ std::vector<std::uint8_t> within(const Mesh& mesh, const std::vector<Vec3>& poin
   return keep;
 }
 
-// For every triangle those across its three sides: kNobody where there is none. A side of more than two triangles has none.
-constexpr std::uint32_t kNobody = 0xffffffff;
+// For every triangle those across its three sides: kNone where there is none. A side of more than two triangles has none.
 std::vector<Triangle> neighbours_of(const Mesh& mesh) {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> sides;  // vertices, 3 t + k
   sides.reserve(3 * mesh.triangles.size());
@@ -87,7 +82,7 @@ std::vector<Triangle> neighbours_of(const Mesh& mesh) {
     }
   }
   std::sort(sides.begin(), sides.end());
-  std::vector<Triangle> across(mesh.triangles.size(), Triangle{kNobody, kNobody, kNobody});
+  std::vector<Triangle> across(mesh.triangles.size(), Triangle{kNone, kNone, kNone});
   for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
     const bool pair = sides[i].first == sides[i + 1].first && (i + 2 == sides.size() || sides[i + 2].first != sides[i].first) &&
                       (i == 0 || sides[i - 1].first != sides[i].first);
@@ -114,7 +109,7 @@ void draw_in(const Mesh& mesh, const std::vector<Vec3>& points, const std::vecto
     const std::uint32_t t = gone.back();
     gone.pop_back();
     for (const std::uint32_t other : across[t]) {
-      if (other == kNobody || keep[other] == 0 || distance[other] <= 1) continue;
+      if (other == kNone || keep[other] == 0 || distance[other] <= 1) continue;
       keep[other] = 0;
       gone.push_back(other);
     }
@@ -125,7 +120,7 @@ void draw_in(const Mesh& mesh, const std::vector<Vec3>& points, const std::vecto
 void drop_ears(const std::vector<Triangle>& across, std::vector<std::uint8_t>& keep) {
   std::vector<std::uint32_t> ears;
   for (std::uint32_t t = 0; t < keep.size(); ++t) {
-    const auto joined = std::count_if(across[t].begin(), across[t].end(), [&](std::uint32_t o) { return o != kNobody && keep[o] != 0; });
+    const auto joined = std::count_if(across[t].begin(), across[t].end(), [&](std::uint32_t o) { return o != kNone && keep[o] != 0; });
     if (keep[t] != 0 && joined < 2) ears.push_back(t);
   }
   for (const std::uint32_t t : ears) keep[t] = 0;
@@ -139,7 +134,7 @@ void trim(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>
   if (std::all_of(keep.begin(), keep.end(), [](std::uint8_t k) { return k != 0; })) return;
   const std::vector<Triangle> across = neighbours_of(mesh);
   if (options.trim == MeshOptions::Trim::kAuto) draw_in(mesh, points, spacing, across, keep);
-  for (int pass = 0; pass < kEarPasses; ++pass) drop_ears(across, keep);
+  for (int pass = 0; pass < 2; ++pass) drop_ears(across, keep);  // of those that are left, the second time
   remove_triangles(mesh, keep);
   if (mesh.triangles.empty()) throw InvalidInput("trimming removed the whole mesh: the trim distance is too small");
   smooth_rims(mesh, [&](const std::vector<Vec3>& places) {

@@ -1,6 +1,7 @@
 #include "mesh/untangle.h"
 
 #include "base/vector.h"
+#include "mesh/constants.h"
 #include "mesh/self_intersections.h"
 
 #include <g3r/error.h>
@@ -16,14 +17,6 @@ namespace {
 
 // Rounds of moving vertices of crossing triangles: what still crosses after them hardly comes apart.
 constexpr int kRounds = 12;
-// The rounds after which the neighbours of a crossing triangle move too: few crossings need it, and it smooths more.
-constexpr int kWider = 4;
-// The share of the way to the mean of its neighbours that a vertex goes: with all of it, neighbours swing about each other.
-constexpr double kStep = 0.5;
-// The rings of triangles around the crossing ones that are searched for new crossings: moved vertices reach no farther. With one ring gears
-// come out otherwise, with two they do not.
-constexpr int kRings = 3;
-constexpr std::uint32_t kOutside = std::numeric_limits<std::uint32_t>::max();
 
 // Marks the corners of all triangles that have a marked corner.
 void grow(const Mesh& mesh, std::vector<std::uint8_t>& marked) {
@@ -43,13 +36,13 @@ struct Part {
 
 Part part_of(const Mesh& mesh, const std::vector<std::uint8_t>& marked) {
   Part part;
-  std::vector<std::uint32_t> number(mesh.vertices.size(), kOutside);
+  std::vector<std::uint32_t> number(mesh.vertices.size(), kNone);
   for (const auto& t : mesh.triangles) {
     if (marked[t[0]] == 0 || marked[t[1]] == 0 || marked[t[2]] == 0) continue;
     auto& added = part.mesh.triangles.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) {
       std::uint32_t& n = number[t[k]];
-      if (n == kOutside) {
+      if (n == kNone) {
         n = static_cast<std::uint32_t>(part.vertex.size());
         part.vertex.push_back(t[k]);
         part.mesh.vertices.push_back(mesh.vertices[t[k]]);
@@ -83,7 +76,7 @@ void smooth(Part& part, const std::vector<std::uint8_t>& move) {
   }
   for (std::size_t v = 0; v < at.size(); ++v) {
     if (move[part.vertex[v]] == 0) continue;
-    at[v] = vector::add(vector::scale(at[v], 1 - kStep), vector::scale(sum[v], kStep / count[v]));
+    at[v] = vector::add(vector::scale(at[v], 1 - kSmoothingStep), vector::scale(sum[v], kSmoothingStep / count[v]));
   }
 }
 
@@ -99,7 +92,7 @@ std::size_t untangle(Mesh& mesh, const std::atomic<bool>* cancel, const std::vec
   for (int round = 0; round < kRounds && !pairs.empty(); ++round) {
     if (cancel != nullptr && cancel->load()) throw Cancelled();
     std::vector<std::uint8_t> move = crossing;
-    if (round >= kWider) grow(mesh, move);
+    if (3 * round >= kRounds) grow(mesh, move);  // few crossings need it, and it smooths more
     std::vector<std::uint8_t> near = move;
     for (std::size_t v = 0; v < fixed.size(); ++v) {
       if (fixed[v] != 0) move[v] = 0;

@@ -1,0 +1,49 @@
+// Counts and lengths that several steps of the mesher share, each with one meaning.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+namespace g3r::mesh {
+
+/// No point, vertex, triangle or leaf.
+inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+/// The items of a parallel block: smaller blocks cost more to hand out than to do, larger ones leave threads idle at the end.
+inline constexpr std::size_t kBlock = 256;
+/// The tasks that a walk through a tree is cut into, whatever the number of threads, so that their order is always the same: fewer leave
+/// threads idle.
+inline constexpr std::size_t kTasks = 256;
+/// The nearest points that tell what a place is like: the definition of the spacing has so many (docs/math.md), and more reach across thin
+/// walls.
+inline constexpr std::size_t kRing = 8;
+/// The points of a fit, the nearest ones to the place: a quadratic has six numbers and normals double the data; more reach across walls.
+inline constexpr std::size_t kFitPoints = 2 * kRing;
+/// The points of a patch beside a point that make it one: corners of cubes have so many, fewer are noise, and random points have one.
+inline constexpr std::size_t kPatchPoints = 3;
+/// The places, evenly from all, at which properties of a whole cloud are taken: medians and shares of so many are good to 2 %.
+inline constexpr std::size_t kSample = 4000;
+/// The points of a cloud, or pairs of them, below which nothing is said of what is rare in it: it would be a matter of chance.
+inline constexpr std::size_t kFewestPoints = 100;
+/// The share of a length up to which it is rounding.
+inline constexpr double kRounding = 1e-9;
+/// The noise in spacings that counts as none: fits hide less of it by themselves, and smoothing would round detail.
+inline constexpr double kNoisy = 0.15;
+/// Half of the widest gap between points of a random sample of a surface, in spacings: the disc around a point that is refined, as the
+/// holes of the sample would be coarse with less, and the distance up to which surface is held by it.
+inline constexpr double kGap = 1.4;
+/// The spacings beyond which surface without a point is a guess.
+inline constexpr double kFarSpacings = 4;
+/// The cosine below which two directions are rather square to each other, 73 degrees, and the sine below which they are rather parallel, 17
+/// degrees: sharp edges of a fit turn less, and surfaces that meet in a crease turn more.
+inline constexpr double kSlant = 0.3;
+/// The cosine of 45 degrees, from which a direction is rather along another than across it.
+inline constexpr double kAlong = 0.7;
+/// The rings of triangles or vertices around a place that feel what is changed there: with one ring gears come out otherwise, with two they
+/// do not.
+inline constexpr int kRings = 3;
+/// The share of the way to the mean of its neighbours that a vertex goes where surface is smoothed: with all of it, neighbours swing about
+/// each other.
+inline constexpr double kSmoothingStep = 0.5;
+
+}  // namespace g3r::mesh
