@@ -28,13 +28,13 @@ namespace {
 
 constexpr double kSidesAgree = 0.45;  // mean jump defect of an open surface up to which its sides are called consistent; 1: none agree
 // Other noises than the estimate.
-constexpr double kFarLess = 0.5;          // of that share, up to which another is taken: chance changes it by less
+constexpr double kFarLess = 0.55;         // of that share, up to which another is taken: chance changes it by less
 constexpr double kFarMore = 2;            // times the estimate, scatter that speaks against it
 constexpr double kAboveScatter = 1.4;     // times the scatter, the noise that is tried: kernels have to hide all of it,
 constexpr double kLeastTried = 0.3;       // but at least this in spacings: less blurs no less, and leaves more in doubt
 constexpr std::size_t kFewPoints = 2500;  // up to which shape looks like noise, so that none is tried too
-constexpr double kManyDoubtful = 0.15;    // share of the sides in doubt from which more noise is tried with nothing to speak for it,
-constexpr double kHardlyAny = 0.1;        // and of that share, up to which it is taken: noise hides thin walls and all doubt about them
+constexpr double kManyDoubtful = 0.1;     // share of the sides in doubt from which more noise is tried with nothing to speak for it,
+constexpr double kHardlyAny = 0.2;        // and of that share, up to which it is taken: noise hides thin walls and all doubt about them
 
 void describe(const Problem& problem, const PointsView& points, const Options& options, Stats& stats) {
   const CanonicalCloud& cloud = problem.cloud;

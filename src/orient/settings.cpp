@@ -36,18 +36,21 @@ constexpr double kContinuedTolerance = 1.5e-2;
 constexpr double kFewOutliers = 1e-2;  // of the points; clean clouds lose one point, very uneven ones 0.6 %
 // The default on noisy input, sigma in spacings h: the field must not see single points. Kernels of a given number of sigma hide the
 // scatter of points, and blur walls as thin as that; below a spacing fewer points share the scatter, and walls matter more. So the width
-// grows with the square of sigma first and in proportion later, w = A s^2 / (s + B) for s = sigma / h: a larger A blurs, a smaller one fits
-// the noise.
-constexpr double kNoisyWidth = 4.2;    // A; nearly that many sigma in the end
-constexpr double kSharesNoise = 0.25;  // B; below this noise the width falls off: less costs thin walls, more turns shells in cavities
+// grows with the square of sigma first and in proportion later, w = A s^2 / hypot(s, B) for s = sigma / h.
+constexpr double kNoisyWidth = 4.2;   // A, that many sigma in the end: more blurs walls, less turns shells in cavities
+constexpr double kSharesNoise = 0.5;  // B, the noise below which the width falls off: less blurs walls, more turns shells
 // Raw solutions fit the noise with every step, and the more noise there is the sooner: h / sigma times this many steps.
 constexpr double kStepsPerNoise = 7;
 constexpr double kFewestNoisySteps = 10;  // fewer leave far sides undecided
 constexpr double kUnsurePerNoise = 0.9;   // share of the points whose sides a noise of one h makes unsure, about
 constexpr Steps kDoubtfulNoisy{30, StepKind::kConjugateGradient};
-// Noise turns the normal of a patch of side s by about sigma h / s^2, so widths for one accuracy are in proportion to sqrt(sigma h).
-constexpr double kNoisyPolishEpsilon = 1.8;  // sqrt(sigma h)
-constexpr double kNoisyPolishWidth = 2.25;   // sqrt(sigma h)
+// From fewer points, a start under more noise than this has lost the walls: half of the sides of 95,000 points on walls of 3 h. In h.
+constexpr double kStartsUnderNoise = 0.35;
+// Noise turns the normal of a patch of side s by about sigma h / s^2: widths in proportion to sqrt(sigma h) leave one accuracy. Those in
+// proportion to sigma hide the scatter, without which shells in cavities turn. Between the two, with this power of sigma / h:
+constexpr double kNoisyPolishPower = 0.6;
+constexpr double kNoisyPolishEpsilon = 1.95;  // h; 1.8 and the power 1/2 leave more sides of thin walls right, and turn shells
+constexpr double kNoisyPolishWidth = 2.4;     // h
 constexpr int kNoisyPolishSteps = 9;
 constexpr double kClusterSide = 0.9;    // epsilon; the kernel at width epsilon cannot tell points of one cluster apart
 constexpr double kWideEpsilon = 1.5;    // h; from here on clusters pay, and an epsilon that is asked for is taken to mean noise
@@ -98,11 +101,12 @@ double in_frame(const Length& length, const CanonicalCloud& cloud, double spacin
 }
 
 // Width in spacings of the kernels that hide this noise, in spacings too.
-double noisy_width(double noise) { return kNoisyWidth * noise * noise / (noise + kSharesNoise); }
+double noisy_width(double noise) { return kNoisyWidth * noise * noise / std::hypot(noise, kSharesNoise); }
 
 // The noise that kernels of this width hide.
 double hidden_noise(double width) {
-  return (width + std::sqrt(width * width + 4 * kNoisyWidth * kSharesNoise * width)) / (2 * kNoisyWidth);
+  const double sigmas = width / kNoisyWidth;
+  return std::sqrt(sigmas * (sigmas + std::hypot(sigmas, 2 * kSharesNoise)) / 2);
 }
 
 double cube(double x) { return x * x * x; }
@@ -117,7 +121,7 @@ double believed(double noise) { return cube(1 / (1 + kWeightFall * noise * noise
 // Widths, steps and the polish of the default for noise of this many spacings.
 void follow_noise(double noise, const Options& options, std::size_t points, Settings& s) {
   const double width = noisy_width(noise) * s.spacing;
-  const double patch = std::sqrt(noise) * s.spacing;
+  const double patch = std::pow(noise, kNoisyPolishPower) * s.spacing;
   s.noise = noise * s.spacing;
   s.refinement_width = std::max(s.refinement_width, width);
   if (options.epsilon.unit == Length::Unit::kAuto) {
@@ -131,14 +135,11 @@ void follow_noise(double noise, const Options& options, std::size_t points, Sett
   s.polish_winding_weight = kNoisyPolishWindingWeight * believed(noise) * cube(s.spacing);
   s.unsure_of_noise = kUnsurePerNoise * noise;
   if (!s.doubtful_schedule.empty()) s.doubtful_schedule = {kDoubtfulNoisy};
-  if (s.epsilon > kWideEpsilon * s.spacing) {
-    s.cluster_side = kClusterSide * s.epsilon;
-    s.coarse_to_fine = false;
-  }
+  if (s.epsilon > kWideEpsilon * s.spacing) s.cluster_side = kClusterSide * s.epsilon;
+  if (noise > kStartsUnderNoise) s.coarse_to_fine = false;
   if (options.schedule.empty() && !starts_coarse(s, points)) {
-    const int most = s.schedule.front().count;
-    const auto steps = static_cast<int>(std::max(kFewestNoisySteps, kStepsPerNoise / noise));
-    s.schedule_text = std::to_string(std::min(most, steps)) + " cg";
+    const double steps = std::clamp(kStepsPerNoise / noise, kFewestNoisySteps, static_cast<double>(s.schedule.front().count));
+    s.schedule_text = std::to_string(static_cast<int>(steps)) + " cg";
     s.schedule = parse_schedule(s.schedule_text);
     if (options.tolerance < 0) s.tolerance = 0;
   }
