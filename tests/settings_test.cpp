@@ -57,6 +57,37 @@ TEST(ChooseSettings, WidthsGrowWithTheNoise) {
   EXPECT_GT(epsilon, chosen({}).epsilon);
 }
 
+// The smallest noise is that of clean clouds, and 5 % more of it changes no width by more than 10 %.
+TEST(ChooseSettings, WidthsFollowTheNoiseWithoutAJump) {
+  const double h = cloud().set.spacing();
+  const auto widths = [](const Settings& s) {
+    return std::vector<double>{s.epsilon, s.refinement_width, s.polish_epsilon, s.polish_width};
+  };
+  EXPECT_EQ(widths(chosen({}, 1e-6 * h)), widths(chosen({})));
+  EXPECT_EQ(chosen({}, 1e-6 * h).schedule_text, chosen({}).schedule_text);
+  for (double noise = 0.01; noise < 4; noise *= 1.05) {
+    const std::vector<double> before = widths(chosen({}, noise * h));
+    const std::vector<double> after = widths(chosen({}, 1.05 * noise * h));
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      EXPECT_GE(after[i], before[i]) << noise;
+      EXPECT_LE(after[i], 1.11 * before[i]) << noise;
+    }
+  }
+}
+
+// An epsilon as wide as noise would ask for is taken for that noise.
+TEST(ChooseSettings, AWideEpsilonMeansTheNoiseThatItHides) {
+  const double h = cloud().set.spacing();
+  for (const double noise : {0.8, 1.5, 3.0}) {
+    const Settings noisy = chosen({}, noise * h);
+    Options options;
+    options.epsilon = {Length::Unit::kSpacing, noisy.epsilon / h};
+    const Settings wide = chosen(options);
+    EXPECT_NEAR(wide.noise, noise * h, 1e-9 * h);
+    EXPECT_NEAR(wide.polish_width, noisy.polish_width, 1e-9 * h);
+  }
+}
+
 TEST(ChooseSettings, RefusesOptionsThatContradictEachOther) {
   const auto refused = [](const auto& set) {
     Options options;
