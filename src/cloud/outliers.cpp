@@ -38,9 +38,8 @@ std::vector<std::uint32_t> find_outliers(const PointSet& set, const std::vector<
   if (set.size() < kFewestPoints) return {};
   const std::vector<Vec3>& points = set.points();
   const std::vector<std::uint32_t>& near = set.near();
-  std::vector<double> local = set.local_spacing();
-  for (std::size_t i = 0; i < relative_spacing.size(); ++i) local[i] /= relative_spacing[i];
-  const double typical = relative_spacing.empty() ? set.spacing() : typical_spacing(local);
+  const std::vector<double> local = spacing_before_thinning(set.local_spacing(), relative_spacing);
+  const double typical = typical_spacing(local);
   std::vector<char> outlier(points.size(), 0);
   parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

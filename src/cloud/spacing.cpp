@@ -53,6 +53,11 @@ std::vector<double> smoothed_spacing(const std::vector<double>& local, const std
   return spacing;
 }
 
+std::vector<double> spacing_before_thinning(std::vector<double> local, const std::vector<double>& relative_spacing) {
+  for (std::size_t i = 0; i < relative_spacing.size(); ++i) local[i] /= relative_spacing[i];
+  return local;
+}
+
 double typical_spacing(std::vector<double> local) { return median(std::move(local)); }
 
 }  // namespace g3r

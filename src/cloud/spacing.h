@@ -27,6 +27,10 @@ inline constexpr std::size_t kSpacingNeighbours = 17;
 /// the sample. `near`: Neighbours::of_all(k), k >= 16. O(N).
 [[nodiscard]] std::vector<double> smoothed_spacing(const std::vector<double>& local, const std::vector<std::uint32_t>& near);
 
+/// Local spacings divided by `relative_spacing`, how many times as far apart each point is because the cloud has been thinned there; as
+/// they are if that is empty. O(N).
+[[nodiscard]] std::vector<double> spacing_before_thinning(std::vector<double> local, const std::vector<double>& relative_spacing);
+
 /// The typical spacing: the median of the local ones, which a few far points cannot move.
 [[nodiscard]] double typical_spacing(std::vector<double> local);
 

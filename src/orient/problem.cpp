@@ -32,14 +32,6 @@ std::vector<T> in_canonical_order(const CanonicalCloud& cloud, const std::vector
   return out;
 }
 
-// The spacing of the points, and what it would be had none been thinned.
-double spacing_before_thinning(const PointSet& set, const std::vector<double>& relative_spacing) {
-  if (relative_spacing.empty()) return set.spacing();
-  std::vector<double> local = set.local_spacing();
-  for (std::size_t i = 0; i < local.size(); ++i) local[i] /= relative_spacing[i];
-  return typical_spacing(std::move(local));
-}
-
 }  // namespace
 
 Problem prepare(const PointsView& points, const Known& known, const Options& options, Stages& stages) {
@@ -58,7 +50,7 @@ Problem prepare(const PointsView& points, const Known& known, const Options& opt
   }
   const PointSet& set = problem.cloud.set;
   problem.known = {in_canonical_order(problem.cloud, known.gradient), in_canonical_order(problem.cloud, known.relative_spacing)};
-  problem.spacing = spacing_before_thinning(set, problem.known.relative_spacing);
+  problem.spacing = typical_spacing(spacing_before_thinning(set.local_spacing(), problem.known.relative_spacing));
   if (const std::optional<double> given = given_noise(options.noise, problem.cloud, problem.spacing)) {
     problem.noise = *given;
   } else if (options.preset != Preset::kPaper && !contains(without, Step::kNoise)) {
@@ -106,7 +98,7 @@ Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, 
     if (!problem.known.relative_spacing.empty()) part.known.relative_spacing.push_back(problem.known.relative_spacing[i]);
   }
   part.cloud.set = PointSet(std::move(points), std::move(morton));
-  part.spacing = spacing_before_thinning(part.cloud.set, part.known.relative_spacing);
+  part.spacing = typical_spacing(spacing_before_thinning(part.cloud.set.local_spacing(), part.known.relative_spacing));
   part.noise = problem.noise;
   part.outliers = problem.outliers;  // those of the whole cloud: the part was solved for among them
   Options same = options;
