@@ -507,7 +507,7 @@ class Hints(ProgramTest):
         return points
 
     def depth_frame(self):
-        """A ball before a wall as a camera at the origin sees them: one sheet on the other, with a gap in depth between them."""
+        """A ball before a wall as a camera at the origin sees them: one open surface on the other, with a gap in depth between them."""
         points = []
         step = 2 if is_sanitized() else 1
         for u in range(-40, 41, step):
@@ -559,7 +559,7 @@ class Hints(ProgramTest):
         write_points(self.path("ball.ply"), sphere(1000))
         result = self.expect(OK, "orient", "ball.ply", "out.ply", "--inside", "0,0,5", "--up", "x")
         self.assertIn("0,0,5 is not inside", result.err)
-        self.assertIn("hint up: it settles nothing", result.err)
+        self.assertIn("hint up: it decides nothing", result.err)
         self.assertEqual(self.facing("out.ply", (0, 0, 0)), 0)
         self.assertNotIn("hint", self.expect(OK, "orient", "ball.ply", "out.ply", "--inside", "0,0,0.5", "--sensor", "0,0,5").err)
 

@@ -46,7 +46,7 @@ void expect_manifold(const Mesh& mesh, const std::string& where) {
   EXPECT_EQ(t.bad_vertices, 0U) << where;
 }
 
-// Plates of half a spacing, with gaps of half a spacing between them: sheets that share faces of the octree and touch.
+// Plates of half a spacing, with gaps of half a spacing between them: patches that share faces of the octree and touch.
 Mesh stack_of_plates() {
   constexpr std::size_t kPoints = 2500;
   constexpr double kStep = 0.03;

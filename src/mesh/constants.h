@@ -9,7 +9,7 @@ namespace g3r::mesh {
 
 /// No point, vertex, triangle or leaf.
 inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-/// The items of a parallel block: smaller blocks cost more to hand out than to do, larger ones leave threads idle at the end.
+/// The items of a parallel block: smaller blocks cost more to start than to do, larger ones leave threads idle at the end.
 inline constexpr std::size_t kBlock = 256;
 /// The tasks that a walk through a tree is cut into, whatever the number of threads, so that their order is always the same: fewer leave
 /// threads idle.

@@ -19,12 +19,12 @@ constexpr long kMostPerHandle = 60;
 // Whether a group of so many corners may be taken for so many handles.
 bool is_worth(long handles, long corners) { return handles > 0 && corners <= kMostPerHandle * handles; }
 
-// Twice the Euler characteristic of a sheet, half of each of its arcs counted; a sheet is a vertex, an arc an edge, a crossing a face.
-int twice_characteristic(const Sheets& s, std::size_t sheet) { return 2 - static_cast<int>(s.begin[sheet + 1] - s.begin[sheet]); }
+// Twice the Euler characteristic of a patch, half of each of its arcs counted; a patch is a vertex, an arc an edge, a crossing a face.
+int twice_characteristic(const Patches& s, std::size_t patch) { return 2 - static_cast<int>(s.begin[patch + 1] - s.begin[patch]); }
 
-// Joins the crossings around each of the sheets for which use(leaf). `node`: of edges, among the sets.
+// Joins the crossings around each of the patches for which use(leaf). `node`: of edges, among the sets.
 template <class Use>
-void join_rims(const Sheets& s, const std::vector<std::uint32_t>& node, const Use& use, DisjointSets& sets) {
+void join_rims(const Patches& s, const std::vector<std::uint32_t>& node, const Use& use, DisjointSets& sets) {
   for (std::size_t p = 0; p < s.leaf.size(); ++p) {
     if (!use(s.leaf[p])) continue;
     const std::size_t first = node[s.rim[s.begin[p]]];
@@ -32,7 +32,7 @@ void join_rims(const Sheets& s, const std::vector<std::uint32_t>& node, const Us
   }
 }
 
-// Joins the crossings around each of the sheets for which use(leaf).
+// Joins the crossings around each of the patches for which use(leaf).
 template <class Use>
 void join_crossings(const DualSurface& s, const Use& use, DisjointSets& sets) {
   for (std::size_t p = 0; p < s.patch_count(); ++p) {
@@ -104,8 +104,8 @@ HandleRemoval::HandleRemoval(const Octree& octree, const std::vector<std::uint8_
   for (std::uint32_t k = 0; k < open_.edges.size(); ++k) {
     if (inside[open_.edges[k].low] != inside[open_.edges[k].high]) crossing.push_back(k);
   }
-  sheets_ = sheets_in(octree, open_.edges, crossing, open_.around, inside, centre_inside_);
-  for (std::size_t p = 0; p < sheets_.leaf.size(); ++p) twice_[sheets_.leaf[p]] += twice_characteristic(sheets_, p);
+  patches_ = patches_in(octree, open_.edges, crossing, open_.around, inside, centre_inside_);
+  for (std::size_t p = 0; p < patches_.leaf.size(); ++p) twice_[patches_.leaf[p]] += twice_characteristic(patches_, p);
   number_parts(surface);
   components_ = join_components();
 }
@@ -134,7 +134,7 @@ void HandleRemoval::number_parts(const DualSurface& surface) {
   });
   std::sort(known.begin(), known.end());
   node_.assign(open_.edges.size(), kNone);
-  for (const std::uint32_t edge : sheets_.rim) {
+  for (const std::uint32_t edge : patches_.rim) {
     const MinimalEdge& e = open_.edges[edge];
     if (std::all_of(e.leaf.begin(), e.leaf.end(), [&](std::uint32_t leaf) { return around[leaf] != 0; })) continue;
     for (const std::uint64_t k : {key(e.low, e.high), key(e.high, e.low)}) {
@@ -144,18 +144,18 @@ void HandleRemoval::number_parts(const DualSurface& surface) {
   }
 }
 
-// Numbers the crossings of `sheets_` and finds their components; returns how many there are.
+// Numbers the crossings of `patches_` and finds their components; returns how many there are.
 std::size_t HandleRemoval::join_components() {
   for (std::uint32_t& n : node_) {
     if (n >= parts_) n = kNone;
   }
   auto nodes = static_cast<std::uint32_t>(parts_);
-  for (const std::uint32_t edge : sheets_.rim) {
+  for (const std::uint32_t edge : patches_.rim) {
     if (node_[edge] == kNone) node_[edge] = nodes++;
   }
   DisjointSets sets(nodes);
   join_rims(
-      sheets_, node_, [](std::uint32_t) { return true; }, sets);
+      patches_, node_, [](std::uint32_t) { return true; }, sets);
   component_.resize(nodes);
   for (std::uint32_t n = 0; n < nodes; ++n) component_[n] = static_cast<std::uint32_t>(sets.find(n));
   return sets.count();
@@ -220,7 +220,7 @@ void HandleRemoval::drop_refused(Groups& g) {
 }
 
 // In the leaves of the groups.
-Sheets HandleRemoval::sheets_of(const Groups& groups, const std::vector<std::uint8_t>& inside) const {
+Patches HandleRemoval::patches_of(const Groups& groups, const std::vector<std::uint8_t>& inside) const {
   std::vector<std::uint8_t> marked(group_.size(), 0), seen(open_.edges.size(), 0);
   std::vector<std::uint32_t> crossing;
   for (const std::uint32_t leaf : groups.leaves) {
@@ -231,11 +231,11 @@ Sheets HandleRemoval::sheets_of(const Groups& groups, const std::vector<std::uin
       crossing.push_back(edge);
     }
   }
-  return sheets_in(octree_, open_.edges, crossing, marked, inside, centre_inside_);
+  return patches_in(octree_, open_.edges, crossing, marked, inside, centre_inside_);
 }
 
 // For each group twice the change of the Euler characteristic: 4 for a handle less or a component more.
-std::vector<long> HandleRemoval::gains(const Groups& groups, const Sheets& changed, const std::vector<std::uint8_t>& from,
+std::vector<long> HandleRemoval::gains(const Groups& groups, const Patches& changed, const std::vector<std::uint8_t>& from,
                                        const std::vector<std::uint8_t>& to) const {
   std::vector<long> gain(groups.size.size(), 0);
   for (const std::uint32_t leaf : groups.leaves) gain[group_[leaf]] -= twice_[leaf];
@@ -257,15 +257,15 @@ std::vector<long> HandleRemoval::gains(const Groups& groups, const Sheets& chang
 // How many components of the surface now pass through the leaves of each group.
 std::vector<long> HandleRemoval::components_through(const Groups& groups) const {
   DifferentValues components(groups.size.size());
-  for (std::size_t p = 0; p < sheets_.leaf.size(); ++p) {
-    const std::uint32_t g = group_[sheets_.leaf[p]];
-    if (g != kNone) components.add(g, component_[node_[sheets_.rim[sheets_.begin[p]]]]);
+  for (std::size_t p = 0; p < patches_.leaf.size(); ++p) {
+    const std::uint32_t g = group_[patches_.leaf[p]];
+    if (g != kNone) components.add(g, component_[node_[patches_.rim[patches_.begin[p]]]]);
   }
   return components.count();
 }
 
 // Whether some group can be worth it: no handle is lost without a gain but by joining components. `before`: components through each group.
-bool HandleRemoval::can_lose(const Groups& groups, const Sheets& changed, const std::vector<long>& gain,
+bool HandleRemoval::can_lose(const Groups& groups, const Patches& changed, const std::vector<long>& gain,
                              const std::vector<long>& before) const {
   std::vector<long> least(gain.size(), 0);  // components afterwards
   for (const std::uint32_t leaf : changed.leaf) least[group_[leaf]] = 1;
@@ -277,7 +277,7 @@ bool HandleRemoval::can_lose(const Groups& groups, const Sheets& changed, const 
 
 // Marks the groups that lose handles by the proposal while all the marked ones take it. False if there is none. Groups only lose their
 // marks, so the rounds end.
-bool HandleRemoval::settle(const Groups& groups, const Sheets& changed, const std::vector<long>& gain, std::vector<std::uint8_t>& take) {
+bool HandleRemoval::choose(const Groups& groups, const Patches& changed, const std::vector<long>& gain, std::vector<std::uint8_t>& take) {
   const std::vector<long> before = components_through(groups);
   if (!can_lose(groups, changed, gain, before)) return false;
   auto nodes = static_cast<std::uint32_t>(component_.size());
@@ -290,13 +290,13 @@ bool HandleRemoval::settle(const Groups& groups, const Sheets& changed, const st
   const auto taken = [&](std::uint32_t leaf) { return group_[leaf] != kNone && take[group_[leaf]] != 0; };
   DisjointSets elsewhere(nodes);
   join_rims(
-      sheets_, node_, [&](std::uint32_t leaf) { return group_[leaf] == kNone; }, elsewhere);
+      patches_, node_, [&](std::uint32_t leaf) { return group_[leaf] == kNone; }, elsewhere);
   std::fill(take.begin(), take.end(), 1);
-  bool settled = false;
-  while (!settled && std::find(take.begin(), take.end(), 1) != take.end()) {
+  bool steady = false;
+  while (!steady && std::find(take.begin(), take.end(), 1) != take.end()) {
     DisjointSets sets = elsewhere;
     join_rims(
-        sheets_, node_, [&](std::uint32_t leaf) { return group_[leaf] != kNone && take[group_[leaf]] == 0; }, sets);
+        patches_, node_, [&](std::uint32_t leaf) { return group_[leaf] != kNone && take[group_[leaf]] == 0; }, sets);
     join_rims(changed, node_, taken, sets);
     DifferentValues components(take.size());
     for (std::size_t p = 0; p < changed.leaf.size(); ++p) {
@@ -304,18 +304,18 @@ bool HandleRemoval::settle(const Groups& groups, const Sheets& changed, const st
       components.add(group_[changed.leaf[p]], static_cast<std::uint32_t>(sets.find(node_[changed.rim[changed.begin[p]]])));
     }
     const std::vector<long> after = components.count();
-    settled = true;
+    steady = true;
     for (std::size_t g = 0; g < take.size(); ++g) {
       if (take[g] == 0) continue;
       take[g] = is_worth(gain[g] / 4 - (after[g] - before[g]), groups.size[g]) ? 1 : 0;
-      settled = settled && take[g] != 0;
+      steady = steady && take[g] != 0;
     }
   }
   for (const std::uint32_t edge : added) node_[edge] = kNone;
-  return settled;
+  return steady;
 }
 
-void HandleRemoval::accept(const Groups& groups, const Sheets& changed, const std::vector<std::uint8_t>& take) {
+void HandleRemoval::accept(const Groups& groups, const Patches& changed, const std::vector<std::uint8_t>& take) {
   const auto taken = [&](std::uint32_t leaf) { return group_[leaf] != kNone && take[group_[leaf]] != 0; };
   ++changes_;
   for (const std::uint32_t leaf : groups.leaves) {
@@ -323,40 +323,40 @@ void HandleRemoval::accept(const Groups& groups, const Sheets& changed, const st
     twice_[leaf] = 0;
     changed_[leaf] = changes_;
   }
-  Sheets now;
+  Patches now;
   now.begin.push_back(0);
-  const auto add = [&](const Sheets& from, std::size_t p) {
+  const auto add = [&](const Patches& from, std::size_t p) {
     now.leaf.push_back(from.leaf[p]);
     for (std::size_t k = from.begin[p]; k < from.begin[p + 1]; ++k) now.rim.push_back(from.rim[k]);
     now.begin.push_back(now.rim.size());
   };
-  for (std::size_t p = 0; p < sheets_.leaf.size(); ++p) {
-    if (!taken(sheets_.leaf[p])) add(sheets_, p);
+  for (std::size_t p = 0; p < patches_.leaf.size(); ++p) {
+    if (!taken(patches_.leaf[p])) add(patches_, p);
   }
   for (std::size_t p = 0; p < changed.leaf.size(); ++p) {
     if (!taken(changed.leaf[p])) continue;
     add(changed, p);
     twice_[changed.leaf[p]] += twice_characteristic(changed, p);
   }
-  sheets_ = std::move(now);
+  patches_ = std::move(now);
 }
 
 bool HandleRemoval::propose(const std::vector<std::uint8_t>& proposal, std::vector<std::uint8_t>& inside) {
   if (cancel_ != nullptr && cancel_->load()) throw Cancelled();
   Groups groups = group_corners(proposal, inside);
   drop_refused(groups);
-  bool settled = false;
+  bool steady = false;
   if (!groups.size.empty()) {
     std::vector<std::uint8_t> next = inside;
     for (const std::uint32_t i : groups.place) next[open_.corners[i]] = proposal[open_.corners[i]];
-    const Sheets changed = sheets_of(groups, next);
+    const Patches changed = patches_of(groups, next);
     const std::vector<long> gain = gains(groups, changed, inside, next);
     std::vector<std::uint8_t> take(groups.size.size(), 0);
-    settled = settle(groups, changed, gain, take);
+    steady = choose(groups, changed, gain, take);
     for (std::size_t g = 0; g < take.size(); ++g) {
       if (take[g] == 0) refused_.insert(groups.name[g]);
     }
-    if (settled) {
+    if (steady) {
       for (std::size_t k = 0; k < groups.place.size(); ++k) {
         if (take[groups.of[k]] != 0) inside[open_.corners[groups.place[k]]] = proposal[open_.corners[groups.place[k]]];
       }
@@ -368,7 +368,7 @@ bool HandleRemoval::propose(const std::vector<std::uint8_t>& proposal, std::vect
     }
   }
   for (const std::uint32_t leaf : groups.leaves) group_[leaf] = kNone;
-  return settled;
+  return steady;
 }
 
 }  // namespace g3r::mesh

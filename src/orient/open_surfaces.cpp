@@ -4,7 +4,7 @@
 #include "base/median.h"
 #include "base/vector.h"
 #include "cloud/layers.h"
-#include "cloud/sheet.h"
+#include "cloud/quadratic_patch.h"
 #include "cloud/sites.h"
 #include "cpu/parallel.h"
 #include "orient/certificate.h"
@@ -134,7 +134,7 @@ class Search {
       const std::uint32_t s = members[k];
       set_.tree().nearest(finest_.points()[s], kWallPoints, index, squared);
       const double one = quadratic_residual(points_, index.data(), index.size(), finest_.axis[s], finest_.spacing()[s]);
-      const TwoSheets two = fit_two_sheets(points_, index.data(), index.size(), finest_.axis[s]);
+      const TwoLayers two = fit_two_layers(points_, index.data(), index.size(), finest_.axis[s]);
       const double exact = kExact * finest_.spacing()[s];
       const bool thin = two.gap < kThin * finest_.spacing()[s];
       gain.push_back((thin ? std::log(std::max(one, exact) / std::max(two.deviation, exact)) : 0) - std::numbers::ln2);
@@ -327,7 +327,7 @@ void choose(const Search& search, const std::vector<std::vector<Vec3>>& tried, c
 }
 
 // The normals of open parts, with their outside where they have one.
-OpenSurfaces settle(const Search& search, const std::vector<std::vector<Vec3>>& tried, const Verdict& verdict, std::vector<Vec3>& normals) {
+OpenSurfaces choose(const Search& search, const std::vector<std::vector<Vec3>>& tried, const Verdict& verdict, std::vector<Vec3>& normals) {
   OpenSurfaces found;
   found.part.assign(normals.size(), OpenSurfaces::kNone);
   found.certainty.assign(normals.size(), 1);
@@ -375,7 +375,7 @@ OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan
   }
   std::vector<float> shown = certified(search, given, normals);
   OpenSurfaces found;
-  if (any(verdict.is_open) || any(verdict.is_doubtful)) found = settle(search, tried, verdict, normals);
+  if (any(verdict.is_open) || any(verdict.is_doubtful)) found = choose(search, tried, verdict, normals);
   found.certified = std::move(shown);
   found.uncertified = search.sites().distance == 0 ? kUndecided : 0;
   return found;

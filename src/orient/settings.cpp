@@ -116,7 +116,7 @@ void require(bool good, const std::string& message) {
 }
 
 // What W eta = 1/2 counts under this noise, in spacings.
-double believed(double noise) { return cube(1 / (1 + kWeightFall * noise * noise)); }
+double trust(double noise) { return cube(1 / (1 + kWeightFall * noise * noise)); }
 
 // Widths, steps and the polish of the default for noise of this many spacings.
 void follow_noise(double noise, const Options& options, std::size_t points, Settings& s) {
@@ -132,7 +132,7 @@ void follow_noise(double noise, const Options& options, std::size_t points, Sett
   s.polish_width = std::max(s.polish_width, kNoisyPolishWidth * patch);
   if (s.polish_steps > 0) s.polish_steps = kNoisyPolishSteps;
   s.polish_damping = kNoisyDamping / s.spacing;
-  s.polish_winding_weight = kNoisyPolishWindingWeight * believed(noise) * cube(s.spacing);
+  s.polish_winding_weight = kNoisyPolishWindingWeight * trust(noise) * cube(s.spacing);
   s.unsure_of_noise = kUnsurePerNoise * noise;
   if (!s.doubtful_schedule.empty()) s.doubtful_schedule = {kDoubtfulNoisy};
   if (s.epsilon > kWideEpsilon * s.spacing) s.cluster_side = kClusterSide * s.epsilon;
@@ -219,7 +219,7 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   const double scatter = paper || green ? 0 : wide ? hidden_noise(s.epsilon / spacing) : noise / spacing;
   if (scatter > 0) follow_noise(scatter, options, cloud.size(), s);
   const bool light = starts_coarse(s, cloud.size()) || among_outliers;
-  s.winding_weight = (light ? kContinuedWindingWeight : kWindingWeight) * believed(scatter) * cube(spacing);
+  s.winding_weight = (light ? kContinuedWindingWeight : kWindingWeight) * trust(scatter) * cube(spacing);
   s.accuracy = options.accuracy != -1 ? options.accuracy : kAccuracy;
   s.first_sums = sum_plan(s.accuracy, cloud.size());
   const bool continued = options.accuracy == -1 && s.method == Method::kEnergy;

@@ -1,4 +1,4 @@
-#include "cloud/sheet.h"
+#include "cloud/quadratic_patch.h"
 
 #include "shapes.h"
 
@@ -29,25 +29,25 @@ std::vector<FitPoint> quadric(double weight) {
   return points;
 }
 
-TEST(FitSheet, IsExactOnQuadrics) {
+TEST(QuadraticPatch, IsExactOnQuadrics) {
   for (const double weight : {1.0, 1e-3}) {
     const std::vector<FitPoint> points = quadric(weight);
-    const Sheet sheet = fit_sheet(points, 0, 0.3, 0.25);
+    const QuadraticPatch patch = fit_quadratic_patch(points, 0, 0.3, 0.25);
     for (const FitPoint& p : points) {
       Eigen::Vector3d gradient;
-      EXPECT_NEAR(sheet.distance(p.p, &gradient), 0, kRegularised);
+      EXPECT_NEAR(patch.distance(p.p, &gradient), 0, kRegularised);
       EXPECT_NEAR(gradient.dot(p.n), 1, 1e-9);
     }
-    EXPECT_GT(sheet.distance({0, 0, 0.1}), 0.09);
-    EXPECT_LT(sheet.distance({0, 0, -0.1}), -0.09);
+    EXPECT_GT(patch.distance({0, 0, 0.1}), 0.09);
+    EXPECT_LT(patch.distance({0, 0, -0.1}), -0.09);
   }
 }
 
-TEST(FitSheet, LeavesOutPointsOfOtherSheets) {
+TEST(QuadraticPatch, LeavesOutPointsOfOtherPatches) {
   std::vector<FitPoint> points = quadric(1);
   points.push_back({{0, 0, 5}, {1, 0, 0}, 100, 1});
   points.push_back({{0, 0, 5}, {1, 0, 0}, 100, -1});
-  EXPECT_NEAR(fit_sheet(points, 0, 0.3, 0.25).distance(points[0].p), 0, kRegularised);
+  EXPECT_NEAR(fit_quadratic_patch(points, 0, 0.3, 0.25).distance(points[0].p), 0, kRegularised);
 }
 
 TEST(QuadraticResidual, IsZeroOnQuadricsAndTheNoiseElsewhere) {

@@ -1,4 +1,4 @@
-// What pass 3 leaves of a tile: its sheets, and the triangles that they make.
+// What pass 3 leaves of a tile: its patches, and the triangles that they make.
 #pragma once
 
 #include "io/random_file.h"
@@ -15,12 +15,12 @@
 
 namespace g3r::tiles {
 
-/// A file of sheets, piece by piece. All members throw IoError, InvalidInput where it is damaged.
-class SheetsFile {
+/// A file of patches, piece by piece. All members throw IoError, InvalidInput where it is damaged.
+class PatchesFile {
  public:
-  SheetsFile(const std::string& folder, std::size_t tile);
+  PatchesFile(const std::string& folder, std::size_t tile);
 
-  [[nodiscard]] const SheetsHeader& header() const { return header_; }
+  [[nodiscard]] const PatchesHeader& header() const { return header_; }
   void append_vertices(std::uint64_t begin, std::uint64_t end, std::vector<MeshVertex>& out) const {
     append(sizeof header_ + begin * sizeof(MeshVertex), end - begin, out);
   }
@@ -44,7 +44,7 @@ class SheetsFile {
   }
 
   io::RandomFile file_;
-  SheetsHeader header_;
+  PatchesHeader header_;
 };
 
 /// The triangles of one tile, in the unit frame. Its vertices are the own ones, the foreign ones, and those in the middle of polygons.

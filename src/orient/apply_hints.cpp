@@ -1,4 +1,4 @@
-#include "orient/settle_by_hints.h"
+#include "orient/apply_hints.h"
 
 #include "orient/confidence.h"
 #include "orient/hints.h"
@@ -39,10 +39,10 @@ Hints in_frame(const Hints& given, const CanonicalCloud& cloud) {
   return hints;
 }
 
-Patches patches_of(const OpenSurfaces& sheets) {
+Patches patches_of(const OpenSurfaces& surfaces) {
   Patches patches;
-  patches.of = sheets.part;
-  for (const float certainty : sheets.certainty) patches.is_choice.push_back(certainty < 1 ? 1 : 0);
+  patches.of = surfaces.part;
+  for (const float certainty : surfaces.certainty) patches.is_choice.push_back(certainty < 1 ? 1 : 0);
   return patches;
 }
 
@@ -70,21 +70,21 @@ void warn(const HintEffect& effect, const Hints& hints, const CanonicalCloud& cl
     for (std::size_t a = 0; a < 3; ++a) place[a] = place[a] / cloud.frame.scale + cloud.frame.centre[a];
     stats.warnings.push_back("hint inside: " + in_words(place) + " is not inside the closed parts; they keep their sides");
   }
-  if (hints.up && !any_open) stats.warnings.emplace_back("hint up: it settles nothing, as no part of the cloud is open");
+  if (hints.up && !any_open) stats.warnings.emplace_back("hint up: it decides nothing, as no part of the cloud is open");
 }
 
 }  // namespace
 
-void settle_by_hints(const Problem& problem, const Options& options, Solution& solution, std::vector<float>& confidence, Stats& stats,
-                     const std::atomic<bool>* cancel) {
-  const Patches patches = patches_of(solution.sheets);
+void apply_hints(const Problem& problem, const Options& options, Solution& solution, std::vector<float>& confidence, Stats& stats,
+                 const std::atomic<bool>* cancel) {
+  const Patches patches = patches_of(solution.open_surfaces);
   const Hints hints = in_frame(options.hints, problem.cloud);
   stats.hints.given = names_of(hints);
   const HintEffect effect = follow_hints(problem.cloud.points(), problem.cloud.set.near(), problem.spacing, patches, hints,
                                          {solution.refinement.normals, solution.eta, confidence}, cancel);
   const double turned = share(effect.turned);
   stats.hints.turned_share = hints.flip ? 1 - turned : turned;
-  stats.hints.settled_share = share(effect.settled);
+  stats.hints.settled_share = share(effect.decided);
   stats.hints.agreement = effect.agreement;
   stats.hints.contradicted_share = effect.contradicted_share;
   stats.undecided_share = std::max(0.0, stats.undecided_share - stats.hints.settled_share);
@@ -97,7 +97,7 @@ void settle_by_hints(const Problem& problem, const Options& options, Solution& s
   if (stats.undecided_share > 0) {
     stats.warnings.push_back("which side of " + percent(stats.undecided_share) +
                              " of the points is the outside is a choice: the one that " +
-                             (stats.hints.given.empty() ? "faces up (+z); a hint settles it (up, sensor)" : "the hints left as it was"));
+                             (stats.hints.given.empty() ? "faces up (+z); a hint decides it (up, sensor)" : "the hints left as it was"));
   }
 }
 

@@ -1,4 +1,4 @@
-#include "tiles/sheets_file.h"
+#include "tiles/patches_file.h"
 
 #include <g3r/io.h>
 
@@ -11,7 +11,7 @@ constexpr std::uint64_t kAtOnce = 4096;  // records read at once
 
 }  // namespace
 
-SheetsFile::SheetsFile(const std::string& folder, std::size_t tile) : file_(mesh_sheets_path(folder, tile)) {
+PatchesFile::PatchesFile(const std::string& folder, std::size_t tile) : file_(mesh_patches_path(folder, tile)) {
   if (file_.size() < sizeof header_) fail();
   file_.read(0, &header_, sizeof header_);
   constexpr std::uint64_t kMost = std::uint64_t{1} << 40U;  // records; sums below do not overflow
@@ -21,7 +21,7 @@ SheetsFile::SheetsFile(const std::string& folder, std::size_t tile) : file_(mesh
   if (file_.size() != corners_at() + header_.corners * sizeof(std::uint32_t)) fail();
 }
 
-void SheetsFile::read_polygons(mesh::DualSurface& surface) const {
+void PatchesFile::read_polygons(mesh::DualSurface& surface) const {
   std::vector<std::uint8_t> sizes;
   append(polygons_at(), 2 * header_.polygons, sizes);
   append(corners_at(), header_.corners, surface.polygon_vertices);
@@ -40,7 +40,7 @@ void SheetsFile::read_polygons(mesh::DualSurface& surface) const {
   }
 }
 
-std::vector<std::size_t> SheetsFile::foreign_tiles() const {
+std::vector<std::size_t> PatchesFile::foreign_tiles() const {
   std::vector<ForeignVertex> foreign;
   append_foreign(foreign);
   std::vector<std::size_t> tiles;
@@ -50,10 +50,10 @@ std::vector<std::size_t> SheetsFile::foreign_tiles() const {
   return tiles;
 }
 
-void SheetsFile::fail() const { throw InvalidInput(escape_text(file_.path()) + ": damaged; remove it, and mesh again"); }
+void PatchesFile::fail() const { throw InvalidInput(escape_text(file_.path()) + ": damaged; remove it, and mesh again"); }
 
 TileSurface read_surface(const MeshFolder& folder, std::size_t tile) {
-  const SheetsFile file(folder.folder, tile);
+  const PatchesFile file(folder.folder, tile);
   std::vector<MeshVertex> vertices;
   std::vector<ForeignVertex> foreign;
   file.append_vertices(0, file.header().vertices, vertices);
@@ -63,7 +63,7 @@ TileSurface read_surface(const MeshFolder& folder, std::size_t tile) {
   for (std::size_t f = 0; f < foreign.size();) {
     const std::uint64_t from = foreign[f].tile;
     if (from >= folder.tiles()) file.fail();
-    const SheetsFile there(folder.folder, static_cast<std::size_t>(from));
+    const PatchesFile there(folder.folder, static_cast<std::size_t>(from));
     std::vector<MeshVertex> read;
     for (std::uint64_t at = 0; at < there.header().vertices; at += kAtOnce) {
       read.clear();

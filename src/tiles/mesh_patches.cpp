@@ -50,11 +50,11 @@ class Names {
       : folder_(folder), octree_(octree), surface_(surface) {}
 
   [[nodiscard]] VertexKey key(std::size_t vertex) const {
-    const std::size_t sheets = surface_.patch_count();
-    if (vertex >= sheets) {
-      const mesh::ArcMiddle& middle = surface_.midpoints[vertex - sheets];
-      const std::uint64_t a = leaf(surface_.patch_leaf[middle.sheets[0]]);
-      const std::uint64_t b = leaf(surface_.patch_leaf[middle.sheets[1]]);
+    const std::size_t patches = surface_.patch_count();
+    if (vertex >= patches) {
+      const mesh::ArcMiddle& middle = surface_.midpoints[vertex - patches];
+      const std::uint64_t a = leaf(surface_.patch_leaf[middle.patches[0]]);
+      const std::uint64_t b = leaf(surface_.patch_leaf[middle.patches[1]]);
       return {{std::min(a, b), std::max(a, b), 1 + std::min(edge(middle.crossings[0]), edge(middle.crossings[1]))}};
     }
     std::uint64_t least = ~std::uint64_t{0};
@@ -64,9 +64,9 @@ class Names {
   }
 
   [[nodiscard]] std::size_t owner_of_vertex(std::size_t vertex) const {
-    const std::size_t sheets = surface_.patch_count();
-    if (vertex < sheets) return folder_.owner(cell_at(low_of_leaf(surface_.patch_leaf[vertex]), folder_.cells.level));
-    const auto& ends = surface_.midpoints[vertex - sheets].crossings;
+    const std::size_t patches = surface_.patch_count();
+    if (vertex < patches) return folder_.owner(cell_at(low_of_leaf(surface_.patch_leaf[vertex]), folder_.cells.level));
+    const auto& ends = surface_.midpoints[vertex - patches].crossings;
     return owner_of_edge(edge(ends[0]) < edge(ends[1]) ? ends[0] : ends[1]);
   }
 
@@ -97,16 +97,16 @@ class Names {
 };
 
 // What the file holds, but its vertices' places.
-struct Sheets {
+struct TilePatches {
   std::vector<std::pair<VertexKey, std::uint32_t>> own;  // by key, with the number in the surface
   std::vector<ForeignVertex> foreign;
   std::vector<std::uint8_t> sizes;  // of each polygon, and its diagonals
   std::vector<std::uint32_t> corners;
-  SheetsHeader header;
+  PatchesHeader header;
 };
 
-Sheets sheets_of(const Names& names, const mesh::DualSurface& surface, std::size_t tile) {
-  Sheets out;
+TilePatches patches_of(const Names& names, const mesh::DualSurface& surface, std::size_t tile) {
+  TilePatches out;
   const std::size_t count = surface.patch_count() + surface.midpoints.size();
   for (std::uint32_t v = 0; v < count; ++v) {
     if (names.owner_of_vertex(v) == tile) out.own.emplace_back(names.key(v), v);
@@ -144,7 +144,7 @@ Sheets sheets_of(const Names& names, const mesh::DualSurface& surface, std::size
 
 }  // namespace
 
-void write_sheets(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel) {
+void write_patches(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel) {
   const Surroundings around(folder, tile, cancel);
   const mesh::Octree& octree = *around.octree;
   const mesh::Prepared& prepared = around.prepared;
@@ -158,19 +158,19 @@ void write_sheets(const MeshFolder& folder, std::size_t tile, const std::atomic<
   for (std::size_t v = 0; v < wanted.size(); ++v) wanted[v] = names.owner_of_vertex(v) == tile ? 1 : 0;
   const mesh::PlacedVertices placed = mesh::place_vertices(octree, surface, value, local, cancel, wanted);
 
-  const Sheets sheets = sheets_of(names, surface, tile);
+  const TilePatches patches = patches_of(names, surface, tile);
   std::vector<MeshVertex> vertices;
-  for (const auto& [key, v] : sheets.own) {
+  for (const auto& [key, v] : patches.own) {
     MeshVertex vertex{key, placed.positions[v], {0, 0, 0}, 0};
     for (std::size_t a = 0; v < placed.normals.size() && a < 3; ++a) vertex.normal[a] = static_cast<float>(placed.normals[v][a]);
     vertices.push_back(vertex);
   }
-  io::OutputFile out(mesh_sheets_path(folder.folder, tile), cancel);
-  out.write(&sheets.header, sizeof sheets.header);
+  io::OutputFile out(mesh_patches_path(folder.folder, tile), cancel);
+  out.write(&patches.header, sizeof patches.header);
   out.write_records(vertices);
-  out.write_records(sheets.foreign);
-  out.write_records(sheets.sizes);
-  out.write_records(sheets.corners);
+  out.write_records(patches.foreign);
+  out.write_records(patches.sizes);
+  out.write_records(patches.corners);
   out.commit();
 }
 

@@ -1,4 +1,4 @@
-// The doubtful signs of an octree read in other ways, where that leaves fewer handles.
+// Other labellings of the ambiguous corners of an octree, where these leave fewer handles.
 #pragma once
 
 #include "mesh/field_contour.h"
@@ -11,9 +11,9 @@
 
 namespace g3r::mesh {
 
-/// Of the corners with an opinion those change for which may_change(corner). `surface` = contour(octree, inside). Returns whether any was
+/// Of the ambiguous corners those change for which may_change(corner). `surface` = contour(octree, inside). Returns whether any was
 /// changed. Throws Cancelled.
-bool remove_handles(const Octree& octree, const Opinions& opinions, const std::function<bool(std::uint32_t)>& may_change,
+bool remove_handles(const Octree& octree, const AmbiguousCorners& ambiguous, const std::function<bool(std::uint32_t)>& may_change,
                     const InsideTest& centre_inside, std::vector<std::uint8_t>& inside, const DualSurface& surface,
                     const std::atomic<bool>* cancel);
 

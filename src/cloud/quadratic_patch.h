@@ -1,4 +1,4 @@
-// A smooth sheet of surface, fitted to points and their normals.
+// A smooth patch of surface, fitted to points and their normals.
 #pragma once
 
 #include <g3r/points.h>
@@ -12,13 +12,13 @@
 
 namespace g3r {
 
-/// A smooth sheet: height a + b u + c v + d u^2 + e u v + g v^2 over a tangent plane, outside above.
-struct Sheet {
+/// A smooth patch: height a + b u + c v + d u^2 + e u v + g v^2 over a tangent plane, outside above.
+struct QuadraticPatch {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< rows: u, v, normal
   std::array<double, 6> c{};
 
-  /// Distance to the sheet to first order, positive outside, and its gradient (about a unit vector; may be null).
+  /// Distance to the patch to first order, positive outside, and its gradient (about a unit vector; may be null).
   double distance(const Eigen::Vector3d& x, Eigen::Vector3d* gradient = nullptr) const {
     const Eigen::Vector3d q = frame * (x - origin);
     const double u = q[0], v = q[1];
@@ -33,13 +33,13 @@ struct Sheet {
 struct FitPoint {
   Eigen::Vector3d p, n;  ///< position, unit normal
   double weight = 0;
-  int sheet = -1;  ///< number of the sheet it belongs to, < 0: none
+  int patch = -1;  ///< number of the patch it belongs to, < 0: none
 };
 
-/// The sheet that minimises sum weight [ (height misfit)^2 + normal_weight h^2 |slope misfit|^2 ] over the points of sheet `which`,
+/// The patch that minimises sum weight [ (height misfit)^2 + normal_weight h^2 |slope misfit|^2 ] over the points of patch `which`,
 /// of which there is at least one with a weight above 0. `h` > 0: length unit of the fit. The normals also give the tangent plane.
 /// Throws nothing. O(points).
-[[nodiscard]] Sheet fit_sheet(const std::vector<FitPoint>& points, int which, double h, double normal_weight);
+[[nodiscard]] QuadraticPatch fit_quadratic_patch(const std::vector<FitPoint>& points, int which, double h, double normal_weight);
 
 /// Root mean square distance, corrected for the 6 numbers, of points[index[0]], ..., points[index[count - 1]] from the quadratic height
 /// field fitted to them over the plane with this normal, count > 6. `h` > 0: length unit of the fit. O(count).

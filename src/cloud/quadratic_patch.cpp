@@ -1,4 +1,4 @@
-#include "cloud/sheet.h"
+#include "cloud/quadratic_patch.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -42,16 +42,16 @@ Eigen::Matrix3d tangent_frame(const Vector3d& n) {
   return f;
 }
 
-Sheet fit_sheet(const std::vector<FitPoint>& points, int which, double h, double normal_weight) {
+QuadraticPatch fit_quadratic_patch(const std::vector<FitPoint>& points, int which, double h, double normal_weight) {
   Vector3d mean_p = Vector3d::Zero(), mean_n = Vector3d::Zero();
   double total = 0;
   for (const FitPoint& m : points) {
-    if (m.sheet != which) continue;
+    if (m.patch != which) continue;
     mean_p += m.weight * m.p;
     mean_n += m.weight * m.n;
     total += m.weight;
   }
-  Sheet s;
+  QuadraticPatch s;
   s.origin = mean_p / total;
   s.frame = tangent_frame(mean_n.normalized());
   // The normal equations from the moments sum w u^a v^b, which all their entries are sums of; pairs of u and v side by side.
@@ -59,7 +59,7 @@ Sheet fit_sheet(const std::vector<FitPoint>& points, int which, double h, double
   double m00 = 0, m11 = 0, m22 = 0, right0 = 0, right4 = 0;
   Pair first = Pair::Zero(), second = first, cube = first, mixed = first, fourth = first, uneven = first, slope = first, curved = first;
   for (const FitPoint& m : points) {
-    if (m.sheet != which) continue;
+    if (m.patch != which) continue;
     const Vector3d q = s.frame * (m.p - s.origin) / h;
     const Vector3d n = s.frame * m.n;
     const double w = m.weight, up = 1 / std::max(n[2], 0.2), z = q[2];
@@ -115,10 +115,10 @@ Sheet fit_sheet(const std::vector<FitPoint>& points, int which, double h, double
 double quadratic_residual(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count, const Vec3& normal, double h) {
   std::vector<FitPoint> members;
   for (std::size_t k = 0; k < count; ++k) members.push_back({to_eigen(points[index[k]]), to_eigen(normal), 1, 0});
-  const Sheet sheet = fit_sheet(members, 0, h, 0);
+  const QuadraticPatch patch = fit_quadratic_patch(members, 0, h, 0);
   double misfit = 0;
   for (const FitPoint& m : members) {
-    const double distance = sheet.distance(m.p);
+    const double distance = patch.distance(m.p);
     misfit += distance * distance;
   }
   return std::sqrt(misfit / static_cast<double>(count - 6));
