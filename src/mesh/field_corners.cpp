@@ -17,10 +17,8 @@ constexpr double kFieldSure = 0.2;
 // The corners of which more than the side is in memory at the same time.
 constexpr std::size_t kCornersAtOnce = std::size_t{1} << 17;
 // The value of an ambiguous corner is 2 (w - level) and, of the fitted surface, this at most, so that the two weigh alike where the field
-// is sure,
+// is sure. It has that from kDiscHalf spacings away on, as the surface curves by no more.
 constexpr double kFitSay = 2 * kFieldSure;
-// which it has from so many spacings away on.
-constexpr double kFitFar = 0.3;
 // The distance in spacings from the surface at which a corner counts whose sign was changed to remove a handle: vertices are placed by it.
 constexpr double kFlipped = 0.1;
 
@@ -93,7 +91,7 @@ CornerSides::Place CornerSides::fit_at(const Vec3& at) const {
   place.value = static_cast<float>(value);
   if (fit.simple) return place;
   place.kind = Place::kAmbiguous;
-  place.signed_value = static_cast<float>(kFitSay * std::clamp(value / (kFitFar * fit.spacing), -1.0, 1.0));
+  place.signed_value = static_cast<float>(kFitSay * std::clamp(value / (kDiscHalf * fit.spacing), -1.0, 1.0));
   for (std::size_t a = 0; a < 3; ++a) place.axis[a] = static_cast<float>(fit.patch[0].frame(2, static_cast<Eigen::Index>(a)));
   return place;
 }

@@ -14,9 +14,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Cosine of two normals, 32 degrees, up to which points are on one patch: creases of CAD models turn more, and smooth surfaces less from
-// one point to the next.
-constexpr double kSamePatch = 0.85;
 // Weights are about exp(-t) for t up to this and 0 beyond; it is a power of two, for bell().
 constexpr double kFaint = 16;
 // Spacings that the points of each of two patches are beside the other, on one side, for them to meet in a crease: closer ones, and such on
