@@ -125,7 +125,7 @@ TEST(SeparateVertices, VerticesThatFloatMergesPartToo) {
   expect_manifold(welded(rounded(mesh)), "apart in float");
 }
 
-// There float about the origin cannot tell the vertices of anything apart; formats with float about the centre still must.
+// There float about the origin cannot distinguish the vertices of anything; formats with float about the centre still must.
 TEST(SeparateVertices, FarFromTheOriginOnlyTheCentreCounts) {
   const Vec3 far{500000, 5000000, 100};
   Mesh mesh = touching_tetrahedra(far);

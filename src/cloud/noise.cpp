@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kProbes = 2000;      // neighbourhoods looked at, spread along the canonical order
 constexpr std::size_t kNeighbours = 32;    // of each, nearest first
-constexpr std::size_t kClean = 12;         // nearest ones that tell noise from none
+constexpr std::size_t kClean = 12;         // nearest ones that distinguish noise from none
 constexpr std::size_t kSmall = 16;         // nearest ones that seldom reach across a wall
 constexpr std::size_t kInLayers = 24;      // nearest ones whose kurtosis is taken
 constexpr double kFlattest = 0.02;         // share of the neighbourhoods that decides

@@ -21,7 +21,7 @@ constexpr double kCubeRatio = kSpacingRatio * kSpacingRatio * kSpacingRatio;  //
 constexpr double kCoarseShare = 0.2;                                          // of the progress bar
 constexpr double kDoubtfulShare = 0.04;                                       // share of the points from which more steps are tried
 constexpr double kWorse = 1.25;                                               // of that share after them, from which they are undone
-// Points whose field tells open surfaces from closed ones: fewer would lose small parts, more take longer and say the same.
+// Points whose field distinguishes open surfaces from closed ones: fewer would lose small parts, more take longer and say the same.
 constexpr std::size_t kOpenPoints = 10000;
 
 Settings coarser(Settings settings) {

@@ -45,9 +45,9 @@ constexpr double kUnrest = 0.08;          // mean of a part that is open: closed
 constexpr double kUnrestNoisy = 0.2;      // the same where noise hides thin walls, whose field is open in places
 constexpr double kNoJump = 0.6;           // mean jump defect of a part whose sides change from site to site, or of two walls
 constexpr double kNoJumpNoisy = 0.8;      // the same under noise
-constexpr double kThin = 2;               // spacings between two walls: the field tells walls farther apart
+constexpr double kThin = 2;               // spacings between two walls: the field distinguishes walls farther apart
 constexpr double kExact = 0.01;           // spacings: deviations below are as good as none
-constexpr std::size_t kWallPoints = 24;   // of the heights that tell one wall from two
+constexpr std::size_t kWallPoints = 24;   // of the heights that distinguish one wall from two
 constexpr std::size_t kWallPlaces = 500;  // at most, whose median counts
 constexpr double kOutside = 0.55;         // enclosure from which a part has an outside; a plane has 0, half a sphere 0.6, a sphere 1
 constexpr double kEncloses = 0.7;         // enclosure under noise that no bowl up to a half sphere has, so that the part is a closed one
@@ -122,9 +122,9 @@ class Search {
     return g3r::jump_defects(finest_, at_sites(normals), sums_, cancel_);
   }
 
-  // Whether the points of a part lie on two walls closer together than the field can tell: the heights over the planes of the sites are
-  // likelier from two parallel quadratics than from one. n points on two walls, each with a label that costs ln 2, have the log likelihood
-  // -n ln s2 - n ln 2, on one -n ln s1, with s the standard deviation from the fit.
+  // Whether the points of a part lie on two walls closer together than the field can distinguish: the heights over the planes of the sites
+  // are likelier from two parallel quadratics than from one. n points on two walls, each with a label that costs ln 2, have the log
+  // likelihood -n ln s2 - n ln 2, on one -n ln s1, with s the standard deviation from the fit.
   [[nodiscard]] bool has_two_walls(std::uint32_t part) const {
     const std::vector<std::uint32_t>& members = members_[part];
     std::vector<double> gain;
