@@ -38,7 +38,7 @@ PRIVATE_NAMES = {
     r"settle(?!d_share)": "decide",
     r"opinion": "value of an ambiguous corner",
     r"speck(?!le)": "spurious component",
-    r"told[ _](from|apart)|tells? (\w+ ){1,5}(apart|from)\b": "distinguished",
+    r"told[ _]?(from|apart)|tells? (\w+ ){1,5}(apart|from)\b": "distinguished",
     r"in[ _]?doubt\b": "unsure, ambiguous",
     r"believed": "trusted",
     r"of no account": "ignored",
