@@ -4,7 +4,7 @@
 #include "base/median.h"
 #include "base/vector.h"
 #include "cloud/layers.h"
-#include "cloud/sheet.h"
+#include "cloud/quadratic_patch.h"
 #include "cloud/sites.h"
 #include "cpu/parallel.h"
 #include "orient/certificate.h"
@@ -45,9 +45,9 @@ constexpr double kUnrest = 0.08;          // mean of a part that is open: closed
 constexpr double kUnrestNoisy = 0.2;      // the same where noise hides thin walls, whose field is open in places
 constexpr double kNoJump = 0.6;           // mean jump defect of a part whose sides change from site to site, or of two walls
 constexpr double kNoJumpNoisy = 0.8;      // the same under noise
-constexpr double kThin = 2;               // spacings between two walls: the field tells walls farther apart
+constexpr double kThin = 2;               // spacings between two walls: the field distinguishes walls farther apart
 constexpr double kExact = 0.01;           // spacings: deviations below are as good as none
-constexpr std::size_t kWallPoints = 24;   // of the heights that tell one wall from two
+constexpr std::size_t kWallPoints = 24;   // of the heights that distinguish one wall from two
 constexpr std::size_t kWallPlaces = 500;  // at most, whose median counts
 constexpr double kOutside = 0.55;         // enclosure from which a part has an outside; a plane has 0, half a sphere 0.6, a sphere 1
 constexpr double kEncloses = 0.7;         // enclosure under noise that no bowl up to a half sphere has, so that the part is a closed one
@@ -122,9 +122,9 @@ class Search {
     return g3r::jump_defects(finest_, at_sites(normals), sums_, cancel_);
   }
 
-  // Whether the points of a part lie on two walls closer together than the field can tell: the heights over the planes of the sites are
-  // likelier from two parallel quadratics than from one. n points on two walls, each with a label that costs ln 2, have the log likelihood
-  // -n ln s2 - n ln 2, on one -n ln s1, with s the standard deviation from the fit.
+  // Whether the points of a part lie on two walls closer together than the field can distinguish: the heights over the planes of the sites
+  // are likelier from two parallel quadratics than from one. n points on two walls, each with a label that costs ln 2, have the log
+  // likelihood -n ln s2 - n ln 2, on one -n ln s1, with s the standard deviation from the fit.
   [[nodiscard]] bool has_two_walls(std::uint32_t part) const {
     const std::vector<std::uint32_t>& members = members_[part];
     std::vector<double> gain;
@@ -134,7 +134,7 @@ class Search {
       const std::uint32_t s = members[k];
       set_.tree().nearest(finest_.points()[s], kWallPoints, index, squared);
       const double one = quadratic_residual(points_, index.data(), index.size(), finest_.axis[s], finest_.spacing()[s]);
-      const TwoSheets two = fit_two_sheets(points_, index.data(), index.size(), finest_.axis[s]);
+      const TwoLayers two = fit_two_layers(points_, index.data(), index.size(), finest_.axis[s]);
       const double exact = kExact * finest_.spacing()[s];
       const bool thin = two.gap < kThin * finest_.spacing()[s];
       gain.push_back((thin ? std::log(std::max(one, exact) / std::max(two.deviation, exact)) : 0) - std::numbers::ln2);
@@ -327,7 +327,7 @@ void choose(const Search& search, const std::vector<std::vector<Vec3>>& tried, c
 }
 
 // The normals of open parts, with their outside where they have one.
-OpenSurfaces settle(const Search& search, const std::vector<std::vector<Vec3>>& tried, const Verdict& verdict, std::vector<Vec3>& normals) {
+OpenSurfaces choose(const Search& search, const std::vector<std::vector<Vec3>>& tried, const Verdict& verdict, std::vector<Vec3>& normals) {
   OpenSurfaces found;
   found.part.assign(normals.size(), OpenSurfaces::kNone);
   found.certainty.assign(normals.size(), 1);
@@ -375,7 +375,7 @@ OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan
   }
   std::vector<float> shown = certified(search, given, normals);
   OpenSurfaces found;
-  if (any(verdict.is_open) || any(verdict.is_doubtful)) found = settle(search, tried, verdict, normals);
+  if (any(verdict.is_open) || any(verdict.is_doubtful)) found = choose(search, tried, verdict, normals);
   found.certified = std::move(shown);
   found.uncertified = search.sites().distance == 0 ? kUndecided : 0;
   return found;

@@ -41,7 +41,7 @@ struct OpenSurfaces {
 /// plane. Where |e| is below 0.55 either side could be it, and the one that faces up (+z; if the part is level, +y, then +x) is taken.
 /// Under noise a part with |e| above 0.7 is closed: noise makes one wall of two, and what is left encloses nearly everything.
 /// Where the solution stays as it is, J = max(0, jump of its site) certifies a side: where walls are too close for the sampling the field
-/// does not jump from 0 to 1, whatever the sides. Of exact points J is the largest jump; under noise, which makes sheets of single wrong
+/// does not jump from 0 to 1, whatever the sides. Of exact points J is the largest jump; under noise, which makes layers of single wrong
 /// patches, it is the mean of the jumps. Points that face the other way than the mean of their site have 0, and all points of a cloud of
 /// fewer than 30.
 /// `noise`: standard deviation; `normals`: N unit vectors, in: the solution,
