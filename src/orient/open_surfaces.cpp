@@ -52,6 +52,7 @@ constexpr std::size_t kWallPlaces = 500;  // at most, whose median counts
 constexpr double kOutside = 0.55;         // enclosure from which a part has an outside; a plane has 0, half a sphere 0.6, a sphere 1
 constexpr double kEncloses = 0.7;         // enclosure under noise that no bowl up to a half sphere has, so that the part is a closed one
 constexpr double kLevel = 1e-6;           // part of the mean normal that counts as none
+constexpr std::size_t kRing = 7;          // sites that a side is common to: one and those around it, six in the densest packing
 constexpr float kUndecided = 0.5F;        // certainty of a side that is chosen, or not certified
 constexpr std::size_t kBlock = 1024;      // points per parallel block
 
@@ -253,16 +254,43 @@ bool faces_down(const Vec3& sum) {
   return false;
 }
 
-// How far the certificate of the given normals shows the sides of the points to be right.
-std::vector<float> certified(const Search& search, const Certificate& certificate, const std::vector<Vec3>& normals) {
-  const bool exact = search.sites().distance == 0;
+// Of every site, how far the normals of its points and of those of the sites around it are one direction: the length of their mean (the
+// mean resultant length of directional statistics; Mardia and Jupp, "Directional Statistics", 2000), 1 where all are the same, near 0
+// where they face either way, as in two walls or patches closer together than the sites.
+std::vector<double> concentration(const Search& search, const std::vector<Vec3>& normals) {
+  const Sites& sites = search.sites();
+  std::vector<Vec3> sum(sites.size(), Vec3{0, 0, 0});
+  std::vector<double> count(sites.size(), 0);
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    sum[sites.site_of[i]] = vector::add(sum[sites.site_of[i]], normals[i]);
+    ++count[sites.site_of[i]];
+  }
+  const std::vector<std::uint32_t>& near = sites.set.near();
+  const std::size_t stride = sites.set.near_count();
+  std::vector<double> out(sites.size());
+  for (std::size_t s = 0; s < sites.size(); ++s) {
+    Vec3 around{};
+    double all = 0;
+    for (std::size_t k = 0; k < std::min(kRing, stride); ++k) {
+      around = vector::add(around, sum[near[s * stride + k]]);
+      all += count[near[s * stride + k]];
+    }
+    out[s] = std::sqrt(dot(around, around)) / all;
+  }
+  return out;
+}
+
+// How far the certificate of the given normals shows the sides of the points to be right; `exact`: there is no noise.
+std::vector<float> certified(const Search& search, const Certificate& certificate, const std::vector<Vec3>& normals, bool exact) {
   const std::vector<Vec3> at_sites = search.at_sites(normals);
-  std::vector<float> out(normals.size());
+  const std::vector<double> one_way = exact ? std::vector<double>{} : concentration(search, normals);
+  const bool is_thinned = search.sites().distance > 0;
+  std::vector<float> out(normals.size(), 0);
   for (std::size_t i = 0; i < normals.size(); ++i) {
     const std::uint32_t s = search.sites().site_of[i];
-    const double jump = exact ? certificate.jump[s] : 1 - certificate.jump_defect[s];
-    const double shown = dot(normals[i], at_sites[s]) > 0 ? std::clamp(jump, 0.0, 1.0) : 0;
-    out[i] = static_cast<float>(shown);
+    if (dot(normals[i], at_sites[s]) <= 0) continue;
+    const double jump = is_thinned ? 1 - certificate.scaled_defect[s] : certificate.jump[s];
+    out[i] = static_cast<float>((exact ? 1 : one_way[s]) * std::clamp(jump, 0.0, 1.0));
   }
   return out;
 }
@@ -373,11 +401,11 @@ OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan
     tried = search.hypotheses();
     choose(search, tried, unrest, defect, noise, verdict);
   }
-  std::vector<float> shown = certified(search, given, normals);
+  std::vector<float> shown = certified(search, given, normals, noise == 0);
   OpenSurfaces found;
   if (any(verdict.is_open) || any(verdict.is_doubtful)) found = choose(search, tried, verdict, normals);
   found.certified = std::move(shown);
-  found.uncertified = search.sites().distance == 0 ? kUndecided : 0;
+  found.uncertified = noise == 0 ? kUndecided : 0;
   return found;
 }
 
