@@ -11,6 +11,7 @@
 #include "mesh/field_placement.h"
 #include "mesh/field_points.h"
 #include "mesh/field_readings.h"
+#include "mesh/lines.h"
 #include "mesh/mesh_finish.h"
 #include "mesh/untangle.h"
 
