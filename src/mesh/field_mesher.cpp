@@ -163,7 +163,7 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
   if (options.depth == 0) mesh::coarsen(mesh, prepared.points.positions, mesh::lengths_to_carry(prepared, size), monitor.cancel);
   prepared.neighbours.reset();
   std::vector<std::uint32_t>().swap(prepared.near);  // not only emptied
-  mesh::untangle(mesh, monitor.cancel);
+  mesh::soften_thorns(mesh, mesh::untangle(mesh, monitor.cancel));
   mesh::LeftOut nothing;
   mesh::finish_mesh(mesh, prepared.points.positions, prepared.points.spacing, prepared.noise, options,
                     left_out != nullptr ? *left_out : nothing);
