@@ -56,8 +56,8 @@ struct Quadric {
     weight += w;
   }
   [[nodiscard]] double at(const Vec3& p) const {
-    const double square = a[0] * p[0] * p[0] + a[3] * p[1] * p[1] + a[5] * p[2] * p[2] +
-                          2 * (a[1] * p[0] * p[1] + a[2] * p[0] * p[2] + a[4] * p[1] * p[2]);
+    const double square =
+        a[0] * p[0] * p[0] + a[3] * p[1] * p[1] + a[5] * p[2] * p[2] + 2 * (a[1] * p[0] * p[1] + a[2] * p[0] * p[2] + a[4] * p[1] * p[2]);
     return std::max(0.0, square + 2 * dot(b, p) + c);
   }
 };
@@ -66,8 +66,13 @@ struct Quadric {
 class Collapsing {
  public:
   Collapsing(Mesh& mesh, std::vector<double> length)
-      : mesh_(mesh), origin_(mesh.vertices[mesh.triangles.front()[0]]), length_(std::move(length)), alive_(mesh.triangles.size(), 1), first_(mesh.vertices.size(), kNone),
-        next_(3 * mesh.triangles.size(), kNone), quadric_(mesh.vertices.size()) {
+      : mesh_(mesh),
+        origin_(mesh.vertices[mesh.triangles.front()[0]]),
+        length_(std::move(length)),
+        alive_(mesh.triangles.size(), 1),
+        first_(mesh.vertices.size(), kNone),
+        next_(3 * mesh.triangles.size(), kNone),
+        quadric_(mesh.vertices.size()) {
     for (std::size_t corner = next_.size(); corner-- > 0;) {
       std::uint32_t& first = first_[mesh.triangles[corner / 3][corner % 3]];
       next_[corner] = first;
@@ -188,7 +193,7 @@ class Collapsing {
   Mesh& mesh_;
   Vec3 origin_;  // of the quadrics: far from 0 they would cancel
   std::vector<double> length_;
-  std::vector<std::uint8_t> alive_;           // triangles
+  std::vector<std::uint8_t> alive_;          // triangles
   std::vector<std::uint32_t> first_, next_;  // corners of each vertex, one after another
   std::vector<Quadric> quadric_;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
@@ -215,7 +220,8 @@ std::vector<double> lengths_to_carry(const Prepared& prepared, const std::vector
         ++count;
       }
       // As for the spacing, the area of a disc for each: s = d_m sqrt(pi / m).
-      if (count >= kPatchPoints) lengths[i] = kFinestCell / std::numbers::sqrt2 * std::sqrt(farthest * std::numbers::pi / static_cast<double>(count));
+      if (count >= kPatchPoints)
+        lengths[i] = kFinestCell / std::numbers::sqrt2 * std::sqrt(farthest * std::numbers::pi / static_cast<double>(count));
     }
   });
   return lengths;

@@ -17,9 +17,9 @@ namespace g3r::mesh {
 /// own side, where `size` (of sizes_to_resolve()) asked for smaller ones; 0 elsewhere. O(N).
 [[nodiscard]] std::vector<double> lengths_to_carry(const Prepared& prepared, const std::vector<double>& size);
 
-/// Collapses edges that are shorter than the lengths of the points nearest to both ends, where the surface is flat to 5 degrees and stays so,
-/// within 0.3 % of that length (root mean square) of where it was, and no edge becomes longer than two lengths. `mesh`: closed; closedness,
-/// manifoldness, components and genus stay. `points`: N, `lengths`: N. O(V log V). Throws Cancelled.
+/// Collapses edges that are shorter than the lengths of the points nearest to both ends, where the surface is flat to 5 degrees and stays
+/// so, within 0.3 % of that length (root mean square) of where it was, and no edge becomes longer than two lengths. `mesh`: closed;
+/// closedness, manifoldness, components and genus stay. `points`: N, `lengths`: N. O(V log V). Throws Cancelled.
 void coarsen(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>& lengths, const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace g3r::mesh

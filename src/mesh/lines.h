@@ -19,8 +19,8 @@ inline constexpr double kInLines = 0.25;
 /// `near`: Neighbours::of_all(k) of the points, k >= 16. Random samples of surfaces, their creases and rims are not marked. O(N).
 [[nodiscard]] std::vector<std::uint8_t> points_in_lines(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near);
 
-/// The spacing up to which surface is held: half of the way to the next line for points_in_lines(), as far as one of the 256 nearest points is
-/// on it, and `spacing` elsewhere, and where that is more. O(N log N).
+/// The spacing up to which surface is held: half of the way to the next line for points_in_lines(), as far as one of the 256 nearest points
+/// is on it, and `spacing` elsewhere, and where that is more. O(N log N).
 [[nodiscard]] std::vector<double> spacing_across_lines(const std::vector<Vec3>& points, const std::vector<double>& spacing);
 
 }  // namespace g3r::mesh
