@@ -10,7 +10,6 @@ import argparse
 
 from PIL import Image, ImageDraw
 
-COLOURS = 40
 HEAD = 16  # pixels above the tiles of a row
 
 
@@ -26,6 +25,7 @@ def main():
     parser.add_argument("rows", nargs="+", metavar="NAME=A.png,B.png")
     parser.add_argument("--heads", default="", help="titles of the columns, comma separated")
     parser.add_argument("--tile", type=int, default=240)
+    parser.add_argument("--colours", type=int, default=40)
     arguments = parser.parse_args()
     rows = [(name, files.split(",")) for name, files in (row.split("=", 1) for row in arguments.rows)]
     heads = arguments.heads.split(",")
@@ -38,7 +38,7 @@ def main():
             title = f"{name}: {heads[c]}" if c < len(heads) and heads[c] else name
             draw.text((c * arguments.tile + 4, top + 2), title, fill="black")
             picture.paste(first_view(file, arguments.tile), (c * arguments.tile, top + HEAD))
-    picture.quantize(COLOURS, dither=Image.Dither.NONE).save(arguments.out, optimize=True)
+    picture.quantize(arguments.colours, dither=Image.Dither.NONE).save(arguments.out, optimize=True)
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@
 #include "cloud/neighbours.h"
 #include "field_shapes.h"
 #include "mesh/field_mesher.h"
+#include "mesh/lines.h"
 #include "mesh_topology.h"
 
 namespace {
@@ -45,6 +46,19 @@ TEST(Fair, LinesAreFoundAndSurfacesAreNot) {
   EXPECT_EQ(marked(torus.points), torus.points.size());
   EXPECT_EQ(marked(sphere_sample(5000, 1, 1).points), 0U);
   EXPECT_EQ(marked(cube_sample(5000, 1, 1).points), 0U);
+}
+
+// Unlike the surfaces of random samples, of which each point stands for a disc.
+TEST(Fair, LinesHoldSurfaceHalfWayToTheNext) {
+  OrientedSample lines;
+  constexpr double kApart = 9;  // the 8 nearest of the last point of a line are on it
+  for (int i = 0; i < 20; ++i) {
+    for (int j = 0; j < 200; ++j) lines.points.push_back({double(j), kApart * i, 0});
+  }
+  for (const double h : mesh::spacing_across_lines(lines.points, std::vector<double>(lines.points.size(), 1))) EXPECT_EQ(h, 0.5 * kApart);
+  const std::vector<Vec3> random = sphere_sample(5000, 1, 1).points;
+  const std::vector<double> spacing(random.size(), 1e-3);
+  EXPECT_EQ(mesh::spacing_across_lines(random, spacing), spacing);
 }
 
 // The mean squared distance from the torus between its rings is that of the bend that the field misses.

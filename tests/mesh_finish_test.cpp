@@ -189,6 +189,33 @@ TEST(MeshFinish, RimsAreCleanLines) {
   EXPECT_EQ(mesh.vertices, before);
 }
 
+// Lines eight times as far apart as their points: all between the lines is kept, and nothing far beyond.
+TEST(MeshFinish, ThereAreNoSlitsBetweenLines) {
+  constexpr double kApart = 8;
+  constexpr int kLines = 12, kPoints = 100, kAround = 40;
+  std::vector<Vec3> points;
+  for (int i = 0; i < kLines; ++i) {
+    for (int j = 0; j < kPoints; ++j) points.push_back({double(j), kApart * i, 0});
+  }
+  Mesh surface;
+  constexpr int kWide = kPoints + 2 * kAround, kLong = static_cast<int>(kApart) * kLines + 2 * kAround;
+  for (int x = 0; x < kWide; ++x) {
+    for (int y = 0; y < kLong; ++y) {
+      surface.vertices.push_back({double(x - kAround), double(y - kAround), 0});
+      if (x + 1 == kWide || y + 1 == kLong) continue;
+      const auto v = static_cast<std::uint32_t>(x * kLong + y);
+      surface.triangles.push_back({v, v + kLong, v + kLong + 1});
+      surface.triangles.push_back({v, v + kLong + 1, v + 1});
+    }
+  }
+  MeshOptions options;
+  options.trim = MeshOptions::Trim::kAuto;
+  mesh::finish_mesh(surface, points, mesh::smooth_spacing(points), 0, options);
+  constexpr double kWidth = kPoints - 1, kLength = kApart * (kLines - 1);
+  EXPECT_GE(check_mesh(surface).area, kWidth * kLength);
+  EXPECT_LE(check_mesh(surface).area, (kWidth + 1.5 * kApart) * (kLength + 1.5 * kApart));
+}
+
 // The largest component is the one that points hold, not the one that fills emptiness.
 TEST(MeshFinish, LargestIsWhatPointsHold) {
   TwoSpheres two = two_spheres();

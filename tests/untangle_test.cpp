@@ -4,8 +4,11 @@
 #include <g3r/mesh.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
+#include "base/vector.h"
+#include "mesh/half_edges.h"
 #include "mesh_shapes.h"
 
 namespace g3r {
@@ -44,6 +47,49 @@ TEST(Untangle, UnfoldsWhatCrossesAndKeepsTheRest) {
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) moved += mesh.vertices[v] != tangled.vertices[v] ? 1 : 0;
   EXPECT_GE(moved, pushed.size() / 2);
   EXPECT_LT(moved, mesh.vertices.size() / 4);
+}
+
+// The least cosine between the normals of two triangles at an edge.
+double sharpest(const Mesh& mesh) {
+  const auto normal = [&](std::size_t f) {
+    const auto& t = mesh.triangles[f];
+    return vector::normalised(vector::cross(vector::subtract(mesh.vertices[t[1]], mesh.vertices[t[0]]),
+                                            vector::subtract(mesh.vertices[t[2]], mesh.vertices[t[0]])));
+  };
+  double least = 1;
+  for_each_edge(mesh, [&](const HalfEdge* half_edges, std::size_t) {
+    least = std::min(least, vector::dot(normal(half_edges[0].corner / 3), normal(half_edges[1].corner / 3)));
+  });
+  return least;
+}
+
+TEST(Untangle, ThornsGoAndTheRestStays) {
+  const Mesh clean = shapes::torus(1, 0.4, 60, 40);
+  Mesh mesh = clean;
+  constexpr std::uint32_t kApart = 97;
+  for (std::uint32_t v = 0; v < mesh.vertices.size(); v += kApart) {
+    for (double& c : mesh.vertices[v]) c *= 1.3;
+  }
+  ASSERT_LT(sharpest(mesh), -0.5);
+  const Mesh thorny = mesh;
+  mesh::soften_thorns(mesh, count_self_intersections(mesh));
+  EXPECT_GT(sharpest(mesh), -0.5);
+  EXPECT_EQ(mesh.triangles, clean.triangles);
+  std::size_t moved = 0;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) moved += mesh.vertices[v] != thorny.vertices[v] ? 1 : 0;
+  EXPECT_LT(moved, mesh.vertices.size() / 8);
+  mesh = clean;
+  mesh::soften_thorns(mesh, 0);
+  EXPECT_EQ(mesh.vertices, clean.vertices);
+}
+
+TEST(Untangle, SofteningMakesNoCrossings) {
+  const Mesh clean = shapes::torus(1, 0.4, 120, 80);
+  Mesh mesh = clean;
+  (void)tangle(clean, mesh);
+  const std::size_t before = count_self_intersections(mesh);
+  mesh::soften_thorns(mesh, before);
+  EXPECT_LE(count_self_intersections(mesh), before);
 }
 
 TEST(Untangle, FixedVerticesStay) {

@@ -1,5 +1,6 @@
 #!/bin/bash
-# tools/gallery.sh MODELS: draws the pictures of docs/gallery.md anew into docs/images and prints the figures that stand there. MODELS is
+# tools/gallery.sh MODELS: draws the pictures of docs/gallery.md up to "Where it fails" anew into docs/images and prints the figures that
+# stand there (the others: tools/gallery_scans.sh). MODELS is
 # a folder with the closed meshes lucy.ply, abc_00011084.ply, kitten.ply, nefertiti.ply and gears.ply (sources: end of that page). Every
 # picture is made by the commands that are printed. The page itself, docs/images/page.png, needs Chromium.
 set -euo pipefail

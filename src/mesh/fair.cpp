@@ -14,8 +14,6 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-
 namespace g3r::mesh {
 namespace {
 
@@ -24,9 +22,6 @@ using vector::dot;
 using vector::scale;
 using vector::subtract;
 
-// The second variance of a point and its ring over the largest, up to which they lie along a curve: on surfaces one point in 1,000 is below
-// 0.1.
-constexpr double kThin = 0.05;
 // Rounds of finding where the points meet the surface, which moves in each.
 constexpr int kRounds = 3;
 // Conjugate gradients in each: so many steps at most, or until the residual is this share of the first. What is left moves no vertex
@@ -273,42 +268,6 @@ void hold_around(const Mesh& mesh, const std::vector<TrianglePair>& pairs, const
 }
 
 }  // namespace
-
-std::vector<std::uint8_t> points_along_curves(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near) {
-  const std::size_t n = points.size(), stride = near.size() / n, count = std::min(kRing + 1, stride);
-  std::vector<std::uint8_t> out(n, 0);
-  parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-      Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-      for (std::size_t k = 0; k < count; ++k) {
-        const Vec3 d = subtract(points[near[i * stride + k]], points[i]);
-        const Eigen::Vector3d e(d[0], d[1], d[2]);
-        mean += e / static_cast<double>(count);
-        spread += e * e.transpose() / static_cast<double>(count);
-      }
-      const Eigen::Vector3d variance =
-          Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread - mean * mean.transpose(), Eigen::EigenvaluesOnly).eigenvalues();
-      out[i] = variance[1] <= kThin * variance[2] ? 1 : 0;
-    }
-  });
-  return out;
-}
-
-std::vector<std::uint8_t> points_in_lines(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near) {
-  const std::size_t n = points.size(), stride = near.size() / n, voters = std::min(kFitPoints, stride);
-  const std::vector<std::uint8_t> thin = points_along_curves(points, near);
-  std::vector<std::uint8_t> out(n, 0);
-  for (std::size_t i = 0; i < n; ++i) {
-    std::size_t votes = 0;
-    for (std::size_t k = 0; k < voters; ++k) votes += thin[near[i * stride + k]];
-    out[i] = static_cast<double>(votes) >= kInLines * static_cast<double>(voters) ? 1 : 0;
-  }
-  // Where lines meet they look like a surface, and would stay rough.
-  const auto marked = static_cast<std::size_t>(std::count(out.begin(), out.end(), std::uint8_t{1}));
-  if (2 * marked >= n) std::fill(out.begin(), out.end(), std::uint8_t{1});
-  return out;
-}
 
 void make_fair(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<std::uint8_t>& in_lines, const std::atomic<bool>* cancel) {
   if (mesh.triangles.empty() || std::none_of(in_lines.begin(), in_lines.end(), [](std::uint8_t m) { return m != 0; })) return;

@@ -2,6 +2,7 @@
 
 #include "base/vector.h"
 #include "base/whole_bytes.h"
+#include "mesh/coarsen.h"
 #include "mesh/constants.h"
 #include "mesh/fair.h"
 #include "mesh/field_contour.h"
@@ -11,6 +12,7 @@
 #include "mesh/field_octree.h"
 #include "mesh/field_placement.h"
 #include "mesh/field_points.h"
+#include "mesh/lines.h"
 #include "mesh/mesh_finish.h"
 #include "mesh/untangle.h"
 
@@ -67,7 +69,8 @@ vector::Box box_of(const std::vector<Vec3>& points) {
 // The side of the octree around points of a typical spacing in a box with this longest side, with room for all surface that is no guess.
 double octree_side(double spacing, double longest_side) { return longest_side * kMargin + 2 * mesh::kFarSpacings * spacing; }
 
-Octree make_octree(const Prepared& prepared, const MeshOptions& options, const Monitor& monitor) {
+// `size`: of sizes_to_resolve().
+Octree make_octree(const Prepared& prepared, const std::vector<double>& size, const MeshOptions& options, const Monitor& monitor) {
   const mesh::OrientedPoints& points = prepared.points;
   const vector::Box box = box_of(points.positions);
   const double h = prepared.typical;
@@ -80,7 +83,6 @@ Octree make_octree(const Prepared& prepared, const MeshOptions& options, const M
     rule.finer = 0;
   }
   const Vec3 corner = vector::subtract(box.centre(), {0.5 * side, 0.5 * side, 0.5 * side});
-  const std::vector<double> size = mesh::sizes_to_resolve(prepared);
   std::vector<RefineDisc> requests(points.positions.size());
   for (std::size_t i = 0; i < requests.size(); ++i)
     requests[i] = mesh::disc_around(points.positions[i], points.normals[i], points.spacing[i], size[i], rule);
@@ -95,11 +97,11 @@ void require_memory_for(std::size_t points, const Octree& octree, int depth, std
 }
 
 // Steps 2 to 6: all that they hold but the mesh is gone when its crossings are searched for.
-Mesh raw_mesh(const Prepared& prepared, const FieldSampler& sampler, const MeshOptions& options, const Monitor& monitor,
-              std::size_t max_memory) {
+Mesh raw_mesh(const Prepared& prepared, const std::vector<double>& size, const FieldSampler& sampler, const MeshOptions& options,
+              const Monitor& monitor, std::size_t max_memory) {
   const mesh::OrientedPoints& oriented = prepared.points;
   const mesh::LocalFit local(oriented, *prepared.neighbours, prepared.near);
-  const Octree octree = make_octree(prepared, options, monitor);
+  const Octree octree = make_octree(prepared, size, options, monitor);
   require_memory_for(oriented.positions.size(), octree, options.depth, max_memory);
   report(monitor, Done::kOctree);
   const vector::Box box = box_of(oriented.positions);
@@ -154,11 +156,14 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
   report(monitor, Done::kNoise);
   mesh::smooth_noise(noise, monitor.cancel, prepared);
   report(monitor, Done::kSmoothing);
-  Mesh mesh = raw_mesh(prepared, sampler, options, monitor, max_memory);
+  const std::vector<double> size = mesh::sizes_to_resolve(prepared);
+  Mesh mesh = raw_mesh(prepared, size, sampler, options, monitor, max_memory);
   mesh::make_fair(mesh, prepared.points.positions, mesh::points_in_lines(prepared.points.positions, prepared.near), monitor.cancel);
+  // A depth that was asked for is the size of triangles that was asked for.
+  if (options.depth == 0) mesh::coarsen(mesh, prepared.points.positions, mesh::lengths_to_carry(prepared, size), monitor.cancel);
   prepared.neighbours.reset();
   std::vector<std::uint32_t>().swap(prepared.near);  // not only emptied
-  mesh::untangle(mesh, monitor.cancel);
+  mesh::soften_thorns(mesh, mesh::untangle(mesh, monitor.cancel));
   mesh::LeftOut nothing;
   mesh::finish_mesh(mesh, prepared.points.positions, prepared.points.spacing, prepared.noise, options,
                     left_out != nullptr ? *left_out : nothing);

@@ -3,7 +3,7 @@
 #include "base/vector.h"
 #include "mesh/constants.h"
 #include "mesh/crossings.h"
-#include "mesh/fair.h"
+#include "mesh/lines.h"
 
 #include <algorithm>
 #include <array>

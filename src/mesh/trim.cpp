@@ -4,6 +4,7 @@
 #include "base/vector.h"
 #include "mesh/constants.h"
 #include "mesh/distance_to_points.h"
+#include "mesh/lines.h"
 #include "mesh/mesh_parts.h"
 #include "mesh/smooth_rims.h"
 
@@ -17,7 +18,8 @@
 namespace g3r::mesh {
 namespace {
 
-// The spacings that a rim may reach beyond its points: one gap in a hundred of a random sample is wider.
+// The spacings that a rim may reach beyond its points: one gap in a hundred of a random sample is wider. Where points lie in lines the gaps
+// are those between the lines.
 constexpr double kRim = 1.2;
 
 using Triangle = std::array<std::uint32_t, 3>;
@@ -133,7 +135,7 @@ void trim(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>
   std::vector<std::uint8_t> keep = within(mesh, points, limits);
   if (std::all_of(keep.begin(), keep.end(), [](std::uint8_t k) { return k != 0; })) return;
   const std::vector<Triangle> across = neighbours_of(mesh);
-  if (options.trim == MeshOptions::Trim::kAuto) draw_in(mesh, points, spacing, across, keep);
+  if (options.trim == MeshOptions::Trim::kAuto) draw_in(mesh, points, spacing_across_lines(points, spacing), across, keep);
   for (int pass = 0; pass < 2; ++pass) drop_ears(across, keep);  // of those that are left, the second time
   remove_triangles(mesh, keep);
   if (mesh.triangles.empty()) throw InvalidInput("trimming removed the whole mesh: the trim distance is too small");

@@ -2,11 +2,14 @@
 
 #include "base/vector.h"
 #include "mesh/constants.h"
+#include "mesh/half_edges.h"
 #include "mesh/self_intersections.h"
 
 #include <g3r/error.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -17,6 +20,10 @@ namespace {
 
 // Rounds of moving vertices of crossing triangles: what still crosses after them hardly comes apart.
 constexpr int kRounds = 12;
+// The cosine between normals below which two triangles fold back, at a dihedral angle of less than 60 degrees: creases are duller.
+constexpr double kFold = -0.5;
+// Rounds of moving vertices of folds: what still folds after them is a blade, and would become shorter.
+constexpr int kSofteningRounds = 3;
 
 // Marks the corners of all triangles that have a marked corner.
 void grow(const Mesh& mesh, std::vector<std::uint8_t>& marked) {
@@ -80,7 +87,74 @@ void smooth(Part& part, const std::vector<std::uint8_t>& move) {
   }
 }
 
+Vec3 normal_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
+  const Vec3& a = mesh.vertices[t[0]];
+  return vector::normalised(vector::cross(vector::subtract(mesh.vertices[t[1]], a), vector::subtract(mesh.vertices[t[2]], a)));
+}
+
+// Marks the vertices at which two triangles may fold back: then one is turned from their mean by half of that angle or more.
+std::vector<std::uint8_t> pointed(const Mesh& mesh) {
+  std::vector<Vec3> mean(mesh.vertices.size(), Vec3{0, 0, 0});
+  for (const auto& t : mesh.triangles) {
+    const Vec3 n = normal_of(mesh, t);
+    for (const std::uint32_t v : t) mean[v] = vector::add(mean[v], n);
+  }
+  for (Vec3& n : mean) n = vector::normalised(n);
+  std::vector<std::uint8_t> out(mesh.vertices.size(), 0);
+  const double half = std::sqrt((1 + kFold) / 2);
+  for (const auto& t : mesh.triangles) {
+    const Vec3 n = normal_of(mesh, t);
+    for (const std::uint32_t v : t) {
+      if (!(vector::dot(mean[v], n) > half)) out[v] = 1;
+    }
+  }
+  return out;
+}
+
+// Marks, by vertex of the whole mesh, the ends of edges of the part at which two triangles fold back.
+void mark_thorns(const Part& part, std::vector<std::uint8_t>& marked) {
+  for_each_edge(part.mesh, [&](const HalfEdge* half_edges, std::size_t count) {
+    if (count != 2) return;  // the rim of the part
+    const auto normal = [&](std::size_t k) { return normal_of(part.mesh, part.mesh.triangles[half_edges[k].corner / 3]); };
+    if (vector::dot(normal(0), normal(1)) < kFold) marked[part.vertex[half_edges[0].low]] = marked[part.vertex[half_edges[0].high]] = 1;
+  });
+}
+
 }  // namespace
+
+void soften_thorns(Mesh& mesh, std::size_t crossings) {
+  std::vector<std::uint8_t> move(mesh.vertices.size(), 0), near = pointed(mesh);
+  grow(mesh, near);
+  mark_thorns(part_of(mesh, near), move);
+  if (std::find(move.begin(), move.end(), std::uint8_t{1}) == move.end()) return;
+  std::vector<std::uint8_t> inner = move;
+  for (int ring = 1; ring < kRings; ++ring) grow(mesh, inner);
+  near = inner;
+  grow(mesh, near);
+  Part part = part_of(mesh, near);
+  std::vector<Vec3>& at = part.mesh.vertices;
+  const std::vector<Vec3> home = at;
+  for (int round = 0; round < kSofteningRounds; ++round) {
+    smooth(part, move);
+    std::fill(move.begin(), move.end(), std::uint8_t{0});
+    mark_thorns(part, move);
+    for (std::size_t v = 0; v < move.size(); ++v) move[v] &= inner[v];
+  }
+  const auto put = [&] {
+    for (std::size_t i = 0; i < at.size(); ++i) mesh.vertices[part.vertex[i]] = at[i];
+  };
+  // Where more triangles intersect than before, the surface stays as it was.
+  std::vector<std::uint8_t> back(mesh.vertices.size(), 0);
+  for (int attempt = 0;; ++attempt) {
+    put();
+    const std::vector<TrianglePair> pairs = self_intersections(mesh);
+    if (pairs.size() <= crossings) return;
+    mark_corners(
+        mesh, pairs, [](std::uint32_t v) { return v; }, back);
+    grow(mesh, back);
+    for (std::size_t i = 0; i < at.size(); ++i) at[i] = attempt == kRings || back[part.vertex[i]] != 0 ? home[i] : at[i];
+  }
+}
 
 std::size_t untangle(Mesh& mesh, const std::atomic<bool>* cancel, const std::vector<std::uint8_t>& fixed) {
   std::vector<TrianglePair> pairs = self_intersections(mesh);

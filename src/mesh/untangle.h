@@ -1,4 +1,4 @@
-// Triangles that cross others, mostly folds where a vertex lies beyond a crease: smoothed away.
+// Triangles that cross others, mostly folds where a vertex lies beyond a crease, and thorns: smoothed away.
 #pragma once
 
 #include <g3r/mesh.h>
@@ -15,5 +15,11 @@ namespace g3r::mesh {
 /// threads. Returns the pairs left around those found at first (a vertex that moved may, rarely, meet a part of the surface farther off).
 /// Costs one search of the whole mesh, O(F log F). `fixed`: empty, or 1 for vertices that stay where they are. Throws Cancelled.
 std::size_t untangle(Mesh& mesh, const std::atomic<bool>* cancel = nullptr, const std::vector<std::uint8_t>& fixed = {});
+
+/// Moves the vertices of edges at which triangles fold back, with a dihedral angle below 60 degrees, towards the mean of their neighbours,
+/// up to three times: points hold no thorns, and thin parts lose little. Connectivity and all other vertices stay. `crossings`: how many
+/// pairs may intersect in the end; around more everything stays as it was, and where that does not help, everywhere. The same result for
+/// any number of threads. O(F), and with folds searches of the whole mesh, O(F log F), one to five.
+void soften_thorns(Mesh& mesh, std::size_t crossings);
 
 }  // namespace g3r::mesh
