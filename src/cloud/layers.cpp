@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace g3r {
 namespace {
@@ -171,6 +172,16 @@ TwoSheets fit_two_sheets(const std::vector<Vec3>& points, const std::uint32_t* i
     middle = (solution[0] + solution[1]) / 2;
   }
   return sheets;
+}
+
+double two_sheets_gain(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count, const Vec3& normal, double spacing) {
+  constexpr double kFarthest = 2;  // spacings between the sheets: the field tells walls farther apart
+  constexpr double kExact = 0.01;  // spacings
+  const double one = quadratic_residual(points, index, count, normal, spacing);
+  const TwoSheets two = fit_two_sheets(points, index, count, normal);
+  const double exact = kExact * spacing;
+  const bool near = two.gap > 0 && two.gap < kFarthest * spacing;
+  return (near ? std::log(std::max(one, exact) / std::max(two.deviation, exact)) : 0) - std::numbers::ln2;
 }
 
 }  // namespace g3r

@@ -4,7 +4,6 @@
 #include "base/median.h"
 #include "base/vector.h"
 #include "cloud/layers.h"
-#include "cloud/sheet.h"
 #include "cloud/sites.h"
 #include "cpu/parallel.h"
 #include "orient/certificate.h"
@@ -14,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 namespace g3r {
@@ -45,8 +43,6 @@ constexpr double kUnrest = 0.08;          // mean of a part that is open: closed
 constexpr double kUnrestNoisy = 0.2;      // the same where noise hides thin walls, whose field is open in places
 constexpr double kNoJump = 0.6;           // mean jump defect of a part whose sides change from site to site, or of two walls
 constexpr double kNoJumpNoisy = 0.8;      // the same under noise
-constexpr double kThin = 2;               // spacings between two walls: the field tells walls farther apart
-constexpr double kExact = 0.01;           // spacings: deviations below are as good as none
 constexpr std::size_t kWallPoints = 24;   // of the heights that tell one wall from two
 constexpr std::size_t kWallPlaces = 500;  // at most, whose median counts
 constexpr double kOutside = 0.55;         // enclosure from which a part has an outside; a plane has 0, half a sphere 0.6, a sphere 1
@@ -122,9 +118,7 @@ class Search {
     return g3r::jump_defects(finest_, at_sites(normals), sums_, cancel_);
   }
 
-  // Whether the points of a part lie on two walls closer together than the field can tell: the heights over the planes of the sites are
-  // likelier from two parallel quadratics than from one. n points on two walls, each with a label that costs ln 2, have the log likelihood
-  // -n ln s2 - n ln 2, on one -n ln s1, with s the standard deviation from the fit.
+  // Whether the points of a part lie on two walls closer together than the field can tell.
   [[nodiscard]] bool has_two_walls(std::uint32_t part) const {
     const std::vector<std::uint32_t>& members = members_[part];
     std::vector<double> gain;
@@ -133,11 +127,7 @@ class Search {
     for (std::size_t k = 0; k < members.size(); k += std::max<std::size_t>(1, members.size() / kWallPlaces)) {
       const std::uint32_t s = members[k];
       set_.tree().nearest(finest_.points()[s], kWallPoints, index, squared);
-      const double one = quadratic_residual(points_, index.data(), index.size(), finest_.axis[s], finest_.spacing()[s]);
-      const TwoSheets two = fit_two_sheets(points_, index.data(), index.size(), finest_.axis[s]);
-      const double exact = kExact * finest_.spacing()[s];
-      const bool thin = two.gap < kThin * finest_.spacing()[s];
-      gain.push_back((thin ? std::log(std::max(one, exact) / std::max(two.deviation, exact)) : 0) - std::numbers::ln2);
+      gain.push_back(two_sheets_gain(points_, index.data(), index.size(), finest_.axis[s], finest_.spacing()[s]));
     }
     return median(gain) > 0;
   }
@@ -253,16 +243,20 @@ bool faces_down(const Vec3& sum) {
   return false;
 }
 
-// How far the certificate of the given normals shows the sides of the points to be right.
-std::vector<float> certified(const Search& search, const Certificate& certificate, const std::vector<Vec3>& normals) {
+// How far the certificate of the given normals shows the sides of the points to be right. `unrest`: mean of every part; what is as restless
+// as an open surface is not shown to be closed, and nothing else says that its sides are right.
+std::vector<float> certified(const Search& search, const Certificate& certificate, const std::vector<double>& unrest,
+                             const std::vector<Vec3>& normals) {
   const bool exact = search.sites().distance == 0;
+  const double most_unrest = exact ? kUnrest : kUnrestNoisy;
   const std::vector<Vec3> at_sites = search.at_sites(normals);
   std::vector<float> out(normals.size());
   for (std::size_t i = 0; i < normals.size(); ++i) {
     const std::uint32_t s = search.sites().site_of[i];
     const double jump = exact ? certificate.jump[s] : 1 - certificate.jump_defect[s];
+    const double restless = std::min(1.0, unrest[search.part_of_point(i)] / most_unrest);
     const double shown = dot(normals[i], at_sites[s]) > 0 ? std::clamp(jump, 0.0, 1.0) : 0;
-    out[i] = static_cast<float>(shown);
+    out[i] = static_cast<float>(shown * (1 - restless * restless));
   }
   return out;
 }
@@ -356,6 +350,14 @@ OpenSurfaces settle(const Search& search, const std::vector<std::vector<Vec3>>& 
 
 }  // namespace
 
+std::vector<float> certified_sides(const PointSet& set, double noise, const SumPlan& sums, const std::vector<Vec3>& normals,
+                                   const std::atomic<bool>* cancel) {
+  if (set.size() < kFewestSites) return std::vector<float>(set.size(), 0);
+  const Search search(set, noise, sums, cancel);
+  const Certificate given = search.test(normals);
+  return certified(search, given, search.mean_of_parts(given.unrest), normals);
+}
+
 OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan& sums, std::vector<Vec3>& normals,
                                 const std::atomic<bool>* cancel) {
   if (set.size() < kFewestSites) {  // no side can be certified
@@ -373,7 +375,7 @@ OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan
     tried = search.hypotheses();
     choose(search, tried, unrest, defect, noise, verdict);
   }
-  std::vector<float> shown = certified(search, given, normals);
+  std::vector<float> shown = certified(search, given, unrest, normals);
   OpenSurfaces found;
   if (any(verdict.is_open) || any(verdict.is_doubtful)) found = settle(search, tried, verdict, normals);
   found.certified = std::move(shown);

@@ -42,11 +42,15 @@ struct OpenSurfaces {
 /// Under noise a part with |e| above 0.7 is closed: noise makes one wall of two, and what is left encloses nearly everything.
 /// Where the solution stays as it is, J = max(0, jump of its site) certifies a side: where walls are too close for the sampling the field
 /// does not jump from 0 to 1, whatever the sides. Of exact points J is the largest jump; under noise, which makes sheets of single wrong
-/// patches, it is the mean of the jumps. Points that face the other way than the mean of their site have 0, and all points of a cloud of
-/// fewer than 30.
+/// patches, it is the mean of the jumps. It falls with the square of the unrest of the part, to 0 where the part might be open. Points
+/// that face the other way than the mean of their site have 0, and all points of a cloud of fewer than 30.
 /// `noise`: standard deviation; `normals`: N unit vectors, in: the solution,
 /// out: changed on open surfaces. O(N log N).
 [[nodiscard]] OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan& sums, std::vector<Vec3>& normals,
                                               const std::atomic<bool>* cancel = nullptr);
+
+/// OpenSurfaces::certified of the given normals alone, for sides that have changed since. O(N log N).
+[[nodiscard]] std::vector<float> certified_sides(const PointSet& set, double noise, const SumPlan& sums, const std::vector<Vec3>& normals,
+                                                 const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace g3r
