@@ -88,21 +88,32 @@ void keep_small(const Run& run, const Finding& finding, const Demands& demands, 
 
 double time_per_point(const Run& run) { return run.outcome.cpu_seconds / (run.recipe.number("points") + kSetUp); }
 
-// Runs that take many times the median, told when all are known.
-void find_slow(std::vector<Run>& runs) {
-  std::vector<double> times;
-  for (const Run& run : runs) {
-    if (run.outcome.cpu_seconds > 0) times.push_back(time_per_point(run));
+// What is asked for: methods and given depths have times of their own.
+std::string kind_of(const Recipe& recipe) {
+  std::string kind;
+  for (const char* key : {"preset", "method", "accuracy", "depth"}) {
+    if (recipe.has(key)) kind += std::string(" ") + key + '=' + recipe.text(key);
   }
-  if (times.size() < kForMedian) return;
-  std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
-  const double median = times[times.size() / 2];
-  std::printf("median time per point: %.1f us\n", 1e6 * median);
-  for (Run& run : runs) {
-    const double ratio = time_per_point(run) / median;
-    if (ratio <= kManyTimes) continue;
-    run.outcome.findings = {{"slow", std::to_string(ratio) + " times the median time per point"}};
-    tell(run);
+  return kind;
+}
+
+// Runs that take many times the median of their kind, told when all are known.
+void find_slow(std::vector<Run>& runs) {
+  std::map<std::string, std::vector<double>> times;
+  for (const Run& run : runs) {
+    if (run.outcome.cpu_seconds > 0) times[kind_of(run.recipe)].push_back(time_per_point(run));
+  }
+  for (auto& [kind, all] : times) {
+    if (all.size() < kForMedian) continue;
+    const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+    std::nth_element(all.begin(), middle, all.end());
+    std::printf("median time per point%s: %.1f us\n", kind.c_str(), 1e6 * *middle);
+    for (Run& run : runs) {
+      const double ratio = time_per_point(run) / *middle;
+      if (kind_of(run.recipe) != kind || ratio <= kManyTimes) continue;
+      run.outcome.findings = {{"slow", std::to_string(ratio) + " times the median time per point"}};
+      tell(run);
+    }
   }
 }
 

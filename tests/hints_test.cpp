@@ -202,6 +202,21 @@ TEST(Hints, InsideThatIsOutsideIsTold) {
 }
 
 // hints: seen from inside, a closed room faces in; what stands in an open one keeps its outside, and the walls face the middle.
+// The middle of a flat cloud lies in its plane, however that is turned: it sees neither side.
+TEST(Hints, SeenFromInsideSaysNothingOfAPlane) {
+  Sides plane;
+  constexpr Vec3 kNormal{0.48, 0.64, 0.6};
+  for (int i = 0; i < 20; ++i) {
+    for (int j = 0; j < 20; ++j) {
+      const double u = 0.1 * i * i / 20, v = 0.1 * j;
+      plane.add({0.8 * u - 0.36 * v, -0.6 * u - 0.48 * v, 0.8 * v}, kNormal, 0, true);
+    }
+  }
+  const HintEffect effect = plane.follow({.seen_from_inside = true});
+  EXPECT_EQ(std::count(effect.decided.begin(), effect.decided.end(), 1), 0);
+  EXPECT_EQ(plane.confidence, std::vector<float>(400, 0.5F));
+}
+
 TEST(Hints, SeenFromInside) {
   Sides room;
   room.add_sphere({0, 0, 0}, 1);

@@ -236,16 +236,27 @@ TEST(OpenSurfaces, AreTheSameForEveryOrderAndNumberOfThreads) {
   }
 }
 
-OpenSurfaces find(const Surface& s, std::vector<Vec3>& normals, double noise = 0) {
-  const MortonOrder order = morton_order(s.points);
+// Points in canonical order, with their normals.
+struct Sorted {
+  MortonOrder order;
+  PointSet set;
+  std::vector<Vec3> normals;
+};
+
+Sorted sorted_as(const Surface& s, const std::vector<Vec3>& normals) {
+  Sorted out{morton_order(s.points), {}, {}};
   std::vector<Vec3> points;
-  std::vector<Vec3> sorted;
-  for (const std::uint32_t i : order.index) {
+  for (const std::uint32_t i : out.order.index) {
     points.push_back(s.points[i]);
-    sorted.push_back(normals[i]);
+    out.normals.push_back(normals[i]);
   }
-  const std::size_t count = points.size();
-  OpenSurfaces found = find_open_surfaces(PointSet(std::move(points), order.code), noise, sum_plan(1e-2, count), sorted);
+  out.set = PointSet(std::move(points), out.order.code);
+  return out;
+}
+
+OpenSurfaces find(const Surface& s, std::vector<Vec3>& normals, double noise = 0) {
+  auto [order, set, sorted] = sorted_as(s, normals);
+  OpenSurfaces found = find_open_surfaces(set, noise, sum_plan(1e-2, set.size()), sorted);
   for (std::size_t k = 0; k < sorted.size(); ++k) normals[order.index[k]] = sorted[k];
   return found;
 }
@@ -270,6 +281,25 @@ TEST(OpenSurfaces, ThinWallsAreNone) {
   std::vector<Vec3> normals(s.points.size(), Vec3{1, 0, 0});
   const OpenSurfaces found = find(s, normals);
   EXPECT_TRUE(std::all_of(found.part.begin(), found.part.end(), [](std::uint32_t part) { return part == OpenSurfaces::kNone; }));
+}
+
+// The certificate is that of the sides that are given: a point that is turned has none, and a bowl, which is not at rest, nowhere.
+TEST(CertifiedSides, AreThoseOfTheGivenNormals) {
+  const Surface s = shapes::sphere(3000);
+  const auto certified = [](const Surface& of, const std::vector<Vec3>& normals) {
+    const Sorted sorted = sorted_as(of, normals);
+    const std::vector<float> in_order = certified_sides(sorted.set, 0, sum_plan(1e-2, sorted.set.size()), sorted.normals);
+    std::vector<float> out(in_order.size());
+    for (std::size_t k = 0; k < out.size(); ++k) out[sorted.order.index[k]] = in_order[k];
+    return out;
+  };
+  for (const float c : certified(s, s.normals)) EXPECT_GT(c, 0.9F);
+  std::vector<Vec3> turned = s.normals;
+  for (std::size_t i = 0; i < turned.size(); i += 100) turned[i] = vector::scale(turned[i], -1);
+  const std::vector<float> of_turned = certified(s, turned);
+  for (std::size_t i = 0; i < turned.size(); i += 100) EXPECT_EQ(of_turned[i], 0) << i;
+  const Surface bowl = upper_part(s, 0.3);
+  for (const float c : certified(bowl, bowl.normals)) EXPECT_EQ(c, 0);
 }
 
 // Lines up to 20 times as far apart as their points: a surface across the gaps, nothing within a line.

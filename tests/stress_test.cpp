@@ -19,9 +19,9 @@ namespace g3r::stress {
 namespace {
 
 constexpr std::uint64_t kSeed = 5000;
-constexpr std::uint64_t kClouds = kSanitized ? 8 : 40;
-constexpr std::size_t kLargest = 200;
-constexpr double kDishonest = 0.2;  // share of the clouds with points that are wrong and sure: shapes of a few dozen points tell little
+constexpr std::uint64_t kClouds = kSanitized ? 8 : 200;
+constexpr std::size_t kLargest = 60;
+constexpr double kDishonest = 0.05;  // share of the clouds with points that are wrong and sure: few points do not show thin walls
 
 std::string words(const Outcome& outcome) {
   std::string out;
@@ -49,7 +49,7 @@ TEST(Stress, KeptCasesHold) {
   for (const auto& entry : std::filesystem::directory_iterator(G3R_STRESS_CASES)) {
     std::ifstream in(entry.path(), std::ios::binary);
     const Case kept = from_text({std::istreambuf_iterator<char>(in), {}});
-    EXPECT_EQ(words(hold_apart(kept, {})), "") << entry.path();
+    for (const Finding& f : hold_apart(kept, {}).findings) ADD_FAILURE() << entry.path() << ' ' << f.kind << ": " << f.what;
     ++cases;
   }
   EXPECT_GT(cases, 0U);

@@ -14,6 +14,7 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -37,6 +38,8 @@ constexpr double kOpposed = -0.5;     // cosine: more than 120 degrees
 constexpr double kUnit = 1e-6;        // of the length of normals
 constexpr double kMemorySlack = 4e6;  // bytes: pages of code and of the allocator that come in with the first run
 constexpr double kLineRatio = 1e-9;   // extent across over extent along, below which points are on a line
+constexpr double kSliver = 0.05;      // the same of up to kNeighbours points, below which their surface is no triangle
+constexpr double kMoved = 0.01;       // spacings: rounding by more makes another cloud
 
 class Judge {
  public:
@@ -71,8 +74,8 @@ Vec3 minus(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2
 double norm(const Vec3& a) { return std::hypot(a[0], a[1], a[2]); }
 bool is_finite(const Vec3& a) { return std::isfinite(a[0]) && std::isfinite(a[1]) && std::isfinite(a[2]); }
 
-// Fewer than 4 distinct places, or all on a line: what the program has to refuse.
-bool is_no_cloud(const std::vector<Vec3>& points) {
+// Fewer than 4 distinct places, or all on a line, which the program has to refuse, or a sliver, whose surface is below one triangle.
+bool may_be_no_cloud(const std::vector<Vec3>& points) {
   std::set<Vec3> places;
   for (const Vec3& p : points) {
     if (is_finite(p)) places.insert(p);
@@ -85,7 +88,13 @@ bool is_no_cloud(const std::vector<Vec3>& points) {
   }
   double across = 0;
   for (const Vec3& p : places) across = std::max(across, norm(cross(along, minus(p, from))) / norm(along));
-  return across <= kLineRatio * norm(along);
+  return across <= (places.size() <= kNeighbours ? kSliver : kLineRatio) * norm(along);
+}
+
+// Besides: what has no surface, and what is smaller than a cell of the mesh because a far point makes cells of a given depth so large.
+bool may_be_refused(const Case& tested) {
+  if (tested.recipe.has("far") && tested.recipe.has("depth")) return true;
+  return tested.scene.sides == Sides::kNone || may_be_no_cloud(tested.scene.points);
 }
 
 void check_numbers(const std::vector<Vec3>& points, const Orientation& o, Judge& judge) {
@@ -200,19 +209,26 @@ struct Turn {
   [[nodiscard]] Vec3 operator()(const Vec3& p) const { return {dot(x, p), dot(y, p), dot(z, p)}; }
 };
 
+// How far apart numbers of this size are, in double precision or in single.
+double rounding(const std::vector<Vec3>& points, bool single) {
+  double largest = 0;
+  for (const Vec3& p : points) largest = is_finite(p) ? std::max(largest, norm(p)) : largest;
+  return largest * (single ? std::numeric_limits<float>::epsilon() : std::numeric_limits<double>::epsilon());
+}
+
 // Open surfaces may face either way: what counts is whether sure points agree with the first run, or all of them disagree.
 void check_rigid(const Case& tested, const RunOptions& run, const Reconstruction& first, Judge& judge) {
+  if (rounding(tested.scene.points, false) > kMoved * first.orientation.stats.spacing) return;
   const Turn turn;
-  RunOptions turned = run;
-  std::vector<Vec3> points;
-  for (const Vec3& p : tested.scene.points) points.push_back(turn(p));
-  Hints& hints = turned.options.hints;
+  std::vector<Vec3> points(tested.scene.points.size());
+  std::transform(tested.scene.points.begin(), tested.scene.points.end(), points.begin(), turn);
+  Options turned = run.options;
+  Hints& hints = turned.hints;
   if (hints.up) hints.up = turn(*hints.up);
   for (Vec3& p : hints.sensors) p = turn(p);
   for (Vec3& p : hints.inside) p = turn(p);
-  const Orientation other = orient(points, turned.options);
-  std::size_t sure = 0;
-  std::size_t turned_over = 0;
+  const Orientation other = orient(points, turned);
+  std::size_t sure = 0, turned_over = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (first.orientation.confidence[i] <= kSure || other.confidence[i] <= kSure) continue;
     ++sure;
@@ -280,7 +296,8 @@ void check_confidence(const Case& tested, const Orientation& o, Outcome& outcome
   outcome.wrong = wrong.all / wrong.known;
   outcome.wrong_and_sure = sure / wrong.known;
   if (outcome.warned || has_other_method(tested.recipe) || sure <= std::max(kFewPoints, kFewWrong * wrong.known)) return;
-  const double deviation = tested.recipe.number("noise") * o.stats.spacing;
+  const double steps = std::hypot(tested.recipe.number("step") * o.stats.spacing, rounding(scene.points, tested.recipe.has("float32")));
+  const double deviation = std::hypot(tested.recipe.number("noise") * o.stats.spacing, steps / std::sqrt(12.0));
   const auto thin = std::count_if(wrong.sure.begin(), wrong.sure.end(), [&](std::size_t i) { return is_thin(scene, i, deviation); });
   judge.demand(false, 2 * static_cast<double>(thin) > sure ? "thin" : "confidence",
                std::to_string(wrong.sure.size()) + " of " + std::to_string(static_cast<int>(wrong.known)) +
@@ -350,7 +367,7 @@ std::optional<Reconstruction> first_run(const Case& tested, const RunOptions& ru
     return first;
   } catch (const InvalidInput& error) {
     outcome.refused = true;
-    judge.demand(is_no_cloud(tested.scene.points), "refused", error.what());
+    judge.demand(may_be_refused(tested), "refused", error.what());
   }
   return std::nullopt;
 }

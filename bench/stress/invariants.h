@@ -1,7 +1,7 @@
 // What must hold for every cloud.
 //
 //   crash       the run ends by itself, within its time and the memory of the child that it runs in (run_apart.h)
-//   refused     no error but for clouds that are none: fewer than 4 distinct places, all on a line, a surface below one triangle
+//   refused     no error but for clouds that are none: fewer than 4 distinct places, all on a line, no surface or one below one triangle
 //   number      normals are unit and finite, areas finite and not negative, confidence is in [0, 1], the report is finite
 //   memory      the peak stays within the plan
 //   mesh        closed and manifold unless trimmed, every coordinate finite
@@ -9,7 +9,7 @@
 //   threads     the same bytes for one and two threads
 //   order       the same bytes for the points in another order
 //   program     the same normals from the command line
-//   rigid       points that are sure of their side keep it when the cloud is turned (statistical)
+//   rigid       points that are sure of their side keep it when the cloud is turned, unless rounding moves them then (statistical)
 //   confidence  few points are wrong and sure, or there is a warning (statistical)
 //   thin        the same, where most of the wrong ones have another side of the surface so near that the samples do not tell (statistical)
 #pragma once

@@ -56,6 +56,9 @@ void draw_method(Random& random, bool small, Recipe& recipe) {
   if (random.uniform() < 0.1) recipe.set("accuracy", small ? one_of<3>(random, {"0", "1e-4", "0.1"}) : "0.1");
   if (random.uniform() < 0.05) recipe.set("tolerance", one_of<2>(random, {"1e-6", "0.3"}));
   if (random.uniform() < 0.05) recipe.set("schedule", one_of<3>(random, {"1_cg", "5_sd", "3_sd_30_cg"}));
+  if (recipe.text("method") == "wnnc") {
+    for (const char* none : {"epsilon", "tolerance", "schedule"}) recipe.erase(none);  // it has its own
+  }
   const bool energy = recipe.text("preset") != "paper" && recipe.text("method", "energy") == "energy";
   if (energy && random.uniform() < 0.15) recipe.set("noise_given", one_of<4>(random, {"0", "0.3h", "1h", "1%"}));
 }

@@ -1,7 +1,6 @@
 #include "orient/hints.h"
 
 #include "base/disjoint_sets.h"
-#include "base/median.h"
 #include "base/vector.h"
 #include "cloud/neighbours.h"
 #include "sum/direct_sum.h"
@@ -29,7 +28,10 @@ constexpr double kWidth = 0.55;  // of the winding field, in spacings
 constexpr std::size_t kMostSensors = 32;  // whose winding numbers are taken; more are along a path, and every so-manieth tells
 constexpr std::size_t kAdjacent = 8;      // nearest points that a point is connected with
 constexpr double kConsistent = 0.8;  // of two adjacent points from which on one side follows from the other; across gaps it is by chance
-constexpr double kSpan = 0.5;        // of the cloud's extent along every axis: from there on closed parts surround the scanner
+constexpr std::size_t kMostForMiddle = 10000;  // points that the middle of the cloud is taken of
+constexpr int kMiddleRounds = 20;              // the first, from the mean, goes most of the way
+constexpr double kAtMiddle = 1e-3;             // of the unit frame: nearer points weigh no more
+constexpr double kSpan = 0.5;                  // of the cloud's extent along every axis: from there on closed parts surround the scanner
 
 struct Votes {
   double in_favour = 0;
@@ -67,12 +69,21 @@ class NearestPlace {
   std::vector<double> squared_;
 };
 
+// The point with the least sum of distances (Weiszfeld 1937): it turns with the cloud, lies in the plane of a flat one, and a few far
+// points do not move it.
 Vec3 middle_of(const std::vector<Vec3>& points) {
+  const std::size_t step = (points.size() + kMostForMiddle - 1) / kMostForMiddle;
   Vec3 middle{};
-  std::vector<double> values(points.size());
-  for (std::size_t a = 0; a < 3; ++a) {
-    for (std::size_t i = 0; i < points.size(); ++i) values[i] = points[i][a];
-    middle[a] = median(values);
+  for (int round = 0; round <= kMiddleRounds; ++round) {
+    Vec3 sum{};
+    double all = 0;
+    for (std::size_t i = 0; i < points.size(); i += step) {
+      const Vec3 d = subtract(points[i], middle);
+      const double weight = round > 0 ? 1 / std::max(kAtMiddle, std::sqrt(dot(d, d))) : 1;
+      sum = vector::add(sum, vector::scale(points[i], weight));
+      all += weight;
+    }
+    middle = vector::scale(sum, 1 / all);
   }
   return middle;
 }

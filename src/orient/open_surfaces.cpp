@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 namespace g3r {
@@ -137,7 +136,7 @@ class Search {
       const double one = quadratic_residual(points_, index.data(), index.size(), finest_.axis[s], finest_.spacing()[s]);
       const TwoLayers two = fit_two_layers(points_, index.data(), index.size(), finest_.axis[s]);
       const double exact = kExact * finest_.spacing()[s];
-      const bool thin = two.gap < kThin * finest_.spacing()[s];
+      const bool thin = two.gap > 0 && two.gap < kThin * finest_.spacing()[s];
       gain.push_back((thin ? std::log(std::max(one, exact) / std::max(two.deviation, exact)) : 0) - std::numbers::ln2);
     }
     return median(gain) > 0;
@@ -280,8 +279,10 @@ std::vector<double> concentration(const Search& search, const std::vector<Vec3>&
   return out;
 }
 
-// How far the certificate of the given normals shows the sides of the points to be right; `exact`: there is no noise.
+// How far the certificate of the given normals shows the sides of the points to be right; `exact`: there is no noise. What is as restless
+// as an open surface is not shown to be closed, and nothing else says that its sides are right.
 std::vector<float> certified(const Search& search, const Certificate& certificate, const std::vector<Vec3>& normals, bool exact) {
+  const std::vector<double> unrest = search.mean_of_parts(certificate.unrest);
   const std::vector<Vec3> at_sites = search.at_sites(normals);
   const std::vector<double> one_way = exact ? std::vector<double>{} : concentration(search, normals);
   const bool is_thinned = search.sites().distance > 0;
@@ -290,7 +291,8 @@ std::vector<float> certified(const Search& search, const Certificate& certificat
     const std::uint32_t s = search.sites().site_of[i];
     if (dot(normals[i], at_sites[s]) <= 0) continue;
     const double jump = is_thinned ? 1 - certificate.scaled_defect[s] : certificate.jump[s];
-    out[i] = static_cast<float>((exact ? 1 : one_way[s]) * std::clamp(jump, 0.0, 1.0));
+    const double restless = std::min(1.0, unrest[search.part_of_point(i)] / (is_thinned ? kUnrestNoisy : kUnrest));
+    out[i] = static_cast<float>((exact ? 1 : one_way[s]) * std::clamp(jump, 0.0, 1.0) * (1 - restless * restless));
   }
   return out;
 }
@@ -383,6 +385,14 @@ OpenSurfaces choose(const Search& search, const std::vector<std::vector<Vec3>>& 
 }
 
 }  // namespace
+
+std::vector<float> certified_sides(const PointSet& set, double noise, const SumPlan& sums, const std::vector<Vec3>& normals,
+                                   const std::atomic<bool>* cancel) {
+  if (set.size() < kFewestSites) return std::vector<float>(set.size(), 0);
+  const Search search(set, noise, sums, cancel);
+  const Certificate given = search.test(normals);
+  return certified(search, given, normals, noise == 0);
+}
 
 OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan& sums, std::vector<Vec3>& normals,
                                 const std::atomic<bool>* cancel) {

@@ -120,6 +120,13 @@ void fit_surface(const Problem& problem, std::vector<Vec3>& eta, std::vector<Vec
   if (runs(problem, Step::kFacets)) agree_on_facets(problem, proven, fit, eta, normals, stages);
 }
 
+bool any_turned(const std::vector<Vec3>& before, const std::vector<Vec3>& after) {
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (vector::dot(before[i], after[i]) < 0) return true;
+  }
+  return false;
+}
+
 Solution solve_on_points(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
   const Settings& s = problem.settings;
   const PointSet& set = problem.cloud.set;
@@ -140,8 +147,14 @@ Solution solve_on_points(const Problem& problem, const Options& options, Stages&
     set_open_areas(surfaces, set, normals, polished.eta);
     if (problem.is_clean()) fit_directions(problem, normals);
   } else if (problem.is_clean()) {
+    const std::vector<Vec3> before = normals;
     fit_surface(problem, polished.eta, normals, stages);
-    if (!surfaces.part.empty()) surfaces = find_open(normals);  // facets may have found sides that certify it
+    // Facets and creases may have found other sides, which the certificate has not seen.
+    if (!surfaces.part.empty()) {
+      surfaces = find_open(normals);
+    } else if (!surfaces.certified.empty() && any_turned(before, normals)) {
+      surfaces.certified = certified_sides(set, problem.noise, s.sums, normals, stages.cancel());
+    }
   }
   return {std::move(polished.eta), std::move(polished.refinement), std::move(surfaces)};
 }
