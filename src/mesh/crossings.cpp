@@ -17,7 +17,7 @@ using vector::dot;
 
 // More take time, and shares of so many are good to a hundredth of a percent.
 constexpr std::size_t kLooks = 20000;
-constexpr std::size_t kBlock = 64;  // looks per parallel block
+constexpr std::size_t kLooksPerBlock = 64;
 // The cosine below which a normal has another direction: of shallower crossings the two surfaces are within kLayer of each other where they
 // are looked at.
 constexpr double kOther = 0.8;
@@ -108,7 +108,7 @@ Crossings find_crossings(const PointSet& set, const std::vector<Vec3>& normals) 
   (void)set.tree();  // made before threads ask for them
   (void)set.near();
   (void)set.smoothed_spacing();
-  parallel::for_blocks(angles.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(angles.size(), kLooksPerBlock, [&](std::size_t begin, std::size_t end) {
     Look look;
     for (std::size_t k = begin; k < end; ++k) angles[k] = crossing_at(set, normals, k * every, look);
   });
