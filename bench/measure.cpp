@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::size_t kMeshSamples = 200000;
 constexpr std::array<double, 4> kQuantiles = {0.50, 0.90, 0.95, 0.99};
+constexpr float kSure = 0.9F;  // confidence above which a side is promised
 constexpr double kDegrees = 180 / 3.14159265358979323846;
 
 /// Processor time of this process so far.
@@ -36,6 +37,12 @@ Monitor watch_for_mesh(double start, double& cpu_seconds) {
     return true;
   };
   return monitor;
+}
+
+// How many of these points are sure of their side, as a share of `all`.
+double sure_share(const std::vector<float>& confidence, std::size_t all) {
+  const auto sure = std::count_if(confidence.begin(), confidence.end(), [](float c) { return c > kSure; });
+  return static_cast<double>(sure) / static_cast<double>(all);
 }
 
 void score_points(const Orientation& orientation, const Input& input, Row& row) {
@@ -57,6 +64,8 @@ void score_points(const Orientation& orientation, const Input& input, Row& row) 
   for (std::size_t q = 0; q < kQuantiles.size(); ++q) {
     row.angle_quantiles[q] = angles[static_cast<std::size_t>(kQuantiles[q] * static_cast<double>(angles.size() - 1))];
   }
+  row.right_and_sure = sure_share(right, input.surface);
+  row.wrong_and_sure = sure_share(wrong, input.surface);
   if (!right.empty() && !wrong.empty()) row.confidence_auc = area_under_curve(std::move(right), std::move(wrong));
   const auto outliers = orientation.confidence.begin() + static_cast<std::ptrdiff_t>(input.surface);
   if (outliers != orientation.confidence.end()) {

@@ -33,6 +33,8 @@ struct Row {
   std::array<double, 4> angle_quantiles{};  ///< angle to the true normal in degrees: 50, 90, 95, 99 %
   double confidence_auc = -1;               ///< chance that a point on the right side has the higher confidence than one on the wrong
                                             ///< side; -1 if all are on one side
+  double right_and_sure = 0;                ///< share of the points that are on the right side with a confidence above 0.9
+  double wrong_and_sure = 0;                ///< the same of those on the wrong side
   double outlier_confidence = -1;           ///< mean over the outliers; -1 without any
   double thin = 0;                          ///< share of Input::thin
   double wrong_thin = -1;                   ///< the same of the points on the wrong side; -1 without any

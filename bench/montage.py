@@ -30,15 +30,15 @@ def main():
     rows = [(name, files.split(",")) for name, files in (row.split("=", 1) for row in arguments.rows)]
     heads = arguments.heads.split(",")
     width = max(len(files) for _, files in rows) * arguments.tile
-    sheet = Image.new("RGB", (width, len(rows) * (arguments.tile + HEAD)), "white")
-    draw = ImageDraw.Draw(sheet)
+    picture = Image.new("RGB", (width, len(rows) * (arguments.tile + HEAD)), "white")
+    draw = ImageDraw.Draw(picture)
     for r, (name, files) in enumerate(rows):
         top = r * (arguments.tile + HEAD)
         for c, file in enumerate(files):
             title = f"{name}: {heads[c]}" if c < len(heads) and heads[c] else name
             draw.text((c * arguments.tile + 4, top + 2), title, fill="black")
-            sheet.paste(first_view(file, arguments.tile), (c * arguments.tile, top + HEAD))
-    sheet.quantize(COLOURS, dither=Image.Dither.NONE).save(arguments.out, optimize=True)
+            picture.paste(first_view(file, arguments.tile), (c * arguments.tile, top + HEAD))
+    picture.quantize(COLOURS, dither=Image.Dither.NONE).save(arguments.out, optimize=True)
 
 
 if __name__ == "__main__":

@@ -86,6 +86,8 @@ Json row_json(const Row& row) {
   json["angle_degrees"] = {
       {"50", row.angle_quantiles[0]}, {"90", row.angle_quantiles[1]}, {"95", row.angle_quantiles[2]}, {"99", row.angle_quantiles[3]}};
   if (row.confidence_auc >= 0) json["confidence_auc"] = row.confidence_auc;
+  json["right_and_sure"] = row.right_and_sure;
+  json["wrong_and_sure"] = row.wrong_and_sure;
   if (row.outlier_confidence >= 0) json["outlier_confidence"] = row.outlier_confidence;
   json["thin"] = row.thin;
   if (row.wrong_thin >= 0) json["wrong_thin"] = row.wrong_thin;

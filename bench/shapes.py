@@ -20,7 +20,7 @@ from skimage.measure import marching_cubes
 
 CELLS = 280  # along the longest side of the box: what is thinner than a few cells is not what the formula says
 MARGIN = 1.08  # half side of the box
-SPECK = 1e-3  # of the triangles
+SPURIOUS = 1e-3  # of the triangles
 
 
 def ball(p, centre, radius):
@@ -128,7 +128,7 @@ def spiky(p):
 
 
 def roll(p):
-    """A sheet rolled up: walls of 0.07, gaps of 0.09."""
+    """A plate rolled up: walls of 0.07, gaps of 0.09."""
     radius, angle = np.hypot(p[0], p[1]), np.arctan2(p[1], p[0])
     turn = (radius - 0.16 * angle / (2 * np.pi)) % 0.16
     wall = np.abs(turn - 0.08) - 0.035
@@ -239,14 +239,14 @@ def mesh(shape):
     p = line[:, None, None], line[None, :, None], line[None, None, :]
     field = np.broadcast_to(SHAPES[shape](p), (len(line),) * 3)
     vertices, faces, _, _ = marching_cubes(field, 0, gradient_direction="ascent")
-    return without_specks(vertices * (2 * MARGIN / CELLS) - MARGIN, faces)
+    return without_spurious(vertices * (2 * MARGIN / CELLS) - MARGIN, faces)
 
 
-def without_specks(vertices, faces):
-    """Only the components of at least SPECK of the triangles: smaller ones are corners that the grid cut off."""
+def without_spurious(vertices, faces):
+    """Only the components of at least SPURIOUS of the triangles: smaller ones are corners that the grid cut off."""
     links = coo_matrix((np.ones(2 * len(faces)), (faces[:, [0, 1]].ravel(), faces[:, [1, 2]].ravel())), shape=(len(vertices),) * 2)
     _, part = connected_components(links, directed=False)
-    large = np.bincount(part[faces[:, 0]], minlength=part.max() + 1) >= SPECK * len(faces)
+    large = np.bincount(part[faces[:, 0]], minlength=part.max() + 1) >= SPURIOUS * len(faces)
     faces = faces[large[part[faces[:, 0]]]]
     used, faces = np.unique(faces, return_inverse=True)
     return vertices[used], faces.reshape(-1, 3)

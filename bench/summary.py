@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Reduces what g3r_bench_table measured to docs/results, and writes the tables of the documentation from it. Standard library only.
 
-    summary.py reduce TABLE.json... -o docs/results/clean.json   one line per method, input, number of points and model; other files
-                                                                 of the folder without a row of their own go
+    summary.py reduce TABLE.json... -o docs/results/clean.json   one line per method, input, number of points and model, with the commit;
+                                                                 what the file has of the same goes, all else in it stays
     summary.py tables                                            rewrites the tables in README.md and docs
     summary.py check                                             exit code 1 where a table differs from docs/results
 
@@ -19,6 +19,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "docs" / "results"
+LISTS = ("normals", "meshes")
 BLOCK = re.compile(r"(<!-- results ([\w.-]+) -->\n).*?(<!-- /results -->)", re.S)
 MESH_SCORES = ("cd", "ae_m", "hd", "components", "genus", "self_intersections", "cpu_seconds")
 
@@ -42,7 +43,8 @@ def digits(value, count=4):
 
 
 def reduce_tables(paths, meshes_only=False):
-    """The rows of tables of one commit, as docs/results holds them. Rows with an error are named on stderr and left out."""
+    """The rows of tables of one commit, as docs/results holds them: that commit is the fifth of each. Rows with an error are named on
+    stderr and left out."""
     labels, seeds, normals, meshes = set(), set(), [], []
     for path in paths:
         table = json.loads(pathlib.Path(path).read_text(encoding="utf-8"))
@@ -54,34 +56,35 @@ def reduce_tables(paths, meshes_only=False):
                 print(f"left out: {name}: {row['error']}", file=sys.stderr)
                 continue
             if not meshes_only:
-                normals.append(name + [digits(row["ae_p"]), digits(row["pco"], 6), digits(row["cpu_seconds"], 3)])
+                normals.append(name + [table["label"], digits(row["ae_p"]), digits(row["pco"], 6), digits(row["cpu_seconds"], 3)])
             if "mesh_error" in row:
                 print(f"left out: {name}: {row['mesh_error']}", file=sys.stderr)
             if "mesh" in row:
-                meshes.append(name + [digits(row["mesh"].get(score)) for score in MESH_SCORES])
+                meshes.append(name + [table["label"]] + [digits(row["mesh"].get(score)) for score in MESH_SCORES])
     if len(labels) != 1 or len(seeds) != 1:
         sys.exit(f"these tables are of different commits or seeds: {sorted(labels)}, {sorted(seeds)}")
-    return {"commit": labels.pop(), "seed": seeds.pop(), "normals": normals, "meshes": meshes}
+    return {"seed": seeds.pop(), "normals": normals, "meshes": meshes}
+
+
+def updated(old, new):
+    """Results with the rows of `new`, and those of `old` that were not measured anew."""
+    if old["seed"] != new["seed"]:
+        sys.exit(f"the results are of seed {old['seed']}, these tables of {new['seed']}")
+    rows = {kind: {tuple(row[:4]): row for row in old[kind] + new[kind]} for kind in LISTS}
+    return {"seed": new["seed"], **{kind: list(found.values()) for kind, found in rows.items()}}
 
 
 def write_results(results, path):
-    lists = [f' "{name}": [\n' + ",\n".join("  " + json.dumps(row) for row in results[name]) + "\n ]" if results[name] else
-             f' "{name}": []' for name in ("normals", "meshes")]
-    head = f' "commit": "{results["commit"]}",\n "seed": {results["seed"]},\n'
-    pathlib.Path(path).write_text("{\n" + head + ",\n".join(lists) + "\n}\n", encoding="utf-8")
+    def ordered(rows):  # by input, points, model and method
+        return sorted(rows, key=lambda row: (row[1], row[2], row[3], row[0]))
+
+    lists = [f' "{kind}": [\n' + ",\n".join("  " + json.dumps(row) for row in ordered(results[kind])) + "\n ]" if results[kind] else
+             f' "{kind}": []' for kind in LISTS]
+    pathlib.Path(path).write_text("{\n" + f' "seed": {results["seed"]},\n' + ",\n".join(lists) + "\n}\n", encoding="utf-8")
 
 
-def remove_superseded(path):
-    """Other files in the folder of `path` all of whose rows it has too."""
-    def keys(table):
-        return {(name, *row[:4]) for name in ("normals", "meshes") for row in table[name]}
-
-    path = pathlib.Path(path)
-    new = keys(json.loads(path.read_text(encoding="utf-8")))
-    for other in sorted(path.parent.glob("*.json")):
-        if other.name != path.name and keys(json.loads(other.read_text(encoding="utf-8"))) <= new:
-            other.unlink()
-            print(f"{other}: superseded by {path.name}")
+def read_results(path):
+    return json.loads(pathlib.Path(path).read_text(encoding="utf-8"))
 
 
 class Results:
@@ -91,14 +94,14 @@ class Results:
         self.normals, self.meshes = {}, {}
         self.files = {}
         for path in sorted(pathlib.Path(folder).glob("*.json")):
-            table = json.loads(path.read_text(encoding="utf-8"))
+            table = read_results(path)
             self.files[path.name] = table
             for rows, found in ((table["normals"], self.normals), (table["meshes"], self.meshes)):
-                for method, kind, points, model, *scores in rows:
+                for method, kind, points, model, commit, *scores in rows:
                     group = found.setdefault((method, kind, points), {})
                     if model in group:
-                        sys.exit(f"{path}: {method}, {kind}, {points} points of {model} is in another file too")
-                    group[model] = (table["commit"], scores)
+                        sys.exit(f"{path}: {method}, {kind}, {points} points of {model} is there twice")
+                    group[model] = (commit, scores)
 
     def of(self, method, kind, points):
         return self.normals.get((method, kind, points), {})
@@ -247,8 +250,10 @@ def main():
     commands.add_parser("check")
     arguments = parser.parse_args()
     if arguments.command == "reduce":
-        write_results(reduce_tables(arguments.tables, arguments.meshes_only), arguments.output)
-        remove_superseded(arguments.output)
+        results = reduce_tables(arguments.tables, arguments.meshes_only)
+        if pathlib.Path(arguments.output).exists():
+            results = updated(read_results(arguments.output), results)
+        write_results(results, arguments.output)
         return
     stale = stale_pages(Results())
     for page, text in stale.items():

@@ -6,10 +6,10 @@
 #include "cpu/parallel.h"
 #include "field/areas.h"
 #include "mesh/findings.h"
+#include "orient/apply_hints.h"
 #include "orient/confidence.h"
 #include "orient/hints.h"
 #include "orient/problem.h"
-#include "orient/settle_by_hints.h"
 #include "orient/solution.h"
 #include "orient/start.h"
 #include "solve/refine.h"
@@ -31,9 +31,9 @@ constexpr double kSidesAgree = 0.45;  // mean jump defect of an open surface up 
 constexpr double kFarLess = 0.55;         // of that share, up to which another is taken: chance changes it by less
 constexpr double kFarMore = 2;            // times the estimate, scatter that speaks against it
 constexpr double kAboveScatter = 1.4;     // times the scatter, the noise that is tried: kernels have to hide all of it,
-constexpr double kLeastTried = 0.3;       // but at least this in spacings: less blurs no less, and leaves more in doubt
+constexpr double kLeastTried = 0.3;       // but at least this in spacings: less blurs no less, and leaves more unsure
 constexpr std::size_t kFewPoints = 2500;  // up to which shape looks like noise, so that none is tried too
-constexpr double kManyDoubtful = 0.1;     // share of the sides in doubt from which more noise is tried with nothing to speak for it,
+constexpr double kManyDoubtful = 0.1;     // share of unsure sides from which more noise is tried with nothing to speak for it,
 constexpr double kHardlyAny = 0.2;        // and of that share, up to which it is taken: noise hides thin walls and all doubt about them
 
 void describe(const Problem& problem, const PointsView& points, const Options& options, Stats& stats) {
@@ -97,10 +97,10 @@ void add_outliers(const Problem& problem, Stages& stages, Solution& solution, st
   confidence.insert(confidence.end(), none.size(), 0.0F);
 }
 
-// The solve is for normals; the lengths of its vectors follow the luck of the sample. Earlier methods keep theirs.
-void settle_areas(const Problem& problem, Stages& stages, Solution& solution) {
+// The solve is for normals; the lengths of its vectors vary with the sample. Earlier methods keep theirs.
+void replace_areas(const Problem& problem, Stages& stages, Solution& solution) {
   if (problem.settings.method != Method::kEnergy || contains(problem.settings.without, Step::kAreas)) return;
-  solution.eta = area_vectors(problem.cloud.set, solution.refinement.normals, solution.sheets, stages.cancel());
+  solution.eta = area_vectors(problem.cloud.set, solution.refinement.normals, solution.open_surfaces, stages.cancel());
 }
 
 // From the canonical order back to the caller's. A duplicate gets its twin's normal and its share of the area.
@@ -124,33 +124,33 @@ void hand_out(const CanonicalCloud& cloud, const std::vector<Vec3>& eta, const s
 std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 
 // The sides of points on open surfaces do not come from the equations, and their confidence neither.
-void add_sheets(const OpenSurfaces& sheets, std::vector<float>& confidence, Stats& stats) {
-  if (sheets.part.empty()) return;
+void add_open_surfaces(const OpenSurfaces& surfaces, std::vector<float>& confidence, Stats& stats) {
+  if (surfaces.part.empty()) return;
   std::size_t open = 0;
   std::size_t undecided = 0;
-  for (std::size_t i = 0; i < sheets.part.size(); ++i) {
-    if (sheets.part[i] == OpenSurfaces::kNone) {
-      confidence[i] *= sheets.certainty[i];
+  for (std::size_t i = 0; i < surfaces.part.size(); ++i) {
+    if (surfaces.part[i] == OpenSurfaces::kNone) {
+      confidence[i] *= surfaces.certainty[i];
       continue;
     }
-    confidence[i] = sheets.certainty[i];
+    confidence[i] = surfaces.certainty[i];
     ++open;
-    undecided += sheets.certainty[i] <= 0.5F ? 1 : 0;
+    undecided += surfaces.certainty[i] <= 0.5F ? 1 : 0;
   }
   if (open == 0) return;
   const auto all = static_cast<double>(confidence.size());
   stats.open_share = static_cast<double>(open) / all;
   stats.undecided_share = static_cast<double>(undecided) / all;
   stats.warnings.push_back("open: " + percent(stats.open_share) + " of the points lie on surfaces without an inside; " +
-                           (sheets.worst_defect < kSidesAgree ? "their sides are consistent" : "their sides do not agree everywhere"));
+                           (surfaces.worst_defect < kSidesAgree ? "their sides are consistent" : "their sides do not agree everywhere"));
 }
 
 // Sides of closed surfaces that their field does not show to be right are worth less.
-void certify_sides(const OpenSurfaces& sheets, std::vector<float>& confidence) {
-  for (std::size_t i = 0; i < sheets.certified.size(); ++i) {
-    if (!sheets.part.empty() && sheets.part[i] != OpenSurfaces::kNone) continue;
-    const float least = std::min(confidence[i], sheets.uncertified);
-    confidence[i] = least + (confidence[i] - least) * sheets.certified[i];
+void certify_sides(const OpenSurfaces& surfaces, std::vector<float>& confidence) {
+  for (std::size_t i = 0; i < surfaces.certified.size(); ++i) {
+    if (!surfaces.part.empty() && surfaces.part[i] != OpenSurfaces::kNone) continue;
+    const float least = std::min(confidence[i], surfaces.uncertified);
+    confidence[i] = least + (confidence[i] - least) * surfaces.certified[i];
   }
 }
 
@@ -179,16 +179,16 @@ struct Oriented {
 Oriented orient_problem(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
   Oriented out;
   out.solution = solve(problem, options, stages, stats);
-  solve_sheets_apart(problem, options, stages, stats, out.solution);
+  solve_open_surfaces_apart(problem, options, stages, stats, out.solution);
   const Refinement& refined = out.solution.refinement;
   const std::vector<Vec3> vectors = problem.noise > 0 ? sums_over(problem.cloud.set.near(), out.solution.eta) : out.solution.eta;
   const std::vector<double> none;
   const std::vector<double>& spacing = problem.is_clean() ? problem.cloud.set.smoothed_spacing() : none;
   out.confidence = side_confidence(vectors, refined.normals, refined.strength, spacing);
-  add_sheets(out.solution.sheets, out.confidence, stats);
+  add_open_surfaces(out.solution.open_surfaces, out.confidence, stats);
   out.doubt = unsure_share(out.confidence) + stats.open_share;
-  if (out.solution.sheets.worst_defect < kSidesAgree) out.agreed = stats.open_share;
-  if (!contains(problem.settings.without, Step::kCertificate)) certify_sides(out.solution.sheets, out.confidence);
+  if (out.solution.open_surfaces.worst_defect < kSidesAgree) out.agreed = stats.open_share;
+  if (!contains(problem.settings.without, Step::kCertificate)) certify_sides(out.solution.open_surfaces, out.confidence);
   judge(problem.cloud, out.confidence, stats);
   return out;
 }
@@ -205,7 +205,7 @@ struct OtherNoise {
   double most_doubt = 0;  // of the doubt with the estimate, up to which it is taken
 };
 
-// What to try where the sides of many points are in doubt. No noise: few points on much shape look noisy. More: what scatters most, of
+// What to try where the sides of many points are unsure. No noise: few points on much shape look noisy. More: what scatters most, of
 // noise that differs from place to place and of scans that do not fit onto each other, looks like shape beside what scatters least, which
 // the estimate goes by; and noise of a spacing or so can turn whole shells, in cavities for example, in the narrow polish. A surface that
 // is open at the estimate may be closed at such a scatter, but not at one that kernels hide anyway.
@@ -241,7 +241,7 @@ Attempt attempt(Problem problem, const PointsView& points, const Options& option
   return out;
 }
 
-// Thin walls and layers of scans that do not fit onto each other look alike from near. But few sides of walls are in doubt when they are
+// Thin walls and layers of scans that do not fit onto each other look alike from near. But few sides of walls are unsure when they are
 // solved for as what they are, of layers when they are solved for as noise.
 Attempt orient_with_best_noise(const PointsView& points, const Known& known, const Options& options, Stages& stages) {
   Attempt best = attempt(prepare(points, known, options, stages), points, options, stages);
@@ -262,8 +262,8 @@ Orientation orient_in_arena(const PointsView& points, const Known& known, const 
   Orientation out;
   out.stats = std::move(best.stats);
   fit_noisy_surface(best.problem, stages, solution);
-  settle_areas(best.problem, stages, solution);
-  settle_by_hints(best.problem, options, solution, confidence, out.stats, stages.cancel());
+  replace_areas(best.problem, stages, solution);
+  apply_hints(best.problem, options, solution, confidence, out.stats, stages.cancel());
   warn_of_volume(best.problem, out.stats);
   warn_of_sampling(best.problem.cloud, solution.refinement.normals, out.stats);
   add_outliers(best.problem, stages, solution, confidence);

@@ -117,7 +117,7 @@ Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor
   Mesh mesh;
   if (options.mesher == Mesher::kPoisson) {
     mesh = mesh_with_poisson(oriented, directions, options.depth);
-    normalised.min_component = 0;  // specks of screened Poisson are part of its result
+    normalised.min_component = 0;  // spurious components of screened Poisson are part of its result
     mesh::finish_mesh(mesh, oriented.cloud.points(), mesh::smooth_spacing(oriented.cloud.points()), 0, normalised);
   } else {
     mesh = field_mesh(oriented.cloud.points(), directions, field, normalised, monitor, max_memory, &left_out);

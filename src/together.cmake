@@ -6,8 +6,8 @@ function(g3r_together group)
 endfunction()
 set_target_properties(g3r PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 
-g3r_together(cloud cloud/canonical_cloud cloud/clusters cloud/exact_plane cloud/neighbours cloud/plane_fit cloud/point_set cloud/sheet
-             cloud/spacing tree/octree tree/interaction_lists expansions/expansions sum/direct_sum)
+g3r_together(cloud cloud/canonical_cloud cloud/clusters cloud/exact_plane cloud/neighbours cloud/plane_fit cloud/point_set
+             cloud/quadratic_patch cloud/spacing tree/octree tree/interaction_lists expansions/expansions sum/direct_sum)
 g3r_together(layers cloud/layers cloud/noise expansions/m2l_matrices sum/sum_plan solve/green_system solve/refine metrics/sample_mesh)
 g3r_together(sums cloud/outliers sum/fast_sum sum/sum_engine solve/energy_system solve/harmonics baselines/baseline baselines/gauss_system
              baselines/hard_cutoff baselines/near_pairs baselines/stretched_winding baselines/wnnc field/areas
@@ -16,13 +16,13 @@ g3r_together(solvers cloud/sites solve/dense_solver solve/iterative_solver field
              metrics/score_mesh metrics/score_normals orient/confidence)
 g3r_together(orient sum/device_scope metrics/triangle_tree orient/certificate orient/coarse_to_fine orient/creases orient/planes
              orient/polish orient/problem orient/sign_graph orient/solution)
-g3r_together(steps orient/facets orient/hints orient/settle_by_hints orient/steps names reconstruct)
+g3r_together(steps orient/facets orient/hints orient/apply_hints orient/steps names reconstruct)
 g3r_together(jets orient/jets orient/open_surfaces pipeline)
 
 g3r_together(fields mesh/automatic_depth mesh/box_tree mesh/carry_attributes mesh/check_mesh mesh/component_support mesh/crossings
              mesh/exact_orientation mesh/field_contour mesh/field_corners mesh/field_denoise mesh/field_mesher mesh/field_octree
              mesh/trim)
-g3r_together(fair mesh/fair mesh/field_local_fit mesh/field_placement mesh/field_readings mesh/field_triangulate mesh/findings
+g3r_together(fair mesh/fair mesh/field_local_fit mesh/field_placement mesh/field_labellings mesh/field_triangulate mesh/findings
              mesh/handle_removal mesh/held_points mesh/mesh_finish mesh/mesh_parts mesh/open_edges mesh/side_smoothing)
 g3r_together(trim mesh/field_points mesh/self_intersections mesh/separate_vertices mesh/simplify mesh/smooth_rims mesh/smooth_spacing
              mesh/split_nonmanifold mesh/untangle mesh/used_vertices)
@@ -37,8 +37,8 @@ g3r_together(writers io/read_stl io/text_columns io/tiles io/write_glb io/write_
              io/write_xyz io/xml)
 
 g3r_together(tiles tiles/cells tiles/external_sort tiles/merge tiles/mesh_corners tiles/mesh_parts tiles/mesh_points tiles/mesh_records
-             tiles/mesh_region tiles/mesh_run tiles/mesh_sheets tiles/mesh_surroundings tiles/parts)
-g3r_together(plans tiles/mesh_merge tiles/plan tiles/point_writer tiles/run tiles/sheets_file tiles/spacing_sample tiles/tile_cloud)
+             tiles/mesh_region tiles/mesh_run tiles/mesh_patches tiles/mesh_surroundings tiles/parts)
+g3r_together(plans tiles/mesh_merge tiles/plan tiles/point_writer tiles/run tiles/patches_file tiles/spacing_sample tiles/tile_cloud)
 g3r_together(pictures view/scene view/png view/canvas view/picture view/pack)
 g3r_together(devices gpu/cuda gpu/device gpu/drivers gpu/execution gpu/kernel_cache gpu/kernel_source gpu/lists_on_device
              gpu/sum_on_device)

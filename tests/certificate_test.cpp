@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace g3r {
 namespace {
@@ -44,6 +45,28 @@ Tested test(const Surface& s) {
   Tested tested{certify(sites, normals, std::vector<double>(points.size(), 10), sums, nullptr), points};
   EXPECT_EQ(tested.certificate.jump_defect, jump_defects(sites, normals, sums, nullptr));
   return tested;
+}
+
+// Sites lie evenly, so that their areas are too large, by as much for all: what is left after scaling is small, and turned sides are not.
+TEST(Certificate, ScalesTheAreasOfEvenSites) {
+  shapes::Random random(3);
+  Surface s = shapes::sphere(20000, 0.8);
+  const double spacing = 0.8 * std::sqrt(4 * 3.14159265 / 20000);
+  for (Vec3& p : s.points) {
+    for (double& c : p) c += 0.7 * spacing * random.gaussian();
+  }
+  const MortonOrder order = morton_order(s.points);
+  std::vector<Vec3> points;
+  for (const std::uint32_t i : order.index) points.push_back(s.points[i]);
+  const Sites sites = place_sites(PointSet(points, order.code), 1.5 * spacing);
+  std::vector<Vec3> outward(sites.size());
+  for (std::size_t i = 0; i < sites.size(); ++i) outward[i] = vector::normalised(sites.points()[i]);
+  const std::vector<double> reach(sites.size(), 10);
+  const Certificate right = certify(sites, outward, reach, sum_plan(1e-3, sites.size()), nullptr);
+  EXPECT_LT(mean(right.scaled_defect), 0.12);
+  EXPECT_LT(mean(right.scaled_defect), 0.6 * mean(right.jump_defect));
+  for (std::size_t i = 0; i < outward.size(); i += 2) outward[i] = vector::scale(outward[i], -1);
+  EXPECT_GT(mean(certify(sites, outward, reach, sum_plan(1e-3, sites.size()), nullptr).scaled_defect), 0.5);
 }
 
 Surface half(const Surface& whole) {

@@ -64,7 +64,7 @@ TEST(CheckMesh, VolumeKeepsItsDigitsFarFromTheOrigin) {
   EXPECT_NEAR(check.volume, 1, kRounding);
 }
 
-TEST(CheckMesh, SheetHasItsRimAsBoundary) {
+TEST(CheckMesh, PatchHasItsRimAsBoundary) {
   const MeshCheck check = check_mesh(shapes::square(1, 0, 5));
   EXPECT_FALSE(check.closed);
   EXPECT_TRUE(check.manifold);

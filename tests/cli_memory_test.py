@@ -40,13 +40,13 @@ class Memory(ProgramTest):
             os.remove(self.path("out.ply"))
 
     def test_a_mesh_that_turns_out_larger_than_its_plan_is_refused(self):
-        n = 40  # two sheets, half a spacing apart
-        sheet = [(i / n, j / n, z) for i in range(n) for j in range(n) for z in (0, 0.5 / n)]
-        write_points(self.path("sheets.ply"), sheet)
-        plan = json.loads(self.expect(OK, "info", "sheets.ply", "--report", "-").out)["planned_memory_bytes"]
-        result = self.expect(UNAVAILABLE, "sheets.ply", "out.ply", "--max-memory", str(plan))
+        n = 40  # two layers, half a spacing apart
+        layers = [(i / n, j / n, z) for i in range(n) for j in range(n) for z in (0, 0.5 / n)]
+        write_points(self.path("layers.ply"), layers)
+        plan = json.loads(self.expect(OK, "info", "layers.ply", "--report", "-").out)["planned_memory_bytes"]
+        result = self.expect(UNAVAILABLE, "layers.ply", "out.ply", "--max-memory", str(plan))
         self.assertIn("the mesh needs", result.err)
-        self.assertEqual(sorted(os.listdir(self.folder)), ["ball.ply", "sheets.ply"])
+        self.assertEqual(sorted(os.listdir(self.folder)), ["ball.ply", "layers.ply"])
 
     @unittest.skipIf(is_sanitized(), "a sanitizer needs the addresses")
     def test_the_plan_bounds_what_a_mesh_takes(self):

@@ -46,18 +46,18 @@ TEST(SolveCoarseToFine, FindsTheSidesOfABall) {
   EXPECT_TRUE(solved(cloud, settings).refinement.normals.empty());
 }
 
-// The equations are not true of a sheet: more steps than the first ten would fit what is wrong.
+// The equations are not true of an open surface: more steps than the first ten would fit what is wrong.
 TEST(SolveCoarseToFine, TakesNoMoreStepsForOpenSurfaces) {
   constexpr std::size_t kPoints = 42000;
   const double scatter = 0.1 * 2 / std::sqrt(static_cast<double>(kPoints));
   shapes::Random random(2);
-  std::vector<Vec3> sheet(kPoints);
-  for (Vec3& p : sheet) {
+  std::vector<Vec3> patch(kPoints);
+  for (Vec3& p : patch) {
     const double x = random.uniform(-1, 1);
     const double y = random.uniform(-1, 1);
     p = {x, y, 0.15 * std::sin(5 * x) * std::cos(4 * y) + scatter * random.gaussian()};
   }
-  const CanonicalCloud cloud = canonical_cloud(sheet);
+  const CanonicalCloud cloud = canonical_cloud(patch);
   const Settings settings = choose_settings({}, cloud, cloud.set.spacing(), cloud.frame.length_to_unit(0.8 * scatter), 0);
   ASSERT_TRUE(starts_coarse(settings, cloud.size()));
   EXPECT_LE(solved(cloud, settings).result.residuals.size(), 10U);

@@ -51,7 +51,7 @@ OrientedSample turned(OrientedSample sample, double angle) {
 }
 
 // z = 0, x in [-1, 1], y in [low, high].
-OrientedSample sheet(std::size_t n, double low, double high, std::uint64_t seed) {
+OrientedSample patch(std::size_t n, double low, double high, std::uint64_t seed) {
   std::mt19937_64 rng(seed);
   std::uniform_real_distribution<double> x(-1, 1), y(low, high);
   OrientedSample out;
@@ -65,9 +65,9 @@ OrientedSample sheet(std::size_t n, double low, double high, std::uint64_t seed)
 
 // The sides of a slab of a thickness, 2 x 2 wide.
 OrientedSample slab(std::size_t n, double thickness, std::uint64_t seed) {
-  OrientedSample below = sheet(n / 2, -1, 1, seed);
+  OrientedSample below = patch(n / 2, -1, 1, seed);
   for (Vec3& normal : below.normals) normal = {0, 0, -1};
-  return both(moved(sheet(n / 2, -1, 1, seed + 1), {0, 0, thickness}), below);
+  return both(moved(patch(n / 2, -1, 1, seed + 1), {0, 0, thickness}), below);
 }
 
 // The points of a sample that are outside of the cube [-half, half]^3, or inside.
@@ -95,10 +95,10 @@ OrientedSample cone(std::size_t n, double radius) {
   return out;
 }
 
-TEST(Crossings, SheetsAreSeenFrom45Degrees) {
+TEST(Crossings, PatchesAreSeenFrom45Degrees) {
   for (const std::size_t n : {2000U, 8000U}) {
     for (const double angle : {45.0, 60.0, 90.0}) {
-      const Crossings found = found_in(both(sheet(n, -1, 1, 1), turned(sheet(n, -1, 1, 2), angle * kDegree)));
+      const Crossings found = found_in(both(patch(n, -1, 1, 1), turned(patch(n, -1, 1, 2), angle * kDegree)));
       EXPECT_TRUE(found.is_clear) << n << " points, " << angle << " degrees: " << found.share;
       EXPECT_NEAR(found.angle, angle, 1e-6);
     }
@@ -114,7 +114,7 @@ TEST(Crossings, SolidsThatOverlapAreSeen) {
 }
 
 TEST(Crossings, NoiseOfAThirdOfTheSpacingHidesNone) {
-  OrientedSample sample = both(sheet(4000, -1, 1, 1), turned(sheet(4000, -1, 1, 2), 70 * kDegree));
+  OrientedSample sample = both(patch(4000, -1, 1, 1), turned(patch(4000, -1, 1, 2), 70 * kDegree));
   std::mt19937_64 rng(3);
   std::normal_distribution<double> normal(0, 0.32 * std::sqrt(4.0 / 4000));
   for (Vec3& p : sample.points) p = vector::add(p, {normal(rng), normal(rng), normal(rng)});
@@ -125,9 +125,9 @@ TEST(Crossings, CreasesAndWallsOnOthersAreNone) {
   for (const std::size_t n : {2000U, 8000U}) {
     EXPECT_EQ(found_in(cube_sample(n, 1, 1)).share, 0) << n;
     for (const double angle : {45.0, 90.0, 135.0}) {
-      const OrientedSample half = turned(sheet(n / 2, 0, 1, 2), angle * kDegree);
-      EXPECT_EQ(found_in(both(sheet(n / 2, 0, 1, 1), half)).share, 0) << n << " points, crease of " << angle;
-      EXPECT_FALSE(found_in(both(sheet(n, -1, 1, 1), half)).is_clear) << n << " points, wall at " << angle;
+      const OrientedSample half = turned(patch(n / 2, 0, 1, 2), angle * kDegree);
+      EXPECT_EQ(found_in(both(patch(n / 2, 0, 1, 1), half)).share, 0) << n << " points, crease of " << angle;
+      EXPECT_FALSE(found_in(both(patch(n, -1, 1, 1), half)).is_clear) << n << " points, wall at " << angle;
     }
     // A smaller cube on a larger one, and a cube cut out of another.
     const OrientedSample large = cube_sample(n, 1, 1), small = moved(cube_sample(n / 2, 0.5, 2), {0, 0, 1});

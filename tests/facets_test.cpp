@@ -1,4 +1,4 @@
-// Flat facets: found whole, told from curved surfaces, and each on the side that its points decide together.
+// Flat facets: found whole, distinguished from curved surfaces, and each on the side that its points decide together.
 #include "orient/facets.h"
 
 #include "cloud/canonical_cloud.h"
@@ -88,11 +88,11 @@ TEST(Facets, StayFlatOnSmoothSurfaces) {
   }
 }
 
-TEST(Facets, CountPointsAtOdds) {
+TEST(Facets, CountPointsOfTheMinoritySign) {
   const Surface box = shapes::plates(1, 1, 20, 5, kSpacing);
   const std::vector<Vec3> turned = partly_turned(box.normals);
-  EXPECT_EQ(share_at_odds(facets_of(box, box.normals), box.normals), 0);
-  EXPECT_NEAR(share_at_odds(facets_of(box, turned), turned), 0.2, 0.005);
+  EXPECT_EQ(minority_share(facets_of(box, box.normals), box.normals), 0);
+  EXPECT_NEAR(minority_share(facets_of(box, turned), turned), 0.2, 0.005);
 }
 
 // Walls a tenth of a spacing thick: single points cannot tell their side (51 % right without facets), facets can.

@@ -51,7 +51,7 @@ Mesh extract(const Octree& octree, const Function& f) {
   }
   for (const auto& middle : surface.midpoints) {
     Vec3 mean{};
-    for (std::size_t i = 0; i < 3; ++i) mean[i] = 0.5 * (positions[middle.sheets[0]][i] + positions[middle.sheets[1]][i]);
+    for (std::size_t i = 0; i < 3; ++i) mean[i] = 0.5 * (positions[middle.patches[0]][i] + positions[middle.patches[1]][i]);
     positions.push_back(mean);
   }
   return g3r::mesh::triangulate(surface, positions, {});

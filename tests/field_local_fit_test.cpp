@@ -50,7 +50,7 @@ TEST(LocalFit, OfASphereHasItsDistance) {
   }
 }
 
-TEST(LocalFit, HasNoSheetBeyondItsReach) {
+TEST(LocalFit, HasNoPatchBeyondItsReach) {
   OrientedPoints points;
   add_square(points, 0, 1);
   const Neighbours neighbours(points.positions);

@@ -106,7 +106,7 @@ class Guest : public testing::Test {
   static inline std::vector<double>* const expected_ = new std::vector<double>;
 };
 
-// In a child, so that what unloading leaves behind is of no account to the tests that follow.
+// In a child, so that what unloading leaves behind does not reach the tests that follow.
 TEST(Host, LoadsAndUnloadsAgainAndAgain) {
   constexpr int kTimes = g3r::kSanitized ? 3 : 8;
   EXPECT_EQ(in_child([] {
@@ -184,7 +184,7 @@ double resident() {
 TEST_F(Guest, ManyCallsTakeNoMoreMemory) {
   if (g3r::kSanitized) GTEST_SKIP() << "sanitizers keep what is freed";
   constexpr std::size_t kFew = 60;   // points: fast
-  constexpr int kSettled = 50;       // calls after which nothing grows
+  constexpr int kWarm = 50;          // calls after which nothing grows
   constexpr int kMore = 200;         // of 7 KiB each, if every call lost an arena of threads
   constexpr double kGrowth = 700e3;  // bytes
   const std::vector<double> points = egg();
@@ -195,8 +195,8 @@ TEST_F(Guest, ManyCallsTakeNoMoreMemory) {
   options.device = "cpu";
   const auto orient = library().find<decltype(g3r_orient)>("g3r_orient");
   double before = 0;
-  for (int i = 0; i < kSettled + kMore; ++i) {
-    if (i == kSettled) before = resident();
+  for (int i = 0; i < kWarm + kMore; ++i) {
+    if (i == kWarm) before = resident();
     ASSERT_EQ(orient(points.data(), kFew, &options, normals.data(), nullptr, nullptr), G3R_OK);
   }
   EXPECT_LT(resident() - before, kGrowth);

@@ -1,4 +1,4 @@
-// Handles go where another reading of the signs has none; nothing is split for it.
+// Handles go where another labelling of the signs has none; nothing is split for it.
 #include "mesh/handle_removal.h"
 
 #include <gtest/gtest.h>
@@ -74,15 +74,15 @@ TEST(HandleRemoval, ALargeHandleStaysWhateverIsProposed) {
   EXPECT_EQ(topology_after(mark(ring), mark([](const Vec3& p) { return std::hypot(p[0], p[1]) < 0.8 && std::abs(p[2]) < 0.2; })).genus, 1);
 }
 
-TEST(HandleRemoval, SpecksAreNeitherGainNorLoss) {
+TEST(HandleRemoval, SpuriousComponentsAreNeitherGainNorLoss) {
   const Marks drilled = mark([](const Vec3& p) { return ball(p) && !on_axis(p); });
-  Marks specks = drilled;  // the tunnel stays, a bubble in its wall is added
-  for (std::size_t c = 0; c < specks.size(); ++c) {
+  Marks labelled = drilled;  // the tunnel stays, a bubble in its wall is added
+  for (std::size_t c = 0; c < labelled.size(); ++c) {
     const Vec3 p = grid().corner_position(c);
-    if (p == Vec3{0.375, 0, 0}) specks[c] = 0;
+    if (p == Vec3{0.375, 0, 0}) labelled[c] = 0;
   }
-  ASSERT_NE(specks, drilled);
-  const Topology t = topology_after(drilled, specks);
+  ASSERT_NE(labelled, drilled);
+  const Topology t = topology_after(drilled, labelled);
   EXPECT_EQ(t.genus, 1);
   EXPECT_EQ(t.components, 1U);
 }

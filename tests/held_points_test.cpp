@@ -114,7 +114,7 @@ TEST(HeldPoints, ChanceGrowsWithTheStrays) {
 // reconstruct: a ball among outliers and a bead beside it come out as two parts, and the report says what was left out; --keep-all keeps
 // it.
 TEST(HeldPoints, OutliersLeaveNoSurface) {
-  if (kSanitized) GTEST_SKIP() << "cli_test makes two such meshes";
+  if (kSanitized) GTEST_SKIP() << "cli_points_test makes two such meshes";
   Surface s = shapes::ellipsoid(6000, 1, 1, 1);
   const Surface bead = shapes::ellipsoid(60, 0.1, 0.1, 0.1, {1.4, 0, 0});
   s.points.insert(s.points.end(), bead.points.begin(), bead.points.end());

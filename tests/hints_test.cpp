@@ -1,4 +1,4 @@
-// Truths about hints: what people know settles sides that are open, and contradicts closed parts aloud.
+// Truths about hints: what people know decides sides that are open, and contradicts closed parts aloud.
 #include "orient/hints.h"
 
 #include "cloud/neighbours.h"
@@ -63,7 +63,7 @@ struct Sides {
 };
 
 // hints: an open surface whose side is a choice faces the sensor, normals and area vectors alike, and is as sure as its votes agree.
-TEST(Hints, ASheetFacesTheSensor) {
+TEST(Hints, APatchFacesTheSensor) {
   for (const double z : {-3.0, 3.0}) {
     Sides sides;
     sides.add_square({0, 0, 0}, 2, 1, 0);
@@ -73,14 +73,14 @@ TEST(Hints, ASheetFacesTheSensor) {
       EXPECT_GT(z * sides.eta[i][2], 0);
       EXPECT_EQ(sides.confidence[i], 1);
     }
-    EXPECT_EQ(std::count(effect.settled.begin(), effect.settled.end(), 1), 400);
+    EXPECT_EQ(std::count(effect.decided.begin(), effect.decided.end(), 1), 400);
     EXPECT_EQ(std::count(effect.turned.begin(), effect.turned.end(), 1), z < 0 ? 400 : 0);
     EXPECT_EQ(effect.agreement, 1);
   }
 }
 
-// hints: every sheet has its own vote, so that parts that a depth jump separates face the sensor together.
-TEST(Hints, SheetsVoteOneByOne) {
+// hints: every patch has its own vote, so that parts that a depth jump separates face the sensor together.
+TEST(Hints, PatchesVoteOneByOne) {
   Sides sides;
   sides.add_square({0, 0, 0}, 2, 1, 0);
   sides.add_square({0, 0, 5}, 2, 1, 1);
@@ -90,7 +90,7 @@ TEST(Hints, SheetsVoteOneByOne) {
   for (std::size_t i = 0; i < sides.points.size(); ++i) EXPECT_GT(dot(sides.normals[i], between(sides.points[i], sensor)), 0);
 }
 
-// hints: a sheet that up says nothing of keeps its side and its doubt; one that it does faces that way.
+// hints: a patch that up says nothing of keeps its side and its confidence; one that it does faces that way.
 TEST(Hints, UpTurnsWhatIsNotUpright) {
   Sides sides;
   sides.add_square({0, 0, 0}, 2, -1, 0);
@@ -99,30 +99,30 @@ TEST(Hints, UpTurnsWhatIsNotUpright) {
   EXPECT_EQ(sides.normals.front(), (Vec3{0, 0, 1}));
   EXPECT_EQ(sides.normals.back(), (Vec3{-1, 0, 0}));
   EXPECT_EQ(sides.confidence.back(), 0.5F);
-  EXPECT_EQ(std::count(effect.settled.begin(), effect.settled.end(), 1), 400);
+  EXPECT_EQ(std::count(effect.decided.begin(), effect.decided.end(), 1), 400);
 }
 
 // hints: an open surface faces away from what is inside.
-TEST(Hints, ASheetFacesAwayFromInside) {
+TEST(Hints, APatchFacesAwayFromInside) {
   Sides sides;
   sides.add_square({0, 0, 0}, 2, 1, 0);
   (void)sides.follow({.inside = {{0, 0, 1}}});
   EXPECT_EQ(sides.normals.front(), (Vec3{0, 0, -1}));
 }
 
-// hints: the votes of a sheet that bends back disagree, and its confidence is the share of those that agree; near a half it stays a choice.
+// hints: the votes of a patch that bends back disagree, and its confidence is the share of those that agree; near a half it stays a choice.
 TEST(Hints, ConfidenceIsTheAgreementOfTheVotes) {
   for (const double least_z : {-0.5, -0.9}) {
     Sides sides;
     sides.add_sphere({0, 0, 0}, 1, least_z, 0, true);
     const HintEffect effect = sides.follow({.up = Vec3{0, 0, 1}});
     EXPECT_NEAR(sides.confidence[0], 1 / (1 + least_z * least_z), 0.01);  // integrals of |z| above and below 0
-    EXPECT_EQ(effect.settled[0] != 0, least_z == -0.5);
+    EXPECT_EQ(effect.decided[0] != 0, least_z == -0.5);
     for (std::size_t i = 0; i < sides.points.size(); ++i) EXPECT_GT(dot(sides.normals[i], sides.points[i]), 0.9);
   }
 }
 
-// hints: where the points tell the side of a sheet, it takes two thirds of the votes to turn it.
+// hints: where the points decide the side of a patch, it takes two thirds of the votes to turn it.
 TEST(Hints, AKnownSideIsTurnedByTwoThirds) {
   for (const double least_z : {-0.5, -0.9}) {
     Sides sides;
@@ -133,9 +133,9 @@ TEST(Hints, AKnownSideIsTurnedByTwoThirds) {
   }
 }
 
-// hints: pieces of one sheet that are not consistent with each other all face the sensor; what is seen from behind but goes on into what is
+// hints: pieces of one patch that are not consistent with each other all face the sensor; what is seen from behind but goes on into what is
 // seen from the front stays consistent with it.
-TEST(Hints, PiecesOfASheetAgree) {
+TEST(Hints, PiecesOfAPatchAgree) {
   Sides sides;
   sides.add_square({0, 0, 0}, 2, 1, 0);
   sides.add_square({2.05, 0, 0.3}, 2, -1, 0);

@@ -117,7 +117,7 @@ TEST(Ply, SplatsBelowTheOpacityAreLeftOut) {
   EXPECT_EQ(read_cloud_bytes(file.data(), file.size(), "splats", {.min_opacity = 0}).positions.size(), 3U);
 }
 
-TEST(Xyz, ColumnsAreToldApartByTheirValues) {
+TEST(Xyz, ColumnsAreDistinguishedByTheirValues) {
   const Cloud normals = read("0 0 0 0 0 1\n1 0 0 0 1 0\n");
   EXPECT_EQ(normals.normals[1], (Vec3{0, 1, 0}));
   const Cloud colors = read("0 0 0 200 100 0\n1 0 0 7 8 9\n");

@@ -78,7 +78,7 @@ TEST(MeshFinish, ComponentsAreFoundAndRemoved) {
 }
 
 // What noise makes grows with it, so what goes unasked does too.
-TEST(MeshFinish, SpecksMayBeLargerUnderNoise) {
+TEST(MeshFinish, SpuriousComponentsMayBeLargerUnderNoise) {
   TwoSpheres two = two_spheres();
   const std::vector<double> spacing = mesh::smooth_spacing(two.sample.points);
   const double h = median(spacing);
@@ -98,7 +98,7 @@ TEST(MeshFinish, SpecksMayBeLargerUnderNoise) {
   EXPECT_EQ(components(0, 1.1 * points), 1U);
 }
 
-// A small thing with many points is no speck, however large the others' spacing is.
+// A small thing with many points is not spurious, however large the others' spacing is.
 TEST(MeshFinish, ComponentsAreMeasuredByTheirOwnSpacing) {
   TwoSpheres two = two_spheres();
   std::vector<double> spacing(two.sample.points.size(), 1.0);  // 1.13 is the area of one such point

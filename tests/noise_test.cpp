@@ -23,9 +23,9 @@ namespace {
 
 using shapes::Surface;
 
-// Sheets z = offset + 0.01 (x^2 - y^2) of 20 x 20 spacings, one point per squared spacing, scattered; the points nearest to the middle of
+// Layers z = offset + 0.01 (x^2 - y^2) of 20 x 20 spacings, one point per squared spacing, scattered; the points nearest to the middle of
 // the first one.
-double deviation_of_sheets(const std::vector<double>& offsets, double sigma, std::size_t neighbours) {
+double deviation_of_layers(const std::vector<double>& offsets, double sigma, std::size_t neighbours) {
   shapes::Random random(7);
   std::vector<Vec3> points;
   for (const double offset : offsets) {
@@ -41,27 +41,27 @@ double deviation_of_sheets(const std::vector<double>& offsets, double sigma, std
   return layered_deviation(points, index.data(), index.size(), centre, {0, 0, 1});
 }
 
-TEST(Layers, OneSheetHasItsDeviation) {
-  for (const double sigma : {0.01, 0.3, 1.0}) EXPECT_NEAR(deviation_of_sheets({0}, sigma, 256) / sigma, 1, 0.15) << sigma;
+TEST(Layers, OneLayerHasItsDeviation) {
+  for (const double sigma : {0.01, 0.3, 1.0}) EXPECT_NEAR(deviation_of_layers({0}, sigma, 256) / sigma, 1, 0.15) << sigma;
 }
 
-TEST(Layers, SheetsFourDeviationsApartCountAsSheets) {
+TEST(Layers, LayersFourDeviationsApartCountAsLayers) {
   for (const double sigma : {0.3, 0.6}) {
-    EXPECT_NEAR(deviation_of_sheets({0, 4 * sigma}, sigma, 256) / sigma, 1, 0.2) << sigma;
-    EXPECT_NEAR(deviation_of_sheets({0, 4 * sigma, -4 * sigma}, sigma, 256) / sigma, 1, 0.2) << sigma;
+    EXPECT_NEAR(deviation_of_layers({0, 4 * sigma}, sigma, 256) / sigma, 1, 0.2) << sigma;
+    EXPECT_NEAR(deviation_of_layers({0, 4 * sigma, -4 * sigma}, sigma, 256) / sigma, 1, 0.2) << sigma;
   }
 }
 
-// A sheet 8 deviations away is cut by the ball of the neighbours.
-TEST(Layers, SheetsThatTheBallCutsDoNotLowerIt) { EXPECT_NEAR(deviation_of_sheets({0, 6.5}, 0.8, 256) / 0.8, 1, 0.12); }
+// A layer 8 deviations away is cut by the ball of the neighbours.
+TEST(Layers, LayersThatTheBallCutsDoNotLowerIt) { EXPECT_NEAR(deviation_of_layers({0, 6.5}, 0.8, 256) / 0.8, 1, 0.12); }
 
 TEST(Layers, NoDeviationIsNone) {
-  EXPECT_LT(deviation_of_sheets({0}, 0, 64), 1e-6);
-  EXPECT_LT(deviation_of_sheets({0, 1}, 0, 128), 0.03);  // the least share of that about one sheet
+  EXPECT_LT(deviation_of_layers({0}, 0, 64), 1e-6);
+  EXPECT_LT(deviation_of_layers({0, 1}, 0, 128), 0.03);  // the least share of that about one layer
 }
 
-// Of the 24 points nearest to one on a curved sheet that has another beside it.
-TwoSheets two_sheets(double gap, double sigma) {
+// Of the 24 points nearest to one on a curved layer that has another beside it.
+TwoLayers two_layers(double gap, double sigma) {
   shapes::Random random(7);
   std::vector<Vec3> points;
   for (const double offset : {0.0, gap}) {
@@ -73,21 +73,21 @@ TwoSheets two_sheets(double gap, double sigma) {
   std::vector<std::uint32_t> index;
   std::vector<double> squared;
   Neighbours(points).nearest({0, 0, 0}, 24, index, squared);
-  return fit_two_sheets(points, index.data(), index.size(), {0.1, 0, std::sqrt(0.99)});
+  return fit_two_layers(points, index.data(), index.size(), {0.1, 0, std::sqrt(0.99)});
 }
 
-TEST(Layers, TwoSheetsHaveTheirGap) {
+TEST(Layers, TwoLayersHaveTheirGap) {
   for (const double gap : {0.3, 0.6, 1.2}) {
-    const TwoSheets sheets = two_sheets(gap, 0);
-    EXPECT_NEAR(sheets.gap / gap, 1, 0.15) << gap;  // across the slope
-    EXPECT_LT(sheets.deviation, 0.05 * gap) << gap;
+    const TwoLayers layers = two_layers(gap, 0);
+    EXPECT_NEAR(layers.gap / gap, 1, 0.15) << gap;  // across the slope
+    EXPECT_LT(layers.deviation, 0.05 * gap) << gap;
   }
 }
 
-TEST(Layers, NoiseAboutOneSheetIsNotTwo) {
+TEST(Layers, NoiseAboutOneLayerIsNotTwo) {
   for (const double sigma : {0.1, 0.5}) {
-    const TwoSheets sheets = two_sheets(0, sigma);
-    EXPECT_GT(sheets.deviation, 0.2 * sheets.gap) << sigma;
+    const TwoLayers layers = two_layers(0, sigma);
+    EXPECT_GT(layers.deviation, 0.2 * layers.gap) << sigma;
   }
 }
 
@@ -139,9 +139,9 @@ TEST(Noise, PointsInAVolumeHaveNoSurface) {
 TEST(Noise, IsEstimatedAndNotMistakenForShape) {
   shapes::Random random(4);
   const Surface clean = shapes::torus(8000, 0.6, 0.25, 6);
-  const Surface two_sheets = shapes::join(shapes::sphere(6000, 0.5), shapes::sphere(6000, 0.49), true);
+  const Surface two_layers = shapes::join(shapes::sphere(6000, 0.5), shapes::sphere(6000, 0.49), true);
   EXPECT_EQ(plan(clean.points).noise, 0);
-  EXPECT_EQ(plan(two_sheets.points).noise, 0);
+  EXPECT_EQ(plan(two_layers.points).noise, 0);
   for (const double sigma : {0.01, 0.02}) {
     Surface noisy = clean;
     for (Vec3& p : noisy.points) {

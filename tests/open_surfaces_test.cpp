@@ -1,4 +1,4 @@
-// Surfaces without an inside: sides consistent, directions right, told apart from solids and from thin walls.
+// Surfaces without an inside: sides consistent, directions right, distinguished from solids and from thin walls.
 #include "orient/open_surfaces.h"
 
 #include "base/vector.h"
@@ -109,7 +109,7 @@ std::ptrdiff_t solves(const Orientation& o) {
   return std::count_if(o.stats.seconds.begin(), o.stats.seconds.end(), [](const auto& stage) { return stage.first == "solve"; });
 }
 
-// What noise could hide is a closed surface, or layers that do not fit: not the inside of a sheet whose sides agree.
+// What noise could hide is a closed surface, or layers that do not fit: not the inside of an open surface whose sides agree.
 TEST(OpenSurfaces, AreSolvedForOnce) {
   for (const double scatter : {0.0, 0.1, 0.5, 1.5}) {
     EXPECT_EQ(solves(orient(terrain(scatter < 1 ? 6000 : 16000, waves, scatter).points)), 1) << scatter;

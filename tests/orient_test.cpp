@@ -511,7 +511,8 @@ TEST(Confidence, PromisesNothingWhereNoiseHidesTheWalls) {
   EXPECT_FALSE(o.stats.consistent);
 }
 
-TEST(Confidence, TrustsASphereUnderNoise) {
+// Right sides are promised, not only ranked: what no wall is near to is sure under noise too.
+TEST(Confidence, IsSureOfASphereUnderNoise) {
   shapes::Random random(6);
   Surface s = shapes::sphere(8000, 1);
   const double spacing = std::sqrt(4 * 3.14159265 / 8000);
@@ -522,6 +523,8 @@ TEST(Confidence, TrustsASphereUnderNoise) {
   EXPECT_TRUE(o.stats.consistent);
   const auto unsure = std::count_if(o.confidence.begin(), o.confidence.end(), [](float c) { return c < 0.5F; });
   EXPECT_LT(static_cast<double>(unsure), 0.1 * 8000);
+  const auto sure = std::count_if(o.confidence.begin(), o.confidence.end(), [](float c) { return c > 0.9F; });
+  EXPECT_GT(static_cast<double>(sure), 0.5 * 8000);
   EXPECT_GT(shapes::share_correct(o.normals, s.normals), 0.99);
 }
 

@@ -1,4 +1,4 @@
-// Files as streams of points: what they hand out is what the readers of whole files give, and what is merged is what write_cloud() writes.
+// Files as streams of points: what they return is what the readers of whole files give, and what is merged is what write_cloud() writes.
 #include "counting_allocator.h"
 #include "io/laz.h"
 #include "io_samples.h"

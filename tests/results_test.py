@@ -1,4 +1,4 @@
-"""The tables of README.md and docs are those of docs/results, whose files are each of one commit."""
+"""The tables of README.md and docs are those of docs/results, whose rows are each of one commit."""
 
 import json
 import pathlib
@@ -11,6 +11,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "bench"))
 import summary  # noqa: E402
 
+MOST_FILES = 5
 LARGEST = 3000  # lines of all files of docs/results: a repository is read by people
 COMMIT = re.compile(r"[0-9a-f]{7,40}")
 
@@ -26,18 +27,19 @@ class Results(unittest.TestCase):
             with self.subTest(name):
                 self.assertGreater(len(table(results).splitlines()), 4)
 
-    # A file is of one commit. Those that one run of tools/measure.sh wrote are all of the same one; a file of an earlier commit is named
-    # by it.
-    def test_files_are_of_one_commit(self):
-        files = summary.Results().files
-        for name, table in files.items():
-            self.assertRegex(table["commit"], COMMIT, name)
-            if COMMIT.fullmatch(name[:-len(".json")]):
-                self.assertEqual(name, table["commit"] + ".json")
-        current = {table["commit"] for name, table in files.items() if name != table["commit"] + ".json"}
-        self.assertLessEqual(len(current), 1, "run tools/measure.sh without restrictions")
+    def test_every_row_says_its_commit_and_a_table_all_of_its_own(self):
+        results = summary.Results()
+        rows = [row for table in results.files.values() for kind in summary.LISTS for row in table[kind]]
+        for row in rows:
+            self.assertRegex(row[4], COMMIT, row)
+        for name, table in summary.TABLES.items():
+            said = table(results).splitlines()[0]
+            self.assertRegex(said, "^Commit ", name)
+            for commit in COMMIT.findall(said):
+                self.assertIn(commit, {row[4] for row in rows}, name)
 
-    def test_files_are_small(self):
+    def test_files_are_few_and_small(self):
+        self.assertLessEqual(len(list(summary.RESULTS.glob("*.json"))), MOST_FILES)
         lines = sum(len(path.read_text().splitlines()) for path in summary.RESULTS.glob("*.json"))
         self.assertLess(lines, LARGEST)
 
@@ -62,8 +64,8 @@ class Summary(unittest.TestCase):
     def test_a_row_is_one_line(self):
         mesh = {"cd": 1e-4, "ae_m": 0.01, "hd": 0.02, "components": 1, "genus": None, "self_intersections": 0, "cpu_seconds": 2.0}
         results, text = self.reduced(self.table("abcdef0", [self.row("a"), self.row("b", mesh=mesh)]))
-        self.assertEqual(results["normals"][0], ["default", "clean", 100, "a", 0.01235, 0.987, 1.5])
-        self.assertEqual(results["meshes"], [["default", "clean", 100, "b", 1e-4, 0.01, 0.02, 1, None, 0, 2.0]])
+        self.assertEqual(results["normals"][0], ["default", "clean", 100, "a", "abcdef0", 0.01235, 0.987, 1.5])
+        self.assertEqual(results["meshes"], [["default", "clean", 100, "b", "abcdef0", 1e-4, 0.01, 0.02, 1, None, 0, 2.0]])
         self.assertEqual(sum("0.01235" in line for line in text.splitlines()), 2)
 
     def test_rows_with_an_error_are_left_out(self):
@@ -74,17 +76,14 @@ class Summary(unittest.TestCase):
         with self.assertRaises(SystemExit):
             self.reduced(self.table("abcdef0", [self.row("a")]), self.table("abcdef1", [self.row("b")]))
 
-    def test_earlier_files_without_a_row_of_their_own_go(self):
-        with tempfile.TemporaryDirectory() as folder:
-            def write(name, *models):
-                path = pathlib.Path(folder, name + ".json")
-                rows = [["default", "clean", 100, model, 0.1, 0.9, 1] for model in models]
-                summary.write_results({"commit": "abcdef0", "seed": 1, "normals": rows, "meshes": []}, path)
-                return path
+    def test_rows_that_are_measured_anew_take_the_place_of_earlier_ones(self):
+        def results(commit, *models):
+            return {"seed": 1, "normals": [["default", "clean", 100, model, commit, 0.1, 0.9, 1] for model in models], "meshes": []}
 
-            inside, beside, new = write("inside", "a"), write("beside", "b", "c"), write("new", "a", "b")
-            summary.remove_superseded(new)
-            self.assertEqual([inside.exists(), beside.exists(), new.exists()], [False, True, True])
+        both = summary.updated(results("abcdef0", "a", "b"), results("abcdef1", "b", "c"))
+        self.assertEqual([row[3:5] for row in both["normals"]], [["a", "abcdef0"], ["b", "abcdef1"], ["c", "abcdef1"]])
+        with self.assertRaises(SystemExit):
+            summary.updated({**results("abcdef0", "a"), "seed": 2}, results("abcdef1", "b"))
 
     def test_a_changed_figure_is_found(self):
         results = summary.Results()

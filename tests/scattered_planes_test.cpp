@@ -48,7 +48,7 @@ TEST(FacetScatter, IsNoneWhereFewPointsAreOnPlanes) {
   EXPECT_EQ(scatter_of(torus), 0);
 }
 
-// A point of a ridge is held by the plane of its own side, as far as its distance from the other's tells them apart.
+// A point of a ridge is held by the plane of its own side, as far as its distance from the other's distinguishes them.
 TEST(ScatteredPlane, OfTwoThatMeetIsThatOfThePointsOwnSide) {
   constexpr double kScatter = 0.02;
   shapes::Random random(5);

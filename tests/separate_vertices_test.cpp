@@ -46,7 +46,7 @@ void expect_manifold(const Mesh& mesh, const std::string& where) {
   EXPECT_EQ(t.bad_vertices, 0U) << where;
 }
 
-// Plates of half a spacing, with gaps of half a spacing between them: sheets that share faces of the octree and touch.
+// Plates of half a spacing, with gaps of half a spacing between them: patches that share faces of the octree and touch.
 Mesh stack_of_plates() {
   constexpr std::size_t kPoints = 2500;
   constexpr double kStep = 0.03;
@@ -125,7 +125,7 @@ TEST(SeparateVertices, VerticesThatFloatMergesPartToo) {
   expect_manifold(welded(rounded(mesh)), "apart in float");
 }
 
-// There float about the origin cannot tell the vertices of anything apart; formats with float about the centre still must.
+// There float about the origin cannot distinguish the vertices of anything; formats with float about the centre still must.
 TEST(SeparateVertices, FarFromTheOriginOnlyTheCentreCounts) {
   const Vec3 far{500000, 5000000, 100};
   Mesh mesh = touching_tetrahedra(far);

@@ -146,7 +146,7 @@ TEST(Splats, WhatStopsHalfOfTheLightIsSolid) {
   EXPECT_EQ(places_of(std::vector<Splat>(300, faint)), std::vector<SplatPlace>(300, SplatPlace::kTranslucent));
 }
 
-// splats: numbers that are not finite, or that squares of would not be, settle nothing.
+// splats: numbers that are not finite, or that squares of would not be, decide nothing.
 TEST(Splats, WildNumbersAreHarmless) {
   std::vector<Splat> splats(8);
   splats[0].centre[1] = NAN;

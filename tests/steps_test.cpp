@@ -78,12 +78,12 @@ TEST(Steps, LeftOutAreNotRun) {
   shapes::scatter(ball, 0.02);
   EXPECT_GT(orient(ball.points).stats.noise, 0);
   EXPECT_EQ(without(ball.points, "noise").stats.noise, 0);
-  std::vector<Vec3> sheet;
+  std::vector<Vec3> half;
   for (const Vec3& p : shapes::sphere(4000).points) {
-    if (p[2] > 0) sheet.push_back(p);
+    if (p[2] > 0) half.push_back(p);
   }
-  EXPECT_GT(orient(sheet).stats.open_share, 0);
-  EXPECT_EQ(without(sheet, "open-surfaces").stats.open_share, 0);
+  EXPECT_GT(orient(half).stats.open_share, 0);
+  EXPECT_EQ(without(half, "open-surfaces").stats.open_share, 0);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What a stream of points hands out, and that it is what the reader of the whole file gives.
+// What a stream of points returns, and that it is what the reader of the whole file gives.
 #pragma once
 
 #include "io/point_stream.h"

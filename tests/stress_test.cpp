@@ -74,7 +74,7 @@ TEST(Stress, CasesComeBackFromText) {
 
 // Every family and sampling: places on the surface, and normals across which the value changes from inside to outside.
 TEST(Stress, SamplesLieOnTheirSurface) {
-  for (const char* family : {"solid", "shell", "wire", "sheet", "terrain", "room"}) {
+  for (const char* family : {"solid", "shell", "wire", "patch", "terrain", "room"}) {
     for (const char* sampling : {"uniform", "uneven", "lines", "raster", "views"}) {
       const Shape shape = make_shape(family, 3, 7);
       const Sampled sampled = sample(shape, sampling, 100, 7);

@@ -27,7 +27,7 @@ std::string repeated(const std::string& line, int times) {
   return text;
 }
 
-TEST(Separator, CommasBetweenNumbersAreToldFromDecimalOnes) {
+TEST(Separator, CommasBetweenNumbersAreDistinguishedFromDecimalOnes) {
   EXPECT_EQ(io::separator_of("1,2,3"), ',');
   EXPECT_EQ(io::separator_of("1, 2, 3, big wall"), ',');
   EXPECT_EQ(io::separator_of("0,5 0,25 0,1"), ' ');

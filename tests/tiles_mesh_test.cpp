@@ -5,7 +5,7 @@
 #include "tiles/manifest.h"
 #include "tiles/mesh_plan.h"
 #include "tiles/mesh_records.h"
-#include "tiles/sheets_file.h"
+#include "tiles/patches_file.h"
 #include "tiles/spacing_sample.h"
 
 #include <g3r/io.h>
@@ -168,7 +168,7 @@ TEST_F(TilesMesh, StraysAreLeftOut) {
   EXPECT_EQ(merged_.components, 2U);
 }
 
-// A vertex that the sheets have beyond its neighbours is pulled back within its tile.
+// A vertex that the patches have beyond its neighbours is pulled back within its tile.
 TEST_F(TilesMesh, UnfoldsTrianglesThatCross) {
   const std::string work = folder_->file("folded");
   std::filesystem::copy(folder_->file("work"), work);
@@ -176,14 +176,14 @@ TEST_F(TilesMesh, UnfoldsTrianglesThatCross) {
   const Mesh clean = tiles::read_surface(folder, 0).mesh;
   EXPECT_EQ(count_self_intersections(clean), 0U);
   const auto& t = clean.triangles[clean.triangles.size() / 2];
-  std::string bytes = bytes_of(tiles::mesh_sheets_path(work, 0));
+  std::string bytes = bytes_of(tiles::mesh_patches_path(work, 0));
   tiles::MeshVertex vertex;
-  char* const at = bytes.data() + sizeof(tiles::SheetsHeader) + t[0] * sizeof vertex;
+  char* const at = bytes.data() + sizeof(tiles::PatchesHeader) + t[0] * sizeof vertex;
   std::memcpy(&vertex, at, sizeof vertex);
   ASSERT_EQ(vertex.position, clean.vertices[t[0]]);
   for (std::size_t a = 0; a < 3; ++a) vertex.position[a] += 2.5 * (clean.vertices[t[1]][a] - vertex.position[a]);
   std::memcpy(at, &vertex, sizeof vertex);
-  write_bytes(tiles::mesh_sheets_path(work, 0), bytes);
+  write_bytes(tiles::mesh_patches_path(work, 0), bytes);
   EXPECT_GT(count_self_intersections(tiles::read_surface(folder, 0).mesh), 0U);
   std::filesystem::remove(tiles::mesh_parts_path(work, 0));
   (void)mesh_tiles(work);
@@ -204,21 +204,21 @@ TEST_F(TilesMesh, IsRefusedWhereItCannotBe) {
 TEST_F(TilesMesh, DamagedFilesAreRefused) {
   const std::string work = folder_->file("damaged");
   std::filesystem::copy(folder_->file("work"), work);
-  const std::string path = tiles::mesh_sheets_path(work, 2);
-  const std::string sheets = bytes_of(path);
+  const std::string path = tiles::mesh_patches_path(work, 2);
+  const std::string patches = bytes_of(path);
   const auto refused = [&](const std::string& bytes) {
     write_bytes(path, bytes);
     EXPECT_THROW((void)merge_mesh(work, folder_->file("none.ply")), InvalidInput);
   };
   refused("");
-  refused(sheets.substr(0, sheets.size() - 4));
-  std::string wrong = sheets;
+  refused(patches.substr(0, patches.size() - 4));
+  std::string wrong = patches;
   wrong.replace(wrong.size() - 4, 4, "\xff\xff\xff\xff");  // a vertex that is not there
   refused(wrong);
-  wrong = sheets;
+  wrong = patches;
   wrong[6] = 1;  // a count of 2^48
   refused(wrong);
-  write_bytes(path, sheets);
+  write_bytes(path, patches);
   const std::string parts_path = tiles::mesh_parts_path(work, 2);
   const std::string parts = bytes_of(parts_path);
   for (const std::string& bytes : {std::string(), parts.substr(0, parts.size() - 4), parts.substr(0, parts.size() - 4) + "\xff\xff\xff\xff",

@@ -200,7 +200,7 @@ struct Turn {
   [[nodiscard]] Vec3 operator()(const Vec3& p) const { return {dot(x, p), dot(y, p), dot(z, p)}; }
 };
 
-// Open sheets may face either way: what counts is whether sure points agree with the first run, or all of them disagree.
+// Open surfaces may face either way: what counts is whether sure points agree with the first run, or all of them disagree.
 void check_rigid(const Case& tested, const RunOptions& run, const Reconstruction& first, Judge& judge) {
   const Turn turn;
   RunOptions turned = run;
@@ -229,7 +229,8 @@ bool warns_of_sides(const Stats& stats) {
                      [](const std::string& w) { return w.find("non-finite") == std::string::npos && w.find("hint") == std::string::npos; });
 }
 
-// Whether another side of the surface is too near for the samples, or the noise, to tell them apart: bench/README.md, "Reading the tables".
+// Whether another side of the surface is too near for the samples, or the noise, to distinguish them: bench/README.md, "Reading the
+// tables".
 bool is_thin(const Scene& scene, std::size_t point, double deviation) {
   std::vector<double> squared;
   for (const Vec3& p : scene.points) {

@@ -1,7 +1,7 @@
 // What makes a cloud and the run on it: a line of words "key=value". Everything that is not named has its default, so a shorter line is a
 // simpler case, which is what the shrinker goes by.
 //
-//   shape     solid, shell, wire, sheet, terrain, room, curve, volume          parts     formulas that it is mixed from
+//   shape     solid, shell, wire, patch, terrain, room, curve, volume          parts     formulas that it is mixed from
 //   seed      of the shape, the samples and everything random in them          points    how many are sampled
 //   sampling  uniform, uneven, lines, raster, views
 //   noise, step   standard deviation and raster of the coordinates, in spacings

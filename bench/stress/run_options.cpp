@@ -26,7 +26,7 @@ std::string one_of(Random& random, const std::array<const char*, N>& words) {
 
 void draw_shape(Random& random, Recipe& recipe) {
   recipe.set("shape",
-             one_of<11>(random, {"solid", "solid", "solid", "shell", "wire", "sheet", "terrain", "room", "curve", "volume", "shell"}));
+             one_of<11>(random, {"solid", "solid", "solid", "shell", "wire", "patch", "terrain", "room", "curve", "volume", "shell"}));
   recipe.set("parts", static_cast<double>(1 + random.bits() % 6));
   recipe.set("sampling", one_of<6>(random, {"uniform", "uniform", "uneven", "lines", "raster", "views"}));
 }

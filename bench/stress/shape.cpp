@@ -176,7 +176,7 @@ Shape random_wire(int parts, Random& random) {
   return {intersect(std::move(all), ball(1.75)), everywhere};
 }
 
-Shape random_sheet(int parts, Random& random) {
+Shape random_patch(int parts, Random& random) {
   const int kind = static_cast<int>(random.bits() % 3);
   const Rotation rotation = random_rotation(random);
   const Vec3& up = rotation[2];
@@ -188,15 +188,15 @@ Shape random_sheet(int parts, Random& random) {
   }
   const double cut = random.uniform(-0.6, 0.6);
   const bool square = random.uniform() < 0.5;
-  Shape sheet{std::move(value), nullptr, Sides::kEither};
-  sheet.exists = [=](const Vec3& p) {
+  Shape patch{std::move(value), nullptr, Sides::kEither};
+  patch.exists = [=](const Vec3& p) {
     const double x = p[0] * rotation[0][0] + p[1] * rotation[0][1] + p[2] * rotation[0][2];
     const double z = p[0] * up[0] + p[1] * up[1] + p[2] * up[2];
     if (kind == 1) return z > cut;
     if (kind == 2) return x > cut && std::abs(z) < 1;
     return square ? std::max(std::abs(p[0]), std::abs(p[1])) < 1.1 : length(p[0], p[1], p[2]) < 1.2;
   };
-  return sheet;
+  return patch;
 }
 
 Shape random_terrain(int parts, Random& random) {
@@ -234,7 +234,7 @@ Shape make_shape(const std::string& family, int parts, std::uint64_t seed) {
   if (family == "solid") return {random_mixture(parts, random), everywhere};
   if (family == "shell") return random_shell(parts, random);
   if (family == "wire") return random_wire(parts, random);
-  if (family == "sheet") return random_sheet(parts, random);
+  if (family == "patch") return random_patch(parts, random);
   if (family == "terrain") return random_terrain(parts, random);
   if (family == "room") return random_room(parts, random);
   throw InvalidInput("no family of shapes is called " + family);

@@ -26,7 +26,7 @@ struct Shape {
 
 inline constexpr double kShapeRadius = 1.8;
 
-/// Families "solid", "shell", "wire", "sheet", "terrain", "room", mixed from `parts` formulas. The same numbers give the same shape.
+/// Families "solid", "shell", "wire", "patch", "terrain", "room", mixed from `parts` formulas. The same numbers give the same shape.
 /// Throws InvalidInput for another family.
 [[nodiscard]] Shape make_shape(const std::string& family, int parts, std::uint64_t seed);
 

@@ -15,7 +15,7 @@ from conftest import sphere_points
 POINTS = sphere_points(300)
 PATIENCE = 120  # seconds after which a child hangs
 MANY = 260  # calls
-SETTLED = 60  # calls, after which memory stays
+WARM = 60  # calls, after which memory stays
 GROWTH = 1 << 20  # bytes
 
 
@@ -100,10 +100,10 @@ def test_many_calls_take_no_more_memory():
         with pytest.raises(g3r.InputError):  # errors leave nothing behind either
             g3r.orient(bad)
 
-    for _ in range(SETTLED):
+    for _ in range(WARM):
         call()
     before = resident()
-    for _ in range(MANY - SETTLED):
+    for _ in range(MANY - WARM):
         call()
     assert resident() - before < GROWTH
 

@@ -1,4 +1,4 @@
-// Points that a wide kernel cannot tell apart, taken together.
+// Points that a wide kernel cannot distinguish, taken together.
 #pragma once
 
 #include <g3r/points.h>

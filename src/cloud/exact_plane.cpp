@@ -2,7 +2,7 @@
 
 #include "base/vector.h"
 #include "cloud/plane_fit.h"
-#include "cloud/sheet.h"
+#include "cloud/quadratic_patch.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "cloud/layers.h"
 
-#include "cloud/sheet.h"
+#include "cloud/quadratic_patch.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -17,18 +17,18 @@ using Eigen::VectorXd;
 
 constexpr double kRadius = 0.6;       // of the cylinder, in distances of the farthest point
 constexpr double kHeight = 0.8;       // up to where the cylinder is inside the ball of the points
-constexpr double kTail = 1.5;         // deviations of a sheet that have to be inside for its own deviation to count
-constexpr Eigen::Index kFewest = 20;  // heights: three sheets have ten numbers
+constexpr double kTail = 1.5;         // deviations of a layer that have to be inside for its own deviation to count
+constexpr Eigen::Index kFewest = 20;  // heights: three layers have ten numbers
 constexpr Eigen::Index kTerms = 5;    // u, v, u^2, u v, v^2
 constexpr int kSteps = 20;            // of expectation and maximisation
-constexpr double kLeastShare = 0.05;  // of the deviation about one sheet, that about more: a mixture must not shrink to points
+constexpr double kLeastShare = 0.05;  // of the deviation about one layer, that about more: a mixture must not shrink to points
 constexpr double kRidge = 1e-9;       // on the terms, relative: points on a line leave some of them open
-constexpr int kRounds = 12;           // of two sheets: most are settled after 4
-constexpr int kFewestOnSheet = 4;     // of two sheets, on either
+constexpr int kRounds = 12;           // of two layers: most do not change after 4
+constexpr int kFewestOnLayer = 4;     // of two layers, on either
 constexpr double kNoShare = 1e-300;   // keeps the logarithm of a likelihood finite
-// Offsets to start from, in deviations about one sheet: where equal sheets without scatter would be, nearly (1; 1.22 and 0).
-constexpr std::array<double, 2> kTwoSheets{-0.9, 0.9};
-constexpr std::array<double, 3> kThreeSheets{-1.3, 0, 1.3};
+// Offsets to start from, in deviations about one layer: where equal layers without scatter would be, nearly (1; 1.22 and 0).
+constexpr std::array<double, 2> kTwoLayers{-0.9, 0.9};
+constexpr std::array<double, 3> kThreeLayers{-1.3, 0, 1.3};
 
 struct Heights {
   MatrixXd terms;   // n x kTerms, of order 1
@@ -59,18 +59,18 @@ Heights heights(const std::vector<Vec3>& points, const std::uint32_t* index, std
   return h;
 }
 
-// Starts from one sheet's fit (`slopes`, `middle`, `deviation`) with offsets `start` times its deviation.
-template <std::size_t kSheets>
+// Starts from one layer's fit (`slopes`, `middle`, `deviation`) with offsets `start` times its deviation.
+template <std::size_t kLayers>
 Mixture fit_mixture(const Heights& h, const Eigen::LDLT<MatrixXd>& normal_equations, VectorXd slopes, double middle, double deviation,
-                    const std::array<double, kSheets>& start) {
+                    const std::array<double, kLayers>& start) {
   const Eigen::Index n = h.z.size();
   const auto total = static_cast<double>(n);
-  Eigen::Array<double, 1, kSheets> offset, share;
-  for (std::size_t c = 0; c < kSheets; ++c) offset[static_cast<Eigen::Index>(c)] = middle + start[c] * deviation;
-  share.setConstant(1.0 / kSheets);
+  Eigen::Array<double, 1, kLayers> offset, share;
+  for (std::size_t c = 0; c < kLayers; ++c) offset[static_cast<Eigen::Index>(c)] = middle + start[c] * deviation;
+  share.setConstant(1.0 / kLayers);
   double sigma = deviation / 2;
   double likelihood = 0;
-  Eigen::Array<double, Eigen::Dynamic, kSheets> member(n, kSheets);
+  Eigen::Array<double, Eigen::Dynamic, kLayers> member(n, kLayers);
   for (int step = 0; step < kSteps; ++step) {
     ArrayXd flat = (h.z - h.terms * slopes).array();
     for (Eigen::Index c = 0; c < member.cols(); ++c) {
@@ -84,7 +84,7 @@ Mixture fit_mixture(const Heights& h, const Eigen::LDLT<MatrixXd>& normal_equati
     const VectorXd own = (member.rowwise() * offset).rowwise().sum();  // expected offset of a point
     slopes = normal_equations.solve(h.terms.transpose() * (h.z - own));
     flat = (h.z - h.terms * slopes).array();
-    // The ball cuts sheets near its poles, which makes them look thinner than they are.
+    // The ball cuts layers near its poles, which makes them look thinner than they are.
     double squares = 0, counted = 0;
     for (Eigen::Index c = 0; c < member.cols(); ++c) {
       if (std::abs(offset[c]) + kTail * sigma > h.most) continue;
@@ -92,10 +92,10 @@ Mixture fit_mixture(const Heights& h, const Eigen::LDLT<MatrixXd>& normal_equati
       counted += total * share[c];
     }
     if (counted <= 0) break;
-    const double freedom = 1 - static_cast<double>(kTerms + kSheets) / total;
+    const double freedom = 1 - static_cast<double>(kTerms + kLayers) / total;
     sigma = std::max(std::sqrt(squares / (counted * freedom)), kLeastShare * deviation);
   }
-  return {sigma, -2 * likelihood + 2 * static_cast<double>(kSheets - 1) * std::log(total)};
+  return {sigma, -2 * likelihood + 2 * static_cast<double>(kLayers - 1) * std::log(total)};
 }
 
 }  // namespace
@@ -107,7 +107,7 @@ double layered_deviation(const std::vector<Vec3>& points, const std::uint32_t* i
   if (n < kFewest) return 0;
   const auto total = static_cast<double>(n);
   const MatrixXd ridge = kRidge * total * MatrixXd::Identity(kTerms, kTerms);
-  // One sheet: the constant is the mean of what the other terms leave, so both are taken about their means.
+  // One layer: the constant is the mean of what the other terms leave, so both are taken about their means.
   const Eigen::RowVectorXd mean_term = h.terms.colwise().mean();
   const MatrixXd centred = h.terms.rowwise() - mean_term;
   const Eigen::LDLT<MatrixXd> one(centred.transpose() * centred + ridge);
@@ -118,14 +118,14 @@ double layered_deviation(const std::vector<Vec3>& points, const std::uint32_t* i
   const double deviation = std::sqrt(misfit / (total - kTerms - 1));
   Mixture best{deviation, total * std::log(misfit / total) + total};
   const Eigen::LDLT<MatrixXd> several(h.terms.transpose() * h.terms + ridge);
-  for (const Mixture& mixture : {fit_mixture<2>(h, several, slopes, middle, deviation, kTwoSheets),
-                                 fit_mixture<3>(h, several, slopes, middle, deviation, kThreeSheets)}) {
+  for (const Mixture& mixture : {fit_mixture<2>(h, several, slopes, middle, deviation, kTwoLayers),
+                                 fit_mixture<3>(h, several, slopes, middle, deviation, kThreeLayers)}) {
     if (mixture.criterion < best.criterion) best = mixture;
   }
   return best.sigma;
 }
 
-TwoSheets fit_two_sheets(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count, const Vec3& normal) {
+TwoLayers fit_two_layers(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count, const Vec3& normal) {
   constexpr Eigen::Index kMost = 32;
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, kTerms + 2, 0, kMost, kTerms + 2>;
   using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
@@ -135,7 +135,7 @@ TwoSheets fit_two_sheets(const std::vector<Vec3>& points, const std::uint32_t* i
   const Eigen::Vector3d centre = to_eigen(points[index[0]]);
   const double radius = (to_eigen(points[index[count - 1]]) - centre).norm();
   if (!(radius > 0)) return {};
-  Rows rows(n, kTerms + 2);  // on the upper sheet, on the lower one, terms
+  Rows rows(n, kTerms + 2);  // on the upper layer, on the lower one, terms
   Column z(n);
   for (Eigen::Index k = 0; k < n; ++k) {
     const Eigen::Vector3d q = frame * (to_eigen(points[index[k]]) - centre) / radius;
@@ -147,30 +147,30 @@ TwoSheets fit_two_sheets(const std::vector<Vec3>& points, const std::uint32_t* i
     return (rows.transpose() * rows + ridge).ldlt().solve(rows.transpose() * z);
   };
   rows.col(0).setOnes();
-  Column above = z - rows * fit();  // one sheet
+  Column above = z - rows * fit();  // one layer
   Column sorted = above;
   std::nth_element(sorted.data(), sorted.data() + n / 2, sorted.data() + n);
   double middle = sorted[n / 2];
-  TwoSheets sheets;
+  TwoLayers layers;
   for (int round = 0; round < kRounds; ++round) {
-    bool settled = round > 0;
+    bool unchanged = round > 0;
     int upper = 0;
     for (Eigen::Index k = 0; k < n; ++k) {
       const double on_upper = above[k] >= middle ? 1 : 0;
-      settled = settled && rows(k, 0) == on_upper;
+      unchanged = unchanged && rows(k, 0) == on_upper;
       rows(k, 0) = on_upper;
       rows(k, 1) = 1 - on_upper;
       upper += above[k] >= middle ? 1 : 0;
     }
-    if (upper < kFewestOnSheet || static_cast<int>(n) - upper < kFewestOnSheet) return {};
-    if (settled) break;
+    if (upper < kFewestOnLayer || static_cast<int>(n) - upper < kFewestOnLayer) return {};
+    if (unchanged) break;
     const Eigen::Matrix<double, kTerms + 2, 1> solution = fit();
     const double freedom = static_cast<double>(n - kTerms - 2);
-    sheets = {radius * std::sqrt((z - rows * solution).squaredNorm() / freedom), radius * (solution[0] - solution[1])};
+    layers = {radius * std::sqrt((z - rows * solution).squaredNorm() / freedom), radius * (solution[0] - solution[1])};
     above = z - rows.rightCols<kTerms>() * solution.tail<kTerms>();
     middle = (solution[0] + solution[1]) / 2;
   }
-  return sheets;
+  return layers;
 }
 
 }  // namespace g3r

@@ -4,7 +4,7 @@
 #include "cloud/exact_plane.h"
 #include "cloud/layers.h"
 #include "cloud/plane_fit.h"
-#include "cloud/sheet.h"
+#include "cloud/quadratic_patch.h"
 #include "cloud/spacing.h"
 
 #include <algorithm>
@@ -18,26 +18,26 @@ namespace {
 
 constexpr std::size_t kProbes = 2000;      // neighbourhoods looked at, spread along the canonical order
 constexpr std::size_t kNeighbours = 32;    // of each, nearest first
-constexpr std::size_t kClean = 12;         // nearest ones that tell noise from none
+constexpr std::size_t kClean = 12;         // nearest ones that distinguish noise from none
 constexpr std::size_t kSmall = 16;         // nearest ones that seldom reach across a wall
-constexpr std::size_t kSheets = 24;        // nearest ones whose kurtosis is taken
+constexpr std::size_t kInLayers = 24;      // nearest ones whose kurtosis is taken
 constexpr double kFlattest = 0.02;         // share of the neighbourhoods that decides
 constexpr double kCleanResidual = 0.02;    // in spacings, of planes: below it is clean
 constexpr double kCleanQuadratic = 0.017;  // in spacings, of height fields through kClean points, which curvature does not lift
 constexpr double kUnevenQuadratic = 0.04;  // the same where the other neighbourhoods are lifted far more: by shape, then
 constexpr double kUneven = 0.15;           // of the median of the height fields' residuals, that of the flattest: 0.25 or more under noise
 constexpr double kFlatKurtosis = 0.1;      // share of neighbourhoods whose kurtosis decides
-constexpr double kSheetKurtosis = 1.85;    // of that quantile: 1.94 to 2.1 under Gaussian noise, 1.1 to 1.8 between sheets and on wires
+constexpr double kLayerKurtosis = 1.85;    // of that quantile: 1.94 to 2.1 under Gaussian noise, 1.1 to 1.8 between layers and on wires
 constexpr double kOnPlanes = 0.4;          // share of the points on one exact plane that shows a cloud to be clean
 constexpr std::size_t kWide = 64;          // nearest ones whose plane is the surface's wherever that is not folded
 constexpr double kAlong = 0.5;             // cosine from which an exact plane lies along the surface
 constexpr double kMostlyAlong = 0.25;      // least share of the exact planes that do: none of those of scan lines
-constexpr double kBetweenSheets = 0.005;   // share of neighbourhoods with two sheets that does: none in a thousand under noise
+constexpr double kBetweenLayers = 0.005;   // share of neighbourhoods with two layers that does: none in a thousand under noise
 constexpr std::size_t kFewestBetween = 5;  // such neighbourhoods
-constexpr std::size_t kFewSheets = 16;     // nearest ones on two sheets, of which those take a smaller share of the gap
-constexpr double kFewApart = 0.08;         // of the gap, the deviation from sheets through kFewSheets
-constexpr double kApart = 0.12;            // and through kSheets
-constexpr double kOnSheet = 0.05;          // in spacings, that deviation
+constexpr std::size_t kFewInLayers = 16;   // nearest ones on two layers, of which those take a smaller share of the gap
+constexpr double kFewApart = 0.08;         // of the gap, the deviation from layers through kFewInLayers
+constexpr double kApart = 0.12;            // and through kInLayers
+constexpr double kOnLayer = 0.05;          // in spacings, that deviation
 constexpr double kRounded = 0.05;          // in spacings, steps of coordinates that put noisy points on planes
 constexpr double kLeastRounding = 0.04;    // spacings, of the deviation that rounding leaves; less is no noise
 constexpr std::size_t kFewestLevels = 5;   // values of a rounded coordinate; those of plates and boxes that stand straight are fewer
@@ -50,7 +50,7 @@ constexpr double kLeastRoom = 0.1;         // of 1 - (x / saturation)^power: bey
 constexpr double kSigmaIntercept = 0.842;  // of x / sigma as a line in x, fitted to known noise of 0.1 to 0.8 h
 constexpr double kSigmaSlope = 0.372;
 constexpr double kLargestResidual = 0.62;              // beyond, the ball is full of noise and tells no more
-constexpr std::size_t kLayerProbes = 500;              // neighbourhoods that may hold several sheets
+constexpr std::size_t kLayerProbes = 500;              // neighbourhoods that may hold several layers
 constexpr std::size_t kLayerNeighbours = 256;          // of each
 constexpr std::size_t kGoesOn = 4 * kPlaneNeighbours;  // points among which the plane of a facet goes on: 13 spacings across
 constexpr double kHeld = 3.5;                          // standard deviations that these may be off it: its tilt adds one so far out
@@ -89,7 +89,7 @@ void for_some(const PointSet& set, std::size_t probes, std::size_t count, Visit 
 struct Residuals {
   std::vector<double> clean, small, large;  // planes through kClean, kSmall, kNeighbours points
   std::vector<double> quadratic;            // height fields through kClean
-  std::vector<double> kurtosis;             // about the planes through kSheets
+  std::vector<double> kurtosis;             // about the planes through kInLayers
 };
 
 Residuals residuals_of(const PointSet& set) {
@@ -101,13 +101,13 @@ Residuals residuals_of(const PointSet& set) {
     r.clean.push_back(plane.residual);
     r.quadratic.push_back(quadratic_residual(points, index.data(), kClean, plane.normal, spacing));
     r.small.push_back(fit_plane(points, index.data(), kSmall).residual);
-    r.kurtosis.push_back(fit_plane(points, index.data(), kSheets).kurtosis);
+    r.kurtosis.push_back(fit_plane(points, index.data(), kInLayers).kurtosis);
     r.large.push_back(fit_plane(points, index.data(), kNeighbours).residual);
   });
   return r;
 }
 
-// Standard deviation about sheets, of which a neighbourhood may hold up to three.
+// Standard deviation about layers, of which a neighbourhood may hold up to three.
 double layered_noise(const PointSet& set) {
   const std::vector<Vec3>& points = set.points();
   const double spacing = set.spacing();
@@ -167,11 +167,11 @@ ExactPlane find_facet(const std::vector<Vec3>& points, const std::vector<std::ui
   return find_exact_plane(points, others, spacing).points.empty() ? plane : ExactPlane{};
 }
 
-bool between_sheets(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, std::size_t count, double share,
+bool between_layers(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, std::size_t count, double share,
                     double spacing) {
   const Vec3 normal = fit_plane(points, index.data(), count).normal;
-  const TwoSheets sheets = fit_two_sheets(points, index.data(), count, normal);
-  return sheets.deviation < std::min(share * sheets.gap, kOnSheet * spacing);
+  const TwoLayers layers = fit_two_layers(points, index.data(), count, normal);
+  return layers.deviation < std::min(share * layers.gap, kOnLayer * spacing);
 }
 
 // Whether many of the points lie on exact planes along the surface.
@@ -192,16 +192,17 @@ bool on_exact_planes(const PointSet& set) {
   return share_of(on_facets, looked) >= kOnPlanes && share_of(along, on_facets) >= kMostlyAlong;
 }
 
-// Whether some of the points lie on two curved sheets without scatter, as those of thin walls and narrow gaps do.
-bool on_exact_sheets(const PointSet& set) {
+// Whether some of the points lie on two curved layers without scatter, as those of thin walls and narrow gaps do.
+bool on_exact_layers(const PointSet& set) {
   const std::vector<Vec3>& points = set.points();
   const double spacing = set.spacing();
   std::size_t looked = 0, between = 0;
-  for_some(set, kProbes, kSheets, [&](const Vec3&, const auto& index, const auto&) {
+  for_some(set, kProbes, kInLayers, [&](const Vec3&, const auto& index, const auto&) {
     ++looked;
-    if (between_sheets(points, index, kFewSheets, kFewApart, spacing) || between_sheets(points, index, kSheets, kApart, spacing)) ++between;
+    if (between_layers(points, index, kFewInLayers, kFewApart, spacing) || between_layers(points, index, kInLayers, kApart, spacing))
+      ++between;
   });
-  return between >= kFewestBetween && share_of(between, looked) >= kBetweenSheets;
+  return between >= kFewestBetween && share_of(between, looked) >= kBetweenLayers;
 }
 
 // Standard deviation of what rounding all three coordinates leaves, 0 if it leaves none: a box may well have integer coordinates.
@@ -219,8 +220,8 @@ double scattered_noise(const PointSet& set, const Residuals& residuals) {
   const double curved = quantile(residuals.quadratic, kFlattest);
   const bool uneven = curved < kUnevenQuadratic * spacing && curved < kUneven * quantile(residuals.quadratic, 0.5);
   if (quantile(residuals.clean, kFlattest) < kCleanResidual * spacing || curved < kCleanQuadratic * spacing || uneven) return 0;
-  if (quantile(residuals.kurtosis, kFlatKurtosis) < kSheetKurtosis) return 0;
-  const bool exact = on_exact_planes(set) || on_exact_sheets(set);
+  if (quantile(residuals.kurtosis, kFlatKurtosis) < kLayerKurtosis) return 0;
+  const bool exact = on_exact_planes(set) || on_exact_layers(set);
   if (exact && !rounded(set.points(), spacing)) return 0;
   const double x16 = quantile(residuals.small, kFlattest) / spacing;
   const double x32 = quantile(residuals.large, kFlattest) / spacing;

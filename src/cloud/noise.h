@@ -13,16 +13,16 @@ namespace g3r {
 ///   - Noise lifts the residual of every neighbourhood; curvature, creases and thin parts only that of some. So the flattest 2 %
 ///     decide: their 12-point residual from a plane below 0.02 h means clean, and so does one from a quadratic height field, which
 ///     curvature does not lift, below 0.017 h, or below 0.04 h and 0.15 of the median (under noise it is 0.25 of that or more).
-///   - Two sheets close together, and wires, lift it everywhere, but there are neighbourhoods whose distances have two peaks: a 10 %
-///     quantile of the kurtosis (24 neighbours) below 1.85 means sheets or wires (measured: those 1.1 to 1.8, noise 1.94 to 2.1).
+///   - Two layers close together, and wires, lift it everywhere, but there are neighbourhoods whose distances have two peaks: a 10 %
+///     quantile of the kurtosis (24 neighbours) below 1.85 means layers or wires (measured: those 1.1 to 1.8, noise 1.94 to 2.1).
 ///   - Noise leaves no exact surface behind. Where 40 % of the points are on an exact plane (find_exact_plane(), breadth 0.4) and no
 ///     second one, a quarter of these planes within 60 degrees of that of 64 points (those of rasters and scan lines are not), or 0.5 % of
-///     the neighbourhoods lie on two sheets (fit_two_sheets()) within 0.08 (16 points) or 0.12 (24) of their gap, the cloud is clean,
+///     the neighbourhoods lie on two layers (fit_two_layers()) within 0.08 (16 points) or 0.12 (24) of their gap, the cloud is clean,
 ///     unless its coordinates are rounded to steps of 0.05 h or more, which puts noise on planes.
 ///   - The size is the less of two. While noise is small, from the residual x h of 32 neighbours:
 ///     sigma = h x / (0.842 - 0.372 x), x being at most what the residual y h of 16 lets expect on a plane, 1.27 y / (1 - (y / 0.47)^8):
 ///     32 neighbours reach across walls.
-///   - And, of any size, layered_deviation() of 256 neighbours, its 10 % quantile: it tells two or three sheets from one, but needs
+///   - And, of any size, layered_deviation() of 256 neighbours, its 10 % quantile: it distinguishes two or three layers from one, but needs
 ///     them to be smooth as far as that. Noise above h fills such neighbourhoods as well, so every fourth point is taken then, as often
 ///     as needed.
 ///   - Rounding of all three coordinates to steps q, as in voxels, counts as noise of the mean square of q_a^2 / 12 where that is above

@@ -18,7 +18,7 @@ constexpr double kMost = 1.3;
 
 }  // namespace
 
-std::vector<Vec3> area_vectors(const PointSet& set, const std::vector<Vec3>& normals, const OpenSurfaces& sheets,
+std::vector<Vec3> area_vectors(const PointSet& set, const std::vector<Vec3>& normals, const OpenSurfaces& surfaces,
                                const std::atomic<bool>* cancel) {
   std::vector<double> spacing = set.smoothed_spacing();
   const std::vector<std::uint8_t> held = mesh::held_points(set.points(), normals, cancel);
@@ -33,10 +33,10 @@ std::vector<Vec3> area_vectors(const PointSet& set, const std::vector<Vec3>& nor
   }
   FastSum sum(set.points(), set.morton(), Widths(std::move(widths)), sum_plan(kFieldAccuracy, set.size()), cancel);
   std::vector<double> winding = sum.winding(eta);
-  if (!sheets.part.empty()) {
+  if (!surfaces.part.empty()) {
     std::vector<double> closed;
     for (std::size_t i = 0; i < winding.size(); ++i) {
-      if (sheets.part[i] == OpenSurfaces::kNone) closed.push_back(winding[i]);
+      if (surfaces.part[i] == OpenSurfaces::kNone) closed.push_back(winding[i]);
     }
     if (closed.empty()) return eta;
     winding = std::move(closed);

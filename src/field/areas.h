@@ -17,7 +17,7 @@ namespace g3r {
 /// surface goes through (held_points()), have at most the typical spacing. The field of these vectors is twice to five times closer to 1
 /// inside and 0 outside than that of solved ones, whose lengths vary with the sample: docs/evidence/areas.md. Points in canonical order,
 /// in the unit frame. O(N log N). Throws Cancelled.
-[[nodiscard]] std::vector<Vec3> area_vectors(const PointSet& set, const std::vector<Vec3>& normals, const OpenSurfaces& sheets,
+[[nodiscard]] std::vector<Vec3> area_vectors(const PointSet& set, const std::vector<Vec3>& normals, const OpenSurfaces& surfaces,
                                              const std::atomic<bool>* cancel);
 
 }  // namespace g3r

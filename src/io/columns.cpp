@@ -202,11 +202,7 @@ void Rows::append_bytes(std::size_t index, std::string& bytes) {
     bytes.append(field(index), layout_->bytes(column.in_table));
     return;
   }
-  for (std::size_t k = 0; k < column.property.count; ++k) {
-    char stored[8];
-    store_double(column.property.type, number(index, k), stored);
-    bytes.append(stored, size_of(column.property.type));
-  }
+  for (std::size_t k = 0; k < column.property.count; ++k) append_double(column.property.type, number(index, k), bytes);
 }
 
 void append_as_text(Type type, const char* bytes, std::string& text) {

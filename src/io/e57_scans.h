@@ -1,4 +1,4 @@
-// What the XML of an E57 file says of its scans. For e57.cpp alone, as it shows libE57Format.
+// What the XML of an E57 file says of its scans. For sources of E57 alone, as it shows libE57Format.
 #pragma once
 
 #include "io/file_bytes.h"

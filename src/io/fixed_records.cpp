@@ -13,6 +13,18 @@ constexpr std::size_t kAtOnce = std::size_t{1} << 20;  // bytes of records read 
 
 }  // namespace
 
+std::optional<StoredTable> stored_table(Attributes::Dialect dialect, std::vector<std::string> comments, Element points, std::uint64_t begin,
+                                        std::uint64_t file_size) {
+  const std::size_t stride = points.stride();
+  if (stride == 0 || points.count > (file_size - begin) / stride) return std::nullopt;
+  StoredTable stored;
+  stored.begin = begin;
+  stored.table.dialect = dialect;
+  stored.table.comments = std::move(comments);
+  stored.table.elements.push_back(std::move(points));
+  return stored;
+}
+
 FixedRecords::FixedRecords(std::unique_ptr<RandomFile> file, std::uint64_t begin, Attributes table)
     : file_(std::move(file)), at_(begin), left_(table.points().count), table_(std::move(table)), layout_(table_.points()) {
   const Roles roles = find_roles(table_.points());

@@ -7,9 +7,21 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace g3r::io {
+
+/// A table whose records lie in a file as they are in memory.
+struct StoredTable {
+  Attributes table;         ///< one element, without data
+  std::uint64_t begin = 0;  ///< byte offset of the first record
+};
+
+/// The table whose points, of a format in `dialect`, begin at this byte of a file; nothing where they are not all there.
+std::optional<StoredTable> stored_table(Attributes::Dialect dialect, std::vector<std::string> comments, Element points, std::uint64_t begin,
+                                        std::uint64_t file_size);
 
 /// Records that lie one after the other in the file as in the table, unless fetch() says otherwise. The table has no lists.
 class FixedRecords : public PointStream {

@@ -1,4 +1,4 @@
-// LAZ, which is LAS with compressed points. Only laz.cpp and pack_laz.cpp know LASzip; laz_not_compiled.cpp stands in for both.
+// LAZ, which is LAS with compressed points. Only laz_*.cpp and pack_laz.cpp know LASzip; laz_not_compiled.cpp stands in for them.
 #pragma once
 
 #include "io/las.h"

@@ -57,9 +57,7 @@ Merger::Merger(const std::vector<Cloud>& clouds) {
 void Merger::add(const std::string& name, Type type, Column column) {
   const std::size_t found = element_.find(name);
   if (found == Element::npos) {
-    element_.properties.emplace_back();
-    element_.properties.back().name = name;
-    element_.properties.back().type = type;
+    element_.add(name, type);
     columns_.push_back(column);
   } else if (element_.properties[found].type != type) {
     element_.properties[found].type = Type::kFloat64;
@@ -84,10 +82,7 @@ void Merger::append(const Cloud& cloud) {
       } else {
         value = own_value(cloud, columns_[c], i);
       }
-      char stored[8];
-      const Type type = element_.properties[c].type;
-      store_double(type, value, stored);
-      element_.data.append(stored, size_of(type));
+      append_double(element_.properties[c].type, value, element_.data);
     }
     if (record != nullptr) record += layout.size();
   }

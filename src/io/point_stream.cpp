@@ -107,9 +107,7 @@ class WholeCloud : public PointStream {
     cloud_.confidence = {};
     Merger merger({cloud_});
     merger.append(cloud_);
-    Attributes table;
-    table.elements.push_back(merger.take());
-    cloud_.attributes = std::make_shared<Attributes>(std::move(table));
+    cloud_.attributes = Attributes::of_points(Attributes::Dialect::kPly, merger.take());
   }
 
   Cloud cloud_;

@@ -8,13 +8,7 @@ namespace g3r::io {
 
 namespace {
 
-constexpr const char* kAxes[] = {"x", "y", "z"};
 constexpr std::size_t kMostColumns = 1000;  // More columns mean that the file has no line ends.
-
-// A column with a word in more than one line of so many holds text; fewer words are damage, which is an error.
-constexpr std::uint64_t kLinesPerWord = 100;
-
-constexpr std::size_t kKeptWord = 256;  // bytes of a word that are kept for messages, which show fewer
 
 // Comments start a line; CloudCompare's "//X Y Z" is one that names columns.
 bool is_comment(std::string_view line) { return line[0] == '#' || line.substr(0, 2) == "//"; }
@@ -27,14 +21,6 @@ bool is_header(std::string_view line) {
   double number = 0;
   return values.next(first) && !is_like_number(first) && !parse_double(first, number) && count_numbers(line, separator) < 3;
 }
-
-// Values of a column that are no numbers.
-struct Words {
-  std::uint64_t count = 0;
-  std::size_t line = 0;  // of the first
-  std::string first;
-  bool like_numbers = false;  // some begin like a number
-};
 
 // The names in a header line or in a comment such as "//X Y Z", one per column of the points. A comment must name x, y and z.
 void find_names(const Text& text, TextShape& shape) {
@@ -72,160 +58,6 @@ void find_names(const Text& text, TextShape& shape) {
   }
   fail_at_line(source, number, "expected at least three columns (x y z), found " + std::to_string(shape.columns));
 }
-
-[[noreturn]] void fail_at_word(const Source& source, const Words& words) { fail_at_line(source, words.line, expected_number(words.first)); }
-
-// Which columns hold text; a word among numbers is an error.
-std::vector<TextColumn> find_text(const Source& source, std::uint64_t points, const std::vector<Words>& words) {
-  std::vector<TextColumn> text(words.size());
-  const Words* damage = nullptr;
-  for (std::size_t c = 0; c < words.size(); ++c) {
-    text[c].any = words[c].count != 0;
-    text[c].all = words[c].count == points && !words[c].like_numbers;
-    if (text[c].any && words[c].count * kLinesPerWord <= points && (damage == nullptr || words[c].line < damage->line)) damage = &words[c];
-  }
-  if (damage != nullptr) fail_at_word(source, *damage);
-  return text;
-}
-
-// Finds the columns of one text.
-class Finder {
- public:
-  Finder(const Text& text, const TextShape& shape) : text_(text), source_(text.source()), shape_(shape), words_(shape.columns) {
-    found_.properties.resize(shape.columns);
-    for (Property& property : found_.properties) property.type = Type::kFloat64;
-  }
-
-  TextColumns find(const std::function<void(const double*)>& store) {
-    const bool named = !shape_.header.names.empty();
-    ColumnFacts facts(shape_.columns);
-    PointRows rows(text_, shape_, [&](std::size_t column, std::size_t line, std::string_view value) { note(column, line, value); });
-    while (const double* row = rows.next()) {
-      if (store) store(row);
-      if (!named) facts.add(row);
-    }
-    found_.overflow = rows.overflow();
-    const std::vector<TextColumn> text = find_text(source_, shape_.points, words_);
-    if (named) name_by_header();
-    const std::size_t known = named ? shape_.columns : name_first_columns(facts, text);
-    const std::size_t left = leave_out_text(known);
-    if (named) return std::move(found_);
-    if (found_.kept.size() < shape_.columns && left < found_.kept.size()) facts = facts_of_kept();
-    guess_names(found_.properties, facts, left);
-    return std::move(found_);
-  }
-
- private:
-  void note(std::size_t column, std::size_t line, std::string_view value) {
-    Words& here = words_[column];
-    if (here.count++ == 0) {
-      here.line = line;
-      here.first = value.substr(0, kKeptWord);
-    }
-    here.like_numbers = here.like_numbers || is_like_number(value);
-  }
-
-  template <class Take>
-  void for_each_row(const Take& take) const {
-    PointRows rows(text_, shape_, [](std::size_t, std::size_t, std::string_view) {});
-    while (const double* row = rows.next()) take(row);
-  }
-
-  [[nodiscard]] ColumnFacts facts_of_kept() const {
-    ColumnFacts facts(found_.kept.size());
-    std::vector<double> kept(found_.kept.size());
-    for_each_row([&](const double* row) {
-      std::transform(found_.kept.begin(), found_.kept.end(), kept.begin(), [&](std::size_t c) { return row[c]; });
-      facts.add(kept.data());
-    });
-    return facts;
-  }
-
-  // Names the columns of a text without names, as far as their order says what they are; returns how many.
-  std::size_t name_first_columns(const ColumnFacts& facts, const std::vector<TextColumn>& text) {
-    const auto numbers_differ = [&] {
-      return all_differ(shape_.points,
-                        [&](const std::function<void(double)>& take) { for_each_row([&](const double* row) { take(row[0]); }); });
-    };
-    // PTS is always x y z
-    const Arrangement arrangement = shape_.counted ? Arrangement::kXyz : find_arrangement(facts, text, numbers_differ);
-    if (arrangement == Arrangement::kPnezd) {
-      found_.warnings.emplace_back(
-          "the columns look like point number, northing, easting, elevation and description (PNEZD) and are read so; if they are others, "
-          "name them in a first line, for example point,x,y,z,description");
-      constexpr const char* kNames[] = {"point", "y", "x", "z", "description"};
-      for (std::size_t c = 0; c < std::size(kNames); ++c) found_.properties[c].name = kNames[c];
-      return std::size(kNames);
-    }
-    const std::size_t first = arrangement == Arrangement::kNumberedXyz ? 1 : 0;
-    if (first != 0) {
-      found_.properties[0].name = "point";
-      found_.warnings.emplace_back(
-          "the first column names or numbers the points; the next three are taken for x, y and z; if they are others, name the columns in "
-          "a first line, for example point,northing,easting,elevation");
-    }
-    for (std::size_t a = 0; a < 3; ++a) {
-      if (text[first + a].any) fail_at_word(source_, words_[first + a]);
-      found_.properties[first + a].name = kAxes[a];
-    }
-    return first + 3;
-  }
-
-  // Names the columns by the header. x, y and z must be numbers.
-  void name_by_header() {
-    std::vector<std::string> names = shape_.header.names;
-    if (!shape_.header.axes) {
-      std::vector<std::size_t> numbers;
-      for (std::size_t c = 0; c < names.size() && numbers.size() < 3; ++c) {
-        if (words_[c].count == 0) numbers.push_back(c);
-      }
-      if (numbers.size() < 3) fail(source_, "the header names no columns x, y and z, and fewer than three columns are numbers");
-      found_.warnings.push_back("the header names no columns x, y and z: the first three, " + quote(names[numbers[0]]) + ", " +
-                                quote(names[numbers[1]]) + " and " + quote(names[numbers[2]]) + ", are taken for them");
-      for (std::size_t a = 0; a < 3; ++a) names[numbers[a]] = kAxes[a];
-    }
-    make_distinct(names);
-    for (std::size_t c = 0; c < names.size(); ++c) found_.properties[c].name = names[c];
-    for (const char* axis : kAxes) {
-      const auto column = static_cast<std::size_t>(std::find(names.begin(), names.end(), axis) - names.begin());
-      if (words_[column].count != 0) fail_at_word(source_, words_[column]);
-    }
-  }
-
-  // Leaves out the columns with text, and says so. Returns how many of the first `known` columns are left.
-  std::size_t leave_out_text(std::size_t known) {
-    constexpr std::size_t kMostNamed = 8;  // The warning names so many columns, and counts the others.
-    std::vector<std::size_t>& kept = found_.kept;
-    std::string names;
-    for (std::size_t c = 0; c < words_.size(); ++c) {
-      if (words_[c].count == 0) {
-        kept.push_back(c);
-        continue;
-      }
-      const std::size_t left_out = c + 1 - kept.size();
-      if (left_out > kMostNamed) continue;
-      if (left_out > 1) names += ", ";
-      names += std::to_string(c + 1);
-      if (!found_.properties[c].name.empty()) names.append(" ").append(quote(found_.properties[c].name));
-      names.append(" (").append(quote(words_[c].first)).append(")");
-    }
-    if (kept.size() == words_.size()) return known;
-    const std::size_t more = words_.size() - kept.size() > kMostNamed ? words_.size() - kept.size() - kMostNamed : 0;
-    if (more != 0) names += " and " + std::to_string(more) + " more";
-    found_.warnings.push_back("columns that hold text are not used: " + names);
-    for (std::size_t k = 0; k < kept.size(); ++k) {
-      if (k != kept[k]) found_.properties[k] = std::move(found_.properties[kept[k]]);
-    }
-    found_.properties.resize(kept.size());
-    return static_cast<std::size_t>(std::lower_bound(kept.begin(), kept.end(), known) - kept.begin());
-  }
-
-  const Text& text_;
-  const Source& source_;
-  const TextShape& shape_;
-  std::vector<Words> words_;
-  TextColumns found_;
-};
 
 }  // namespace
 
@@ -307,10 +139,6 @@ PointRows::Word no_words(const Text& text) {
   return [&source = text.source()](std::size_t, std::size_t line, std::string_view value) {
     fail_at_line(source, line, expected_number(value));
   };
-}
-
-TextColumns find_columns(const Text& text, const TextShape& shape, const std::function<void(const double*)>& store) {
-  return Finder(text, shape).find(store);
 }
 
 }  // namespace g3r::io

@@ -1,6 +1,5 @@
-// Text with one point per line, before it becomes a cloud: where its points are and what its columns are. Blanks, commas or semicolons
-// separate the columns; a header line may name them; PTS files start with the number of points. Columns without names are distinguished by
-// their values; those that hold text are left out.
+// Text with one point per line, before it becomes a cloud: where its points are, and their numbers. Blanks, commas or semicolons separate
+// the columns; a header line may name them; PTS files start with the number of points. What the columns are: find_columns.h.
 #pragma once
 
 #include "io/table.h"
@@ -84,17 +83,5 @@ class PointRows {
 
 /// What to do with words in columns of numbers: an error.
 PointRows::Word no_words(const Text& text);
-
-/// The columns that become part of the points.
-struct TextColumns {
-  std::vector<Property> properties;  ///< doubles
-  std::vector<std::size_t> kept;     ///< the column of each; others hold text
-  bool overflow = false;
-  std::vector<std::string> warnings;
-};
-
-/// Reads the numbers once, and up to twice more where columns have no names. `store`, where given, gets all columns of each point, once.
-/// Throws InvalidInput.
-TextColumns find_columns(const Text& text, const TextShape& shape, const std::function<void(const double*)>& store = {});
 
 }  // namespace g3r::io

@@ -14,13 +14,6 @@ namespace g3r::io {
 
 namespace {
 
-Property make_property(std::string name, Type type) {
-  Property property;
-  property.name = std::move(name);
-  property.type = type;
-  return property;
-}
-
 // Two fields of one name: the later get a number.
 void make_unique(std::vector<Property>& properties) {
   for (std::size_t i = 0; i < properties.size(); ++i) {
@@ -62,13 +55,12 @@ void check_against_header(const Source& source, const LasHeader& header, Cloud& 
 Attributes las_table(const LasHeader& header) {
   Attributes table;
   table.dialect = Attributes::Dialect::kLas;
-  table.elements.emplace_back();
+  table.elements.push_back(make_vertex_element());
   Element& points = table.elements.back();
-  points.name = "vertex";
   points.count = header.count;
   points.properties.reserve(3 + header.fields.size());
-  for (const char* axis : {"x", "y", "z"}) points.properties.push_back(make_property(axis, Type::kFloat64));
-  for (const LasField& field : header.fields) points.properties.push_back(make_property(field.name, field.type));
+  for (const char* axis : {"x", "y", "z"}) points.add(axis, Type::kFloat64);
+  for (const LasField& field : header.fields) points.add(field.name, field.type);
   make_unique(points.properties);
   return table;
 }

@@ -116,8 +116,8 @@ Cloud read_vertices(const Source& source) {
     cloud.colors = to_bytes(colors);
     cloud.property_names.insert(cloud.property_names.end(), {"red", "green", "blue"});
   }
-  if (overflow) cloud.warnings.emplace_back("a number is out of double's range: it is taken as infinite (not finite)");
-  if (!end.ended()) cloud.warnings.emplace_back("the last line has no line end: the file may be cut");
+  if (overflow) cloud.warnings.emplace_back(kOverflow);
+  if (!end.ended()) cloud.warnings.emplace_back(kOpenEnd);
   return cloud;
 }
 

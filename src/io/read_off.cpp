@@ -85,8 +85,8 @@ class OffParser {
     if (normals_) cloud.property_names.insert(cloud.property_names.end(), {"nx", "ny", "nz"});
     if (colors_) cloud.property_names.insert(cloud.property_names.end(), {"red", "green", "blue"});
     if (extra_columns_) cloud.warnings.emplace_back("extra columns on the vertex lines are not used");
-    if (overflow_) cloud.warnings.emplace_back("a number is out of double's range: it is taken as infinite (not finite)");
-    if (!statements_.ended()) cloud.warnings.emplace_back("the last line has no line end: the file may be cut");
+    if (overflow_) cloud.warnings.emplace_back(kOverflow);
+    if (!statements_.ended()) cloud.warnings.emplace_back(kOpenEnd);
     return cloud;
   }
 

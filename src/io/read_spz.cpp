@@ -129,10 +129,7 @@ Cloud read_spz(const Source& source, const ReadOptions& options) {
   const std::shared_ptr<Attributes> table = Attributes::of_points(Attributes::Dialect::kPly);
   Element& points = table->elements.back();
   points.count = header.points;
-  for (const char* name : kNames) {
-    points.properties.emplace_back();
-    points.properties.back().name = name;
-  }
+  for (const char* name : kNames) points.add(name, Type::kFloat32);
   Cloud cloud;
   {
     const std::string blocks = stream.read(static_cast<std::size_t>(header.bytes()));

@@ -60,7 +60,7 @@ std::vector<Vec3> text_corners(const Source& source, std::vector<std::string>& w
     }
     corners.push_back(corner);
   });
-  if (overflow) warnings.emplace_back("a number is out of double's range: it is taken as infinite (not finite)");
+  if (overflow) warnings.emplace_back(kOverflow);
   return corners;
 }
 

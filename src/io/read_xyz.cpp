@@ -1,7 +1,7 @@
-// Text with one point per line: XYZ, TXT, CSV, PTS. What its columns are: point_text.h.
+// Text with one point per line: XYZ, TXT, CSV, PTS. Where its points are: point_text.h; what its columns are: find_columns.h.
 #include "io/cloud_from_table.h"
+#include "io/find_columns.h"
 #include "io/fixed_records.h"
-#include "io/point_text.h"
 #include "io/readers.h"
 
 #include <algorithm>
@@ -12,13 +12,12 @@ namespace g3r::io {
 
 namespace {
 
-// The table of the kept columns, without records.
-Attributes table_of(TextColumns& columns) {
-  Attributes table;
-  table.dialect = Attributes::Dialect::kText;
-  table.elements.push_back(make_vertex_element());
-  table.elements.back().properties = std::move(columns.properties);
-  return table;
+// The points of the kept columns, without records.
+Element points_of(TextColumns& columns, std::uint64_t count) {
+  Element points = make_vertex_element();
+  points.properties = std::move(columns.properties);
+  points.count = count;
+  return points;
 }
 
 std::shared_ptr<Attributes> read_table(const Text& text, const TextShape& shape, bool& overflow, std::vector<std::string>& warnings) {
@@ -35,10 +34,9 @@ std::shared_ptr<Attributes> read_table(const Text& text, const TextShape& shape,
   }
   overflow = columns.overflow;
   warnings = std::move(columns.warnings);
-  auto table = std::make_shared<Attributes>(table_of(columns));
-  table->elements.back().count = shape.points;
-  table->elements.back().data = std::move(data);
-  return table;
+  Element points = points_of(columns, shape.points);
+  points.data = std::move(data);
+  return Attributes::of_points(Attributes::Dialect::kText, std::move(points));
 }
 
 // Longitude and latitude beside heights in metres: a shape that nobody wants.
@@ -57,8 +55,8 @@ std::vector<std::string> warnings_of(const TextShape& shape, bool overflow) {
     warnings.push_back("more points follow than the count line says (" + std::to_string(*shape.announced) + "): all are read");
   }
   if (shape.header_differs) warnings.emplace_back("the header line has not as many columns as the points: it is not used");
-  if (overflow) warnings.emplace_back("a number is out of double's range: it is taken as infinite (not finite)");
-  if (shape.open_end) warnings.emplace_back("the last line has no line end: the file may be cut");
+  if (overflow) warnings.emplace_back(kOverflow);
+  if (shape.open_end) warnings.emplace_back(kOpenEnd);
   return warnings;
 }
 
@@ -71,19 +69,14 @@ struct TextFile {
       rows = PointRows(text, shape, [](std::size_t, std::size_t, std::string_view) {});  // find_columns() has seen the words
       return;
     }
-    for (const char axis : {'x', 'y', 'z'}) {
-      columns.kept.push_back(columns.kept.size());
-      columns.properties.emplace_back();
-      columns.properties.back().name = axis;
-      columns.properties.back().type = Type::kFloat64;
-    }
+    Element bare;
+    for (const char* axis : {"x", "y", "z"}) columns.kept.push_back(bare.add(axis, Type::kFloat64));
+    columns.properties = std::move(bare.properties);
   }
 
   [[nodiscard]] Attributes table() {
-    Attributes table = table_of(columns);
-    if (shape.is_bare()) table.dialect = Attributes::Dialect::kPly;  // as of a cloud without a table
-    table.elements.back().count = shape.points;
-    return table;
+    const Attributes::Dialect dialect = shape.is_bare() ? Attributes::Dialect::kPly : Attributes::Dialect::kText;  // as without a table
+    return *Attributes::of_points(dialect, points_of(columns, shape.points));
   }
 
   Source source;

@@ -2,6 +2,7 @@
 // InvalidInput. None allocates more than the bytes at hand can fill.
 #pragma once
 
+#include "io/fixed_records.h"
 #include "io/point_stream.h"
 #include "io/random_file.h"
 #include "io/source.h"
@@ -26,12 +27,6 @@ Cloud read_xyz(const Source& source);
 Cloud read_obj(const Source& source);
 Cloud read_off(const Source& source);
 Cloud read_stl(const Source& source, bool binary);
-
-/// A table whose records lie in a file as they are in memory.
-struct StoredTable {
-  Attributes table;         ///< one element, without data
-  std::uint64_t begin = 0;  ///< byte offset of the first record
-};
 
 /// Where the records of a file are that begins with `head` and has `file_size` bytes; nothing where they are stored otherwise, or are not
 /// all there. What these throw, the reader of the format throws too.

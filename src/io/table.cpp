@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace g3r::io {
 
@@ -96,6 +97,29 @@ void store_double(Type type, double value, char* bytes) {
   }
 }
 
+void append_double(Type type, double value, std::string& bytes) {
+  char stored[8];
+  store_double(type, value, stored);
+  bytes.append(stored, size_of(type));
+}
+
+std::optional<Type> type_of(NumberKind kind, std::uint64_t bytes) {
+  switch (bytes) {
+    case 1:
+      if (kind == NumberKind::kFloat) return std::nullopt;
+      return kind == NumberKind::kSigned ? Type::kInt8 : Type::kUint8;
+    case 2:
+      if (kind == NumberKind::kFloat) return std::nullopt;
+      return kind == NumberKind::kSigned ? Type::kInt16 : Type::kUint16;
+    case 4:
+      return kind == NumberKind::kFloat ? Type::kFloat32 : kind == NumberKind::kSigned ? Type::kInt32 : Type::kUint32;
+    case 8:
+      return kind == NumberKind::kFloat ? Type::kFloat64 : kind == NumberKind::kSigned ? Type::kInt64 : Type::kUint64;
+    default:
+      return std::nullopt;
+  }
+}
+
 void swap_bytes(Type type, char* bytes) { std::reverse(bytes, bytes + size_of(type)); }
 
 std::size_t Element::stride() const {
@@ -112,6 +136,29 @@ std::size_t Element::find(std::string_view property_name) const {
     if (properties[i].name == property_name) return i;
   }
   return npos;
+}
+
+std::size_t Element::add(std::string property_name, Type type) {
+  properties.emplace_back();
+  properties.back().name = std::move(property_name);
+  properties.back().type = type;
+  return properties.size() - 1;
+}
+
+void swap_records(Element& element) {
+  char* number = element.data.data();
+  const char* const end = number + element.data.size();
+  while (number != end) {
+    for (const Property& property : element.properties) {
+      std::size_t length = property.count;
+      if (property.list) {
+        swap_bytes(property.count_type, number);
+        length = static_cast<std::size_t>(load_as_double(property.count_type, number));
+        number += size_of(property.count_type);
+      }
+      for (std::size_t k = 0; k < length; ++k, number += size_of(property.type)) swap_bytes(property.type, number);
+    }
+  }
 }
 
 RecordLayout::RecordLayout(const Element& element)
@@ -144,10 +191,10 @@ void RecordLayout::seek(const char* record) {
 
 namespace g3r {
 
-std::shared_ptr<Attributes> Attributes::of_points(Dialect dialect) {
+std::shared_ptr<Attributes> Attributes::of_points(Dialect dialect, io::Element points) {
   auto table = std::make_shared<Attributes>();
   table->dialect = dialect;
-  table->elements.push_back(io::make_vertex_element());
+  table->elements.push_back(std::move(points));
   return table;
 }
 

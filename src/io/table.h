@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 #include <new>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,6 +31,12 @@ constexpr std::size_t size_of(Type type) {
 }
 
 constexpr bool is_float(Type type) { return type == Type::kFloat32 || type == Type::kFloat64; }
+
+/// How a number is stored, apart from its size.
+enum class NumberKind : std::uint8_t { kSigned, kUnsigned, kFloat };
+
+/// The type of numbers of so many bytes; nothing if there is none.
+std::optional<Type> type_of(NumberKind kind, std::uint64_t bytes);
 
 template <class T>
 T load(const char* bytes) {
@@ -60,6 +67,9 @@ double load_as_double(Type type, const char* bytes);
 /// Stores `value` at `bytes`: rounded to nearest and kept within range for integers (0 for NaN), to nearest for float.
 void store_double(Type type, double value, char* bytes);
 
+/// The same after the last of `bytes`.
+void append_double(Type type, double value, std::string& bytes);
+
 /// Turns the number at `bytes` from big-endian to little-endian or back.
 void swap_bytes(Type type, char* bytes);
 
@@ -83,11 +93,16 @@ struct Element {
   [[nodiscard]] std::size_t stride() const;
   /// Index of a property, npos if there is none.
   [[nodiscard]] std::size_t find(std::string_view property_name) const;
+  /// Adds a property of one number; returns its index.
+  std::size_t add(std::string property_name, Type type);
   static constexpr std::size_t npos = static_cast<std::size_t>(-1);
 };
 
 /// The element of the points, called "vertex", empty.
 [[nodiscard]] Element make_vertex_element();
+
+/// Turns the numbers of the records from big-endian to little-endian, the lengths of lists included, which say where the next one is.
+void swap_records(Element& element);
 
 /// Byte offset of every property within one record.
 class RecordLayout {
@@ -119,8 +134,8 @@ class Attributes {
   std::size_t vertex = 0;             ///< index of the element that holds the points
   std::string raw;                    ///< LAS: the file, for what the table does not show
   [[nodiscard]] const io::Element& points() const { return elements[vertex]; }
-  /// With an empty element of points and no other.
-  [[nodiscard]] static std::shared_ptr<Attributes> of_points(Dialect dialect);
+  /// With an element of points, empty unless one is given, and no other.
+  [[nodiscard]] static std::shared_ptr<Attributes> of_points(Dialect dialect, io::Element points = io::make_vertex_element());
 };
 
 }  // namespace g3r

@@ -101,6 +101,10 @@ bool parse_integer(std::string_view token, T& value) {
 /// Reads a count from a header. Says what is wrong with it: missing, negative, not a number, too large.
 std::uint64_t parse_count(const Source& source, std::size_t line, std::string_view token, const std::string& what);
 
+/// What readers of texts warn of.
+inline constexpr const char* kOverflow = "a number is out of double's range: it is taken as infinite (not finite)";
+inline constexpr const char* kOpenEnd = "the last line has no line end: the file may be cut";
+
 /// `number` words, for messages: "expected a number, found "0,5" (a decimal comma? use a point)".
 std::string expected_number(std::string_view found);
 

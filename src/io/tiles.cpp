@@ -91,9 +91,7 @@ std::vector<std::string> find_tiles(const std::string& path) {
 
 void forget_las(Cloud& cloud) {
   if (cloud.attributes == nullptr || cloud.attributes->dialect != Attributes::Dialect::kLas) return;
-  auto table = std::make_shared<Attributes>();
-  table->elements.push_back(cloud.attributes->points());
-  cloud.attributes = std::move(table);
+  cloud.attributes = Attributes::of_points(Attributes::Dialect::kPly, cloud.attributes->points());
 }
 
 Cloud merge_clouds(std::vector<Cloud>& clouds, const std::vector<std::string>& names, const std::string& path) {

@@ -34,11 +34,7 @@ void write_npy(const PointData& data, OutputFile& file) {
     rows.next();
     record.clear();
     for (std::size_t c = 0; c < columns.size(); ++c) {
-      for (std::uint32_t k = 0; k < columns[c].property.count; ++k) {
-        char stored[8];
-        store_double(type, rows.number(c, k), stored);
-        record.append(stored, size_of(type));
-      }
+      for (std::uint32_t k = 0; k < columns[c].property.count; ++k) append_double(type, rows.number(c, k), record);
     }
     file.write(record);
   }

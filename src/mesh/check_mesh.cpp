@@ -1,12 +1,12 @@
 // Topology, size and shape of a triangle mesh.
 //
-// The three sides of all triangles are sorted by their end points; equal neighbours are the triangles that meet at one edge.
+// The three half-edges of all triangles are sorted by their end points; equal neighbours are the triangles that meet at one edge.
 // Two union-find passes over them give the components (triangles joined by edges) and the fans (corners joined by edges
 // around their vertex): a vertex with more than one fan is a bow-tie.
 #include "base/disjoint_sets.h"
 #include "base/median.h"
 #include "base/vector.h"
-#include "mesh/sides.h"
+#include "mesh/half_edges.h"
 #include "mesh/used_vertices.h"
 
 #include <g3r/error.h>
@@ -32,7 +32,7 @@ class Topology {
  public:
   explicit Topology(const Mesh& mesh)
       : mesh_(mesh), triangles_(mesh.triangles.size()), corners_(3 * mesh.triangles.size()), bad_vertex_(mesh.vertices.size(), 0) {
-    for_each_edge(mesh, [&](const Side* sides, std::size_t count) { add_edge(sides, count); });
+    for_each_edge(mesh, [&](const HalfEdge* half_edges, std::size_t count) { add_edge(half_edges, count); });
   }
 
   void fill(MeshCheck& check) {
@@ -58,22 +58,22 @@ class Topology {
   }
 
  private:
-  /// `sides`: the `count` sides between the same two vertices.
-  void add_edge(const Side* sides, std::size_t count) {
+  /// `half_edges`: the `count` half-edges between the same two vertices.
+  void add_edge(const HalfEdge* half_edges, std::size_t count) {
     ++edges_;
-    const bool loop = sides[0].low == sides[0].high;  // a triangle that names a vertex twice
+    const bool loop = half_edges[0].low == half_edges[0].high;  // a triangle that names a vertex twice
     std::size_t forward = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      if (is_forward(mesh_, sides[i])) ++forward;
+      if (is_forward(mesh_, half_edges[i])) ++forward;
       if (i == 0 || loop) continue;
-      triangles_.join(sides[0].corner / 3, sides[i].corner / 3);
-      corners_.join(corner_at(mesh_, sides[0], sides[0].low), corner_at(mesh_, sides[i], sides[0].low));
-      corners_.join(corner_at(mesh_, sides[0], sides[0].high), corner_at(mesh_, sides[i], sides[0].high));
+      triangles_.join(half_edges[0].corner / 3, half_edges[i].corner / 3);
+      corners_.join(corner_at(mesh_, half_edges[0], half_edges[0].low), corner_at(mesh_, half_edges[i], half_edges[0].low));
+      corners_.join(corner_at(mesh_, half_edges[0], half_edges[0].high), corner_at(mesh_, half_edges[i], half_edges[0].high));
     }
     if (loop || count != 2) ++edges_not_of_two_;
     if (count == 1 && !loop) ++boundary_edges_;
     if (loop || count > 2 || (count == 2 && forward != 1)) ++nonmanifold_edges_;
-    if (loop || count > 2) bad_vertex_[sides[0].low] = bad_vertex_[sides[0].high] = 1;
+    if (loop || count > 2) bad_vertex_[half_edges[0].low] = bad_vertex_[half_edges[0].high] = 1;
   }
 
   const Mesh& mesh_;
@@ -98,18 +98,18 @@ void measure(const Mesh& mesh, const Vec3& centre, MeshCheck& check) {
   }
 }
 
-/// Angles and aspect ratios. The smallest angle lies opposite the shortest side.
+/// Angles and aspect ratios. The smallest angle lies opposite the shortest edge.
 void measure_shape(const Mesh& mesh, MeshCheck& check) {
   std::vector<double> angles;
   angles.reserve(mesh.triangles.size());
   for (const auto& t : mesh.triangles) {
     const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-    std::array<Vec3, 3> side{subtract(c, b), subtract(a, c), subtract(b, a)};
-    std::sort(side.begin(), side.end(), [](const Vec3& s, const Vec3& u) { return dot(s, s) < dot(u, u); });
-    const Vec3 n = cross(side[1], side[2]);
+    std::array<Vec3, 3> edge{subtract(c, b), subtract(a, c), subtract(b, a)};
+    std::sort(edge.begin(), edge.end(), [](const Vec3& s, const Vec3& u) { return dot(s, s) < dot(u, u); });
+    const Vec3 n = cross(edge[1], edge[2]);
     const double twice_area = std::sqrt(dot(n, n));
-    angles.push_back(std::atan2(twice_area, std::fabs(dot(side[1], side[2]))) * kDegrees);
-    const double aspect = twice_area > 0 ? dot(side[2], side[2]) / twice_area : HUGE_VAL;
+    angles.push_back(std::atan2(twice_area, std::fabs(dot(edge[1], edge[2]))) * kDegrees);
+    const double aspect = twice_area > 0 ? dot(edge[2], edge[2]) / twice_area : HUGE_VAL;
     check.max_aspect = std::max(check.max_aspect, aspect);
   }
   check.min_angle = *std::min_element(angles.begin(), angles.end());

@@ -14,7 +14,7 @@ struct Support {
   double area = 0;                    ///< of its surface
   double near_area = 0;               ///< of that within kFarSpacings of a point
   double stands_for = 0;              ///< points that its area stands for
-  double stands_for_under_noise = 0;  ///< the same where noise makes specks of the sign
+  double stands_for_under_noise = 0;  ///< the same where noise makes spurious components
   double strays = 0;                  ///< beside it
   double points = 0;                  ///< that lie at it
 
@@ -30,9 +30,9 @@ void add_areas(const Mesh& mesh, const std::vector<std::uint32_t>& component, co
 void add_points(const Mesh& mesh, const std::vector<std::uint32_t>& component, const std::vector<Vec3>& points,
                 const std::vector<double>& spacing, double scatter, const std::vector<Vec3>& strays, std::vector<Support>& support);
 
-/// Marks (1) the components that stay. The one with most area near points always does. Of the others go, and are added to `dropped`, specks
-/// (MeshOptions::min_component), those that fewer points hold than least_points_of_a_part(strays), and those that fewer points hold than
-/// strays are within 3 spacings of them, as in a cloud that fills space; and those beyond MeshOptions::keep_largest.
+/// Marks (1) the components that stay. The one with most area near points always does. Of the others go, and are added to `dropped`,
+/// spurious ones (MeshOptions::min_component), those that fewer points hold than least_points_of_a_part(strays), and those that fewer
+/// points hold than strays are within 3 spacings of them, as in a cloud that fills space; and those beyond MeshOptions::keep_largest.
 [[nodiscard]] std::vector<std::uint8_t> kept_components(const std::vector<Support>& support, const MeshOptions& options, std::size_t strays,
                                                         Dropped& dropped);
 

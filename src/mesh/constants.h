@@ -9,7 +9,7 @@ namespace g3r::mesh {
 
 /// No point, vertex, triangle or leaf.
 inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-/// The items of a parallel block: smaller blocks cost more to hand out than to do, larger ones leave threads idle at the end.
+/// The items of a parallel block: smaller blocks cost more to start than to do, larger ones leave threads idle at the end.
 inline constexpr std::size_t kBlock = 256;
 /// The tasks that a walk through a tree is cut into, whatever the number of threads, so that their order is always the same: fewer leave
 /// threads idle.
@@ -19,6 +19,9 @@ inline constexpr std::size_t kTasks = 256;
 inline constexpr std::size_t kRing = 8;
 /// The points of a fit, the nearest ones to the place: a quadratic has six numbers and normals double the data; more reach across walls.
 inline constexpr std::size_t kFitPoints = 2 * kRing;
+/// Cosine of two normals, 32 degrees, up to which points are on one patch: creases of CAD models turn more, and smooth surfaces less from
+/// one point to the next, with the noise that normals have.
+inline constexpr double kSamePatch = 0.85;
 /// The points of a patch beside a point that make it one: corners of cubes have so many, fewer are noise, and random points have one.
 inline constexpr std::size_t kPatchPoints = 3;
 /// The places, evenly from all, at which properties of a whole cloud are taken: medians and shares of so many are good to 2 %.
@@ -32,6 +35,9 @@ inline constexpr double kNoisy = 0.15;
 /// Half of the widest gap between points of a random sample of a surface, in spacings: the disc around a point that is refined, as the
 /// holes of the sample would be coarse with less, and the distance up to which surface is held by it.
 inline constexpr double kGap = 1.4;
+/// The half thickness in spacings of the disc around each point whose leaves are refined: the surface curves away from the tangent plane by
+/// so much within it.
+inline constexpr double kDiscHalf = 0.3;
 /// The spacings beyond which surface without a point is a guess.
 inline constexpr double kFarSpacings = 4;
 /// The cosine below which two directions are rather square to each other, 73 degrees, and the sine below which they are rather parallel, 17

@@ -3,6 +3,7 @@
 #include "base/median.h"
 #include "base/vector.h"
 #include "cpu/parallel.h"
+#include "mesh/constants.h"
 
 #include <algorithm>
 #include <array>
@@ -17,25 +18,21 @@ using vector::dot;
 
 // More take time, and shares of so many are good to a hundredth of a percent.
 constexpr std::size_t kLooks = 20000;
-constexpr std::size_t kLooksPerBlock = 64;
 // The cosine below which a normal has another direction: of shallower crossings the two surfaces are within kLayer of each other where they
 // are looked at.
 constexpr double kOther = 0.8;
-// So many of the 16 nearest have one: fewer are at the end of the normals' accuracy.
-constexpr std::size_t kFewestOthers = 3;
 // How far from the point the line may be, and how far from the line surfaces are looked at, in spacings: farther, they curve.
 constexpr double kReach = 2.5;
 constexpr double kAround = 3.5;
 // Of an X there are some 80 points so near, and no more are looked at, however dense they are.
 constexpr std::size_t kMostAround = 96;
-// A point is on a plane if it is so near, in spacings, and its normal so near by its cosine: noise and curvature leave as much.
+// A point is on a plane if it is so near, in spacings, and its normal is one of the plane's patch: noise and curvature leave as much.
 constexpr double kLayer = 0.8;
-constexpr double kParallel = 0.85;
 // The share of the points around that are on one of the two planes: where shapes are more than two surfaces, less are.
 constexpr double kExplained = 0.85;
 // Each of the four halves has so many points beyond so many spacings from the line: the ends of creases and of walls that stand on others
 // scatter less far.
-constexpr double kGap = 0.7;
+constexpr double kBeyondLine = 0.7;
 constexpr std::size_t kFewestInHalf = 5;
 // Their normals point to one side but for so many: those of the two sides of a thin wall do not.
 constexpr double kOneSided = 0.9;
@@ -56,7 +53,7 @@ bool goes_on(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, 
   for (const std::uint32_t j : around) {
     const Vec3 d = vector::subtract(points[j], place);
     const double cosine = dot(normals[j], normal), t = dot(d, along);
-    if (std::fabs(dot(d, normal)) > kLayer * spacing || std::fabs(cosine) < kParallel || std::fabs(t) < kGap * spacing) continue;
+    if (std::fabs(dot(d, normal)) > kLayer * spacing || std::fabs(cosine) < kSamePatch || std::fabs(t) < kBeyondLine * spacing) continue;
     const std::size_t half = t > 0 ? 1 : 0;
     ++count[half];
     front[half] += cosine > 0 ? 1 : 0;
@@ -75,7 +72,7 @@ double crossing_at(const PointSet& set, const std::vector<Vec3>& normals, std::s
   const std::uint32_t* const end = near + set.near_count();
   const Vec3& a = normals[i];
   const auto is_other = [&](std::uint32_t j) { return std::fabs(dot(a, normals[j])) < kOther; };
-  if (static_cast<std::size_t>(std::count_if(near, end, is_other)) < kFewestOthers) return 0;
+  if (static_cast<std::size_t>(std::count_if(near, end, is_other)) < kPatchPoints) return 0;  // fewer: noise of normals
   const std::uint32_t other = *std::find_if(near, end, is_other);
   const Vec3& b = normals[other];
   // The line of the planes a.(x - p) = 0 and b.(x - q) = 0, at its place nearest to p: p + t u, where u is in the first plane and across
@@ -108,7 +105,7 @@ Crossings find_crossings(const PointSet& set, const std::vector<Vec3>& normals) 
   (void)set.tree();  // made before threads ask for them
   (void)set.near();
   (void)set.smoothed_spacing();
-  parallel::for_blocks(angles.size(), kLooksPerBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(angles.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     Look look;
     for (std::size_t k = begin; k < end; ++k) angles[k] = crossing_at(set, normals, k * every, look);
   });

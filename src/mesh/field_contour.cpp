@@ -145,12 +145,12 @@ Arcs join_arcs(const Octree& octree, const std::vector<ActiveEdge>& edges, const
   return out;
 }
 
-// ---- sheets: the loops of arcs on the boundary of each leaf ----
+// ---- patches: the loops of arcs on the boundary of each leaf ----
 
-// Sheet of every (edge, place), 4 per edge; kNone in leaves that are not complete.
+// Patch of every (edge, place), 4 per edge; kNone in leaves that are not complete.
 template <class Complete>
-std::vector<std::uint32_t> label_sheets(const std::vector<ActiveEdge>& edges, const std::vector<FaceRecord>& arcs, const Complete& complete,
-                                        DualSurface& surface) {
+std::vector<std::uint32_t> label_patches(const std::vector<ActiveEdge>& edges, const std::vector<FaceRecord>& arcs,
+                                         const Complete& complete, DualSurface& surface) {
   DisjointSets groups(edges.size() * 4);
   for (std::uint32_t e = 0; e < edges.size(); ++e) {
     for (std::uint32_t k = 0; k < 4; ++k) {
@@ -167,21 +167,21 @@ std::vector<std::uint32_t> label_sheets(const std::vector<ActiveEdge>& edges, co
       groups.join(place_of(arc.place / 4, leaf), place_of(arc.other / 4, leaf));
     }
   }
-  std::vector<std::uint32_t> sheet(edges.size() * 4, kNone);
+  std::vector<std::uint32_t> patch(edges.size() * 4, kNone);
   std::vector<std::size_t> count;
-  for (std::uint32_t i = 0; i < sheet.size(); ++i) {
+  for (std::uint32_t i = 0; i < patch.size(); ++i) {
     if (!complete(edges[i / 4].leaf[i % 4])) continue;
     const std::size_t root = groups.find(i);
     if (root == i) {
-      sheet[i] = static_cast<std::uint32_t>(surface.patch_leaf.size());
+      patch[i] = static_cast<std::uint32_t>(surface.patch_leaf.size());
       surface.patch_leaf.push_back(edges[i / 4].leaf[i % 4]);
       count.push_back(0);
     } else {
-      sheet[i] = sheet[root];
+      patch[i] = patch[root];
     }
     const bool repeated =
         i % 4 != 0 ? edges[i / 4].leaf[i % 4] == edges[i / 4].leaf[i % 4 - 1] : edges[i / 4].leaf[0] == edges[i / 4].leaf[3];
-    if (!repeated) ++count[sheet[i]];
+    if (!repeated) ++count[patch[i]];
   }
   surface.patch_begin.assign(count.size() + 1, 0);
   for (std::size_t s = 0; s < count.size(); ++s) surface.patch_begin[s + 1] = surface.patch_begin[s] + count[s];
@@ -189,19 +189,19 @@ std::vector<std::uint32_t> label_sheets(const std::vector<ActiveEdge>& edges, co
   std::vector<std::size_t> fill(surface.patch_begin.begin(), surface.patch_begin.end() - 1);
   for (std::uint32_t e = 0; e < edges.size(); ++e) {
     for (std::uint32_t k = 0; k < 4; ++k) {
-      if (sheet[4 * e + k] != kNone && edges[e].leaf[k] != edges[e].leaf[(k + 3) % 4])
-        surface.patch_crossings[fill[sheet[4 * e + k]]++] = e;
+      if (patch[4 * e + k] != kNone && edges[e].leaf[k] != edges[e].leaf[(k + 3) % 4])
+        surface.patch_crossings[fill[patch[4 * e + k]]++] = e;
     }
   }
-  return sheet;
+  return patch;
 }
 
-// Two sheets joined by several arcs of one face would share several mesh edges: each of these gets a vertex in its middle.
-std::unordered_map<std::uint32_t, std::uint32_t> split_double_edges(const Arcs& arcs, const std::vector<std::uint32_t>& sheet,
+// Two patches joined by several arcs of one face would share several mesh edges: each of these gets a vertex in its middle.
+std::unordered_map<std::uint32_t, std::uint32_t> split_double_edges(const Arcs& arcs, const std::vector<std::uint32_t>& patch,
                                                                     DualSurface& surface) {
   std::unordered_map<std::uint32_t, std::uint32_t> middle;  // place -> vertex
   const auto pair_of = [&](const FaceRecord& arc) {
-    const std::uint64_t a = sheet[arc.place], b = sheet[arc.place / 4 * 4 + (arc.place + 1) % 4];
+    const std::uint64_t a = patch[arc.place], b = patch[arc.place / 4 * 4 + (arc.place + 1) % 4];
     return (std::min(a, b) << 32U) | std::max(a, b);
   };
   for (std::size_t i = arcs.first_multiple; i < arcs.arcs.size();) {
@@ -231,7 +231,7 @@ bool touch_only_here(const Octree& octree, const ActiveEdge& e, std::uint32_t le
   return low == octree.corner_grid(e.low)[e.axis] && high == octree.corner_grid(e.high)[e.axis];
 }
 
-void make_polygons(const Octree& octree, const std::vector<ActiveEdge>& edges, const std::vector<std::uint32_t>& sheet,
+void make_polygons(const Octree& octree, const std::vector<ActiveEdge>& edges, const std::vector<std::uint32_t>& patch,
                    const std::unordered_map<std::uint32_t, std::uint32_t>& middle, DualSurface& surface) {
   surface.polygon_begin.assign(1, 0);
   surface.polygon_vertices.reserve(edges.size() * 4);
@@ -241,7 +241,7 @@ void make_polygons(const Octree& octree, const std::vector<ActiveEdge>& edges, c
     const auto first = static_cast<std::ptrdiff_t>(surface.polygon_vertices.size());
     std::vector<std::uint32_t>& polygon = surface.polygon_vertices;
     for (std::size_t k = 0; k < 4; ++k) {
-      if (e.leaf[k] != e.leaf[(k + 3) % 4]) polygon.push_back(sheet[4 * i + k]);
+      if (e.leaf[k] != e.leaf[(k + 3) % 4]) polygon.push_back(patch[4 * i + k]);
       const auto found = middle.empty() ? middle.end() : middle.find(static_cast<std::uint32_t>(4 * i + k));
       if (found != middle.end()) polygon.push_back(found->second);
     }
@@ -276,9 +276,9 @@ DualSurface contour(const Octree& octree, const std::vector<std::uint8_t>& insid
   DualSurface surface;
   surface.crossings.reserve(crossing.size());
   for (const ActiveEdge& e : crossing) surface.crossings.push_back(e.inside_low ? Crossing{e.low, e.high} : Crossing{e.high, e.low});
-  const std::vector<std::uint32_t> sheet = label_sheets(crossing, arcs.arcs, all, surface);
-  const auto middle = split_double_edges(arcs, sheet, surface);
-  make_polygons(octree, crossing, sheet, middle, surface);
+  const std::vector<std::uint32_t> patch = label_patches(crossing, arcs.arcs, all, surface);
+  const auto middle = split_double_edges(arcs, patch, surface);
+  make_polygons(octree, crossing, patch, middle, surface);
   return surface;
 }
 
@@ -288,8 +288,8 @@ std::vector<MinimalEdge> edges_around(const Octree& octree, const std::vector<st
                                         cancel);
 }
 
-Sheets sheets_in(const Octree& octree, const std::vector<MinimalEdge>& edges, const std::vector<std::uint32_t>& chosen,
-                 const std::vector<std::uint8_t>& leaves, const std::vector<std::uint8_t>& inside, const InsideTest& centre_inside) {
+Patches patches_in(const Octree& octree, const std::vector<MinimalEdge>& edges, const std::vector<std::uint32_t>& chosen,
+                   const std::vector<std::uint8_t>& leaves, const std::vector<std::uint8_t>& inside, const InsideTest& centre_inside) {
   const auto marked = [&](std::size_t leaf) { return leaves[leaf] != 0; };
   std::vector<ActiveEdge> crossing;
   std::vector<std::uint32_t> number;
@@ -300,7 +300,7 @@ Sheets sheets_in(const Octree& octree, const std::vector<MinimalEdge>& edges, co
     number.push_back(k);
   }
   DualSurface surface;
-  label_sheets(crossing, join_arcs(octree, crossing, marked, centre_inside).arcs, marked, surface);
+  label_patches(crossing, join_arcs(octree, crossing, marked, centre_inside).arcs, marked, surface);
   for (std::uint32_t& k : surface.patch_crossings) k = number[k];
   return {std::move(surface.patch_leaf), std::move(surface.patch_begin), std::move(surface.patch_crossings)};
 }

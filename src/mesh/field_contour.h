@@ -1,7 +1,7 @@
 // Manifold dual contouring of a sign pattern on an octree: which vertices there are and how they are joined, no positions yet.
 //
 // Ju, Losasso, Schaefer, Warren, "Dual contouring of Hermite data", SIGGRAPH 2002 (one polygon per crossing edge);
-// Schaefer, Ju, Warren, "Manifold dual contouring", TVCG 2007 (one vertex per sheet). docs/algorithms/mesher.md proves that the result is a
+// Schaefer, Ju, Warren, "Manifold dual contouring", TVCG 2007 (one vertex per patch). docs/algorithms/mesher.md proves that the result is a
 // closed 2-manifold for every octree and every sign pattern whose boundary corners are outside.
 #pragma once
 
@@ -23,18 +23,18 @@ struct Crossing {
   std::uint32_t outside = 0;  ///< corner
 };
 
-/// A vertex in the middle of an arc: of the line across a face of the octree along which two sheets meet.
+/// A vertex in the middle of an arc: of the line across a face of the octree along which two patches meet.
 struct ArcMiddle {
-  std::array<std::uint32_t, 2> sheets{};
+  std::array<std::uint32_t, 2> patches{};
   std::array<std::uint32_t, 2> crossings{};  ///< at the ends of the arc
 };
 
-/// The surface as a polygon mesh. Vertices 0..patches-1 are sheets, each within one leaf; the rest subdivide edges that would coincide.
+/// The surface as a polygon mesh. Vertices 0..patches-1 are patches, each within one leaf; the rest subdivide edges that would coincide.
 struct DualSurface {
   std::vector<Crossing> crossings;              ///< one per polygon
-  std::vector<std::uint32_t> patch_leaf;        ///< leaf that holds each sheet
+  std::vector<std::uint32_t> patch_leaf;        ///< leaf that holds each patch
   std::vector<std::size_t> patch_begin;         ///< patches + 1 offsets into patch_crossings
-  std::vector<std::uint32_t> patch_crossings;   ///< crossings on the rim of each sheet
+  std::vector<std::uint32_t> patch_crossings;   ///< crossings on the rim of each patch
   std::vector<ArcMiddle> midpoints;             ///< for each further vertex
   std::vector<std::size_t> polygon_begin;       ///< crossings + 1 offsets into polygon_vertices
   std::vector<std::uint32_t> polygon_vertices;  ///< counter-clockwise seen from outside
@@ -55,20 +55,20 @@ using InsideTest = std::function<std::vector<std::uint8_t>(const std::vector<Vec
 [[nodiscard]] std::vector<MinimalEdge> edges_around(const Octree& octree, const std::vector<std::uint8_t>& leaves,
                                                     const std::atomic<bool>* cancel = nullptr);
 
-/// Sheets without a surface around them.
-struct Sheets {
-  std::vector<std::uint32_t> leaf;  ///< that holds each sheet
-  std::vector<std::size_t> begin;   ///< sheets + 1 offsets into rim
-  std::vector<std::uint32_t> rim;   ///< edges that cross on the rim of each sheet
+/// Patches without a surface around them.
+struct Patches {
+  std::vector<std::uint32_t> leaf;  ///< that holds each patch
+  std::vector<std::size_t> begin;   ///< patches + 1 offsets into rim
+  std::vector<std::uint32_t> rim;   ///< edges that cross on the rim of each patch
 };
 
-/// The sheets of the surface in the marked leaves (one byte per leaf) alone. `chosen`: of `edges`, at least those around marked leaves; in
+/// The patches of the surface in the marked leaves (one byte per leaf) alone. `chosen`: of `edges`, at least those around marked leaves; in
 /// the order that the edges of rims are to have. O(chosen log chosen), and O(leaves) where many are chosen.
-[[nodiscard]] Sheets sheets_in(const Octree& octree, const std::vector<MinimalEdge>& edges, const std::vector<std::uint32_t>& chosen,
-                               const std::vector<std::uint8_t>& leaves, const std::vector<std::uint8_t>& inside,
-                               const InsideTest& centre_inside);
+[[nodiscard]] Patches patches_in(const Octree& octree, const std::vector<MinimalEdge>& edges, const std::vector<std::uint32_t>& chosen,
+                                 const std::vector<std::uint8_t>& leaves, const std::vector<std::uint8_t>& inside,
+                                 const InsideTest& centre_inside);
 
-/// Cuts the polygons into triangles; `positions` has one entry per vertex of the surface, `normals` (may be empty) one per sheet.
+/// Cuts the polygons into triangles; `positions` has one entry per vertex of the surface, `normals` (may be empty) one per patch.
 /// Quadrilaterals are cut along the diagonal that bends less against the normals; other polygons get a vertex at their centre.
 [[nodiscard]] Mesh triangulate(const DualSurface& surface, std::vector<Vec3> positions, const std::vector<Vec3>& normals);
 

@@ -17,20 +17,18 @@ constexpr double kFieldSure = 0.2;
 // The corners of which more than the side is in memory at the same time.
 constexpr std::size_t kCornersAtOnce = std::size_t{1} << 17;
 // The value of an ambiguous corner is 2 (w - level) and, of the fitted surface, this at most, so that the two weigh alike where the field
-// is sure,
+// is sure. It has that from kDiscHalf spacings away on, as the surface curves by no more.
 constexpr double kFitSay = 2 * kFieldSure;
-// which it has from so many spacings away on.
-constexpr double kFitFar = 0.3;
 // The distance in spacings from the surface at which a corner counts whose sign was changed to remove a handle: vertices are placed by it.
 constexpr double kFlipped = 0.1;
 
 }  // namespace
 
 struct CornerSides::Place {
-  enum Kind : std::uint8_t { kSure, kDoubtful, kUnknown, kUnwanted };
+  enum Kind : std::uint8_t { kSure, kAmbiguous, kUnknown, kUnwanted };
   Kind kind = kSure;
   float value = 0;
-  float opinion = 0;
+  float signed_value = 0;
   std::array<float, 3> axis{};
 };
 
@@ -67,10 +65,10 @@ Corners CornerSides::of(const Octree& octree, const std::function<bool(std::uint
       const auto c = static_cast<std::uint32_t>(first + i);
       const Place& place = places[i];
       corners.value[c] = place.value;
-      if (place.kind == Place::kUnknown) asked.push_back({c, kNoOpinion});
-      if (place.kind != Place::kDoubtful) continue;
-      asked.push_back({c, static_cast<std::uint32_t>(corners.opinions.corner.size())});
-      corners.opinions.add(c, place.opinion, place.axis);
+      if (place.kind == Place::kUnknown) asked.push_back({c, kNotAmbiguous});
+      if (place.kind != Place::kAmbiguous) continue;
+      asked.push_back({c, static_cast<std::uint32_t>(corners.ambiguous.corner.size())});
+      corners.ambiguous.add(c, place.signed_value, place.axis);
     }
     if (asked.size() < asked_at_once_) continue;
     ask_field(octree, asked, corners);
@@ -92,9 +90,9 @@ CornerSides::Place CornerSides::fit_at(const Vec3& at) const {
   const double value = -fit.distance(x);
   place.value = static_cast<float>(value);
   if (fit.simple) return place;
-  place.kind = Place::kDoubtful;
-  place.opinion = static_cast<float>(kFitSay * std::clamp(value / (kFitFar * fit.spacing), -1.0, 1.0));
-  for (std::size_t a = 0; a < 3; ++a) place.axis[a] = static_cast<float>(fit.sheet[0].frame(2, static_cast<Eigen::Index>(a)));
+  place.kind = Place::kAmbiguous;
+  place.signed_value = static_cast<float>(kFitSay * std::clamp(value / (kDiscHalf * fit.spacing), -1.0, 1.0));
+  for (std::size_t a = 0; a < 3; ++a) place.axis[a] = static_cast<float>(fit.patch[0].frame(2, static_cast<Eigen::Index>(a)));
   return place;
 }
 
@@ -106,11 +104,11 @@ void CornerSides::ask_field(const Octree& octree, const std::vector<Asked>& aske
   for (std::size_t k = 0; k < asked.size(); ++k) {
     const double f = field[k] - level_;
     float& value = corners.value[asked[k].corner];
-    const bool known = asked[k].opinion != kNoOpinion;
+    const bool known = asked[k].ambiguous != kNotAmbiguous;
     if (!known || (std::abs(f) >= kFieldSure && (value > 0) != (f > 0))) value = static_cast<float>(f * spacing_);
     if (!known) continue;
-    float& opinion = corners.opinions.side[asked[k].opinion];
-    opinion = static_cast<float>(std::clamp(2 * f + opinion, -1.0, 1.0));
+    float& signed_value = corners.ambiguous.value[asked[k].ambiguous];
+    signed_value = static_cast<float>(std::clamp(2 * f + signed_value, -1.0, 1.0));
   }
 }
 
@@ -133,7 +131,7 @@ std::vector<std::uint8_t> sides_by_fit(const LocalFit& local, const std::vector<
   return inside;
 }
 
-void settle_values(const Octree& octree, const std::vector<std::uint8_t>& inside, double typical, std::vector<float>& value) {
+void match_values(const Octree& octree, const std::vector<std::uint8_t>& inside, double typical, std::vector<float>& value) {
   for (std::size_t c = 0; c < inside.size(); ++c) {
     if ((value[c] > 0) != (inside[c] != 0) && !octree.on_boundary(c))
       value[c] = static_cast<float>((inside[c] != 0 ? kFlipped : -kFlipped) * typical);

@@ -22,8 +22,8 @@ inline constexpr double kBeyond = 0.05;
 
 /// The corners of an octree.
 struct Corners {
-  std::vector<float> value;  ///< of each: positive inside, about minus the distance to the surface
-  Opinions opinions;         ///< of those that could be on either side
+  std::vector<float> value;    ///< of each: positive inside, about minus the distance to the surface
+  AmbiguousCorners ambiguous;  ///< of those that could be on either side
 };
 
 /// The cube that holds all points.
@@ -46,10 +46,10 @@ class CornerSides {
 
  private:
   struct Place;
-  static constexpr std::uint32_t kNoOpinion = std::numeric_limits<std::uint32_t>::max();
+  static constexpr std::uint32_t kNotAmbiguous = std::numeric_limits<std::uint32_t>::max();
   struct Asked {
     std::uint32_t corner;
-    std::uint32_t opinion;  // its place among the opinions, or kNoOpinion
+    std::uint32_t ambiguous;  // its place among the ambiguous ones, or kNotAmbiguous
   };
 
   [[nodiscard]] Place fit_at(const Vec3& at) const;
@@ -69,6 +69,6 @@ class CornerSides {
 [[nodiscard]] std::vector<std::uint8_t> sides_by_fit(const LocalFit& local, const std::vector<Vec3>& places);
 
 /// Where handles were removed `inside` is not the sign of the values: they become small ones of that side.
-void settle_values(const Octree& octree, const std::vector<std::uint8_t>& inside, double typical, std::vector<float>& value);
+void match_values(const Octree& octree, const std::vector<std::uint8_t>& inside, double typical, std::vector<float>& value);
 
 }  // namespace g3r::mesh

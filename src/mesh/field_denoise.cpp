@@ -70,11 +70,11 @@ Noise estimate_noise(const OrientedPoints& points, const Neighbours& neighbours)
       const auto i = static_cast<std::size_t>(std::uint64_t{s} * n / count);
       const double h = points.spacing[i];
       const std::vector<FitPoint>& members = near.gather(i, kEstimateWidth);
-      const Sheet sheet = fit_sheet(members, 0, h, kSlopeWeight);
+      const QuadraticPatch patch = fit_quadratic_patch(members, 0, h, kSlopeWeight);
       double height = 0, slope = 0, total = 0, squares = 0;
       for (const FitPoint& m : members) {
         Vector3d g;
-        const double d = sheet.distance(m.p, &g) / h;
+        const double d = patch.distance(m.p, &g) / h;
         height += m.weight * d * d;
         slope += m.weight * (g - m.n).squaredNorm();
         total += m.weight;
@@ -102,13 +102,13 @@ void denoise(OrientedPoints& points, const Neighbours& neighbours, const Noise& 
       [&](std::size_t begin, std::size_t end) {
         Neighbourhood near(points, neighbours);
         for (std::size_t i = begin; i < end; ++i) {
-          const Sheet sheet = fit_sheet(near.gather(i, width), 0, points.spacing[i], normal_weight);
+          const QuadraticPatch patch = fit_quadratic_patch(near.gather(i, width), 0, points.spacing[i], normal_weight);
           Vector3d x = to_eigen(points.positions[i]), g;
           for (int step = 0; step < 3; ++step) {
-            const double f = sheet.distance(x, &g);
+            const double f = patch.distance(x, &g);
             x -= f * g;
           }
-          (void)sheet.distance(x, &g);
+          (void)patch.distance(x, &g);
           const bool sound = x.allFinite() && g.allFinite();
           positions[i] = sound ? Vec3{x[0], x[1], x[2]} : points.positions[i];
           normals[i] = sound ? Vec3{g[0], g[1], g[2]} : points.normals[i];

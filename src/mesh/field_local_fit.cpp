@@ -14,9 +14,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Cosine of two normals, 32 degrees, up to which points are on one patch: creases of CAD models turn more, and smooth surfaces less from
-// one point to the next.
-constexpr double kSameSheet = 0.85;
 // Weights are about exp(-t) for t up to this and 0 beyond; it is a power of two, for bell().
 constexpr double kFaint = 16;
 // Spacings that the points of each of two patches are beside the other, on one side, for them to meet in a crease: closer ones, and such on
@@ -31,8 +28,8 @@ constexpr double kWider = 1 + kRounding;
 constexpr double kSplitGain = 0.05;
 
 using Member = FitPoint;
-// The sheet of a member that none has taken yet, and of one that makes no sheet with those like it.
-enum : int { kUndealt = -1, kLeftOut = -2 };
+// The patch of a member that none has taken yet, and of one that makes no patch with those like it.
+enum : int { kUnassigned = -1, kLeftOut = -2 };
 
 // About exp(-t), 0 at kFaint.
 double bell(double t) {
@@ -40,8 +37,8 @@ double bell(double t) {
   return a8 * a8;
 }
 
-// Squared misfit of a member to a sheet, positions and slopes weighed as in the fit, in units of h^2.
-double misfit(const Sheet& s, const Member& m, double h) {
+// Squared misfit of a member to a patch, positions and slopes weighed as in the fit, in units of h^2.
+double misfit(const QuadraticPatch& s, const Member& m, double h) {
   Vector3d g;
   const double d = s.distance(m.p, &g) / h;
   return m.weight * (d * d + kSlopeWeight * (g - m.n).squaredNorm());
@@ -50,11 +47,11 @@ double misfit(const Sheet& s, const Member& m, double h) {
 Joint joint_of(const LocalSurface& s, const std::vector<Member>& members, int a, int b) {
   double a_at_b = 0, b_at_a = 0, wa = 0, wb = 0;
   for (const Member& m : members) {
-    if (m.sheet == b) {
-      a_at_b += m.weight * s.sheet[static_cast<std::size_t>(a)].distance(m.p);
+    if (m.patch == b) {
+      a_at_b += m.weight * s.patch[static_cast<std::size_t>(a)].distance(m.p);
       wb += m.weight;
-    } else if (m.sheet == a) {
-      b_at_a += m.weight * s.sheet[static_cast<std::size_t>(b)].distance(m.p);
+    } else if (m.patch == a) {
+      b_at_a += m.weight * s.patch[static_cast<std::size_t>(b)].distance(m.p);
       wa += m.weight;
     }
   }
@@ -66,10 +63,10 @@ Joint joint_of(const LocalSurface& s, const std::vector<Member>& members, int a,
   return Joint::kNone;
 }
 
-// The nearest point left seeds a sheet, which takes those with similar normals: similar to the seed's, then to their mean. False if no
+// The nearest point left seeds a patch, which takes those with similar normals: similar to the seed's, then to their mean. False if no
 // point is left.
-bool deal_out(LocalSurface& s, std::vector<Member>& members) {
-  const auto seed = std::find_if(members.begin(), members.end(), [](const Member& m) { return m.sheet == kUndealt; });
+bool grow_patch(LocalSurface& s, std::vector<Member>& members) {
+  const auto seed = std::find_if(members.begin(), members.end(), [](const Member& m) { return m.patch == kUnassigned; });
   if (seed == members.end()) return false;
   Vector3d axis = seed->n;
   std::size_t taken = 0;
@@ -77,9 +74,9 @@ bool deal_out(LocalSurface& s, std::vector<Member>& members) {
     Vector3d mean = Vector3d::Zero();
     taken = 0;
     for (Member& m : members) {
-      if (m.sheet != kUndealt && m.sheet != s.count) continue;
-      const bool same = m.n.dot(axis) > kSameSheet || &m == &*seed;
-      m.sheet = same ? s.count : kUndealt;
+      if (m.patch != kUnassigned && m.patch != s.count) continue;
+      const bool same = m.n.dot(axis) > kSamePatch || &m == &*seed;
+      m.patch = same ? s.count : kUnassigned;
       if (!same) continue;
       mean += m.weight * m.n;
       ++taken;
@@ -88,18 +85,18 @@ bool deal_out(LocalSurface& s, std::vector<Member>& members) {
   }
   if (taken < std::min(kPatchPoints, members.size()) && s.count > 0) {
     for (Member& m : members) {
-      if (m.sheet == s.count) m.sheet = kLeftOut;
+      if (m.patch == s.count) m.patch = kLeftOut;
     }
     return true;
   }
-  s.sheet[static_cast<std::size_t>(s.count)] = fit_sheet(members, s.count, s.spacing, kSlopeWeight);
+  s.patch[static_cast<std::size_t>(s.count)] = fit_quadratic_patch(members, s.count, s.spacing, kSlopeWeight);
   ++s.count;
   return true;
 }
 
-// Whether two of the sheets face each other or away from each other.
+// Whether two of the patches face each other or away from each other.
 bool has_walls(const LocalSurface& s) {
-  const auto normal = [&](int k) { return s.sheet[static_cast<std::size_t>(k)].frame.row(2); };
+  const auto normal = [&](int k) { return s.patch[static_cast<std::size_t>(k)].frame.row(2); };
   for (int a = 0; a < s.count; ++a) {
     for (int b = 0; b < a; ++b) {
       if (normal(a).dot(normal(b)) < -kSlant) return true;
@@ -108,45 +105,45 @@ bool has_walls(const LocalSurface& s) {
   return false;
 }
 
-// Whether all points belong to the one sheet, and their tangent planes have x on the side that it has it on. Planes nearer than half
+// Whether all points belong to the one patch, and their tangent planes have x on the side that it has it on. Planes nearer than half
 // a spacing need not: curvature does that to them.
 bool is_simple(const LocalSurface& s, const std::vector<Member>& members, const Vector3d& x) {
-  const double f = s.sheet[0].distance(x);
+  const double f = s.patch[0].distance(x);
   return std::all_of(members.begin(), members.end(), [&](const Member& m) {
     const double plane = m.n.dot(x - m.p);
-    return m.sheet == 0 && ((plane > 0) == (f > 0) || std::abs(plane) < 0.5 * s.spacing);
+    return m.patch == 0 && ((plane > 0) == (f > 0) || std::abs(plane) < 0.5 * s.spacing);
   });
 }
 
-// Undersampled detail also makes normals differ. Several sheets are kept only if they explain the points far better than one smooth
-// sheet does; sheets that face each other are always kept.
-void prefer_one_sheet(LocalSurface& s, std::vector<Member>& members) {
+// Undersampled detail also makes normals differ. Several patches are kept only if they explain the points far better than one smooth
+// patch does; patches that face each other are always kept.
+void prefer_one_patch(LocalSurface& s, std::vector<Member>& members) {
   if (s.walls) return;
   double split = 0, whole = 0;
-  std::array<int, kFitPoints> sheet{};
+  std::array<int, kFitPoints> patch{};
   for (std::size_t i = 0; i < members.size(); ++i) {
     Member& m = members[i];
-    if (m.sheet >= 0) split += misfit(s.sheet[static_cast<std::size_t>(m.sheet)], m, s.spacing);
-    sheet[i] = m.sheet;
-    if (m.sheet >= 0) m.sheet = 0;
+    if (m.patch >= 0) split += misfit(s.patch[static_cast<std::size_t>(m.patch)], m, s.spacing);
+    patch[i] = m.patch;
+    if (m.patch >= 0) m.patch = 0;
   }
-  const Sheet one = fit_sheet(members, 0, s.spacing, kSlopeWeight);
-  for (const Member& m : members) whole += m.sheet == 0 ? misfit(one, m, s.spacing) : 0;
+  const QuadraticPatch one = fit_quadratic_patch(members, 0, s.spacing, kSlopeWeight);
+  for (const Member& m : members) whole += m.patch == 0 ? misfit(one, m, s.spacing) : 0;
   if (split > kSplitGain * whole) {
     s.count = 1;
-    s.sheet[0] = one;
+    s.patch[0] = one;
   } else {
-    for (std::size_t i = 0; i < members.size(); ++i) members[i].sheet = sheet[i];
+    for (std::size_t i = 0; i < members.size(); ++i) members[i].patch = patch[i];
   }
 }
 
-// The value of one sheet at a place.
+// The value of one patch at a place.
 struct Part {
   double f;
-  int sheet;
+  int patch;
 };
 
-// Of the solid that two sheets bound; a, the nearer one, where they do not meet.
+// Of the solid that two patches bound; a, the nearer one, where they do not meet.
 Part combine(const Part& a, const Part& b, Joint joint) {
   if (joint == Joint::kConvex) return a.f >= b.f ? a : b;
   if (joint == Joint::kConcave) return a.f <= b.f ? a : b;
@@ -164,14 +161,14 @@ Part join_three(const Part& a, const Part& b, const Part& c, const std::array<Jo
 }  // namespace
 
 double LocalSurface::distance(const Vector3d& x, int* active) const {
-  const auto at = [&](std::size_t k) { return Part{sheet[k].distance(x), static_cast<int>(k)}; };
+  const auto at = [&](std::size_t k) { return Part{patch[k].distance(x), static_cast<int>(k)}; };
   Part result = at(0);
   if (count == 2) {
     result = combine(result, at(1), joint[0]);
   } else if (count == 3) {
     result = join_three(at(0), at(1), at(2), joint);
   }
-  if (active != nullptr) *active = result.sheet;
+  if (active != nullptr) *active = result.patch;
   return result.f;
 }
 
@@ -222,9 +219,9 @@ std::uint32_t LocalFit::nearest(const Vector3d& x, double reach, double& squared
   return found;
 }
 
-// Is x well on one side of the tangent planes of all points next to point i, and do these belong to one sheet? Then their mean plane is fit
+// Is x well on one side of the tangent planes of all points next to point i, and do these belong to one patch? Then their mean plane is fit
 // enough to say which.
-bool LocalFit::clear_of(std::uint32_t i, const Vector3d& x, double scale, Sheet& plane) const {
+bool LocalFit::clear_of(std::uint32_t i, const Vector3d& x, double scale, QuadraticPatch& plane) const {
   const Vector3d axis = to_eigen(points_.normals[i]), p0 = to_eigen(points_.positions[i]);
   const bool outside = axis.dot(x - p0) > 0;
   const double first = (x - p0).squaredNorm(), clear = kClear * points_.spacing[i];
@@ -234,7 +231,7 @@ bool LocalFit::clear_of(std::uint32_t i, const Vector3d& x, double scale, Sheet&
     const std::uint32_t j = near_[i * count_ + k];
     const Vector3d p = to_eigen(points_.positions[j]), n = to_eigen(points_.normals[j]);
     const double d = n.dot(x - p);
-    if ((d > 0) != outside || std::abs(d) < clear || n.dot(axis) <= kSameSheet) return false;
+    if ((d > 0) != outside || std::abs(d) < clear || n.dot(axis) <= kSamePatch) return false;
     const double weight = bell(std::min(((x - p).squaredNorm() - first) * scale, kFaint));
     mean_p += weight * p;
     mean_n += weight * n;
@@ -255,18 +252,18 @@ LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* dire
   const double h = out.spacing;
   if (std::sqrt(squared) > reach * h) return out;
   const double scale = 1 / (2 * kWidth * kWidth * h * h);
-  if (detail == Detail::kSide && clear_of(nearest, x, scale, out.sheet[0])) {
+  if (detail == Detail::kSide && clear_of(nearest, x, scale, out.patch[0])) {
     out.count = 1;
     out.simple = true;
     return out;
   }
   gather(x, nearest, scale, direction, members);
-  for (int seed = 0; seed < kMostSheets && deal_out(out, members); ++seed) continue;
+  for (int seed = 0; seed < kMostPatches && grow_patch(out, members); ++seed) continue;
   out.walls = has_walls(out);
   if (out.count == 1) {
     out.simple = is_simple(out, members, x);
   } else if (out.count > 1) {
-    prefer_one_sheet(out, members);
+    prefer_one_patch(out, members);
   }
   for (int b = 1; b < out.count; ++b) {
     for (int a = 0; a < b; ++a) out.joint[static_cast<std::size_t>(a + b - 1)] = joint_of(out, members, a, b);
@@ -297,7 +294,7 @@ void LocalFit::gather(const Vector3d& x, std::uint32_t nearest, double scale, co
     if (first < 0) first = r2;
     const double exponent = (r2 - first) * scale;
     if (exponent >= kFaint) break;
-    members.push_back({to_eigen(points_.positions[i]), n, bell(exponent), kUndealt});
+    members.push_back({to_eigen(points_.positions[i]), n, bell(exponent), kUnassigned});
   }
 }
 

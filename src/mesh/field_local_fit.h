@@ -1,12 +1,12 @@
-// The surface near a place, fitted to the oriented points around it: one to three smooth sheets, joined by sharp creases.
+// The surface near a place, fitted to the oriented points around it: one to three smooth patches, joined by sharp creases.
 //
-// Each sheet is a quadratic height field fitted to positions and normals together (Hermite data); points are dealt out to sheets by
-// their normals, and sheets are joined by intersection or union as in Ohtake et al., "Multi-level partition of unity implicits",
+// Each patch is a quadratic height field fitted to positions and normals together (Hermite data); points are assigned to patches by
+// their normals, and patches are joined by intersection or union as in Ohtake et al., "Multi-level partition of unity implicits",
 // SIGGRAPH 2003, and Fleishman et al., "Robust moving least-squares fitting with sharp features", SIGGRAPH 2005.
 #pragma once
 
 #include "cloud/neighbours.h"
-#include "cloud/sheet.h"
+#include "cloud/quadratic_patch.h"
 
 #include <g3r/points.h>
 
@@ -27,26 +27,26 @@ struct OrientedPoints {
   std::vector<double> spacing;
 };
 
-/// How two sheets bound the solid between them.
+/// How two patches bound the solid between them.
 enum class Joint : signed char {
   kNone,    ///< they do not meet here
   kConvex,  ///< inside = inside of both
   kConcave  ///< inside = inside of either
 };
 
-/// The sheets of one place: a corner has three.
-inline constexpr int kMostSheets = 3;
+/// The patches of one place: a corner has three.
+inline constexpr int kMostPatches = 3;
 
 /// The surface around one place.
 struct LocalSurface {
-  int count = 0;  ///< number of sheets, 0 if there is no point near; sheet 0 is the nearest
-  std::array<Sheet, kMostSheets> sheet;
-  bool walls = false;                      ///< two of the sheets face away from each other or each other
-  std::array<Joint, kMostSheets> joint{};  ///< of sheets a < b at a + b - 1
-  double spacing = 0;                      ///< local spacing h
-  bool simple = false;  ///< one sheet, every point near belongs to it, and it has the place on the same side as their tangent planes
+  int count = 0;  ///< number of patches, 0 if there is no point near; patch 0 is the nearest
+  std::array<QuadraticPatch, kMostPatches> patch;
+  bool walls = false;                       ///< two of the patches face away from each other or each other
+  std::array<Joint, kMostPatches> joint{};  ///< of patches a < b at a + b - 1
+  double spacing = 0;                       ///< local spacing h
+  bool simple = false;  ///< one patch, every point near belongs to it, and it has the place on the same side as their tangent planes
 
-  /// Signed distance to the joined sheets, positive outside; which sheet it belongs to (may be null).
+  /// Signed distance to the joined patches, positive outside; which patch it belongs to (may be null).
   double distance(const Eigen::Vector3d& x, int* active = nullptr) const;
 };
 
@@ -67,7 +67,7 @@ class LocalFit {
   /// All must outlive this. `neighbours`: of the positions, `near`: its of_all(k), k > 16. O(N).
   LocalFit(const OrientedPoints& points, const Neighbours& neighbours, const std::vector<std::uint32_t>& near);
 
-  /// The surface near `x`, fitted to the 16 nearest of the neighbours of the point nearest to it; no sheet if that is farther than `reach`
+  /// The surface near `x`, fitted to the 16 nearest of the neighbours of the point nearest to it; no patch if that is farther than `reach`
   /// spacings. If `direction` is not null, points whose normals point against it are left out. O(log N).
   [[nodiscard]] LocalSurface fit(const Eigen::Vector3d& x, double reach, const Eigen::Vector3d* direction = nullptr,
                                  Detail detail = Detail::kSurface) const;
@@ -76,7 +76,7 @@ class LocalFit {
   [[nodiscard]] std::uint32_t nearest(const Eigen::Vector3d& x, double reach, double& squared) const;
   void gather(const Eigen::Vector3d& x, std::uint32_t nearest, double scale, const Eigen::Vector3d* direction,
               std::vector<FitPoint>& members) const;
-  bool clear_of(std::uint32_t i, const Eigen::Vector3d& x, double scale, Sheet& plane) const;
+  bool clear_of(std::uint32_t i, const Eigen::Vector3d& x, double scale, QuadraticPatch& plane) const;
 
   const OrientedPoints& points_;
   const std::vector<std::uint32_t>& near_;

@@ -6,11 +6,11 @@
 #include "mesh/fair.h"
 #include "mesh/field_contour.h"
 #include "mesh/field_corners.h"
+#include "mesh/field_labellings.h"
 #include "mesh/field_local_fit.h"
 #include "mesh/field_octree.h"
 #include "mesh/field_placement.h"
 #include "mesh/field_points.h"
-#include "mesh/field_readings.h"
 #include "mesh/mesh_finish.h"
 #include "mesh/untangle.h"
 
@@ -115,12 +115,12 @@ Mesh raw_mesh(const Prepared& prepared, const FieldSampler& sampler, const MeshO
 
   const auto centre_inside = [&](const std::vector<Vec3>& centres) { return mesh::sides_by_fit(local, centres); };
   mesh::DualSurface surface = mesh::contour(octree, inside, centre_inside, monitor.cancel);
-  if (mesh::remove_handles(octree, corners.opinions, all, centre_inside, inside, surface, monitor.cancel)) {
+  if (mesh::remove_handles(octree, corners.ambiguous, all, centre_inside, inside, surface, monitor.cancel)) {
     surface = {};
     surface = mesh::contour(octree, inside, centre_inside, monitor.cancel);
   }
-  corners.opinions = {};
-  mesh::settle_values(octree, inside, prepared.typical, value);
+  corners.ambiguous = {};
+  mesh::match_values(octree, inside, prepared.typical, value);
   report(monitor, Done::kHandles);
   mesh::PlacedVertices placed = mesh::place_vertices(octree, surface, value, local, monitor.cancel);
   report(monitor, Done::kVertices);

@@ -29,7 +29,7 @@ constexpr int kNewtonSteps = 5;
 
 Vec3 array(const Vector3d& p) { return {p[0], p[1], p[2]}; }
 
-// Nearest common zero of the given sheets, by Newton steps of least length. False if they are nearly parallel.
+// Nearest common zero of the given patches, by Newton steps of least length. False if they are nearly parallel.
 bool intersect(const LocalSurface& s, std::initializer_list<int> which, Vector3d& x) {
   for (int step = 0; step < kNewtonSteps; ++step) {
     Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3> j(static_cast<Eigen::Index>(which.size()), 3);
@@ -37,7 +37,7 @@ bool intersect(const LocalSurface& s, std::initializer_list<int> which, Vector3d
     Eigen::Index row = 0;
     for (const int k : which) {
       Vector3d g;
-      f[row] = s.sheet[static_cast<std::size_t>(k)].distance(x, &g);
+      f[row] = s.patch[static_cast<std::size_t>(k)].distance(x, &g);
       j.row(row++) = g;
     }
     const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> gram = j * j.transpose();
@@ -66,7 +66,7 @@ class Placer {
   Feature feature(const Vector3d& start, Vector3d& x) const {
     const double cell = box_.sizes()[0];
     const AlignedBox3d reach(box_.min().array() - kAtOnePlace * cell, box_.max().array() + kAtOnePlace * cell);
-    if (s_.count == kMostSheets) {
+    if (s_.count == kMostPatches) {
       x = start;
       if (intersect(s_, {0, 1, 2}, x) && reach.contains(x) && on_surface(x)) return Feature::kCorner;
     }
@@ -90,7 +90,7 @@ class Placer {
       int active = 0;
       s_.distance(x, &active);
       Vector3d g;
-      const double f = s_.sheet[static_cast<std::size_t>(active)].distance(x, &g);
+      const double f = s_.patch[static_cast<std::size_t>(active)].distance(x, &g);
       x -= f * g;
     }
     return x;
@@ -99,11 +99,11 @@ class Placer {
  private:
   bool on_surface(const Vector3d& x) const { return std::abs(s_.distance(x)) < kAtOnePlace * s_.spacing; }
 
-  // Slides a point of the crease of sheets a and b to the middle of the part within the box; false if no part is.
+  // Slides a point of the crease of patches a and b to the middle of the part within the box; false if no part is.
   bool centre_in_box(int a, int b, const AlignedBox3d& reach, Vector3d& x) const {
     Vector3d ga, gb;
-    s_.sheet[static_cast<std::size_t>(a)].distance(x, &ga);
-    s_.sheet[static_cast<std::size_t>(b)].distance(x, &gb);
+    s_.patch[static_cast<std::size_t>(a)].distance(x, &ga);
+    s_.patch[static_cast<std::size_t>(b)].distance(x, &gb);
     const Vector3d t = ga.cross(gb).normalized();
     double low = -std::numeric_limits<double>::infinity(), high = -low;
     for (int k = 0; k < 3; ++k) {
@@ -155,13 +155,13 @@ class Placement {
       x = x.cwiseMax(reach.min()).cwiseMin(reach.max());
       int active = 0;
       fit.distance(x, &active);
-      fit.sheet[static_cast<std::size_t>(active)].distance(x, &normal);
+      fit.patch[static_cast<std::size_t>(active)].distance(x, &normal);
     }
     return {array(x), array(normal), feature, (x - start).norm()};
   }
 
   // In the middle of the line between the ends of its arc. Arcs of one face do not cross, so no two of them share it, as they share the
-  // middle between their sheets.
+  // middle between their patches.
   [[nodiscard]] Vec3 place(const ArcMiddle& middle) const {
     const std::vector<Crossing>& crossings = surface_.crossings;
     return array(0.5 * (crossing_point(crossings[middle.crossings[0]]) + crossing_point(crossings[middle.crossings[1]])));
@@ -211,11 +211,11 @@ std::vector<std::uint32_t> taken_twice(const std::vector<Placed>& placed, double
 
 PlacedVertices place_vertices(const Octree& octree, const DualSurface& surface, const std::vector<float>& value, const LocalFit& local,
                               const std::atomic<bool>* cancel, const std::vector<std::uint8_t>& wanted) {
-  const std::size_t sheets = surface.patch_count();
+  const std::size_t patches = surface.patch_count();
   const Placement placement(octree, surface, value, local);
-  std::vector<Placed> placed(sheets);
+  std::vector<Placed> placed(patches);
   parallel::for_blocks(
-      sheets, kBlock,
+      patches, kBlock,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
           if (wanted.empty() || wanted[i] != 0) placed[i] = placement.place(i, true);
@@ -229,13 +229,13 @@ PlacedVertices place_vertices(const Octree& octree, const DualSurface& surface, 
     placed[i].position = array(0.5 * (taken + to_eigen(placed[i].position)));
   }
   PlacedVertices out;
-  out.positions.resize(sheets + surface.midpoints.size());
-  out.normals.resize(sheets);
-  for (std::size_t i = 0; i < sheets; ++i) {
+  out.positions.resize(patches + surface.midpoints.size());
+  out.normals.resize(patches);
+  for (std::size_t i = 0; i < patches; ++i) {
     out.positions[i] = placed[i].position;
     out.normals[i] = placed[i].normal;
   }
-  for (std::size_t m = 0; m < surface.midpoints.size(); ++m) out.positions[sheets + m] = placement.place(surface.midpoints[m]);
+  for (std::size_t m = 0; m < surface.midpoints.size(); ++m) out.positions[patches + m] = placement.place(surface.midpoints[m]);
   return out;
 }
 

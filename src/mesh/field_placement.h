@@ -12,7 +12,7 @@ namespace g3r::mesh {
 
 struct PlacedVertices {
   std::vector<Vec3> positions;  ///< one per vertex of the surface
-  std::vector<Vec3> normals;    ///< one per sheet, unit, outward
+  std::vector<Vec3> normals;    ///< one per patch, unit, outward
 };
 
 /// `value`: one per corner, positive inside, zero on the surface; only ratios across an edge matter.

@@ -18,9 +18,6 @@ namespace g3r::mesh {
 
 /// The side of the leaves around points, in typical spacings: smaller ones add vertices and no detail, larger ones lose some.
 inline constexpr double kFinestCell = 0.8;
-/// The half thickness in spacings of the disc around each point whose leaves are refined: the surface curves away from the tangent plane by
-/// so much within it.
-inline constexpr double kDiscHalf = 0.3;
 /// The level of the largest leaves: 16 along each axis, so that coarse places of the field are seen too.
 inline constexpr int kBaseLevel = kLeastMeshDepth;
 

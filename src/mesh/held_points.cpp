@@ -29,7 +29,7 @@ constexpr double kRare = 100;
 // How a point and its nearest ones see each other.
 struct Look {
   std::array<double, kRing> height{};    // the greater distance from the plane of the other
-  std::array<bool, kRing> bends{};       // whether the sheet may go on round a bend
+  std::array<bool, kRing> bends{};       // whether the patch may go on round a bend
   std::array<double, kRing> distance{};  // between the points
   std::array<std::uint32_t, kRing> near{};
 };

@@ -14,7 +14,7 @@ namespace g3r::mesh {
 inline constexpr double kMostStrays = 1.0 / 3;
 
 /// Marks (1) the points that the surface of the others goes through. A point is a stray
-///   - if less than 3 of its 8 nearest points are on one sheet with it: its distance from their plane, and theirs from its own, is at most
+///   - if less than 3 of its 8 nearest points are on one patch with it: its distance from their plane, and theirs from its own, is at most
 ///     0.35 of the way between them and twice what is usual (the 90 % quantile over the points of such distances, for noise and detail), or
 ///     their normals are mirror images as they are round bends and across creases; or
 ///   - if its spacing is more than twice that of these 8 (geometric mean): it is alone.

@@ -1,4 +1,4 @@
-// What is done to a closed mesh before it is handed out: trimming, dropping components, simplifying.
+// What is done to a closed mesh before it is returned: trimming, dropping components, simplifying.
 #pragma once
 
 #include <g3r/g3r.h>

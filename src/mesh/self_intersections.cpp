@@ -74,7 +74,7 @@ bool separates(const Vec3& axis, const Corners& s, const Corners& t) {
   return t_least - s_most > mesh::kRounding * size;
 }
 
-// Finds most pairs that do not meet, without exact arithmetic: planes parallel to s or through its edges. False where in doubt.
+// Finds most pairs that do not meet, without exact arithmetic: planes parallel to s or through its edges. False where unsure.
 bool surely_apart(const Corners& s, const Corners& t) {
   const Vec3 normal = vector::cross(vector::subtract(s[1], s[0]), vector::subtract(s[2], s[0]));
   if (separates(normal, s, t) || separates(vector::scale(normal, -1), s, t)) return true;

@@ -21,9 +21,9 @@ struct Around {
   std::uint8_t count = 0;
 };
 
-// `number`: of the corners, among the opinions.
-std::vector<Around> leaves_around(const Octree& octree, const std::vector<std::uint32_t>& number, std::size_t opinions) {
-  std::vector<Around> out(opinions);
+// `number`: of the corners, among the ambiguous ones.
+std::vector<Around> leaves_around(const Octree& octree, const std::vector<std::uint32_t>& number, std::size_t ambiguous) {
+  std::vector<Around> out(ambiguous);
   for (std::uint32_t leaf = 0; leaf < octree.leaf_count(); ++leaf) {
     for (std::uint8_t place = 0; place < 8; ++place) {
       const std::uint32_t k = number[octree.corners(leaf)[place]];
@@ -36,7 +36,7 @@ std::vector<Around> leaves_around(const Octree& octree, const std::vector<std::u
   return out;
 }
 
-// Weights of the corners around one, by how far they are along the sheet with normal n: at 13 + x + 3 (y + 3 z) for the corner (x, y, z)
+// Weights of the corners around one, by how far they are along the patch with normal n: at 13 + x + 3 (y + 3 z) for the corner (x, y, z)
 // leaf sides away, each -1, 0 or 1.
 std::array<double, 27> weights(const std::array<float, 3>& n) {
   std::array<double, 27> out{};
@@ -54,14 +54,14 @@ std::size_t grid_of(std::uint32_t place) { return (place & 1U) + 3 * (((place >>
 
 }  // namespace
 
-std::vector<std::vector<float>> smooth_sides(const Octree& octree, const Opinions& opinions, const std::vector<std::uint8_t>& inside,
-                                             std::size_t times, const std::atomic<bool>* cancel) {
+std::vector<std::vector<float>> smooth_sides(const Octree& octree, const AmbiguousCorners& ambiguous,
+                                             const std::vector<std::uint8_t>& inside, std::size_t times, const std::atomic<bool>* cancel) {
   std::vector<std::uint32_t> number(octree.corner_count(), kNone);
-  for (std::uint32_t k = 0; k < opinions.corner.size(); ++k) number[opinions.corner[k]] = k;
-  const std::vector<Around> around = leaves_around(octree, number, opinions.corner.size());
+  for (std::uint32_t k = 0; k < ambiguous.corner.size(); ++k) number[ambiguous.corner[k]] = k;
+  const std::vector<Around> around = leaves_around(octree, number, ambiguous.corner.size());
   const auto average = [&](std::size_t k, const std::vector<float>& side) {
     const Around& a = around[k];
-    const std::array<double, 27> along = weights(opinions.axis[k]);
+    const std::array<double, 27> along = weights(ambiguous.axis[k]);
     double sum = 0, total = 0;
     for (std::size_t i = 0; i < a.count; ++i) {
       for (std::uint32_t other = 0; other < 8; ++other) {
@@ -74,16 +74,16 @@ std::vector<std::vector<float>> smooth_sides(const Octree& octree, const Opinion
     }
     // A corner's own value has half the weight of the mean of its neighbours: with more, smoothing needs more passes; with less, single
     // corners have no say.
-    const double own = static_cast<double>(opinions.side[k]);
+    const double own = static_cast<double>(ambiguous.value[k]);
     return static_cast<float>(total > 0 ? (0.5 * own + sum / total) / (0.5 + 1) : own);
   };
-  std::vector<std::vector<float>> out(times, opinions.side);
+  std::vector<std::vector<float>> out(times, ambiguous.value);
   for (std::size_t t = 0; t < times; ++t) {
-    const std::vector<float>& side = t == 0 ? opinions.side : out[t - 1];
+    const std::vector<float>& value = t == 0 ? ambiguous.value : out[t - 1];
     parallel::for_blocks(
         around.size(), kBlock,
         [&](std::size_t begin, std::size_t end) {
-          for (std::size_t k = begin; k < end; ++k) out[t][k] = average(k, side);
+          for (std::size_t k = begin; k < end; ++k) out[t][k] = average(k, value);
         },
         cancel);
   }

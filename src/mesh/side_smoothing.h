@@ -1,4 +1,4 @@
-// Which side the places near walls and gaps are on, as their neighbours along the sheet see it.
+// Which side the places near walls and gaps are on, as their neighbours along the patch see it.
 #pragma once
 
 #include "mesh/field_octree.h"
@@ -12,22 +12,22 @@
 namespace g3r::mesh {
 
 /// What is known about the octree corners that could be on either side; all others stand.
-struct Opinions {
+struct AmbiguousCorners {
   std::vector<std::uint32_t> corner;       ///< ascending
-  std::vector<float> side;                 ///< in [-1, 1], positive inside; its size is how sure it is
-  std::vector<std::array<float, 3>> axis;  ///< unit normal of the nearest sheet, either way round
+  std::vector<float> value;                ///< in [-1, 1], positive inside; its size is how sure it is
+  std::vector<std::array<float, 3>> axis;  ///< unit normal of the nearest patch, either way round
 
-  void add(std::uint32_t c, float its_side, const std::array<float, 3>& its_axis) {
+  void add(std::uint32_t c, float its_value, const std::array<float, 3>& its_axis) {
     corner.push_back(c);
-    side.push_back(its_side);
+    value.push_back(its_value);
     axis.push_back(its_axis);
   }
 };
 
-/// Opinions averaged once, twice, ..., `times` times: each one with the values at the corners of its leaves that lie along the sheet, so
+/// Values averaged once, twice, ..., `times` times: each one with the values at the corners of its leaves that lie along the patch, so
 /// that grain of the field goes and walls and gaps stay. `inside`: one byte per corner; those that stand count 1 inside, -1 outside.
-/// The same values for any number of threads. O(leaves + times x opinions). Throws Cancelled.
-[[nodiscard]] std::vector<std::vector<float>> smooth_sides(const Octree& octree, const Opinions& opinions,
+/// The same values for any number of threads. O(leaves + times x ambiguous corners). Throws Cancelled.
+[[nodiscard]] std::vector<std::vector<float>> smooth_sides(const Octree& octree, const AmbiguousCorners& ambiguous,
                                                            const std::vector<std::uint8_t>& inside, std::size_t times,
                                                            const std::atomic<bool>* cancel = nullptr);
 

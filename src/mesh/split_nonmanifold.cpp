@@ -7,7 +7,7 @@
 #include "base/disjoint_sets.h"
 #include "base/vector.h"
 #include "mesh/constants.h"
-#include "mesh/sides.h"
+#include "mesh/half_edges.h"
 
 #include <algorithm>
 #include <array>
@@ -71,26 +71,27 @@ std::uint32_t append_midpoint(Mesh& mesh, std::uint32_t a, std::uint32_t b) {
   return static_cast<std::uint32_t>(mesh.vertices.size() - 1);
 }
 
-/// A triangle at an edge: its side, and the direction in which it leaves the edge.
+/// A triangle at an edge: its half-edge, and the direction in which it leaves the edge.
 struct Leaf {
   double angle;  ///< counter-clockwise, seen against the direction from low to high
   bool opens;    ///< solid begins here, in the sense of rising angle
   std::size_t corner;
 };
 
-/// The sides of one edge by angle.
-std::vector<Leaf> leaves_around(const Mesh& mesh, const Side* sides, std::size_t count) {
-  const Vec3 origin = mesh.vertices[sides[0].low];
-  const Vec3 along = vector::normalised(vector::subtract(mesh.vertices[sides[0].high], origin));
+/// The half-edges of one edge by angle.
+std::vector<Leaf> leaves_around(const Mesh& mesh, const HalfEdge* half_edges, std::size_t count) {
+  const Vec3 origin = mesh.vertices[half_edges[0].low];
+  const Vec3 along = vector::normalised(vector::subtract(mesh.vertices[half_edges[0].high], origin));
   const Vec3 helper = std::fabs(along[0]) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
   const Vec3 x = vector::normalised(vector::cross(helper, along));
   const Vec3 y = vector::cross(along, x);
   std::vector<Leaf> leaves;
   for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t apex = vertex_of(mesh, next_corner(next_corner(sides[i].corner)));
+    const std::uint32_t apex = vertex_of(mesh, next_corner(next_corner(half_edges[i].corner)));
     const Vec3 to_apex = vector::subtract(mesh.vertices[apex], origin);
     // A triangle that runs from low to high faces rising angles: behind it, the solid ends.
-    leaves.push_back({std::atan2(vector::dot(to_apex, y), vector::dot(to_apex, x)), !is_forward(mesh, sides[i]), sides[i].corner});
+    leaves.push_back(
+        {std::atan2(vector::dot(to_apex, y), vector::dot(to_apex, x)), !is_forward(mesh, half_edges[i]), half_edges[i].corner});
   }
   std::sort(leaves.begin(), leaves.end(), [](const Leaf& a, const Leaf& b) {
     if (a.angle != b.angle) return a.angle < b.angle;
@@ -100,7 +101,7 @@ std::vector<Leaf> leaves_around(const Mesh& mesh, const Side* sides, std::size_t
   return leaves;
 }
 
-/// Pairs of sides that bound one solid wedge, by matching opening and closing leaves like parentheses around the circle.
+/// Pairs of half-edges that bound one solid wedge, by matching opening and closing leaves like parentheses around the circle.
 std::vector<std::pair<std::size_t, std::size_t>> solid_wedges(std::vector<Leaf> leaves) {
   int open = 0, lowest = 0;
   std::size_t start = 0;  // after the lowest count no leaf closes what it did not see open
@@ -124,7 +125,7 @@ std::vector<std::pair<std::size_t, std::size_t>> solid_wedges(std::vector<Leaf> 
   return pairs;
 }
 
-/// Appends triangle t, whose sides 01, 12, 20 are cut at the vertices `cut` (kNone: not cut).
+/// Appends triangle t, whose edges 01, 12, 20 are cut at the vertices `cut` (kNone: not cut).
 void append_cut(std::array<std::uint32_t, 3> t, std::array<std::uint32_t, 3> cut, std::vector<std::array<std::uint32_t, 3>>& out) {
   const auto cuts = std::count_if(cut.begin(), cut.end(), [](std::uint32_t c) { return c != kNone; });
   if (cuts == 0) {
@@ -135,7 +136,7 @@ void append_cut(std::array<std::uint32_t, 3> t, std::array<std::uint32_t, 3> cut
     out.insert(out.end(), {{t[0], cut[0], cut[2]}, {t[1], cut[1], cut[0]}, {t[2], cut[2], cut[1]}, {cut[0], cut[1], cut[2]}});
     return;
   }
-  // Turned so that side 01 is cut and, of two cuts, the other is in side 12.
+  // Turned so that edge 01 is cut and, of two cuts, the other is in edge 12.
   while (cut[0] == kNone || (cuts == 2 && cut[1] == kNone)) {
     std::rotate(t.begin(), t.begin() + 1, t.end());
     std::rotate(cut.begin(), cut.begin() + 1, cut.end());
@@ -149,13 +150,14 @@ void append_cut(std::array<std::uint32_t, 3> t, std::array<std::uint32_t, 3> cut
 
 /// Gives each solid wedge at an edge with more than two triangles a midpoint of its own.
 void split_edges(Mesh& mesh) {
-  std::vector<std::uint32_t> cut;  // per corner: the vertex that cuts the side beginning there
-  for_each_edge(mesh, [&](const Side* sides, std::size_t count) {
-    const auto forward = std::count_if(sides, sides + count, [&](const Side& side) { return is_forward(mesh, side); });
+  std::vector<std::uint32_t> cut;  // per corner: the vertex that cuts the half-edge beginning there
+  for_each_edge(mesh, [&](const HalfEdge* half_edges, std::size_t count) {
+    const auto forward =
+        std::count_if(half_edges, half_edges + count, [&](const HalfEdge& half_edge) { return is_forward(mesh, half_edge); });
     if (count <= 2 || 2 * static_cast<std::size_t>(forward) != count) return;
     cut.resize(3 * mesh.triangles.size(), kNone);
-    for (const auto& [a, b] : solid_wedges(leaves_around(mesh, sides, count))) {
-      cut[a] = cut[b] = append_midpoint(mesh, sides[0].low, sides[0].high);
+    for (const auto& [a, b] : solid_wedges(leaves_around(mesh, half_edges, count))) {
+      cut[a] = cut[b] = append_midpoint(mesh, half_edges[0].low, half_edges[0].high);
     }
   });
   if (cut.empty()) return;
@@ -169,10 +171,10 @@ void split_edges(Mesh& mesh) {
 /// Gives each fan of triangles around a vertex a vertex of its own; the first keeps the old one.
 void split_vertices(Mesh& mesh) {
   DisjointSets corners(3 * mesh.triangles.size());
-  for_each_edge(mesh, [&](const Side* sides, std::size_t count) {
+  for_each_edge(mesh, [&](const HalfEdge* half_edges, std::size_t count) {
     for (std::size_t i = 1; i < count; ++i) {
-      corners.join(corner_at(mesh, sides[0], sides[0].low), corner_at(mesh, sides[i], sides[0].low));
-      corners.join(corner_at(mesh, sides[0], sides[0].high), corner_at(mesh, sides[i], sides[0].high));
+      corners.join(corner_at(mesh, half_edges[0], half_edges[0].low), corner_at(mesh, half_edges[i], half_edges[0].low));
+      corners.join(corner_at(mesh, half_edges[0], half_edges[0].high), corner_at(mesh, half_edges[i], half_edges[0].high));
     }
   });
   std::vector<char> taken(mesh.vertices.size(), 0);

@@ -15,14 +15,14 @@ namespace g3r {
 namespace {
 
 /// Sums over the samples of one mesh of what its closest points on the other mesh give.
-struct Side {
+struct OneWay {
   double distance = 0;
   double angle_error = 0;
   double farthest = 0;
   double consistency = 0;
   std::vector<std::size_t> within;  // of every distance asked for
 
-  Side& operator+=(const Side& other) {
+  OneWay& operator+=(const OneWay& other) {
     distance += other.distance;
     angle_error += other.angle_error;
     farthest = std::max(farthest, other.farthest);
@@ -32,11 +32,11 @@ struct Side {
   }
 };
 
-Side compare(const Samples& samples, const TriangleTree& surface, const std::vector<double>& distances) {
-  Side none;
+OneWay compare(const Samples& samples, const TriangleTree& surface, const std::vector<double>& distances) {
+  OneWay none;
   none.within.assign(distances.size(), 0);
   return parallel::sum_blocks(samples.points.size(), parallel::kBlock, none, [&](std::size_t begin, std::size_t end) {
-    Side sum = none;
+    OneWay sum = none;
     for (std::size_t i = begin; i < end; ++i) {
       const TriangleTree::Closest closest = surface.closest(samples.points[i]);
       const double cosine = vector::dot(samples.normals[i], surface.normal(closest.triangle));
@@ -57,8 +57,8 @@ MeshScore score_mesh(const Mesh& mesh, const Mesh& truth, std::size_t samples, s
     if (!(d > 0)) throw InvalidInput("the distance of an F-score must be above 0");
   }
   if (samples == 0) throw InvalidInput("the number of samples must be positive");
-  const Side to_truth = compare(sample_mesh(mesh, samples, seed), TriangleTree(truth), distances);
-  const Side to_mesh = compare(sample_mesh(truth, samples, seed), TriangleTree(mesh), distances);
+  const OneWay to_truth = compare(sample_mesh(mesh, samples, seed), TriangleTree(truth), distances);
+  const OneWay to_mesh = compare(sample_mesh(truth, samples, seed), TriangleTree(mesh), distances);
   const auto count = static_cast<double>(samples);
   MeshScore score;
   score.chamfer = (to_truth.distance + to_mesh.distance) / (2 * count);

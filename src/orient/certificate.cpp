@@ -59,13 +59,10 @@ class Probed {
   std::vector<Vec3> axis_;  // on the side of the normals
 };
 
-void add_jumps(const std::vector<double>& w, std::vector<double>& largest, std::vector<double>& defect) {
+// What one distance adds to the mean over all of |1 - jump|, of the field times a factor.
+void add_defects(const std::vector<double>& w, double factor, std::vector<double>& defect) {
   const std::size_t count = defect.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const double jump = w[i] - w[count + i];
-    largest[i] = std::max(largest[i], jump);
-    defect[i] += std::abs(1 - jump) / static_cast<double>(kJumps);
-  }
+  for (std::size_t i = 0; i < count; ++i) defect[i] += std::abs(1 - factor * (w[i] - w[count + i])) / static_cast<double>(kJumps);
 }
 
 }  // namespace
@@ -73,9 +70,8 @@ void add_jumps(const std::vector<double>& w, std::vector<double>& largest, std::
 std::vector<double> jump_defects(const Sites& sites, const std::vector<Vec3>& normals, const SumPlan& sums,
                                  const std::atomic<bool>* cancel) {
   const Probed probed(sites, normals, sums, cancel);
-  std::vector<double> largest(sites.size(), -HUGE_VAL);
   std::vector<double> defect(sites.size(), 0);
-  for (std::size_t d = 0; d < kJumps; ++d) add_jumps(probed.winding(probed.at(kDistances[d])), largest, defect);
+  for (std::size_t d = 0; d < kJumps; ++d) add_defects(probed.winding(probed.at(kDistances[d])), 1, defect);
   return defect;
 }
 
@@ -88,6 +84,7 @@ Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const 
   Certificate out;
   out.jump.assign(count, -HUGE_VAL);
   out.jump_defect.assign(count, 0);
+  out.scaled_defect.assign(count, 0);
   out.unrest.assign(count, 0);
   std::vector<double> quiet(count, 0);
   std::array<std::vector<double>, kDistances.size()> w;
@@ -95,7 +92,10 @@ Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const 
   for (std::size_t d = 0; d < kDistances.size(); ++d) {
     const std::vector<Vec3> probes = probed.at(kDistances[d]);
     w[d] = probed.winding(probes);
-    if (d < kJumps) add_jumps(w[d], out.jump, out.jump_defect);
+    if (d < kJumps) {
+      add_defects(w[d], 1, out.jump_defect);
+      for (std::size_t i = 0; i < count; ++i) out.jump[i] = std::max(out.jump[i], w[d][i] - w[d][count + i]);
+    }
     if (kDistances[d] < kApart) continue;  // its own site is too near
     parallel::for_blocks(2 * count, parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
@@ -114,6 +114,7 @@ Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const 
     }
   }
   const double factor = inside.empty() ? 1 : std::clamp(1 / median(inside), 1 / kMostFactor, kMostFactor);
+  for (std::size_t d = 0; d < kJumps; ++d) add_defects(w[d], factor, out.scaled_defect);
   for (std::size_t d = 0; d < kDistances.size(); ++d) {
     for (std::size_t k = 0; k < 2 * count; ++k) {
       if (is_quiet[2 * count * d + k] == 0) continue;

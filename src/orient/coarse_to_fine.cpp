@@ -21,7 +21,7 @@ constexpr double kCubeRatio = kSpacingRatio * kSpacingRatio * kSpacingRatio;  //
 constexpr double kCoarseShare = 0.2;                                          // of the progress bar
 constexpr double kDoubtfulShare = 0.04;                                       // share of the points from which more steps are tried
 constexpr double kWorse = 1.25;                                               // of that share after them, from which they are undone
-// Points whose field tells open surfaces from closed ones: fewer would lose small parts, more take longer and say the same.
+// Points whose field distinguishes open surfaces from closed ones: fewer would lose small parts, more take longer and say the same.
 constexpr std::size_t kOpenPoints = 10000;
 
 Settings coarser(Settings settings) {
@@ -87,9 +87,9 @@ bool is_mostly_open(const LevelCloud& cloud, const Settings& settings, const std
   const std::size_t step = std::max<std::size_t>(1, cloud.points.size() / kOpenPoints);
   const PointSet set(every(step, cloud.points), every(step, cloud.morton));
   std::vector<Vec3> sides = every(step, normals);
-  const OpenSurfaces sheets = find_open_surfaces(set, settings.noise, settings.sums, sides, stages.cancel());
-  const auto closed = std::count(sheets.part.begin(), sheets.part.end(), OpenSurfaces::kNone);
-  return !sheets.part.empty() && 2 * static_cast<std::size_t>(closed) < set.size();
+  const OpenSurfaces surfaces = find_open_surfaces(set, settings.noise, settings.sums, sides, stages.cancel());
+  const auto closed = std::count(surfaces.part.begin(), surfaces.part.end(), OpenSurfaces::kNone);
+  return !surfaces.part.empty() && 2 * static_cast<std::size_t>(closed) < set.size();
 }
 
 // What a solve starts from, how long it goes on, and whom it tells.
@@ -137,7 +137,7 @@ IterativeResult solve_on(FastSum& field, const LevelCloud& cloud, const Settings
 }
 
 // More steps where the sides of many points are unsure, but for surfaces of which the equations are not true.
-void settle_doubtful(FastSum& field, const LevelCloud& cloud, const Settings& settings, Stages& stages, IterativeResult& result) {
+void solve_doubtful(FastSum& field, const LevelCloud& cloud, const Settings& settings, Stages& stages, IterativeResult& result) {
   const Refinement refined = refine_normals(field, result.eta);
   const double unsure = unsure_share_of(result.eta, refined);
   if (unsure < kDoubtfulShare + settings.unsure_of_noise) return;
@@ -167,7 +167,7 @@ Level solve_level(const LevelCloud& cloud, const Settings& settings, double shar
   make_field();
   level.result =
       solve_on(*level.field, cloud, settings, share, stages, gradient.empty() ? coarse_gradient(cloud, settings, share, stages) : gradient);
-  if (!level.result.converged && !settings.doubtful_schedule.empty()) settle_doubtful(*level.field, cloud, settings, stages, level.result);
+  if (!level.result.converged && !settings.doubtful_schedule.empty()) solve_doubtful(*level.field, cloud, settings, stages, level.result);
   return level;
 }
 

@@ -23,7 +23,7 @@ namespace g3r {
 
 /// Share of the points, of at least one, whose side_confidence() is below a half. O(N).
 [[nodiscard]] double unsure_share(const std::vector<float>& confidence);
-/// Share of the sides in doubt from which other noises are tried, each with one more solve: few clean clouds leave as many, and with a
+/// Share of unsure sides from which other noises are tried, each with one more solve: few clean clouds leave as many, and with a
 /// larger share scans that do not fit onto each other would stay wrong.
 inline constexpr double kDoubtful = 0.05;
 inline constexpr double kManyUnsure = 0.2;  ///< share of unsure points above which the orientation is called inconsistent

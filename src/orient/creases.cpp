@@ -16,7 +16,7 @@ constexpr double kCreaseCosine = 0.965926;  // 15 degrees
 constexpr double kPlane = 0.05;             // spacings from a plane that holds a point
 constexpr double kRadius = 1.5;             // spacings
 constexpr int kRounds = 2;                  // the first is still among blurred normals
-constexpr double kPiecewiseSmooth = 0.58;   // share that tells CAD models from others
+constexpr double kPiecewiseSmooth = 0.58;   // share that distinguishes CAD models from others
 
 struct Round {
   std::vector<Vec3> normals;

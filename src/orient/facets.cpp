@@ -20,9 +20,9 @@ constexpr double kParallel = 0.9995;     // cosine
 constexpr double kEpsilon = 0.2;         // spacings
 constexpr double kWindingWeight = 100;   // cubed spacings; 30 to 1000 give the same sides
 constexpr Steps kSteps{120, StepKind::kConjugateGradient};
-constexpr double kTolerance = 2e-3;         // less adds nothing, 5e-3 leaves walls of half a spacing on the wrong side
-constexpr double kSettledTolerance = 5e-3;  // where no facet has changed its side in the last
-constexpr int kSettledSteps = 10;           // steps
+constexpr double kTolerance = 2e-3;        // less adds nothing, 5e-3 leaves walls of half a spacing on the wrong side
+constexpr double kSteadyTolerance = 5e-3;  // where no facet has changed its side in the last
+constexpr int kSteadySteps = 10;           // steps
 
 // The normal of the first point of every facet, to whose side those of the others are turned.
 std::vector<Vec3> first_normals(const Facets& facets, const std::vector<Vec3>& normals) {
@@ -65,9 +65,9 @@ class OnFacets : public LinearSystem {
 };
 
 // Says when the sides of all facets have been the same for some steps.
-class SettledSides {
+class SteadySides {
  public:
-  SettledSides(const Facets& facets, const std::vector<Vec3>& normals) : facets_(facets), normals_(normals), last_(facets.count, 0) {}
+  SteadySides(const Facets& facets, const std::vector<Vec3>& normals) : facets_(facets), normals_(normals), last_(facets.count, 0) {}
   bool operator()(const IterativeResult& solve) {
     std::vector<std::uint8_t> sides(facets_.count, 0);
     for (std::size_t i = 0; i < normals_.size(); ++i) {
@@ -75,7 +75,7 @@ class SettledSides {
     }
     unchanged_ = sides == last_ ? unchanged_ + 1 : 0;
     last_ = std::move(sides);
-    return unchanged_ >= kSettledSteps && solve.residuals.back() <= kSettledTolerance;
+    return unchanged_ >= kSteadySteps && solve.residuals.back() <= kSteadyTolerance;
   }
 
  private:
@@ -122,7 +122,7 @@ Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven,
   return facets;
 }
 
-double share_at_odds(const Facets& facets, const std::vector<Vec3>& normals) {
+double minority_share(const Facets& facets, const std::vector<Vec3>& normals) {
   const std::vector<Vec3> first = first_normals(facets, normals);
   std::vector<std::size_t> same(facets.count, 0);
   std::vector<std::size_t> all(facets.count, 0);
@@ -151,9 +151,9 @@ void choose_facet_sides(const PointSet& set, const Settings& settings, const Fac
   FastSum sum(set.points(), set.morton(), local_widths(kEpsilon * h, settings, spacing), settings.first_sums, stages.cancel());
   EnergySystem free(sum, 0, kWindingWeight * h * h * h);
   OnFacets system(free, facets, areas, turned);
-  SettledSides settled(facets, turned);
+  SteadySides steady(facets, turned);
   const auto still_going = [&stages](int, int, double) { stages.still_going(); };
-  const auto enough = [&settled](const IterativeResult& r) { return settled(r); };
+  const auto enough = [&steady](const IterativeResult& r) { return steady(r); };
   const std::vector<Vec3> solved = solve_iteratively(system, {kSteps}, kTolerance, system.project(eta), still_going, enough).eta;
   for (std::size_t i = 0; i < set.size(); ++i) {
     if (facets.of[i] == Facets::kNone) continue;

@@ -26,14 +26,14 @@ struct Facets {
 [[nodiscard]] Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven, const std::vector<Vec3>& normals);
 
 /// Share of all points whose normal is on another side than that of most points of their facet. O(N).
-[[nodiscard]] double share_at_odds(const Facets& facets, const std::vector<Vec3>& normals);
+[[nodiscard]] double minority_share(const Facets& facets, const std::vector<Vec3>& normals);
 
 /// One side for every facet. Single points of a wall thinner than the spacing cannot tell their side, the whole facet can: the energy
 /// form's equations are restricted to area vectors eta_i = c_f A_i n_i on facets, with one unknown c_f per facet, its n_i on one side, and
 /// free ones elsewhere, which is Galerkin's method with the orthogonal projector P onto these: P M P eta = P b, by conjugate gradients from
 /// `eta`. On facets n_i gets the side of c_f and eta_i becomes A_i n_i; the others stay. docs/math.md, "Facets".
 /// A_i: square of the smoothed_spacing(). `eta`, `normals`: in and out. Up to 120 products, 20 to 40 as a rule: it ends when sides
-/// have settled.
+/// are steady.
 void choose_facet_sides(const PointSet& set, const Settings& settings, const Facets& facets, std::vector<Vec3>& eta,
                         std::vector<Vec3>& normals, Stages& stages);
 

@@ -130,9 +130,9 @@ class Following {
         voters_(points, hints) {}
 
   HintEffect follow() {
-    effect_.settled.assign(points_.size(), 0);
+    effect_.decided.assign(points_.size(), 0);
     effect_.turned.assign(points_.size(), 0);
-    settle_patches();
+    decide_patches();
     judge_closed_parts();
     for (std::size_t i = 0; i < points_.size(); ++i) {
       if ((effect_.turned[i] != 0) != hints_.flip) turn(i);
@@ -161,7 +161,7 @@ class Following {
     return sums;
   }
 
-  void settle_patches() {
+  void decide_patches() {
     std::vector<double> votes(points_.size(), 0);
     for (std::size_t i = 0; i < points_.size(); ++i) {
       if (!is_closed(i)) votes[i] = voters_.vote(i, sided_.normals[i]);
@@ -179,9 +179,9 @@ class Following {
     for (std::size_t i = 0; i < points_.size(); ++i) {
       if (!is_choice(i) || is_closed(i) || !patches[patches_.of[i]].count()) continue;
       const double agreement = 1 - patches[patches_.of[i]].share_against();
-      effect_.settled[i] = agreement >= kMostOf ? 1 : 0;
+      effect_.decided[i] = agreement >= kMostOf ? 1 : 0;
       sided_.confidence[i] = static_cast<float>(agreement);
-      if (effect_.settled[i] == 0) continue;
+      if (effect_.decided[i] == 0) continue;
       agreed += agreement;
       ++all;
     }

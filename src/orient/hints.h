@@ -1,4 +1,4 @@
-// Sides that the points leave open, settled by what people know.
+// Sides that the points leave open, decided by what people know.
 #pragma once
 
 #include <g3r/hints.h>
@@ -27,9 +27,9 @@ struct SidedPoints {
 };
 
 struct HintEffect {
-  std::vector<std::uint8_t> settled;  ///< N: on a patch whose side was a choice and is none now; empty: nowhere
+  std::vector<std::uint8_t> decided;  ///< N: on a patch whose side was a choice and is none now; empty: nowhere
   std::vector<std::uint8_t> turned;   ///< N: by a vote or an order, not counting `flip`; empty: nowhere
-  double agreement = 0;               ///< share of the votes on settled patches that agree with the side they got; 0: none was settled
+  double agreement = 0;               ///< share of the votes on decided patches that agree with the side they got; 0: none was decided
   double contradicted_share = 0;      ///< share of the votes on closed parts that were against their side; 0 if too few to matter
   bool closed_parts_turned = false;   ///< `contradicted_share` is that from before
   std::optional<Vec3> inside_that_is_outside;  ///< of Hints::inside, one that no closed part encloses although there are such parts
@@ -40,7 +40,7 @@ struct HintEffect {
 ///   sensor s:  n . (s - p) / |s - p|      up u:  n . u / |u|      inside q:  - n . (q - p) / |q - p|
 /// so that a point counts by how squarely it is seen, and not by how near it is; `seen_from_inside` without sensors votes like a sensor in
 /// the median of the points. A patch whose votes are a fiftieth of its points or less keeps its side. Where the side was a choice the
-/// confidence becomes the share of the votes that agree, and two thirds settle it; elsewhere it takes two thirds to turn a patch. Then
+/// confidence becomes the share of the votes that agree, and two thirds decide it; elsewhere it takes two thirds to turn a patch. Then
 /// pieces of a patch that are not consistent with the rest of it are turned by two thirds of their own votes: what a gap separates has no
 /// other way to agree. Closed parts have one side: they are turned by `seen_from_inside` and by sensors inside them, where the winding
 /// number of `eta` is 1/4 and more (outside it is 0, however near or far), or, if the sensor of each point is known, by two thirds of the

@@ -1,6 +1,6 @@
 #include "orient/jets.h"
 
-#include "cloud/sheet.h"
+#include "cloud/quadratic_patch.h"
 #include "cpu/parallel.h"
 
 #include <cmath>
@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kNeighbours = 17;  // the point itself, first, and 16 others
 constexpr std::size_t kFewest = 7;       // that take part, itself included: one more than the height field has numbers
-constexpr double kSameSheet = 0.9;       // cosine between normals
+constexpr double kSamePatch = 0.9;       // cosine between normals
 constexpr double kSteepest = 0.5145;     // height above the tangent plane over distance
 constexpr double kRadius = 1.5;          // spacings
 constexpr double kScatter = 0.007;       // spacings, standard deviation of the heights
@@ -59,23 +59,23 @@ std::vector<std::uint8_t> fit_jets(const PointSet& set, std::vector<Vec3>& norma
         const Vector3d d = to_eigen(points[j]) - centre;
         const Vector3d n = to_eigen(normals[j]);
         const double height = normal.dot(d);
-        if (n.dot(normal) <= kSameSheet || height * height > kSteepest * kSteepest * d.squaredNorm()) continue;
+        if (n.dot(normal) <= kSamePatch || height * height > kSteepest * kSteepest * d.squaredNorm()) continue;
         members.push_back({d, n, std::exp(-d.squaredNorm() * scale), 0});
       }
       if (members.size() < kFewest || !spread_out(members, normal)) continue;
-      const Sheet sheet = fit_sheet(members, 0, spacing[i], 0);
+      const QuadraticPatch patch = fit_quadratic_patch(members, 0, spacing[i], 0);
       double misfit = 0;
       double total = 0;
       for (const FitPoint& m : members) {
-        const double distance = sheet.distance(m.p);
+        const double distance = patch.distance(m.p);
         misfit += m.weight * distance * distance;
         total += m.weight;
       }
       const double free = 1 - (kFewest - 1) / static_cast<double>(members.size());  // share of the degrees of freedom
       if (misfit > free * total * kScatter * kScatter * spacing[i] * spacing[i]) continue;
       Vector3d fitted;
-      (void)sheet.distance(Vector3d::Zero(), &fitted);
-      if (fitted.dot(normal) <= kSameSheet) continue;
+      (void)patch.distance(Vector3d::Zero(), &fitted);
+      if (fitted.dot(normal) <= kSamePatch) continue;
       out[i] = {fitted[0], fitted[1], fitted[2]};
       proven[i] = 1;
     }

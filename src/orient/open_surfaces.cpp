@@ -4,7 +4,7 @@
 #include "base/median.h"
 #include "base/vector.h"
 #include "cloud/layers.h"
-#include "cloud/sheet.h"
+#include "cloud/quadratic_patch.h"
 #include "cloud/sites.h"
 #include "cpu/parallel.h"
 #include "orient/certificate.h"
@@ -45,13 +45,14 @@ constexpr double kUnrest = 0.08;          // mean of a part that is open: closed
 constexpr double kUnrestNoisy = 0.2;      // the same where noise hides thin walls, whose field is open in places
 constexpr double kNoJump = 0.6;           // mean jump defect of a part whose sides change from site to site, or of two walls
 constexpr double kNoJumpNoisy = 0.8;      // the same under noise
-constexpr double kThin = 2;               // spacings between two walls: the field tells walls farther apart
+constexpr double kThin = 2;               // spacings between two walls: the field distinguishes walls farther apart
 constexpr double kExact = 0.01;           // spacings: deviations below are as good as none
-constexpr std::size_t kWallPoints = 24;   // of the heights that tell one wall from two
+constexpr std::size_t kWallPoints = 24;   // of the heights that distinguish one wall from two
 constexpr std::size_t kWallPlaces = 500;  // at most, whose median counts
 constexpr double kOutside = 0.55;         // enclosure from which a part has an outside; a plane has 0, half a sphere 0.6, a sphere 1
 constexpr double kEncloses = 0.7;         // enclosure under noise that no bowl up to a half sphere has, so that the part is a closed one
 constexpr double kLevel = 1e-6;           // part of the mean normal that counts as none
+constexpr std::size_t kRing = 7;          // sites that a side is common to: one and those around it, six in the densest packing
 constexpr float kUndecided = 0.5F;        // certainty of a side that is chosen, or not certified
 
 // Places where the unrest of the given normals is that of an open surface, and what to try there.
@@ -121,9 +122,9 @@ class Search {
     return g3r::jump_defects(finest_, at_sites(normals), sums_, cancel_);
   }
 
-  // Whether the points of a part lie on two walls closer together than the field can tell: the heights over the planes of the sites are
-  // likelier from two parallel quadratics than from one. n points on two walls, each with a label that costs ln 2, have the log likelihood
-  // -n ln s2 - n ln 2, on one -n ln s1, with s the standard deviation from the fit.
+  // Whether the points of a part lie on two walls closer together than the field can distinguish: the heights over the planes of the sites
+  // are likelier from two parallel quadratics than from one. n points on two walls, each with a label that costs ln 2, have the log
+  // likelihood -n ln s2 - n ln 2, on one -n ln s1, with s the standard deviation from the fit.
   [[nodiscard]] bool has_two_walls(std::uint32_t part) const {
     const std::vector<std::uint32_t>& members = members_[part];
     std::vector<double> gain;
@@ -133,7 +134,7 @@ class Search {
       const std::uint32_t s = members[k];
       set_.tree().nearest(finest_.points()[s], kWallPoints, index, squared);
       const double one = quadratic_residual(points_, index.data(), index.size(), finest_.axis[s], finest_.spacing()[s]);
-      const TwoSheets two = fit_two_sheets(points_, index.data(), index.size(), finest_.axis[s]);
+      const TwoLayers two = fit_two_layers(points_, index.data(), index.size(), finest_.axis[s]);
       const double exact = kExact * finest_.spacing()[s];
       const bool thin = two.gap < kThin * finest_.spacing()[s];
       gain.push_back((thin ? std::log(std::max(one, exact) / std::max(two.deviation, exact)) : 0) - std::numbers::ln2);
@@ -252,16 +253,43 @@ bool faces_down(const Vec3& sum) {
   return false;
 }
 
-// How far the certificate of the given normals shows the sides of the points to be right.
-std::vector<float> certified(const Search& search, const Certificate& certificate, const std::vector<Vec3>& normals) {
-  const bool exact = search.sites().distance == 0;
+// Of every site, how far the normals of its points and of those of the sites around it are one direction: the length of their mean (the
+// mean resultant length of directional statistics; Mardia and Jupp, "Directional Statistics", 2000), 1 where all are the same, near 0
+// where they face either way, as in two walls or patches closer together than the sites.
+std::vector<double> concentration(const Search& search, const std::vector<Vec3>& normals) {
+  const Sites& sites = search.sites();
+  std::vector<Vec3> sum(sites.size(), Vec3{0, 0, 0});
+  std::vector<double> count(sites.size(), 0);
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    sum[sites.site_of[i]] = vector::add(sum[sites.site_of[i]], normals[i]);
+    ++count[sites.site_of[i]];
+  }
+  const std::vector<std::uint32_t>& near = sites.set.near();
+  const std::size_t stride = sites.set.near_count();
+  std::vector<double> out(sites.size());
+  for (std::size_t s = 0; s < sites.size(); ++s) {
+    Vec3 around{};
+    double all = 0;
+    for (std::size_t k = 0; k < std::min(kRing, stride); ++k) {
+      around = vector::add(around, sum[near[s * stride + k]]);
+      all += count[near[s * stride + k]];
+    }
+    out[s] = std::sqrt(dot(around, around)) / all;
+  }
+  return out;
+}
+
+// How far the certificate of the given normals shows the sides of the points to be right; `exact`: there is no noise.
+std::vector<float> certified(const Search& search, const Certificate& certificate, const std::vector<Vec3>& normals, bool exact) {
   const std::vector<Vec3> at_sites = search.at_sites(normals);
-  std::vector<float> out(normals.size());
+  const std::vector<double> one_way = exact ? std::vector<double>{} : concentration(search, normals);
+  const bool is_thinned = search.sites().distance > 0;
+  std::vector<float> out(normals.size(), 0);
   for (std::size_t i = 0; i < normals.size(); ++i) {
     const std::uint32_t s = search.sites().site_of[i];
-    const double jump = exact ? certificate.jump[s] : 1 - certificate.jump_defect[s];
-    const double shown = dot(normals[i], at_sites[s]) > 0 ? std::clamp(jump, 0.0, 1.0) : 0;
-    out[i] = static_cast<float>(shown);
+    if (dot(normals[i], at_sites[s]) <= 0) continue;
+    const double jump = is_thinned ? 1 - certificate.scaled_defect[s] : certificate.jump[s];
+    out[i] = static_cast<float>((exact ? 1 : one_way[s]) * std::clamp(jump, 0.0, 1.0));
   }
   return out;
 }
@@ -326,7 +354,7 @@ void choose(const Search& search, const std::vector<std::vector<Vec3>>& tried, c
 }
 
 // The normals of open parts, with their outside where they have one.
-OpenSurfaces settle(const Search& search, const std::vector<std::vector<Vec3>>& tried, const Verdict& verdict, std::vector<Vec3>& normals) {
+OpenSurfaces choose(const Search& search, const std::vector<std::vector<Vec3>>& tried, const Verdict& verdict, std::vector<Vec3>& normals) {
   OpenSurfaces found;
   found.part.assign(normals.size(), OpenSurfaces::kNone);
   found.certainty.assign(normals.size(), 1);
@@ -372,11 +400,11 @@ OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan
     tried = search.hypotheses();
     choose(search, tried, unrest, defect, noise, verdict);
   }
-  std::vector<float> shown = certified(search, given, normals);
+  std::vector<float> shown = certified(search, given, normals, noise == 0);
   OpenSurfaces found;
-  if (any(verdict.is_open) || any(verdict.is_doubtful)) found = settle(search, tried, verdict, normals);
+  if (any(verdict.is_open) || any(verdict.is_doubtful)) found = choose(search, tried, verdict, normals);
   found.certified = std::move(shown);
-  found.uncertified = search.sites().distance == 0 ? kUndecided : 0;
+  found.uncertified = noise == 0 ? kUndecided : 0;
   return found;
 }
 

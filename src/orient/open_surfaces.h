@@ -41,9 +41,10 @@ struct OpenSurfaces {
 /// plane. Where |e| is below 0.55 either side could be it, and the one that faces up (+z; if the part is level, +y, then +x) is taken.
 /// Under noise a part with |e| above 0.7 is closed: noise makes one wall of two, and what is left encloses nearly everything.
 /// Where the solution stays as it is, J = max(0, jump of its site) certifies a side: where walls are too close for the sampling the field
-/// does not jump from 0 to 1, whatever the sides. Of exact points J is the largest jump; under noise, which makes sheets of single wrong
-/// patches, it is the mean of the jumps. Points that face the other way than the mean of their site have 0, and all points of a cloud of
-/// fewer than 30.
+/// does not jump from 0 to 1, whatever the sides. J is the largest jump, and 1 - scaled_defect where sites are thinned for noise, which
+/// makes layers of single wrong patches. Under noise it counts R times, R the length of the mean of the normals of the points of the site
+/// and the six around it: two walls closer together than 4 sigma are one site or two neighbours, and which normal is whose is chance.
+/// Points that face the other way than the mean of their site have 0, and all points of a cloud of fewer than 30.
 /// `noise`: standard deviation; `normals`: N unit vectors, in: the solution,
 /// out: changed on open surfaces. O(N log N).
 [[nodiscard]] OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan& sums, std::vector<Vec3>& normals,

@@ -16,10 +16,10 @@ constexpr std::size_t kFewestCoarsePoints = 10000;  // a coarser start costs sid
 
 // The default: energy form. Widths in spacings h.
 constexpr double kEnergyEpsilon = 0.4;    // smaller converges slower, larger blurs thin walls
-constexpr double kCoarsestEpsilon = 0.5;  // without a start: converges faster, tells more sides right
+constexpr double kCoarsestEpsilon = 0.5;  // without a start: converges faster, finds more sides
 // Weights l of the winding number, in h^3: S eta and l W^T W eta keep their proportion for any number of points.
 constexpr double kWindingWeight = 250;          // from eta = 0; larger converges slower, 0 loses nested shells
-constexpr double kContinuedWindingWeight = 30;  // with a coarse start or among outliers: tells more sides of thin walls right
+constexpr double kContinuedWindingWeight = 30;  // with a coarse start or among outliers: finds more sides of thin walls
 constexpr double kDoubtfulWindingWeight = 35;   // more leaves walls wrong as a whole, less costs narrow gaps
 constexpr double kPolishWindingWeight = 100;    // 30 to 750 give the same normals within 2 %
 constexpr double kEnergyTolerance = 2.5e-3;     // slats and spokes need this residual; smooth shapes get there in half the steps
@@ -52,7 +52,7 @@ constexpr double kNoisyPolishPower = 0.6;
 constexpr double kNoisyPolishEpsilon = 1.95;  // h; 1.8 and the power 1/2 leave more sides of thin walls right, and turn shells
 constexpr double kNoisyPolishWidth = 2.4;     // h
 constexpr int kNoisyPolishSteps = 9;
-constexpr double kClusterSide = 0.9;    // epsilon; the kernel at width epsilon cannot tell points of one cluster apart
+constexpr double kClusterSide = 0.9;    // epsilon; the kernel at width epsilon cannot distinguish points of one cluster
 constexpr double kWideEpsilon = 1.5;    // h; from here on clusters pay, and an epsilon that is asked for is taken to mean noise
 constexpr double kNoisyDamping = 0.28;  // 1/h: the self term of a flat patch; without it the polish turns shells in cavities
 // W eta = 1/2 is wrong at points off the surface, and the more so the farther off they are: all weights fall with (1 + this s^2)^3.
@@ -62,7 +62,7 @@ constexpr double kNoisyPolishWindingWeight = 70;  // h^3, for little noise; more
 constexpr double kAccuracy = 1e-2;
 // The default for least squares over the harmonics.
 constexpr double kGreenEpsilon = 0.4;       // converges in 10-15 iterations
-constexpr double kGreenConstantWeight = 2;  // the row u = 1 alone tells inside from outside
+constexpr double kGreenConstantWeight = 2;  // the row u = 1 alone distinguishes inside from outside
 constexpr double kGreenTolerance = 2.5e-3;
 constexpr const char* kGreenSchedule = "20 cg";
 // The polish: narrower than the solve and the refinement it starts from.
@@ -116,7 +116,7 @@ void require(bool good, const std::string& message) {
 }
 
 // What W eta = 1/2 counts under this noise, in spacings.
-double believed(double noise) { return cube(1 / (1 + kWeightFall * noise * noise)); }
+double trust(double noise) { return cube(1 / (1 + kWeightFall * noise * noise)); }
 
 // Widths, steps and the polish of the default for noise of this many spacings.
 void follow_noise(double noise, const Options& options, std::size_t points, Settings& s) {
@@ -132,7 +132,7 @@ void follow_noise(double noise, const Options& options, std::size_t points, Sett
   s.polish_width = std::max(s.polish_width, kNoisyPolishWidth * patch);
   if (s.polish_steps > 0) s.polish_steps = kNoisyPolishSteps;
   s.polish_damping = kNoisyDamping / s.spacing;
-  s.polish_winding_weight = kNoisyPolishWindingWeight * believed(noise) * cube(s.spacing);
+  s.polish_winding_weight = kNoisyPolishWindingWeight * trust(noise) * cube(s.spacing);
   s.unsure_of_noise = kUnsurePerNoise * noise;
   if (!s.doubtful_schedule.empty()) s.doubtful_schedule = {kDoubtfulNoisy};
   if (s.epsilon > kWideEpsilon * s.spacing) s.cluster_side = kClusterSide * s.epsilon;
@@ -219,7 +219,7 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   const double scatter = paper || green ? 0 : wide ? hidden_noise(s.epsilon / spacing) : noise / spacing;
   if (scatter > 0) follow_noise(scatter, options, cloud.size(), s);
   const bool light = starts_coarse(s, cloud.size()) || among_outliers;
-  s.winding_weight = (light ? kContinuedWindingWeight : kWindingWeight) * believed(scatter) * cube(spacing);
+  s.winding_weight = (light ? kContinuedWindingWeight : kWindingWeight) * trust(scatter) * cube(spacing);
   s.accuracy = options.accuracy != -1 ? options.accuracy : kAccuracy;
   s.first_sums = sum_plan(s.accuracy, cloud.size());
   const bool continued = options.accuracy == -1 && s.method == Method::kEnergy;

@@ -25,7 +25,7 @@ namespace g3r {
 namespace {
 
 constexpr std::size_t kFewestApart = 100;  // points that are solved for again without the open surfaces of their cloud
-constexpr double kAtOdds = 1e-3;           // share of the points against most of their facet, from which facets are solved for
+constexpr double kMinMinority = 1e-3;      // share of the points against most of their facet, from which facets are solved for
 constexpr float kChoice = 0.5F;            // certainty of an open surface that has no outside
 constexpr double kBetweenSites = 0.7;      // site spacings, of the field where there are no sites: narrower shows single ones
 constexpr int kFacetRounds = 3;            // points on no facet come right after those on one, and facets grow
@@ -70,15 +70,15 @@ Solution solve_equations(const Problem& problem, const Options& options, Stages&
   return solution;
 }
 
-bool has_open_part(const OpenSurfaces& sheets) {
-  return std::any_of(sheets.part.begin(), sheets.part.end(), [](std::uint32_t part) { return part != OpenSurfaces::kNone; });
+bool has_open_part(const OpenSurfaces& surfaces) {
+  return std::any_of(surfaces.part.begin(), surfaces.part.end(), [](std::uint32_t part) { return part != OpenSurfaces::kNone; });
 }
 
 // Points on open surfaces get area vectors along the normals found for them.
-void set_sheet_areas(const OpenSurfaces& sheets, const PointSet& set, const std::vector<Vec3>& normals, std::vector<Vec3>& eta) {
+void set_open_areas(const OpenSurfaces& surfaces, const PointSet& set, const std::vector<Vec3>& normals, std::vector<Vec3>& eta) {
   const std::vector<double>& spacing = set.local_spacing();
-  for (std::size_t i = 0; i < sheets.part.size(); ++i) {
-    if (sheets.part[i] == OpenSurfaces::kNone) continue;
+  for (std::size_t i = 0; i < surfaces.part.size(); ++i) {
+    if (surfaces.part[i] == OpenSurfaces::kNone) continue;
     for (std::size_t a = 0; a < 3; ++a) eta[i][a] = spacing[i] * spacing[i] * normals[i][a];
   }
 }
@@ -92,7 +92,7 @@ void agree_on_facets(const Problem& problem, const std::vector<std::uint8_t>& pr
   const Settings& s = problem.settings;
   for (int round = 0; round < kFacetRounds; ++round) {
     const Facets facets = find_facets(set, proven, normals);
-    if (share_at_odds(facets, normals) < kAtOdds) return;
+    if (minority_share(facets, normals) < kMinMinority) return;
     choose_facet_sides(set, s, facets, eta, normals, stages);
     FastSum sum(set.points(), set.morton(), local_widths(s.polish_width, s, set.smoothed_spacing()), s.sums, stages.cancel());
     const Refinement refined = refine_normals(sum, eta);
@@ -135,15 +135,15 @@ Solution solve_on_points(const Problem& problem, const Options& options, Stages&
     if (!runs(problem, Step::kOpenSurfaces)) return OpenSurfaces{};
     return find_open_surfaces(set, problem.noise, s.sums, sides, stages.cancel());
   };
-  OpenSurfaces sheets = find_open(normals);
-  if (has_open_part(sheets)) {
-    set_sheet_areas(sheets, set, normals, polished.eta);
+  OpenSurfaces surfaces = find_open(normals);
+  if (has_open_part(surfaces)) {
+    set_open_areas(surfaces, set, normals, polished.eta);
     if (problem.is_clean()) fit_directions(problem, normals);
   } else if (problem.is_clean()) {
     fit_surface(problem, polished.eta, normals, stages);
-    if (!sheets.part.empty()) sheets = find_open(normals);  // facets may have found sides that certify it
+    if (!surfaces.part.empty()) surfaces = find_open(normals);  // facets may have found sides that certify it
   }
-  return {std::move(polished.eta), std::move(polished.refinement), std::move(sheets)};
+  return {std::move(polished.eta), std::move(polished.refinement), std::move(surfaces)};
 }
 
 Refinement solve_clusters(const Clusters& clusters, const Settings& s, Stages& stages, Stats& stats) {
@@ -175,8 +175,9 @@ Solution solve_on_clusters(const Problem& problem, Stages& stages, Stats& stats)
   }
   solution.refinement = unit_normals(field.winding_gradient_at(eta, problem.cloud.points(), stages.cancel()), solution.eta);
   if (!runs(problem, Step::kOpenSurfaces)) return solution;
-  solution.sheets = find_open_surfaces(problem.cloud.set, problem.noise, s.sums, solution.refinement.normals, stages.cancel());
-  if (!solution.sheets.part.empty()) set_sheet_areas(solution.sheets, problem.cloud.set, solution.refinement.normals, solution.eta);
+  solution.open_surfaces = find_open_surfaces(problem.cloud.set, problem.noise, s.sums, solution.refinement.normals, stages.cancel());
+  if (!solution.open_surfaces.part.empty())
+    set_open_areas(solution.open_surfaces, problem.cloud.set, solution.refinement.normals, solution.eta);
   return solution;
 }
 
@@ -186,10 +187,10 @@ Solution solve_on_sites(const Problem& problem, const Options& options, Stages& 
   const Sites sites = place_sites(problem.cloud.set, problem.line_distance);
   const Problem coarse = on_sites(problem, sites, options);
   Solution solved = solve(coarse, options, stages, stats);
-  solve_sheets_apart(coarse, options, stages, stats, solved);
+  solve_open_surfaces_apart(coarse, options, stages, stats, solved);
   Solution out;
-  out.sheets.worst_defect = solved.sheets.worst_defect;
-  out.sheets.uncertified = solved.sheets.uncertified;
+  out.open_surfaces.worst_defect = solved.open_surfaces.worst_defect;
+  out.open_surfaces.uncertified = solved.open_surfaces.uncertified;
   out.eta.resize(points.size());
   std::vector<double> members(sites.size(), 0);
   for (const std::uint32_t s : sites.site_of) ++members[s];
@@ -197,12 +198,12 @@ Solution solve_on_sites(const Problem& problem, const Options& options, Stages& 
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const std::uint32_t s = sites.site_of[i];
     out.eta[i] = vector::scale(solved.eta[s], 1 / members[s]);
-    if (!solved.sheets.certified.empty()) out.sheets.certified.push_back(solved.sheets.certified[s]);
-    if (solved.sheets.part.empty()) continue;
-    const std::uint32_t part = solved.sheets.part[s];
+    if (!solved.open_surfaces.certified.empty()) out.open_surfaces.certified.push_back(solved.open_surfaces.certified[s]);
+    if (solved.open_surfaces.part.empty()) continue;
+    const std::uint32_t part = solved.open_surfaces.part[s];
     if (part != OpenSurfaces::kNone) first[part] = std::min(first[part], i);
-    out.sheets.part.push_back(part == OpenSurfaces::kNone ? part : first[part]);
-    out.sheets.certainty.push_back(solved.sheets.certainty[s]);
+    out.open_surfaces.part.push_back(part == OpenSurfaces::kNone ? part : first[part]);
+    out.open_surfaces.certainty.push_back(solved.open_surfaces.certainty[s]);
   }
   const FastSum field(sites.points(), sites.set.morton(), Widths(kBetweenSites * coarse.spacing), coarse.settings.sums, stages.cancel());
   out.refinement = unit_normals(field.winding_gradient_at(solved.eta, points, stages.cancel()), out.eta);
@@ -215,16 +216,16 @@ bool solve_apart(const Problem& problem, const std::vector<std::uint32_t>& some,
                  Stats& stats, Solution& solution) {
   if (some.size() < kFewestApart) return true;
   const Solution apart = solve(part_of(problem, some, options), options, stages, stats);
-  if (is_open && !apart.sheets.part.empty()) return true;
+  if (is_open && !apart.open_surfaces.part.empty()) return true;
   for (std::size_t k = 0; k < some.size(); ++k) {
     const std::uint32_t i = some[k];
     solution.eta[i] = apart.eta[k];
     solution.refinement.normals[i] = apart.refinement.normals[k];
     solution.refinement.strength[i] = apart.refinement.strength[k];
-    solution.sheets.certified[i] = apart.sheets.certified[k];
-    const bool open = !apart.sheets.part.empty() && apart.sheets.part[k] != OpenSurfaces::kNone;
-    solution.sheets.part[i] = open ? some[apart.sheets.part[k]] : OpenSurfaces::kNone;
-    solution.sheets.certainty[i] = apart.sheets.certainty.empty() ? 1 : apart.sheets.certainty[k];
+    solution.open_surfaces.certified[i] = apart.open_surfaces.certified[k];
+    const bool open = !apart.open_surfaces.part.empty() && apart.open_surfaces.part[k] != OpenSurfaces::kNone;
+    solution.open_surfaces.part[i] = open ? some[apart.open_surfaces.part[k]] : OpenSurfaces::kNone;
+    solution.open_surfaces.certainty[i] = apart.open_surfaces.certainty.empty() ? 1 : apart.open_surfaces.certainty[k];
   }
   return stats.converged;
 }
@@ -238,19 +239,19 @@ Solution solve(const Problem& problem, const Options& options, Stages& stages, S
   return solve_on_points(problem, options, stages, stats);
 }
 
-void solve_sheets_apart(const Problem& problem, const Options& options, Stages& stages, Stats& stats, Solution& solution) {
+void solve_open_surfaces_apart(const Problem& problem, const Options& options, Stages& stages, Stats& stats, Solution& solution) {
   if (problem.line_distance > 0 || !runs(problem, Step::kApart)) return;  // of lines, solve() has done it, on the sites
   std::map<std::uint32_t, std::vector<std::uint32_t>> parts;
   const auto collect = [&] {
     parts.clear();
-    for (std::uint32_t i = 0; i < solution.sheets.part.size(); ++i) parts[solution.sheets.part[i]].push_back(i);
+    for (std::uint32_t i = 0; i < solution.open_surfaces.part.size(); ++i) parts[solution.open_surfaces.part[i]].push_back(i);
   };
   collect();
-  if (parts.size() < 2) return;  // no sheet, or one that is all there is
+  if (parts.size() < 2) return;  // no open surface, or one that is all there is
   bool converged = true;         // what is open does not solve the equations, and does not have to
-  for (const auto& [sheet, points] : parts) {
+  for (const auto& [surface, points] : parts) {
     // What encloses nothing is not closed by itself either.
-    const bool may_be_closed = sheet != OpenSurfaces::kNone && solution.sheets.certainty[sheet] > kChoice;
+    const bool may_be_closed = surface != OpenSurfaces::kNone && solution.open_surfaces.certainty[surface] > kChoice;
     if (may_be_closed) converged &= solve_apart(problem, points, true, options, stages, stats, solution);
   }
   collect();

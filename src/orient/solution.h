@@ -16,7 +16,7 @@ namespace g3r {
 struct Solution {
   std::vector<Vec3> eta;  ///< area vectors
   Refinement refinement;  ///< normals, and the strength of the field they come from (empty without a refinement)
-  OpenSurfaces sheets;
+  OpenSurfaces open_surfaces;
 };
 
 /// Solves with the problem's method and settings, on the points or on clusters of them. Adds the iterations and whether they converged to
@@ -25,7 +25,7 @@ struct Solution {
 
 /// An open surface makes the equations of everything beside it wrong too. So each one is solved for alone, which may show that it was none,
 /// and then everything else without them. Nothing happens without an open surface, or with one that is all there is.
-void solve_sheets_apart(const Problem& problem, const Options& options, Stages& stages, Stats& stats, Solution& solution);
+void solve_open_surfaces_apart(const Problem& problem, const Options& options, Stages& stages, Stats& stats, Solution& solution);
 
 /// The last word on the directions of a noisy cloud (fit_noisy_jets). Nothing happens without noise, and to earlier methods and the
 /// paper's.

@@ -23,7 +23,7 @@ enum class Step {
   kPlanes,        ///< and from planes
   kCreases,       ///< and from the facets beside a crease
   kFacets,        ///< the points of a facet take one side
-  kNoiseChoice,   ///< other noises are tried where many sides are in doubt
+  kNoiseChoice,   ///< other noises are tried where many sides are unsure
   kNoisyJets,     ///< directions of noisy clouds from wide quadratics
   kAreas,         ///< areas from the density of the points instead of the solution
   kCertificate    ///< the confidence of a side is lowered where the field does not certify it

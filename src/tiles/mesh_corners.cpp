@@ -4,7 +4,7 @@
 #include "field/winding_sampler.h"
 #include "io/output_file.h"
 #include "mesh/field_corners.h"
-#include "mesh/field_readings.h"
+#include "mesh/field_labellings.h"
 #include "tiles/mesh_passes.h"
 
 #include <g3r/io.h>
@@ -142,9 +142,9 @@ void write_corners(const MeshFolder& folder, std::size_t tile, const std::atomic
   const mesh::InsideTest joined = joining_rule(folder, prepared, local);
   const std::vector<std::uint8_t> free = free_corners(octree, owned);
   mesh::remove_handles(
-      octree, corners.opinions, [&](std::uint32_t c) { return free[c] != 0; }, joined, inside,
+      octree, corners.ambiguous, [&](std::uint32_t c) { return free[c] != 0; }, joined, inside,
       mesh::contour(octree, inside, joined, cancel), cancel);
-  mesh::settle_values(octree, inside, prepared.typical, corners.value);
+  mesh::match_values(octree, inside, prepared.typical, corners.value);
 
   const std::vector<CornerValue> values = worth_saying(around, owned, corners.value, inside);
   io::OutputFile out(mesh_corners_path(folder.folder, tile), cancel);

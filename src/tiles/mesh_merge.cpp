@@ -1,4 +1,4 @@
-// The sheets of all tiles into one mesh, without the components that nothing holds: vertices by tile, then those in the middle of polygons
+// The patches of all tiles into one mesh, without the components that nothing holds: vertices by tile, then those in the middle of polygons
 // by tile, then the triangles.
 #include "base/platform.h"
 #include "base/stages.h"
@@ -6,7 +6,7 @@
 #include "io/source.h"
 #include "tiles/mesh_plan.h"
 #include "tiles/parts.h"
-#include "tiles/sheets_file.h"
+#include "tiles/patches_file.h"
 
 #include <g3r/io.h>
 #include <g3r/tiles.h>
@@ -158,16 +158,16 @@ void require_known(const MeshOptions& options) {
 
 // Of the vertices of a tile those that stay.
 void append_vertices(const MeshFolder& folder, const KeptParts& kept, std::size_t tile, std::string& bytes) {
-  const SheetsFile sheets(folder.folder, tile);
+  const PatchesFile patches(folder.folder, tile);
   const PartsFile parts(folder, tile);
   const std::vector<MovedVertex> moved = parts.moved();
   std::vector<MeshVertex> vertices;
   std::uint64_t count = 0;
   std::size_t next = 0;
-  for (std::uint64_t at = 0; at < sheets.header().vertices; at += kRecordsAtOnce) {
-    const std::uint64_t end = std::min(sheets.header().vertices, at + kRecordsAtOnce);
+  for (std::uint64_t at = 0; at < patches.header().vertices; at += kRecordsAtOnce) {
+    const std::uint64_t end = std::min(patches.header().vertices, at + kRecordsAtOnce);
     vertices.clear();
-    sheets.append_vertices(at, end, vertices);
+    patches.append_vertices(at, end, vertices);
     const std::vector<std::uint32_t> part = parts.parts_of(at, end);
     for (std::size_t k = 0; k < part.size(); ++k) {
       if (next < moved.size() && moved[next].vertex == at + k) vertices[k].position = moved[next++].position;

@@ -5,7 +5,7 @@
 #include "mesh/untangle.h"
 #include "tiles/mesh_passes.h"
 #include "tiles/parts.h"
-#include "tiles/sheets_file.h"
+#include "tiles/patches_file.h"
 
 #include <algorithm>
 

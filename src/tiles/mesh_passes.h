@@ -22,7 +22,7 @@ void write_points(const MeshFolder& folder, std::size_t tile, const std::atomic<
 /// Pass 2, after pass 1 of all tiles: the sides of its corners of the octree.
 void write_corners(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel);
 /// Pass 3, after pass 2 of tiles_around() it: its vertices, and the polygons around its edges.
-void write_sheets(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel);
+void write_patches(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel);
 /// Pass 4, after pass 3 of it and of the tiles whose vertices it has, and pass 1 of tiles_around() it: the connected parts of its
 /// triangles, and what holds them.
 void write_parts(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel);

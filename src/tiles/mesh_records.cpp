@@ -40,8 +40,8 @@ std::string mesh_far_path(const std::string& folder, std::size_t tile) { return 
 std::string mesh_corners_path(const std::string& folder, std::size_t tile) {
   return folder + "/mesh-corners-" + std::to_string(tile) + ".bin";
 }
-std::string mesh_sheets_path(const std::string& folder, std::size_t tile) {
-  return folder + "/mesh-sheets-" + std::to_string(tile) + ".bin";
+std::string mesh_patches_path(const std::string& folder, std::size_t tile) {
+  return folder + "/mesh-patches-" + std::to_string(tile) + ".bin";
 }
 std::string mesh_parts_path(const std::string& folder, std::size_t tile) { return folder + "/mesh-parts-" + std::to_string(tile) + ".bin"; }
 

@@ -42,7 +42,7 @@ struct CornerValue {
 };
 static_assert(sizeof(CornerValue) == 12);
 
-/// Names a vertex of the dual surface in whatever tile it is met. Of a sheet: its leaf, the least edge on its rim, 0. Of the middle of an
+/// Names a vertex of the dual surface in whatever tile it is met. Of a patch: its leaf, the least edge on its rim, 0. Of the middle of an
 /// arc: the lesser and the greater leaf, 1 + the lesser edge.
 struct VertexKey {
   std::array<std::uint64_t, 3> part;
@@ -64,9 +64,9 @@ struct ForeignVertex {
 };
 static_assert(sizeof(ForeignVertex) == 32);
 
-/// At the head of a file of sheets: then come its vertices by key, the foreign ones by tile and key, for each polygon its size and
+/// At the head of a file of patches: then come its vertices by key, the foreign ones by tile and key, for each polygon its size and
 /// diagonals (a byte each), and the corners of all polygons, numbers of own vertices, then of foreign ones.
-struct SheetsHeader {
+struct PatchesHeader {
   std::uint64_t vertices = 0;
   std::uint64_t foreign = 0;
   std::uint64_t polygons = 0;
@@ -79,7 +79,7 @@ struct SheetsHeader {
 [[nodiscard]] std::string mesh_points_path(const std::string& folder, std::size_t tile);
 [[nodiscard]] std::string mesh_far_path(const std::string& folder, std::size_t tile);
 [[nodiscard]] std::string mesh_corners_path(const std::string& folder, std::size_t tile);
-[[nodiscard]] std::string mesh_sheets_path(const std::string& folder, std::size_t tile);
+[[nodiscard]] std::string mesh_patches_path(const std::string& folder, std::size_t tile);
 [[nodiscard]] std::string mesh_parts_path(const std::string& folder, std::size_t tile);
 
 /// Points with the normals that their tiles found, in the unit frame.

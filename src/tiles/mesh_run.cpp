@@ -3,7 +3,7 @@
 #include "base/stages.h"
 #include "cpu/parallel.h"
 #include "tiles/mesh_passes.h"
-#include "tiles/sheets_file.h"
+#include "tiles/patches_file.h"
 
 #include <g3r/io.h>
 #include <g3r/tiles.h>
@@ -37,20 +37,20 @@ class MeshRun {
     write_corners(folder_, t, stages_.cancel());
   }
 
-  void sheets(std::size_t t) {
-    if (is_there(mesh_sheets_path(folder_.folder, t))) return;
+  void patches(std::size_t t) {
+    if (is_there(mesh_patches_path(folder_.folder, t))) return;
     for (const std::size_t other : tiles_around(folder_, t)) corners(other);
     begin("surface", t);
-    write_sheets(folder_, t, stages_.cancel());
+    write_patches(folder_, t, stages_.cancel());
   }
 
   void parts(std::size_t t) {
     if (is_there(mesh_parts_path(folder_.folder, t))) return;
-    sheets(t);
-    const SheetsFile file(folder_.folder, t);
+    patches(t);
+    const PatchesFile file(folder_.folder, t);
     for (const std::size_t other : file.foreign_tiles()) {
       if (other >= folder_.tiles()) file.fail();
-      sheets(other);
+      patches(other);
     }
     for (const std::size_t other : tiles_around(folder_, t)) points(other);
     begin("parts", t);
@@ -99,7 +99,7 @@ MeshTiles mesh_tiles(const std::string& folder, const TileWorker& worker, const 
     };
     for_own(&tiles::MeshRun::points);
     for_own(&tiles::MeshRun::corners);
-    for_own(&tiles::MeshRun::sheets);
+    for_own(&tiles::MeshRun::patches);
     for_own(&tiles::MeshRun::parts);
     MeshTiles out;
     out.tiles = opened.tiles();

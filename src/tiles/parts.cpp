@@ -2,7 +2,7 @@
 
 #include "base/disjoint_sets.h"
 #include "tiles/mesh_records.h"
-#include "tiles/sheets_file.h"
+#include "tiles/patches_file.h"
 
 #include <g3r/io.h>
 
@@ -27,10 +27,10 @@ std::uint64_t vertices_at(const PartsHeader& h) { return foreign_at(h) + h.forei
 PartsFile::PartsFile(const MeshFolder& folder, std::size_t tile) : file_(mesh_parts_path(folder.folder, tile)) {
   if (file_.size() < sizeof header_) fail();
   file_.read(0, &header_, sizeof header_);
-  const SheetsHeader sheets = SheetsFile(folder.folder, tile).header();
-  movable_ = sheets.vertices + sheets.centres;
-  const bool fits = header_.parts <= file_.size() && header_.moved <= movable_ && header_.foreign == sheets.foreign &&
-                    header_.vertices == sheets.vertices;
+  const PatchesHeader patches = PatchesFile(folder.folder, tile).header();
+  movable_ = patches.vertices + patches.centres;
+  const bool fits = header_.parts <= file_.size() && header_.moved <= movable_ && header_.foreign == patches.foreign &&
+                    header_.vertices == patches.vertices;
   if (!fits || file_.size() != vertices_at(header_) + header_.vertices * sizeof(std::uint32_t)) fail();
 }
 

@@ -31,15 +31,15 @@ struct ForeignPart {
 };
 static_assert(sizeof(ForeignPart) == 16);
 
-/// A vertex that is elsewhere than the sheets say, for triangles not to cross.
+/// A vertex that is elsewhere than the patches say, for triangles not to cross.
 struct MovedVertex {
   std::uint64_t vertex;  ///< an own one, or after them one of those in the middle of polygons
   Vec3 position;
 };
 static_assert(sizeof(MovedVertex) == 32);
 
-/// At the head of a file of parts: then come the parts, the moved vertices, ascending, the foreign vertices in the order of the sheets, and
-/// the part of every own vertex.
+/// At the head of a file of parts: then come the parts, the moved vertices, ascending, the foreign vertices in the order of the patches,
+/// and the part of every own vertex.
 struct PartsHeader {
   std::uint64_t parts = 0;
   std::uint64_t moved = 0;

@@ -9,7 +9,7 @@
 namespace g3r::tiles {
 namespace {
 
-constexpr std::size_t kMost = std::size_t{1} << 17U;  // points kept; with 10,000 the folds of a statue look like thick sheets
+constexpr std::size_t kMost = std::size_t{1} << 17U;  // points kept; with 10,000 the folds of a statue look like thick patches
 constexpr std::size_t kFewest = 100;                  // that tell a spacing
 
 // splitmix64 (Steele, Lea, Flood 2014).

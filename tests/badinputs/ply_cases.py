@@ -237,7 +237,7 @@ def values(sp, sp32, rng):
     pd('geo_nested_spheres.ply', sphere(900) + sphere(300, 0.5), S, 'a shell inside a shell', group='geometry')
     pd('geo_touching_spheres.ply', sphere(500) + sphere(500, 1.0, (2.0, 0.0, 0.0)), S, 'tangent balls', group='geometry')
     pd('geo_many_components.ply', [p for a in range(4) for b in range(4) for c in range(4) for p in sphere(40, 0.3, (a, b, c))], S, '64 small balls, 40 points each', group='geometry', also=[W], hint=['component', 'sparse'])
-    pd('geo_thin_sheets.ply', [[i / 40.0, j / 40.0, s * 1e-3] for s in (0, 1) for i in range(40) for j in range(40)], S, 'two sheets 1e-3 apart, spacing 25e-3', group='geometry', also=[W], hint=['thin', 'open'])
+    pd('geo_thin_layers.ply', [[i / 40.0, j / 40.0, s * 1e-3] for s in (0, 1) for i in range(40) for j in range(40)], S, 'two layers 1e-3 apart, spacing 25e-3', group='geometry', also=[W], hint=['thin', 'open'])
     pd('geo_hemisphere.ply', [p for p in sphere(1200) if p[2] > 0], S, 'an open half', group='geometry', also=[W], hint=['open', 'hole'])
     pd('geo_density_1e4.ply', sphere(300) + [q((math.sqrt(max(0.0, 1 - (a * a + b * b))), a, b)) for a, b in
         (((rng.f() - .5) * 2e-2, (rng.f() - .5) * 2e-2) for _ in range(3000))], S, 'one cap 1e4..1e5 times denser', group='geometry', also=[W], hint=['densit'])

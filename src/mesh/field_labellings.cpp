@@ -1,0 +1,57 @@
+#include "mesh/field_labellings.h"
+
+#include "mesh/handle_removal.h"
+
+#include <algorithm>
+#include <array>
+
+namespace g3r::mesh {
+namespace {
+
+// A candidate labelling: the signs of the ambiguous corners after so many smoothing passes, at some iso-level.
+struct Labelling {
+  std::size_t passes;
+  double level;
+};
+constexpr std::array<Labelling, 6> kLabellings{{{2, 0}, {0, 0}, {1, 0.2}, {1, -0.2}, {1, 0.5}, {1, -0.5}}};
+
+// What a proposal may change: fewer corners in a group, and so smaller ones that can be taken, if it goes one way only.
+enum class Way { kBoth, kFill, kCut };
+
+}  // namespace
+
+bool remove_handles(const Octree& octree, const AmbiguousCorners& ambiguous, const std::function<bool(std::uint32_t)>& may_change,
+                    const InsideTest& centre_inside, std::vector<std::uint8_t>& inside, const DualSurface& surface,
+                    const std::atomic<bool>* cancel) {
+  if (count_handles(surface) == 0) return false;
+  const std::vector<std::vector<float>> smoothed = smooth_sides(octree, ambiguous, inside, 2, cancel);
+  const auto sign = [&](const Labelling& labelling, std::uint32_t place) -> std::uint8_t {
+    const std::vector<float>& value = labelling.passes == 0 ? ambiguous.value : smoothed[labelling.passes - 1];
+    return value[place] > labelling.level ? 1 : 0;
+  };
+  std::vector<std::uint8_t> is_ambiguous(inside.size(), 0);
+  std::vector<std::uint32_t> changing;  // places among the ambiguous corners that some labelling changes
+  for (std::uint32_t k = 0; k < ambiguous.corner.size(); ++k) {
+    const std::uint32_t c = ambiguous.corner[k];
+    if (octree.on_boundary(c) || !may_change(c)) continue;
+    if (std::all_of(kLabellings.begin(), kLabellings.end(), [&](const Labelling& r) { return sign(r, k) == inside[c]; })) continue;
+    is_ambiguous[c] = 1;
+    changing.push_back(k);
+  }
+  HandleRemoval removal(octree, is_ambiguous, inside, surface, centre_inside, cancel);
+  bool changed = false;
+  for (const Labelling& labelling : kLabellings) {
+    for (const Way way : {Way::kBoth, Way::kFill, Way::kCut}) {
+      if (removal.handles() == 0) return changed;
+      std::vector<std::uint8_t> proposal = inside;
+      for (const std::uint32_t k : changing) {
+        const std::uint8_t now = sign(labelling, k);
+        if (way == Way::kBoth || (now != 0) == (way == Way::kFill)) proposal[ambiguous.corner[k]] = now;
+      }
+      changed = removal.propose(proposal, inside) || changed;
+    }
+  }
+  return changed;
+}
+
+}  // namespace g3r::mesh

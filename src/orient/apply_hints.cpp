@@ -1,0 +1,104 @@
+#include "orient/apply_hints.h"
+
+#include "orient/confidence.h"
+#include "orient/hints.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+namespace g3r {
+namespace {
+
+std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
+
+std::string in_words(const Vec3& place) {
+  char text[96];
+  std::snprintf(text, sizeof text, "%.7g,%.7g,%.7g", place[0], place[1], place[2]);
+  return text;
+}
+
+double share(const std::vector<std::uint8_t>& marked) {
+  const auto count = static_cast<double>(std::count_if(marked.begin(), marked.end(), [](std::uint8_t m) { return m != 0; }));
+  return marked.empty() ? 0 : count / static_cast<double>(marked.size());
+}
+
+// In the problem's frame and order. Points at one place take the first of their sensors.
+Hints in_frame(const Hints& given, const CanonicalCloud& cloud) {
+  Hints hints = given;
+  for (Vec3& place : hints.sensors) place = cloud.frame.to_unit(place);
+  for (Vec3& place : hints.inside) place = cloud.frame.to_unit(place);
+  if (given.sensor_of_point.empty()) return hints;
+  hints.sensor_of_point.assign(cloud.size(), kNoSensor);
+  for (std::size_t i = 0; i < cloud.point_of.size(); ++i) {
+    const std::uint32_t p = cloud.point_of[i];
+    if (p >= cloud.size()) continue;  // an outlier, or not finite
+    hints.sensor_of_point[p] = std::min(hints.sensor_of_point[p], given.sensor_of_point[i]);
+  }
+  return hints;
+}
+
+Patches patches_of(const OpenSurfaces& surfaces) {
+  Patches patches;
+  patches.of = surfaces.part;
+  for (const float certainty : surfaces.certainty) patches.is_choice.push_back(certainty < 1 ? 1 : 0);
+  return patches;
+}
+
+std::vector<std::string> names_of(const Hints& hints) {
+  std::vector<std::string> names;
+  if (hints.up) names.emplace_back("up");
+  if (!hints.sensors.empty()) names.emplace_back("sensor");
+  if (!hints.inside.empty()) names.emplace_back("inside");
+  if (hints.seen_from_inside) names.emplace_back("seen_from_inside");
+  if (hints.flip) names.emplace_back("flip");
+  return names;
+}
+
+void warn(const HintEffect& effect, const Hints& hints, const CanonicalCloud& cloud, bool any_open, Stats& stats) {
+  const std::string against = percent(effect.contradicted_share);
+  if (effect.contradicted_share > 0 && effect.closed_parts_turned) {
+    stats.warnings.push_back("hint sensor: the scanner stood inside the closed parts, and " + against +
+                             " of their votes said that they faced away from it: they have been turned to face it");
+  } else if (effect.contradicted_share > 0) {
+    stats.warnings.push_back("hint sensor: it contradicts the closed parts, " + against +
+                             " of whose votes say that they face away from the scanner; they keep their sides");
+  }
+  if (effect.inside_that_is_outside) {
+    Vec3 place = *effect.inside_that_is_outside;
+    for (std::size_t a = 0; a < 3; ++a) place[a] = place[a] / cloud.frame.scale + cloud.frame.centre[a];
+    stats.warnings.push_back("hint inside: " + in_words(place) + " is not inside the closed parts; they keep their sides");
+  }
+  if (hints.up && !any_open) stats.warnings.emplace_back("hint up: it decides nothing, as no part of the cloud is open");
+}
+
+}  // namespace
+
+void apply_hints(const Problem& problem, const Options& options, Solution& solution, std::vector<float>& confidence, Stats& stats,
+                 const std::atomic<bool>* cancel) {
+  const Patches patches = patches_of(solution.open_surfaces);
+  const Hints hints = in_frame(options.hints, problem.cloud);
+  stats.hints.given = names_of(hints);
+  const HintEffect effect = follow_hints(problem.cloud.points(), problem.cloud.set.near(), problem.spacing, patches, hints,
+                                         {solution.refinement.normals, solution.eta, confidence}, cancel);
+  const double turned = share(effect.turned);
+  stats.hints.turned_share = hints.flip ? 1 - turned : turned;
+  stats.hints.settled_share = share(effect.decided);
+  stats.hints.agreement = effect.agreement;
+  stats.hints.contradicted_share = effect.contradicted_share;
+  stats.undecided_share = std::max(0.0, stats.undecided_share - stats.hints.settled_share);
+  double sum = 0;
+  for (const float c : confidence) sum += static_cast<double>(c);
+  stats.confidence_mean = sum / static_cast<double>(confidence.size());
+  stats.confidence_below_half = unsure_share(confidence);
+  stats.consistent = stats.confidence_below_half + stats.undecided_share <= kManyUnsure;
+  warn(effect, hints, problem.cloud, stats.open_share > 0, stats);
+  if (stats.undecided_share > 0) {
+    stats.warnings.push_back("which side of " + percent(stats.undecided_share) +
+                             " of the points is the outside is a choice: the one that " +
+                             (stats.hints.given.empty() ? "faces up (+z); a hint decides it (up, sensor)" : "the hints left as it was"));
+  }
+}
+
+}  // namespace g3r
