@@ -1,5 +1,6 @@
 # Sources that are compiled as one where G3R_TOGETHER is on: what many of them instantiate of the standard library and of Eigen is compiled
-# once. No two of a group have a name of their own in common. A source that is in no group is compiled by itself.
+# once. No two of a group have a name of their own in common (of
+# functions the compiler would not tell: it takes them for overloads). A source that is in no group is compiled by itself.
 function(g3r_together group)
   list(TRANSFORM ARGN REPLACE "(.+)" "${CMAKE_CURRENT_SOURCE_DIR}/\\1.cpp" OUTPUT_VARIABLE sources)
   set_source_files_properties(${sources} PROPERTIES UNITY_GROUP ${group})
@@ -10,8 +11,7 @@ g3r_together(cloud cloud/canonical_cloud cloud/clusters cloud/exact_plane cloud/
              cloud/quadratic_patch cloud/spacing tree/octree tree/interaction_lists expansions/expansions sum/direct_sum)
 g3r_together(layers cloud/layers cloud/noise expansions/m2l_matrices sum/sum_plan solve/green_system solve/refine metrics/sample_mesh)
 g3r_together(sums cloud/outliers sum/fast_sum sum/sum_engine solve/energy_system solve/harmonics baselines/baseline baselines/gauss_system
-             baselines/hard_cutoff baselines/near_pairs baselines/stretched_winding baselines/wnnc field/areas
-             orient/settings)
+             baselines/hard_cutoff baselines/near_pairs baselines/stretched_winding baselines/wnnc field/areas)
 g3r_together(solvers cloud/sites solve/dense_solver solve/iterative_solver field/field field/oriented_cloud field/winding_sampler
              metrics/score_mesh metrics/score_normals orient/confidence)
 g3r_together(orient sum/device_scope metrics/triangle_tree orient/certificate orient/coarse_to_fine orient/creases orient/planes
