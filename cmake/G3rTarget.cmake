@@ -8,6 +8,9 @@ function(g3r_target_defaults target)
     # False alarms of GCC 12 about strings that are added up (its bugs 105329 and 105651), more of them with precompiled headers.
     target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
   endif()
+  if(G3R_TOGETHER AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # sources that another includes look like headers
+  endif()
   if(G3R_WARNINGS_AS_ERRORS)
     target_compile_options(${target} PRIVATE -Werror)
   endif()

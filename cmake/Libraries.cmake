@@ -28,7 +28,8 @@ function(g3r_build_tbb)
   set_target_properties(g3r_tbb PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 10)
   set_source_files_properties("${G3R_SOURCES}/tbb/src/tbb/parallel_pipeline.cpp" PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)  # its names clash
   target_compile_features(g3r_tbb PRIVATE cxx_std_17)
-  target_compile_definitions(g3r_tbb PRIVATE __TBB_BUILD __TBB_DYNAMIC_LOAD_ENABLED=0 __TBB_SOURCE_DIRECTLY_INCLUDED=1)
+  target_compile_definitions(g3r_tbb PRIVATE __TBB_BUILD __TBB_DYNAMIC_LOAD_ENABLED=0 __TBB_SOURCE_DIRECTLY_INCLUDED=1
+                                             $<$<PLATFORM_ID:Darwin>:_XOPEN_SOURCE> $<$<PLATFORM_ID:Darwin>:_DARWIN_C_SOURCE>)
   # Instructions that it asks the processor for before it uses them.
   target_compile_options(g3r_tbb PRIVATE $<$<BOOL:${G3R_X86}>:-mrtm -mwaitpkg> $<$<CXX_COMPILER_ID:GNU>:-flifetime-dse=1>)
   find_package(Threads REQUIRED)
@@ -49,6 +50,7 @@ function(g3r_build_zlib)
   set(sources adler32 compress crc32 deflate infback inffast inflate inftrees trees uncompr zutil)
   list(TRANSFORM sources APPEND ".c")
   g3r_bundled(zlib ZLIB::ZLIB . ${sources})
+  target_compile_definitions(g3r_zlib PRIVATE $<$<PLATFORM_ID:Darwin>:fdopen=fdopen>)  # zutil.h takes it away from old systems of that maker
 endfunction()
 
 function(g3r_build_png)
@@ -58,6 +60,7 @@ function(g3r_build_png)
   configure_file("${G3R_SOURCES}/png/scripts/pnglibconf.h.prebuilt" "${PROJECT_BINARY_DIR}/png/pnglibconf.h" COPYONLY)
   target_include_directories(g3r_png SYSTEM PUBLIC "${PROJECT_BINARY_DIR}/png")
   target_compile_definitions(g3r_png PRIVATE PNG_ARM_NEON_OPT=0)
+  target_compile_options(g3r_png PRIVATE $<$<PLATFORM_ID:Darwin>:SHELL:-include math.h>)  # pngpriv.h asks for fp.h there, unless it has it
   target_link_libraries(g3r_png PUBLIC ZLIB::ZLIB)
 endfunction()
 

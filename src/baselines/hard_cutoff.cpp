@@ -9,8 +9,6 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kBlock = 1024;  // points per parallel block
-
 double kernel_reach(const SumPlan& plan) { return plan.double_precision ? kMollifierReach<double> : kMollifierReach<float>; }
 
 // The Gaussian whose kernels are the plain ones from `width` on.
@@ -48,7 +46,7 @@ HardCutoffSum::Kernels HardCutoffSum::mollified(double squared_distance) const {
 
 template <class Use>
 void HardCutoffSum::for_near(const Use& use) const {
-  parallel::for_blocks(points_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(points_.size(), parallel::kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       for (std::size_t k = near_.first[i]; k < near_.first[i + 1]; ++k) {
         const std::size_t j = near_.other[k];

@@ -6,22 +6,17 @@
 #include <algorithm>
 
 namespace g3r {
-namespace {
-
-constexpr std::size_t kBlock = 1024;  // points per parallel block
-
-}  // namespace
 
 NearPairs near_pairs(const std::vector<Vec3>& points, double radius, const std::atomic<bool>* cancel) {
   const Neighbours neighbours(points);
   const std::size_t n = points.size();
-  std::vector<std::vector<std::uint32_t>> found((n + kBlock - 1) / kBlock);
+  std::vector<std::vector<std::uint32_t>> found((n + parallel::kBlock - 1) / parallel::kBlock);
   NearPairs pairs;
   pairs.first.assign(n + 1, 0);
   parallel::for_blocks(
-      n, kBlock,
+      n, parallel::kBlock,
       [&](std::size_t begin, std::size_t end) {
-        std::vector<std::uint32_t>& here = found[begin / kBlock];
+        std::vector<std::uint32_t>& here = found[begin / parallel::kBlock];
         std::vector<std::uint32_t> matches;
         for (std::size_t i = begin; i < end; ++i) {
           neighbours.within(points[i], radius, matches);
@@ -33,7 +28,8 @@ NearPairs near_pairs(const std::vector<Vec3>& points, double radius, const std::
   for (std::size_t i = 0; i < n; ++i) pairs.first[i + 1] += pairs.first[i];
   pairs.other.resize(pairs.first[n]);
   parallel::for_each(found.size(), [&](std::size_t block) {
-    std::copy(found[block].begin(), found[block].end(), pairs.other.begin() + static_cast<std::ptrdiff_t>(pairs.first[block * kBlock]));
+    std::copy(found[block].begin(), found[block].end(),
+              pairs.other.begin() + static_cast<std::ptrdiff_t>(pairs.first[block * parallel::kBlock]));
   });
   return pairs;
 }

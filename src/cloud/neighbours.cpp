@@ -9,8 +9,7 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kBlock = 256;  // points per parallel block
-constexpr std::size_t kLeaf = 12;    // points per leaf of the k-d tree; a matter of speed only
+constexpr std::size_t kLeaf = 12;  // points per leaf of the k-d tree; a matter of speed only
 
 struct Cloud {
   const std::vector<Vec3>& p;
@@ -74,7 +73,7 @@ std::vector<std::uint32_t> Neighbours::of_all(std::size_t k) const {
   const std::vector<Vec3>& points = tree_->cloud.p;
   k = std::min(k, points.size());
   std::vector<std::uint32_t> out(points.size() * k);
-  parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(points.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<double> squared(k);
     for (std::size_t i = begin; i < end; ++i) tree_->index.knnSearch(points[i].data(), k, out.data() + i * k, squared.data());
   });

@@ -17,7 +17,6 @@ constexpr double kAlone = 2;                // local spacing against the neighbo
 constexpr double kSparse = 2;               // local spacing against the typical one
 constexpr double kVolumetric = 0.07;        // share of the smallest principal spread; 1/3 in a ball
 constexpr std::size_t kFewestPoints = 100;  // below, sparse parts are a matter of chance
-constexpr std::size_t kBlock = 256;         // points per parallel block
 constexpr double kMostOutliers = 1.0 / 3;
 
 bool fills_space(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count) {
@@ -41,7 +40,7 @@ std::vector<std::uint32_t> find_outliers(const PointSet& set, const std::vector<
   const std::vector<double> local = spacing_before_thinning(set.local_spacing(), relative_spacing);
   const double typical = typical_spacing(local);
   std::vector<char> outlier(points.size(), 0);
-  parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(points.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (local[i] <= 1.5 * typical) continue;  // most points; both rules ask for more
       const std::uint32_t* index = near.data() + i * set.near_count();

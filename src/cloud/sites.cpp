@@ -24,7 +24,6 @@ constexpr double kFirstDistance = 1.5;     // spacings, of the first thinned sca
 constexpr std::size_t kFewestSites = 30;   // of a scale: fewer say nothing of a surface
 constexpr std::size_t kPlaces = 2000;      // looked at for a median
 constexpr std::size_t kPlaceBlock = 64;    // places per parallel block
-constexpr std::size_t kBlock = 256;        // sites per parallel block
 
 // Cells of the size of the distance: whoever is nearer than that lies in the same or an adjacent one.
 class Grid {
@@ -135,7 +134,7 @@ class Planes {
 void gather(const std::vector<Vec3>& points, const std::vector<Vec3>& seeds, Sites& sites) {
   std::vector<std::uint32_t> nearest(points.size());
   const Neighbours tree(seeds);
-  parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(points.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       double squared = HUGE_VAL;
       nearest[i] = tree.nearest(points[i], squared, 0);
@@ -182,7 +181,7 @@ Sites place_sites(const PointSet& set, double distance) {
   } else {
     static_cast<void>(set.near());
   }
-  parallel::for_blocks(count, kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(count, parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
     Planes planes(set, distance);
     for (std::size_t s = begin; s < end; ++s) {
       const Plane plane = distance > 0 ? planes.at(sites.points()[s]) : planes.at_point(s);

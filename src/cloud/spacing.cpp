@@ -14,7 +14,6 @@ namespace {
 
 constexpr std::size_t kNeighbours = 8;  // enough to average out random sampling, few enough to stay local
 constexpr std::size_t kSmoothing = 16;  // neighbours that share their spacing
-constexpr std::size_t kBlock = 1024;    // points per parallel block
 
 }  // namespace
 
@@ -23,7 +22,7 @@ std::vector<double> local_spacing(const std::vector<Vec3>& points, const std::ve
   const std::size_t k = std::min(kNeighbours + 1, stride) - 1;
   const double factor = std::sqrt(std::numbers::pi / static_cast<double>(k));
   std::vector<double> spacing(points.size());
-  parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(points.size(), parallel::kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3& p = points[i];
       const Vec3& q = points[near[i * stride + k]];
@@ -43,7 +42,7 @@ std::vector<double> smoothed_spacing(const std::vector<double>& local, const std
   std::vector<double> logarithm(local.size());
   for (std::size_t i = 0; i < local.size(); ++i) logarithm[i] = std::log(local[i]);
   std::vector<double> spacing(local.size());
-  parallel::for_blocks(local.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(local.size(), parallel::kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       double sum = 0;
       for (std::size_t k = 0; k < count; ++k) sum += logarithm[near[i * stride + k]];

@@ -261,7 +261,8 @@ class Gathering {
   explicit Gathering(const NearTask<T>& task) : task_(task) {}
 
   // Gathers the next piece, padded to whole vectors by sources without any value. Returns its padded size, 0 when there are none left.
-  std::size_t next() {
+  // Not a part of every form's code: that would take a third of the time to compile this file.
+  HWY_NOINLINE std::size_t next() {
     const Tag<T> d;
     const std::size_t lanes = hn::Lanes(d);
     std::size_t size = 0;

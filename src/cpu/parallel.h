@@ -23,6 +23,11 @@
 
 namespace g3r::parallel {
 
+/// Items per block: of loops that do little for each, and of those that search, fit or draw. Sums over blocks are added in their order, so
+/// other numbers change last digits.
+inline constexpr std::size_t kBlock = 1024;
+inline constexpr std::size_t kSmallBlock = 256;
+
 /// body(begin, end) over [0, count) cut into blocks of `block` items.
 template <class Body>
 void for_blocks(std::size_t count, std::size_t block, const Body& body, const std::atomic<bool>* cancel = nullptr) {

@@ -13,8 +13,8 @@ Program& Device::program(const std::string& source) {
   return *made;
 }
 
-std::vector<DeviceInfo> list_devices() {
-  std::vector<DeviceInfo> all = opencl_devices();
+std::vector<DeviceInfo> list_devices(Software software) {
+  std::vector<DeviceInfo> all = opencl_devices(software);
   const std::size_t of_opencl = all.size();
   for (const DeviceInfo& info : cuda_devices()) {
     const auto end = all.begin() + static_cast<std::ptrdiff_t>(of_opencl);

@@ -111,9 +111,12 @@ class Device {
   std::mutex mutex_;
 };
 
+/// kNotLoaded: where an OpenCL that runs on the processor is the only one, its driver (some 90 MB of memory) is not loaded, nor listed.
+enum class Software { kListed, kNotLoaded };
+
 /// All devices, in a fixed order: GPUs before software. A GPU that both interfaces know is there once, through OpenCL. Never throws for
 /// want of a driver: the list is empty then.
-[[nodiscard]] std::vector<DeviceInfo> list_devices();
+[[nodiscard]] std::vector<DeviceInfo> list_devices(Software software = Software::kListed);
 
 /// Takes a device into use.
 [[nodiscard]] std::shared_ptr<Device> open_device(const DeviceInfo& info);

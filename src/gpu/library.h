@@ -2,6 +2,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <string>
 
 namespace g3r::gpu {
 
@@ -17,6 +18,8 @@ class Library {
     function = reinterpret_cast<Function*>(look_up(name));
     return function != nullptr;
   }
+  /// The path of the file that a function is in; empty if it is missing, or the system does not tell.
+  [[nodiscard]] std::string file_of(const char* name) const;
 
  private:
   [[nodiscard]] void* look_up(const char* name) const;

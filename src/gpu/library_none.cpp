@@ -7,4 +7,6 @@ Library::Library(std::initializer_list<const char*> /*names*/) {}
 
 void* Library::look_up(const char* /*name*/) const { return nullptr; }
 
+std::string Library::file_of(const char* /*name*/) const { return {}; }
+
 }  // namespace g3r::gpu

@@ -15,4 +15,6 @@ void* Library::look_up(const char* name) const {
   return handle_ == nullptr ? nullptr : reinterpret_cast<void*>(GetProcAddress(static_cast<HMODULE>(handle_), name));
 }
 
+std::string Library::file_of(const char* /*name*/) const { return {}; }
+
 }  // namespace g3r::gpu

@@ -1,6 +1,7 @@
 // Source: Khronos, The OpenCL Specification 1.2.
 #include "gpu/opencl.h"
 
+#include "gpu/drivers.h"
 #include "gpu/kernel_cache.h"
 #include "gpu/opencl_api.h"
 
@@ -232,8 +233,9 @@ class ClDevice : public Device {
 
 }  // namespace
 
-std::vector<DeviceInfo> opencl_devices() {
+std::vector<DeviceInfo> opencl_devices(Software software) {
   if (api() == nullptr) return {};
+  if (software == Software::kNotLoaded && only_software(listed_drivers(api()->loader))) return {};
   const Api& cl = *api();
   std::uint32_t count = 0;
   if (cl.get_platform_ids(0, nullptr, &count) != kSuccess || count == 0) return {};

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 namespace g3r::gpu::cl {
 
@@ -78,9 +79,11 @@ struct Api {
   KernelId (*create_kernel)(ProgramId, const char*, std::int32_t*);
   std::int32_t (*set_kernel_arg)(KernelId, std::uint32_t, std::size_t, const void*);
   std::int32_t (*release_kernel)(KernelId);
+  std::string loader;  ///< the file of libOpenCL
 
   bool load() {
     const Library library({"libOpenCL.so.1", "libOpenCL.so", "OpenCL.dll"});
+    loader = library.file_of("clGetPlatformIDs");
     return library.find("clGetPlatformIDs", get_platform_ids) && library.find("clGetPlatformInfo", get_platform_info) &&
            library.find("clGetDeviceIDs", get_device_ids) && library.find("clGetDeviceInfo", get_device_info) &&
            library.find("clCreateContext", create_context) && library.find("clReleaseContext", release_context) &&

@@ -30,7 +30,6 @@ constexpr double kOuter = 0.01;
 constexpr double kEdgeOn = 1e-6;      // A disc seen from its edge has this share of its spread across: it keeps a place in the picture.
 constexpr double kLargest = 1e100;    // Coordinates and scales up to this have squares of products that are finite,
 constexpr double kSmallest = 1e-100;  // and from this on such that are above 0.
-constexpr std::size_t kBlock = 256;   // Splats per parallel block.
 
 bool is_drawn(const Splat& splat) {
   const auto sound = [](double value) { return std::abs(value) <= kLargest; };
@@ -125,7 +124,7 @@ class View {
     const Vec3 up = vector::cross(ahead, right);
     images_.resize(splats.size());
     parallel::for_blocks(
-        drawn.size(), kBlock,
+        drawn.size(), parallel::kSmallBlock,
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t k = begin; k < end; ++k) images_[drawn[k]] = image_of(splats[drawn[k]], right, up, ahead);
         },
@@ -168,7 +167,7 @@ class View {
   }
 
   [[nodiscard]] std::size_t entries() const {
-    return parallel::sum_blocks<std::size_t>(drawn_.size(), kBlock, 0, [&](std::size_t begin, std::size_t end) {
+    return parallel::sum_blocks<std::size_t>(drawn_.size(), parallel::kSmallBlock, 0, [&](std::size_t begin, std::size_t end) {
       std::size_t sum = 0;
       for (std::size_t k = begin; k < end; ++k) {
         const Image& image = images_[drawn_[k]];
@@ -240,7 +239,7 @@ std::vector<SplatPlace> find_places(const std::vector<Splat>& splats, const std:
   const auto those_not = [cancel](const std::vector<std::uint32_t>& some, const auto& is_so) {
     std::vector<std::uint8_t> so(some.size());
     parallel::for_blocks(
-        some.size(), kBlock,
+        some.size(), parallel::kSmallBlock,
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t k = begin; k < end; ++k) so[k] = is_so(some[k]) ? 1 : 0;
         },

@@ -14,8 +14,6 @@ namespace g3r {
 
 namespace {
 
-constexpr std::size_t kBlock = 1024;  // Samples per parallel block: a fixed number gives sums one order.
-
 /// Sums over the samples of one mesh of what its closest points on the other mesh give.
 struct OneWay {
   double distance = 0;
@@ -37,7 +35,7 @@ struct OneWay {
 OneWay compare(const Samples& samples, const TriangleTree& surface, const std::vector<double>& distances) {
   OneWay none;
   none.within.assign(distances.size(), 0);
-  return parallel::sum_blocks(samples.points.size(), kBlock, none, [&](std::size_t begin, std::size_t end) {
+  return parallel::sum_blocks(samples.points.size(), parallel::kBlock, none, [&](std::size_t begin, std::size_t end) {
     OneWay sum = none;
     for (std::size_t i = begin; i < end; ++i) {
       const TriangleTree::Closest closest = surface.closest(samples.points[i]);

@@ -21,7 +21,6 @@ constexpr std::size_t kJumps = 3;
 constexpr double kWidth = 0.4;  // typical spacings, of the field: single sites are not seen at the nearest probes, walls of a spacing are
 constexpr double kApart = 1.9;  // spacings between a probe and any site, so that the field there knows of no single ones
 constexpr double kMostFactor = 1.3;  // of the areas: those of points that scatter are too large, of a grid too small
-constexpr std::size_t kBlock = 256;  // sites per parallel block
 
 // The field of the sites with the given normals, at probes on either side of them.
 class Probed {
@@ -98,7 +97,7 @@ Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const 
       for (std::size_t i = 0; i < count; ++i) out.jump[i] = std::max(out.jump[i], w[d][i] - w[d][count + i]);
     }
     if (kDistances[d] < kApart) continue;  // its own site is too near
-    parallel::for_blocks(2 * count, kBlock, [&](std::size_t begin, std::size_t end) {
+    parallel::for_blocks(2 * count, parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         const double apart = kApart * spacing[k % count];
         double squared = apart * apart;

@@ -12,7 +12,6 @@ namespace g3r {
 namespace {
 
 constexpr std::size_t kNeighbours = 17;     // the point itself, first, and 16 others
-constexpr std::size_t kBlock = 1024;        // points per parallel block
 constexpr double kCreaseCosine = 0.965926;  // 15 degrees
 constexpr double kPlane = 0.05;             // spacings from a plane that holds a point
 constexpr double kRadius = 1.5;             // spacings
@@ -29,7 +28,7 @@ Round average_in_planes(const PointSet& set, const std::vector<Vec3>& normals) {
   const std::vector<double>& spacing = set.smoothed_spacing();
   const std::vector<std::uint32_t>& near = set.near();
   Round out{normals, std::vector<double>(points.size(), -1)};
-  parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(points.size(), parallel::kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const double plane = kPlane * spacing[i];
       const double radius = kRadius * spacing[i];

@@ -14,7 +14,6 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kNeighbours = 17;  // the point itself, first, and 16 others
 constexpr std::size_t kFewest = 7;       // that take part, itself included: one more than the height field has numbers
-constexpr std::size_t kBlock = 1024;     // points per parallel block
 constexpr double kSamePatch = 0.9;       // cosine between normals
 constexpr double kSteepest = 0.5145;     // height above the tangent plane over distance
 constexpr double kRadius = 1.5;          // spacings
@@ -48,7 +47,7 @@ std::vector<std::uint8_t> fit_jets(const PointSet& set, std::vector<Vec3>& norma
   const std::vector<double>& spacing = set.smoothed_spacing();
   const std::vector<std::uint32_t>& near = set.near();
   std::vector<Vec3> out = normals;
-  parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(points.size(), parallel::kBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<FitPoint> members;
     for (std::size_t i = begin; i < end; ++i) {
       const Vector3d centre = to_eigen(points[i]);

@@ -53,7 +53,6 @@ constexpr double kEncloses = 0.7;         // enclosure under noise that no bowl 
 constexpr double kLevel = 1e-6;           // part of the mean normal that counts as none
 constexpr std::size_t kRing = 7;          // sites that a side is common to: one and those around it, six in the densest packing
 constexpr float kUndecided = 0.5F;        // certainty of a side that is chosen, or not certified
-constexpr std::size_t kBlock = 1024;      // points per parallel block
 
 // Places where the unrest of the given normals is that of an open surface, and what to try there.
 class Search {

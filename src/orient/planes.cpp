@@ -10,11 +10,10 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kBlock = 1024;  // points per parallel block
-constexpr double kAside = 0.9;        // cosine between a plane's normal and that of the field
-constexpr double kFewAside = 0.01;    // share of the points; slices have 1.1 to 27 %
-constexpr std::uint32_t kMany = 8;    // terms of a plane that chance does not make, from 10 points on it
-constexpr double kCurves = 1.4;       // dimension of the points on such planes: 1.7 to 2.1 on facets, 1.5 on wires, 1.1 to 1.3 on slices
+constexpr double kAside = 0.9;      // cosine between a plane's normal and that of the field
+constexpr double kFewAside = 0.01;  // share of the points; slices have 1.1 to 27 %
+constexpr std::uint32_t kMany = 8;  // terms of a plane that chance does not make, from 10 points on it
+constexpr double kCurves = 1.4;     // dimension of the points on such planes: 1.7 to 2.1 on facets, 1.5 on wires, 1.1 to 1.3 on slices
 
 // A plane found, and the sum of ln(d_k / d_j) over the distances of its other points j < k to the first, of which k is the farthest.
 struct Found {
@@ -61,7 +60,7 @@ void fit_planes(const PointSet& set, double scatter, std::vector<std::uint8_t>& 
   const std::vector<double>& spacing = set.smoothed_spacing();
   const Neighbours& tree = set.tree();
   std::vector<Found> found(points.size());
-  parallel::for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(points.size(), parallel::kBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> index;
     std::vector<double> squared;
     for (std::size_t i = begin; i < end; ++i) {

@@ -40,7 +40,7 @@ Request parse(const std::string& text) {
 
 // The device that is asked for, if there is one.
 std::optional<DeviceInfo> choose(const Request& request) {
-  const std::vector<DeviceInfo> all = list_devices();
+  const std::vector<DeviceInfo> all = list_devices(request.wanted == Wanted::kAuto ? Software::kNotLoaded : Software::kListed);
   if (request.wanted == Wanted::kNumber) {
     if (request.number < all.size()) return all[request.number];
     throw Unavailable("there is no device gpu:" + std::to_string(request.number) + ": " +

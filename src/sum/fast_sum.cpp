@@ -19,7 +19,6 @@ namespace {
 
 using vector::dot;
 
-constexpr std::size_t kBlock = 1024;             // points per parallel block
 constexpr std::size_t kTargetsAtOnce = 1 << 17;  // of queries: what a sum holds per target is 330 bytes. Fewer: each chunk costs lists
 constexpr std::array<std::size_t, 3> kBatches{1, 4, 9};  // harmonics per sweep that have a kernel; others are padded with zeros
 
@@ -40,7 +39,7 @@ void for_batches(std::size_t count, const Use& use) {
 // Calls use(point, lane's first channel) for every target once; channels of one target are kLanes apart.
 template <class T, class Use>
 void for_targets(const TargetBlocks<T>& targets, const std::vector<double>& out, std::size_t channels, const Use& use) {
-  parallel::for_blocks(targets.point.size() / kLanes, kBlock / kLanes, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(targets.point.size() / kLanes, parallel::kBlock / kLanes, [&](std::size_t begin, std::size_t end) {
     for (std::size_t block = begin; block < end; ++block) {
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
         const std::size_t at = block * kLanes + lane;
@@ -54,7 +53,7 @@ void for_targets(const TargetBlocks<T>& targets, const std::vector<double>& out,
 template <class T>
 void fill_eta(SumEngine<T>& engine, const std::vector<Vec3>& eta, std::size_t values) {
   engine.begin_values(values);
-  parallel::for_blocks(eta.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(eta.size(), parallel::kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t a = 0; a < 3; ++a) {
       T* value = engine.value(a);
       for (std::size_t i = begin; i < end; ++i) value[i] = static_cast<T>(eta[i][a]);
@@ -72,7 +71,7 @@ template <class T>
 void green_into(SumEngine<T>& engine, const HarmonicValues& u, const std::vector<Vec3>& eta, std::vector<double>& out) {
   for_batches(u.count, [&](std::size_t first, std::size_t count, std::size_t batch) {
     fill_eta(engine, eta, 3 + 2 * batch);
-    parallel::for_blocks(eta.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    parallel::for_blocks(eta.size(), parallel::kBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = 0; k < batch; ++k) {
         T* monopole = engine.value(3 + 2 * k);
         T* dipole = engine.value(4 + 2 * k);
@@ -94,7 +93,7 @@ template <class T>
 void green_adjoint_into(SumEngine<T>& engine, const HarmonicValues& u, const std::vector<double>& q, std::vector<Vec3>& out) {
   for_batches(u.count, [&](std::size_t first, std::size_t count, std::size_t batch) {
     engine.begin_values(batch);
-    parallel::for_blocks(out.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    parallel::for_blocks(out.size(), parallel::kBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = 0; k < batch; ++k) {
         T* value = engine.value(k);
         for (std::size_t j = begin; j < end; ++j) value[j] = k < count ? static_cast<T>(q[j * u.count + first + k]) : T{0};
@@ -102,7 +101,7 @@ void green_adjoint_into(SumEngine<T>& engine, const HarmonicValues& u, const std
     });
     AlignedVector<T>& data = engine.target_data(batch);
     const std::vector<std::uint32_t>& point = engine.targets().point;
-    parallel::for_blocks(point.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    parallel::for_blocks(point.size(), parallel::kBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t lane = begin; lane < end; ++lane) {
         for (std::size_t k = 0; k < batch; ++k) {
           data[(lane / kLanes * batch + k) * kLanes + lane % kLanes] =

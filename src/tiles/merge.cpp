@@ -18,8 +18,6 @@
 namespace g3r::tiles {
 namespace {
 
-constexpr std::uint64_t kAtOnce = 4096;  // results read from a tile at once
-
 // The results of a tile, front to back.
 class Cursor {
  public:
@@ -39,7 +37,7 @@ class Cursor {
     results_.clear();
     used_ = 0;
     const RecordFile<Result> file(path_);
-    const std::uint64_t to = std::min(file.size(), at_ + kAtOnce);
+    const std::uint64_t to = std::min(file.size(), at_ + kRecordsAtOnce);
     file.append(at_, to, results_);
     at_ = to;
     ended_ = results_.empty();

@@ -19,7 +19,6 @@ namespace {
 
 constexpr double kLeastFactor = 1.0 / 3;  // of areas from the spacing: area_vectors()
 constexpr double kMostFactor = 1.3;
-constexpr std::uint64_t kAtOnce = 4096;  // records read at once
 constexpr std::size_t kAskedPerPoint = 2;
 
 // Of rings 1 and up of one tile: nodes one level finer than the cells that are too far to be seen point by point.
@@ -33,9 +32,9 @@ void add_far_nodes(const MeshFolder& folder, std::size_t tile, const std::vector
   }
   const RecordFile<FarNode> file(mesh_far_path(folder.folder, tile));
   std::vector<FarNode> nodes;
-  for (std::uint64_t at = 0; at < file.size() && deepest >= 0; at += kAtOnce) {
+  for (std::uint64_t at = 0; at < file.size() && deepest >= 0; at += kRecordsAtOnce) {
     nodes.clear();
-    file.append(at, std::min(file.size(), at + kAtOnce), nodes);
+    file.append(at, std::min(file.size(), at + kRecordsAtOnce), nodes);
     for (const FarNode& node : nodes) {
       if (node.key == 0) throw InvalidInput(escape_text(mesh_far_path(folder.folder, tile)) + ": damaged; remove it, and mesh again");
       const int level = (63 - std::countl_zero(node.key)) / 3;

@@ -20,7 +20,6 @@
 namespace g3r::tiles {
 namespace {
 
-constexpr std::uint64_t kAtOnce = 4096;                                            // records read at once
 constexpr std::uint64_t kMostVertices = std::numeric_limits<std::int32_t>::max();  // that readers of PLY take
 
 // Where the vertices of each tile begin in the mesh, and those in the middle of its polygons.
@@ -165,8 +164,8 @@ void append_vertices(const MeshFolder& folder, const KeptParts& kept, std::size_
   std::vector<MeshVertex> vertices;
   std::uint64_t count = 0;
   std::size_t next = 0;
-  for (std::uint64_t at = 0; at < patches.header().vertices; at += kAtOnce) {
-    const std::uint64_t end = std::min(patches.header().vertices, at + kAtOnce);
+  for (std::uint64_t at = 0; at < patches.header().vertices; at += kRecordsAtOnce) {
+    const std::uint64_t end = std::min(patches.header().vertices, at + kRecordsAtOnce);
     vertices.clear();
     patches.append_vertices(at, end, vertices);
     const std::vector<std::uint32_t> part = parts.parts_of(at, end);

@@ -10,8 +10,6 @@
 namespace g3r::tiles {
 namespace {
 
-constexpr std::uint64_t kAtOnce = 4096;  // records read at once
-
 // The sides of all corners around a tile, as their tiles say; outside where they say nothing.
 std::vector<float> read_corners(const MeshFolder& folder, const Surroundings& around, std::size_t tile) {
   struct Asked {
@@ -31,9 +29,9 @@ std::vector<float> read_corners(const MeshFolder& folder, const Surroundings& ar
     const RecordFile<CornerValue> file(mesh_corners_path(folder.folder, t));
     std::vector<CornerValue> read;
     std::size_t next = 0;
-    for (std::uint64_t at = 0; at < file.size(); at += kAtOnce) {
+    for (std::uint64_t at = 0; at < file.size(); at += kRecordsAtOnce) {
       read.clear();
-      file.append(at, std::min(file.size(), at + kAtOnce), read);
+      file.append(at, std::min(file.size(), at + kRecordsAtOnce), read);
       for (const CornerValue& corner : read) {
         while (next < asked[t].size() && asked[t][next].name < corner.whole_key()) ++next;
         if (next < asked[t].size() && asked[t][next].name == corner.whole_key()) value[asked[t][next].corner] = corner.value;

@@ -7,8 +7,6 @@
 namespace g3r::tiles {
 namespace {
 
-constexpr std::uint64_t kAtOnce = 4096;  // results read at once
-
 // A point that waits for its normal.
 struct Waiting {
   std::uint64_t index;
@@ -21,9 +19,9 @@ void take_normals(const std::string& path, std::vector<Waiting>& waiting, std::v
   const RecordFile<Result> file(path);
   std::vector<Result> results;
   std::size_t next = 0;
-  for (std::uint64_t at = 0; at < file.size() && next < waiting.size(); at += kAtOnce) {
+  for (std::uint64_t at = 0; at < file.size() && next < waiting.size(); at += kRecordsAtOnce) {
     results.clear();
-    file.append(at, std::min(file.size(), at + kAtOnce), results);
+    file.append(at, std::min(file.size(), at + kRecordsAtOnce), results);
     for (const Result& r : results) {
       if (next == waiting.size() || r.index != waiting[next].index) continue;
       normals[waiting[next++].point] = {r.normal[0], r.normal[1], r.normal[2]};

@@ -5,11 +5,6 @@
 #include <algorithm>
 
 namespace g3r::tiles {
-namespace {
-
-constexpr std::uint64_t kAtOnce = 4096;  // records read at once
-
-}  // namespace
 
 PatchesFile::PatchesFile(const std::string& folder, std::size_t tile) : file_(mesh_patches_path(folder, tile)) {
   if (file_.size() < sizeof header_) fail();
@@ -65,9 +60,9 @@ TileSurface read_surface(const MeshFolder& folder, std::size_t tile) {
     if (from >= folder.tiles()) file.fail();
     const PatchesFile there(folder.folder, static_cast<std::size_t>(from));
     std::vector<MeshVertex> read;
-    for (std::uint64_t at = 0; at < there.header().vertices; at += kAtOnce) {
+    for (std::uint64_t at = 0; at < there.header().vertices; at += kRecordsAtOnce) {
       read.clear();
-      there.append_vertices(at, std::min(there.header().vertices, at + kAtOnce), read);
+      there.append_vertices(at, std::min(there.header().vertices, at + kRecordsAtOnce), read);
       for (std::size_t k = 0; k < read.size(); ++k) {
         if (f == foreign.size() || foreign[f].tile != from || read[k].key != foreign[f].key) continue;
         vertices.push_back(read[k]);

@@ -16,6 +16,9 @@ namespace g3r::tiles {
 
 static_assert(std::endian::native == std::endian::little, "records are stored as they are in memory");
 
+/// Records read at once.
+inline constexpr std::uint64_t kRecordsAtOnce = 4096;
+
 /// A point and its place in the input.
 struct Record {
   Vec3 point;
