@@ -1,6 +1,6 @@
 # Sources that are compiled as one where G3R_TOGETHER is on: what many of them instantiate of the standard library and of Eigen is compiled
-# once. No two of a group have a name of their own in common (of
-# functions the compiler would not tell: it takes them for overloads). A source that is in no group is compiled by itself.
+# once. No two of a group have a name of their own in common (of functions the compiler would not tell: it takes them for overloads). A
+# source that is in no group is compiled by itself.
 function(g3r_together group)
   list(TRANSFORM ARGN REPLACE "(.+)" "${CMAKE_CURRENT_SOURCE_DIR}/\\1.cpp" OUTPUT_VARIABLE sources)
   set_source_files_properties(${sources} PROPERTIES UNITY_GROUP ${group})
