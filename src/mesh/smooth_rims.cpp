@@ -21,14 +21,14 @@ constexpr int kPasses = 10;
 // The mark of a vertex on the boundary; those that follow it have larger ones.
 enum : std::uint8_t { kRim = 1 };
 
-using HalfEdge = std::pair<std::uint32_t, std::uint32_t>;
+using RimEdge = std::pair<std::uint32_t, std::uint32_t>;
 
 Vec3 normal_of(const std::vector<Vec3>& at, const std::array<std::uint32_t, 3>& t) {
   return vector::cross(subtract(at[t[1]], at[t[0]]), subtract(at[t[2]], at[t[0]]));
 }
 
 // Edges with one triangle, as it runs along them.
-std::vector<HalfEdge> boundary_of(const Mesh& mesh) {
+std::vector<RimEdge> boundary_of(const Mesh& mesh) {
   std::vector<std::array<std::uint32_t, 3>> sides;  // low, high, whether from high to low
   sides.reserve(3 * mesh.triangles.size());
   for (const auto& t : mesh.triangles) {
@@ -38,7 +38,7 @@ std::vector<HalfEdge> boundary_of(const Mesh& mesh) {
     }
   }
   std::sort(sides.begin(), sides.end());
-  std::vector<HalfEdge> out;
+  std::vector<RimEdge> out;
   for (std::size_t i = 0; i < sides.size(); ++i) {
     const auto same = [&](std::size_t j) { return sides[j][0] == sides[i][0] && sides[j][1] == sides[i][1]; };
     if ((i > 0 && same(i - 1)) || (i + 1 < sides.size() && same(i + 1))) continue;
@@ -50,7 +50,7 @@ std::vector<HalfEdge> boundary_of(const Mesh& mesh) {
 // The part of a mesh near its boundary.
 class Rim {
  public:
-  Rim(const Mesh& mesh, std::vector<HalfEdge> boundary) : boundary_(std::move(boundary)), mark_(mesh.vertices.size(), 0) {
+  Rim(const Mesh& mesh, std::vector<RimEdge> boundary) : boundary_(std::move(boundary)), mark_(mesh.vertices.size(), 0) {
     for (const auto& [a, b] : boundary_) mark_[a] = mark_[b] = kRim;
     std::uint8_t ring = kRim;  // with none beside the rim that follow it, triangles there would be squeezed
     for (int i = 0; i < kRings; ++i, ++ring) {
@@ -91,7 +91,7 @@ class Rim {
   }
 
  private:
-  std::vector<HalfEdge> boundary_;
+  std::vector<RimEdge> boundary_;
   std::vector<std::uint8_t> mark_;                       // kRim on the boundary, more inwards, 0 farther off
   std::vector<std::array<std::uint32_t, 3>> triangles_;  // with a marked corner
 };
@@ -99,7 +99,7 @@ class Rim {
 }  // namespace
 
 void smooth_rims(Mesh& mesh, const std::function<std::vector<std::uint8_t>(const std::vector<Vec3>&)>& allowed) {
-  std::vector<HalfEdge> boundary = boundary_of(mesh);
+  std::vector<RimEdge> boundary = boundary_of(mesh);
   if (boundary.empty()) return;
   const Rim rim(mesh, std::move(boundary));
   std::vector<Vec3> at = mesh.vertices;
