@@ -48,6 +48,20 @@ TEST(Outliers, SamplesOfASurfaceAreNone) {
   EXPECT_LE(flagged(uneven_torus().points), 6U);
 }
 
+// Stray points that are not found do not stand for the emptiness around them: the surface is as surely closed as without them.
+TEST(Outliers, DoNotOpenAClosedSurface) {
+  constexpr std::size_t kStray = 4000;
+  const shapes::Surface sphere = shapes::sphere(8000, 1);
+  std::vector<Vec3> points = sphere.points;
+  shapes::Random random(7);
+  for (std::size_t i = 0; i < kStray; ++i)
+    points.push_back({random.uniform(-1.3, 1.3), random.uniform(-1.3, 1.3), random.uniform(-1.3, 1.3)});
+  const Orientation o = orient(points);
+  EXPECT_EQ(o.stats.open_share, 0);
+  const auto sure = std::count_if(o.confidence.begin(), o.confidence.begin() + 8000, [](float c) { return c > 0.9F; });
+  EXPECT_GT(static_cast<double>(sure), 0.8 * 8000);
+}
+
 TEST(Outliers, MostRandomPointsOfTheBoxAre) {
   shapes::Surface surface = shapes::torus(kPoints, 0.6, 0.25, 1);
   const std::size_t extra = kPoints / 20;
