@@ -203,7 +203,9 @@ class Collapsing {
 }  // namespace
 
 std::vector<double> lengths_to_carry(const Prepared& prepared, const std::vector<double>& size) {
-  const auto& [positions, normals, spacing] = prepared.points;
+  const std::vector<Vec3>& positions = prepared.points.positions;
+  const std::vector<Vec3>& normals = prepared.points.normals;
+  const std::vector<double>& spacing = prepared.points.spacing;
   const std::size_t n = positions.size(), stride = prepared.near.size() / n;
   std::vector<double> lengths(n, 0);
   parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
