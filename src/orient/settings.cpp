@@ -37,8 +37,8 @@ constexpr double kFewOutliers = 1e-2;  // of the points; clean clouds lose one p
 // The default on noisy input, sigma in spacings h: the field must not see single points. Kernels of a given number of sigma hide the
 // scatter of points, and blur walls as thin as that; below a spacing fewer points share the scatter, and walls matter more. So the width
 // grows with the square of sigma first and in proportion later, w = A s^2 / hypot(s, B) for s = sigma / h.
-constexpr double kNoisyWidth = 5;     // A, that many sigma in the end: more blurs walls, less turns shells in cavities
-constexpr double kSharesNoise = 1;    // B, the noise below which the width falls off: less blurs walls, more turns shells
+constexpr double kNoisyWidth = 5;   // A, that many sigma in the end: more blurs walls, less turns shells in cavities
+constexpr double kSharesNoise = 1;  // B, the noise below which the width falls off: less blurs walls, more turns shells
 // Raw solutions fit the noise with every step, and the more noise there is the sooner: h / sigma times this many steps.
 constexpr double kStepsPerNoise = 7;
 constexpr double kFewestNoisySteps = 10;  // fewer leave far sides undecided
