@@ -92,6 +92,23 @@ TEST(Untangle, SofteningMakesNoCrossings) {
   EXPECT_LE(count_self_intersections(mesh), before);
 }
 
+// Two tori that intersect, which no softening touches, beside one with thorns: it ends, and moves nothing.
+TEST(Untangle, SofteningEndsWhereCrossingsStay) {
+  const Mesh clean = shapes::torus(1, 0.4, 60, 40);
+  Mesh mesh = clean;
+  for (double& c : mesh.vertices[97]) c *= 1.3;
+  for (const double shift : {5.0, 5.1}) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const Vec3& v : clean.vertices) mesh.vertices.push_back({v[0] + shift, v[1], v[2]});
+    for (const auto& t : clean.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
+  const std::vector<Vec3> before = mesh.vertices;
+  ASSERT_GT(count_self_intersections(mesh), 0U);
+  ASSERT_LT(sharpest(mesh), -0.5);
+  mesh::soften_thorns(mesh, 0);
+  EXPECT_EQ(mesh.vertices, before);
+}
+
 TEST(Untangle, FixedVerticesStay) {
   const Mesh clean = shapes::torus(1, 0.4, 120, 80);
   Mesh mesh = clean;

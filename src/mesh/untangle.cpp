@@ -143,17 +143,19 @@ void soften_thorns(Mesh& mesh, std::size_t crossings) {
   const auto put = [&] {
     for (std::size_t i = 0; i < at.size(); ++i) mesh.vertices[part.vertex[i]] = at[i];
   };
-  // Where more triangles intersect than before, the surface stays as it was.
+  // Where more triangles intersect than before, the surface stays as it was; everywhere, if that does not help: others may intersect too.
   std::vector<std::uint8_t> back(mesh.vertices.size(), 0);
-  for (int attempt = 0;; ++attempt) {
+  for (int attempt = 0; attempt <= kRings; ++attempt) {
     put();
     const std::vector<TrianglePair> pairs = self_intersections(mesh);
     if (pairs.size() <= crossings) return;
     mark_corners(
         mesh, pairs, [](std::uint32_t v) { return v; }, back);
     grow(mesh, back);
-    for (std::size_t i = 0; i < at.size(); ++i) at[i] = attempt == kRings || back[part.vertex[i]] != 0 ? home[i] : at[i];
+    for (std::size_t i = 0; i < at.size(); ++i) at[i] = back[part.vertex[i]] != 0 ? home[i] : at[i];
   }
+  at = home;
+  put();
 }
 
 std::size_t untangle(Mesh& mesh, const std::atomic<bool>* cancel, const std::vector<std::uint8_t>& fixed) {
