@@ -11,6 +11,7 @@
 #include <numeric>
 
 #include "base/vector.h"
+#include "ceiling.h"
 
 namespace g3r::bench {
 
@@ -130,6 +131,13 @@ Row measure(const std::string& model, const Mesh& truth, const Input& input, con
     if (variant.true_normals) {
       if (!with_mesh) throw InvalidInput("the method true measures the mesher: give --mesh");
       mesh_true_normals(truth, input, variant, seed, row);
+      return row;
+    }
+    if (variant.ceiling) {
+      Orientation best;
+      best.normals = ceiling_normals(truth, input, seed);
+      best.confidence.assign(input.points.size(), 0);
+      score_points(best, input, row);
       return row;
     }
     Reconstruction result;

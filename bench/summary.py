@@ -151,7 +151,8 @@ def method_table(results, points, kind="clean"):
 def noise_table(results):
     rows, groups = [], []
     for percent in ("0.25", "0.5"):
-        for method, name in (("default", "g3r"), (f"wnnc;widths=noise-{percent}", "WNNC, its preset for this noise")):
+        for method, name in (("default", "g3r"), (f"wnnc;widths=noise-{percent}", "WNNC, its preset for this noise"),
+                             ("ceiling", "the best possible, knowing the surface")):
             group = results.of(method, f"noise:{percent}", 50000)
             if group:
                 groups.append(group)

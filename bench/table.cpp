@@ -40,7 +40,7 @@ Arguments parse_arguments(int argc, char** argv) {
                  "clean, noise:P, outliers:P, gradient:R, stripes:R, patches:K, pcpnet (six) or one pcpnet:NAME; comma separated")
       ->delimiter(',');
   app.add_option("--method", arguments.methods,
-                 "default, paper, wnnc, agr, pgr or true (normals), then ;KEY=VALUE for ablations; may be given several times");
+                 "default, paper, wnnc, agr, pgr, true (normals) or ceiling, then ;KEY=VALUE for ablations; may be given several times");
   app.add_option("--models", arguments.models, "only these models (file names without extension), comma separated")->delimiter(',');
   app.add_flag("--mesh", arguments.mesh, "also mesh, and score CD, AE_m, HD");
   app.add_option("--seed", arguments.run.seed, "seed of the samples");

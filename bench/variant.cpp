@@ -80,8 +80,10 @@ Variant parse_variant(const std::string& text) {
     variant.options.method = choice<g3r::Method>("method", part);
   } else if (part == "true") {
     variant.true_normals = true;
+  } else if (part == "ceiling") {
+    variant.ceiling = true;
   } else if (part != "default") {
-    throw InvalidInput("method '" + text + "' does not begin with default, paper, wnnc, agr, pgr or true");
+    throw InvalidInput("method '" + text + "' does not begin with default, paper, wnnc, agr, pgr, true or ceiling");
   }
   while (std::getline(parts, part, ';')) {
     const std::size_t equals = part.find('=');

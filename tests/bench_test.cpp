@@ -174,6 +174,24 @@ TEST(BenchMeasure, TrueNormalsGoStraightToTheMesher) {
   EXPECT_FALSE(measure("sphere", truth, input, kind, variant, false, 1).error.empty());
 }
 
+// Points of two walls that are 2 s apart lie on their own side of the middle with the probability Phi(1), whoever looks at them, and one of
+// a thick wall always does.
+TEST(BenchMeasure, TheCeilingOfAPlateIsThatOfTwoNormalDistributions) {
+  const InputKind kind = parse_input_kind("noise:0.5");
+  for (const double walls : {2.0, 40.0}) {
+    Mesh plate = shapes::cube();
+    for (Vec3& p : plate.vertices) p[2] *= walls * 0.005 * std::sqrt(2.0);
+    const Input input = make_input(plate, kind, 4000, 1);
+    const Row row = measure("plate", plate, input, kind, parse_variant("ceiling"), false, 1);
+    EXPECT_NEAR(row.pco, walls == 2 ? 0.8413 : 1, 0.02) << row.error;
+    const Row ours = measure("plate", plate, input, kind, parse_variant("default"), false, 1);
+    EXPECT_GT(ours.ae, row.ae * 0.97);
+  }
+  const InputKind clean = parse_input_kind("clean");
+  const Mesh cube = shapes::cube();
+  EXPECT_FALSE(measure("cube", cube, make_input(cube, clean, 100, 1), clean, parse_variant("ceiling"), false, 1).error.empty());
+}
+
 TEST(BenchVariant, MistakesAreRefused) {
   for (const char* text : {"", "best", "paper;degree", "paper;degree=x", "paper;colour=1", "default;epsilon=0.4y", "default;solver=lu"}) {
     EXPECT_THROW((void)parse_variant(text), InvalidInput) << text;

@@ -130,26 +130,6 @@ double small_noise(double x16, double x32) {
   return x > kLargestResidual ? std::numeric_limits<double>::infinity() : x / (kSigmaIntercept - kSigmaSlope * x);
 }
 
-// The steps of which the coordinates along each axis are multiples; 0 where there is none above kRounded spacings.
-Vec3 rounding_steps(const std::vector<Vec3>& points, double spacing) {
-  Vec3 steps{0, 0, 0};
-  std::vector<double> sorted(points.size());
-  for (std::size_t a = 0; a < 3; ++a) {
-    std::transform(points.begin(), points.end(), sorted.begin(), [&](const Vec3& p) { return p[a]; });
-    std::sort(sorted.begin(), sorted.end());
-    double least = std::numeric_limits<double>::infinity();
-    std::size_t levels = 1;
-    for (std::size_t i = 1; i < sorted.size(); ++i) {
-      const double step = sorted[i] - sorted[i - 1];
-      if (step <= kSameCoordinate * spacing) continue;
-      least = std::min(least, step);
-      ++levels;
-    }
-    if (least > kRounded * spacing && levels >= kFewestLevels) steps[a] = least;
-  }
-  return steps;
-}
-
 bool rounded(const std::vector<Vec3>& points, double spacing) {
   const Vec3 steps = rounding_steps(points, spacing);
   return std::max({steps[0], steps[1], steps[2]}) > 0;
@@ -245,6 +225,25 @@ bool goes_on(const PointSet& set, const ExactPlane& plane, double scatter) {
 }
 
 }  // namespace
+
+Vec3 rounding_steps(const std::vector<Vec3>& points, double spacing) {
+  Vec3 steps{0, 0, 0};
+  std::vector<double> sorted(points.size());
+  for (std::size_t a = 0; a < 3; ++a) {
+    std::transform(points.begin(), points.end(), sorted.begin(), [&](const Vec3& p) { return p[a]; });
+    std::sort(sorted.begin(), sorted.end());
+    double least = std::numeric_limits<double>::infinity();
+    std::size_t levels = 1;
+    for (std::size_t i = 1; i < sorted.size(); ++i) {
+      const double step = sorted[i] - sorted[i - 1];
+      if (step <= kSameCoordinate * spacing) continue;
+      least = std::min(least, step);
+      ++levels;
+    }
+    if (least > kRounded * spacing && levels >= kFewestLevels) steps[a] = least;
+  }
+  return steps;
+}
 
 double estimate_noise(const PointSet& set) {
   if (set.size() < kFewestPoints) return 0;

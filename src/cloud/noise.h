@@ -46,6 +46,10 @@ namespace g3r {
 /// estimate_noise() is 0, and that of walls closer together than the sampling. 0 for fewer than 200 points. About 20 ms.
 [[nodiscard]] double facet_scatter(const PointSet& set);
 
+/// Along each axis, the step of which all coordinates are multiples, at least 0.05 typical spacings; 0 where there is none. Same units as
+/// the points. O(N log N).
+[[nodiscard]] Vec3 rounding_steps(const std::vector<Vec3>& points, double spacing);
+
 /// How the number of points grows with the distance from one, as its power: about 2 on a surface, noisy or not, nearly 3 in a volume (2.6
 /// to 3: its boundary counts). From the distances r of the neighbours k = min(2048, N / 16) and k / 8, ln 8 / ln(r_k / r_(k/8)), the median
 /// over about 500 points; 2 for fewer than 200. O(k log N).

@@ -3,12 +3,11 @@
 #include "base/disjoint_sets.h"
 #include "base/median.h"
 #include "base/vector.h"
-#include "cloud/layers.h"
-#include "cloud/quadratic_patch.h"
 #include "cloud/sites.h"
 #include "cpu/parallel.h"
 #include "orient/certificate.h"
 #include "orient/sign_graph.h"
+#include "orient/two_walls.h"
 #include "solve/refine.h"
 #include "sum/fast_sum.h"
 
@@ -40,25 +39,21 @@ constexpr double kAccuracy = 1e-2;      // of the sums that tell whether a part 
 constexpr double kFarBetter = 0.4;      // of the jump defect as given, up to which a hypothesis is taken where unrest alone does not decide
 constexpr double kClearlyLess = 0.8;    // of the jump defect of a finer scale, up to which a coarser one is taken
 // Verdict.
-constexpr double kUnrest = 0.08;          // mean of a part that is open: closed ones have up to 0.06, open ones 0.1 to 0.3
-constexpr double kUnrestNoisy = 0.2;      // the same where noise hides thin walls, whose field is open in places
-constexpr double kNoJump = 0.6;           // mean jump defect of a part whose sides change from site to site, or of two walls
-constexpr double kNoJumpNoisy = 0.8;      // the same under noise
-constexpr double kThin = 2;               // spacings between two walls: the field distinguishes walls farther apart
-constexpr double kExact = 0.01;           // spacings: deviations below are as good as none
-constexpr std::size_t kWallPoints = 24;   // of the heights that distinguish one wall from two
-constexpr std::size_t kWallPlaces = 500;  // at most, whose median counts
-constexpr double kOutside = 0.55;         // enclosure from which a part has an outside; a plane has 0, half a sphere 0.6, a sphere 1
-constexpr double kEncloses = 0.7;         // enclosure under noise that no bowl up to a half sphere has, so that the part is a closed one
-constexpr double kLevel = 1e-6;           // part of the mean normal that counts as none
-constexpr std::size_t kRing = 7;          // sites that a side is common to: one and those around it, six in the densest packing
-constexpr float kUndecided = 0.5F;        // certainty of a side that is chosen, or not certified
+constexpr double kUnrest = 0.08;      // mean of a part that is open: closed ones have up to 0.06, open ones 0.1 to 0.3
+constexpr double kUnrestNoisy = 0.2;  // the same where noise hides thin walls, whose field is open in places
+constexpr double kNoJump = 0.6;       // mean jump defect of a part whose sides change from site to site, or of two walls
+constexpr double kNoJumpNoisy = 0.8;  // the same under noise
+constexpr double kOutside = 0.55;     // enclosure from which a part has an outside; a plane has 0, half a sphere 0.6, a sphere 1
+constexpr double kEncloses = 0.7;     // enclosure under noise that no bowl up to a half sphere has, so that the part is a closed one
+constexpr double kLevel = 1e-6;       // part of the mean normal that counts as none
+constexpr std::size_t kRing = 7;      // sites that a side is common to: one and those around it, six in the densest packing
+constexpr float kUndecided = 0.5F;    // certainty of a side that is chosen, or not certified
 
 // Places where the unrest of the given normals is that of an open surface, and what to try there.
 class Search {
  public:
   Search(const PointSet& set, double noise, const SumPlan& sums, const std::atomic<bool>* cancel)
-      : set_(set), points_(set.points()), sums_(sums), cancel_(cancel) {
+      : set_(set), points_(set.points()), noise_(noise), sums_(sums), cancel_(cancel) {
     const double spacing = set.spacing();
     const double all = std::sqrt(static_cast<double>(set.size()) / static_cast<double>(kMostSites));
     const double least = std::max(kNoiseScale * noise, all > 1 ? kFirstScale * all * spacing : 0);
@@ -121,25 +116,7 @@ class Search {
     return g3r::jump_defects(finest_, at_sites(normals), sums_, cancel_);
   }
 
-  // Whether the points of a part lie on two walls closer together than the field can distinguish: the heights over the planes of the sites
-  // are likelier from two parallel quadratics than from one. n points on two walls, each with a label that costs ln 2, have the log
-  // likelihood -n ln s2 - n ln 2, on one -n ln s1, with s the standard deviation from the fit.
-  [[nodiscard]] bool has_two_walls(std::uint32_t part) const {
-    const std::vector<std::uint32_t>& members = members_[part];
-    std::vector<double> gain;
-    std::vector<std::uint32_t> index;
-    std::vector<double> squared;
-    for (std::size_t k = 0; k < members.size(); k += std::max<std::size_t>(1, members.size() / kWallPlaces)) {
-      const std::uint32_t s = members[k];
-      set_.tree().nearest(finest_.points()[s], kWallPoints, index, squared);
-      const double one = quadratic_residual(points_, index.data(), index.size(), finest_.axis[s], finest_.spacing()[s]);
-      const TwoLayers two = fit_two_layers(points_, index.data(), index.size(), finest_.axis[s]);
-      const double exact = kExact * finest_.spacing()[s];
-      const bool thin = two.gap > 0 && two.gap < kThin * finest_.spacing()[s];
-      gain.push_back((thin ? std::log(std::max(one, exact) / std::max(two.deviation, exact)) : 0) - std::numbers::ln2);
-    }
-    return median(gain) > 0;
-  }
+  [[nodiscard]] bool has_two_walls(std::uint32_t part) const { return on_two_walls(set_, finest_, members_[part], noise_); }
 
   // Twice the mean of w at the sites of a part, w of that part alone: 1 on a closed surface, 0 on a plane, -1 on one inside out.
   [[nodiscard]] double enclosure(std::uint32_t part, const std::vector<Vec3>& normals) const {
@@ -234,6 +211,7 @@ class Search {
 
   const PointSet& set_;
   const std::vector<Vec3>& points_;
+  double noise_;
   SumPlan sums_;
   const std::atomic<bool>* cancel_;
   Sites finest_;

@@ -1,0 +1,84 @@
+#include "orient/two_walls.h"
+
+#include "base/median.h"
+#include "cloud/heights.h"
+#include "cloud/layers.h"
+#include "cloud/noise.h"
+#include "cloud/quadratic_patch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace g3r {
+namespace {
+
+constexpr std::size_t kPlaces = 500;       // looked at, at most
+constexpr double kThin = 2;                // site spacings between two walls: the field distinguishes walls farther apart
+constexpr double kExact = 0.01;            // site spacings: deviations below are as good as none
+constexpr std::size_t kPoints = 24;        // of the heights that distinguish one wall from two
+constexpr std::size_t kNoisyPoints = 128;  // the same under noise: fewer follow the noise, more the shape
+constexpr double kExcess = -0.2;           // of the kurtosis of walls 1.35 standard deviations apart; rough ground has -0.1 at most
+constexpr double kSure = 3;                // standard errors that it is below 0
+
+// Calls visit(site, its `count` nearest points in canonical order).
+template <typename Visit>
+void for_some(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members, std::size_t count, Visit visit) {
+  std::vector<std::uint32_t> index;
+  std::vector<double> squared;
+  for (std::size_t k = 0; k < members.size(); k += std::max<std::size_t>(1, members.size() / kPlaces)) {
+    set.tree().nearest(sites.points()[members[k]], count, index, squared);
+    std::sort(index.begin(), index.end());
+    visit(members[k], index);
+  }
+}
+
+bool on_exact_walls(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members) {
+  const std::vector<Vec3>& points = set.points();
+  std::vector<double> gain;
+  for_some(set, sites, members, kPoints, [&](std::uint32_t s, const std::vector<std::uint32_t>& index) {
+    const double spacing = sites.spacing()[s];
+    const double one = quadratic_residual(points, index.data(), index.size(), sites.axis[s], spacing);
+    const TwoLayers two = fit_two_layers(points, index.data(), index.size(), sites.axis[s]);
+    const double exact = kExact * spacing;
+    const bool thin = two.gap > 0 && two.gap < kThin * spacing;
+    gain.push_back((thin ? std::log(std::max(one, exact) / std::max(two.deviation, exact)) : 0) - std::numbers::ln2);
+  });
+  return median(gain) > 0;
+}
+
+bool on_noisy_walls(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members) {
+  const std::vector<Vec3>& points = set.points();
+  if (points.size() < kNoisyPoints) return false;
+  const Vec3 steps = rounding_steps(points, set.spacing());
+  std::vector<double> excess;
+  std::vector<double> square;
+  for_some(set, sites, members, kNoisyPoints, [&](std::uint32_t s, const std::vector<std::uint32_t>& index) {
+    const HeightMoments m = height_moments(points, index.data(), index.size(), sites.axis[s], sites.spacing()[s]);
+    double rounding = 0;
+    for (std::size_t a = 0; a < 3; ++a) rounding += std::pow(sites.axis[s][a] * steps[a], 4) / 120;
+    square.push_back(m.mean_square);
+    excess.push_back(m.excess + (m.mean_square > 0 ? rounding / (m.mean_square * m.mean_square) : 0));
+  });
+  const double flat = median(square);
+  double sum = 0;
+  double squares = 0;
+  double count = 0;
+  for (std::size_t k = 0; k < excess.size(); ++k) {
+    if (square[k] > flat) continue;
+    sum += excess[k];
+    squares += excess[k] * excess[k];
+    ++count;
+  }
+  const double mean = sum / count;
+  const double error = std::sqrt(std::max(0.0, squares / count - mean * mean) / count);
+  return mean < kExcess && mean < -kSure * error;
+}
+
+}  // namespace
+
+bool on_two_walls(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members, double noise) {
+  return on_exact_walls(set, sites, members) || (noise > 0 && on_noisy_walls(set, sites, members));
+}
+
+}  // namespace g3r

@@ -1,0 +1,84 @@
+#include "cloud/heights.h"
+
+#include "shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <vector>
+
+namespace g3r {
+namespace {
+
+// Normal, unlike Random::gaussian(), whose excess kurtosis is -0.1 (Box and Muller 1958).
+double normal(shapes::Random& random) {
+  const double radius = std::sqrt(-2 * std::log(1 - random.uniform()));
+  return radius * std::cos(2 * std::numbers::pi * random.uniform());
+}
+
+// Heights at random places, of a cubic and of what `noise` adds.
+template <typename Noise>
+std::vector<Vec3> heights(std::size_t count, shapes::Random& random, Noise noise) {
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
+    points.push_back({x, y, 0.3 + x - 0.2 * x * y + 0.1 * y * y * y + noise()});
+  }
+  return points;
+}
+
+HeightMoments moments(const std::vector<Vec3>& points) {
+  std::vector<std::uint32_t> index(points.size());
+  std::iota(index.begin(), index.end(), 0U);
+  return height_moments(points, index.data(), index.size(), {0, 0, 1}, 0.5);
+}
+
+// Means over many patches of noise drawn by draw(random).
+template <typename Draw>
+HeightMoments mean_moments(std::size_t count, Draw draw) {
+  constexpr int kPatches = 4000;
+  shapes::Random random(7);
+  HeightMoments mean;
+  for (int k = 0; k < kPatches; ++k) {
+    const HeightMoments m = moments(heights(count, random, [&] { return draw(random); }));
+    mean.mean_square += m.mean_square / kPatches;
+    mean.excess += m.excess / kPatches;
+  }
+  return mean;
+}
+
+// Few points as many: the kurtosis of residuals alone would be 0.5 too small for 16.
+TEST(HeightMoments, NormalNoiseHasNoExcessForAnyNumberOfPoints) {
+  for (const std::size_t count : {16, 24, 64, 128}) {
+    const HeightMoments m = mean_moments(count, [](shapes::Random& random) { return 0.2 * normal(random); });
+    EXPECT_NEAR(m.excess, 0, 0.08) << count;
+    EXPECT_NEAR(m.mean_square, 0.04, 0.001) << count;
+  }
+}
+
+TEST(HeightMoments, TwoWallsHaveTheirShareOfTheVarianceSquared) {
+  for (const double half : {0.5, 1.0, 2.0}) {  // standard deviations
+    const double share = half * half / (half * half + 1);
+    const HeightMoments m =
+        mean_moments(128, [&](shapes::Random& random) { return (random.uniform() < 0.5 ? half : -half) + normal(random); });
+    EXPECT_NEAR(m.excess, -2 * share * share, 0.03 + 0.1 * share * share) << half;
+    EXPECT_NEAR(m.mean_square, 1 + half * half, 0.02 * (1 + half * half));
+  }
+}
+
+// -1.2 times q^4 / 144 over the variance squared, and uneven noise the other way.
+TEST(HeightMoments, EvenNoiseHasLessAndUnevenNoiseMore) {
+  EXPECT_NEAR(mean_moments(128, [](shapes::Random& random) { return random.uniform(-1, 1); }).excess, -1.2, 0.12);
+  EXPECT_GT(mean_moments(128, [](shapes::Random& random) { return random.uniform(0.1, 2) * normal(random); }).excess, 0.5);
+}
+
+TEST(HeightMoments, CubicsAreExactAndHaveNone) {
+  shapes::Random random(3);
+  const HeightMoments m = moments(heights(40, random, [] { return 0; }));
+  EXPECT_LT(m.mean_square, 1e-20);
+}
+
+}  // namespace
+}  // namespace g3r

@@ -1,0 +1,76 @@
+#include "orient/two_walls.h"
+
+#include "cloud/canonical_cloud.h"
+
+#include "shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <vector>
+
+namespace g3r {
+namespace {
+
+constexpr std::size_t kPoints = 6000;
+
+double normal(shapes::Random& random) {
+  const double radius = std::sqrt(-2 * std::log(1 - random.uniform()));
+  return radius * std::cos(2 * std::numbers::pi * random.uniform());
+}
+
+// On [-1, 1]^2, `gap` and `noise` in spacings: half of the points on a second wall. Tilted, so that no coordinate is along the walls.
+std::vector<Vec3> walls(double gap, double noise, double waves = 0) {
+  const double h = 2 / std::sqrt(static_cast<double>(kPoints));
+  shapes::Random random(11);
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
+    const double z = waves * std::sin(5 * x) * std::cos(4 * y) + (i % 2 == 0 ? gap * h : 0) + noise * h * normal(random);
+    points.push_back({0.8 * x - 0.6 * z, y, 0.6 * x + 0.8 * z});
+  }
+  return points;
+}
+
+bool found(const std::vector<Vec3>& points, double noise) {
+  const CanonicalCloud cloud = canonical_cloud(PointsView(points));
+  const Sites sites = place_sites(cloud.set, noise > 0 ? 1.5 * cloud.set.spacing() : 0);
+  std::vector<std::uint32_t> all(sites.size());
+  std::iota(all.begin(), all.end(), 0U);
+  return on_two_walls(cloud.set, sites, all, noise * cloud.set.spacing());
+}
+
+TEST(TwoWalls, OneSurfaceIsNone) {
+  for (const double noise : {0.0, 0.2, 0.6, 1.0}) {
+    EXPECT_FALSE(found(walls(0, noise), noise)) << noise;
+    EXPECT_FALSE(found(walls(0, noise, 0.15), noise)) << noise;
+  }
+}
+
+TEST(TwoWalls, AreFoundWithoutNoise) {
+  for (const double gap : {0.2, 0.5, 1.0}) EXPECT_TRUE(found(walls(gap, 0), 0)) << gap;
+}
+
+// Two standard deviations apart heights have one peak, not two: only the kurtosis shows it. One deviation apart nothing does.
+TEST(TwoWalls, AreFoundTwoDeviationsApart) {
+  for (const double noise : {0.2, 0.5, 0.8}) {
+    EXPECT_TRUE(found(walls(2 * noise, noise), noise)) << noise;
+    EXPECT_TRUE(found(walls(2 * noise, noise, 0.15), noise)) << noise;
+    EXPECT_FALSE(found(walls(noise, noise), noise)) << noise;
+  }
+}
+
+// Rounding has light tails as well: one terrain of voxels is one surface.
+TEST(TwoWalls, VoxelsAreNone) {
+  std::vector<Vec3> points = walls(0, 0.1, 0.15);
+  const double step = 3 / std::sqrt(static_cast<double>(kPoints));
+  for (Vec3& p : points) {
+    for (double& c : p) c = step * std::round(c / step);
+  }
+  EXPECT_FALSE(found(points, 0.3));
+}
+
+}  // namespace
+}  // namespace g3r
