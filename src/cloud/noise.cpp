@@ -30,6 +30,7 @@ constexpr double kMostScattered = 0.75;  // quantile of the neighbourhoods that 
 constexpr double kMostSaturation = 0.56;   // in spacings, what that says where noise fills the balls
 constexpr double kMostFilled = 0.97;       // of that: beyond, it tells no more
 constexpr double kOnPlanes = 0.4;          // share of the points on one exact plane that shows a cloud to be clean
+constexpr double kAlong = 0.5;             // cosine from which it lies along the surface: those of scan lines are across it
 constexpr std::size_t kFewestLevels = 5;   // values of a rounded coordinate; those of plates and boxes that stand straight are fewer
 constexpr double kTerraces = 0.5;          // of the deviation that rounding leaves, the median residual of height fields from which it does
 constexpr double kSameCoordinate = 1e-4;   // in spacings, between coordinates that differ by rounding only
@@ -132,11 +133,6 @@ Vec3 rounding_steps(const std::vector<Vec3>& points, double spacing) {
   return steps;
 }
 
-bool rounded(const std::vector<Vec3>& points, double spacing) {
-  const Vec3 steps = rounding_steps(points, spacing);
-  return std::max({steps[0], steps[1], steps[2]}) > 0;
-}
-
 // The facet that the first of the points is on; none, of breadth 0, where the points may be those of rows: the lines of a raster or a
 // scanner lie in planes across the surface however noisy it is, but in narrow strips of them, or there is another plane among the other
 // points.
@@ -149,12 +145,17 @@ ExactPlane find_facet(const std::vector<Vec3>& points, const std::vector<std::ui
   return find_exact_plane(points, others, spacing).points.empty() ? plane : ExactPlane{};
 }
 
-// Whether many of the points lie on exact planes.
+// Whether many of the points lie on exact planes along the surface, and not because rounding has put them there.
 bool on_exact_planes(const PointSet& set) {
+  const Vec3 steps = rounding_steps(set.points(), set.spacing());
+  if (std::max({steps[0], steps[1], steps[2]}) > 0) return false;
   std::size_t looked = 0, on_facets = 0;
   for_some(set, kProbes, kPlaneNeighbours, [&](const Vec3&, const auto& index, const auto&) {
     ++looked;
-    on_facets += find_facet(set.points(), index, set.spacing()).breadth > 0 ? 1 : 0;
+    const ExactPlane facet = find_facet(set.points(), index, set.spacing());
+    if (facet.breadth == 0) return;
+    const Vec3 around = fit_plane(set.points(), index.data(), index.size()).normal;
+    on_facets += std::abs(vector::dot(facet.normal, around)) > kAlong ? 1 : 0;
   });
   return share_of(on_facets, looked) >= kOnPlanes;
 }
@@ -168,12 +169,13 @@ double rounding_noise(const PointSet& set, const Residuals& residuals) {
   return sigma > kLeast * spacing && residuals.scatter(0.5) > kTerraces * sigma ? sigma : 0;
 }
 
-// By the flattest neighbourhoods, 0 where these show that there is none.
+// By the flattest neighbourhoods, 0 where these or exact planes show that there is none.
 double scattered_noise(const PointSet& set, const Residuals& residuals) {
   const double spacing = set.spacing();
   const double flattest = residuals.scatter(kFlattest);
   if (flattest < kLeast * spacing || Residuals(set, kFewer).scatter(kFlattest) < kShape * residuals.scatter(kFlat)) return 0;
   const double filled = flattest / (kSaturation * spacing);
+  if (on_exact_planes(set)) return 0;
   const double layered = layered_noise(set);
   // 1 / x^2 = 1 / sigma^2 + 1 / saturation^2
   const double sigma = filled > kFilled ? layered : std::min(layered, flattest / std::sqrt(1 - filled * filled));
@@ -206,7 +208,7 @@ double estimate_noise(const PointSet& set) {
 
 double largest_scatter(const PointSet& set) {
   const double spacing = set.spacing();
-  if (set.size() < kFewestPoints || (on_exact_planes(set) && !rounded(set.points(), spacing))) return 0;
+  if (set.size() < kFewestPoints || on_exact_planes(set)) return 0;
   const double x = Residuals(set, kNeighbours).scatter(kMostScattered);
   const double filled = std::min(x / (kMostSaturation * spacing), kMostFilled);
   return x / std::sqrt(1 - filled * filled * filled * filled);

@@ -15,6 +15,8 @@ namespace g3r {
 ///     scatter x h that is sigma while that is small, and fills the balls in the end: 1 / x^2 = (h / sigma)^2 + 1 / 0.57^2.
 ///   - Noise is as large in small neighbourhoods as in larger ones, shape is not. Where the flattest 2 % of 8 points scatter half as much
 ///     or less than the flattest 10 % of 12 points, that is shape: thin walls, wires, detail (measured: up to 0.48; noise 0.56 and more).
+///   - Noise leaves no exact planes behind. Where 40 % of the points are on one (find_exact_plane(), breadth 0.4) and no second one, the
+///     cloud is clean, unless its coordinates are rounded to steps of 0.04 h or more, which puts noise on planes.
 ///   - Against two or three layers of a smooth surface there is layered_deviation() of 256 neighbours, its 10 % quantile; the lesser of the
 ///     two counts. It needs the layers to be smooth as far as that. Noise above h fills such neighbourhoods as well, so every fourth point
 ///     is taken then, as often as needed.
@@ -30,9 +32,8 @@ namespace g3r {
 /// place, of which estimate_noise() finds the least. From the scatter x h of three quarters of the height fields above (measured within
 /// 20 % from 0.1 to 1 h):
 ///     sigma = h x / sqrt(1 - (x / 0.56)^4).
-/// Walls and detail below the spacing lift it: not an estimate, but what to try. 0 for fewer than 200 points, or where 40 % of the points
-/// are on an exact plane (find_exact_plane(), breadth 0.4) and no second one, unless the coordinates are rounded to steps of 0.04 h or
-/// more, which puts noise on planes. Units and cost as above.
+/// Walls and detail below the spacing lift it: not an estimate, but what to try. 0 for fewer than 200 points, or where exact planes
+/// as above show that there is no noise. Units and cost as above.
 [[nodiscard]] double largest_scatter(const PointSet& set);
 
 /// Standard deviation of the points about the facets of a CAD model: what find_likeliest_plane() finds at most of about 500 points, where
