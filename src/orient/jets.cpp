@@ -15,7 +15,6 @@ using Eigen::Vector3d;
 constexpr std::size_t kNeighbours = 17;  // the point itself, first, and 16 others
 constexpr std::size_t kFewest = 7;       // that take part, itself included: one more than the height field has numbers
 constexpr double kSamePatch = 0.9;       // cosine between normals
-constexpr double kSteepest = 0.5145;     // height above the tangent plane over distance
 constexpr double kRadius = 1.5;          // spacings
 constexpr double kScatter = 0.007;       // spacings, standard deviation of the heights
 constexpr double kNarrowest = 0.15;      // second principal spread over the first: along one scan line any slope across it fits
@@ -58,8 +57,7 @@ std::vector<std::uint8_t> fit_jets(const PointSet& set, std::vector<Vec3>& norma
         const std::uint32_t j = near[i * kNeighbours + k];
         const Vector3d d = to_eigen(points[j]) - centre;
         const Vector3d n = to_eigen(normals[j]);
-        const double height = normal.dot(d);
-        if (n.dot(normal) <= kSamePatch || height * height > kSteepest * kSteepest * d.squaredNorm()) continue;
+        if (n.dot(normal) <= kSamePatch) continue;
         members.push_back({d, n, std::exp(-d.squaredNorm() * scale), 0});
       }
       if (members.size() < kFewest || !spread_out(members, normal)) continue;
