@@ -17,7 +17,7 @@ constexpr std::size_t kSeeds = 10;  // nearest others that candidates pass throu
 constexpr int kFewest = 6;          // points on a plane, itself included
 // Within what distance, in spacings, kFewest points, one more, or two or more lie: so few by chance on one in a thousand planes through
 // points that scatter by a third of a spacing.
-constexpr std::array<double, 3> kWithin{0.0005, 0.002, 0.003};
+constexpr std::array<double, 3> kWithin{0.0005, 0.002, kExactWithin};
 constexpr double kNarrowest = 0.15;  // breadth of the points on the plane
 constexpr double kLeastAngle = 0.1;  // sine, between the two that a candidate passes through
 // Of points that scatter.

@@ -41,6 +41,7 @@ struct ExactPlane {
 [[nodiscard]] ExactPlane find_scattered_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing,
                                               double scatter, const Vec3& towards);
 
+inline constexpr double kExactWithin = 0.003;   ///< spacings, of a point from the exact plane that holds it, at most
 inline constexpr double kExactScatter = 0.001;  ///< spacings: points that scatter less are exact
 inline constexpr double kFacetBreadth = 0.4;    ///< of the points on a facet; the rows of a raster lie in narrow strips of planes across it
 
