@@ -1,4 +1,5 @@
 #include "cloud/exact_plane.h"
+#include "base/vector.h"
 
 #include "shapes.h"
 
@@ -40,10 +41,18 @@ TEST(FindExactPlane, HoldsThePointsOfThePlaneAndHasItsNormal) {
   EXPECT_GT(plane.breadth, 0.15);
 }
 
-TEST(FindExactPlane, IsNotAcrossTheDirectionItIsToFace) {
-  const std::vector<Vec3> points = plane_among_others();
-  const Vec3 along{0, 0.7071067811865476, -0.7071067811865476};
-  EXPECT_TRUE(find_exact_plane(points, all_of(points), kSpacing, &along).points.empty());
+TEST(FindExactPlane, OfTwoEqualOnesFacesTheDirectionAskedFor) {
+  std::vector<Vec3> points{{0, 0, 0}};
+  for (int i = 0; i < 8; ++i) {  // on a circle in each of two planes
+    const double u = kSpacing * std::cos(0.7 + i), v = kSpacing * std::sin(0.7 + i);
+    points.push_back({u, v, 0});
+    points.push_back({0, u, v});
+  }
+  for (const Vec3& towards : {Vec3{0.6, 0, 0.8}, Vec3{0.8, 0, 0.6}}) {
+    const ExactPlane plane = find_exact_plane(points, all_of(points), kSpacing, &towards);
+    EXPECT_EQ(plane.points.size(), 9U);
+    EXPECT_GT(std::abs(vector::dot(plane.normal, towards)), 0.79);
+  }
 }
 
 TEST(FindExactPlane, IsNotProvedByALineOrByACurvedSurface) {

@@ -17,8 +17,7 @@ constexpr std::size_t kSeeds = 10;  // nearest others that candidates pass throu
 constexpr int kFewest = 6;          // points on a plane, itself included
 // Within what distance, in spacings, kFewest points, one more, or two or more lie: so few by chance on one in a thousand planes through
 // points that scatter by a third of a spacing.
-constexpr std::array<double, 3> kWithin{0.0005, 0.002, 0.003};
-constexpr double kSteepest = 0.1;    // cosine between a candidate and the direction asked for
+constexpr std::array<double, 3> kWithin{0.0005, 0.002, kExactWithin};
 constexpr double kNarrowest = 0.15;  // breadth of the points on the plane
 constexpr double kLeastAngle = 0.1;  // sine, between the two that a candidate passes through
 // Of points that scatter.
@@ -112,7 +111,6 @@ Candidate best_plane(const Around& around, const Vec3* towards, const HeldBy& he
       const double size = std::sqrt(vector::dot(across, across));
       if (!(size > kLeastAngle * std::sqrt(vector::dot(first, first) * vector::dot(second, second)))) continue;
       const double cosine = towards != nullptr ? std::abs(vector::dot(across, *towards)) / size : 1;
-      if (cosine < kSteepest) continue;
       Candidate found = held_by(vector::scale(across, 1 / size));
       found.cosine = cosine;
       if (found.held > best.held || (found.held > 0 && found.held == best.held && found.cosine > best.cosine)) best = found;

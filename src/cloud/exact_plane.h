@@ -24,8 +24,8 @@ struct ExactPlane {
 /// 0.003 `spacing`, 7 to within 0.002 or 6 to within 0.0005. Candidates are the planes through the first and two of the next 10 (every
 /// pair, as RANSAC would in the limit: Fischler and Bolles, "Random sample consensus", Communications of the ACM 1981); the best is fitted
 /// to what it holds. Points along a line, which a curved surface has in planes across it, prove nothing: their second principal spread has
-/// to be 0.15 of the first. With `towards` (unit length) only planes less than 84 degrees off it count, and of equal ones the least off. Of
-/// random points on a smooth or noisy surface about one in a thousand has such a plane; rows of a raster have one across it. About 3 us.
+/// to be 0.15 of the first. With `towards` (unit length), of equal ones the one least off it counts. Of random points on a smooth or noisy
+/// surface about one in a thousand has such a plane; rows of a raster have one across it. About 3 us.
 [[nodiscard]] ExactPlane find_exact_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing,
                                           const Vec3* towards = nullptr);
 
@@ -41,6 +41,7 @@ struct ExactPlane {
 [[nodiscard]] ExactPlane find_scattered_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing,
                                               double scatter, const Vec3& towards);
 
+inline constexpr double kExactWithin = 0.003;   ///< spacings, of a point from the exact plane that holds it, at most
 inline constexpr double kExactScatter = 0.001;  ///< spacings: points that scatter less are exact
 inline constexpr double kFacetBreadth = 0.4;    ///< of the points on a facet; the rows of a raster lie in narrow strips of planes across it
 

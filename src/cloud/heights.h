@@ -12,8 +12,8 @@ namespace g3r {
 /// Second moment and kurtosis of the residuals r = M z of heights z over the cubic height field fitted to them, M the projection off its
 /// 10 columns. Normal noise of any size leaves r in a uniform direction of n - 10 dimensions, so that
 ///     excess = (sum r^4 (n - 10) (n - 8) / ((sum r^2)^2 sum M_ii^2) - 3) sum M_ii^2 / sum M_ii^4
-/// has the mean 0 for any n, whatever sum r^2 is (Basu, "On statistics independent of a complete sufficient statistic", Sankhya 1955). The last
-/// factor makes up for the fit, which takes a part of every height: of other noise r_i has about M_ii^4 times its fourth cumulant.
+/// has the mean 0 for any n, whatever sum r^2 is (Basu, "On statistics independent of a complete sufficient statistic", Sankhya 1955). The
+/// last factor makes up for the fit, which takes a part of every height: of other noise r_i has about M_ii^4 times its fourth cumulant.
 /// Points on two walls, s the noise and 2 a their distance, have about -2 (a^2 / (a^2 + s^2))^2: -2 without noise, -0.5 where the walls are
 /// 2 s apart. Noise that differs from point to point has more than 0.
 struct HeightMoments {

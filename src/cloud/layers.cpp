@@ -5,7 +5,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace g3r {
@@ -16,7 +15,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kRadius = 0.6;       // of the cylinder, in distances of the farthest point
-constexpr double kHeight = 0.8;       // up to where the cylinder is inside the ball of the points
 constexpr double kTail = 1.5;         // deviations of a layer that have to be inside for its own deviation to count
 constexpr Eigen::Index kFewest = 20;  // heights: three layers have ten numbers
 constexpr Eigen::Index kTerms = 5;    // u, v, u^2, u v, v^2
@@ -26,14 +24,11 @@ constexpr double kRidge = 1e-9;       // on the terms, relative: points on a lin
 constexpr int kRounds = 12;           // of two layers: most do not change after 4
 constexpr int kFewestOnLayer = 4;     // of two layers, on either
 constexpr double kNoShare = 1e-300;   // keeps the logarithm of a likelihood finite
-// Offsets to start from, in deviations about one layer: where equal layers without scatter would be, nearly (1; 1.22 and 0).
-constexpr std::array<double, 2> kTwoLayers{-0.9, 0.9};
-constexpr std::array<double, 3> kThreeLayers{-1.3, 0, 1.3};
 
 struct Heights {
   MatrixXd terms;   // n x kTerms, of order 1
   VectorXd z;       // from the centre
-  double most = 0;  // |z| up to which there are points all around
+  double most = 0;  // |z| up to which the cylinder is inside the ball of the points
 };
 
 struct Mixture {
@@ -45,7 +40,7 @@ Heights heights(const std::vector<Vec3>& points, const std::uint32_t* index, std
   const Eigen::Matrix3d frame = tangent_frame(to_eigen(normal));
   const double radius = (to_eigen(points[index[count - 1]]) - to_eigen(centre)).norm();
   const auto most = static_cast<Eigen::Index>(count);
-  Heights h{MatrixXd(most, kTerms), VectorXd(most), kHeight * radius};
+  Heights h{MatrixXd(most, kTerms), VectorXd(most), std::sqrt(1 - kRadius * kRadius) * radius};
   Eigen::Index n = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const Eigen::Vector3d q = frame * (to_eigen(points[index[k]]) - to_eigen(centre)) / radius;
@@ -59,14 +54,17 @@ Heights heights(const std::vector<Vec3>& points, const std::uint32_t* index, std
   return h;
 }
 
-// Starts from one layer's fit (`slopes`, `middle`, `deviation`) with offsets `start` times its deviation.
+// Starts from one layer's fit (`slopes`, `middle`, `deviation`), where equal layers at equal distances, without scatter, have its
+// deviation.
 template <std::size_t kLayers>
-Mixture fit_mixture(const Heights& h, const Eigen::LDLT<MatrixXd>& normal_equations, VectorXd slopes, double middle, double deviation,
-                    const std::array<double, kLayers>& start) {
+Mixture fit_mixture(const Heights& h, const Eigen::LDLT<MatrixXd>& normal_equations, VectorXd slopes, double middle, double deviation) {
   const Eigen::Index n = h.z.size();
   const auto total = static_cast<double>(n);
   Eigen::Array<double, 1, kLayers> offset, share;
-  for (std::size_t c = 0; c < kLayers; ++c) offset[static_cast<Eigen::Index>(c)] = middle + start[c] * deviation;
+  const double distance = deviation * std::sqrt(12.0 / (kLayers * kLayers - 1));
+  for (std::size_t c = 0; c < kLayers; ++c) {
+    offset[static_cast<Eigen::Index>(c)] = middle + (static_cast<double>(c) - (kLayers - 1) / 2.0) * distance;
+  }
   share.setConstant(1.0 / kLayers);
   double sigma = deviation / 2;
   double likelihood = 0;
@@ -118,8 +116,8 @@ double layered_deviation(const std::vector<Vec3>& points, const std::uint32_t* i
   const double deviation = std::sqrt(misfit / (total - kTerms - 1));
   Mixture best{deviation, total * std::log(misfit / total) + total};
   const Eigen::LDLT<MatrixXd> several(h.terms.transpose() * h.terms + ridge);
-  for (const Mixture& mixture : {fit_mixture<2>(h, several, slopes, middle, deviation, kTwoLayers),
-                                 fit_mixture<3>(h, several, slopes, middle, deviation, kThreeLayers)}) {
+  for (const Mixture& mixture :
+       {fit_mixture<2>(h, several, slopes, middle, deviation), fit_mixture<3>(h, several, slopes, middle, deviation)}) {
     if (mixture.criterion < best.criterion) best = mixture;
   }
   return best.sigma;

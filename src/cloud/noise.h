@@ -10,34 +10,30 @@
 namespace g3r {
 
 /// Standard deviation of the points from their surface in each coordinate; 0 for a clean cloud.
-///   - Noise lifts the residual of every neighbourhood; curvature, creases and thin parts only that of some. So the flattest 2 %
-///     decide: their 12-point residual from a plane below 0.02 h means clean, and so does one from a quadratic height field, which
-///     curvature does not lift, below 0.017 h, or below 0.04 h and 0.15 of the median (under noise it is 0.25 of that or more).
-///   - Two layers close together, and wires, lift it everywhere, but there are neighbourhoods whose distances have two peaks: a 10 %
-///     quantile of the kurtosis (24 neighbours) below 1.85 means layers or wires (measured: those 1.1 to 1.8, noise 1.94 to 2.1).
-///   - Noise leaves no exact surface behind. Where 40 % of the points are on an exact plane (find_exact_plane(), breadth 0.4) and no
-///     second one, a quarter of these planes within 60 degrees of that of 64 points (those of rasters and scan lines are not), or 0.5 % of
-///     the neighbourhoods lie on two layers (fit_two_layers()) within 0.08 (16 points) or 0.12 (24) of their gap, the cloud is clean,
-///     unless its coordinates are rounded to steps of 0.05 h or more, which puts noise on planes.
-///   - The size is the less of two. While noise is small, from the residual x h of 32 neighbours:
-///     sigma = h x / (0.842 - 0.372 x), x being at most what the residual y h of 16 lets expect on a plane, 1.27 y / (1 - (y / 0.47)^8):
-///     32 neighbours reach across walls.
-///   - And, of any size, layered_deviation() of 256 neighbours, its 10 % quantile: it distinguishes two or three layers from one, but needs
-///     them to be smooth as far as that. Noise above h fills such neighbourhoods as well, so every fourth point is taken then, as often
-///     as needed.
+///   - Noise lifts the residual of every neighbourhood; curvature, creases and thin parts only that of some. So the flattest 2 % decide. Of
+///     quadratic height fields through 12 points noise sigma leaves residuals of a chi distribution with 6 degrees of freedom, times a
+///     scatter x h that is sigma while that is small, and fills the balls in the end: 1 / x^2 = (h / sigma)^2 + 1 / 0.57^2.
+///   - Noise is as large in small neighbourhoods as in larger ones, shape is not. Where the flattest 2 % of 8 points scatter half as much
+///     or less than the flattest 10 % of 12 points, that is shape: thin walls, wires, detail (measured: up to 0.48; noise 0.56 and more).
+///   - Noise leaves no exact planes behind. Where 40 % of the points are on one (find_exact_plane(), breadth 0.4) and no second one, the
+///     cloud is clean, unless its coordinates are rounded to steps of 0.04 h or more, which puts noise on planes.
+///   - Against two or three layers of a smooth surface there is layered_deviation() of 256 neighbours, its 10 % quantile; the lesser of the
+///     two counts. It needs the layers to be smooth as far as that. Noise above h fills such neighbourhoods as well, so every fourth point
+///     is taken then, as often as needed.
+///   - Less than 0.04 h is none.
 ///   - Rounding of all three coordinates to steps q, as in voxels, counts as noise of the mean square of q_a^2 / 12 where that is above
 ///     0.04 h and the median residual of the height fields is half of it or more: rounded flat neighbourhoods may be exact. Coordinates of
 ///     less than 5 values are not rounded: they are those of a plate that stands straight.
-/// Within about 15 % of the truth on smooth shapes from 0.2 to 3 h and on walls of 3 sigma (docs/evidence/noise.md). Same units as the
+/// Within about 15 % of the truth on smooth shapes from 0.1 to 3 h and on walls of 3 sigma (docs/evidence/noise.md). Same units as the
 /// points. Looks at about 2000 points, in O(log N) each, and sorts the thinned clouds, O(N log N).
 [[nodiscard]] double estimate_noise(const PointSet& set);
 
 /// The noise where it is largest, if all scatter is noise: of scans that do not fit onto each other, or of noise that differs from place to
-/// place, of which estimate_noise() finds the least. From the third quartile x h of the residuals of quadratic height fields through 12
-/// points, as for even noise (measured within 15 % from 0.1 to 1.2 h):
-///     sigma = h x / (1.12 sqrt(1 - (x / 0.64)^4)).
-/// Walls and detail below the spacing lift it: not an estimate, but what to try. 0 for fewer than 200 points, or where exact planes as
-/// above show that there is no noise. Units and cost as above.
+/// place, of which estimate_noise() finds the least. From the scatter x h of three quarters of the height fields above (measured within
+/// 20 % from 0.1 to 1 h):
+///     sigma = h x / sqrt(1 - (x / 0.56)^4).
+/// Walls and detail below the spacing lift it: not an estimate, but what to try. 0 for fewer than 200 points, or where exact planes
+/// as above show that there is no noise. Units and cost as above.
 [[nodiscard]] double largest_scatter(const PointSet& set);
 
 /// Standard deviation of the points about the facets of a CAD model: what find_likeliest_plane() finds at most of about 500 points, where
@@ -46,7 +42,7 @@ namespace g3r {
 /// estimate_noise() is 0, and that of walls closer together than the sampling. 0 for fewer than 200 points. About 20 ms.
 [[nodiscard]] double facet_scatter(const PointSet& set);
 
-/// Along each axis, the step of which all coordinates are multiples, at least 0.05 typical spacings; 0 where there is none. Same units as
+/// Along each axis, the step of which all coordinates are multiples, at least 0.04 typical spacings; 0 where there is none. Same units as
 /// the points. O(N log N).
 [[nodiscard]] Vec3 rounding_steps(const std::vector<Vec3>& points, double spacing);
 

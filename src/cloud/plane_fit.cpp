@@ -22,18 +22,15 @@ PlaneFit fit_plane(const std::vector<Vec3>& points, const std::uint32_t* index, 
   eigen.computeDirect(spread);
   const Vector3d normal = eigen.eigenvectors().col(0);
   double second = 0;
-  double fourth = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const double t = normal.dot(position(k) - mean);
     second += t * t;
-    fourth += t * t * t * t;
   }
   PlaneFit fit;
   fit.normal = {normal[0], normal[1], normal[2]};
   fit.residual = std::sqrt(second / (total - 3));
   fit.flatness = eigen.eigenvalues()[1] > 0 ? std::sqrt(second / eigen.eigenvalues()[1]) : 1;
   fit.breadth = eigen.eigenvalues()[2] > 0 ? std::sqrt(std::max(0.0, eigen.eigenvalues()[1]) / eigen.eigenvalues()[2]) : 0;
-  fit.kurtosis = second > 0 ? total * fourth / (second * second) : 0;
   return fit;
 }
 

@@ -14,7 +14,6 @@ struct PlaneFit {
   double residual = 0;   ///< root mean square distance, corrected for the 3 parameters
   double flatness = 0;   ///< least principal spread over the middle one: 0 for points in a plane, 1 for a ball
   double breadth = 0;    ///< middle principal spread over the largest one: 0 for points on a line
-  double kurtosis = 0;   ///< of the distances: 3 for a Gaussian (less, from few points), 1 for two layers; 0 for points in a plane
 };
 
 /// The least squares plane through points[index[0]], ..., points[index[count - 1]], count > 3. O(count).

@@ -2,6 +2,7 @@
 
 #include "base/median.h"
 #include "base/vector.h"
+#include "cloud/spacing.h"
 #include "cpu/parallel.h"
 
 #include <algorithm>
@@ -11,7 +12,6 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kNeighbours = 17;     // the point itself, first, and 16 others
 constexpr double kCreaseCosine = 0.965926;  // 15 degrees
 constexpr double kPlane = 0.05;             // spacings from a plane that holds a point
 constexpr double kRadius = 1.5;             // spacings
@@ -36,8 +36,8 @@ Round average_in_planes(const PointSet& set, const std::vector<Vec3>& normals) {
       double all = 0;
       double held = 0;
       Vec3 sum{0, 0, 0};
-      for (std::size_t k = 1; k < kNeighbours; ++k) {
-        const std::uint32_t j = near[i * kNeighbours + k];
+      for (std::size_t k = 1; k < kSpacingNeighbours; ++k) {
+        const std::uint32_t j = near[i * kSpacingNeighbours + k];
         const Vec3 d = vector::subtract(points[i], points[j]);
         const double nearness = std::exp(-vector::dot(d, d) / (2 * radius * radius));
         all += nearness;
@@ -61,7 +61,7 @@ Round average_in_planes(const PointSet& set, const std::vector<Vec3>& normals) {
 }  // namespace
 
 bool sharpen_creases(const PointSet& set, std::vector<Vec3>& normals) {
-  if (set.size() < kNeighbours) return false;
+  if (set.size() < kSpacingNeighbours) return false;
   std::vector<Vec3> sharp = normals;
   for (int round = 0; round < kRounds; ++round) sharp = average_in_planes(set, sharp).normals;
   std::vector<double> share = average_in_planes(set, sharp).share;

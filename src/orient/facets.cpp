@@ -1,6 +1,8 @@
 #include "orient/facets.h"
 
 #include "base/vector.h"
+#include "cloud/exact_plane.h"
+#include "cloud/spacing.h"
 #include "orient/polish.h"
 #include "solve/energy_system.h"
 #include "solve/iterative_solver.h"
@@ -13,12 +15,8 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kNeighbours = 17;  // the point itself, first, and 16 others
-constexpr std::size_t kFewest = 10;      // points of a facet
-constexpr double kWithin = 0.003;        // spacings, of one point from another's plane
-constexpr double kParallel = 0.9995;     // cosine
-constexpr double kEpsilon = 0.2;         // spacings
-constexpr double kWindingWeight = 100;   // cubed spacings; 30 to 1000 give the same sides
+constexpr std::size_t kFewest = 10;   // points of a facet
+constexpr double kParallel = 0.9995;  // cosine
 constexpr Steps kSteps{120, StepKind::kConjugateGradient};
 constexpr double kTolerance = 2e-3;        // less adds nothing, 5e-3 leaves walls of half a spacing on the wrong side
 constexpr double kSteadyTolerance = 5e-3;  // where no facet has changed its side in the last
@@ -93,12 +91,12 @@ Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven,
   const std::vector<std::uint32_t>& near = set.near();
   Facets facets;
   facets.of.assign(points.size(), Facets::kNone);
-  if (points.size() < kNeighbours) return facets;
+  if (points.size() < kSpacingNeighbours) return facets;
   const auto parallel = [&](std::size_t i, std::size_t j) { return std::abs(vector::dot(normals[i], normals[j])) >= kParallel; };
   const auto in_one_plane = [&](std::size_t i, std::size_t j) {
     const Vec3 d = vector::subtract(points[i], points[j]);
     return std::max(std::abs(vector::dot(normals[i], d)), std::abs(vector::dot(normals[j], d))) <=
-           kWithin * std::min(spacing[i], spacing[j]);
+           kExactWithin * std::min(spacing[i], spacing[j]);
   };
   std::vector<std::uint8_t> done(proven.size(), 0);
   std::vector<std::uint32_t> members;
@@ -108,9 +106,9 @@ Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven,
     done[seed] = 1;
     for (std::size_t m = 0; m < members.size(); ++m) {
       const std::uint32_t i = members[m];
-      for (std::size_t k = 1; k < kNeighbours; ++k) {
-        const std::uint32_t j = near[i * kNeighbours + k];
-        if (proven[j] == 0 || done[j] != 0 || !parallel(i, j) || !parallel(seed, j) || !in_one_plane(i, j)) continue;
+      for (std::size_t k = 1; k < kSpacingNeighbours; ++k) {
+        const std::uint32_t j = near[i * kSpacingNeighbours + k];
+        if (proven[j] == 0 || done[j] != 0 || !parallel(seed, j) || !in_one_plane(i, j)) continue;
         done[j] = 1;
         members.push_back(j);
       }
@@ -140,7 +138,6 @@ double minority_share(const Facets& facets, const std::vector<Vec3>& normals) {
 void choose_facet_sides(const PointSet& set, const Settings& settings, const Facets& facets, std::vector<Vec3>& eta,
                         std::vector<Vec3>& normals, Stages& stages) {
   const std::vector<double>& spacing = set.smoothed_spacing();
-  const double h = settings.spacing;
   const std::vector<Vec3> first = first_normals(facets, normals);
   std::vector<Vec3> turned = normals;
   std::vector<double> areas(set.size());
@@ -148,8 +145,8 @@ void choose_facet_sides(const PointSet& set, const Settings& settings, const Fac
     areas[i] = spacing[i] * spacing[i];
     if (facets.of[i] != Facets::kNone && vector::dot(normals[i], first[facets.of[i]]) < 0) turned[i] = vector::scale(normals[i], -1);
   }
-  FastSum sum(set.points(), set.morton(), local_widths(kEpsilon * h, settings, spacing), settings.first_sums, stages.cancel());
-  EnergySystem free(sum, 0, kWindingWeight * h * h * h);
+  FastSum sum(set.points(), set.morton(), local_widths(settings.polish_epsilon, settings, spacing), settings.first_sums, stages.cancel());
+  EnergySystem free(sum, 0, settings.polish_winding_weight);
   OnFacets system(free, facets, areas, turned);
   SteadySides steady(facets, turned);
   const auto still_going = [&stages](int, int, double) { stages.still_going(); };

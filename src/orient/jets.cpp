@@ -1,6 +1,7 @@
 #include "orient/jets.h"
 
 #include "cloud/quadratic_patch.h"
+#include "cloud/spacing.h"
 #include "cpu/parallel.h"
 
 #include <cmath>
@@ -12,13 +13,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kNeighbours = 17;  // the point itself, first, and 16 others
-constexpr std::size_t kFewest = 7;       // that take part, itself included: one more than the height field has numbers
-constexpr double kSamePatch = 0.9;       // cosine between normals
-constexpr double kSteepest = 0.5145;     // height above the tangent plane over distance
-constexpr double kRadius = 1.5;          // spacings
-constexpr double kScatter = 0.007;       // spacings, standard deviation of the heights
-constexpr double kNarrowest = 0.15;      // second principal spread over the first: along one scan line any slope across it fits
+constexpr std::size_t kFewest = 7;   // that take part, itself included: one more than the height field has numbers
+constexpr double kSamePatch = 0.9;   // cosine between normals
+constexpr double kRadius = 1.5;      // spacings
+constexpr double kScatter = 0.007;   // spacings, standard deviation of the heights
+constexpr double kNarrowest = 0.15;  // second principal spread over the first: along one scan line any slope across it fits
 
 bool spread_out(const std::vector<FitPoint>& members, const Vector3d& normal) {
   const Eigen::Matrix3d frame = tangent_frame(normal);
@@ -43,7 +42,7 @@ bool spread_out(const std::vector<FitPoint>& members, const Vector3d& normal) {
 std::vector<std::uint8_t> fit_jets(const PointSet& set, std::vector<Vec3>& normals) {
   const std::vector<Vec3>& points = set.points();
   std::vector<std::uint8_t> proven(points.size(), 0);
-  if (points.size() < kNeighbours) return proven;
+  if (points.size() < kSpacingNeighbours) return proven;
   const std::vector<double>& spacing = set.smoothed_spacing();
   const std::vector<std::uint32_t>& near = set.near();
   std::vector<Vec3> out = normals;
@@ -54,12 +53,11 @@ std::vector<std::uint8_t> fit_jets(const PointSet& set, std::vector<Vec3>& norma
       const Vector3d normal = to_eigen(normals[i]);
       const double scale = 1 / (2 * kRadius * kRadius * spacing[i] * spacing[i]);
       members.clear();
-      for (std::size_t k = 0; k < kNeighbours; ++k) {
-        const std::uint32_t j = near[i * kNeighbours + k];
+      for (std::size_t k = 0; k < kSpacingNeighbours; ++k) {
+        const std::uint32_t j = near[i * kSpacingNeighbours + k];
         const Vector3d d = to_eigen(points[j]) - centre;
         const Vector3d n = to_eigen(normals[j]);
-        const double height = normal.dot(d);
-        if (n.dot(normal) <= kSamePatch || height * height > kSteepest * kSteepest * d.squaredNorm()) continue;
+        if (n.dot(normal) <= kSamePatch) continue;
         members.push_back({d, n, std::exp(-d.squaredNorm() * scale), 0});
       }
       if (members.size() < kFewest || !spread_out(members, normal)) continue;
