@@ -13,9 +13,7 @@ prefix=$out/prefix
 install_packages
 tools/sources.sh all
 environment python3 "$out/tools" ziglang
-mkdir -p "$prefix/include" "$prefix/share/cmake"
-cp -r /usr/include/CLI "$prefix/include" # CLI11 is headers
-cp -r /usr/share/cmake/CLI11 "$prefix/share/cmake"
+cli_headers "$prefix"
 
 if [ $# -eq 0 ]; then set -- x86_64 arm64; fi
 for arch in "$@"; do

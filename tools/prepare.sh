@@ -27,6 +27,20 @@ prepare() {
   tools/sources.sh || true
 }
 
+# cli_headers PREFIX: CLI11, which is headers, where a build for another system looks for it.
+cli_headers() {
+  mkdir -p "$1/include" "$1/share/cmake"
+  cp -r /usr/include/CLI "$1/include"
+  cp -r /usr/share/cmake/CLI11 "$1/share/cmake"
+}
+
+# google_test PREFIX CMAKE-OPTION...: GoogleTest for another system, compiled from the sources that libgtest-dev brings.
+google_test() {
+  if [ -e "$1/lib/libgtest.a" ]; then return; fi
+  cmake --log-level=WARNING "${@:2}" -S /usr/src/googletest -B "$1/gtest" -DBUILD_GMOCK=OFF "-DCMAKE_INSTALL_PREFIX=$1"
+  cmake --build "$1/gtest" --target install
+}
+
 # build PRESET [TARGET...]: configures and builds the targets, all of them by default.
 build() {
   local preset=$1

