@@ -16,9 +16,6 @@ using Eigen::Vector3d;
 
 // Weights are about exp(-t) for t up to this and 0 beyond; it is a power of two, for bell().
 constexpr double kFaint = 16;
-// Spacings that the points of each of two patches are beside the other, on one side, for them to meet in a crease: closer ones, and such on
-// both sides, are one surface.
-constexpr double kJointClear = 0.03;
 // The share of the distances of a patch's points from another patch, less those on the other side, from which it lies on one side of it:
 // three quarters of them. A patch that goes on on both sides of another does not surely end there; 0.8 gives the same genus.
 constexpr double kOneSide = 0.5;
@@ -79,10 +76,9 @@ Seen see(const LocalSurface& s, const std::vector<Member>& members, int a, int b
   return {};
 }
 
-Joint joint_of(const LocalSurface& s, const Seen& a, const Seen& b) {
-  const double clear = kJointClear * s.spacing;
-  if (a.mean < -clear && b.mean < -clear) return Joint::kConvex;
-  if (a.mean > clear && b.mean > clear) return Joint::kConcave;
+Joint joint_of(const Seen& a, const Seen& b) {
+  if (a.mean < 0 && b.mean < 0) return Joint::kConvex;
+  if (a.mean > 0 && b.mean > 0) return Joint::kConcave;
   return Joint::kNone;
 }
 
@@ -92,7 +88,7 @@ void join(LocalSurface& s, const std::vector<Member>& members, const Vector3d& x
   for (int b = 1; b < s.count; ++b) {
     for (int a = 0; a < b; ++a) {
       const Seen b_from_a = see(s, members, a, b), a_from_b = see(s, members, b, a);
-      const Joint joint = joint_of(s, b_from_a, a_from_b);
+      const Joint joint = joint_of(b_from_a, a_from_b);
       s.joint[static_cast<std::size_t>(a + b - 1)] = joint;
       meet = joint != Joint::kNone && b_from_a.one_side && a_from_b.one_side;
     }
