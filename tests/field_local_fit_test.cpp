@@ -1,5 +1,6 @@
 #include "mesh/field_local_fit.h"
 
+#include "base/vector.h"
 #include "mesh/smooth_spacing.h"
 #include "shapes.h"
 
@@ -56,6 +57,72 @@ TEST(LocalFit, HasNoPatchBeyondItsReach) {
   const Neighbours neighbours(points.positions);
   const std::vector<std::uint32_t> near = neighbours.of_all(17);
   EXPECT_EQ(LocalFit(points, neighbours, near).fit({1, 1, 0.5}, 4).count, 0);
+}
+
+// Random points, one for an area of h = 0.05 squared, in the plane through `origin` along u and v, from (0, 0) to (su, sv).
+void add_patch(OrientedPoints& points, shapes::Random& random, const Vec3& origin, const Vec3& u, const Vec3& v, double su, double sv) {
+  constexpr double h = 0.05;
+  const Vec3 normal = vector::cross(u, v);
+  for (int i = 0; i < std::lround(su * sv / (h * h)); ++i) {
+    const double s = su * random.uniform(), t = sv * random.uniform();
+    points.positions.push_back({origin[0] + s * u[0] + t * v[0], origin[1] + s * u[1] + t * v[1], origin[2] + s * u[2] + t * v[2]});
+    points.normals.push_back(normal);
+    points.spacing.push_back(h);
+  }
+}
+
+// Two blocks below z = 0 with a slot between x = 0 and x = gap. With normals turned it is a wall between floors.
+OrientedPoints slot(double gap, double turn) {
+  shapes::Random random(7);
+  OrientedPoints points;
+  add_patch(points, random, {-0.5, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0.5, 10);
+  add_patch(points, random, {gap, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0.5, 10);
+  add_patch(points, random, {0, 0, -0.5}, {0, 1, 0}, {0, 0, 1}, 10, 0.5);
+  add_patch(points, random, {gap, 0, -0.5}, {0, 0, 1}, {0, 1, 0}, 0.5, 10);
+  for (Vec3& n : points.normals) n = {turn * n[0], turn * n[1], turn * n[2]};
+  return points;
+}
+
+// In the mouth of a slot, and in a wall where it leaves the floor, a place 0.25 spacings and more from all surface is rarely on the wrong
+// side: only where the 16 points have nothing of one wall, and the other patches look like an edge.
+TEST(LocalFit, TheMouthOfASlotIsOpenAndTheFootOfAWallIsSolid) {
+  constexpr double h = 0.05;
+  for (const double turn : {1.0, -1.0}) {
+    const OrientedPoints points = slot(h, turn);
+    const Neighbours neighbours(points.positions);
+    const std::vector<std::uint32_t> near = neighbours.of_all(32);
+    const LocalFit local(points, neighbours, near);
+    int asked = 0, wrong = 0;
+    for (double y = 0.5; y < 9.5; y += h / 2) {
+      for (const double x : {-0.6, -0.3, 0.25, 0.5, 0.75, 1.3, 1.6}) {
+        const Eigen::Vector3d place{x * h, y, -0.3 * h};
+        const LocalSurface fit = local.fit(place, 1.8);
+        ASSERT_GT(fit.count, 0);
+        if (fit.unjoined) continue;
+        ++asked;
+        wrong += (turn * fit.distance(place) > 0) == (x > 0 && x < 1) ? 0 : 1;
+      }
+    }
+    EXPECT_GT(asked, 2000);
+    EXPECT_LT(wrong, asked / 200) << "thirty times as many where what is beyond a wall counts for it";
+  }
+}
+
+// One wall and a floor that goes on behind it, as where the other wall of a slot has no points: the floor is on both sides of the wall. An
+// edge, where the floor ends, is joined.
+TEST(LocalFit, ASurfaceOnBothSidesOfAnotherIsJoinedToNone) {
+  for (const double beyond : {0.0, 0.5}) {
+    shapes::Random random(8);
+    OrientedPoints points;
+    add_patch(points, random, {-0.5, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0.5 + beyond, 1);
+    add_patch(points, random, {0, 0, -0.5}, {0, 1, 0}, {0, 0, 1}, 1, 0.5);
+    const Neighbours neighbours(points.positions);
+    const std::vector<std::uint32_t> near = neighbours.of_all(32);
+    const LocalSurface fit = LocalFit(points, neighbours, near).fit({0.01, 0.5, -0.02}, 1.8);
+    ASSERT_EQ(fit.count, 2);
+    EXPECT_EQ(fit.unjoined, beyond > 0);
+    EXPECT_TRUE(beyond > 0 || fit.joint[0] == Joint::kConvex);
+  }
 }
 
 TEST(WallThickness, IsTheDistanceOfWallsThatFaceApart) {

@@ -32,8 +32,6 @@ constexpr double kTolerance = 0.003;
 constexpr double kTurn = 0.996;
 // The longest edge over the length: twice the shortest, as in a leaf's diagonals.
 constexpr double kLongest = 2;
-// Edges between two looks at whether to stop.
-constexpr std::size_t kPatience = 4096;
 
 // The sum of the squared distances from planes, weighted by area: x' A x + 2 b' x + c.
 struct Quadric {
@@ -96,7 +94,7 @@ class Collapsing {
       }
     }
     for (std::size_t count = 0; !queue_.empty(); ++count) {
-      if (count % kPatience == 0 && cancel != nullptr && cancel->load()) throw Cancelled();
+      if (count % kBlock == 0 && cancel != nullptr && cancel->load()) throw Cancelled();
       const auto [squared, a, b] = queue_.top();
       queue_.pop();
       if (first_[a] == kNone || first_[b] == kNone || squared != squared_length(a, b)) continue;

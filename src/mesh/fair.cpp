@@ -28,8 +28,6 @@ constexpr int kRounds = 3;
 // visibly.
 constexpr int kSteps = 300;
 constexpr double kTolerance = 1e-4;
-// Attempts without crossing triangles, each with what crossed in the one before held, and the rings around it; then it stays.
-constexpr int kAttempts = 4;
 
 // A point, and where the surface should meet it.
 struct Pin {
@@ -275,12 +273,13 @@ void make_fair(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<st
   const Rings rings = rings_of(mesh);
   const std::vector<Vec3> home = mesh.vertices;
   const std::vector<TrianglePair> before = self_intersections(mesh);
+  // Each attempt holds what crossed in the one before, and the rings around it; after as many as there are rings it stays.
   for (int attempt = 1;; ++attempt) {
     const Energy energy(rings, free);
     for (int round = 0; round < kRounds; ++round) minimise(energy, pin(mesh, points, in_lines), mesh.vertices, cancel);
     const std::vector<TrianglePair> after = self_intersections(mesh);
     if (after.size() <= before.size()) return;
-    if (attempt == kAttempts) {
+    if (attempt > kRings) {
       Regions(rings, free).take_back(mesh, before, after, home);
       return;
     }

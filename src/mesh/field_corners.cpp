@@ -27,6 +27,7 @@ constexpr double kFlipped = 0.1;
 struct CornerSides::Place {
   enum Kind : std::uint8_t { kSure, kAmbiguous, kUnknown, kUnwanted };
   Kind kind = kSure;
+  bool unjoined = false;  // what the fit says is a guess
   float value = 0;
   float signed_value = 0;
   std::array<float, 3> axis{};
@@ -65,9 +66,9 @@ Corners CornerSides::of(const Octree& octree, const std::function<bool(std::uint
       const auto c = static_cast<std::uint32_t>(first + i);
       const Place& place = places[i];
       corners.value[c] = place.value;
-      if (place.kind == Place::kUnknown) asked.push_back({c, kNotAmbiguous});
+      if (place.kind == Place::kUnknown) asked.push_back({c, kNotAmbiguous, false});
       if (place.kind != Place::kAmbiguous) continue;
-      asked.push_back({c, static_cast<std::uint32_t>(corners.ambiguous.corner.size())});
+      asked.push_back({c, static_cast<std::uint32_t>(corners.ambiguous.corner.size()), place.unjoined});
       corners.ambiguous.add(c, place.signed_value, place.axis);
     }
     if (asked.size() < asked_at_once_) continue;
@@ -91,6 +92,7 @@ CornerSides::Place CornerSides::fit_at(const Vec3& at) const {
   place.value = static_cast<float>(value);
   if (fit.simple) return place;
   place.kind = Place::kAmbiguous;
+  place.unjoined = fit.unjoined;
   place.signed_value = static_cast<float>(kFitSay * std::clamp(value / (kDiscHalf * fit.spacing), -1.0, 1.0));
   for (std::size_t a = 0; a < 3; ++a) place.axis[a] = static_cast<float>(fit.patch[0].frame(2, static_cast<Eigen::Index>(a)));
   return place;
@@ -105,7 +107,8 @@ void CornerSides::ask_field(const Octree& octree, const std::vector<Asked>& aske
     const double f = field[k] - level_;
     float& value = corners.value[asked[k].corner];
     const bool known = asked[k].ambiguous != kNotAmbiguous;
-    if (!known || (std::abs(f) >= kFieldSure && (value > 0) != (f > 0))) value = static_cast<float>(f * spacing_);
+    const double sure = asked[k].unjoined ? 0 : kFieldSure;
+    if (!known || (std::abs(f) >= sure && (value > 0) != (f > 0))) value = static_cast<float>(f * spacing_);
     if (!known) continue;
     float& signed_value = corners.ambiguous.value[asked[k].ambiguous];
     signed_value = static_cast<float>(std::clamp(2 * f + signed_value, -1.0, 1.0));

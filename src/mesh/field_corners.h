@@ -50,6 +50,7 @@ class CornerSides {
   struct Asked {
     std::uint32_t corner;
     std::uint32_t ambiguous;  // its place among the ambiguous ones, or kNotAmbiguous
+    bool unjoined;            // the field decides, however unsure
   };
 
   [[nodiscard]] Place fit_at(const Vec3& at) const;

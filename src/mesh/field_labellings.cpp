@@ -39,10 +39,11 @@ bool remove_handles(const Octree& octree, const AmbiguousCorners& ambiguous, con
     changing.push_back(k);
   }
   HandleRemoval removal(octree, is_ambiguous, inside, surface, centre_inside, cancel);
+  const std::vector<std::uint8_t> before = inside;
   bool changed = false;
   for (const Labelling& labelling : kLabellings) {
     for (const Way way : {Way::kBoth, Way::kFill, Way::kCut}) {
-      if (removal.handles() == 0) return changed;
+      if (removal.handles() == 0) break;
       std::vector<std::uint8_t> proposal = inside;
       for (const std::uint32_t k : changing) {
         const std::uint8_t now = sign(labelling, k);
@@ -51,7 +52,10 @@ bool remove_handles(const Octree& octree, const AmbiguousCorners& ambiguous, con
       changed = removal.propose(proposal, inside) || changed;
     }
   }
-  return changed;
+  // A ring of few points has no handle where it is gone: then it stays.
+  if (std::any_of(inside.begin(), inside.end(), [](std::uint8_t side) { return side != 0; })) return changed;
+  inside = before;
+  return false;
 }
 
 }  // namespace g3r::mesh

@@ -16,9 +16,9 @@ using Eigen::Vector3d;
 
 // Weights are about exp(-t) for t up to this and 0 beyond; it is a power of two, for bell().
 constexpr double kFaint = 16;
-// Spacings that the points of each of two patches are beside the other, on one side, for them to meet in a crease: closer ones, and such on
-// both sides, are one surface.
-constexpr double kJointClear = 0.03;
+// The share of the distances of a patch's points from another patch, less those on the other side, from which it lies on one side of it:
+// three quarters of them. A patch that goes on on both sides of another does not surely end there; 0.8 gives the same genus.
+constexpr double kOneSide = 0.5;
 // Spacings from all tangent planes from which curvature cannot change the side of a place, so that nothing is fitted: half of the time.
 constexpr double kClear = 0.2;
 // A factor larger than what rounding can make of a squared distance: without it the search might miss a point as near.
@@ -44,23 +44,56 @@ double misfit(const QuadraticPatch& s, const Member& m, double h) {
   return m.weight * (d * d + kSlopeWeight * (g - m.n).squaredNorm());
 }
 
-Joint joint_of(const LocalSurface& s, const std::vector<Member>& members, int a, int b) {
-  double a_at_b = 0, b_at_a = 0, wa = 0, wb = 0;
-  for (const Member& m : members) {
-    if (m.patch == b) {
-      a_at_b += m.weight * s.patch[static_cast<std::size_t>(a)].distance(m.p);
-      wb += m.weight;
-    } else if (m.patch == a) {
-      b_at_a += m.weight * s.patch[static_cast<std::size_t>(b)].distance(m.p);
-      wa += m.weight;
+// Whether two of the patches face each other or away from each other.
+bool are_walls(const LocalSurface& s, int a, int b) {
+  const auto normal = [&](int k) { return s.patch[static_cast<std::size_t>(k)].frame.row(2); };
+  return normal(a).dot(normal(b)) < -kSlant;
+}
+
+// Where the members of a patch are as seen from another one.
+struct Seen {
+  double mean = 0;        // signed distance
+  bool one_side = false;  // most of them are on the side of the mean
+};
+
+// Patch `b` from patch `a`. Members that are nearer to the opposite wall of `a`, the third patch, are beside that one: where a gap opens or
+// a wall ends, the surface goes on on both sides. Of a patch with no other members they tell all the same.
+Seen see(const LocalSurface& s, const std::vector<Member>& members, int a, int b) {
+  const int third = 3 - a - b;
+  const bool opposite = s.count == 3 && are_walls(s, a, third) && !are_walls(s, a, b);
+  for (const bool all : {!opposite, true}) {
+    double sum = 0, size = 0, total = 0;
+    for (const Member& m : members) {
+      if (m.patch != b) continue;
+      const double d = s.patch[static_cast<std::size_t>(a)].distance(m.p);
+      if (!all && std::abs(s.patch[static_cast<std::size_t>(third)].distance(m.p)) < std::abs(d)) continue;
+      sum += m.weight * d;
+      size += m.weight * std::abs(d);
+      total += m.weight;
+    }
+    if (total > 0) return {sum / total, std::abs(sum) > kOneSide * size};
+  }
+  return {};
+}
+
+Joint joint_of(const Seen& a, const Seen& b) {
+  if (a.mean < 0 && b.mean < 0) return Joint::kConvex;
+  if (a.mean > 0 && b.mean > 0) return Joint::kConcave;
+  return Joint::kNone;
+}
+
+// Joins the patches of a fit at x.
+void join(LocalSurface& s, const std::vector<Member>& members, const Vector3d& x) {
+  bool meet = true;
+  for (int b = 1; b < s.count; ++b) {
+    for (int a = 0; a < b; ++a) {
+      const Seen b_from_a = see(s, members, a, b), a_from_b = see(s, members, b, a);
+      const Joint joint = joint_of(b_from_a, a_from_b);
+      s.joint[static_cast<std::size_t>(a + b - 1)] = joint;
+      meet = joint != Joint::kNone && b_from_a.one_side && a_from_b.one_side;
     }
   }
-  a_at_b /= wb;
-  b_at_a /= wa;
-  const double clear = kJointClear * s.spacing;
-  if (a_at_b < -clear && b_at_a < -clear) return Joint::kConvex;
-  if (a_at_b > clear && b_at_a > clear) return Joint::kConcave;
-  return Joint::kNone;
+  s.unjoined = s.count == 2 && !s.walls && !meet && (s.patch[0].distance(x) > 0) != (s.patch[1].distance(x) > 0);
 }
 
 // The nearest point left seeds a patch, which takes those with similar normals: similar to the seed's, then to their mean. False if no
@@ -94,12 +127,10 @@ bool grow_patch(LocalSurface& s, std::vector<Member>& members) {
   return true;
 }
 
-// Whether two of the patches face each other or away from each other.
 bool has_walls(const LocalSurface& s) {
-  const auto normal = [&](int k) { return s.patch[static_cast<std::size_t>(k)].frame.row(2); };
   for (int a = 0; a < s.count; ++a) {
     for (int b = 0; b < a; ++b) {
-      if (normal(a).dot(normal(b)) < -kSlant) return true;
+      if (are_walls(s, a, b)) return true;
     }
   }
   return false;
@@ -265,9 +296,7 @@ LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* dire
   } else if (out.count > 1) {
     prefer_one_patch(out, members);
   }
-  for (int b = 1; b < out.count; ++b) {
-    for (int a = 0; a < b; ++a) out.joint[static_cast<std::size_t>(a + b - 1)] = joint_of(out, members, a, b);
-  }
+  join(out, members, x);
   return out;
 }
 

@@ -44,7 +44,8 @@ struct LocalSurface {
   bool walls = false;                       ///< two of the patches face away from each other or each other
   std::array<Joint, kMostPatches> joint{};  ///< of patches a < b at a + b - 1
   double spacing = 0;                       ///< local spacing h
-  bool simple = false;  ///< one patch, every point near belongs to it, and it has the place on the same side as their tangent planes
+  bool unjoined = false;  ///< two patches have the place on different sides, and whether they meet in a crease the points do not say
+  bool simple = false;    ///< one patch, every point near belongs to it, and it has the place on the same side as their tangent planes
 
   /// Signed distance to the joined patches, positive outside; which patch it belongs to (may be null).
   double distance(const Eigen::Vector3d& x, int* active = nullptr) const;
