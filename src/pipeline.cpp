@@ -182,8 +182,7 @@ Oriented orient_problem(const Problem& problem, const Options& options, Stages& 
   solve_open_surfaces_apart(problem, options, stages, stats, out.solution);
   const Refinement& refined = out.solution.refinement;
   const std::vector<Vec3> vectors = problem.noise > 0 ? sums_over(problem.cloud.set.near(), out.solution.eta) : out.solution.eta;
-  const std::vector<double> none;
-  const std::vector<double>& spacing = problem.is_clean() ? problem.cloud.set.smoothed_spacing() : none;
+  const std::vector<double>& spacing = problem.is_clean() ? problem.cloud.set.smoothed_spacing() : problem.known.relative_spacing;
   out.confidence = side_confidence(vectors, refined.normals, refined.strength, spacing);
   add_open_surfaces(out.solution.open_surfaces, out.confidence, stats);
   out.doubt = unsure_share(out.confidence) + stats.open_share;
