@@ -320,7 +320,7 @@ TEST(TilesOfOpenSurfaces, FaceAsOne) {
     along[i < kLevel ? 0 : 1] += cosine > 0 ? 1 : 0;
     ASSERT_LE(out.confidence[i], 0.5F) << i;  // a choice
   }
-  EXPECT_EQ(along[0], kLevel);                            // up
+  EXPECT_EQ(along[0], kLevel);                                      // up
   EXPECT_TRUE(along[1] == 0 || along[1] == kStanding) << along[1];  // either side, but one
 }
 

@@ -20,7 +20,7 @@ namespace {
 
 constexpr const char* kSchema = "g3r.tiles";
 constexpr int kVersion = 4;
-constexpr std::uint64_t kFewestThinned = 1000;  // points of the thinnest file: fewer would save nothing
+constexpr std::uint64_t kFewestThinned = 1000;                  // points of the thinnest file: fewer would save nothing
 constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 48U;  // sizes of files are numbers below; the manifest may be damaged
 
 using nlohmann::json;

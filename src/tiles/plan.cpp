@@ -259,8 +259,8 @@ void solve_coarse(const std::string& folder, const TileOptions& options, Manifes
   io::OutputFile out(coarse_path(folder), monitor.cancel);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3& n = coarse.normals[i];
-    const CoarseNormal normal{{static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])}, coarse.confidence[i],
-                              open[i]};
+    const CoarseNormal normal{
+        {static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])}, coarse.confidence[i], open[i]};
     out.write(&normal, sizeof normal);
   }
   out.commit();
