@@ -293,7 +293,7 @@ std::array<double, 2> on_square(std::size_t i) {
   return {std::fmod(0.7548776662466927 * n, 1), std::fmod(0.5698402909980532 * n, 1)};
 }
 
-// A level sheet, and above it a twisted one that stands: its ends lean to different sides, so that what is up for one tile is down for
+// A level layer, and above it a twisted one that stands: its ends lean to different sides, so that what is up for one tile is down for
 // another. Open surfaces have no side but the one that all of the scene agrees on.
 TEST(TilesOfOpenSurfaces, FaceAsOne) {
   constexpr std::size_t kLevel = 5400, kStanding = 2700;
@@ -314,7 +314,7 @@ TEST(TilesOfOpenSurfaces, FaceAsOne) {
   (void)run_tiles(folder.file("work"));
   (void)merge_tiles(folder.file("work"), folder.file("out.ply"));
   const Cloud out = read_cloud(folder.file("out.ply"));
-  std::array<std::size_t, 2> along{0, 0};  // of the level sheet, of the standing one
+  std::array<std::size_t, 2> along{0, 0};  // of the level layer, of the standing one
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double cosine = out.normals[i][0] * truth[i][0] + out.normals[i][1] * truth[i][1] + out.normals[i][2] * truth[i][2];
     along[i < kLevel ? 0 : 1] += cosine > 0 ? 1 : 0;
