@@ -121,6 +121,16 @@ void hand_out(const CanonicalCloud& cloud, const std::vector<Vec3>& eta, const s
   }
 }
 
+// Which of the caller's points lie on open surfaces.
+std::vector<std::uint8_t> open_points(const CanonicalCloud& cloud, const OpenSurfaces& surfaces) {
+  std::vector<std::uint8_t> open(cloud.point_of.size(), 0);
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    const std::uint32_t p = cloud.point_of[i];
+    if (p < surfaces.part.size() && surfaces.part[p] != OpenSurfaces::kNone) open[i] = 1;
+  }
+  return open;
+}
+
 std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 
 // The sides of points on open surfaces do not come from the equations, and their confidence neither.
@@ -182,8 +192,7 @@ Oriented orient_problem(const Problem& problem, const Options& options, Stages& 
   solve_open_surfaces_apart(problem, options, stages, stats, out.solution);
   const Refinement& refined = out.solution.refinement;
   const std::vector<Vec3> vectors = problem.noise > 0 ? sums_over(problem.cloud.set.near(), out.solution.eta) : out.solution.eta;
-  const std::vector<double> none;
-  const std::vector<double>& spacing = problem.is_clean() ? problem.cloud.set.smoothed_spacing() : none;
+  const std::vector<double>& spacing = problem.is_clean() ? problem.cloud.set.smoothed_spacing() : problem.known.relative_spacing;
   out.confidence = side_confidence(vectors, refined.normals, refined.strength, spacing);
   add_open_surfaces(out.solution.open_surfaces, out.confidence, stats);
   out.doubt = unsure_share(out.confidence) + stats.open_share;
@@ -254,7 +263,8 @@ Attempt orient_with_best_noise(const PointsView& points, const Known& known, con
   return best;
 }
 
-Orientation orient_in_arena(const PointsView& points, const Known& known, const Options& options, Stages& stages) {
+Orientation orient_in_arena(const PointsView& points, const Known& known, const Options& options, Stages& stages,
+                            std::vector<std::uint8_t>* open) {
   require_sound(options.hints, points.count);
   Attempt best = orient_with_best_noise(points, known, options, stages);
   Solution& solution = best.oriented.solution;
@@ -267,6 +277,7 @@ Orientation orient_in_arena(const PointsView& points, const Known& known, const 
   warn_of_volume(best.problem, out.stats);
   warn_of_sampling(best.problem.cloud, solution.refinement.normals, out.stats);
   add_outliers(best.problem, stages, solution, confidence);
+  if (open != nullptr) *open = open_points(best.problem.cloud, solution.open_surfaces);
   hand_out(best.problem.cloud, solution.eta, solution.refinement.normals, confidence, out);
   stages.finish(out.stats);
   return out;
@@ -278,11 +289,12 @@ Orientation orient(const PointsView& points, const Options& options, const Monit
   return orient_from(points, {}, options, monitor);
 }
 
-Orientation orient_from(const PointsView& points, const Known& known, const Options& options, const Monitor& monitor) {
+Orientation orient_from(const PointsView& points, const Known& known, const Options& options, const Monitor& monitor,
+                        std::vector<std::uint8_t>* open) {
   Stages stages(monitor);
   return parallel::with_threads(options.threads, [&] {
     const gpu::Scope device(options.device, points.count);
-    Orientation out = orient_in_arena(points, known, options, stages);
+    Orientation out = orient_in_arena(points, known, options, stages, open);
     device.describe(out.stats);
     return out;
   });

@@ -287,6 +287,43 @@ TEST_F(Tiles, ADamagedResultIsNamedAndDoneAgain) {
   EXPECT_TRUE(bytes_of(folder_->file("good.ply")) == bytes_of(folder_->file("out.ply")));
 }
 
+// Evenly spread over the unit square: the sequence of the plastic number (Roberts).
+std::array<double, 2> on_square(std::size_t i) {
+  const double n = static_cast<double>(i + 1);
+  return {std::fmod(0.7548776662466927 * n, 1), std::fmod(0.5698402909980532 * n, 1)};
+}
+
+// A level layer, and above it a twisted one that stands: its ends lean to different sides, so that what is up for one tile is down for
+// another. Open surfaces have no side but the one that all of the scene agrees on.
+TEST(TilesOfOpenSurfaces, FaceAsOne) {
+  constexpr std::size_t kLevel = 5400, kStanding = 2700;
+  constexpr double kTwist = 0.5;
+  std::vector<Vec3> points, truth;
+  for (std::size_t i = 0; i < kLevel + kStanding; ++i) {
+    const auto [u, v] = on_square(i < kLevel ? i : i - kLevel);
+    const double x = 2 * u - 1, z = v / 2 - 0.05;
+    points.push_back(i < kLevel ? Vec3{x, v - 0.5, -0.3} : Vec3{x, kTwist * x * z, z});
+    truth.push_back(i < kLevel ? Vec3{0, 0, 1} : Vec3{-kTwist * z, 1, -kTwist * x});
+  }
+  const TemporaryFolder folder;
+  write_points(folder.file("in.ply"), points);
+  TileOptions options;
+  options.tiles = 4;
+  const TileStatus plan = plan_tiles({folder.file("in.ply")}, folder.file("work"), options);
+  EXPECT_GT(plan.open_share, 0.9);
+  (void)run_tiles(folder.file("work"));
+  (void)merge_tiles(folder.file("work"), folder.file("out.ply"));
+  const Cloud out = read_cloud(folder.file("out.ply"));
+  std::array<std::size_t, 2> along{0, 0};  // of the level layer, of the standing one
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double cosine = out.normals[i][0] * truth[i][0] + out.normals[i][1] * truth[i][1] + out.normals[i][2] * truth[i][2];
+    along[i < kLevel ? 0 : 1] += cosine > 0 ? 1 : 0;
+    ASSERT_LE(out.confidence[i], 0.5F) << i;  // a choice
+  }
+  EXPECT_EQ(along[0], kLevel);                                      // up
+  EXPECT_TRUE(along[1] == 0 || along[1] == kStanding) << along[1];  // either side, but one
+}
+
 TEST(TilesPlan, NamesTheFileThatIsGarbage) {
   const TemporaryFolder folder;
   write_points(folder.file("a.ply"), shapes::sphere(kPoints).points);

@@ -1,5 +1,7 @@
 #include "orient/coarse_to_fine.h"
 
+#include "base/median.h"
+#include "base/vector.h"
 #include "cloud/canonical_cloud.h"
 #include "orient/start.h"
 #include "sanitized.h"
@@ -107,6 +109,42 @@ TEST(SolveCoarseToFine, KnowsWhatThinnedPointsStandFor) {
     return sum / static_cast<double>(points.size());
   };
   EXPECT_LT(error_with(known), 0.5 * error_with({}));
+
+  // And gradients compare, though kernels are wider: the polish starts from them.
+  const Solved found = solve_coarse_to_fine(cloud.points(), cloud.morton(), settings, stages, known);
+  std::vector<double> dense, thinned;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    (relative[i] > 1 ? thinned : dense).push_back(found.refinement.strength[cloud.point_of[i]]);
+  }
+  EXPECT_NEAR(median(thinned) / median(dense), 1, 0.15);
+}
+
+// The directions of the points that are left as they are do not suffer: those of the field, not of fits to the points.
+TEST(OrientFrom, ThinningFarPointsCostsNoDirections) {
+  constexpr std::size_t kEvery = 16;
+  constexpr double kFarFromThem = 0.2;  // of the thinned ones: 9 spacings
+  const shapes::Surface torus = shapes::torus(16000, 0.6, 0.25, 2);
+  std::vector<Vec3> points;
+  std::vector<double> relative;
+  std::vector<std::size_t> of;
+  for (std::size_t i = 0; i < torus.points.size(); ++i) {
+    const bool thinned = torus.points[i][0] > 0;
+    if (thinned && i % kEvery != 0) continue;
+    points.push_back(torus.points[i]);
+    relative.push_back(thinned ? 4 : 1);
+    of.push_back(i);
+  }
+  Options only_field;
+  only_field.without = "jets,planes,creases,facets";
+  const std::vector<Vec3> whole = orient(torus.points, only_field).normals;
+  const std::vector<Vec3> half = orient_from(points, {{}, relative}, only_field, {}).normals;
+  double error_of_whole = 0, error_of_half = 0;  // of 1 - cos
+  for (std::size_t k = 0; k < of.size(); ++k) {
+    if (points[k][0] > -kFarFromThem) continue;
+    error_of_whole += 1 - vector::dot(whole[of[k]], torus.normals[of[k]]);
+    error_of_half += 1 - vector::dot(half[k], torus.normals[of[k]]);
+  }
+  EXPECT_LT(error_of_half, 1.05 * error_of_whole);
 }
 
 }  // namespace

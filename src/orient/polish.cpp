@@ -41,8 +41,7 @@ std::vector<double> point_areas(const Settings& settings, const std::vector<doub
   if (spacing.empty() && multiplicity.empty()) return {settings.spacing * settings.spacing};
   std::vector<double> areas(std::max(spacing.size(), multiplicity.size()));
   for (std::size_t i = 0; i < areas.size(); ++i) {
-    const double h = spacing.empty() ? settings.spacing : spacing[i];
-    areas[i] = h * h * (multiplicity.empty() ? 1 : multiplicity[i]);
+    areas[i] = spacing.empty() ? settings.spacing * settings.spacing * multiplicity[i] : spacing[i] * spacing[i];
   }
   return areas;
 }

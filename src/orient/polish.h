@@ -15,7 +15,8 @@ namespace g3r {
 /// `width` at settings.spacing and in proportion to the local `spacing` elsewhere; the same everywhere if that is empty.
 [[nodiscard]] Widths local_widths(double width, const Settings& settings, const std::vector<double>& spacing);
 
-/// The square of `spacing` at every point, or that of settings.spacing for all if that is empty; times `multiplicity` unless that is empty.
+/// The square of `spacing` at every point; if that is empty, that of settings.spacing for all, times `multiplicity` unless that is empty
+/// too.
 [[nodiscard]] std::vector<double> point_areas(const Settings& settings, const std::vector<double>& spacing,
                                               const std::vector<double>& multiplicity);
 
@@ -34,8 +35,8 @@ struct Polished {
 /// at settings.polish_width. The start has the right areas, which the first solve does not (its eta are 0.6 to 1.3 of them), so a few
 /// steps suffice. Once: a second round rounds edges. This step is ours, not the paper's. Measured:
 /// docs/evidence/formulation.md.
-/// `spacing`: smoothed_spacing(); both widths follow it, in proportion to settings.spacing. Or empty: the same widths everywhere; then
-/// `multiplicity` says how many points each one stands for (empty: ones).
+/// `spacing`: smoothed_spacing(); both widths follow it, in proportion to settings.spacing. Or empty: the same widths everywhere.
+/// `multiplicity`: how many points each one stands for (empty: ones), which `spacing` shows too where it is given.
 [[nodiscard]] Polished polish(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
                               const std::vector<double>& spacing, const std::vector<double>& multiplicity, const Refinement& refined,
                               Stages& stages);

@@ -134,9 +134,11 @@ Solution solve_on_points(const Problem& problem, const Options& options, Stages&
   if (s.refinement_width == 0) solution.refinement.normals = normalised(solution.eta);
   if (s.polish_steps == 0) return solution;
   std::vector<double> thinned = problem.known.relative_spacing;
+  std::vector<double> multiplicity = thinned;
   for (double& h : thinned) h *= problem.spacing;
+  for (double& m : multiplicity) m *= m;
   const std::vector<double>& local = problem.is_clean() && runs(problem, Step::kLocalWidths) ? set.smoothed_spacing() : thinned;
-  Polished polished = polish(set.points(), set.morton(), s, local, {}, solution.refinement, stages);
+  Polished polished = polish(set.points(), set.morton(), s, local, multiplicity, solution.refinement, stages);
   std::vector<Vec3>& normals = polished.refinement.normals;
   const auto find_open = [&](std::vector<Vec3>& sides) {
     if (!runs(problem, Step::kOpenSurfaces)) return OpenSurfaces{};

@@ -19,7 +19,8 @@ namespace g3r::tiles {
 namespace {
 
 constexpr const char* kSchema = "g3r.tiles";
-constexpr int kVersion = 3;
+constexpr int kVersion = 4;
+constexpr std::uint64_t kFewestThinned = 1000;                  // points of the thinnest file: fewer would save nothing
 constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 48U;  // sizes of files are numbers below; the manifest may be damaged
 
 using nlohmann::json;
@@ -88,7 +89,7 @@ void require_files(const std::string& folder, const Manifest& m) {
       fail(folder, escape_text(path) + " has " + std::to_string(size) + " bytes instead of " + std::to_string(bytes));
     }
   };
-  for (const std::uint64_t stride : strides(m.stride)) {
+  for (const std::uint64_t stride : strides(m.stride, m.sorted())) {
     require(points_path(folder, stride), (m.sorted() + stride - 1) / stride * sizeof(Record));
   }
   require(coarse_path(folder), m.coarse_points * sizeof(CoarseNormal));
@@ -97,10 +98,11 @@ void require_files(const std::string& folder, const Manifest& m) {
 
 }  // namespace
 
-std::vector<std::uint64_t> strides(std::uint64_t stride) {
+std::vector<std::uint64_t> strides(std::uint64_t stride, std::uint64_t points) {
   std::vector<std::uint64_t> all;
   for (std::uint64_t s = 1; s < stride; s *= 4) all.push_back(s);
   all.push_back(stride);
+  while (points / (4 * all.back()) >= kFewestThinned) all.push_back(4 * all.back());
   return all;
 }
 

@@ -56,8 +56,9 @@ struct Manifest {
   [[nodiscard]] std::uint64_t sorted() const { return points - non_finite; }
 };
 
-/// Strides of the files of points: 1, 4, 16, ..., stride. A ring takes its points from the file of its number.
-[[nodiscard]] std::vector<std::uint64_t> strides(std::uint64_t stride);
+/// Strides of the files of points: 1, 4, 16, ..., stride, that of the thinned cloud, and on by factors of 4 as far as 1000 of `points` are
+/// left. A ring takes its points from the file of its number.
+[[nodiscard]] std::vector<std::uint64_t> strides(std::uint64_t stride, std::uint64_t points);
 
 /// Names of files in a folder.
 [[nodiscard]] std::string manifest_path(const std::string& folder);

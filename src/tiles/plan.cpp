@@ -6,6 +6,7 @@
 #include "io/point_stream.h"
 #include "io/tiles.h"
 #include "mesh/field_points.h"
+#include "orient/start.h"
 #include "tiles/external_sort.h"
 #include "tiles/manifest.h"
 #include "tiles/records.h"
@@ -201,7 +202,7 @@ Cells sort_points(const std::vector<std::string>& files, const std::string& fold
       });
   if (index != m.points) throw InvalidInput("the inputs have changed while they were read: " + std::to_string(index) + " points now");
   std::vector<std::unique_ptr<io::OutputFile>> outputs;
-  const std::vector<std::uint64_t> all_strides = strides(m.stride);
+  const std::vector<std::uint64_t> all_strides = strides(m.stride, m.sorted());
   for (const std::uint64_t stride : all_strides)
     outputs.push_back(std::make_unique<io::OutputFile>(points_path(folder, stride), stages.cancel()));
   LevelChoice choice;
@@ -253,11 +254,13 @@ void solve_coarse(const std::string& folder, const TileOptions& options, Manifes
   solve.hints = options.hints;
   solve.threads = options.threads;
   solve.device = options.device;
-  const Orientation coarse = orient(points, solve, named(monitor, "coarse"));
+  std::vector<std::uint8_t> open;
+  const Orientation coarse = orient_from(points, {}, solve, named(monitor, "coarse"), &open);
   io::OutputFile out(coarse_path(folder), monitor.cancel);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3& n = coarse.normals[i];
-    const CoarseNormal normal{{static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])}, coarse.confidence[i]};
+    const CoarseNormal normal{
+        {static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])}, coarse.confidence[i], open[i]};
     out.write(&normal, sizeof normal);
   }
   out.commit();
@@ -287,7 +290,7 @@ TileStatus make_plan(const std::vector<std::string>& files, const std::string& f
     choose_tiles(cells, options, limit, m);
   }
   std::uint64_t stored = 0;
-  for (const std::uint64_t stride : strides(m.stride)) stored += m.sorted() / stride * sizeof(Record);
+  for (const std::uint64_t stride : strides(m.stride, m.sorted())) stored += m.sorted() / stride * sizeof(Record);
   m.disk = stored + m.sorted() * std::max(sizeof(Record), sizeof(Result));  // runs before the results
   solve_coarse(folder, options, m, monitor);
   write_manifest(folder, m);

@@ -30,8 +30,9 @@ static_assert(sizeof(Record) == 32);
 struct CoarseNormal {
   std::array<float, 3> normal;
   float confidence;
+  std::uint32_t open;  ///< 1: on a surface without an inside
 };
-static_assert(sizeof(CoarseNormal) == 16);
+static_assert(sizeof(CoarseNormal) == 20);
 
 /// The result for an input point.
 struct Result {

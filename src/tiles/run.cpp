@@ -1,12 +1,11 @@
 // Each tile: a solve in core of its cloud, turned part by part to the sides of the thinned cloud.
+#include "base/vector.h"
 #include "cpu/parallel.h"
-#include "field/oriented_cloud.h"
 #include "io/output_file.h"
 #include "orient/confidence.h"
-#include "orient/settings.h"
 #include "orient/start.h"
 #include "orient/steps.h"
-#include "sum/fast_sum.h"
+#include "tiles/coarse_sides.h"
 #include "tiles/manifest.h"
 #include "tiles/records.h"
 #include "tiles/tile_cloud.h"
@@ -22,16 +21,14 @@ namespace {
 double dot(const Vec3& a, const std::array<float, 3>& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 // Signs of the parts: that of the sum over the points that are in the thinned cloud too, of the cosine between both normals times the
-// confidence of the coarse side. Of what lies beyond ring 0, and of parts without such points, that of the sum over all.
-std::map<std::uint32_t, double> signs_of_parts(const TileCloud& cloud, const std::vector<Vec3>& normals, const std::string& folder) {
-  std::vector<CoarseNormal> coarse;
-  const RecordFile<CoarseNormal> file(coarse_path(folder));
-  file.append(0, file.size(), coarse);
+// confidence of the coarse side; points on open surfaces do not count, as theirs follow it one by one. Of what lies beyond ring 0, and of
+// parts without such points, that of the sum over all.
+std::map<std::uint32_t, double> signs_of_parts(const TileCloud& cloud, const std::vector<Vec3>& normals, const CoarseSides& coarse) {
   std::map<std::uint32_t, double> votes;
   double all = 0;
   for (std::size_t i = 0; i < normals.size(); ++i) {
-    if (cloud.coarse[i] == kNotCoarse) continue;
-    const CoarseNormal& there = coarse[static_cast<std::size_t>(cloud.coarse[i])];
+    const CoarseNormal& there = coarse.nearest[i];
+    if (cloud.coarse[i] == kNotCoarse || there.open != 0) continue;
     const double vote = there.confidence * dot(normals[i], there.normal);
     votes[cloud.part[i]] += vote;
     all += vote;
@@ -41,40 +38,13 @@ std::map<std::uint32_t, double> signs_of_parts(const TileCloud& cloud, const std
   return votes;
 }
 
-// The winding gradient of the thinned cloud at the points of the tile: its own solve starts there, as in core from a quarter of the points.
-std::vector<Vec3> start_from_coarse(const std::string& folder, const Manifest& m, const std::vector<Vec3>& points, const Monitor& monitor) {
-  const RecordFile<Record> places(points_path(folder, m.stride));
-  const RecordFile<CoarseNormal> found(coarse_path(folder));
-  std::vector<Record> records;
-  std::vector<CoarseNormal> coarse;
-  places.append(0, places.size(), records);
-  found.append(0, places.size(), coarse);
-  std::vector<Vec3> thinned(records.size());
-  std::vector<Vec3> normals(records.size());
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    thinned[i] = records[i].point;
-    for (std::size_t a = 0; a < 3; ++a) normals[i][a] = coarse[i].normal[a];
-  }
-  std::vector<Record>().swap(records);
-  std::vector<CoarseNormal>().swap(coarse);
-  const OrientedCloud oriented = oriented_cloud(thinned, normals);
-  std::vector<Vec3> targets(points.size());
-  std::transform(points.begin(), points.end(), targets.begin(), [&](const Vec3& p) { return oriented.cloud.frame.to_unit(p); });
-  const FastSum field(oriented.cloud.points(), oriented.cloud.morton(), Widths(kRefinementWidth * oriented.spacing),
-                      sum_plan(kContinuedAccuracy, oriented.cloud.size()), monitor.cancel);
-  return field.winding_gradient_at(oriented.eta, targets, monitor.cancel);
-}
-
 // Other noises than the estimate are tried where the tile's own points ask for it, or the thinned cloud is open, as in core.
-Orientation solve(const std::string& folder, const TileCloud& cloud, const Manifest& m, const TileWorker& worker, const Monitor& monitor) {
+Orientation solve(const TileCloud& cloud, const Known& known, const Manifest& m, const TileWorker& worker, const Monitor& monitor) {
   std::vector<Vec3> points(cloud.records.size());
   for (std::size_t i = 0; i < points.size(); ++i) points[i] = cloud.records[i].point;
   Options options;
   options.threads = worker.threads;
   options.device = worker.device;
-  Known known;
-  known.gradient = parallel::with_threads(worker.threads, [&] { return start_from_coarse(folder, m, points, monitor); });
-  known.relative_spacing = cloud.relative_spacing;
   if (m.open_share < kDoubtful) {
     Options one_noise = options;
     one_noise.without = kStepNames[static_cast<std::size_t>(Step::kNoiseChoice)];
@@ -84,24 +54,33 @@ Orientation solve(const std::string& folder, const TileCloud& cloud, const Manif
   return orient_from(points, known, options, monitor);
 }
 
-void solve_tile(const std::string& folder, const Manifest& m, const Cells& cells, std::size_t t, const TileWorker& worker,
-                const Monitor& monitor) {
-  const TileCloud cloud = read_tile_cloud(folder, m, cells, m.tiles[t]);
-  const Orientation solved =
-      solve(folder, cloud, m, worker, named(monitor, "tile " + std::to_string(t + 1) + " of " + std::to_string(m.tiles.size())));
-  std::map<std::uint32_t, double> signs = signs_of_parts(cloud, solved.normals, folder);
+// The sides of the own points: of those on an open surface each takes that of the thinned cloud's field, and the confidence there, for the
+// equations say nothing of it and all tiles choose as one; the others turn with their part.
+std::vector<Result> results_of(const TileCloud& cloud, const Orientation& solved, const CoarseSides& coarse) {
+  std::map<std::uint32_t, double> signs = signs_of_parts(cloud, solved.normals, coarse);
   std::vector<Result> results;
   for (std::size_t i = 0; i < cloud.records.size(); ++i) {
     if (cloud.own[i] == 0) continue;
-    const auto sign = signs.find(cloud.part[i]);
-    const double turn = sign != signs.end() ? sign->second : signs[kNoPart];
-    Result result{cloud.records[i].index, {}, solved.confidence[i]};
+    const CoarseNormal& there = coarse.nearest[i];
+    const auto part = signs.find(cloud.part[i]);
+    double turn = part != signs.end() ? part->second : signs[kNoPart];
+    if (there.open != 0) turn = vector::dot(solved.normals[i], coarse.gradient[i]) < 0 ? -1 : 1;
+    Result result{cloud.records[i].index, {}, there.open != 0 ? there.confidence : solved.confidence[i]};
     for (std::size_t a = 0; a < 3; ++a) result.normal[a] = static_cast<float>(turn * solved.normals[i][a]);
     results.push_back(result);
   }
   std::sort(results.begin(), results.end(), [](const Result& a, const Result& b) { return a.index < b.index; });
+  return results;
+}
+
+void solve_tile(const std::string& folder, const Manifest& m, const Cells& cells, std::size_t t, const TileWorker& worker,
+                const Monitor& monitor) {
+  const TileCloud cloud = read_tile_cloud(folder, m, cells, m.tiles[t]);
+  const CoarseSides coarse = parallel::with_threads(worker.threads, [&] { return coarse_sides(folder, m, cloud, monitor.cancel); });
+  const Orientation solved = solve(cloud, {coarse.gradient, cloud.relative_spacing}, m, worker,
+                                   named(monitor, "tile " + std::to_string(t + 1) + " of " + std::to_string(m.tiles.size())));
   io::OutputFile out(result_path(folder, t), monitor.cancel);
-  out.write_records(results);
+  out.write_records(results_of(cloud, solved, coarse));
   out.commit();
 }
 

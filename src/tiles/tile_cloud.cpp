@@ -12,8 +12,6 @@ namespace {
 
 constexpr std::uint64_t kScanAtOnce = std::uint64_t{1} << 16;  // records
 
-int outermost(std::uint64_t stride) { return static_cast<int>(strides(stride).size()) - 1; }
-
 // Places in a thinned file that fall into [begin, end) of the order.
 std::uint64_t thinned(std::uint64_t place, std::uint64_t stride) { return (place + stride - 1) / stride; }
 
@@ -41,8 +39,8 @@ Cells find_cells(const std::string& folder, const Manifest& manifest, Stages& st
 }
 
 std::uint64_t count_tile_cloud(const Cells& cells, std::uint64_t stride, const Tile& tile) {
-  const std::vector<std::uint64_t> all = strides(stride);
-  const std::vector<std::uint8_t> rings = rings_around(cells, tile.first_cell, tile.last_cell, outermost(stride));
+  const std::vector<std::uint64_t> all = strides(stride, cells.points);
+  const std::vector<std::uint8_t> rings = rings_around(cells, tile.first_cell, tile.last_cell, static_cast<int>(all.size()) - 1);
   std::uint64_t count = 0;
   for (std::size_t c = 0; c < rings.size(); ++c)
     count += thinned(cells.end(c), all[rings[c]]) - thinned(cells.cells[c].begin, all[rings[c]]);
@@ -50,10 +48,10 @@ std::uint64_t count_tile_cloud(const Cells& cells, std::uint64_t stride, const T
 }
 
 TileCloud read_tile_cloud(const std::string& folder, const Manifest& manifest, const Cells& cells, const Tile& tile) {
-  const std::vector<std::uint64_t> all = strides(manifest.stride);
+  const std::vector<std::uint64_t> all = strides(manifest.stride, cells.points);
   std::vector<std::unique_ptr<RecordFile<Record>>> files;
   for (const std::uint64_t stride : all) files.push_back(std::make_unique<RecordFile<Record>>(points_path(folder, stride)));
-  const std::vector<std::uint8_t> rings = rings_around(cells, tile.first_cell, tile.last_cell, outermost(manifest.stride));
+  const std::vector<std::uint8_t> rings = rings_around(cells, tile.first_cell, tile.last_cell, static_cast<int>(all.size()) - 1);
   const std::vector<std::uint32_t> parts = parts_of_ring(cells, rings);
   TileCloud cloud;
   for (std::size_t c = 0; c < rings.size();) {

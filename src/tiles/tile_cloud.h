@@ -28,7 +28,7 @@ inline constexpr std::uint64_t kNotCoarse = 0xffffffffffffffffULL;
 /// Scans the sorted points for the cells of manifest.level and stores them. Throws IoError, Cancelled.
 Cells find_cells(const std::string& folder, const Manifest& manifest, Stages& stages);
 
-/// Number of points that read_tile_cloud() will find. O(cells).
+/// Number of points that read_tile_cloud() will find; `stride`: of the thinned cloud. O(cells).
 [[nodiscard]] std::uint64_t count_tile_cloud(const Cells& cells, std::uint64_t stride, const Tile& tile);
 
 /// Reads them. Throws IoError.

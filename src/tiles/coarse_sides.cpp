@@ -1,0 +1,69 @@
+#include "tiles/coarse_sides.h"
+
+#include "cloud/neighbours.h"
+#include "cpu/parallel.h"
+#include "field/oriented_cloud.h"
+#include "orient/settings.h"
+#include "sum/fast_sum.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace g3r::tiles {
+namespace {
+
+// The thinned cloud, with what its solve has found.
+struct Thinned {
+  std::vector<Vec3> points;
+  std::vector<CoarseNormal> found;
+};
+
+Thinned read_thinned(const std::string& folder, const Manifest& m) {
+  const RecordFile<Record> places(points_path(folder, m.stride));
+  const RecordFile<CoarseNormal> found(coarse_path(folder));
+  std::vector<Record> records;
+  Thinned thinned;
+  places.append(0, places.size(), records);
+  found.append(0, places.size(), thinned.found);
+  for (const Record& record : records) thinned.points.push_back(record.point);
+  return thinned;
+}
+
+std::vector<CoarseNormal> nearest_of(const Thinned& thinned, const TileCloud& cloud) {
+  const Neighbours tree(thinned.points);
+  std::vector<CoarseNormal> nearest(cloud.records.size());
+  parallel::for_blocks(nearest.size(), parallel::kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      double squared = HUGE_VAL;
+      if (cloud.coarse[i] != kNotCoarse) {
+        nearest[i] = thinned.found[static_cast<std::size_t>(cloud.coarse[i])];
+      } else if (cloud.own[i] != 0) {
+        nearest[i] = thinned.found[tree.nearest(cloud.records[i].point, squared, 0)];
+      }
+    }
+  });
+  return nearest;
+}
+
+std::vector<Vec3> gradient_of(const Thinned& thinned, const TileCloud& cloud, const std::atomic<bool>* cancel) {
+  std::vector<Vec3> normals(thinned.found.size());
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    for (std::size_t a = 0; a < 3; ++a) normals[i][a] = thinned.found[i].normal[a];
+  }
+  const OrientedCloud oriented = oriented_cloud(thinned.points, normals);
+  std::vector<Vec3> targets(cloud.records.size());
+  std::transform(cloud.records.begin(), cloud.records.end(), targets.begin(),
+                 [&](const Record& record) { return oriented.cloud.frame.to_unit(record.point); });
+  const FastSum field(oriented.cloud.points(), oriented.cloud.morton(), Widths(kRefinementWidth * oriented.spacing),
+                      sum_plan(kContinuedAccuracy, oriented.cloud.size()), cancel);
+  return field.winding_gradient_at(oriented.eta, targets, cancel);
+}
+
+}  // namespace
+
+CoarseSides coarse_sides(const std::string& folder, const Manifest& m, const TileCloud& cloud, const std::atomic<bool>* cancel) {
+  const Thinned thinned = read_thinned(folder, m);
+  return {gradient_of(thinned, cloud, cancel), nearest_of(thinned, cloud)};
+}
+
+}  // namespace g3r::tiles
