@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
-#include <utility>
 
 namespace g3r {
 namespace {
@@ -151,14 +149,19 @@ Held fit_to_held(const std::vector<Vec3>& points, const std::vector<std::uint32_
   return held;
 }
 
-struct Scattered {
-  ExactPlane plane;
-  double away = 0;  // distance of the first point from it, in spacings
-};
+}  // namespace
 
-// Whichever plane holds most, fitted to what it holds.
-Scattered search_scattered(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing, double scatter,
-                           const Vec3& towards) {
+ExactPlane find_exact_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing, const Vec3* towards) {
+  const Around around = around_first(points, index, spacing);
+  const Candidate best = best_plane(around, towards, [&](const Vec3& normal) { return held_by(around, normal); });
+  if (best.held == 0) return {};
+  const Held held = fit_to_held(points, index, around, best.normal, {0, 0, 0}, best.within);
+  return held.fit.breadth < kNarrowest ? ExactPlane{} : held.plane();
+}
+
+ExactPlane find_scattered_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing, double scatter,
+                                const Vec3& towards) {
+  if (scatter > kMostScatter * spacing) return {};
   const Around around = around_first(points, index, spacing);
   const double within = kReach * scatter / spacing;
   const int needed = proof(around.count, within);
@@ -174,42 +177,7 @@ Scattered search_scattered(const std::vector<Vec3>& points, const std::vector<st
     held = fit_to_held(points, index, around, held.fit.normal, held.middle, within);
     if (static_cast<int>(held.points.size()) < needed || held.points.front() != index[0]) return {};
   }
-  if (held.fit.breadth < kNarrowest || is_bent(points, held.points, held.fit, spacing)) return {};
-  return {held.plane(), std::abs(vector::dot(held.fit.normal, held.middle))};
-}
-
-}  // namespace
-
-ExactPlane find_exact_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing, const Vec3* towards) {
-  const Around around = around_first(points, index, spacing);
-  const Candidate best = best_plane(around, towards, [&](const Vec3& normal) { return held_by(around, normal); });
-  if (best.held == 0) return {};
-  const Held held = fit_to_held(points, index, around, best.normal, {0, 0, 0}, best.within);
-  return held.fit.breadth < kNarrowest ? ExactPlane{} : held.plane();
-}
-
-ExactPlane find_scattered_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing, double scatter,
-                                const Vec3& towards) {
-  if (scatter > kMostScatter * spacing) return {};
-  Scattered best = search_scattered(points, index, spacing, scatter, towards);
-  if (best.plane.points.empty()) return {};
-  std::vector<std::uint32_t> others{index.front()};
-  std::copy_if(index.begin(), index.end(), std::back_inserter(others), [&](std::uint32_t i) {
-    return std::find(best.plane.points.begin(), best.plane.points.end(), i) == best.plane.points.end();
-  });
-  Scattered second = search_scattered(points, others, spacing, scatter, towards);
-  if (!second.plane.points.empty()) {
-    const auto likely = [&](const Scattered& s) { return std::exp(-s.away * s.away / (2 * scatter * scatter) * spacing * spacing); };
-    const auto sided = [&](const Vec3& n) { return vector::dot(n, towards) < 0 ? vector::scale(n, -1) : n; };
-    const Vec3 mean =
-        vector::add(vector::scale(sided(best.plane.normal), likely(best)), vector::scale(sided(second.plane.normal), likely(second)));
-    if (second.away < best.away) std::swap(best, second);
-    best.plane.normal = vector::normalised(mean);
-  }
-  const Vec3 farthest = vector::subtract(points[best.plane.points.back()], points[index.front()]);
-  const double hidden = 2 * kReach * scatter / std::sqrt(vector::dot(farthest, farthest));
-  const Vec3 turned = vector::cross(best.plane.normal, towards);
-  return vector::dot(turned, turned) > hidden * hidden ? std::move(best.plane) : ExactPlane{};
+  return held.fit.breadth < kNarrowest || is_bent(points, held.points, held.fit, spacing) ? ExactPlane{} : held.plane();
 }
 
 LikeliestPlane find_likeliest_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing) {

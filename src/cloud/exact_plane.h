@@ -34,10 +34,7 @@ struct ExactPlane {
 /// give as many to any of the 45 candidates once in a thousand times (binomial law: detection a contrario, Desolneux, Moisan, Morel,
 /// "Meaningful alignments", International Journal of Computer Vision 2000): 9 of 33 for a scatter of 0.01 spacings, 13 for 0.04, 17 for
 /// 0.08. It is fitted anew to what it holds, twice, and must not be the plane of a bend: a quadratic height field through the same points
-/// may not be likelier by Schwarz's criterion (three more numbers cost 3/2 ln n). What a bend hides between 2.5 `scatter` on either side is
-/// tilted by as much over the reach of the points held, so a plane that turns `towards` by less than twice that says nothing new, and is
-/// none. Where the point is held by two planes it gets the mean of their normals, by the likelihoods of its distances. docs/math.md,
-/// "Planes of scattered points". About 7 us.
+/// may not be likelier by Schwarz's criterion (three more numbers cost 3/2 ln n). docs/math.md, "Planes of scattered points". About 7 us.
 [[nodiscard]] ExactPlane find_scattered_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing,
                                               double scatter, const Vec3& towards);
 

@@ -12,9 +12,7 @@ namespace g3r {
 namespace {
 
 constexpr std::size_t kFewNeighbours = 8;
-constexpr std::size_t kManyNeighbours = 16;
-constexpr double kAlone = 2;                // local spacing against the neighbours'
-constexpr double kSparse = 2;               // local spacing against the typical one
+constexpr double kSparse = 2;               // local spacing against the neighbours', of those alone, and against the typical one
 constexpr double kVolumetric = 0.07;        // share of the smallest principal spread; 1/3 in a ball
 constexpr std::size_t kFewestPoints = 100;  // below, sparse parts are a matter of chance
 constexpr double kMostOutliers = 1.0 / 3;
@@ -46,8 +44,8 @@ std::vector<std::uint32_t> find_outliers(const PointSet& set, const std::vector<
       const std::uint32_t* index = near.data() + i * set.near_count();
       double neighbours = 0;  // mean logarithm
       for (std::size_t k = 1; k <= kFewNeighbours; ++k) neighbours += std::log(local[index[k]]) / kFewNeighbours;
-      const bool alone = std::log(local[i]) - neighbours > std::log(kAlone);
-      outlier[i] = alone || (local[i] > kSparse * typical && fills_space(points, index, kManyNeighbours + 1)) ? 1 : 0;
+      const bool alone = std::log(local[i]) - neighbours > std::log(kSparse);
+      outlier[i] = alone || (local[i] > kSparse * typical && fills_space(points, index, kSpacingNeighbours)) ? 1 : 0;
     }
   });
   std::vector<std::uint32_t> indices;

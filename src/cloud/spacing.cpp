@@ -13,7 +13,6 @@ namespace g3r {
 namespace {
 
 constexpr std::size_t kNeighbours = 8;  // enough to average out random sampling, few enough to stay local
-constexpr std::size_t kSmoothing = 16;  // neighbours that share their spacing
 
 }  // namespace
 
@@ -38,7 +37,7 @@ std::vector<double> local_spacing(const std::vector<Vec3>& points) {
 
 std::vector<double> smoothed_spacing(const std::vector<double>& local, const std::vector<std::uint32_t>& near) {
   const std::size_t stride = near.size() / local.size();
-  const std::size_t count = std::min(kSmoothing, stride);
+  const std::size_t count = std::min(kSpacingNeighbours - 1, stride);
   std::vector<double> logarithm(local.size());
   for (std::size_t i = 0; i < local.size(); ++i) logarithm[i] = std::log(local[i]);
   std::vector<double> spacing(local.size());

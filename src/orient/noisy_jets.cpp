@@ -13,30 +13,23 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kBlock = 256;         // points per parallel block, among which fits are shared
-constexpr std::size_t kFewest = 9;          // points in a fit, of six numbers
-constexpr std::size_t kMost = 2000;         // points in a fit; of more, evenly picked ones: bounds the work where many lie close together
-constexpr double kNarrowest = 4.2;          // first reach over sqrt(s h): 3.6 leaves 5 % more of the error, 4.8 blurs detail
-constexpr double kWider = 1.41;             // from one reach to the next: three in steps of 1.7 leave up to 3 % more of the error
-constexpr int kReaches = 4;                 // as far as 12 sqrt(s h)
-constexpr double kDepth = 3;                // standard deviations that neighbours lie beside the tangent plane
-constexpr double kNormalWeight = 0.3;       // the normals are those of a smooth field already: less leaves noise, more blurs
-constexpr double kAgreement = 0.85;         // standard deviations between the normals of two reaches: less leaves noise, more blurs
-constexpr double kSameSide = 0.5;           // cosine between normals: across an edge they are not of one fit
-constexpr double kBeside = 8;               // standard deviations from the fit up to which points that face the other way count,
-constexpr double kOpposed = 0.05;           // and their share from which it has another wall too close
-constexpr double kLargestTurn = 0.8;        // cosine between a normal and the fitted one
-constexpr double kShared = 0.25;            // of the reach: how far a fit serves other points
-constexpr double kSharedDepth = 4;          // standard deviations of points that it serves
-constexpr double kUnfitted = 0.3;           // of the first reach: how far a point without a fit speaks for others,
-constexpr double kAlike = 0.5;              // at this cosine between their normals
-constexpr double kEnough = 0.4;             // share of points with a fit: of clouds with fewer the sides are unsure
-constexpr std::size_t kEvery = 16;          // of the points of a block, one tells of the noise there,
-constexpr std::size_t kFewestScatters = 5;  // if so many do
-constexpr double kNoiseReach = 3;           // spacings, of the fits that do: 4 takes detail for noise
-constexpr double kLeastFreedom = 2;         // effective points of such a fit beyond its six numbers
-constexpr double kOfFound = 1.1;            // times the noise found: what is within a tenth of the cloud's is chance
-constexpr double kLeastNoise = 0.15;        // of the cloud's
+constexpr std::size_t kBlock = 256;    // points per parallel block, among which fits are shared
+constexpr std::size_t kFewest = 9;     // points in a fit, of six numbers
+constexpr std::size_t kMost = 2000;    // points in a fit; of more, evenly picked ones: bounds the work where many lie close together
+constexpr double kNarrowest = 4.2;     // first reach over sqrt(s h): 3.6 leaves 5 % more of the error, 4.8 blurs detail
+constexpr double kWider = 1.41;        // from one reach to the next: three in steps of 1.7 leave up to 3 % more of the error
+constexpr int kReaches = 4;            // as far as 12 sqrt(s h)
+constexpr double kDepth = 3;           // standard deviations that points of a fit lie beside it
+constexpr double kNormalWeight = 0.3;  // the normals are those of a smooth field already: less leaves noise, more blurs
+constexpr double kAgreement = 0.85;    // standard deviations between the normals of two reaches: less leaves noise, more blurs
+constexpr double kSameSide = 0.5;      // cosine between normals: across an edge they are not of one fit, nor is a fit so far off
+constexpr double kOpposed = 0.05;      // share of points that face the other way from which a fit has another wall too close
+constexpr double kShared = 0.25;       // of the reach: how far a fit serves other points
+constexpr double kEnough = 0.4;        // share of points with a fit: of clouds with fewer the sides are unsure
+constexpr std::size_t kEvery = 16;     // of the points of a block, one tells of the noise there
+constexpr double kNoiseReach = 3;      // spacings, of the fits that do: 4 takes detail for noise
+constexpr double kOfFound = 1.1;       // times the noise found: what is within a tenth of the cloud's is chance
+constexpr double kLeastNoise = 0.15;   // of the cloud's
 
 struct Fit {
   QuadraticPatch patch;  // relative to the point it was fitted at
@@ -58,7 +51,7 @@ class Fitter {
     for (std::size_t i = begin; i < end; i += kEvery) {
       if (gather(i, to_eigen(normals_[i]), kNoiseReach * spacing_)) add_scatter();
     }
-    if (scatter_.size() < kFewestScatters) return;
+    if (scatter_.empty()) return;
     const auto middle = scatter_.begin() + static_cast<std::ptrdiff_t>(scatter_.size() / 2);
     std::nth_element(scatter_.begin(), middle, scatter_.end());
     noise_ = std::clamp(kOfFound * *middle, kLeastNoise * noise_, noise_);
@@ -77,7 +70,7 @@ class Fitter {
       const QuadraticPatch patch = fit_quadratic_patch(members_, 0, reach / 2, kNormalWeight);
       Vector3d fitted;
       (void)patch.distance(Vector3d::Zero(), &fitted);
-      if (fitted.dot(normal) <= kLargestTurn) continue;
+      if (fitted.dot(normal) <= kSameSide) continue;
       const bool agrees = std::all_of(narrower_.begin(), narrower_.end(),
                                       [&](const Estimate& e) { return (e.normal - fitted).norm() <= kAgreement * e.deviation; });
       if (!agrees) break;
@@ -112,7 +105,7 @@ class Fitter {
       if (cosine > kSameSide) {
         members_.push_back({d, n, weight, 0});
         total_ += weight;
-      } else if (cosine <= 0 && std::abs(height) < kBeside * noise_) {
+      } else if (cosine <= 0) {
         opposed += weight;
       }
     }
@@ -125,7 +118,7 @@ class Fitter {
     for (const FitPoint& m : members_) squares += m.weight * m.weight;
     const double effective = total_ * total_ / squares;
     const double freedom = effective - 6;
-    if (!(freedom >= kLeastFreedom)) return;
+    if (!(freedom > 0)) return;
     const QuadraticPatch patch = fit_quadratic_patch(members_, 0, kNoiseReach * spacing_ / 2, 0);
     double misfit = 0;
     for (const FitPoint& m : members_) {
@@ -164,20 +157,15 @@ bool fit_noisy_jets(const PointSet& set, double noise, std::vector<Vec3>& normal
       if (done[i - begin] != 0) continue;
       const Fit fit = fitter.widest(i);
       const Vector3d centre = to_eigen(points[i]);
-      const Vector3d normal = to_eigen(normals[i]);
-      const double shared = fit.reach > 0 ? kShared * fit.reach : kUnfitted * fitter.first_reach();
+      if (fit.reach == 0) continue;
+      const double shared = kShared * fit.reach;
       for (std::size_t j = i; j < end; ++j) {
         const Vector3d d = to_eigen(points[j]) - centre;
         if (done[j - begin] != 0 || d.squaredNorm() > shared * shared + depth * depth) continue;
         const Vector3d n = to_eigen(normals[j]);
-        if (fit.reach == 0) {
-          done[j - begin] = d.squaredNorm() <= shared * shared && n.dot(normal) >= kAlike ? 1 : 0;
-          continue;
-        }
         Vector3d above;
         const double beside = std::abs(fit.patch.distance(d, &above));
-        const bool served =
-            beside <= kSharedDepth * fitter.noise() && d.squaredNorm() - beside * beside <= shared * shared && n.dot(above) > kLargestTurn;
+        const bool served = beside <= depth && d.squaredNorm() - beside * beside <= shared * shared && n.dot(above) > kSameSide;
         if (j != i && !served) continue;
         out[j] = {above[0], above[1], above[2]};
         done[j - begin] = 1;

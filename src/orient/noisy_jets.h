@@ -22,9 +22,9 @@ namespace g3r {
 /// s is the noise of the cloud or, where that is less, 1.1 times the noise of the place: of 256 points in a row the median misfit, at every
 /// 16th, of a quadratic height field to the points within 3 h. It is at least 0.15 times the noise of the cloud.
 ///
-/// Where more than 5 % of the points about the fit, up to 8 s beside it, face the other way, a wall is as thin as the noise, and the side
-/// of a normal says more than its direction: n_i stays, as it does where the fitted normal is more than 37 degrees off. All stay where
-/// fewer than 40 % of the points have a fit. Sides are kept but for normals that were all but in the surface.
+/// Where more than 5 % of the points about the fit face the other way, a wall is as thin as the noise, and the side of a normal says more
+/// than its direction: n_i stays, as it does where the fitted normal is more than 60 degrees off. All stay where fewer than 40 % of
+/// the points have a fit. Sides are kept but for normals that were all but in the surface.
 ///
 /// Blocks of points in canonical order share fits; `noise`: of the cloud, > 0; h: the typical spacing; `normals`: N unit vectors,
 /// consistent sides. Returns whether they changed. Throws Cancelled. docs/math.md, "Fits of noisy points". O(N).
