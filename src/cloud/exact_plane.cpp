@@ -16,7 +16,6 @@ constexpr int kFewest = 6;          // points on a plane, itself included
 // Within what distance, in spacings, kFewest points, one more, or two or more lie: so few by chance on one in a thousand planes through
 // points that scatter by a third of a spacing.
 constexpr std::array<double, 3> kWithin{0.0005, 0.002, kExactWithin};
-constexpr double kNarrowest = 0.15;  // breadth of the points on the plane
 constexpr double kLeastAngle = 0.1;  // sine, between the two that a candidate passes through
 // Of points that scatter.
 constexpr double kReach = 2.5;         // standard deviations from a plane that holds a point: 99 % of those on it
@@ -156,7 +155,7 @@ ExactPlane find_exact_plane(const std::vector<Vec3>& points, const std::vector<s
   const Candidate best = best_plane(around, towards, [&](const Vec3& normal) { return held_by(around, normal); });
   if (best.held == 0) return {};
   const Held held = fit_to_held(points, index, around, best.normal, {0, 0, 0}, best.within);
-  return held.fit.breadth < kNarrowest ? ExactPlane{} : held.plane();
+  return held.fit.breadth < kLineBreadth ? ExactPlane{} : held.plane();
 }
 
 ExactPlane find_scattered_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing, double scatter,
@@ -177,7 +176,7 @@ ExactPlane find_scattered_plane(const std::vector<Vec3>& points, const std::vect
     held = fit_to_held(points, index, around, held.fit.normal, held.middle, within);
     if (static_cast<int>(held.points.size()) < needed || held.points.front() != index[0]) return {};
   }
-  return held.fit.breadth < kNarrowest || is_bent(points, held.points, held.fit, spacing) ? ExactPlane{} : held.plane();
+  return held.fit.breadth < kLineBreadth || is_bent(points, held.points, held.fit, spacing) ? ExactPlane{} : held.plane();
 }
 
 LikeliestPlane find_likeliest_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing) {

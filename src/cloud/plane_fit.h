@@ -9,6 +9,9 @@
 
 namespace g3r {
 
+/// Points of less breadth lie along a line: it has planes all around, and any slope across it fits.
+inline constexpr double kLineBreadth = 0.15;
+
 struct PlaneFit {
   Vec3 normal{0, 0, 1};  ///< unit length, either side
   double residual = 0;   ///< root mean square distance, corrected for the 3 parameters

@@ -1,5 +1,6 @@
 #include "orient/jets.h"
 
+#include "cloud/plane_fit.h"
 #include "cloud/quadratic_patch.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
@@ -13,11 +14,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kFewest = 7;   // that take part, itself included: one more than the height field has numbers
-constexpr double kSamePatch = 0.9;   // cosine between normals
-constexpr double kRadius = 1.5;      // spacings
-constexpr double kScatter = 0.007;   // spacings, standard deviation of the heights
-constexpr double kNarrowest = 0.15;  // second principal spread over the first: along one scan line any slope across it fits
+constexpr std::size_t kFewest = 7;  // that take part, itself included: one more than the height field has numbers
+constexpr double kSamePatch = 0.9;  // cosine between normals
+constexpr double kRadius = 1.5;     // spacings
+constexpr double kScatter = 0.007;  // spacings, standard deviation of the heights
 
 bool spread_out(const std::vector<FitPoint>& members, const Vector3d& normal) {
   const Eigen::Matrix3d frame = tangent_frame(normal);
@@ -34,7 +34,7 @@ bool spread_out(const std::vector<FitPoint>& members, const Vector3d& normal) {
   }
   const double middle = (uu + vv) / 2;
   const double swing = std::hypot((uu - vv) / 2, uv);
-  return middle - swing >= kNarrowest * kNarrowest * (middle + swing);
+  return middle - swing >= kLineBreadth * kLineBreadth * (middle + swing);
 }
 
 }  // namespace
