@@ -40,8 +40,8 @@ build() {
     --config-settings=build-dir="$out/$1" --config-settings=cmake.define.CMAKE_TOOLCHAIN_FILE="$out/zig/$1.cmake" \
     --config-settings=cmake.define.G3R_BUNDLED=ON .
   wheel=$(echo "$raw"/*.whl)
-  PATH=$out/tools/bin:$PATH "$out/tools/bin/auditwheel" repair --plat "manylinux_${glibc/./_}_$1" --wheel-dir "$raw/repaired" "$wheel"
-  wheel=$(echo "$raw"/repaired/*.whl)
+  PATH=$out/tools/bin:$PATH "$out/tools/bin/auditwheel" repair --plat auto --wheel-dir "$raw/repaired" "$wheel" # it takes names of this machine's processor only
+  wheel=$(echo "$raw"/repaired/*"manylinux_${glibc/./_}_$1".whl)
   if [ "$(stat --format=%s "$wheel")" -gt $most_bytes ]; then
     echo "$wheel is larger than $most_bytes bytes" >&2
     return 1
