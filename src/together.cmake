@@ -39,11 +39,14 @@ g3r_together(writers io/read_stl io/text_columns io/tiles io/write_glb io/write_
 g3r_together(tiles tiles/cells tiles/external_sort tiles/merge tiles/mesh_corners tiles/mesh_parts tiles/mesh_points tiles/mesh_records
              tiles/mesh_region tiles/mesh_run tiles/mesh_patches tiles/mesh_surroundings tiles/parts)
 g3r_together(plans tiles/mesh_merge tiles/plan tiles/point_writer tiles/run tiles/patches_file tiles/spacing_sample tiles/tile_cloud)
-g3r_together(pictures view/scene view/png view/canvas view/picture view/pack)
+g3r_together(pictures view/page view/scene view/png view/canvas view/picture view/pack)
 g3r_together(devices gpu/cuda gpu/device gpu/drivers gpu/execution gpu/kernel_cache gpu/kernel_source gpu/lists_on_device
              gpu/sum_on_device)
 
 # With nlohmann's JSON.
-g3r_together(reports report view/page)
-g3r_together(manifests io/ept tiles/manifest)
-g3r_together(lists io/file_lists tiles/mesh_plan)
+g3r_together(documents report io/ept io/file_lists tiles/manifest)
+g3r_together(lists io/ept_cells tiles/mesh_plan)
+
+# What has names in common with one of those above.
+g3r_together(headers io/find_columns io/float_text io/gltf_file io/npy_header io/pcd_header io/ply_body io/write_las_new)
+g3r_together(grounds io/ptx_scans mesh/coarsen mesh/corner_groups mesh/lines mesh/patch_components orient/noisy_jets orient/settings)
