@@ -50,8 +50,8 @@ measure_clean() {
 }
 
 measure_noise() {
-  table noise-0.25 --points 50000 --inputs noise:0.25 --method default --method "wnnc;widths=noise-0.25"
-  table noise-0.5 --points 50000 --inputs noise:0.5 --method default --method "wnnc;widths=noise-0.5"
+  table noise-0.25 --points 50000 --inputs noise:0.25 --method default --method ceiling --method "wnnc;widths=noise-0.25"
+  table noise-0.5 --points 50000 --inputs noise:0.5 --method default --method ceiling --method "wnnc;widths=noise-0.5"
   python3 -B bench/summary.py reduce $work/noise-0.25.json $work/noise-0.5.json -o "$out"/noise.json
 }
 
