@@ -147,5 +147,28 @@ TEST(OrientFrom, ThinningFarPointsCostsNoDirections) {
   EXPECT_LT(error_of_half, 1.05 * error_of_whole);
 }
 
+// Points 10 times as far apart on one side as on the other: kernels as wide as the typical spacing are single points there.
+TEST(OrientUneven, KernelsFollowTheDensity) {
+  const shapes::Surface torus = shapes::torus(60000, 0.6, 0.25, 2);
+  shapes::Random random(3);
+  std::vector<Vec3> points, normals;
+  for (std::size_t i = 0; i < torus.points.size(); ++i) {
+    const double along = (torus.points[i][0] + 0.85) / 1.7;  // 0 .. 1
+    if (random.uniform() > std::pow(100.0, -along)) continue;
+    points.push_back(torus.points[i]);
+    normals.push_back(torus.normals[i]);
+  }
+  const auto error = [&](const std::string& without) {
+    Options options;
+    options.noise = {Length::Unit::kSpacing, 0};
+    options.without = "jets,planes,creases,facets" + without;
+    const std::vector<Vec3> found = orient(points, options).normals;
+    double sum = 0;  // of 1 - cos
+    for (std::size_t i = 0; i < points.size(); ++i) sum += 1 - vector::dot(found[i], normals[i]);
+    return sum / static_cast<double>(points.size());
+  };
+  EXPECT_LT(error(""), 0.5 * error(",local-widths"));
+}
+
 }  // namespace
 }  // namespace g3r

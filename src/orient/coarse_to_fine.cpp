@@ -43,7 +43,7 @@ std::vector<T> every(std::size_t step, const std::vector<T>& values) {
   return some;
 }
 
-// The points of a level, and how many times as far apart each is as the densest ones; empty: all are equally far apart.
+// The points of a level, and how many times as far apart each is as the others, 1 at least; empty: all are equally far apart.
 struct LevelCloud {
   const std::vector<Vec3>& points;
   const std::vector<std::uint64_t>& morton;
@@ -56,7 +56,7 @@ std::vector<double> spacing_of(const LevelCloud& cloud, const Settings& settings
   return spacing;
 }
 
-// A sum of this width where the points are densest.
+// A sum of this width where the relative spacing is 1.
 FastSum sum_over(const LevelCloud& cloud, const Settings& settings, double width, const SumPlan& plan, const Stages& stages) {
   return {cloud.points, cloud.morton, local_widths(width, settings, spacing_of(cloud, settings)), plan, stages.cancel()};
 }
@@ -69,12 +69,13 @@ struct Level {
 
 Level solve_level(const LevelCloud& cloud, const Settings& settings, double share, Stages& stages, const std::vector<Vec3>& gradient);
 
-// The winding gradient at the points of the solution on a quarter of them.
+// The winding gradient at the points of the solution on a quarter of them, all with kernels of one width: a field of several has no value
+// between its points.
 std::vector<Vec3> coarse_gradient(const LevelCloud& cloud, const Settings& settings, double share, Stages& stages) {
   const std::vector<Vec3> points = every(kThinning, cloud.points);
   const std::vector<std::uint64_t> morton = every(kThinning, cloud.morton);
-  const std::vector<double> relative_spacing = every(kThinning, cloud.relative_spacing);
-  const Level coarse = solve_level({points, morton, relative_spacing}, coarser(settings), kCoarseShare * share, stages, {});
+  const std::vector<double> one_width;
+  const Level coarse = solve_level({points, morton, one_width}, coarser(settings), kCoarseShare * share, stages, {});
   return coarse.field->winding_gradient_at(coarse.result.eta, cloud.points, stages.cancel());
 }
 

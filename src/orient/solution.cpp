@@ -4,6 +4,7 @@
 #include "baselines/baseline.h"
 #include "cloud/clusters.h"
 #include "cloud/sites.h"
+#include "cloud/spacing.h"
 #include "orient/coarse_to_fine.h"
 #include "orient/creases.h"
 #include "orient/facets.h"
@@ -47,13 +48,26 @@ Solution solve_by_baseline(const Problem& problem, Stages& stages, Stats& stats)
   return {std::move(result.eta), {std::move(result.normals), std::move(result.strength)}, {}};
 }
 
+// How many times as far apart the points are as typical ones, 1 at least; kernels are as much wider. Of clean points as they lie, unless
+// the width is given; of others only as far as they have been thinned.
+std::vector<double> relative_spacing(const Problem& problem, const Options& options) {
+  const bool is_free = problem.settings.method == Method::kEnergy && options.epsilon.unit == Length::Unit::kAuto;
+  const std::vector<double>& thinned = problem.known.relative_spacing;
+  if (!is_free || !problem.is_clean() || !runs(problem, Step::kLocalWidths)) return thinned;
+  std::vector<double> relative = spacing_before_thinning(problem.cloud.set.smoothed_spacing(), thinned);
+  for (double& h : relative) h = std::max(1.0, h / problem.spacing);
+  for (std::size_t i = 0; i < thinned.size(); ++i) relative[i] *= thinned[i];
+  return relative;
+}
+
 // Area vectors, and their refinement unless its width is 0.
 Solution solve_equations(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
   const Settings& s = problem.settings;
   const std::vector<Vec3>& points = problem.cloud.points();
   stages.begin("solve");
   if (!s.dense) {
-    Solved solved = solve_coarse_to_fine(points, problem.cloud.morton(), s, stages, problem.known);
+    const Known known{problem.known.gradient, relative_spacing(problem, options)};
+    Solved solved = solve_coarse_to_fine(points, problem.cloud.morton(), s, stages, known);
     record(s, solved.result, stats);
     return {std::move(solved.result.eta), std::move(solved.refinement), {}};
   }
