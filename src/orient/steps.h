@@ -16,7 +16,7 @@ enum class Step {
   kCoarseStart,   ///< the solve starts from a solution on fewer points
   kMoreSteps,     ///< and goes on where many sides are unsure
   kPolish,        ///< the last iterations, with narrow kernels, and everything after them
-  kLocalWidths,   ///< whose widths follow the local spacing of a clean cloud
+  kLocalWidths,   ///< whose widths, and those of the solve, follow the local spacing of a clean cloud
   kOpenSurfaces,  ///< parts whose field is not that of a closed surface get their sides from their neighbours
   kApart,         ///< and are solved for apart from the rest
   kJets,          ///< directions from fitted quadratics where the points prove them
