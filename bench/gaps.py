@@ -17,6 +17,8 @@ import pathlib
 
 import numpy as np
 
+from mesh_file import write_mesh
+
 WALL = 3.5  # spacings, of what is not the wall or gap that is asked about
 TURN = np.linalg.qr(np.random.default_rng(11).normal(size=(3, 3)))[0]
 
@@ -222,18 +224,6 @@ def topology(mesh):
     return parts, parts - (len(mesh[0]) - len(edges) + len(mesh[1])) // 2
 
 
-def write_ply(path, vertices, faces):
-    header = (
-        f"ply\nformat binary_little_endian 1.0\nelement vertex {len(vertices)}\n"
-        "property float x\nproperty float y\nproperty float z\n"
-        f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
-    )
-    rows = np.empty(len(faces), dtype=[("n", "u1"), ("v", "<i4", 3)])
-    rows["n"] = 3
-    rows["v"] = faces
-    path.write_bytes(header.encode() + vertices.astype("<f4").tobytes() + rows.tobytes())
-
-
 def score(folder, table):
     """By method and gap: how many of the meshes have the right number of components and the right genus, and the sum of what is wrong."""
     truth = json.loads((folder / "truth.json").read_text())
@@ -269,7 +259,7 @@ def main():
             mesh = fitted(shape, gap, arguments.points)
             name = f"{shape}_{gap:g}"
             truth[name] = topology(mesh)
-            write_ply(arguments.folder / f"{name}.ply", *outward((mesh[0] @ TURN.T, mesh[1])))
+            write_mesh(arguments.folder / f"{name}.ply", *outward((mesh[0] @ TURN.T, mesh[1])))
             print(f"{name}: {len(mesh[1])} triangles, {truth[name][0]} components, genus {truth[name][1]}")
     (arguments.folder / "truth.json").write_text(json.dumps(truth))
 

@@ -18,6 +18,8 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 from skimage.measure import marching_cubes
 
+from mesh_file import write_mesh
+
 CELLS = 280  # along the longest side of the box: what is thinner than a few cells is not what the formula says
 MARGIN = 1.08  # half side of the box
 SPURIOUS = 1e-3  # of the triangles
@@ -257,18 +259,6 @@ def volume(vertices, faces):
     return np.einsum("ij,ij->", a, np.cross(b, c)) / 6
 
 
-def write_ply(path, vertices, faces):
-    header = (
-        f"ply\nformat binary_little_endian 1.0\nelement vertex {len(vertices)}\n"
-        "property float x\nproperty float y\nproperty float z\n"
-        f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
-    )
-    rows = np.empty(len(faces), dtype=[("n", "u1"), ("v", "<i4", 3)])
-    rows["n"] = 3
-    rows["v"] = faces
-    path.write_bytes(header.encode() + vertices.astype("<f4").tobytes() + rows.tobytes())
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=pathlib.Path)
@@ -279,7 +269,7 @@ def main():
         vertices, faces = mesh(shape)
         if volume(vertices, faces) < 0:
             faces = faces[:, ::-1]
-        write_ply(arguments.folder / f"{shape}.ply", vertices, faces)
+        write_mesh(arguments.folder / f"{shape}.ply", vertices, faces)
         print(f"{shape}: {len(faces)} triangles, volume {abs(volume(vertices, faces)):.3f}")
 
 

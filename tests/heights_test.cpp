@@ -80,5 +80,14 @@ TEST(HeightMoments, CubicsAreExactAndHaveNone) {
   EXPECT_LT(m.mean_square, 1e-20);
 }
 
+// Whatever the rounding of their singular equations.
+TEST(HeightMoments, PointsOnALineHaveNone) {
+  shapes::Random random(3);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 40; ++i) points.push_back({random.uniform(-1, 1), 0, 0.1 * normal(random)});
+  const HeightMoments m = moments(points);
+  EXPECT_TRUE(std::isfinite(m.mean_square) && std::isfinite(m.excess)) << m.mean_square << " " << m.excess;
+}
+
 }  // namespace
 }  // namespace g3r

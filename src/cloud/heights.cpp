@@ -11,6 +11,7 @@ namespace g3r {
 namespace {
 
 constexpr Eigen::Index kColumns = 10;  // the monomials of u and v up to degree 3
+constexpr double kRidge = 1e-12;       // on their squares, relative: above rounding, and far below what moves a height
 
 }  // namespace
 
@@ -28,8 +29,9 @@ HeightMoments height_moments(const std::vector<Vec3>& points, const std::uint32_
     heights[k] = q[2];
   }
   Eigen::Matrix<double, kColumns, kColumns> normal_equations = columns.transpose() * columns;
-  normal_equations.diagonal() *= 1 + 1e-12;
+  normal_equations.diagonal() *= 1 + kRidge;
   const Eigen::LLT<Eigen::Matrix<double, kColumns, kColumns>> factors(normal_equations);
+  if (factors.info() != Eigen::Success) return {};
   const Eigen::VectorXd residual = heights - columns * factors.solve(columns.transpose() * heights);
   const Eigen::MatrixXd whitened = factors.matrixL().solve(columns.transpose());  // column k has the squared length 1 - M_kk
   const double square = residual.squaredNorm();
@@ -38,7 +40,7 @@ HeightMoments height_moments(const std::vector<Vec3>& points, const std::uint32_
   HeightMoments moments;
   moments.mean_square = square / free * h * h;
   const double least = std::numeric_limits<double>::min();
-  if (square * square < least || kept.square().sum() < least) return moments;
+  if (!(square * square >= least) || !(kept.square().sum() >= least)) return {};
   moments.excess = residual.array().pow(4).sum() / (square * square) * free * (free + 2) - 3 * kept.sum();
   moments.excess /= kept.square().sum();
   return moments;

@@ -21,7 +21,8 @@ struct HeightMoments {
   double excess = 0;       ///< of the kurtosis over that of normal noise
 };
 
-/// `index`: `count` > 10 points; `normal`: unit vector that heights are along; `h` > 0: length unit of the fit. O(count).
+/// `index`: `count` > 10 points; `normal`: unit vector that heights are along; `h` > 0: length unit of the fit. Zeros where the points do
+/// not determine a cubic, as on a line, or lie on it. O(count).
 [[nodiscard]] HeightMoments height_moments(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count,
                                            const Vec3& normal, double h);
 

@@ -13,7 +13,7 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kPlaces = 500;       // looked at, at most
+constexpr std::size_t kPlaces = 500;       // looked at, to twice as many
 constexpr double kThin = 2;                // site spacings between two walls: the field distinguishes walls farther apart
 constexpr double kExact = 0.01;            // site spacings: deviations below are as good as none
 constexpr std::size_t kPoints = 24;        // of the heights that distinguish one wall from two
