@@ -48,7 +48,7 @@ void describe(const Problem& problem, const PointsView& points, const Options& o
   stats.box_side = 2.0 / 1.1 / cloud.frame.scale;
   stats.spacing = cloud.frame.length_to_world(problem.spacing);
   stats.noise = cloud.frame.length_to_world(problem.noise);
-  stats.epsilon = cloud.frame.length_to_world(settings.epsilon);
+  stats.epsilon = cloud.frame.length_to_world(settings.epsilon.typical());
   stats.preset = name_of(options.preset);
   stats.method = name_of(settings.method);
   stats.solver = name_of(settings.dense ? Solver::kDense : Solver::kConjugateGradient);
@@ -89,7 +89,7 @@ void warn_of_volume(const Problem& problem, Stats& stats) {
 void add_outliers(const Problem& problem, Stages& stages, Solution& solution, std::vector<float>& confidence) {
   if (problem.outliers.empty()) return;
   const Settings& s = problem.settings;
-  const FastSum field(problem.cloud.points(), problem.cloud.morton(), Widths(s.refinement_width), s.sums, stages.cancel());
+  const FastSum field(problem.cloud.points(), problem.cloud.morton(), Widths(s.refinement_width.typical()), s.sums, stages.cancel());
   const std::vector<Vec3> none(problem.outliers.size(), Vec3{0, 0, 0});
   const std::vector<Vec3> normals = unit_normals(field.winding_gradient_at(solution.eta, problem.outliers, stages.cancel()), none).normals;
   solution.refinement.normals.insert(solution.refinement.normals.end(), normals.begin(), normals.end());

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 
 namespace g3r {
 namespace {
@@ -25,6 +26,29 @@ TEST(Clusters, PartitionThePoints) {
     for (std::size_t a = 0; a < 3; ++a) EXPECT_LE(std::abs(cloud.points()[i][a] - clusters.points[clusters.cluster_of[i]][a]), side);
   }
   for (std::size_t c = 1; c < clusters.morton.size(); ++c) EXPECT_LT(clusters.morton[c - 1], clusters.morton[c]);
+}
+
+// Points that stand for more area count for as much in their cell.
+TEST(Clusters, CountTheAreasOfTheirPoints) {
+  const CanonicalCloud cloud = canonical_cloud(shapes::torus(3000, 0.6, 0.25, 1).points);
+  std::vector<double> relative(cloud.size());
+  double all = 0;
+  for (std::size_t i = 0; i < relative.size(); ++i) {
+    relative[i] = 1 + static_cast<double>(i % 4);
+    all += relative[i] * relative[i];
+  }
+  const Clusters clusters = cluster_points(cloud.points(), cloud.morton(), 0.15, relative);
+  std::vector<double> areas(clusters.points.size(), 0);
+  std::vector<double> counts(areas);
+  for (std::size_t i = 0; i < relative.size(); ++i) {
+    areas[clusters.cluster_of[i]] += relative[i] * relative[i];
+    ++counts[clusters.cluster_of[i]];
+  }
+  EXPECT_EQ(std::accumulate(areas.begin(), areas.end(), 0.0), all);
+  EXPECT_EQ(clusters.multiplicity, areas);
+  for (std::size_t c = 0; c < areas.size(); ++c) {
+    EXPECT_NEAR(clusters.relative_spacing[c] * clusters.relative_spacing[c] * counts[c], areas[c], 1e-12 * areas[c]);
+  }
 }
 
 // Coincident pairs: the restriction is exact.

@@ -44,7 +44,7 @@ TEST(SolveCoarseToFine, FindsTheSidesOfABall) {
   }
   EXPECT_EQ(outward, cloud.size());
   EXPECT_TRUE(found.result.converged);
-  settings.refinement_width = 0;
+  settings.refinement_width = {};
   EXPECT_TRUE(solved(cloud, settings).refinement.normals.empty());
 }
 

@@ -28,17 +28,32 @@ struct Ball {
 TEST(LocalWidths, AreInProportionToTheSpacing) {
   Settings settings;
   settings.spacing = 0.5;
-  const Widths same = local_widths(0.1, settings, {});
+  const KernelWidth clean{0.1, 0, 0};
+  const Widths same = local_widths(clean, settings, {});
   EXPECT_EQ(same[3], 0.1);
-  const Widths local = local_widths(0.1, settings, {0.5, 1, 0.25});
+  const Widths local = local_widths(clean, settings, {0.5, 1, 0.25});
   EXPECT_DOUBLE_EQ(local[0], 0.1);
   EXPECT_DOUBLE_EQ(local[1], 0.2);
   EXPECT_DOUBLE_EQ(local[2], 0.05);
 }
 
+// The noise is the same everywhere: kernels that hide it hide single points too until these are farther apart than that.
+TEST(LocalWidths, HideTheNoiseWhereItIsMoreThanTheSpacing) {
+  Settings settings;
+  settings.spacing = 1;
+  const Widths widths = local_widths({0.5, 2, 0}, settings, {0.5, 1, 4, 8});
+  EXPECT_DOUBLE_EQ(widths[0], 2);
+  EXPECT_DOUBLE_EQ(widths[1], 2);
+  EXPECT_DOUBLE_EQ(widths[2], 2);
+  EXPECT_DOUBLE_EQ(widths[3], 4);
+  const Widths roots = local_widths({0.1, 2, 0.5}, settings, {1, 4});
+  EXPECT_DOUBLE_EQ(roots[0], 2);
+  EXPECT_DOUBLE_EQ(roots[1], 4);
+}
+
 TEST(GradientToAreas, HaveTheWindingNumberOfASurfaceWhateverTheGradientsSize) {
   const Ball ball;
-  FastSum sum(ball.cloud.points(), ball.cloud.morton(), Widths(ball.settings.epsilon), ball.settings.sums);
+  FastSum sum(ball.cloud.points(), ball.cloud.morton(), Widths(ball.settings.epsilon.typical()), ball.settings.sums);
   const std::vector<double> areas{ball.settings.spacing * ball.settings.spacing};
   std::vector<Vec3> eta = ball.truth, other = ball.truth;
   for (Vec3& v : other) {
@@ -59,8 +74,9 @@ TEST(Polish, BringsDirectionsNearerToTheTruth) {
   const Refinement start{disturbed, std::vector<double>(disturbed.size(), 1.0)};
   const Monitor monitor;
   Stages stages(monitor);
-  const Polished polished =
-      polish(ball.cloud.points(), ball.cloud.morton(), ball.settings, ball.cloud.set.smoothed_spacing(), {}, start, stages);
+  const std::vector<double>& spacing = ball.cloud.set.smoothed_spacing();
+  const PolishCloud cloud{ball.cloud.points(), ball.cloud.morton(), spacing, point_areas(ball.settings, spacing), {}};
+  const Polished polished = polish(cloud, ball.settings, start, stages);
   EXPECT_EQ(shapes::share_correct(polished.refinement.normals, ball.truth), 1);
   EXPECT_LT(shapes::angle_error(polished.refinement.normals, ball.truth), 0.1 * shapes::angle_error(disturbed, ball.truth));
 }

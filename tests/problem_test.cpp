@@ -26,7 +26,7 @@ TEST(Prepare, DoesNotDependOnUnitsOrPlace) {
   EXPECT_EQ(same.cloud.points(), problem.cloud.points());
   EXPECT_EQ(same.spacing, problem.spacing);
   EXPECT_EQ(same.noise, problem.noise);
-  EXPECT_EQ(same.settings.epsilon, problem.settings.epsilon);
+  EXPECT_EQ(same.settings.epsilon.typical(), problem.settings.epsilon.typical());
 }
 
 TEST(Prepare, TakesTheNoiseThatIsGiven) {
@@ -78,8 +78,8 @@ TEST(WithNoise, ChangesTheNoiseAndNothingOfTheCloud) {
   EXPECT_EQ(noisy.noise, problem.spacing);
   EXPECT_EQ(noisy.cloud.points(), problem.cloud.points());
   EXPECT_EQ(noisy.spacing, problem.spacing);
-  EXPECT_GT(noisy.settings.epsilon, problem.settings.epsilon);
-  EXPECT_EQ(with_noise(problem, 0, {}).settings.epsilon, problem.settings.epsilon);
+  EXPECT_GT(noisy.settings.epsilon.typical(), problem.settings.epsilon.typical());
+  EXPECT_EQ(with_noise(problem, 0, {}).settings.epsilon.typical(), problem.settings.epsilon.typical());
 }
 
 TEST(PartOf, IsTheWholeOfAllPointsAndHasTheirPlacesOfSome) {
@@ -91,7 +91,7 @@ TEST(PartOf, IsTheWholeOfAllPointsAndHasTheirPlacesOfSome) {
   }
   const Problem whole = part_of(problem, all, {});
   EXPECT_EQ(whole.cloud.points(), problem.cloud.points());
-  EXPECT_EQ(whole.settings.epsilon, problem.settings.epsilon);
+  EXPECT_EQ(whole.settings.epsilon.typical(), problem.settings.epsilon.typical());
   const Problem part = part_of(problem, third, {});
   ASSERT_EQ(part.cloud.size(), 200U);
   for (std::size_t i = 0; i < 200; ++i) EXPECT_EQ(part.cloud.points()[i], problem.cloud.points()[3 * i]);

@@ -24,7 +24,7 @@ TEST(ChooseSettings, WhatIsGivenWinsOverThePreset) {
     options.schedule = "3 sd 5 cg";
     options.tolerance = 0.125;
     const Settings s = chosen(options);
-    EXPECT_DOUBLE_EQ(s.epsilon, 0.7 * cloud().set.spacing());
+    EXPECT_DOUBLE_EQ(s.epsilon.typical(), 0.7 * cloud().set.spacing());
     EXPECT_EQ(s.schedule_text, "3 sd 5 cg");
     EXPECT_EQ(s.tolerance, 0.125);
   }
@@ -36,10 +36,10 @@ TEST(ChooseSettings, ThePaperHasItsStepsAndNothingAfterThem) {
   const Settings s = chosen(options);
   EXPECT_EQ(s.method, Method::kGreen);
   EXPECT_EQ(s.schedule_text, "20 sd 60 cg");
-  EXPECT_EQ(s.refinement_width, 0);
+  EXPECT_EQ(s.refinement_width.typical(), 0);
   EXPECT_EQ(s.polish_steps, 0);
   EXPECT_FALSE(s.coarse_to_fine);
-  EXPECT_GE(s.epsilon, 0.15 * cloud().set.spacing());
+  EXPECT_GE(s.epsilon.typical(), 0.15 * cloud().set.spacing());
 }
 
 TEST(ChooseSettings, WidthsGrowWithTheNoise) {
@@ -47,21 +47,21 @@ TEST(ChooseSettings, WidthsGrowWithTheNoise) {
   double epsilon = 0, refinement = 0, polish = 0;
   for (const double noise : {0.0, 0.2, 0.5, 1.0, 2.0}) {
     const Settings s = chosen({}, noise * h);
-    EXPECT_GE(s.epsilon, epsilon);
-    EXPECT_GE(s.refinement_width, refinement);
-    EXPECT_GE(s.polish_width, polish);
-    epsilon = s.epsilon;
-    refinement = s.refinement_width;
-    polish = s.polish_width;
+    EXPECT_GE(s.epsilon.typical(), epsilon);
+    EXPECT_GE(s.refinement_width.typical(), refinement);
+    EXPECT_GE(s.polish_width.typical(), polish);
+    epsilon = s.epsilon.typical();
+    refinement = s.refinement_width.typical();
+    polish = s.polish_width.typical();
   }
-  EXPECT_GT(epsilon, chosen({}).epsilon);
+  EXPECT_GT(epsilon, chosen({}).epsilon.typical());
 }
 
 // The smallest noise is that of clean clouds, and 5 % more of it changes no width by more than 10 %.
 TEST(ChooseSettings, WidthsFollowTheNoiseWithoutAJump) {
   const double h = cloud().set.spacing();
   const auto widths = [](const Settings& s) {
-    return std::vector<double>{s.epsilon, s.refinement_width, s.polish_epsilon, s.polish_width};
+    return std::vector<double>{s.epsilon.typical(), s.refinement_width.typical(), s.polish_epsilon.typical(), s.polish_width.typical()};
   };
   EXPECT_EQ(widths(chosen({}, 1e-6 * h)), widths(chosen({})));
   EXPECT_EQ(chosen({}, 1e-6 * h).schedule_text, chosen({}).schedule_text);
@@ -81,10 +81,10 @@ TEST(ChooseSettings, AWideEpsilonMeansTheNoiseThatItHides) {
   for (const double noise : {0.8, 1.5, 3.0}) {
     const Settings noisy = chosen({}, noise * h);
     Options options;
-    options.epsilon = {Length::Unit::kSpacing, noisy.epsilon / h};
+    options.epsilon = {Length::Unit::kSpacing, noisy.epsilon.typical() / h};
     const Settings wide = chosen(options);
     EXPECT_NEAR(wide.noise, noise * h, 1e-9 * h);
-    EXPECT_NEAR(wide.polish_width, noisy.polish_width, 1e-9 * h);
+    EXPECT_NEAR(wide.polish_width.typical(), noisy.polish_width.typical(), 1e-9 * h);
   }
 }
 

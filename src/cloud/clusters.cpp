@@ -13,23 +13,27 @@ constexpr int kLevels = 21;  // bits per axis of a Morton code
 }  // namespace
 
 // The points of a cell follow each other, and centroids lie in their cells: both sorts agree.
-Clusters cluster_points(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, double side) {
+Clusters cluster_points(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, double side,
+                        const std::vector<double>& relative_spacing) {
   const int level = std::clamp(static_cast<int>(std::ceil(std::log2(2 / side))), 0, kLevels);
   const int shift = 3 * (kLevels - level);
   Clusters clusters;
   clusters.cluster_of.resize(points.size());
   for (std::size_t begin = 0; begin < points.size();) {
     Vec3 sum{0, 0, 0};
+    double area = 0;
     std::size_t end = begin;
     for (; end < points.size() && morton[end] >> shift == morton[begin] >> shift; ++end) {
       for (std::size_t a = 0; a < 3; ++a) sum[a] += points[end][a];
+      area += relative_spacing.empty() ? 1 : relative_spacing[end] * relative_spacing[end];
       clusters.cluster_of[end] = static_cast<std::uint32_t>(clusters.points.size());
     }
     const auto count = static_cast<double>(end - begin);
     const Vec3 centroid{sum[0] / count, sum[1] / count, sum[2] / count};
     clusters.points.push_back(centroid);
     clusters.morton.push_back(morton_code(centroid));
-    clusters.multiplicity.push_back(count);
+    clusters.multiplicity.push_back(area);
+    if (!relative_spacing.empty()) clusters.relative_spacing.push_back(std::sqrt(area / count));
     begin = end;
   }
   return clusters;

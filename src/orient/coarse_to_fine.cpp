@@ -26,9 +26,10 @@ constexpr std::size_t kOpenPoints = 10000;
 
 Settings coarser(Settings settings) {
   settings.spacing *= kSpacingRatio;
-  settings.epsilon *= kSpacingRatio;
-  settings.coarsest_epsilon *= kSpacingRatio;
-  settings.refinement_width *= kSpacingRatio;
+  for (KernelWidth* width : {&settings.epsilon, &settings.coarsest_epsilon, &settings.refinement_width}) {
+    width->points *= kSpacingRatio;
+    width->noise *= kSpacingRatio;
+  }
   settings.winding_weight *= kCubeRatio;
   settings.doubtful_winding_weight *= kCubeRatio;
   settings.tolerance = settings.start_tolerance;
@@ -56,8 +57,8 @@ std::vector<double> spacing_of(const LevelCloud& cloud, const Settings& settings
   return spacing;
 }
 
-// A sum of this width where the relative spacing is 1.
-FastSum sum_over(const LevelCloud& cloud, const Settings& settings, double width, const SumPlan& plan, const Stages& stages) {
+// A sum of kernels of this width.
+FastSum sum_over(const LevelCloud& cloud, const Settings& settings, const KernelWidth& width, const SumPlan& plan, const Stages& stages) {
   return {cloud.points, cloud.morton, local_widths(width, settings, spacing_of(cloud, settings)), plan, stages.cancel()};
 }
 
@@ -128,9 +129,11 @@ IterativeResult solve_from_zero(const LevelCloud& cloud, const Settings& setting
 IterativeResult solve_on(FastSum& field, const LevelCloud& cloud, const Settings& settings, double share, Stages& stages,
                          std::vector<Vec3> gradient) {
   const std::vector<double> spacing = spacing_of(cloud, settings);
-  FastSum sum = settings.epsilon <= settings.refinement_width ? FastSum(field, local_widths(settings.epsilon, settings, spacing))
-                                                              : sum_over(cloud, settings, settings.epsilon, settings.sums, stages);
-  gradient_to_areas(sum, point_areas(settings, spacing, {}), gradient);
+  const bool is_narrower =
+      settings.epsilon.points <= settings.refinement_width.points && settings.epsilon.noise <= settings.refinement_width.noise;
+  FastSum sum = is_narrower ? FastSum(field, local_widths(settings.epsilon, settings, spacing))
+                            : sum_over(cloud, settings, settings.epsilon, settings.sums, stages);
+  gradient_to_areas(sum, point_areas(settings, spacing), gradient);
   return solve_for_areas(sum, cloud, settings, settings.winding_weight,
                          {std::move(gradient), settings.continued_schedule, settings.continued_tolerance, [&](int step, int steps, double) {
                             stages.progress(share * (kCoarseShare + (1 - kCoarseShare) * step / steps));
@@ -162,7 +165,7 @@ Level solve_level(const LevelCloud& cloud, const Settings& settings, double shar
   };
   if (!starts_coarse(settings, cloud.points.size())) {
     level.result = solve_from_zero(cloud, settings, share, stages);
-    if (settings.refinement_width > 0) make_field();
+    if (settings.refinement_width.typical() > 0) make_field();
     return level;
   }
   make_field();
@@ -178,7 +181,7 @@ Solved solve_coarse_to_fine(const std::vector<Vec3>& points, const std::vector<s
                             Stages& stages, const Known& known) {
   Level level = solve_level({points, morton, known.relative_spacing}, settings, 1, stages, known.gradient);
   stages.begin("refine");
-  if (settings.refinement_width == 0) return {std::move(level.result), {}};
+  if (settings.refinement_width.typical() == 0) return {std::move(level.result), {}};
   Refinement refinement = refine_normals(*level.field, level.result.eta);
   for (std::size_t i = 0; i < known.relative_spacing.size(); ++i) refinement.strength[i] *= known.relative_spacing[i];
   return {std::move(level.result), std::move(refinement)};

@@ -15,10 +15,10 @@ constexpr double kMostArea = 3;  // of the areas handed in, and its inverse the 
 
 }  // namespace
 
-Widths local_widths(double width, const Settings& settings, const std::vector<double>& spacing) {
-  if (spacing.empty()) return Widths(width);
+Widths local_widths(const KernelWidth& width, const Settings& settings, const std::vector<double>& spacing) {
+  if (spacing.empty()) return Widths(width.typical());
   std::vector<double> widths(spacing.size());
-  for (std::size_t i = 0; i < widths.size(); ++i) widths[i] = width / settings.spacing * spacing[i];
+  for (std::size_t i = 0; i < widths.size(); ++i) widths[i] = width.at(spacing[i] / settings.spacing);
   return Widths(std::move(widths));
 }
 
@@ -37,25 +37,22 @@ void gradient_to_areas(FastSum& sum, const std::vector<double>& areas, std::vect
   }
 }
 
-std::vector<double> point_areas(const Settings& settings, const std::vector<double>& spacing, const std::vector<double>& multiplicity) {
-  if (spacing.empty() && multiplicity.empty()) return {settings.spacing * settings.spacing};
-  std::vector<double> areas(std::max(spacing.size(), multiplicity.size()));
-  for (std::size_t i = 0; i < areas.size(); ++i) {
-    areas[i] = spacing.empty() ? settings.spacing * settings.spacing * multiplicity[i] : spacing[i] * spacing[i];
-  }
+std::vector<double> point_areas(const Settings& settings, const std::vector<double>& spacing) {
+  if (spacing.empty()) return {settings.spacing * settings.spacing};
+  std::vector<double> areas = spacing;
+  for (double& a : areas) a *= a;
   return areas;
 }
 
-Polished polish(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
-                const std::vector<double>& spacing, const std::vector<double>& multiplicity, const Refinement& refined, Stages& stages) {
-  FastSum wider(points, morton, local_widths(settings.polish_width, settings, spacing), settings.sums, stages.cancel());
-  FastSum sum(wider, local_widths(settings.polish_epsilon, settings, spacing));
-  EnergySystem system(sum, settings.polish_damping, settings.polish_winding_weight, multiplicity);
+Polished polish(const PolishCloud& cloud, const Settings& settings, const Refinement& refined, Stages& stages) {
+  FastSum wider(cloud.points, cloud.morton, local_widths(settings.polish_width, settings, cloud.spacing), settings.sums, stages.cancel());
+  FastSum sum(wider, local_widths(settings.polish_epsilon, settings, cloud.spacing));
+  EnergySystem system(sum, settings.polish_damping, settings.polish_winding_weight, cloud.multiplicity);
   std::vector<Vec3> start = refined.normals;
   for (std::size_t i = 0; i < start.size(); ++i) {
     for (double& c : start[i]) c *= refined.strength[i];
   }
-  gradient_to_areas(sum, point_areas(settings, spacing, multiplicity), start);
+  gradient_to_areas(sum, cloud.areas, start);
   const std::vector<Steps> schedule{{settings.polish_steps, StepKind::kConjugateGradient}};
   const auto still_going = [&stages](int, int, double) { stages.still_going(); };
   Polished polished;

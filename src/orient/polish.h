@@ -12,13 +12,11 @@
 
 namespace g3r {
 
-/// `width` at settings.spacing and in proportion to the local `spacing` elsewhere; the same everywhere if that is empty.
-[[nodiscard]] Widths local_widths(double width, const Settings& settings, const std::vector<double>& spacing);
+/// `width` at the local `spacing`; the typical one everywhere if that is empty.
+[[nodiscard]] Widths local_widths(const KernelWidth& width, const Settings& settings, const std::vector<double>& spacing);
 
-/// The square of `spacing` at every point; if that is empty, that of settings.spacing for all, times `multiplicity` unless that is empty
-/// too.
-[[nodiscard]] std::vector<double> point_areas(const Settings& settings, const std::vector<double>& spacing,
-                                              const std::vector<double>& multiplicity);
+/// The square of `spacing` at every point, or one value for all, that of settings.spacing, if it is empty.
+[[nodiscard]] std::vector<double> point_areas(const Settings& settings, const std::vector<double>& spacing);
 
 /// Area vectors from a winding gradient: directions kept, lengths linear up to the median and constant beyond, so that thin parts whose
 /// sides the gradient cannot distinguish start near zero and not on the wrong side; times `areas`, what one point stands for (one for
@@ -31,14 +29,19 @@ struct Polished {
   Refinement refinement;
 };
 
+/// The points of a polish, in canonical order.
+struct PolishCloud {
+  const std::vector<Vec3>& points;
+  const std::vector<std::uint64_t>& morton;
+  std::vector<double> spacing;       ///< at each point, which both widths follow; empty: the typical one everywhere
+  std::vector<double> areas;         ///< that each point stands for, or one for all
+  std::vector<double> multiplicity;  ///< how much the equations of each point count; empty: ones
+};
+
 /// settings.polish_steps of conjugate gradients on the energy form at settings.polish_epsilon, started from `refined`, and the refinement
 /// at settings.polish_width. The start has the right areas, which the first solve does not (its eta are 0.6 to 1.3 of them), so a few
 /// steps suffice. Once: a second round rounds edges. This step is ours, not the paper's. Measured:
 /// docs/evidence/formulation.md.
-/// `spacing`: smoothed_spacing(); both widths follow it, in proportion to settings.spacing. Or empty: the same widths everywhere.
-/// `multiplicity`: how many points each one stands for (empty: ones), which `spacing` shows too where it is given.
-[[nodiscard]] Polished polish(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
-                              const std::vector<double>& spacing, const std::vector<double>& multiplicity, const Refinement& refined,
-                              Stages& stages);
+[[nodiscard]] Polished polish(const PolishCloud& cloud, const Settings& settings, const Refinement& refined, Stages& stages);
 
 }  // namespace g3r

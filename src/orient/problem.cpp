@@ -62,7 +62,7 @@ Problem prepare(const PointsView& points, const Known& known, const Options& opt
   choose_scales_and_scatter(problem, options);
   if (!options.wnnc_widths.empty() && options.method != Method::kWnnc) throw InvalidInput("wnnc_widths belong to the method wnnc");
   if (is_baseline(options.method)) {
-    const double epsilon = options.epsilon.unit == Length::Unit::kAuto ? 0 : problem.settings.epsilon;
+    const double epsilon = options.epsilon.unit == Length::Unit::kAuto ? 0 : problem.settings.epsilon.typical();
     problem.baseline = choose_baseline(options, epsilon, problem.spacing, problem.settings.sums);
   }
   return problem;
@@ -103,7 +103,7 @@ Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, 
   part.outliers = problem.outliers;  // those of the whole cloud: the part was solved for among them
   Options same = options;
   if (options.epsilon.unit == Length::Unit::kPercent) {  // of the whole cloud's box
-    same.epsilon = {Length::Unit::kInput, problem.cloud.frame.length_to_world(problem.settings.epsilon)};
+    same.epsilon = {Length::Unit::kInput, problem.cloud.frame.length_to_world(problem.settings.epsilon.typical())};
   }
   choose_scales_and_scatter(part, same);
   return part;

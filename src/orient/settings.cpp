@@ -123,19 +123,19 @@ void follow_noise(double noise, const Options& options, std::size_t points, Sett
   const double width = noisy_width(noise) * s.spacing;
   const double patch = std::pow(noise, kNoisyPolishPower) * s.spacing;
   s.noise = noise * s.spacing;
-  s.refinement_width = std::max(s.refinement_width, width);
+  s.refinement_width.noise = width;
   if (options.epsilon.unit == Length::Unit::kAuto) {
-    s.epsilon = std::max(s.epsilon, width);
-    s.coarsest_epsilon = std::max(s.coarsest_epsilon, s.epsilon);
+    s.epsilon.noise = width;
+    s.coarsest_epsilon.noise = width;
   }
-  s.polish_epsilon = std::max(s.polish_epsilon, kNoisyPolishEpsilon * patch);
-  s.polish_width = std::max(s.polish_width, kNoisyPolishWidth * patch);
+  s.polish_epsilon = {s.polish_epsilon.points, kNoisyPolishEpsilon * patch, 1 - kNoisyPolishPower};
+  s.polish_width = {s.polish_width.points, kNoisyPolishWidth * patch, 1 - kNoisyPolishPower};
   if (s.polish_steps > 0) s.polish_steps = kNoisyPolishSteps;
   s.polish_damping = kNoisyDamping / s.spacing;
   s.polish_winding_weight = kNoisyPolishWindingWeight * trust(noise) * cube(s.spacing);
   s.unsure_of_noise = kUnsurePerNoise * noise;
   if (!s.doubtful_schedule.empty()) s.doubtful_schedule = {kDoubtfulNoisy};
-  if (s.epsilon > kWideEpsilon * s.spacing) s.cluster_side = kClusterSide * s.epsilon;
+  if (s.epsilon.typical() > kWideEpsilon * s.spacing) s.cluster_side = kClusterSide * s.epsilon.typical();
   if (noise > kStartsUnderNoise) s.coarse_to_fine = false;
   if (options.schedule.empty() && !starts_coarse(s, points)) {
     const double steps = std::clamp(kStepsPerNoise / noise, kFewestNoisySteps, static_cast<double>(s.schedule.front().count));
@@ -181,20 +181,21 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   }
   const bool green = s.method == Method::kGreen;
   s.constant_weight = paper ? 1 : kGreenConstantWeight;
-  s.epsilon = (green ? kGreenEpsilon : kEnergyEpsilon) * spacing;
-  if (paper) s.epsilon = std::max(paper_epsilon(cloud), kPaperLeastEpsilon * spacing);
+  s.epsilon.points = (green ? kGreenEpsilon : kEnergyEpsilon) * spacing;
+  if (paper) s.epsilon.points = std::max(paper_epsilon(cloud), kPaperLeastEpsilon * spacing);
   if (options.epsilon.unit != Length::Unit::kAuto) {
     require(options.epsilon.value > 0 && std::isfinite(options.epsilon.value), "epsilon must be a positive number");
-    s.epsilon = in_frame(options.epsilon, cloud, spacing);
+    s.epsilon.points = in_frame(options.epsilon, cloud, spacing);
   }
   require(options.noise.unit == Length::Unit::kAuto || (s.method == Method::kEnergy && !paper),
           "noise belongs to the method energy of the default preset");
   s.spacing = spacing;
-  s.coarsest_epsilon = green || options.epsilon.unit != Length::Unit::kAuto ? s.epsilon : kCoarsestEpsilon * spacing;
-  s.refinement_width = paper ? 0 : kRefinementWidth * spacing;
+  s.coarsest_epsilon = s.epsilon;
+  if (!green && options.epsilon.unit == Length::Unit::kAuto) s.coarsest_epsilon.points = kCoarsestEpsilon * spacing;
+  s.refinement_width.points = paper ? 0 : kRefinementWidth * spacing;
   s.polish_steps = paper || contains(s.without, Step::kPolish) ? 0 : kPolishSteps;
-  s.polish_epsilon = std::min(s.epsilon, kPolishEpsilon * spacing);
-  s.polish_width = kPolishWidth * spacing;
+  s.polish_epsilon.points = std::min(s.epsilon.points, kPolishEpsilon * spacing);
+  s.polish_width.points = kPolishWidth * spacing;
   s.polish_winding_weight = kPolishWindingWeight * cube(spacing);
 
   require(options.solver != Solver::kDense || green, "the dense solver belongs to the method green");
@@ -215,8 +216,8 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   s.doubtful_winding_weight = kDoubtfulWindingWeight * cube(spacing);
   s.doubtful_tolerance = options.tolerance >= 0 ? options.tolerance : kDoubtfulTolerance;
   s.start_tolerance = std::max(s.tolerance, kStartTolerance);
-  const bool wide = s.epsilon > kWideEpsilon * spacing && options.noise.unit == Length::Unit::kAuto;
-  const double scatter = paper || green ? 0 : wide ? hidden_noise(s.epsilon / spacing) : noise / spacing;
+  const bool wide = s.epsilon.points > kWideEpsilon * spacing && options.noise.unit == Length::Unit::kAuto;
+  const double scatter = paper || green ? 0 : wide ? hidden_noise(s.epsilon.points / spacing) : noise / spacing;
   if (scatter > 0) follow_noise(scatter, options, cloud.size(), s);
   const bool light = starts_coarse(s, cloud.size()) || among_outliers;
   s.winding_weight = (light ? kContinuedWindingWeight : kWindingWeight) * trust(scatter) * cube(spacing);

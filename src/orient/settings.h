@@ -9,12 +9,25 @@
 
 #include <g3r/g3r.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace g3r {
+
+/// Width of kernels that hide single points and what noise scatters them.
+struct KernelWidth {
+  double points = 0;  ///< at the typical spacing; in proportion to the local one
+  double noise = 0;   ///< the least one under noise, at the typical spacing,
+  double power = 0;   ///< and the power of the local spacing with which it grows
+
+  /// Where the points are `relative` times as far apart as is typical.
+  [[nodiscard]] double at(double relative) const { return std::max(points * relative, noise * std::pow(relative, power)); }
+  [[nodiscard]] double typical() const { return at(1); }
+};
 
 /// Everything orient() needs to know, in normalised units. Values without an option are explained in docs/algorithms/orientation.md.
 struct Settings {
@@ -26,16 +39,16 @@ struct Settings {
   double winding_weight = 0;        ///< energy: l, length^3
   double spacing = 0;
   double noise = 0;  ///< that the widths are made for, 0 when clean
-  double epsilon = 0;
-  double coarsest_epsilon = 0;            ///< of the first solve, at its own spacing: without a start a wider one does better
-  double refinement_width = 0;            ///< 0: no refinement
+  KernelWidth epsilon;
+  KernelWidth coarsest_epsilon;           ///< of the first solve, at its own spacing: without a start a wider one does better
+  KernelWidth refinement_width;           ///< 0: no refinement
   double cluster_side = 0;                ///< energy: solve on clusters of points of this size; 0: on the points
   bool coarse_to_fine = false;            ///< start from a solution on fewer points
   int polish_steps = 0;                   ///< conjugate gradients of polish(); 0: no polish
-  double polish_epsilon = 0;              ///< of polish()
+  KernelWidth polish_epsilon;             ///< of polish()
   double polish_damping = 0;              ///< of polish()
   double polish_winding_weight = 0;       ///< of polish()
-  double polish_width = 0;                ///< of the refinement that ends polish()
+  KernelWidth polish_width;               ///< of the refinement that ends polish()
   std::vector<Steps> schedule;            ///< from eta = 0
   std::vector<Steps> continued_schedule;  ///< from a coarse solution
   std::vector<Steps> doubtful_schedule;   ///< after it, where many sides are unsure; empty: never

@@ -29,6 +29,7 @@ constexpr std::size_t kFewestApart = 100;  // points that are solved for again w
 constexpr double kMinMinority = 1e-3;      // share of the points against most of their facet, from which facets are solved for
 constexpr float kChoice = 0.5F;            // certainty of an open surface that has no outside
 constexpr double kBetweenSites = 0.7;      // site spacings, of the field where there are no sites: narrower shows single ones
+constexpr double kChance = 1.12;           // of the typical spacing, up to which noise alone may have scattered points so far apart
 constexpr int kFacetRounds = 3;            // points on no facet come right after those on one, and facets grow
 
 bool runs(const Problem& problem, Step step) { return !contains(problem.settings.without, step); }
@@ -48,16 +49,27 @@ Solution solve_by_baseline(const Problem& problem, Stages& stages, Stats& stats)
   return {std::move(result.eta), {std::move(result.normals), std::move(result.strength)}, {}};
 }
 
-// How many times as far apart the points are as typical ones, 1 at least; kernels are as much wider. Of clean points as they lie, unless
-// the width is given; of others only as far as they have been thinned.
+// How many times as far apart the points are as typical ones, 1 at least; kernels are as much wider. Unless the width is given: then only
+// as far as they have been thinned.
 std::vector<double> relative_spacing(const Problem& problem, const Options& options) {
   const bool is_free = problem.settings.method == Method::kEnergy && options.epsilon.unit == Length::Unit::kAuto;
   const std::vector<double>& thinned = problem.known.relative_spacing;
-  if (!is_free || !problem.is_clean() || !runs(problem, Step::kLocalWidths)) return thinned;
+  if (!is_free || !runs(problem, Step::kLocalWidths)) return thinned;
   std::vector<double> relative = spacing_before_thinning(problem.cloud.set.smoothed_spacing(), thinned);
-  for (double& h : relative) h = std::max(1.0, h / problem.spacing);
+  const double typical = (problem.is_clean() ? 1 : kChance) * problem.spacing;
+  for (double& h : relative) h = std::max(1.0, h / typical);
   for (std::size_t i = 0; i < thinned.size(); ++i) relative[i] *= thinned[i];
   return relative;
+}
+
+std::vector<double> times(double factor, std::vector<double> values) {
+  for (double& v : values) v *= factor;
+  return values;
+}
+
+std::vector<double> squares(std::vector<double> values) {
+  for (double& v : values) v *= v;
+  return values;
 }
 
 // Area vectors, and their refinement unless its width is 0.
@@ -72,14 +84,14 @@ Solution solve_equations(const Problem& problem, const Options& options, Stages&
     return {std::move(solved.result.eta), std::move(solved.refinement), {}};
   }
   const HarmonicValues u = weighted_harmonics(s.harmonics, points, s.constant_weight);
-  DenseResult dense = solve_dense(points, s.epsilon, u, options.condition_number, stages.cancel());
+  DenseResult dense = solve_dense(points, s.epsilon.typical(), u, options.condition_number, stages.cancel());
   stats.converged = true;
   stats.condition_number = dense.condition_number;
   Solution solution;
   solution.eta = std::move(dense.eta);
   stages.begin("refine");
-  if (s.refinement_width == 0) return solution;
-  FastSum sum(points, problem.cloud.morton(), Widths(s.refinement_width), s.sums, stages.cancel());
+  if (s.refinement_width.typical() == 0) return solution;
+  FastSum sum(points, problem.cloud.morton(), Widths(s.refinement_width.typical()), s.sums, stages.cancel());
   solution.refinement = refine_normals(sum, solution.eta);
   return solution;
 }
@@ -145,14 +157,14 @@ Solution solve_on_points(const Problem& problem, const Options& options, Stages&
   const Settings& s = problem.settings;
   const PointSet& set = problem.cloud.set;
   Solution solution = solve_equations(problem, options, stages, stats);
-  if (s.refinement_width == 0) solution.refinement.normals = normalised(solution.eta);
+  if (s.refinement_width.typical() == 0) solution.refinement.normals = normalised(solution.eta);
   if (s.polish_steps == 0) return solution;
-  std::vector<double> thinned = problem.known.relative_spacing;
-  std::vector<double> multiplicity = thinned;
-  for (double& h : thinned) h *= problem.spacing;
-  for (double& m : multiplicity) m *= m;
-  const std::vector<double>& local = problem.is_clean() && runs(problem, Step::kLocalWidths) ? set.smoothed_spacing() : thinned;
-  Polished polished = polish(set.points(), set.morton(), s, local, multiplicity, solution.refinement, stages);
+  const bool is_exact = problem.is_clean() && runs(problem, Step::kLocalWidths);
+  const std::vector<double> relative = relative_spacing(problem, options);
+  const std::vector<double> local = is_exact ? set.smoothed_spacing() : times(problem.spacing, relative);
+  const std::vector<double> multiplicity = squares(is_exact ? problem.known.relative_spacing : relative);
+  const PolishCloud cloud{set.points(), set.morton(), local, point_areas(s, local), multiplicity};
+  Polished polished = polish(cloud, s, solution.refinement, stages);
   std::vector<Vec3>& normals = polished.refinement.normals;
   const auto find_open = [&](std::vector<Vec3>& sides) {
     if (!runs(problem, Step::kOpenSurfaces)) return OpenSurfaces{};
@@ -175,34 +187,38 @@ Solution solve_on_points(const Problem& problem, const Options& options, Stages&
   return {std::move(polished.eta), std::move(polished.refinement), std::move(surfaces)};
 }
 
-Refinement solve_clusters(const Clusters& clusters, const Settings& s, Stages& stages, Stats& stats) {
+Refinement solve_clusters(const Clusters& clusters, const std::vector<double>& spacing, const Settings& s, Stages& stages, Stats& stats) {
   stages.begin("solve");
-  FastSum sum(clusters.points, clusters.morton, Widths(s.epsilon), s.first_sums, stages.cancel());
+  FastSum sum(clusters.points, clusters.morton, local_widths(s.epsilon, s, spacing), s.first_sums, stages.cancel());
   EnergySystem system(sum, 0, s.winding_weight, clusters.multiplicity);
   IterativeResult result = solve_iteratively(system, s.schedule, s.tolerance, {},
                                              [&](int step, int steps, double) { stages.progress(static_cast<double>(step) / steps); });
   record(s, result, stats);
   stages.begin("refine");
-  FastSum wide(clusters.points, clusters.morton, Widths(s.refinement_width), s.sums, stages.cancel());
+  FastSum wide(clusters.points, clusters.morton, local_widths(s.refinement_width, s, spacing), s.sums, stages.cancel());
   return refine_normals(wide, system.to_areas(std::move(result.eta)));
 }
 
-// Where the kernels are so wide that they see groups of points: the same equations on one point per group, all of whose area vectors are
-// equal. The refinement is evaluated at every point.
-Solution solve_on_clusters(const Problem& problem, Stages& stages, Stats& stats) {
+// Where the kernels are so wide that they see groups of points: the same equations on one point per group, whose area vectors are equal
+// but for the areas that they stand for. The refinement is evaluated at every point.
+Solution solve_on_clusters(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
   const Settings& s = problem.settings;
-  const Clusters clusters = cluster_points(problem.cloud.points(), problem.cloud.morton(), s.cluster_side);
-  const Refinement first = solve_clusters(clusters, s, stages, stats);
-  Polished polished = polish(clusters.points, clusters.morton, s, {}, clusters.multiplicity, first, stages);
-  std::vector<Vec3>& eta = polished.eta;
-  const FastSum field(clusters.points, clusters.morton, Widths(s.polish_width), s.sums, stages.cancel());
+  const PointSet& set = problem.cloud.set;
+  const std::vector<double> relative = relative_spacing(problem, options);
+  const Clusters clusters = cluster_points(set.points(), set.morton(), s.cluster_side, relative);
+  const std::vector<double> spacing = times(problem.spacing, clusters.relative_spacing);
+  const Refinement first = solve_clusters(clusters, spacing, s, stages, stats);
+  const std::vector<double> areas = times(problem.spacing * problem.spacing, clusters.multiplicity);
+  const std::vector<Vec3> eta = polish({clusters.points, clusters.morton, spacing, areas, clusters.multiplicity}, s, first, stages).eta;
   Solution solution;
   solution.eta.resize(problem.cloud.size());
   for (std::size_t i = 0; i < solution.eta.size(); ++i) {
     const std::uint32_t c = clusters.cluster_of[i];
-    for (std::size_t a = 0; a < 3; ++a) solution.eta[i][a] = eta[c][a] / clusters.multiplicity[c];
+    const double area = relative.empty() ? 1 : relative[i] * relative[i];
+    for (std::size_t a = 0; a < 3; ++a) solution.eta[i][a] = eta[c][a] * area / clusters.multiplicity[c];
   }
-  solution.refinement = unit_normals(field.winding_gradient_at(eta, problem.cloud.points(), stages.cancel()), solution.eta);
+  FastSum field(set.points(), set.morton(), local_widths(s.polish_width, s, times(problem.spacing, relative)), s.sums, stages.cancel());
+  solution.refinement = refine_normals(field, solution.eta);
   if (!runs(problem, Step::kOpenSurfaces)) return solution;
   solution.open_surfaces = find_open_surfaces(problem.cloud.set, problem.noise, s.sums, solution.refinement.normals, stages.cancel());
   if (!solution.open_surfaces.part.empty())
@@ -264,7 +280,7 @@ bool solve_apart(const Problem& problem, const std::vector<std::uint32_t>& some,
 Solution solve(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
   if (problem.baseline) return solve_by_baseline(problem, stages, stats);
   if (problem.line_distance > 0) return solve_on_sites(problem, options, stages, stats);
-  if (problem.settings.cluster_side > 0) return solve_on_clusters(problem, stages, stats);
+  if (problem.settings.cluster_side > 0) return solve_on_clusters(problem, options, stages, stats);
   return solve_on_points(problem, options, stages, stats);
 }
 
