@@ -155,11 +155,11 @@ void add_open_surfaces(const OpenSurfaces& surfaces, std::vector<float>& confide
                            (surfaces.worst_defect < kSidesAgree ? "their sides are consistent" : "their sides do not agree everywhere"));
 }
 
-// Sides of closed surfaces that their field does not show to be right are worth less.
+// Sides of closed surfaces that their field does not show to be right are worth less, those on open ones that do not agree nothing.
 void certify_sides(const OpenSurfaces& surfaces, std::vector<float>& confidence) {
   for (std::size_t i = 0; i < surfaces.certified.size(); ++i) {
-    if (!surfaces.part.empty() && surfaces.part[i] != OpenSurfaces::kNone) continue;
-    const float least = std::min(confidence[i], surfaces.uncertified);
+    const bool is_open = !surfaces.part.empty() && surfaces.part[i] != OpenSurfaces::kNone;
+    const float least = is_open ? 0 : std::min(confidence[i], surfaces.uncertified);
     confidence[i] = least + (confidence[i] - least) * surfaces.certified[i];
   }
 }
@@ -169,7 +169,8 @@ void judge(const CanonicalCloud& cloud, const std::vector<float>& confidence, St
   for (const float c : confidence) sum += static_cast<double>(c);
   stats.confidence_mean = sum / static_cast<double>(cloud.size());
   stats.confidence_below_half = unsure_share(confidence);
-  if (!stats.converged && stats.open_share < 1) {
+  if (stats.open_share == 1) stats.converged = true;  // no side and no direction comes from the equations
+  if (!stats.converged) {
     stats.warnings.emplace_back("the solver did not reach its tolerance; normals may be less accurate");
   }
   stats.consistent = stats.confidence_below_half + stats.undecided_share <= kManyUnsure;

@@ -123,6 +123,18 @@ TEST(Hints, ConfidenceIsTheAgreementOfTheVotes) {
 }
 
 // hints: where the points decide the side of a patch, it takes two thirds of the votes to turn it.
+TEST(Hints, PointsThatDoNotAgreeWithTheirPatchHaveLessConfidence) {
+  Sides sides;
+  sides.add_square({0, 0, 0}, 2, -1, 0);
+  sides.patches.agreed.assign(sides.points.size(), 1);
+  sides.patches.agreed[7] = 0.25F;
+  Hints hints;
+  hints.up = Vec3{0, 0, 1};
+  static_cast<void>(sides.follow(hints));
+  EXPECT_EQ(sides.confidence[6], 1.0F);
+  EXPECT_EQ(sides.confidence[7], 0.25F);
+}
+
 TEST(Hints, AKnownSideIsTurnedByTwoThirds) {
   for (const double least_z : {-0.5, -0.9}) {
     Sides sides;

@@ -72,5 +72,20 @@ TEST(TwoWalls, VoxelsAreNone) {
   EXPECT_FALSE(found(points, 0.3));
 }
 
+// A pixel raster sees a slope in steps of depth: terraces, which lie side by side.
+TEST(TwoWalls, StepsOfDepthAreNone) {
+  const double h = 2 / std::sqrt(static_cast<double>(kPoints));
+  for (const double step : {0.3, 0.6, 1.0}) {
+    std::vector<Vec3> points;
+    for (double x = -1; x < 1; x += h) {
+      for (double y = -1; y < 1; y += h) {
+        const double z = 0.5 * (x * x + 0.7 * y * y) + 0.31 * x;
+        points.push_back({x, y, step * h * std::round(z / (step * h))});
+      }
+    }
+    EXPECT_FALSE(found(points, 0)) << step;
+  }
+}
+
 }  // namespace
 }  // namespace g3r

@@ -43,6 +43,7 @@ Patches patches_of(const OpenSurfaces& surfaces) {
   Patches patches;
   patches.of = surfaces.part;
   for (const float certainty : surfaces.certainty) patches.is_choice.push_back(certainty < 1 ? 1 : 0);
+  patches.agreed = surfaces.certified;
   return patches;
 }
 

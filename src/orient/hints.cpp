@@ -191,7 +191,7 @@ class Following {
       if (!is_choice(i) || is_closed(i) || !patches[patches_.of[i]].count()) continue;
       const double agreement = 1 - patches[patches_.of[i]].share_against();
       effect_.decided[i] = agreement >= kMostOf ? 1 : 0;
-      sided_.confidence[i] = static_cast<float>(agreement);
+      sided_.confidence[i] = static_cast<float>(agreement) * (patches_.agreed.empty() ? 1 : patches_.agreed[i]);
       if (effect_.decided[i] == 0) continue;
       agreed += agreement;
       ++all;

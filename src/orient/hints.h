@@ -17,6 +17,7 @@ struct Patches {
   static constexpr std::uint32_t kNone = 0xffffffff;
   std::vector<std::uint32_t> of;        ///< N: number of the patch a point belongs to, or kNone: it lies on a closed part; empty: all do
   std::vector<std::uint8_t> is_choice;  ///< N: not 0 where nothing tells the side of the patch; empty: nowhere
+  std::vector<float> agreed;            ///< N, 0..1: how far the side of a point is that of its patch; empty: everywhere
 };
 
 /// Points with their sides, in canonical order.
@@ -40,12 +41,12 @@ struct HintEffect {
 ///   sensor s:  n . (s - p) / |s - p|      up u:  n . u / |u|      inside q:  - n . (q - p) / |q - p|
 /// so that a point counts by how squarely it is seen, and not by how near it is; `seen_from_inside` without sensors votes like a sensor in
 /// the median of the points. A patch whose votes are a fiftieth of its points or less keeps its side. Where the side was a choice the
-/// confidence becomes the share of the votes that agree, and two thirds decide it; elsewhere it takes two thirds to turn a patch. Then
-/// pieces of a patch that are not consistent with the rest of it are turned by two thirds of their own votes: what a gap separates has no
-/// other way to agree. Closed parts have one side: they are turned by `seen_from_inside` and by sensors inside them, where the winding
-/// number of `eta` is 1/4 and more (outside it is 0, however near or far), or, if the sensor of each point is known, by two thirds of the
-/// votes. `near`: Neighbours::of_all(k), or empty: patches have no pieces; `spacing`: of the points, for the winding number. O(N
-/// log(sensors) + N k), and O(N) for each of at most 32 sensors. Throws Cancelled.
+/// confidence becomes the share of the votes that agree, times `agreed`, and two thirds decide it; elsewhere it takes two thirds to turn a
+/// patch. Then pieces of a patch that are not consistent with the rest of it are turned by two thirds of their own votes: what a gap
+/// separates has no other way to agree. Closed parts have one side: they are turned by `seen_from_inside` and by sensors inside them, where
+/// the winding number of `eta` is 1/4 and more (outside it is 0, however near or far), or, if the sensor of each point is known, by two
+/// thirds of the votes. `near`: Neighbours::of_all(k), or empty: patches have no pieces; `spacing`: of the points, for the winding number.
+/// O(N log(sensors) + N k), and O(N) for each of at most 32 sensors. Throws Cancelled.
 [[nodiscard]] HintEffect follow_hints(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near, double spacing,
                                       const Patches& patches, const Hints& hints, const SidedPoints& sided,
                                       const std::atomic<bool>* cancel = nullptr);

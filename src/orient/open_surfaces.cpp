@@ -35,10 +35,12 @@ constexpr double kLeastWeight = 0.02;  // of a site whose surroundings are a bal
 // Hypothesis.
 constexpr int kTurns = 3;               // rounds of the winding gradient
 constexpr double kTurnWidth = 2;        // site spacings: wider than the grooves that the sampling cannot resolve
+constexpr double kAfar = 4;             // site spacings, the same where sides do not agree; more turns the rims of small surfaces
+constexpr double kAgreed = 0.5;         // of the jump that a side has to show: less is more against it than for it
+constexpr double kHidden = 0.25;        // of the jump, below which the direction is that from afar; rims of open surfaces show 0.4 and more
 constexpr double kGradientWidth = 0.7;  // site spacings, from sites to points
 constexpr double kAccuracy = 1e-2;      // of the sums that tell whether a part encloses something
 constexpr double kFarBetter = 0.4;      // of the jump defect as given, up to which a hypothesis is taken where unrest alone does not decide
-constexpr double kClearlyLess = 0.8;    // of the jump defect of a finer scale, up to which a coarser one is taken
 // Verdict.
 constexpr double kUnrest = 0.08;      // mean of a part that is open: closed ones have up to 0.06, open ones 0.1 to 0.3
 constexpr double kUnrestNoisy = 0.2;  // the same where noise hides thin walls, whose field is open in places
@@ -135,18 +137,36 @@ class Search {
     return 2 * sum / static_cast<double>(points.size());
   }
 
-  // Normals of all points from the signs that neighbours agree on, at every scale.
+  // Normals of all points from the signs that neighbours agree on: the sides of every scale, the directions of the finest, so that they
+  // differ in sides only.
   [[nodiscard]] std::vector<std::vector<Vec3>> hypotheses() const {
     std::vector<std::vector<Vec3>> all{by_agreement(finest_, edges_)};
     Sites sites = coarser_than(finest_);
     while (static_cast<int>(all.size()) < kScales && sites.size() >= kFewestSites) {
-      all.push_back(by_agreement(sites, edges_of(sites)));
+      std::vector<Vec3> normals = by_agreement(sites, edges_of(sites));
+      for (std::size_t i = 0; i < normals.size(); ++i) {
+        normals[i] = vector::scale(all.front()[i], dot(all.front()[i], normals[i]) < 0 ? -1 : 1);
+      }
+      all.push_back(std::move(normals));
       sites = coarser_than(sites);
     }
     return all;
   }
 
+  // Normals of all points from the field of every part's best hypothesis, so wide that it sees no grooves.
+  [[nodiscard]] std::vector<Vec3> seen_from_afar(const std::vector<std::vector<Vec3>>& tried, const std::vector<std::size_t>& best) const {
+    std::vector<Vec3> chosen(points_.size());
+    for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i] = tried[best[part_of_point(i)]][i];
+    const FastSum field(finest_.points(), finest_.set.morton(), Widths(kAfar * finest_.set.spacing()), sums_, cancel_);
+    return unit_normals(field.winding_gradient_at(areas_of(finest_, at_sites(chosen)), points_, cancel_), chosen).normals;
+  }
+
  private:
+  static std::vector<Vec3> areas_of(const Sites& sites, std::vector<Vec3> normals) {
+    for (std::size_t s = 0; s < normals.size(); ++s) normals[s] = vector::scale(normals[s], sites.spacing()[s] * sites.spacing()[s]);
+    return normals;
+  }
+
   [[nodiscard]] Sites coarser_than(const Sites& sites) const {
     return place_sites(set_, std::max(kFirstScale * set_.spacing(), 2 * sites.distance));
   }
@@ -192,18 +212,13 @@ class Search {
     std::vector<Vec3> normals(count);
     for (std::size_t s = 0; s < count; ++s) normals[s] = vector::scale(sites.axis[s], signs.sign[s]);
     const double spacing = sites.set.spacing();
-    const auto areas = [&] {
-      std::vector<Vec3> eta(count);
-      for (std::size_t s = 0; s < count; ++s) eta[s] = vector::scale(normals[s], sites.spacing()[s] * sites.spacing()[s]);
-      return eta;
-    };
     FastSum wide(sites.points(), sites.set.morton(), Widths(kTurnWidth * spacing), sums_, cancel_);
-    for (int turn = 0; turn < kTurns; ++turn) normals = refine_normals(wide, areas()).normals;
+    for (int turn = 0; turn < kTurns; ++turn) normals = refine_normals(wide, areas_of(sites, normals)).normals;
     // Directions from a narrower field, where its side is the same.
     const FastSum field(wide, Widths(kGradientWidth * spacing));
     std::vector<Vec3> sided(points_.size());
     for (std::size_t i = 0; i < points_.size(); ++i) sided[i] = normals[sites.site_of[i]];
-    std::vector<Vec3> narrow = unit_normals(field.winding_gradient_at(areas(), points_, cancel_), sided).normals;
+    std::vector<Vec3> narrow = unit_normals(field.winding_gradient_at(areas_of(sites, normals), points_, cancel_), sided).normals;
     for (std::size_t i = 0; i < points_.size(); ++i) {
       if (dot(narrow[i], sided[i]) > 0) sided[i] = narrow[i];
     }
@@ -282,17 +297,18 @@ bool any(const std::vector<std::uint8_t>& parts) {
 // What is known of every part.
 struct Verdict {
   std::vector<std::uint8_t> is_open;
-  std::vector<std::uint8_t> is_doubtful;  // neither at rest nor shown to be open
-  std::vector<std::size_t> best;          // of the hypotheses
-  std::vector<double> defect;             // mean jump defect of the best
-  std::vector<double> enclosure;          // of the best
+  std::vector<std::uint8_t> is_doubtful;     // neither at rest nor shown to be open
+  std::vector<std::vector<double>> defects;  // jump defects of the sites, of every hypothesis
+  std::vector<std::size_t> best;             // of the hypotheses
+  std::vector<double> defect;                // mean jump defect of the best
+  std::vector<double> enclosure;             // of the best
 };
 
 // From the field of the given normals, unrest and jump defects being means of the parts.
 Verdict suspect(const Search& search, const std::vector<double>& unrest, const std::vector<double>& defect, double noise) {
   const std::size_t parts = search.parts();
-  Verdict verdict{std::vector<std::uint8_t>(parts, 0), std::vector<std::uint8_t>(parts, 0), std::vector<std::size_t>(parts, 0),
-                  std::vector<double>(parts, HUGE_VAL), std::vector<double>(parts, 0)};
+  Verdict verdict{std::vector<std::uint8_t>(parts, 0), std::vector<std::uint8_t>(parts, 0),  {},
+                  std::vector<std::size_t>(parts, 0),  std::vector<double>(parts, HUGE_VAL), std::vector<double>(parts, 0)};
   for (std::uint32_t p = 0; p < parts; ++p) {
     if (search.size(p) < kFewestSites) continue;
     if (unrest[p] <= kUnrest && defect[p] <= (noise > 0 ? kNoJumpNoisy : kNoJump)) continue;
@@ -307,9 +323,10 @@ Verdict suspect(const Search& search, const std::vector<double>& unrest, const s
 void choose(const Search& search, const std::vector<std::vector<Vec3>>& tried, const std::vector<double>& unrest,
             const std::vector<double>& defect, double noise, Verdict& verdict) {
   for (std::size_t h = 0; h < tried.size(); ++h) {
-    const std::vector<double> here = search.mean_of_parts(search.jump_defects(tried[h]));
+    verdict.defects.push_back(search.jump_defects(tried[h]));
+    const std::vector<double> here = search.mean_of_parts(verdict.defects[h]);
     for (std::size_t p = 0; p < here.size(); ++p) {
-      if (here[p] >= kClearlyLess * verdict.defect[p]) continue;
+      if (here[p] >= verdict.defect[p]) continue;
       verdict.defect[p] = here[p];
       verdict.best[p] = h;
     }
@@ -335,10 +352,13 @@ void choose(const Search& search, const std::vector<std::vector<Vec3>>& tried, c
 }
 
 // The normals of open parts, with their outside where they have one.
-OpenSurfaces choose(const Search& search, const std::vector<std::vector<Vec3>>& tried, const Verdict& verdict, std::vector<Vec3>& normals) {
+OpenSurfaces choose(const Search& search, const std::vector<std::vector<Vec3>>& tried, const Verdict& verdict, std::vector<float> certified,
+                    std::vector<Vec3>& normals) {
   OpenSurfaces found;
+  found.certified = std::move(certified);
   found.part.assign(normals.size(), OpenSurfaces::kNone);
   found.certainty.assign(normals.size(), 1);
+  const std::vector<Vec3> wide = tried.empty() ? std::vector<Vec3>{} : search.seen_from_afar(tried, verdict.best);
   std::vector<Vec3> sum(search.parts(), Vec3{0, 0, 0});
   std::vector<std::uint32_t> first(search.parts(), OpenSurfaces::kNone);
   for (std::uint32_t i = 0; i < normals.size(); ++i) {
@@ -348,7 +368,9 @@ OpenSurfaces choose(const Search& search, const std::vector<std::vector<Vec3>>& 
     first[p] = std::min(first[p], i);
     found.part[i] = first[p];
     found.worst_defect = std::max(found.worst_defect, verdict.defect[p]);
-    normals[i] = tried[verdict.best[p]][i];
+    const double agreed = 1 - verdict.defects[verdict.best[p]][search.sites().site_of[i]];
+    normals[i] = agreed < kHidden ? wide[i] : tried[verdict.best[p]][i];
+    found.certified[i] = static_cast<float>(std::clamp(agreed / kAgreed, 0.0, 1.0));
     sum[p] = vector::add(sum[p], normals[i]);
   }
   for (std::uint32_t i = 0; i < normals.size(); ++i) {
@@ -391,8 +413,11 @@ OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan
   }
   std::vector<float> shown = certified(search, given, normals, noise == 0);
   OpenSurfaces found;
-  if (any(verdict.is_open) || any(verdict.is_doubtful)) found = choose(search, tried, verdict, normals);
-  found.certified = std::move(shown);
+  if (any(verdict.is_open) || any(verdict.is_doubtful)) {
+    found = choose(search, tried, verdict, std::move(shown), normals);
+  } else {
+    found.certified = std::move(shown);
+  }
   found.uncertified = noise == 0 ? kUndecided : 0;
   return found;
 }

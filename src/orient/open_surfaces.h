@@ -18,7 +18,8 @@ struct OpenSurfaces {
   std::vector<std::uint32_t> part;  ///< N: number of the open surface a point belongs to (its first point), or kNone: part of a closed one
   std::vector<float> certainty;     ///< N, of the outside: up to 1 where there is one, 0.5 where either side could be it; 0.5 on closed
                                     ///< parts whose field is not at rest, so that their sides are not certified
-  std::vector<float> certified;     ///< N, 0..1: how far the field shows the sides of the solution to be right, where they are kept
+  std::vector<float> certified;     ///< N, 0..1: how far the field shows the sides of the solution to be right, where they are kept; on
+                                    ///< open surfaces, that the side of a point agrees with those around it
   float uncertified = 0.5F;         ///< confidence, at most, of a side that it does not show: a choice, or under noise none
   double worst_defect = 0;          ///< largest mean jump defect of an open part: about 0 where all sides agree, 1 where none do
 };
@@ -35,19 +36,21 @@ struct OpenSurfaces {
 ///      d = p_j - p_i, e = d / |d|, r the distance of the sites, f = 1 - flatness: two normals agree if one is the mirror image of the
 ///      other across the plane between the points, as on every arc (Xie, Wang, Hua, Qin, Kaufman, "Piecewise C1 continuous surface
 ///      reconstruction of noisy point clouds via local implicit quadric regression", IEEE Visualization 2003);
-///   3. three times the direction of the winding gradient of what came out, one site spacing wide, which fills grooves narrower than the
-///      sampling and turns single sites.
-/// The hypothesis with the least mean Certificate::jump_defect is taken, of equal ones the finest. The outside of a part is the side on
-/// which the mean of w at the part, of its own field, is positive: e / 2, with e = 1 on a closed surface, 0.62 on half a sphere, 0 on a
-/// plane. Where |e| is below 0.55 either side could be it, and the one that faces up (+z; if the part is level, +y, then +x) is taken.
-/// Under noise a part with |e| above 0.7 is closed: noise makes one wall of two, and what is left encloses nearly everything.
-/// Where the solution stays as it is, J = max(0, jump of its site) certifies a side: where walls are too close for the sampling the field
-/// does not jump from 0 to 1, whatever the sides. J is the largest jump, and 1 - scaled_defect where sites are thinned for noise, which
-/// makes layers of single wrong patches. Under noise it counts R times, R the length of the mean of the normals of the points of the site
-/// and the six around it: two walls closer together than 4 sigma are one site or two neighbours, and which normal is whose is chance.
-/// Points that face the other way than the mean of their site have 0, and all points of a cloud of fewer than 30.
-/// `noise`: standard deviation; `normals`: N unit vectors, in: the solution,
-/// out: changed on open surfaces. O(N log N).
+///   3. three times the direction of the winding gradient of what came out, two site spacings wide, which fills grooves narrower than the
+///      sampling and turns single sites;
+///   4. the sides of each scale, with the directions of the finest: so that only sides differ.
+/// The hypothesis with the least mean Certificate::jump_defect is taken, of equal ones the finest. Where the defect of a site is above
+/// three quarters, in a groove narrower than the sampling for instance, the direction is that of a field four site spacings wide, which
+/// sees what is around. Above a half the side of a point is not certified in full. The outside of a part is the side on which the mean of w
+/// at the part, of its own field, is positive: e / 2, with e = 1 on a closed surface, 0.62 on half a sphere, 0 on a plane. Where |e| is
+/// below 0.55 either side could be it, and the one that faces up (+z; if the part is level, +y, then +x) is taken. Under noise a part with
+/// |e| above 0.7 is closed: noise makes one wall of two, and what is left encloses nearly everything. Where the solution stays as it is, J
+/// = max(0, jump of its site) certifies a side: where walls are too close for the sampling the field does not jump from 0 to 1, whatever
+/// the sides. J is the largest jump, and 1 - scaled_defect where sites are thinned for noise, which makes layers of single wrong patches.
+/// Under noise it counts R times, R the length of the mean of the normals of the points of the site and the six around it: two walls closer
+/// together than 4 sigma are one site or two neighbours, and which normal is whose is chance. Points that face the other way than the mean
+/// of their site have 0, and all points of a cloud of fewer than 30. `noise`: standard deviation; `normals`: N unit vectors, in: the
+/// solution, out: changed on open surfaces. O(N log N).
 [[nodiscard]] OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan& sums, std::vector<Vec3>& normals,
                                               const std::atomic<bool>* cancel = nullptr);
 

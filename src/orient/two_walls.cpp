@@ -35,6 +35,7 @@ void for_some(const PointSet& set, const Sites& sites, const std::vector<std::ui
 
 bool on_exact_walls(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members) {
   const std::vector<Vec3>& points = set.points();
+  const Vec3 steps = rounding_steps(points, set.spacing());
   std::vector<double> gain;
   for_some(set, sites, members, kPoints, [&](std::uint32_t s, const std::vector<std::uint32_t>& index) {
     const double spacing = sites.spacing()[s];
@@ -42,7 +43,10 @@ bool on_exact_walls(const PointSet& set, const Sites& sites, const std::vector<s
     const TwoLayers two = fit_two_layers(points, index.data(), index.size(), sites.axis[s]);
     const double exact = kExact * spacing;
     const bool thin = two.gap > 0 && two.gap < kThin * spacing;
-    gain.push_back((thin ? std::log(std::max(one, exact) / std::max(two.deviation, exact)) : 0) - std::numbers::ln2);
+    double rounding = 0;
+    for (std::size_t a = 0; a < 3; ++a) rounding += std::abs(sites.axis[s][a]) * steps[a];
+    const double cost = (rounding > exact ? 2 : 1) * std::numbers::ln2;
+    gain.push_back((thin ? std::log(std::max(one, exact) / std::max(two.deviation, exact)) : 0) - cost);
   });
   return median(gain) > 0;
 }
