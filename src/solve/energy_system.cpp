@@ -3,6 +3,7 @@
 #include "cpu/parallel.h"
 
 #include <cmath>
+#include <utility>
 
 namespace g3r {
 namespace {
@@ -21,8 +22,8 @@ void scale(std::vector<Vec3>& v, const Factor& factor) {
 
 }  // namespace
 
-EnergySystem::EnergySystem(FastSum& sum, double damping, double winding_weight, const std::vector<double>& multiplicity)
-    : sum_(sum), damping_(damping), winding_weight_(winding_weight), root_(multiplicity) {
+EnergySystem::EnergySystem(FastSum& sum, double damping, double winding_weight, std::vector<double> multiplicity)
+    : sum_(sum), damping_(damping), winding_weight_(winding_weight), root_(std::move(multiplicity)) {
   for (double& m : root_) m = std::sqrt(m);
 }
 
