@@ -246,7 +246,7 @@ Attempt attempt(Problem problem, const PointsView& points, const Options& option
   Attempt out{std::move(problem), {}, {}};
   describe(out.problem, points, options, out.stats);
   require_memory(out.stats.planned_memory_bytes, options);
-  if (out.problem.is_clean()) static_cast<void>(out.problem.cloud.set.smoothed_spacing());  // what the solve needs of the neighbours
+  static_cast<void>(out.problem.cloud.set.smoothed_spacing());  // what solve and areas need of the neighbours
   out.problem.cloud.set.release_neighbours();
   out.oriented = orient_problem(out.problem, options, stages, out.stats);
   return out;

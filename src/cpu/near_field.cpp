@@ -278,8 +278,7 @@ class Gathering {
       const Vec<T> shift[3] = {hn::Set(d, run.shift[0]), hn::Set(d, run.shift[1]), hn::Set(d, run.shift[2])};
       for (std::size_t i = 0; i < count; i += lanes) {
         HWY_UNROLL(3)
-        for (std::size_t f = 0; f < 3; ++f)
-          hn::StoreU(hn::Add(hn::LoadU(d, from_[f] + first + i), shift[f]), d, to + f * kStride + i);
+        for (std::size_t f = 0; f < 3; ++f) hn::StoreU(hn::Add(hn::LoadU(d, from_[f] + first + i), shift[f]), d, to + f * kStride + i);
         HWY_UNROLL(kMostFields)
         for (std::size_t f = 3; f < kFields; ++f) hn::StoreU(hn::LoadU(d, from_[f] + first + i), d, to + f * kStride + i);
       }

@@ -24,7 +24,8 @@ class FastSum {
   /// soon after it is set.
   FastSum(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Widths& widths, const SumPlan& plan,
           const std::atomic<bool>* cancel = nullptr);
-  FastSum(std::vector<Vec3>&&, const std::vector<std::uint64_t>&, const Widths&, const SumPlan&, const std::atomic<bool>* = nullptr) = delete;
+  FastSum(std::vector<Vec3>&&, const std::vector<std::uint64_t>&, const Widths&, const SumPlan&,
+          const std::atomic<bool>* = nullptr) = delete;
   /// The points, plan and tree of `other`, with widths that are nowhere larger (std::invalid_argument otherwise): saves most of the time of
   /// another FastSum. Sums that share a tree may not run at the same time.
   FastSum(const FastSum& other, const Widths& narrower);

@@ -376,7 +376,8 @@ AlignedVector<T> SumEngine<T>::locals_above(cpu::NearForm form) {
   const std::vector<OctreeNode>& nodes = target_tree_->nodes;
   for (auto begin = parts.above.begin(); begin != parts.above.end();) {
     const auto end = std::find_if(begin, parts.above.end(), [&](std::uint32_t i) { return nodes[i].level > nodes[*begin].level; });
-    if (*begin != 0) downward(form, &*begin, &*begin + (end - begin), [&](std::uint32_t i) { return locals.data() + parts.slot[i] * each; });
+    if (*begin != 0)
+      downward(form, &*begin, &*begin + (end - begin), [&](std::uint32_t i) { return locals.data() + parts.slot[i] * each; });
     begin = end;
   }
   return locals;
@@ -402,9 +403,7 @@ void SumEngine<T>::subtree(cpu::NearForm form, int batch, std::size_t out_channe
   AlignedVector<T> locals(members.size() * each);
   across(form, part, locals.data());
   const OctreeNode& root = tree.nodes[parts.roots[part]];
-  const auto at = [&](std::uint32_t i) {
-    return (parts.part_of[i] == part ? locals : above).data() + parts.slot[i] * each;
-  };
+  const auto at = [&](std::uint32_t i) { return (parts.part_of[i] == part ? locals : above).data() + parts.slot[i] * each; };
   for (std::size_t level = root.level > 0 ? 0 : 1; level + 1 < level_begin.size(); ++level) {
     downward(form, members.data() + level_begin[level], members.data() + level_begin[level + 1], at);
   }
@@ -484,17 +483,14 @@ bool SumEngine<T>::run_on_device(cpu::NearForm form, int batch, std::size_t out_
     std::shared_ptr<gpu::ListsOnDevice<T>>& lists = interactions_->on_device;
     if (!lists) lists = std::make_shared<gpu::ListsOnDevice<T>>(device, *target_tree_, sources_->tree, this->lists());
     if (!plan_.direct) {
-      lists->prepare_far(make_matrices(), terms_.order, {sources_->child_to_parent, sources_->parent_to_child}, coefficient_count(plan_.order));
+      lists->prepare_far(make_matrices(), terms_.order, {sources_->child_to_parent, sources_->parent_to_child},
+                         coefficient_count(plan_.order));
     }
     if (!on_device_) {
-      const gpu::PointsOfSum<T> points{sources_->places.data(),
-                                       local_widths_ ? source_widths_->squared.data() : nullptr,
-                                       source_stride(),
-                                       blocks.first,
-                                       blocks.x.data(),
-                                       blocks.y.data(),
-                                       blocks.z.data(),
-                                       local_widths_ ? blocks.width_squared.data() : nullptr,
+      const gpu::PointsOfSum<T> points{sources_->places.data(), local_widths_ ? source_widths_->squared.data() : nullptr,
+                                       source_stride(),         blocks.first,
+                                       blocks.x.data(),         blocks.y.data(),
+                                       blocks.z.data(),         local_widths_ ? blocks.width_squared.data() : nullptr,
                                        source_widths_->uniform};
       on_device_ = std::make_shared<gpu::SumOnDevice<T>>(device, *lists, *target_tree_, sources_->tree, points);
     }

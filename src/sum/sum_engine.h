@@ -72,8 +72,8 @@ class SumEngine {
   };
   // Shared by engines with other targets.
   struct SourceWidths {
-    double uniform = 0;         // where they are
-    AlignedVector<T> squared;   // of every source, where they are not
+    double uniform = 0;        // where they are
+    AlignedVector<T> squared;  // of every source, where they are not
   };
   // Which nodes of the targets and sources interact, and how; shared by engines with other widths. Found when a sum first needs them:
   // sources that are only asked at other targets need none of their own.
@@ -122,7 +122,8 @@ class SumEngine {
   void subtree(cpu::NearForm form, int batch, std::size_t out_channels, std::size_t part, AlignedVector<T>& above, const Take& take);
   // What the loop over the leaves of a block reuses.
   struct LeafSpace;
-  void leaf(cpu::NearForm form, int batch, std::size_t out_channels, std::size_t number, const T* local, LeafSpace& space, const Take& take);
+  void leaf(cpu::NearForm form, int batch, std::size_t out_channels, std::size_t number, const T* local, LeafSpace& space,
+            const Take& take);
   cpu::LeafTask<T> leaf_task(cpu::NearForm form, int batch, double half_side) const;
   T* multipole(std::size_t node) { return multipoles_.data() + node * multipole_channels_ * stride_; }
 

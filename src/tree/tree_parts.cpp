@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::size_t kPartsWanted = 64;
 constexpr std::size_t kSmallestPart = 4096;  // with fewer, hardly two nodes of a part share a matrix
-constexpr std::size_t kLargestPart = 16384;   // with more, the expansions of a part no longer stay in a cache
+constexpr std::size_t kLargestPart = 16384;  // with more, the expansions of a part no longer stay in a cache
 constexpr std::uint32_t kAbove = 0xffffffffu;
 
 }  // namespace
