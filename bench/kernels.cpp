@@ -79,7 +79,8 @@ double pairs_per_second(const Form& form, double seconds) {
   cpu::NearTask<float> task{};
   task.form = form.form;
   task.batch = form.batch;
-  task.fields = values.data();
+  task.places = values.data();
+  task.values = values.data() + 3 * stride;
   task.stride = stride;
   task.runs = runs.data();
   task.run_count = runs.size();

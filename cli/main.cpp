@@ -12,6 +12,8 @@
 #include <system_error>
 #include <vector>
 
+#include "base/platform.h"
+
 #include "commands.h"
 #include "exit_code.h"
 #include "files.h"
@@ -114,6 +116,7 @@ int run_program(const std::vector<std::string>& words) {
 }  // namespace g3r::cli
 
 int main(int argc, char** argv) {
+  g3r::platform::give_back_freed_blocks();
   g3r::cli::prepare_streams();
   return g3r::cli::run_program(g3r::cli::command_line(argc, argv));
 }

@@ -2,6 +2,8 @@
 #include <g3r/g3r.h>
 #include <g3r/io.h>
 
+#include <vector>
+
 #include "commands.h"
 #include "sensors.h"
 #include "summary.h"
@@ -10,7 +12,8 @@ namespace g3r::cli {
 
 int run_orient(const Settings& settings, Session& session) {
   if (const std::optional<int> code = orient_in_tiles(settings, session)) return *code;
-  const Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, session.cancellable(settings.read_options)); });
+  Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, session.cancellable(settings.read_options)); });
+  std::vector<Vec3>().swap(cloud.normals);  // of no use here, and the new ones take as much
   Orientation result = orient(cloud.positions, with_sensors(settings, cloud), session.monitor());
   session.stage("write", [&] {
     for (const std::string& output : settings.outputs()) {

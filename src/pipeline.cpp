@@ -247,6 +247,8 @@ Attempt attempt(Problem problem, const PointsView& points, const Options& option
   Attempt out{std::move(problem), {}, {}};
   describe(out.problem, points, options, out.stats);
   require_memory(out.stats.planned_memory_bytes, options);
+  static_cast<void>(out.problem.cloud.set.smoothed_spacing());  // what solve and areas need of the neighbours
+  out.problem.cloud.set.release_neighbours();
   out.oriented = orient_problem(out.problem, options, stages, out.stats);
   return out;
 }
@@ -273,6 +275,7 @@ Orientation orient_in_arena(const PointsView& points, const Known& known, const 
   Orientation out;
   out.stats = std::move(best.stats);
   fit_noisy_surface(best.problem, stages, solution);
+  best.problem.cloud.set.release_neighbours();
   replace_areas(best.problem, stages, solution);
   apply_hints(best.problem, options, solution, confidence, out.stats, stages.cancel());
   warn_of_volume(best.problem, out.stats);

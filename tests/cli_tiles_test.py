@@ -93,7 +93,7 @@ class Tiles(ProgramTest):
     def test_orient_works_in_tiles_where_it_would_refuse(self):
         """Until the sort: the tiles themselves are those of the other tests."""
         write_points(self.path("large.ply"), sphere(LARGE_COUNT))
-        arguments = ["orient", "large.ply", "out.ply", "--max-memory", "150M"]
+        arguments = ["orient", "large.ply", "out.ply", "--max-memory", "130M"]
         self.expect(UNAVAILABLE, *arguments, "--ascii")  # which tiles do not write
         self.expect(UNAVAILABLE, *arguments[1:], "--open")  # of a mesh neither
         process = self.start(*arguments, "-v", preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))

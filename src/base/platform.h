@@ -85,6 +85,8 @@ bool sync_folder(const std::string& folder);
 
 /// The most memory that this process has had, in bytes; 0 if the system does not say.
 [[nodiscard]] std::size_t peak_memory();
+/// From now on, large blocks are the system's again once they are freed. For programs: it is a setting of the whole process.
+void give_back_freed_blocks();
 /// Memory that nobody uses, in bytes.
 [[nodiscard]] double free_memory();
 /// The number of this process.

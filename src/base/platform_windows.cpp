@@ -297,6 +297,8 @@ std::size_t peak_memory() {
   return counters.PeakWorkingSetSize;
 }
 
+void give_back_freed_blocks() {}
+
 double free_memory() {
   MEMORYSTATUSEX memory{};
   memory.dwLength = sizeof memory;

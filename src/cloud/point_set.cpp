@@ -3,6 +3,7 @@
 #include "cloud/spacing.h"
 
 #include <algorithm>
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -12,7 +13,9 @@ namespace g3r {
 struct PointSet::Known {
   std::vector<Vec3> points;
   std::vector<std::uint64_t> morton;
-  std::once_flag tree_made, near_made, local_made, smoothed_made, spacing_made;
+  std::mutex making;  // tree and near
+  std::atomic<bool> has_tree{false}, has_near{false};
+  std::once_flag local_made, smoothed_made, spacing_made;
   std::unique_ptr<Neighbours> tree;
   std::vector<std::uint32_t> near;
   std::vector<double> local;
@@ -32,13 +35,29 @@ const std::vector<std::uint64_t>& PointSet::morton() const { return known_->mort
 std::size_t PointSet::near_count() const { return std::min(kSpacingNeighbours, size()); }
 
 const Neighbours& PointSet::tree() const {
-  std::call_once(known_->tree_made, [this] { known_->tree = std::make_unique<Neighbours>(known_->points); });
+  if (!known_->has_tree) {
+    const std::scoped_lock lock(known_->making);
+    if (!known_->tree) known_->tree = std::make_unique<Neighbours>(known_->points);
+    known_->has_tree = true;
+  }
   return *known_->tree;
 }
 
 const std::vector<std::uint32_t>& PointSet::near() const {
-  std::call_once(known_->near_made, [this] { known_->near = tree().of_all(kSpacingNeighbours); });
+  if (!known_->has_near) {
+    const Neighbours& all = tree();
+    const std::scoped_lock lock(known_->making);
+    if (known_->near.empty()) known_->near = all.of_all(kSpacingNeighbours);
+    known_->has_near = true;
+  }
   return known_->near;
+}
+
+void PointSet::release_neighbours() const {
+  const std::scoped_lock lock(known_->making);
+  known_->has_tree = known_->has_near = false;
+  known_->tree.reset();
+  std::vector<std::uint32_t>().swap(known_->near);
 }
 
 const std::vector<double>& PointSet::local_spacing() const {

@@ -118,10 +118,14 @@ HWY_INLINE void Accumulate(T* HWY_RESTRICT acc, Vec<T> weight, Vec<T> value) {
 template <class T>
 void LoadSources(const LeafTask<T>& task, std::size_t begin, T* HWY_RESTRICT fields) {
   const Tag<T> d;
-  for (std::size_t f = 0; f < task.field_count; ++f) {
+  const std::size_t geometry = task.local_widths ? 4 : 3;
+  for (std::size_t f = 0; f < geometry + task.value_count; ++f) {
+    const T* from = f < 3          ? task.places + f * task.field_stride
+                    : f < geometry ? task.source_width_squared
+                                   : task.values + (f - geometry) * task.field_stride;
     for (std::size_t lane = 0; lane < kLanes; lane += hn::Lanes(d)) {
       const std::size_t left = task.count - HWY_MIN(task.count, begin + lane);
-      const Vec<T> value = hn::LoadU(d, task.fields + f * task.field_stride + begin + lane);
+      const Vec<T> value = hn::LoadU(d, from + begin + lane);
       hn::Store(hn::IfThenElseZero(hn::FirstN(d, left), value), d, fields + f * kLanes + lane);
     }
   }

@@ -31,8 +31,10 @@ struct LeafTask {
   T uniform_width_squared;
   std::size_t stride;  ///< length of one expansion
   // points to multipole
-  const T* fields;  ///< of its sources, as in NearTask
-  std::size_t field_count;
+  const T* places;  ///< of its sources, as in NearTask
+  const T* source_width_squared;
+  const T* values;
+  std::size_t value_count;  ///< fields
   std::size_t field_stride;
   std::size_t count;     ///< points
   std::size_t channels;  ///< of the multipole

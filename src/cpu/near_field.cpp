@@ -258,7 +258,11 @@ class Gathering {
   static constexpr std::size_t kMost = gathered_sources(kFields);
   static constexpr std::size_t kStride = kMost + kLanes;
 
-  explicit Gathering(const NearTask<T>& task) : task_(task) {}
+  explicit Gathering(const NearTask<T>& task) : task_(task) {
+    for (std::size_t f = 0; f < 3; ++f) from_[f] = task.places + f * task.stride;
+    if constexpr (kGeometry > 3) from_[3] = task.source_width_squared;
+    for (std::size_t f = kGeometry; f < kFields; ++f) from_[f] = task.values + (f - kGeometry) * task.stride;
+  }
 
   // Gathers the next piece, padded to whole vectors by sources without any value. Returns its padded size, 0 when there are none left.
   // Not a part of every form's code: that would take a third of the time to compile this file.
@@ -269,15 +273,14 @@ class Gathering {
     while (run_ < task_.run_count && size < kMost) {
       const SourceRun<T>& run = task_.runs[run_];
       const std::size_t count = HWY_MIN(run.count - done_, kMost - size);
-      const T* from = task_.fields + run.begin + done_;
+      const std::size_t first = run.begin + done_;
       T* to = task_.workspace + size;
       const Vec<T> shift[3] = {hn::Set(d, run.shift[0]), hn::Set(d, run.shift[1]), hn::Set(d, run.shift[2])};
       for (std::size_t i = 0; i < count; i += lanes) {
         HWY_UNROLL(3)
-        for (std::size_t f = 0; f < 3; ++f)
-          hn::StoreU(hn::Add(hn::LoadU(d, from + f * task_.stride + i), shift[f]), d, to + f * kStride + i);
+        for (std::size_t f = 0; f < 3; ++f) hn::StoreU(hn::Add(hn::LoadU(d, from_[f] + first + i), shift[f]), d, to + f * kStride + i);
         HWY_UNROLL(kMostFields)
-        for (std::size_t f = 3; f < kFields; ++f) hn::StoreU(hn::LoadU(d, from + f * task_.stride + i), d, to + f * kStride + i);
+        for (std::size_t f = 3; f < kFields; ++f) hn::StoreU(hn::LoadU(d, from_[f] + first + i), d, to + f * kStride + i);
       }
       size += count;
       done_ += count;
@@ -297,6 +300,7 @@ class Gathering {
 
  private:
   const NearTask<T>& task_;
+  const T* from_[kFields];
   std::size_t run_ = 0;
   std::size_t done_ = 0;  // sources of that run
 };

@@ -36,8 +36,10 @@ struct SourceRun {
 template <class T>
 struct NearTask {
   NearForm form;
-  int batch;        ///< K: 1, 4 or 9; ignored by forms without K
-  const T* fields;  ///< of the sources: x y z [squared width if local_widths] F values; field f of source i at [f * stride + i]
+  int batch;                      ///< K: 1, 4 or 9; ignored by forms without K
+  const T* places;                ///< x y z of the sources, one after the other; that of source i at [f * stride + i], f = 0, 1, 2
+  const T* source_width_squared;  ///< only with local_widths
+  const T* values;                ///< F fields, as places
   std::size_t stride;
   const SourceRun<T>* runs;
   std::size_t run_count;

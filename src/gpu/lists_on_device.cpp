@@ -92,33 +92,34 @@ MatricesOnDevice upload_matrices(Device& device, const std::vector<Offset>& offs
   return out;
 }
 
-// The tiles of one of the lists' own larger chunks, whose pairs ascend by offset and so by matrix. Numbers of tiles and pairs from 0.
-TiledPairs tile_chunk(const InteractionLists& lists, std::size_t large, std::size_t nodes, const std::vector<std::uint32_t>& matrix_of) {
-  static_assert(kTargetChunk % kChunkNodes == 0);
+// The tiles of one chunk, whose pairs ascend by offset and so by matrix. Numbers of tiles and pairs from 0.
+TiledPairs tile_chunk(const InteractionLists& lists, const std::vector<FarPair>& pairs, const std::vector<std::uint32_t>& matrix_of) {
   TiledPairs out;
-  std::array<std::vector<FarPair>, kTargetChunk / kChunkNodes> of_chunk;
-  for (std::size_t i = lists.chunk_begin[large]; i < lists.chunk_begin[large + 1]; ++i) {
-    of_chunk[lists.far[i].target % kTargetChunk / kChunkNodes].push_back(lists.far[i]);
-  }
-  for (std::size_t c = 0; c < of_chunk.size() && large * kTargetChunk + c * kChunkNodes < nodes; ++c) {
-    const std::size_t first_tile = out.tiles.size();
-    for (const FarPair& pair : of_chunk[c]) {
-      const Offset& offset = lists.offsets[pair.offset];
-      const std::uint32_t flags = offset.mirror() | (offset.positive() ? kPositive : 0);
-      const auto joins = [&](const Uint4& tile) {
-        if (tile[0] != matrix_of[pair.offset] || tile[2] == kMostTilePairs) return false;
-        if (((out.pairs.back()[2] ^ flags) & kPositive) != 0) return false;
-        return std::none_of(out.pairs.end() - tile[2], out.pairs.end(), [&](const Uint4& other) { return other[0] == pair.target; });
-      };
-      if (out.tiles.size() == first_tile || !joins(out.tiles.back())) {
-        out.tiles.push_back({matrix_of[pair.offset], static_cast<std::uint32_t>(out.pairs.size()), 0, 0});
-      }
-      ++out.tiles.back()[2];
-      out.pairs.push_back({pair.target, pair.source, flags, 0});
+  for (const FarPair& pair : pairs) {
+    const Offset& offset = lists.offsets[pair.offset];
+    const std::uint32_t flags = offset.mirror() | (offset.positive() ? kPositive : 0);
+    const auto joins = [&](const Uint4& tile) {
+      if (tile[0] != matrix_of[pair.offset] || tile[2] == kMostTilePairs) return false;
+      if (((out.pairs.back()[2] ^ flags) & kPositive) != 0) return false;
+      return std::none_of(out.pairs.end() - tile[2], out.pairs.end(), [&](const Uint4& other) { return other[0] == pair.target; });
+    };
+    if (out.tiles.empty() || !joins(out.tiles.back())) {
+      out.tiles.push_back({matrix_of[pair.offset], static_cast<std::uint32_t>(out.pairs.size()), 0, 0});
     }
-    out.chunk_tiles.push_back(static_cast<std::uint32_t>(out.tiles.size()));
+    ++out.tiles.back()[2];
+    out.pairs.push_back({pair.target, pair.source, flags, 0});
   }
   return out;
+}
+
+// The pairs of every chunk, ascending by offset.
+std::vector<std::vector<FarPair>> pairs_of_chunks(const InteractionLists& lists, std::size_t nodes) {
+  std::vector<std::vector<FarPair>> of_chunk((nodes + kChunkNodes - 1) / kChunkNodes);
+  for (const FarPair& pair : lists.far) of_chunk[pair.target / kChunkNodes].push_back(pair);
+  parallel::for_each(of_chunk.size(), [&](std::size_t c) {
+    std::stable_sort(of_chunk[c].begin(), of_chunk[c].end(), [](const FarPair& a, const FarPair& b) { return a.offset < b.offset; });
+  });
+  return of_chunk;
 }
 
 }  // namespace
@@ -150,19 +151,19 @@ TreeOnDevice::TreeOnDevice(Device& device, const Octree& tree) {
 }
 
 TiledPairs tile_pairs(const InteractionLists& lists, std::size_t nodes, const std::vector<std::uint32_t>& matrix_of) {
-  std::vector<TiledPairs> parts(lists.chunk_begin.size() - 1);
-  parallel::for_each(parts.size(), [&](std::size_t large) { parts[large] = tile_chunk(lists, large, nodes, matrix_of); });
+  const std::vector<std::vector<FarPair>> of_chunk = pairs_of_chunks(lists, nodes);
+  std::vector<TiledPairs> parts(of_chunk.size());
+  parallel::for_each(parts.size(), [&](std::size_t c) { parts[c] = tile_chunk(lists, of_chunk[c], matrix_of); });
   TiledPairs out;
   out.chunk_tiles.push_back(0);
   out.pairs.reserve(lists.far.size());
   for (TiledPairs& part : parts) {
-    const std::uint32_t first_tile = narrow(out.tiles.size());
     const std::uint32_t first_pair = narrow(out.pairs.size());
     for (Uint4 tile : part.tiles) {
       tile[1] += first_pair;
       out.tiles.push_back(tile);
     }
-    for (const std::uint32_t end : part.chunk_tiles) out.chunk_tiles.push_back(first_tile + end);
+    out.chunk_tiles.push_back(narrow(out.tiles.size()));
     out.pairs.insert(out.pairs.end(), part.pairs.begin(), part.pairs.end());
     part = {};
   }

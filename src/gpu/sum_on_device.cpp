@@ -48,10 +48,13 @@ SumOnDevice<T>::SumOnDevice(Device& device, const ListsOnDevice<T>& lists, const
       target_tree_(targets),
       source_tree_(sources),
       field_stride_(points.field_stride),
-      geometry_fields_(points.geometry_fields),
+      geometry_fields_(points.source_width_squared != nullptr ? 4 : 3),
       lanes_(points.first_block.back() * cpu::kLanes),
       uniform_width_(points.uniform_width),
-      geometry_(points.geometry, points.geometry + points.geometry_fields * points.field_stride) {
+      geometry_(points.places, points.places + 3 * points.field_stride) {
+  if (points.source_width_squared != nullptr) {
+    geometry_.insert(geometry_.end(), points.source_width_squared, points.source_width_squared + points.field_stride);
+  }
   std::vector<std::array<std::uint32_t, 2>> leaves;
   for (std::size_t i = 0; i < targets.leaves.size(); ++i) {
     leaves.push_back({static_cast<std::uint32_t>(points.first_block[i]), targets.nodes[targets.leaves[i]].count()});

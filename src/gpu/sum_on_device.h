@@ -15,11 +15,11 @@
 
 namespace g3r::gpu {
 
-/// Sources and targets of an engine, in its own layout: see cpu::NearTask and TargetBlocks.
+/// Sources and targets of an engine, in the layout of cpu::NearTask.
 template <class T>
 struct PointsOfSum {
-  const T* geometry;                            ///< x, y, z and, with local widths, the squared width of the sources
-  std::size_t geometry_fields;                  ///< 3 or 4
+  const T* places;                              ///< x, y and z of the sources
+  const T* source_width_squared;                ///< with local widths
   std::size_t field_stride;                     ///< from one field to the next
   const std::vector<std::size_t>& first_block;  ///< of every target leaf, and the total
   const T* x;                                   ///< of the targets
@@ -38,7 +38,7 @@ struct SumRequest {
   int order;
   T reach;  ///< as in cpu::NearTask
   double kernel_error;
-  const T* values;  ///< fields as in geometry
+  const T* values;  ///< fields as in places
   std::size_t value_fields;
   const T* target_data;  ///< blocks x channels x kLanes
   std::size_t data_channels;

@@ -26,12 +26,17 @@ constexpr double kUsual = 0.9;
 constexpr double kLooksLikeSurface = 4;
 constexpr double kRare = 100;
 
-// How a point and its nearest ones see each other.
+// How two points see each other.
 struct Look {
-  std::array<double, kRing> height{};    // the greater distance from the plane of the other
-  std::array<bool, kRing> bends{};       // whether the patch may go on round a bend
-  std::array<double, kRing> distance{};  // between the points
+  double height;    // the greater distance from the plane of the other
+  bool bends;       // whether the patch may go on round a bend
+  double distance;  // between the points
+};
+
+// The nearest of a point, nearest first, and the distance of the last.
+struct Ring {
   std::array<std::uint32_t, kRing> near{};
+  double reach = 0;
 };
 
 double upper_median(std::array<double, kRing> values) {
@@ -48,7 +53,7 @@ double quantile(std::vector<double> values, double share) {
 class Search {
  public:
   Search(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const std::atomic<bool>* cancel)
-      : points_(points), normals_(normals), cancel_(cancel), held_(points.size(), 1), looks_(points.size()) {
+      : points_(points), normals_(normals), cancel_(cancel), held_(points.size(), 1), rings_(points.size()) {
     for (std::uint32_t i = 0; i < points.size(); ++i) doubtful_.push_back(i);
   }
 
@@ -64,58 +69,66 @@ class Search {
  private:
   // From every doubtful point at those nearest to it that are still held.
   void look() {
+    const bool all = std::find(held_.begin(), held_.end(), std::uint8_t{0}) == held_.end();
     std::vector<Vec3> places;
     std::vector<std::uint32_t> number;
-    for (std::uint32_t i = 0; i < points_.size(); ++i) {
+    for (std::uint32_t i = 0; !all && i < points_.size(); ++i) {
       if (held_[i] == 0) continue;
       places.push_back(points_[i]);
       number.push_back(i);
     }
-    if (places.size() <= kRing) {
+    if ((all ? points_ : places).size() <= kRing) {
       doubtful_.clear();
       return;
     }
-    const Neighbours neighbours(places);
+    const Neighbours neighbours(all ? points_ : places);
     const auto look_from = [&](std::size_t begin, std::size_t end) {
       std::vector<std::uint32_t> index;
       std::vector<double> squared;
       for (std::size_t k = begin; k < end; ++k) {
         const std::uint32_t i = doubtful_[k];
         neighbours.nearest(points_[i], kRing + 1, index, squared);
-        Look& look = looks_[i];
+        Ring& ring = rings_[i];
         std::size_t to = 0;
         for (std::size_t m = 0; m <= kRing && to < kRing; ++m) {
-          const std::uint32_t j = number[index[m]];
+          const std::uint32_t j = all ? index[m] : number[index[m]];
           if (j == i) continue;
-          const Vec3 d = vector::subtract(points_[i], points_[j]);
-          const double a = dot(d, normals_[i]), b = dot(d, normals_[j]);
-          look.bends[to] = dot(normals_[i], normals_[j]) - 2 * a * b / squared[m] > kBends;
-          look.height[to] = std::max(std::abs(a), std::abs(b));
-          look.distance[to] = std::sqrt(squared[m]);
-          look.near[to++] = j;
+          ring.near[to++] = j;
+          ring.reach = std::sqrt(squared[m]);
         }
       }
     };
     parallel::for_blocks(doubtful_.size(), kBlock, look_from, cancel_);
   }
 
+  [[nodiscard]] Look look_at(std::uint32_t i, std::uint32_t j) const {
+    const Vec3 d = vector::subtract(points_[i], points_[j]);
+    const double squared = dot(d, d), a = dot(d, normals_[i]), b = dot(d, normals_[j]);
+    return {std::max(std::abs(a), std::abs(b)), dot(normals_[i], normals_[j]) - 2 * a * b / squared > kBends, std::sqrt(squared)};
+  }
+
   [[nodiscard]] double usual_height() const {
-    std::vector<double> heights(looks_.size());
-    for (std::size_t i = 0; i < looks_.size(); ++i) heights[i] = upper_median(looks_[i].height);
+    std::vector<double> heights(rings_.size());
+    for (std::uint32_t i = 0; i < rings_.size(); ++i) {
+      std::array<double, kRing> height{};
+      for (std::size_t m = 0; m < kRing; ++m) height[m] = look_at(i, rings_[i].near[m]).height;
+      heights[i] = upper_median(height);
+    }
     return quantile(std::move(heights), kUsual);
   }
 
   // On the patch a point may be twice as high as usual: about four standard deviations of noise. It is alone where its spacing is twice
   // that of its nearest ones: 1.5 times is the most in a thousand points of uneven surfaces.
   [[nodiscard]] bool is_stray(std::uint32_t i) const {
-    const Look& look = looks_[i];
+    const Ring& ring = rings_[i];
     std::size_t holding = 0;
     double spacing = 0;  // mean logarithm
-    for (std::size_t m = 0; m < kRing; ++m) {
-      holding += look.bends[m] || look.height[m] <= kSlope * look.distance[m] + 2 * usual_ ? 1 : 0;
-      spacing += std::log(looks_[look.near[m]].distance[kRing - 1]) / kRing;
+    for (const std::uint32_t j : ring.near) {
+      const Look look = look_at(i, j);
+      holding += look.bends || look.height <= kSlope * look.distance + 2 * usual_ ? 1 : 0;
+      spacing += std::log(rings_[j].reach) / kRing;
     }
-    return holding < kPatchPoints || std::log(look.distance[kRing - 1]) - spacing > std::log(2);
+    return holding < kPatchPoints || std::log(ring.reach) - spacing > std::log(2);
   }
 
   // Those that had one among their nearest are doubtful after.
@@ -135,7 +148,7 @@ class Search {
     }
     doubtful_.clear();
     for (std::uint32_t i = 0; count > 0 && i < points_.size(); ++i) {
-      const auto& near = looks_[i].near;
+      const auto& near = rings_[i].near;
       if (held_[i] != 0 && std::any_of(near.begin(), near.end(), [this](std::uint32_t j) { return held_[j] == 0; })) doubtful_.push_back(i);
     }
   }
@@ -144,7 +157,7 @@ class Search {
   const std::vector<Vec3>& normals_;
   const std::atomic<bool>* cancel_;
   std::vector<std::uint8_t> held_;
-  std::vector<Look> looks_;
+  std::vector<Ring> rings_;
   std::vector<std::uint32_t> doubtful_;  // points whose nearest ones have changed
   double usual_ = 0;
 };

@@ -233,12 +233,17 @@ bool starts_coarse(const Settings& settings, std::size_t points) {
 }
 
 std::size_t planned_memory(const Settings& settings, std::size_t given, std::size_t used) {
-  constexpr double kProgram = 34u << 20;  // code, libraries (those of E57 are a third), thread stacks
-  constexpr double kPerGiven = 90;        // index, result
+  constexpr double kProgram = 40u << 20;  // code, libraries (those of E57 are a third), thread stacks, matrices
+  constexpr double kPerGiven = 70;        // what the program has of the input, index, result
+  constexpr double kPerUnknown = 375;     // while the equations are solved,
+  constexpr double kBase = 255;           // or what stays of it while sides are certified,
+  constexpr double kPerSite = 620;        // and what each of the sites then takes,
+  constexpr double kMostSites = 200000;   // which are no more than that
   const std::size_t harmonics = settings.method == Method::kGreen ? settings.harmonics.size() : 0;
-  const auto per_used = static_cast<double>(1170 + 48 * harmonics);
   const auto unknowns = static_cast<double>(used);
-  double bytes = kProgram + kPerGiven * static_cast<double>(given) + per_used * unknowns;
+  const double solve = (kPerUnknown + 48 * static_cast<double>(harmonics)) * unknowns;
+  const double certificate = kBase * unknowns + kPerSite * std::min(unknowns, kMostSites);
+  double bytes = kProgram + kPerGiven * static_cast<double>(given) + std::max(solve, certificate);
   if (settings.dense) bytes += 9 * unknowns * unknowns * sizeof(double);
   return whole_bytes(bytes);
 }

@@ -3,6 +3,7 @@
 #include "cpu/parallel.h"
 
 #include <cmath>
+#include <utility>
 
 namespace g3r {
 namespace {
@@ -21,8 +22,8 @@ void scale(std::vector<Vec3>& v, const Factor& factor) {
 
 }  // namespace
 
-EnergySystem::EnergySystem(FastSum& sum, double damping, double winding_weight, const std::vector<double>& multiplicity)
-    : sum_(sum), damping_(damping), winding_weight_(winding_weight), root_(multiplicity) {
+EnergySystem::EnergySystem(FastSum& sum, double damping, double winding_weight, std::vector<double> multiplicity)
+    : sum_(sum), damping_(damping), winding_weight_(winding_weight), root_(std::move(multiplicity)) {
   for (double& m : root_) m = std::sqrt(m);
 }
 
@@ -39,13 +40,13 @@ std::vector<Vec3> EnergySystem::from_areas(std::vector<Vec3> eta) const {
 std::vector<Vec3> EnergySystem::apply(const std::vector<Vec3>& x) {
   std::vector<Vec3> s;
   std::vector<double> w;
-  sum_.stokes_winding(to_areas(x), s, w);
+  sum_.stokes_winding(x, s, w, root_);
   for (std::size_t i = 0; i < root_.size(); ++i) w[i] *= root_[i] * root_[i];
-  const std::vector<Vec3> wt = sum_.winding_adjoint(w);
+  sum_.add_winding_adjoint(w, winding_weight_, s);
   parallel::for_blocks(x.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const double root = root_.empty() ? 1 : root_[i];
-      for (std::size_t a = 0; a < 3; ++a) s[i][a] = root * (s[i][a] + winding_weight_ * wt[i][a]) + damping_ * x[i][a];
+      for (std::size_t a = 0; a < 3; ++a) s[i][a] = root * s[i][a] + damping_ * x[i][a];
     }
   });
   return s;

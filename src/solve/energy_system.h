@@ -17,7 +17,7 @@ class EnergySystem : public LinearSystem {
  public:
   /// `damping` d >= 0, 1/length; `winding_weight` l > 0, cubed length. `sum` must outlive the system.
   /// `multiplicity`: one m_i >= 1 per point, or empty for ones.
-  EnergySystem(FastSum& sum, double damping, double winding_weight, const std::vector<double>& multiplicity = {});
+  EnergySystem(FastSum& sum, double damping, double winding_weight, std::vector<double> multiplicity = {});
 
   std::vector<Vec3> apply(const std::vector<Vec3>& x) override;
   std::vector<Vec3> right_side() override;

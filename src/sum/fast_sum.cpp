@@ -36,27 +36,21 @@ void for_batches(std::size_t count, const Use& use) {
   }
 }
 
-// Calls use(point, lane's first channel) for every target once; channels of one target are kLanes apart.
-template <class T, class Use>
-void for_targets(const TargetBlocks<T>& targets, const std::vector<double>& out, std::size_t channels, const Use& use) {
-  parallel::for_blocks(targets.point.size() / kLanes, parallel::kBlock / kLanes, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t block = begin; block < end; ++block) {
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        const std::size_t at = block * kLanes + lane;
-        if (lane > 0 && targets.point[at] == targets.point[at - 1]) break;  // the padded tail
-        use(targets.point[at], out.data() + block * channels * kLanes + lane);
-      }
-    }
-  });
+// Hands the sums of an engine to use(point, its first channel); channels of one target are kLanes apart.
+template <class Use>
+auto each_of(std::size_t channels, const Use& use) {
+  return [channels, &use](std::uint32_t first, std::uint32_t count, const double* sums) {
+    for (std::uint32_t i = 0; i < count; ++i) use(first + i, sums + i / kLanes * channels * kLanes + i % kLanes);
+  };
 }
 
 template <class T>
-void fill_eta(SumEngine<T>& engine, const std::vector<Vec3>& eta, std::size_t values) {
+void fill_eta(SumEngine<T>& engine, const std::vector<Vec3>& eta, std::size_t values, const std::vector<double>& factor = {}) {
   engine.begin_values(values);
   parallel::for_blocks(eta.size(), parallel::kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t a = 0; a < 3; ++a) {
       T* value = engine.value(a);
-      for (std::size_t i = begin; i < end; ++i) value[i] = static_cast<T>(eta[i][a]);
+      for (std::size_t i = begin; i < end; ++i) value[i] = static_cast<T>(factor.empty() ? eta[i][a] : factor[i] * eta[i][a]);
     }
   });
 }
@@ -82,10 +76,10 @@ void green_into(SumEngine<T>& engine, const HarmonicValues& u, const std::vector
         }
       }
     });
-    const auto& sums = engine.run(NearForm::kGreen, static_cast<int>(batch), batch);
-    for_targets(engine.targets(), sums, batch, [&](std::size_t p, const double* value) {
+    const auto keep = [&](std::size_t p, const double* value) {
       for (std::size_t k = 0; k < count; ++k) out[p * u.count + first + k] = kInv4Pi * value[k * kLanes];
-    });
+    };
+    engine.run(NearForm::kGreen, static_cast<int>(batch), batch, each_of(batch, keep));
   });
 }
 
@@ -99,60 +93,59 @@ void green_adjoint_into(SumEngine<T>& engine, const HarmonicValues& u, const std
         for (std::size_t j = begin; j < end; ++j) value[j] = k < count ? static_cast<T>(q[j * u.count + first + k]) : T{0};
       }
     });
-    AlignedVector<T>& data = engine.target_data(batch);
-    const std::vector<std::uint32_t>& point = engine.targets().point;
-    parallel::for_blocks(point.size(), parallel::kBlock, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t lane = begin; lane < end; ++lane) {
-        for (std::size_t k = 0; k < batch; ++k) {
-          data[(lane / kLanes * batch + k) * kLanes + lane % kLanes] =
-              k < count ? static_cast<T>(u.value[point[lane] * u.count + first + k]) : T{0};
-        }
+    engine.begin_target_values(batch);
+    parallel::for_blocks(out.size(), parallel::kBlock, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t k = 0; k < batch; ++k) {
+        T* value = engine.target_value(k);
+        for (std::size_t j = begin; j < end; ++j) value[j] = k < count ? static_cast<T>(u.value[j * u.count + first + k]) : T{0};
       }
     });
-    const auto& sums = engine.run(NearForm::kGreenAdjoint, static_cast<int>(batch), batch + 3);
-    for_targets(engine.targets(), sums, batch + 3, [&](std::size_t p, const double* value) {
+    const auto add = [&](std::size_t p, const double* value) {
       for (std::size_t a = 0; a < 3; ++a) {
         double sum = -value[(batch + a) * kLanes];  // the kernel sums g (x - y), the formula wants g (y - x)
         for (std::size_t k = 0; k < count; ++k) sum += value[k * kLanes] * u.gradient[p * u.count + first + k][a];
         out[p][a] += kInv4Pi * sum;
       }
-    });
+    };
+    engine.run(NearForm::kGreenAdjoint, static_cast<int>(batch), batch + 3, each_of(batch + 3, add));
   });
 }
 
 template <class T>
-void stokes_winding_into(SumEngine<T>& engine, const std::vector<Vec3>& eta, std::vector<Vec3>& s, std::vector<double>& w) {
-  fill_eta(engine, eta, 3);
-  const auto& sums = engine.run(NearForm::kStokesWinding, 1, 4);
-  for_targets(engine.targets(), sums, 4, [&](std::size_t p, const double* value) {
+void stokes_winding_into(SumEngine<T>& engine, const std::vector<Vec3>& eta, const std::vector<double>& factor, std::vector<Vec3>& s,
+                         std::vector<double>& w) {
+  fill_eta(engine, eta, 3, factor);
+  const auto keep = [&](std::size_t p, const double* value) {
     for (std::size_t a = 0; a < 3; ++a) s[p][a] = kInv4Pi * value[a * kLanes];
     w[p] = kInv4Pi * value[3 * kLanes];
-  });
+  };
+  engine.run(NearForm::kStokesWinding, 1, 4, each_of(4, keep));
 }
 
 template <class T>
 void winding_gradient_into(SumEngine<T>& engine, std::vector<Vec3>& out) {
-  const auto& sums = engine.run(NearForm::kWindingGradient, 1, 3);
-  for_targets(engine.targets(), sums, 3, [&](std::size_t p, const double* value) {
+  const auto keep = [&](std::size_t p, const double* value) {
     for (std::size_t a = 0; a < 3; ++a) out[p][a] = kInv4Pi * value[a * kLanes];
-  });
+  };
+  engine.run(NearForm::kWindingGradient, 1, 3, each_of(3, keep));
 }
 
 template <class T>
 void winding_into(SumEngine<T>& engine, std::vector<double>& out) {
-  const auto& sums = engine.run(NearForm::kWinding, 1, 1);
-  for_targets(engine.targets(), sums, 1, [&](std::size_t p, const double* value) { out[p] = kInv4Pi * value[0]; });
+  const auto keep = [&](std::size_t p, const double* value) { out[p] = kInv4Pi * value[0]; };
+  engine.run(NearForm::kWinding, 1, 1, each_of(1, keep));
 }
 
-template <class T>
-void winding_adjoint_into(SumEngine<T>& engine, const std::vector<double>& q, std::vector<Vec3>& out) {
+// use(point, axis, component of W^T q)
+template <class T, class Use>
+void winding_adjoint_into(SumEngine<T>& engine, const std::vector<double>& q, const Use& use) {
   engine.begin_values(1);
   T* charge = engine.value(0);
   std::transform(q.begin(), q.end(), charge, [](double v) { return static_cast<T>(v); });
-  const auto& sums = engine.run(NearForm::kWindingAdjoint, 1, 3);
-  for_targets(engine.targets(), sums, 3, [&](std::size_t p, const double* value) {
-    for (std::size_t a = 0; a < 3; ++a) out[p][a] = -kInv4Pi * value[a * kLanes];  // the kernel sums g (x - y), the formula wants g (y - x)
-  });
+  const auto keep = [&](std::size_t p, const double* value) {
+    for (std::size_t a = 0; a < 3; ++a) use(p, a, -kInv4Pi * value[a * kLanes]);  // the kernel sums g (x - y), the formula wants g (y - x)
+  };
+  engine.run(NearForm::kWindingAdjoint, 1, 3, each_of(3, keep));
 }
 
 constexpr double kShellAccuracy = 1e-5;  // with fewer terms their derivatives err by percents: nothing near outweighs what was cut off
@@ -180,27 +173,27 @@ std::vector<Vec3> scaled(std::vector<Vec3> points, double factor) {
 }  // namespace
 
 struct FastSum::Impl {
-  std::shared_ptr<const std::vector<Vec3>> points;
-  Widths widths;
+  const std::vector<Vec3>* points;
+  double width;  // where it is uniform
   SumPlan plan;
   const std::atomic<bool>* cancel;
   std::variant<SumEngine<float>, SumEngine<double>> engine;
 
   using Engine = decltype(engine);
-  static Engine make(const std::shared_ptr<const std::vector<Vec3>>& points, const std::vector<std::uint64_t>& morton, const Widths& widths,
-                     const SumPlan& plan, const std::atomic<bool>* cancel) {
+  static Engine make(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Widths& widths, const SumPlan& plan,
+                     const std::atomic<bool>* cancel) {
     if (plan.double_precision) return Engine(std::in_place_type<SumEngine<double>>, points, morton, widths, plan, cancel);
     return Engine(std::in_place_type<SumEngine<float>>, points, morton, widths, plan, cancel);
   }
 
   // The sources with all lengths times `factor`, a power of two: their order stays.
   [[nodiscard]] Engine shrunk(double factor, const std::atomic<bool>* stop) const {
-    const auto sources = std::make_shared<const std::vector<Vec3>>(scaled(*points, factor));
-    std::vector<std::uint64_t> codes(sources->size());
-    std::transform(sources->begin(), sources->end(), codes.begin(), morton_code);
-    SumPlan finer = sum_plan(kShellAccuracy, sources->size());
+    const std::vector<Vec3> sources = scaled(*points, factor);
+    std::vector<std::uint64_t> codes(sources.size());
+    std::transform(sources.begin(), sources.end(), codes.begin(), morton_code);
+    SumPlan finer = sum_plan(kShellAccuracy, sources.size());
     finer.execution = plan.execution;
-    return make(sources, codes, Widths(factor * widths[0]), plan.order < finer.order ? finer : plan, stop);
+    return make(sources, codes, Widths(factor * width), plan.order < finer.order ? finer : plan, stop);
   }
 
   // Sums of `eta` at any targets. Everything is shrunk until the targets are in the cube: one sum for every shell that has some.
@@ -212,7 +205,7 @@ struct FastSum::Impl {
     std::array<std::vector<std::uint32_t>, kShells + 1> members;
     for (std::uint32_t i = 0; i < targets.size(); ++i) {
       const int shell = shell_of(targets[i]);
-      const bool shrinks = !plan.direct && std::ldexp(widths[0], -shell) >= kLeastWidth;
+      const bool shrinks = !plan.direct && std::ldexp(width, -shell) >= kLeastWidth;
       members[static_cast<std::size_t>(shell == 0 || shrinks ? shell : kNoShell)].push_back(i);
     }
     for (int shell = 0; shell <= kNoShell; ++shell) {
@@ -270,19 +263,15 @@ struct FastSum::Impl {
   }
 };
 
-FastSum::FastSum(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, Widths widths, const SumPlan& plan,
+FastSum::FastSum(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Widths& widths, const SumPlan& plan,
                  const std::atomic<bool>* cancel) {
-  const auto own = std::make_shared<const std::vector<Vec3>>(points);
-  impl_.reset(new Impl{own, widths, placed(plan), cancel, Impl::make(own, morton, widths, placed(plan), cancel)});
+  impl_.reset(new Impl{&points, widths[0], placed(plan), cancel, Impl::make(points, morton, widths, placed(plan), cancel)});
 }
 
-FastSum::FastSum(const FastSum& other, Widths narrower) {
+FastSum::FastSum(const FastSum& other, const Widths& narrower) {
   const Impl& from = *other.impl_;
-  for (std::size_t i = 0; i < (narrower.uniform() && from.widths.uniform() ? 1 : from.points->size()); ++i) {
-    if (!(narrower[i] <= from.widths[i])) throw std::invalid_argument("a sum that shares a tree has a larger width");
-  }
   impl_.reset(new Impl{
-      from.points, narrower, from.plan, from.cancel,
+      from.points, narrower[0], from.plan, from.cancel,
       std::visit([&](const auto& engine) { return Impl::Engine(std::decay_t<decltype(engine)>(engine, narrower)); }, from.engine)});
 }
 
@@ -304,16 +293,23 @@ std::vector<Vec3> FastSum::green_adjoint(const HarmonicValues& u, const std::vec
   return out;
 }
 
-void FastSum::stokes_winding(const std::vector<Vec3>& eta, std::vector<Vec3>& s, std::vector<double>& w) {
+void FastSum::stokes_winding(const std::vector<Vec3>& eta, std::vector<Vec3>& s, std::vector<double>& w,
+                             const std::vector<double>& factor) {
   s.resize(size());
   w.resize(size());
-  std::visit([&](auto& engine) { stokes_winding_into(engine, eta, s, w); }, impl_->engine);
+  std::visit([&](auto& engine) { stokes_winding_into(engine, eta, factor, s, w); }, impl_->engine);
 }
 
 std::vector<Vec3> FastSum::winding_adjoint(const std::vector<double>& q) {
   std::vector<Vec3> out(size());
-  std::visit([&](auto& engine) { winding_adjoint_into(engine, q, out); }, impl_->engine);
+  const auto keep = [&](std::size_t p, std::size_t a, double value) { out[p][a] = value; };
+  std::visit([&](auto& engine) { winding_adjoint_into(engine, q, keep); }, impl_->engine);
   return out;
+}
+
+void FastSum::add_winding_adjoint(const std::vector<double>& q, double weight, std::vector<Vec3>& out) {
+  const auto add = [&](std::size_t p, std::size_t a, double value) { out[p][a] += weight * value; };
+  std::visit([&](auto& engine) { winding_adjoint_into(engine, q, add); }, impl_->engine);
 }
 
 std::vector<double> FastSum::winding(const std::vector<Vec3>& eta) {
@@ -349,7 +345,7 @@ std::vector<double> FastSum::winding_at(const std::vector<Vec3>& eta, const std:
         for (std::size_t i = 0; i < index.size(); ++i) out[index[i]] = factor * factor * sorted[i];
       },
       [&](const std::vector<Vec3>& far, const std::vector<std::uint32_t>& index) {
-        const std::vector<double> w = direct_sum::winding(*impl_->points, impl_->widths[0], eta, far, cancel);
+        const std::vector<double> w = direct_sum::winding(*impl_->points, impl_->width, eta, far, cancel);
         for (std::size_t i = 0; i < index.size(); ++i) out[index[i]] = w[i];
       });
   return out;
@@ -367,7 +363,7 @@ std::vector<Vec3> FastSum::winding_gradient_at(const std::vector<Vec3>& eta, con
         for (std::size_t i = 0; i < index.size(); ++i) out[index[i]] = sorted[i];
       },
       [&](const std::vector<Vec3>& far, const std::vector<std::uint32_t>& index) {
-        const std::vector<Vec3> g = direct_sum::winding_gradient(*impl_->points, impl_->widths[0], eta, far, cancel);
+        const std::vector<Vec3> g = direct_sum::winding_gradient(*impl_->points, impl_->width, eta, far, cancel);
         for (std::size_t i = 0; i < index.size(); ++i) out[index[i]] = g[i];
       });
   return out;

@@ -20,12 +20,15 @@ namespace g3r {
 /// Results are the same bytes for any number of threads. Memory is allocated on first use and reused; one caller at a time.
 class FastSum {
  public:
-  /// `points` lie in [-1, 1]^3 with their Morton codes; `widths` > 0. `cancel` may be null; sums then throw Cancelled soon after it is set.
-  FastSum(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, Widths widths, const SumPlan& plan,
+  /// `points` lie in [-1, 1]^3 with their Morton codes, and outlive the sum; `widths` > 0. `cancel` may be null; sums then throw Cancelled
+  /// soon after it is set.
+  FastSum(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Widths& widths, const SumPlan& plan,
           const std::atomic<bool>* cancel = nullptr);
+  FastSum(std::vector<Vec3>&&, const std::vector<std::uint64_t>&, const Widths&, const SumPlan&,
+          const std::atomic<bool>* = nullptr) = delete;
   /// The points, plan and tree of `other`, with widths that are nowhere larger (std::invalid_argument otherwise): saves most of the time of
   /// another FastSum. Sums that share a tree may not run at the same time.
-  FastSum(const FastSum& other, Widths narrower);
+  FastSum(const FastSum& other, const Widths& narrower);
   ~FastSum();
   FastSum(FastSum&&) noexcept;
   FastSum& operator=(FastSum&&) noexcept;
@@ -37,9 +40,12 @@ class FastSum {
   /// sum_k A[u_k]^T q_k; q is N x K row-major. N vectors.
   std::vector<Vec3> green_adjoint(const HarmonicValues& u, const std::vector<double>& q);
   /// S_e eta (N vectors, symmetric positive semidefinite to the accuracy) and W eta (N values) in one sweep.
-  void stokes_winding(const std::vector<Vec3>& eta, std::vector<Vec3>& s, std::vector<double>& w);
+  /// `factor`: what every eta_i is taken times; empty: 1.
+  void stokes_winding(const std::vector<Vec3>& eta, std::vector<Vec3>& s, std::vector<double>& w, const std::vector<double>& factor = {});
   /// W^T q: N vectors.
   std::vector<Vec3> winding_adjoint(const std::vector<double>& q);
+  /// out += weight W^T q
+  void add_winding_adjoint(const std::vector<double>& q, double weight, std::vector<Vec3>& out);
   /// W eta: N values.
   std::vector<double> winding(const std::vector<Vec3>& eta);
   /// -grad w at the points: N vectors, along the outward normals.

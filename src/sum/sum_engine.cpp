@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace g3r {
 namespace {
@@ -33,6 +34,13 @@ std::size_t multipole_channels(cpu::NearForm form, int batch, bool local_widths)
   return 0;
 }
 
+// What kernels are given of every target.
+std::size_t target_channels(cpu::NearForm form, int batch) {
+  return form == cpu::NearForm::kGreenAdjoint ? static_cast<std::size_t>(batch) : 0;
+}
+
+std::size_t blocks_of(const OctreeNode& leaf) { return (leaf.count() + cpu::kLanes - 1) / cpu::kLanes; }
+
 Vec3 difference(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
 std::size_t octant(const OctreeNode& node) {
@@ -56,13 +64,14 @@ std::array<T, 3> moved(const Vec3& v) {
 }  // namespace
 
 template <class T>
-SumEngine<T>::SumEngine(Points points, const std::vector<std::uint64_t>& morton, const Widths& widths, const SumPlan& plan,
-                        const std::atomic<bool>* cancel)
+SumEngine<T>::SumEngine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Widths& widths,
+                        const SumPlan& plan, const std::atomic<bool>* cancel)
     : plan_(plan), local_widths_(!widths.uniform()), cancel_(cancel), sources_(std::make_shared<Sources>()) {
   set_terms({plan.order, plan.opening, plan.cut});
   Sources& s = *sources_;
-  s.points = std::move(points);
-  s.tree = build_octree(*s.points, morton, widths.values, plan_.leaf_points);
+  s.count = points.size();
+  s.tree = build_octree(points, morton, widths.values, plan_.leaf_points);
+  s.places = places_in(s.tree, points);
   for (std::size_t o = 0; o < 8 && !plan_.direct; ++o) {
     const Vec3 shift{o & 4 ? 0.5 : -0.5, o & 2 ? 0.5 : -0.5, o & 1 ? 0.5 : -0.5};
     const std::vector<double> matrix = multipole_translation(shift, plan_.order);
@@ -70,7 +79,7 @@ SumEngine<T>::SumEngine(Points points, const std::vector<std::uint64_t>& morton,
     s.parent_to_child[o] = StoredTranslation<T>(matrix, coefficients_, true, 0.5);
   }
   target_tree_ = std::shared_ptr<Octree>(sources_, &s.tree);
-  locate_sources(widths.values);
+  set_widths(widths);
   interactions_ = std::make_shared<Interactions>();
 }
 
@@ -83,7 +92,12 @@ SumEngine<T>::SumEngine(const SumEngine& other, const Widths& narrower)
       target_tree_(other.target_tree_),
       interactions_(other.interactions_) {
   set_terms({plan_.order, plan_.opening, plan_.cut});
-  locate_sources(narrower.values);
+  set_widths(narrower);
+  const SourceWidths& wide = *other.source_widths_;
+  for (std::size_t i = 0; i < (local_widths_ || other.local_widths_ ? sources_->count : 1); ++i) {
+    const bool is_wider = other.local_widths_ ? static_cast<T>(narrower[i] * narrower[i]) > wide.squared[i] : narrower[i] > wide.uniform;
+    if (is_wider) throw std::invalid_argument("a sum that shares a tree has a larger width");
+  }
 }
 
 template <class T>
@@ -93,7 +107,7 @@ SumEngine<T>::SumEngine(const SumEngine& other, const std::vector<Vec3>& targets
       local_widths_(other.local_widths_),
       cancel_(cancel),
       sources_(other.sources_),
-      source_fields_(other.source_fields_) {
+      source_widths_(other.source_widths_) {
   set_terms({plan_.order, plan_.opening, plan_.cut});
   set_targets(targets, morton);
 }
@@ -102,14 +116,8 @@ template <class T>
 void SumEngine<T>::set_targets(const std::vector<Vec3>& targets, const std::vector<std::uint64_t>& morton) {
   on_device_.reset();
   target_tree_ = std::make_shared<Octree>(build_query_octree(targets, morton, sources_->tree));
-  locate_targets(targets, {source_fields_->widths[0]});
+  target_places_ = places_in(*target_tree_, targets);
   interactions_ = std::make_shared<Interactions>();
-}
-
-template <class T>
-const TargetBlocks<T>& SumEngine<T>::targets() {
-  if (!targets_) locate_targets(*sources_->points, source_fields_->widths);
-  return *targets_;
 }
 
 template <class T>
@@ -120,55 +128,68 @@ void SumEngine<T>::set_terms(const M2lTerms& terms) {
 }
 
 template <class T>
-void SumEngine<T>::locate_sources(const std::vector<double>& widths) {
-  const Sources& s = *sources_;
-  source_fields_ = std::make_shared<SourceFields>();
-  source_fields_->widths = widths;
-  AlignedVector<T>& geometry = source_fields_->geometry;
-  const std::size_t stride = field_stride();
-  geometry.resize(geometry_fields() * stride);
-  parallel::for_blocks(s.tree.leaves.size(), kNodeBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const OctreeNode& leaf = s.tree.nodes[s.tree.leaves[i]];
-      const Vec3 centre = leaf.centre();
-      for (std::size_t p = leaf.begin; p < leaf.end; ++p) {
-        for (std::size_t a = 0; a < 3; ++a) geometry[a * stride + p] = static_cast<T>((*s.points)[p][a] - centre[a]);
-        if (local_widths_) geometry[3 * stride + p] = static_cast<T>(widths[p] * widths[p]);
-      }
-    }
-  });
+void SumEngine<T>::set_widths(const Widths& widths) {
+  source_widths_ = std::make_shared<SourceWidths>();
+  source_widths_->uniform = widths[0];
+  if (!local_widths_) return;
+  AlignedVector<T>& squared = source_widths_->squared;
+  squared.resize(source_stride());
+  std::transform(widths.values.begin(), widths.values.end(), squared.begin(), [](double width) { return static_cast<T>(width * width); });
 }
 
 template <class T>
-void SumEngine<T>::locate_targets(const std::vector<Vec3>& targets, const std::vector<double>& target_widths) {
-  const Octree& tree = *target_tree_;
-  targets_ = std::make_shared<TargetBlocks<T>>();
-  TargetBlocks<T>& blocks = *targets_;
-  blocks.first_block.assign(1, 0);
-  for (const std::uint32_t leaf : tree.leaves) {
-    blocks.first_block.push_back(blocks.first_block.back() + (tree.nodes[leaf].count() + cpu::kLanes - 1) / cpu::kLanes);
-  }
-  const std::size_t lanes = blocks.first_block.back() * cpu::kLanes;
-  blocks.point.resize(lanes);
-  blocks.x.resize(lanes);
-  blocks.y.resize(lanes);
-  blocks.z.resize(lanes);
-  if (local_widths_) blocks.width_squared.resize(lanes);
+auto SumEngine<T>::places_in(const Octree& tree, const std::vector<Vec3>& points) const -> Places {
+  const std::size_t stride = stride_of(points.size());
+  Places places(3 * stride);
   parallel::for_blocks(tree.leaves.size(), kNodeBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const OctreeNode& leaf = tree.nodes[tree.leaves[i]];
       const Vec3 centre = leaf.centre();
-      const std::size_t first = blocks.first_block[i] * cpu::kLanes;
-      for (std::size_t lane = first; lane < blocks.first_block[i + 1] * cpu::kLanes; ++lane) {
-        const std::size_t p = std::min<std::size_t>(leaf.begin + (lane - first), leaf.end - 1);
-        blocks.point[lane] = static_cast<std::uint32_t>(p);
-        blocks.x[lane] = static_cast<T>(targets[p][0] - centre[0]);
-        blocks.y[lane] = static_cast<T>(targets[p][1] - centre[1]);
-        blocks.z[lane] = static_cast<T>(targets[p][2] - centre[2]);
-        if (local_widths_) blocks.width_squared[lane] = static_cast<T>(target_widths[p] * target_widths[p]);
+      for (std::size_t p = leaf.begin; p < leaf.end; ++p) {
+        for (std::size_t a = 0; a < 3; ++a) places[a * stride + p] = static_cast<T>(points[p][a] - centre[a]);
       }
     }
   });
+  return places;
+}
+
+template <class T>
+void SumEngine<T>::resize(Blocks& blocks, std::size_t count, std::size_t data_channels) const {
+  const std::size_t lanes = count * cpu::kLanes;
+  for (AlignedVector<T>* field : {&blocks.x, &blocks.y, &blocks.z}) field->resize(lanes);
+  if (local_widths_) blocks.width_squared.resize(lanes);
+  blocks.data.resize(lanes * data_channels);
+}
+
+// The targets of a leaf, from block `first` on.
+template <class T>
+void SumEngine<T>::place(const OctreeNode& leaf, std::size_t data_channels, std::size_t first, Blocks& blocks) const {
+  const T* places = (target_places_.empty() ? sources_->places : target_places_).data();
+  const std::size_t stride = target_stride();
+  for (std::size_t lane = 0; lane < blocks_of(leaf) * cpu::kLanes; ++lane) {
+    const std::size_t p = std::min<std::size_t>(leaf.begin + lane, leaf.end - 1);
+    const std::size_t to = first * cpu::kLanes + lane;
+    blocks.x[to] = places[p];
+    blocks.y[to] = places[stride + p];
+    blocks.z[to] = places[2 * stride + p];
+    if (local_widths_) blocks.width_squared[to] = source_widths_->squared[p];
+    for (std::size_t k = 0; k < data_channels; ++k) {
+      blocks.data[(to / cpu::kLanes * data_channels + k) * cpu::kLanes + to % cpu::kLanes] = target_values_[k * stride + p];
+    }
+  }
+}
+
+template <class T>
+auto SumEngine<T>::target_blocks(std::size_t data_channels) const -> Blocks {
+  const Octree& tree = *target_tree_;
+  Blocks blocks;
+  blocks.first.assign(1, 0);
+  for (const std::uint32_t leaf : tree.leaves) blocks.first.push_back(blocks.first.back() + blocks_of(tree.nodes[leaf]));
+  resize(blocks, blocks.first.back(), data_channels);
+  parallel::for_blocks(tree.leaves.size(), kNodeBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) place(tree.nodes[tree.leaves[i]], data_channels, blocks.first[i], blocks);
+  });
+  return blocks;
 }
 
 template <class T>
@@ -179,7 +200,7 @@ const InteractionLists& SumEngine<T>::lists() {
 }
 
 template <class T>
-const M2lMatrices<T>& SumEngine<T>::matrices() {
+const M2lMatrices<T>& SumEngine<T>::make_matrices() {
   std::vector<std::unique_ptr<M2lMatrices<T>>>& made = interactions_->matrices;
   made.resize(static_cast<std::size_t>(plan_.order) + 1);
   std::unique_ptr<M2lMatrices<T>>& of_order = made[static_cast<std::size_t>(terms_.order)];
@@ -190,16 +211,11 @@ const M2lMatrices<T>& SumEngine<T>::matrices() {
 template <class T>
 void SumEngine<T>::begin_values(std::size_t values) {
   multipoles_of_.reset();
-  const bool fresh = fields_.empty();
-  field_count_ = geometry_fields() + values;
-  if (fields_.size() < field_count_ * field_stride()) fields_.resize(field_count_ * field_stride());
-  if (fresh) std::copy(source_fields_->geometry.begin(), source_fields_->geometry.end(), fields_.begin());
-}
-
-template <class T>
-AlignedVector<T>& SumEngine<T>::target_data(std::size_t channels) {
-  target_data_.resize(targets().x.size() * channels);
-  return target_data_;
+  value_count_ = values;
+  if (values_.size() < values * source_stride()) {
+    values_ = AlignedVector<T>();  // not twice in memory
+    values_.resize(values * source_stride());
+  }
 }
 
 template <class T>
@@ -210,7 +226,7 @@ cpu::LeafTask<T> SumEngine<T>::leaf_task(cpu::NearForm form, int batch, double h
   task.order = terms_.order;
   task.half_side = static_cast<T>(half_side);
   task.local_widths = local_widths_;
-  task.uniform_width_squared = static_cast<T>(source_fields_->widths[0] * source_fields_->widths[0]);
+  task.uniform_width_squared = static_cast<T>(source_widths_->uniform * source_widths_->uniform);
   task.stride = stride_;
   return task;
 }
@@ -219,7 +235,10 @@ template <class T>
 void SumEngine<T>::upward(cpu::NearForm form, int batch) {
   if (multipoles_of_ == form) return;
   const Octree& tree = sources_->tree;
-  multipoles_.resize(tree.nodes.size() * multipole_channels_ * stride_);
+  if (multipoles_.size() < tree.nodes.size() * multipole_channels_ * stride_) {
+    multipoles_ = AlignedVector<T>();  // not twice in memory
+    multipoles_.resize(tree.nodes.size() * multipole_channels_ * stride_);
+  }
   parallel::for_blocks(
       tree.leaves.size(), kLeafBlock,
       [&](std::size_t begin, std::size_t end) {
@@ -227,9 +246,11 @@ void SumEngine<T>::upward(cpu::NearForm form, int batch) {
         for (std::size_t i = begin; i < end; ++i) {
           const OctreeNode& leaf = tree.nodes[tree.leaves[i]];
           cpu::LeafTask<T> task = leaf_task(form, batch, leaf.half_side());
-          task.fields = fields_.data() + leaf.begin;
-          task.field_count = field_count_;
-          task.field_stride = field_stride();
+          task.places = sources_->places.data() + leaf.begin;
+          task.source_width_squared = source_widths_->squared.data() + leaf.begin;
+          task.values = values_.data() + leaf.begin;
+          task.value_count = value_count_;
+          task.field_stride = source_stride();
           task.count = leaf.count();
           task.channels = multipole_channels_;
           task.multipole = multipole(tree.leaves[i]);
@@ -271,36 +292,27 @@ void SumEngine<T>::translate_levels(cpu::NearForm form, const std::array<StoredT
 }
 
 template <class T>
-void SumEngine<T>::across(cpu::NearForm form) {
-  const InteractionLists& lists = this->lists();
-  const Octree& tree = *target_tree_;
-  locals_.resize(tree.nodes.size() * local_channels_ * stride_);
+void SumEngine<T>::across(cpu::NearForm form, std::size_t part, T* locals) {
+  const InteractionLists& lists = *interactions_->lists;
   const M2lMatrices<T>& matrices = this->matrices();
-  parallel::for_each(
-      lists.chunk_begin.size() - 1,
-      [&](std::size_t chunk) {
-        const std::size_t first = chunk * kTargetChunk;
-        const std::size_t last = std::min(first + kTargetChunk, tree.nodes.size());
-        std::fill(local(first), local(last - 1) + local_channels_ * stride_, T{0});
-        AlignedVector<T> made;
-        Moves moves;
-        for (std::size_t i = lists.chunk_begin[chunk]; i < lists.chunk_begin[chunk + 1];) {
-          const std::size_t index = matrices.index(lists.far[i].offset);
-          i = gather(form, matrices, i, lists.chunk_begin[chunk + 1], moves);
-          const cpu::TranslationMatrix<T> matrix = matrices.matrix(index, made);
-          for (const auto& [moving, some] : {std::pair{cpu::Moved::kAll, &moves.all}, std::pair{cpu::Moved::kStokesForward, &moves.forward},
-                                             std::pair{cpu::Moved::kStokesTransposed, &moves.transposed}}) {
-            if (!some->empty()) cpu::translate(matrix, some->data(), some->size(), multipole_channels_, stride_, moving);
-          }
-        }
-      },
-      cancel_);
+  AlignedVector<T> made;
+  Moves moves;
+  for (std::size_t i = lists.far_begin[part]; i < lists.far_begin[part + 1];) {
+    const std::size_t index = matrices.index(lists.far[i].offset);
+    i = gather(form, matrices, i, lists.far_begin[part + 1], locals, moves);
+    const cpu::TranslationMatrix<T> matrix = matrices.matrix(index, made);
+    for (const auto& [moving, some] : {std::pair{cpu::Moved::kAll, &moves.all}, std::pair{cpu::Moved::kStokesForward, &moves.forward},
+                                       std::pair{cpu::Moved::kStokesTransposed, &moves.transposed}}) {
+      if (!some->empty()) cpu::translate(matrix, some->data(), some->size(), multipole_channels_, stride_, moving);
+    }
+  }
 }
 
 // The far pairs from `begin` on that share its matrix. Returns the end of them.
 template <class T>
-std::size_t SumEngine<T>::gather(cpu::NearForm form, const M2lMatrices<T>& matrices, std::size_t begin, std::size_t end, Moves& moves) {
-  const InteractionLists& lists = this->lists();
+std::size_t SumEngine<T>::gather(cpu::NearForm form, const M2lMatrices<T>& matrices, std::size_t begin, std::size_t end, T* locals,
+                                 Moves& moves) {
+  const InteractionLists& lists = *interactions_->lists;
   moves.all.clear();
   moves.forward.clear();
   moves.transposed.clear();
@@ -321,140 +333,209 @@ std::size_t SumEngine<T>::gather(cpu::NearForm form, const M2lMatrices<T>& matri
         while (pair.target >= level_begin[level + 1]) ++level;
         move = moved<T>(offset.to_source(level));
       }
-      to.push_back({multipole(pair.source), local(pair.target), signs, move});
+      T* local = locals + lists.parts.slot[pair.target] * local_channels_ * stride_;
+      to.push_back({multipole(pair.source), local, signs, move});
     }
   }
   return i;
 }
 
 template <class T>
-void SumEngine<T>::downward(cpu::NearForm form) {
+struct SumEngine<T>::LeafSpace {
+  explicit LeafSpace(const SumEngine& engine)
+      : workspace(std::max(cpu::near_workspace((engine.local_widths_ ? 4 : 3) + engine.value_count_),
+                           engine.plan_.direct ? 0 : cpu::leaf_workspace(engine.coefficients_, 1))) {}
+  AlignedVector<T> workspace;
+  std::vector<cpu::SourceRun<T>> runs;
+  Blocks blocks;
+  std::vector<double> out;
+};
+
+template <class T>
+template <class At>
+void SumEngine<T>::downward(cpu::NearForm form, const std::uint32_t* begin, const std::uint32_t* end, const At& at) {
   const Octree& tree = *target_tree_;
   const T* unchanged = matrices().signs(Offset());
-  for (std::size_t level = 1; level < tree.levels(); ++level) {
-    const std::size_t first = tree.level_begin[level];
-    parallel::for_blocks(tree.level_begin[level + 1] - first, kNodeBlock, [&](std::size_t begin, std::size_t end) {
-      MovesByOctant down;
-      for (std::size_t i = first + begin; i < first + end; ++i) {
-        const OctreeNode& node = tree.nodes[i];
-        const Vec3 move = difference(tree.nodes[node.parent].centre(), node.centre());
-        down[octant(node)].push_back({local(node.parent), local(i), unchanged, moved<T>(move)});
-      }
-      translate_levels(form, sources_->parent_to_child, down, local_channels_);
-    });
+  MovesByOctant down;
+  for (const std::uint32_t* i = begin; i != end; ++i) {
+    const OctreeNode& node = tree.nodes[*i];
+    const Vec3 move = difference(tree.nodes[node.parent].centre(), node.centre());
+    down[octant(node)].push_back({at(node.parent), at(*i), unchanged, moved<T>(move)});
+  }
+  translate_levels(form, sources_->parent_to_child, down, local_channels_);
+}
+
+// Local expansions of the nodes above all subtrees, by their slots.
+template <class T>
+AlignedVector<T> SumEngine<T>::locals_above(cpu::NearForm form) {
+  const TreeParts& parts = lists().parts;
+  const std::size_t each = local_channels_ * stride_;
+  AlignedVector<T> locals(parts.above.size() * each);
+  parallel::for_each(
+      parts.size() - parts.roots.size(), [&](std::size_t k) { across(form, parts.roots.size() + k, locals.data()); }, cancel_);
+  const std::vector<OctreeNode>& nodes = target_tree_->nodes;
+  for (auto begin = parts.above.begin(); begin != parts.above.end();) {
+    const auto end = std::find_if(begin, parts.above.end(), [&](std::uint32_t i) { return nodes[i].level > nodes[*begin].level; });
+    if (*begin != 0)
+      downward(form, &*begin, &*begin + (end - begin), [&](std::uint32_t i) { return locals.data() + parts.slot[i] * each; });
+    begin = end;
+  }
+  return locals;
+}
+
+// The local expansions of a subtree, and the sums at its leaves.
+template <class T>
+void SumEngine<T>::subtree(cpu::NearForm form, int batch, std::size_t out_channels, std::size_t part, AlignedVector<T>& above,
+                           const Take& take) {
+  const Octree& tree = *target_tree_;
+  const TreeParts& parts = interactions_->lists->parts;
+  const std::size_t each = local_channels_ * stride_;
+  std::vector<std::uint32_t> members{parts.roots[part]};
+  std::vector<std::size_t> level_begin{0};
+  for (std::size_t begin = 0; begin < members.size();) {
+    const std::size_t end = members.size();
+    level_begin.push_back(end);
+    for (; begin < end; ++begin) {
+      const OctreeNode& node = tree.nodes[members[begin]];
+      for (std::uint32_t c = 0; c < node.child_count; ++c) members.push_back(node.first_child + c);
+    }
+  }
+  AlignedVector<T> locals(members.size() * each);
+  across(form, part, locals.data());
+  const OctreeNode& root = tree.nodes[parts.roots[part]];
+  const auto at = [&](std::uint32_t i) { return (parts.part_of[i] == part ? locals : above).data() + parts.slot[i] * each; };
+  for (std::size_t level = root.level > 0 ? 0 : 1; level + 1 < level_begin.size(); ++level) {
+    downward(form, members.data() + level_begin[level], members.data() + level_begin[level + 1], at);
+  }
+  const auto first = std::lower_bound(tree.leaves.begin(), tree.leaves.end(), root.begin,
+                                      [&](std::uint32_t leaf, std::uint32_t point) { return tree.nodes[leaf].begin < point; });
+  LeafSpace space(*this);
+  for (auto i = first; i != tree.leaves.end() && tree.nodes[*i].begin < root.end; ++i) {
+    leaf(form, batch, out_channels, static_cast<std::size_t>(i - tree.leaves.begin()), at(*i), space, take);
   }
 }
 
 template <class T>
-void SumEngine<T>::leaves(cpu::NearForm form, int batch, std::size_t out_channels) {
-  const InteractionLists& lists = this->lists();
-  const Octree& tree = *target_tree_;
+void SumEngine<T>::leaf(cpu::NearForm form, int batch, std::size_t out_channels, std::size_t number, const T* local, LeafSpace& space,
+                        const Take& take) {
+  const InteractionLists& lists = *interactions_->lists;
   const Octree& source_tree = sources_->tree;
-  const std::size_t data_channels = form == cpu::NearForm::kGreenAdjoint ? static_cast<std::size_t>(batch) : 0;
-  parallel::for_blocks(
-      tree.leaves.size(), kLeafBlock,
-      [&](std::size_t begin, std::size_t end) {
-        AlignedVector<T> workspace(std::max(cpu::near_workspace(field_count_), plan_.direct ? 0 : cpu::leaf_workspace(coefficients_, 1)));
-        std::vector<cpu::SourceRun<T>> runs;
-        for (std::size_t i = begin; i < end; ++i) {
-          const OctreeNode& leaf = tree.nodes[tree.leaves[i]];
-          const Vec3 centre = leaf.centre();
-          runs.clear();
-          for (std::size_t k = lists.near_begin[i]; k < lists.near_begin[i + 1]; ++k) {
-            const OctreeNode& source = source_tree.nodes[source_tree.leaves[lists.near[k]]];
-            const Vec3 shift = difference(source.centre(), centre);
-            runs.push_back({source.begin, source.count(), {static_cast<T>(shift[0]), static_cast<T>(shift[1]), static_cast<T>(shift[2])}});
-          }
-          const std::size_t first = targets_->first_block[i];
-          const std::size_t lane = first * cpu::kLanes;
-          cpu::NearTask<T> near{};
-          near.form = form;
-          near.batch = batch;
-          near.fields = fields_.data();
-          near.stride = field_stride();
-          near.runs = runs.data();
-          near.run_count = runs.size();
-          near.count = leaf.count();
-          near.x = targets_->x.data() + lane;
-          near.y = targets_->y.data() + lane;
-          near.z = targets_->z.data() + lane;
-          near.width_squared = local_widths_ ? targets_->width_squared.data() + lane : nullptr;
-          near.u = target_data_.data() + lane * data_channels;
-          near.uniform_width_squared = static_cast<T>(source_fields_->widths[0] * source_fields_->widths[0]);
-          near.local_widths = local_widths_;
-          near.reach = static_cast<T>(std::min(plan_.reach, kMollifierReach<T>));
-          near.kernel_error = plan_.kernel_error;
-          near.out = out_.data() + lane * out_channels;
-          near.workspace = workspace.data();
-          cpu::near_field(near);
-          if (plan_.direct) continue;
-          cpu::LeafTask<T> far = leaf_task(form, batch, leaf.half_side());
-          far.local = local(tree.leaves[i]);
-          far.x = near.x;
-          far.y = near.y;
-          far.z = near.z;
-          far.width_squared = near.width_squared;
-          far.u = near.u;
-          far.block_count = targets_->first_block[i + 1] - first;
-          far.out = near.out;
-          far.workspace = workspace.data();
-          cpu::local_to_points(far);
-        }
-      },
-      cancel_);
+  const OctreeNode& leaf = target_tree_->nodes[target_tree_->leaves[number]];
+  const Vec3 centre = leaf.centre();
+  space.runs.clear();
+  for (std::size_t k = lists.near_begin[number]; k < lists.near_begin[number + 1]; ++k) {
+    const OctreeNode& source = source_tree.nodes[source_tree.leaves[lists.near[k]]];
+    const Vec3 shift = difference(source.centre(), centre);
+    space.runs.push_back({source.begin, source.count(), {static_cast<T>(shift[0]), static_cast<T>(shift[1]), static_cast<T>(shift[2])}});
+  }
+  const std::size_t count = blocks_of(leaf);
+  Blocks& blocks = space.blocks;
+  resize(blocks, count, target_channels(form, batch));
+  place(leaf, target_channels(form, batch), 0, blocks);
+  space.out.resize(count * cpu::kLanes * out_channels);
+  cpu::NearTask<T> near{};
+  near.form = form;
+  near.batch = batch;
+  near.places = sources_->places.data();
+  near.source_width_squared = source_widths_->squared.data();
+  near.values = values_.data();
+  near.stride = source_stride();
+  near.runs = space.runs.data();
+  near.run_count = space.runs.size();
+  near.count = leaf.count();
+  near.x = blocks.x.data();
+  near.y = blocks.y.data();
+  near.z = blocks.z.data();
+  near.width_squared = local_widths_ ? blocks.width_squared.data() : nullptr;
+  near.u = blocks.data.data();
+  near.uniform_width_squared = static_cast<T>(source_widths_->uniform * source_widths_->uniform);
+  near.local_widths = local_widths_;
+  near.reach = static_cast<T>(std::min(plan_.reach, kMollifierReach<T>));
+  near.kernel_error = plan_.kernel_error;
+  near.out = space.out.data();
+  near.workspace = space.workspace.data();
+  cpu::near_field(near);
+  if (!plan_.direct) {
+    cpu::LeafTask<T> far = leaf_task(form, batch, leaf.half_side());
+    far.local = local;
+    far.x = near.x;
+    far.y = near.y;
+    far.z = near.z;
+    far.width_squared = near.width_squared;
+    far.u = near.u;
+    far.block_count = count;
+    far.out = near.out;
+    far.workspace = space.workspace.data();
+    cpu::local_to_points(far);
+  }
+  take(leaf.begin, leaf.count(), space.out.data());
 }
 
 template <class T>
-bool SumEngine<T>::run_on_device(cpu::NearForm form, int batch, std::size_t out_channels) {
+bool SumEngine<T>::run_on_device(cpu::NearForm form, int batch, std::size_t out_channels, const Take& take) {
   if (!plan_.execution || !plan_.execution->usable(sizeof(T) == sizeof(double))) return false;
   gpu::Device& device = plan_.execution->device();
+  const std::size_t data_channels = target_channels(form, batch);
+  std::vector<double> out;
+  const Blocks blocks = target_blocks(data_channels);
   try {
     const std::unique_lock lock = device.lock();
     std::shared_ptr<gpu::ListsOnDevice<T>>& lists = interactions_->on_device;
     if (!lists) lists = std::make_shared<gpu::ListsOnDevice<T>>(device, *target_tree_, sources_->tree, this->lists());
     if (!plan_.direct) {
-      lists->prepare_far(matrices(), terms_.order, {sources_->child_to_parent, sources_->parent_to_child}, coefficient_count(plan_.order));
+      lists->prepare_far(make_matrices(), terms_.order, {sources_->child_to_parent, sources_->parent_to_child},
+                         coefficient_count(plan_.order));
     }
     if (!on_device_) {
-      const gpu::PointsOfSum<T> points{source_fields_->geometry.data(),
-                                       geometry_fields(),
-                                       field_stride(),
-                                       targets_->first_block,
-                                       targets_->x.data(),
-                                       targets_->y.data(),
-                                       targets_->z.data(),
-                                       local_widths_ ? targets_->width_squared.data() : nullptr,
-                                       source_fields_->widths[0]};
+      const gpu::PointsOfSum<T> points{sources_->places.data(), local_widths_ ? source_widths_->squared.data() : nullptr,
+                                       source_stride(),         blocks.first,
+                                       blocks.x.data(),         blocks.y.data(),
+                                       blocks.z.data(),         local_widths_ ? blocks.width_squared.data() : nullptr,
+                                       source_widths_->uniform};
       on_device_ = std::make_shared<gpu::SumOnDevice<T>>(device, *lists, *target_tree_, sources_->tree, points);
     }
-    const std::size_t data_channels = form == cpu::NearForm::kGreenAdjoint ? static_cast<std::size_t>(batch) : 0;
     const T reach = static_cast<T>(std::min(plan_.reach, kMollifierReach<T>));
-    on_device_->run({form, batch, plan_.direct, terms_.order, reach, plan_.kernel_error, value(0), field_count_ - geometry_fields(),
-                     target_data_.data(), data_channels, multipole_channels_, local_channels_, out_channels, cancel_},
-                    out_);
-    return true;
+    on_device_->run({form, batch, plan_.direct, terms_.order, reach, plan_.kernel_error, value(0), value_count_, blocks.data.data(),
+                     data_channels, multipole_channels_, local_channels_, out_channels, cancel_},
+                    out);
   } catch (const gpu::DeviceError& error) {
     on_device_.reset();
     interactions_->on_device.reset();
     plan_.execution->fail(error.what());
     return false;
   }
+  const Octree& tree = *target_tree_;
+  parallel::for_blocks(tree.leaves.size(), kNodeBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const OctreeNode& leaf = tree.nodes[tree.leaves[i]];
+      take(leaf.begin, leaf.count(), out.data() + blocks.first[i] * cpu::kLanes * out_channels);
+    }
+  });
+  return true;
 }
 
 template <class T>
-const std::vector<double>& SumEngine<T>::run(cpu::NearForm form, int batch, std::size_t out_channels) {
+void SumEngine<T>::run(cpu::NearForm form, int batch, std::size_t out_channels, const Take& take) {
   multipole_channels_ = multipole_channels(form, batch, local_widths_);
   local_channels_ = multipole_channels_ + (form == cpu::NearForm::kStokesWinding ? 1 : 0);
   set_terms(terms_for(form, batch, plan_));
-  out_.resize(targets().x.size() * out_channels);
-  if (run_on_device(form, batch, out_channels)) return out_;
-  if (!plan_.direct) {
-    upward(form, batch);
-    across(form);
-    downward(form);
+  if (run_on_device(form, batch, out_channels, take)) return;
+  const InteractionLists& lists = this->lists();
+  if (plan_.direct) {
+    parallel::for_blocks(
+        target_tree_->leaves.size(), kLeafBlock,
+        [&](std::size_t begin, std::size_t end) {
+          LeafSpace space(*this);
+          for (std::size_t i = begin; i < end; ++i) leaf(form, batch, out_channels, i, nullptr, space, take);
+        },
+        cancel_);
+    return;
   }
-  leaves(form, batch, out_channels);
-  return out_;
+  (void)make_matrices();
+  upward(form, batch);
+  AlignedVector<T> above = locals_above(form);
+  parallel::for_each(
+      lists.parts.roots.size(), [&](std::size_t part) { subtree(form, batch, out_channels, part, above, take); }, cancel_);
 }
 
 template class SumEngine<float>;

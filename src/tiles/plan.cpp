@@ -6,6 +6,7 @@
 #include "io/point_stream.h"
 #include "io/tiles.h"
 #include "mesh/field_points.h"
+#include "orient/settings.h"
 #include "orient/start.h"
 #include "tiles/external_sort.h"
 #include "tiles/manifest.h"
@@ -32,11 +33,10 @@ constexpr std::uint64_t kFewestPoints = 8000;          // fewer are solved in co
 constexpr std::uint64_t kFewestCoarse = 20000;  // with half as many, fields of thin parts of the dragon no longer close, and sides go wrong
 constexpr std::uint64_t kMostCoarse = 2000000;  // every tile has them all around it
 constexpr std::uint64_t kCoarseShare = 8;       // one of so many points is in the thinned cloud, if that is enough and not too much
-constexpr std::size_t kFixed = 72u << 20;       // code, libraries, thread stacks, and 131,072 queries of a sum
-constexpr std::size_t kPerPoint = 1600;         // peak bytes of a solve in core (docs/evidence/speed.md), and what a tile holds beside it
-constexpr std::size_t kFixedInCore = 34u << 20;  // of plan()
-constexpr std::size_t kPerPointInCore = 1260;    // of it, where no point is a duplicate
-constexpr std::size_t kPerPointMeshed = 2700;    // of field_mesh_memory(), which is more
+constexpr std::size_t kFixed = 32u << 20;       // beside that of a solve in core: 131,072 queries of a sum
+constexpr std::size_t kBeside = 250;            // bytes of a point that a tile holds beside its solve: record, gradient, coarse side
+constexpr std::size_t kFixedInCore = 34u << 20;  // of a mesh
+constexpr std::size_t kPerPointMeshed = 2700;    // of field_mesh_memory()
 constexpr double kFreeShare = 0.75;              // of the free memory, if no limit is given
 constexpr double kLargest = 1e50;                // coordinates, whose squares and cubes are still numbers
 constexpr std::size_t kMostTiles = 1000000;
@@ -162,9 +162,22 @@ Manifest survey(const std::vector<std::string>& files, const TileOptions& option
   return m;
 }
 
-std::uint64_t points_for(std::size_t memory) { return memory > kFixed ? (memory - kFixed) / kPerPoint : 0; }
+std::size_t in_core(std::uint64_t points) {
+  return planned_memory(Settings(), static_cast<std::size_t>(points), static_cast<std::size_t>(points));
+}
 
-std::size_t memory_for(std::uint64_t points) { return kFixed + kPerPoint * static_cast<std::size_t>(points); }
+std::size_t memory_for(std::uint64_t points) { return in_core(points) + kFixed + kBeside * static_cast<std::size_t>(points); }
+
+// The most points that this memory is enough for.
+std::uint64_t points_for(std::size_t memory) {
+  std::uint64_t enough = 0;
+  std::uint64_t more = memory / kBeside + 1;
+  while (more - enough > 1) {
+    const std::uint64_t middle = enough + (more - enough) / 2;
+    (memory_for(middle) <= memory ? enough : more) = middle;
+  }
+  return enough;
+}
 
 std::size_t memory_limit(const TileOptions& options) {
   if (options.max_memory > 0) return options.max_memory;
@@ -323,7 +336,7 @@ bool needs_tiles(const std::vector<std::string>& inputs, std::size_t max_memory,
   std::uint64_t points = 0;
   for (const std::string& file : tiles::files_of(inputs)) points += io::open_points(file)->left();
   return max_memory > 0 && points >= tiles::kFewestPoints &&
-         tiles::kFixedInCore + (mesh ? tiles::kPerPointMeshed : tiles::kPerPointInCore) * points > max_memory;
+         (mesh ? tiles::kFixedInCore + tiles::kPerPointMeshed * points : tiles::in_core(points)) > max_memory;
 }
 
 TileStatus tiles_status(const std::string& folder) { return tiles::status_of(folder, tiles::read_manifest(folder)); }

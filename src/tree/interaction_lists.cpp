@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <numeric>
 #include <span>
 #include <unordered_map>
@@ -184,10 +185,10 @@ void counting_sort(std::span<const T> in, std::span<T> out, std::size_t keys, co
 
 // Gives every far pair the index of its offset in the sorted list of distinct offsets.
 void index_offsets(const Octree& targets, const Octree& sources, InteractionLists& lists) {
-  const std::size_t chunks = lists.chunk_begin.size() - 1;
-  std::vector<OffsetNumbers> found(chunks);
-  parallel::for_each(chunks, [&](std::size_t c) {
-    for (std::size_t i = lists.chunk_begin[c]; i < lists.chunk_begin[c + 1]; ++i) {
+  const std::size_t parts = lists.parts.size();
+  std::vector<OffsetNumbers> found(parts);
+  parallel::for_each(parts, [&](std::size_t c) {
+    for (std::size_t i = lists.far_begin[c]; i < lists.far_begin[c + 1]; ++i) {
       FarPair& pair = lists.far[i];
       pair.offset = found[c].number(offset_of(targets.nodes[pair.target], sources.nodes[pair.source]));
     }
@@ -195,7 +196,7 @@ void index_offsets(const Octree& targets, const Octree& sources, InteractionList
   for (const OffsetNumbers& part : found) lists.offsets.insert(lists.offsets.end(), part.offsets().begin(), part.offsets().end());
   std::sort(lists.offsets.begin(), lists.offsets.end());
   lists.offsets.erase(std::unique(lists.offsets.begin(), lists.offsets.end()), lists.offsets.end());
-  parallel::for_each(chunks, [&](std::size_t c) {
+  parallel::for_each(parts, [&](std::size_t c) {
     const std::vector<Offset>& local = found[c].offsets();
     std::vector<std::uint32_t> global(local.size());
     for (std::size_t k = 0; k < global.size(); ++k) {
@@ -203,9 +204,17 @@ void index_offsets(const Octree& targets, const Octree& sources, InteractionList
           static_cast<std::uint32_t>(std::lower_bound(lists.offsets.begin(), lists.offsets.end(), local[k]) - lists.offsets.begin());
     }
     // An offset and a target have one source.
-    const std::span<FarPair> pairs(lists.far.data() + lists.chunk_begin[c], lists.chunk_begin[c + 1] - lists.chunk_begin[c]);
+    const std::span<FarPair> pairs(lists.far.data() + lists.far_begin[c], lists.far_begin[c + 1] - lists.far_begin[c]);
+    if (pairs.empty()) return;
     std::vector<FarPair> by_target(pairs.size());
-    counting_sort<FarPair>(pairs, by_target, kTargetChunk, [](const FarPair& pair) { return pair.target % kTargetChunk; });
+    const std::vector<std::uint32_t>& slot = lists.parts.slot;
+    std::uint32_t first = std::numeric_limits<std::uint32_t>::max();
+    std::uint32_t last = 0;
+    for (const FarPair& pair : pairs) {
+      first = std::min(first, slot[pair.target]);
+      last = std::max(last, slot[pair.target]);
+    }
+    counting_sort<FarPair>(pairs, by_target, last - first + 1, [&](const FarPair& pair) { return slot[pair.target] - first; });
     std::vector<std::uint32_t> rank(local.size());
     std::vector<std::uint32_t> order(local.size());
     std::iota(order.begin(), order.end(), 0U);
@@ -227,25 +236,26 @@ InteractionLists build_interaction_lists(const Octree& targets, const Octree& so
   parallel::for_each(tasks.size(), [&](std::size_t i) { traversal.run(std::move(tasks[i]), found[i]); });
 
   InteractionLists lists;
-  const std::size_t chunks = (targets.nodes.size() + kTargetChunk - 1) / kTargetChunk;
-  lists.chunk_begin.assign(chunks + 1, 0);
+  lists.parts = cut_tree(targets, points_of_a_part(targets.nodes.front().count()));
+  const std::vector<std::uint32_t>& part_of = lists.parts.part_of;
+  lists.far_begin.assign(lists.parts.size() + 1, 0);
   std::vector<std::uint32_t> target_leaf(targets.nodes.size(), kNotALeaf);
   std::vector<std::uint32_t> source_leaf(sources.nodes.size(), kNotALeaf);
   for (std::uint32_t i = 0; i < targets.leaves.size(); ++i) target_leaf[targets.leaves[i]] = i;
   for (std::uint32_t i = 0; i < sources.leaves.size(); ++i) source_leaf[sources.leaves[i]] = i;
   lists.near_begin.assign(targets.leaves.size() + 1, 0);
   for (const Found& part : found) {
-    for (const NodePair& pair : part.far) ++lists.chunk_begin[pair.target / kTargetChunk + 1];
+    for (const NodePair& pair : part.far) ++lists.far_begin[part_of[pair.target] + 1];
     for (const NodePair& pair : part.near) ++lists.near_begin[target_leaf[pair.target] + 1];
   }
-  for (std::size_t c = 0; c < chunks; ++c) lists.chunk_begin[c + 1] += lists.chunk_begin[c];
+  for (std::size_t c = 0; c < lists.parts.size(); ++c) lists.far_begin[c + 1] += lists.far_begin[c];
   for (std::size_t i = 0; i < targets.leaves.size(); ++i) lists.near_begin[i + 1] += lists.near_begin[i];
-  lists.far.resize(lists.chunk_begin.back());
+  lists.far.resize(lists.far_begin.back());
   lists.near.resize(lists.near_begin.back());
-  std::vector<std::size_t> next_far(lists.chunk_begin.begin(), lists.chunk_begin.end() - 1);
+  std::vector<std::size_t> next_far(lists.far_begin.begin(), lists.far_begin.end() - 1);
   std::vector<std::size_t> next_near(lists.near_begin.begin(), lists.near_begin.end() - 1);
   for (Found& part : found) {
-    for (const NodePair& pair : part.far) lists.far[next_far[pair.target / kTargetChunk]++] = {0, pair.target, pair.source};
+    for (const NodePair& pair : part.far) lists.far[next_far[part_of[pair.target]]++] = {0, pair.target, pair.source};
     for (const NodePair& pair : part.near) lists.near[next_near[target_leaf[pair.target]]++] = source_leaf[pair.source];
     part = {};
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tree/octree.h"
+#include "tree/tree_parts.h"
 
 #include <algorithm>
 #include <array>
@@ -55,16 +56,13 @@ struct FarPair {
 /// Every (target point, source point) pair is in exactly one near list or under exactly one far pair. With the same tree on both sides the
 /// lists are symmetric: (a, b) is there if and only if (b, a) is, which makes the fast sum's adjoint exact.
 struct InteractionLists {
-  std::vector<Offset> offsets;  ///< distinct, sorted: mirror images side by side
-  std::vector<FarPair> far;     ///< sorted by target chunk, then offset, target, source
-  std::vector<std::size_t>
-      chunk_begin;  ///< far pairs of target chunk c (kTargetChunk consecutive nodes): [chunk_begin[c], chunk_begin[c + 1])
+  std::vector<Offset> offsets;          ///< distinct, sorted: mirror images side by side
+  TreeParts parts;                      ///< of the targets, whose far pairs are done together: one M2L matrix serves many of them
+  std::vector<FarPair> far;             ///< sorted by the target's part, then offset, target, source
+  std::vector<std::size_t> far_begin;   ///< far pairs of part p: [far_begin[p], far_begin[p + 1])
   std::vector<std::size_t> near_begin;  ///< near sources of the i-th target leaf: [near_begin[i], near_begin[i + 1])
   std::vector<std::uint32_t> near;      ///< source leaves, as indices into the source tree's `leaves`, ascending
 };
-
-/// Target nodes whose far pairs are done together, so that one M2L matrix serves many of them.
-inline constexpr std::size_t kTargetChunk = 256;
 
 /// Dual traversal. A pair of nodes is far if radius_t + radius_s <= opening * distance, the gap between them is at least
 /// `reach` mollifier widths, and their levels differ by at most 3. opening in (0, 1); opening = 0: everything is near (direct sum).

@@ -71,6 +71,7 @@ Octree split_while(std::size_t points, const std::vector<std::uint64_t>& morton,
     if (tree.nodes.size() == end) break;
     tree.level_begin.push_back(static_cast<std::uint32_t>(tree.nodes.size()));
   }
+  tree.nodes.shrink_to_fit();
   for (std::uint32_t i = 0; i < tree.nodes.size(); ++i) {
     if (tree.nodes[i].leaf()) tree.leaves.push_back(i);
   }
