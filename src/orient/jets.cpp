@@ -14,10 +14,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kFewest = 7;  // that take part, itself included: one more than the height field has numbers
-constexpr double kSamePatch = 0.9;  // cosine between normals
-constexpr double kRadius = 1.5;     // spacings
-constexpr double kScatter = 0.007;  // spacings, standard deviation of the heights
+// Spacings, standard deviation of the heights about a jet: more takes rough surfaces for smooth ones.
+constexpr double kScatter = 0.007;
 
 bool spread_out(const std::vector<FitPoint>& members, const Vector3d& normal) {
   const Eigen::Matrix3d frame = tangent_frame(normal);
@@ -51,26 +49,17 @@ std::vector<std::uint8_t> fit_jets(const PointSet& set, std::vector<Vec3>& norma
     for (std::size_t i = begin; i < end; ++i) {
       const Vector3d centre = to_eigen(points[i]);
       const Vector3d normal = to_eigen(normals[i]);
-      const double scale = 1 / (2 * kRadius * kRadius * spacing[i] * spacing[i]);
       members.clear();
       for (std::size_t k = 0; k < kSpacingNeighbours; ++k) {
         const std::uint32_t j = near[i * kSpacingNeighbours + k];
         const Vector3d d = to_eigen(points[j]) - centre;
         const Vector3d n = to_eigen(normals[j]);
         if (n.dot(normal) <= kSamePatch) continue;
-        members.push_back({d, n, std::exp(-d.squaredNorm() * scale), 0});
+        members.push_back({d, n, 1, 0});
       }
-      if (members.size() < kFewest || !spread_out(members, normal)) continue;
+      if (members.size() <= kQuadraticTerms || !spread_out(members, normal)) continue;
       const QuadraticPatch patch = fit_quadratic_patch(members, 0, spacing[i], 0);
-      double misfit = 0;
-      double total = 0;
-      for (const FitPoint& m : members) {
-        const double distance = patch.distance(m.p);
-        misfit += m.weight * distance * distance;
-        total += m.weight;
-      }
-      const double free = 1 - (kFewest - 1) / static_cast<double>(members.size());  // share of the degrees of freedom
-      if (misfit > free * total * kScatter * kScatter * spacing[i] * spacing[i]) continue;
+      if (residual(patch, members) > kScatter * spacing[i]) continue;
       Vector3d fitted;
       (void)patch.distance(Vector3d::Zero(), &fitted);
       if (fitted.dot(normal) <= kSamePatch) continue;
