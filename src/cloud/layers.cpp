@@ -123,8 +123,6 @@ double layered_deviation(const std::vector<Vec3>& points, const std::uint32_t* i
   return best.sigma;
 }
 
-std::size_t layered_count(std::size_t count) { return 2 * static_cast<std::size_t>(kRadius * kRadius * static_cast<double>(count) / 2); }
-
 TwoLayers fit_two_layers(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count, const Vec3& normal) {
   constexpr Eigen::Index kMost = 32;
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, kTerms + 2, 0, kMost, kTerms + 2>;

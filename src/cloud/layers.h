@@ -18,9 +18,6 @@ namespace g3r {
 [[nodiscard]] double layered_deviation(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count, const Vec3& centre,
                                        const Vec3& normal);
 
-/// Of `count` such points of a surface, how many take part, an even number: their share of the area.
-[[nodiscard]] std::size_t layered_count(std::size_t count);
-
 /// Two parallel layers through a few points.
 struct TwoLayers {
   double deviation = 0;  ///< of the points from their own layer, corrected for the 7 numbers

@@ -47,6 +47,8 @@ constexpr std::size_t kFewestLevels = 5;
 constexpr std::size_t kLayerProbes = 500;
 // Points of each: fewer do not show three layers, more reach around the shape.
 constexpr std::size_t kLayerNeighbours = 256;
+// What the quantile kFlat of them says on smooth surfaces, over the noise.
+constexpr double kLayerBias = 0.92;
 // So many times as many points reach twice as far: where noise fills the neighbourhoods of layers, and to see whether a facet goes on.
 constexpr std::size_t kTwiceAsFar = 4;
 // A neighbourhood is no larger part of a cloud than one in so many points: larger ones follow its shape.
@@ -114,7 +116,7 @@ double layered_noise(const PointSet& set) {
     const Vec3 normal = fit_plane(points, index.data(), index.size()).normal;
     sigma.push_back(layered_deviation(points, index.data(), index.size(), point, normal));
   });
-  const double found = quantile(sigma, kFlat) / expected_residual(layered_count(kLayerNeighbours), kFlat);
+  const double found = quantile(sigma, kFlat) / kLayerBias;
   if (found < spacing || points.size() < kTwiceAsFar * kSmallPart * kLayerNeighbours) return found;
   std::vector<Vec3> thinned;
   for (std::size_t i = 0; i < points.size(); i += kTwiceAsFar) thinned.push_back(points[i]);

@@ -18,6 +18,8 @@ constexpr double kCreaseCosine = 0.965926;
 constexpr double kPlane = 0.05;
 // Spacings, the reach of the mean.
 constexpr double kRadius = 1.5;
+// The first round is still among blurred normals: after one, CAD models do not differ from others by the share below.
+constexpr int kRounds = 2;
 // Share of the weight that planes leave on CAD models: 0.59 to 0.71, on others at most 0.56.
 constexpr double kPiecewiseSmooth = 0.58;
 
@@ -65,7 +67,8 @@ Averaged average_in_planes(const PointSet& set, const std::vector<Vec3>& normals
 
 bool sharpen_creases(const PointSet& set, std::vector<Vec3>& normals) {
   if (set.size() < kSpacingNeighbours) return false;
-  std::vector<Vec3> sharp = average_in_planes(set, normals).normals;
+  std::vector<Vec3> sharp = normals;
+  for (int round = 0; round < kRounds; ++round) sharp = average_in_planes(set, sharp).normals;
   std::vector<double> share = average_in_planes(set, sharp).share;
   share.erase(std::remove(share.begin(), share.end(), -1.0), share.end());
   if (share.empty() || median(share) < kPiecewiseSmooth) return false;

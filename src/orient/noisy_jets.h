@@ -19,7 +19,7 @@ namespace g3r {
 /// et al., "Bandwidth selection and reconstruction quality in point-based surfaces", IEEE TVCG 2009). One fit serves all points of the
 /// side within R/4: three to five of them where it is smooth.
 ///
-/// s is the noise of the cloud or, where that is less, the noise of the place: of 256 points in a row the median misfit, at every
+/// s is the noise of the cloud or, where that is less, 1.1 times the noise of the place: of 256 points in a row the median misfit, at every
 /// 16th, of a quadratic height field to the points within 3 h. It is at least 0.15 times the noise of the cloud.
 ///
 /// Where more than 5 % of the points about the fit face the other way, a wall is as thin as the noise, and the side of a normal says more
