@@ -1,4 +1,5 @@
 // The whole program on one page: one line per step (orient_in_arena).
+#include "base/percent.h"
 #include "base/stages.h"
 #include "baselines/baseline.h"
 #include "cloud/noise.h"
@@ -26,15 +27,22 @@
 namespace g3r {
 namespace {
 
-constexpr double kSidesAgree = 0.45;  // mean jump defect of an open surface up to which its sides are called consistent; 1: none agree
-// Other noises than the estimate.
-constexpr double kFarLess = 0.55;         // of that share, up to which another is taken: chance changes it by less
-constexpr double kFarMore = 2;            // times the estimate, scatter that speaks against it
-constexpr double kAboveScatter = 1.4;     // times the scatter, the noise that is tried: kernels have to hide all of it,
-constexpr double kLeastTried = 0.3;       // but at least this in spacings: less blurs no less, and leaves more unsure
-constexpr std::size_t kFewPoints = 2500;  // up to which shape looks like noise, so that none is tried too
-constexpr double kManyDoubtful = 0.1;     // share of unsure sides from which more noise is tried with nothing to speak for it,
-constexpr double kHardlyAny = 0.2;        // and of that share, up to which it is taken: noise hides thin walls and all doubt about them
+// Mean jump defect of an open surface up to which its sides are called consistent: 1 where none agree.
+constexpr double kSidesAgree = 0.45;
+// Of the unsure share under the estimated noise, that under another one up to which that is taken: chance changes it by less.
+constexpr double kFarLess = 0.55;
+// Times the estimate, the scatter that speaks against it; times the scatter, the noise that is tried: kernels have to hide all of it.
+constexpr double kAboveScatter = 1.4;
+// Share of unsure sides from which more noise is tried with nothing to speak for it: few clouds whose estimate is right leave as many.
+constexpr double kManyDoubtful = 0.1;
+// Of that share, what is left at most where such noise is taken: noise hides thin walls and all doubt about them.
+constexpr double kHardlyAny = 0.2;
+// In spacings, the noise that is tried at least: less blurs no less, and leaves more unsure.
+constexpr double kLeastTried = 0.3;
+// Points up to which shape looks like noise, so that none is tried too: with more it costs time and is never taken.
+constexpr std::size_t kFewPoints = 2500;
+// Dimension from which points fill a volume: cubes and balls have 2.57 and more, surfaces under noise of 2 h at most 2.45.
+constexpr double kVolume = 2.55;
 
 void describe(const Problem& problem, const PointsView& points, const Options& options, Stats& stats) {
   const CanonicalCloud& cloud = problem.cloud;
@@ -45,7 +53,7 @@ void describe(const Problem& problem, const PointsView& points, const Options& o
   stats.outliers = problem.outliers.size();
   stats.merged_duplicates = points.count - cloud.non_finite - cloud.size() - problem.outliers.size();
   stats.box_centre = cloud.frame.centre;
-  stats.box_side = 2.0 / 1.1 / cloud.frame.scale;
+  stats.box_side = kBoxSide / cloud.frame.scale;
   stats.spacing = cloud.frame.length_to_world(problem.spacing);
   stats.noise = cloud.frame.length_to_world(problem.noise);
   stats.epsilon = cloud.frame.length_to_world(settings.epsilon.typical());
@@ -77,9 +85,7 @@ void describe(const Problem& problem, const PointsView& points, const Options& o
 }
 
 void warn_of_volume(const Problem& problem, Stats& stats) {
-  constexpr double kStrongNoise = 0.7;  // spacings; estimate_noise() finds 0.75 to 1 where points fill a volume
-  constexpr double kVolume = 2.55;      // cubes and balls have 2.57 and more, surfaces under noise of 2 h at most 2.45, but for close slats
-  if (problem.noise <= kStrongNoise * problem.spacing) return;
+  if (problem.settings.cluster_side == 0) return;  // volumes look like noise of 0.75 spacings and more
   if (dimension(problem.cloud.set) < kVolume) return;
   stats.consistent = false;
   stats.warnings.emplace_back("the points fill a volume: there is no surface, or the noise hides it");
@@ -130,8 +136,6 @@ std::vector<std::uint8_t> open_points(const CanonicalCloud& cloud, const OpenSur
   }
   return open;
 }
-
-std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 
 // The sides of points on open surfaces do not come from the equations, and their confidence neither.
 void add_open_surfaces(const OpenSurfaces& surfaces, std::vector<float>& confidence, Stats& stats) {
@@ -228,7 +232,7 @@ std::vector<OtherNoise> other_noises(const Problem& problem, const Options& opti
   if (kAboveScatter * scatter <= least && unsure < kDoubtful) return {};
   std::vector<OtherNoise> noises;
   if (problem.noise > 0 && set.size() <= kFewPoints) noises.push_back({0, kFarLess});
-  if (scatter > kFarMore * problem.noise) {
+  if (scatter > kAboveScatter * problem.noise) {
     noises.push_back({std::max(kAboveScatter * scatter, least), kFarLess});
   } else if (problem.noise > 0 && unsure >= kManyDoubtful) {
     noises.push_back({kAboveScatter * problem.noise, kHardlyAny});

@@ -1,10 +1,13 @@
 // From points, or oriented points, to a mesh.
+#include "base/percent.h"
 #include "base/stages.h"
 #include "base/vector.h"
 #include "cpu/parallel.h"
 #include "field/oriented_cloud.h"
 #include "field/winding_sampler.h"
 #include "mesh/field_mesher.h"
+#include "mesh/field_octree.h"
+#include "mesh/field_points.h"
 #include "mesh/findings.h"
 #include "mesh/held_points.h"
 #include "mesh/mesh_finish.h"
@@ -12,6 +15,7 @@
 #include "mesh/separate_vertices.h"
 #include "mesh/smooth_spacing.h"
 #include "mesh/trim.h"
+#include "orient/confidence.h"
 #include "orient/settings.h"
 #include "sum/device_scope.h"
 
@@ -27,13 +31,6 @@
 namespace g3r {
 namespace {
 
-// The share of the surface farther than kFarSpacings from every point that is worth a warning: closed scans have less, and most open ones
-// more.
-constexpr double kFarShare = 0.05;
-// The share of such surface from which the result is called doubtful: most of a hole this large is invented.
-constexpr double kMostFar = 0.25;
-// The width of a cloud in spacings from which the mesh is coarser than the points: the octree has at most 2^20 cells of 0.8 spacings.
-constexpr double kWidest = 8e5;
 // The depth of screened Poisson in the paper preset, which is that of the comparisons in docs/evidence/meshes.md.
 constexpr int kPaperDepth = 10;
 // The bounds of coordinates and extents within which areas, volumes and their products are finite and greater than 0.
@@ -62,7 +59,7 @@ void require_meshable(const PointsView& points) {
 }
 
 Mesh mesh_with_poisson(const OrientedCloud& oriented, const std::vector<Vec3>& normals, int depth) {
-  const int chosen = depth > 0 ? depth : automatic_depth(oriented.spacing, 2.0 / 1.1);
+  const int chosen = depth > 0 ? depth : automatic_depth(oriented.spacing, kBoxSide);
   return screened_poisson(oriented.cloud.points(), normals, chosen);
 }
 
@@ -222,14 +219,14 @@ Reconstruction reconstruct(const PointsView& points, const Options& options, con
     carry_attributes(out.mesh, points, {}, out.orientation.confidence);
   });
   device.describe(out.orientation.stats);
-  if (far > kFarShare) {
+  if (far > kDoubtful) {
     out.orientation.stats.warnings.push_back(
-        std::to_string(std::lround(100 * far)) +
-        " % of the surface is farther than 4 spacings from any point: the cloud looks open; trim the mesh");
-    out.orientation.stats.doubtful = out.orientation.stats.doubtful || (far > kMostFar && chosen.trim == MeshOptions::Trim::kOff);
+        percent(far) + " of the surface is farther than 4 spacings from any point: the cloud looks open; trim the mesh");
+    out.orientation.stats.doubtful = out.orientation.stats.doubtful || (far > kManyUnsure && chosen.trim == MeshOptions::Trim::kOff);
   }
   warn_of_topology(out.check, out.orientation.stats);
-  if (chosen.mesher == Mesher::kField && chosen.depth == 0 && out.orientation.stats.box_side > kWidest * out.orientation.stats.spacing) {
+  const double widest = std::ldexp(mesh::kFinestCell, mesh::kMaxOctreeLevel) * out.orientation.stats.spacing;  // that the octree resolves
+  if (chosen.mesher == Mesher::kField && chosen.depth == 0 && out.orientation.stats.box_side > widest) {
     out.orientation.stats.warnings.emplace_back(
         "the cloud is more than 800,000 spacings wide, so the mesh is coarser than the points: mesh parts that are far apart one by one");
   }

@@ -37,20 +37,6 @@ TEST(DenseSolver, AgreesWithConjugateGradientsAtConvergence) {
   EXPECT_LT(std::sqrt(difference / size), 1e-4);
 }
 
-TEST(IterativeSolver, EndsWhenItIsEnough) {
-  const CanonicalCloud cloud = canonical_cloud(shapes::torus(250, 0.6, 0.25, 3).points);
-  FastSum sum(cloud.points(), cloud.morton(), Widths(0.03), sum_plan(0, cloud.size()));
-  GreenSystem system(sum, cloud.points(), harmonics_of_degrees(0, 2));
-  const std::vector<Steps> schedule{{10, StepKind::kConjugateGradient}};
-  const IterativeResult three =
-      solve_iteratively(system, schedule, 0, {}, {}, [](const IterativeResult& r) { return r.residuals.size() == 3; });
-  EXPECT_EQ(three.residuals.size(), 3U);
-  EXPECT_TRUE(three.converged);
-  const IterativeResult never = solve_iteratively(system, schedule, 0, {}, {}, [](const IterativeResult&) { return false; });
-  EXPECT_EQ(never.residuals.size(), 10U);
-  EXPECT_FALSE(never.converged);
-}
-
 // Smallest over largest singular value of the stacked rows A[u_k].
 double smallest_singular_ratio(std::size_t n, const std::string& harmonics) {
   const CanonicalCloud cloud = canonical_cloud(shapes::torus(n, 0.6, 0.25, 3).points);

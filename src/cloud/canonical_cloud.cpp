@@ -1,5 +1,6 @@
 #include "cloud/canonical_cloud.h"
 
+#include "cloud/spacing.h"
 #include "cpu/parallel.h"
 
 #include <g3r/error.h>
@@ -11,8 +12,6 @@
 namespace g3r {
 namespace {
 
-constexpr double kBoxSide = 2.0 / 1.1;    // the paper's normalisation
-constexpr std::size_t kBlock = 1u << 14;  // points per parallel block; any value gives the same result
 constexpr std::size_t kFewestPoints = 4;  // fewer cannot enclose a volume
 constexpr double kLineThickness = 1e-12;  // distance from a line over its length, below which points count as collinear: rounding
 
@@ -27,13 +26,13 @@ struct Keyed {
 void radix_sort(std::vector<Keyed>& items) {
   constexpr std::size_t kDigits = 256;
   const std::size_t n = items.size();
-  const std::size_t blocks = (n + kBlock - 1) / kBlock;
+  const std::size_t blocks = (n + parallel::kBlock - 1) / parallel::kBlock;
   std::vector<Keyed> other(n);
   std::vector<std::array<std::uint32_t, kDigits>> offset(blocks);
   for (int shift = 0; shift < 64; shift += 8) {
     const auto digit = [shift](const Keyed& item) { return static_cast<std::size_t>(item.code >> shift & 0xff); };
-    parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
-      auto& count = offset[begin / kBlock];
+    parallel::for_blocks(n, parallel::kBlock, [&](std::size_t begin, std::size_t end) {
+      auto& count = offset[begin / parallel::kBlock];
       count.fill(0);
       for (std::size_t i = begin; i < end; ++i) ++count[digit(items[i])];
     });
@@ -49,8 +48,8 @@ void radix_sort(std::vector<Keyed>& items) {
       one_digit = one_digit || total - before == n;
     }
     if (one_digit) continue;
-    parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
-      auto& next = offset[begin / kBlock];
+    parallel::for_blocks(n, parallel::kBlock, [&](std::size_t begin, std::size_t end) {
+      auto& next = offset[begin / parallel::kBlock];
       for (std::size_t i = begin; i < end; ++i) other[next[digit(items[i])]++] = items[i];
     });
     items.swap(other);
@@ -143,7 +142,7 @@ std::uint64_t morton_code(const Vec3& unit) {
 MortonOrder morton_order(const std::vector<Vec3>& unit_points) {
   const std::size_t n = unit_points.size();
   std::vector<Keyed> items(n);
-  parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(n, parallel::kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) items[i] = {morton_code(unit_points[i]), static_cast<std::uint32_t>(i)};
   });
   radix_sort(items);
@@ -162,7 +161,7 @@ MortonOrder morton_order(const std::vector<Vec3>& unit_points) {
   MortonOrder order;
   order.index.resize(n);
   order.code.resize(n);
-  parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(n, parallel::kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       order.index[i] = items[i].index;
       order.code[i] = items[i].code;
@@ -244,7 +243,6 @@ bool refit_frame(CanonicalCloud& cloud, std::vector<Vec3>& others) {
 }
 
 bool is_flat(const CanonicalCloud& cloud) {
-  constexpr double kFlatness = 1e-6;  // thickness over extent; a scan of any solid is far above
   // The plane through the first point, the point farthest from it, and the point farthest from the line through both.
   const Vec3& origin = cloud.points().front();
   const auto to = [&origin](const Vec3& p) { return Vec3{p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]}; };
@@ -260,7 +258,7 @@ bool is_flat(const CanonicalCloud& cloud) {
   for (const Vec3& p : cloud.points()) {
     if (const Vec3 n = cross(axis, to(p)); norm(n) > norm(normal)) normal = n;
   }
-  const double allowed = kFlatness * norm(axis) * norm(normal);
+  const double allowed = kLeastSpacing * norm(normal);
   return std::all_of(cloud.points().begin(), cloud.points().end(), [&](const Vec3& p) {
     const Vec3 d = to(p);
     return std::abs(d[0] * normal[0] + d[1] * normal[1] + d[2] * normal[2]) <= allowed;

@@ -23,6 +23,7 @@ struct Frame {
   [[nodiscard]] double length_to_world(double length) const { return length / scale; }
 };
 
+inline constexpr double kBoxSide = 2.0 / 1.1;  ///< of the longest side in the unit frame: the paper's normalisation
 inline constexpr std::uint32_t kNoPoint = 0xffffffffu;
 
 /// Distinct finite points in Morton order of a 2^21-cell grid over [-1, 1]^3, ties by coordinates: the same for every permutation of the
@@ -58,7 +59,7 @@ struct MortonOrder {
 /// grid and the kernels have to resolve what is left. `others`, in the unit frame, move with it. Returns whether it did. O(N).
 bool refit_frame(CanonicalCloud& cloud, std::vector<Vec3>& others);
 
-/// Whether all points lie in one plane, within 1e-6 of their extent: nothing says which side is outside. O(N).
+/// Whether all points lie in one plane, within kLeastSpacing: nothing says which side is outside. O(N).
 [[nodiscard]] bool is_flat(const CanonicalCloud& cloud);
 
 /// Centres, scales, drops non-finite points, merges exact duplicates and sorts. O(N).

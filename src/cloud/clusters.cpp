@@ -6,17 +6,12 @@
 #include <cmath>
 
 namespace g3r {
-namespace {
-
-constexpr int kLevels = 21;  // bits per axis of a Morton code
-
-}  // namespace
 
 // The points of a cell follow each other, and centroids lie in their cells: both sorts agree.
 Clusters cluster_points(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, double side,
                         const std::vector<double>& relative_spacing) {
-  const int level = std::clamp(static_cast<int>(std::ceil(std::log2(2 / side))), 0, kLevels);
-  const int shift = 3 * (kLevels - level);
+  const int level = std::clamp(static_cast<int>(std::ceil(std::log2(2 / side))), 0, kGridBits);
+  const int shift = 3 * (kGridBits - level);
   Clusters clusters;
   clusters.cluster_of.resize(points.size());
   for (std::size_t begin = 0; begin < points.size();) {

@@ -1,6 +1,7 @@
 #include "cloud/exact_plane.h"
 
 #include "base/vector.h"
+#include "cloud/constants.h"
 #include "cloud/plane_fit.h"
 #include "cloud/quadratic_patch.h"
 
@@ -11,14 +12,13 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kSeeds = 10;  // nearest others that candidates pass through
-constexpr int kFewest = 6;          // points on a plane, itself included
+constexpr std::size_t kSeeds = 10;        // nearest others that candidates pass through
+constexpr int kFewest = kQuadraticTerms;  // points on a plane: fewer are on a bend, too
 // Within what distance, in spacings, kFewest points, one more, or two or more lie: so few by chance on one in a thousand planes through
 // points that scatter by a third of a spacing.
 constexpr std::array<double, 3> kWithin{0.0005, 0.002, kExactWithin};
 constexpr double kLeastAngle = 0.1;  // sine, between the two that a candidate passes through
 // Of points that scatter.
-constexpr double kReach = 2.5;         // standard deviations from a plane that holds a point: 99 % of those on it
 constexpr double kBackground = 1.5;    // spacings to either side that points on no plane fill, as far as 32 neighbours reach
 constexpr double kFalseAlarms = 1e-3;  // expected number of planes by chance, of all candidates
 constexpr double kMostScatter = 0.15;  // spacings: with more, half of 33 points prove nothing
@@ -119,9 +119,9 @@ Candidate best_plane(const Around& around, const Vec3* towards, const HeldBy& he
 // Whether a quadratic height field over the plane through these points is likelier than the plane (Schwarz's criterion).
 bool is_bent(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& held, const PlaneFit& plane, double spacing) {
   const auto n = static_cast<double>(held.size());
-  const double flat = plane.residual * std::sqrt((n - 3) / n);  // root mean squares, of which the likelihoods are made
-  const double bent = quadratic_residual(points, held.data(), held.size(), plane.normal, spacing) * std::sqrt((n - 6) / n);
-  return n * std::log(flat / bent) > 1.5 * std::log(n);
+  const double flat = plane.residual * std::sqrt((n - kPlaneTerms) / n);  // root mean squares, of which the likelihoods are made
+  const double bent = quadratic_residual(points, held.data(), held.size(), plane.normal, spacing) * std::sqrt((n - kQuadraticTerms) / n);
+  return n * std::log(flat / bent) > (kQuadraticTerms - kPlaneTerms) * std::log(n) / 2;
 }
 
 // The points within `within` of a plane through a place, both relative to the first point and in spacings, and the plane fitted to them.
@@ -162,7 +162,7 @@ ExactPlane find_scattered_plane(const std::vector<Vec3>& points, const std::vect
                                 const Vec3& towards) {
   if (scatter > kMostScatter * spacing) return {};
   const Around around = around_first(points, index, spacing);
-  const double within = kReach * scatter / spacing;
+  const double within = kSigmas * scatter / spacing;
   const int needed = proof(around.count, within);
   if (around.count < static_cast<std::size_t>(needed)) return {};
   const Candidate best = best_plane(around, &towards, [&](const Vec3& normal) {
@@ -184,7 +184,7 @@ LikeliestPlane find_likeliest_plane(const std::vector<Vec3>& points, const std::
   LikeliestPlane found;
   double least = kFalseAlarms;
   for (double scatter = kExactScatter; scatter < kMostScatter; scatter *= 2) {
-    const double within = kReach * scatter;
+    const double within = kSigmas * scatter;
     const Candidate best = best_plane(around, nullptr, [&](const Vec3& normal) {
       return Candidate{normal, within, around.held(normal, within), 0};
     });

@@ -1,6 +1,7 @@
 #include "cloud/noise.h"
 
 #include "base/vector.h"
+#include "cloud/constants.h"
 #include "cloud/exact_plane.h"
 #include "cloud/layers.h"
 #include "cloud/plane_fit.h"
@@ -16,33 +17,42 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kProbes = 2000;    // neighbourhoods looked at, spread along the canonical order
-constexpr std::size_t kNeighbours = 12;  // of each, to which height fields are fitted; more reach across walls
-constexpr std::size_t kFewer = 8;        // nearest of them: shape lifts these less, noise as much
-constexpr std::size_t kParameters = 6;   // of a height field
-constexpr double kFlattest = 0.02;       // share of the neighbourhoods that decides: shape lifts the others
-constexpr double kFlat = 0.1;            // share that shape lifts more than those; that of the layers that decides
-constexpr double kShape = 0.5;           // of the scatter of the flat ones, that of the flattest, below which it is shape: 0.56 under noise
-constexpr double kLeast = 0.04;          // in spacings, of noise: less blurs nothing, and curvature leaves as much
-constexpr double kSaturation = 0.57;     // in spacings, what the flattest say where noise fills their balls
-constexpr double kFilled = 0.75;         // of that: beyond, they tell no more
-constexpr double kMostScattered = 0.75;  // quantile of the neighbourhoods that stands for those with the largest noise
-constexpr double kMostSaturation = 0.56;   // in spacings, what that says where noise fills the balls
-constexpr double kMostFilled = 0.97;       // of that: beyond, it tells no more
-constexpr double kOnPlanes = 0.4;          // share of the points on one exact plane that shows a cloud to be clean
-constexpr double kAlong = 0.5;             // cosine from which it lies along the surface: those of scan lines are across it
-constexpr std::size_t kFewestLevels = 5;   // values of a rounded coordinate; those of plates and boxes that stand straight are fewer
-constexpr double kTerraces = 0.5;          // of the deviation that rounding leaves, the median residual of height fields from which it does
-constexpr double kSameCoordinate = 1e-4;   // in spacings, between coordinates that differ by rounding only
-constexpr std::size_t kLayerProbes = 500;  // neighbourhoods that may hold several layers
-constexpr std::size_t kLayerNeighbours = 256;          // of each
-constexpr double kLayerBias = 0.92;                    // sigma at the share kFlat of them, of smooth surfaces, over the true one
-constexpr std::size_t kGoesOn = 4 * kPlaneNeighbours;  // points among which the plane of a facet goes on: 13 spacings across
-constexpr double kHeld = 3.5;                          // standard deviations that these may be off it: its tilt adds one so far out
-constexpr double kResolved = 1.0;                      // in spacings: larger noise fills the neighbourhoods of layers, too
-constexpr std::size_t kThinning = 4;                   // then every fourth point has neighbourhoods twice as large
-constexpr std::size_t kFewestThinned = 4000;           // left by it; of fewer, 256 points are no small part of the shape
-constexpr std::size_t kFewestPoints = 200;             // below, neighbourhoods are a large part of the shape
+// Neighbourhoods looked at, spread along the canonical order: fewer leave the quantiles to chance.
+constexpr std::size_t kProbes = 2000;
+// Points of each, to which height fields are fitted: more reach across walls, fewer follow the noise.
+constexpr std::size_t kNeighbours = 12;
+// Nearest of them, of which more than kQuadraticTerms are needed: shape lifts these less, noise as much.
+constexpr std::size_t kFewer = 8;
+// Quantile of the neighbourhoods that decides: shape lifts the others.
+constexpr double kFlattest = 0.02;
+// Quantile that shape lifts more than the flattest, and that of the layers that decides.
+constexpr double kFlat = 0.1;
+// Of the scatter that noise would leave in the flattest, or rounding in most neighbourhoods: less is shape, and noise leaves 0.56 or more.
+constexpr double kOfNoise = 0.5;
+// In spacings, of noise: less blurs nothing, and curvature leaves as much.
+constexpr double kLeast = 0.04;
+// In spacings, what height fields through kNeighbours say where noise fills their balls.
+constexpr double kSaturation = 0.57;
+// Of that, what the flattest say at most of noise: beyond, they tell no more.
+constexpr double kFilled = 0.75;
+// Quantile of the neighbourhoods that stands for those with the largest noise.
+constexpr double kMostScattered = 0.75;
+// Of the saturation, what these say at most: the law has a pole at 1.
+constexpr double kMostFilled = 0.97;
+// Share of the points on planes that shows a cloud to consist of facets, and of a facet's surroundings that show it to go on.
+constexpr double kOnPlanes = 0.4;
+// Values of a rounded coordinate, at least: those of plates and boxes that stand straight are fewer.
+constexpr std::size_t kFewestLevels = 5;
+// Neighbourhoods that may hold several layers: each costs a hundred times as much.
+constexpr std::size_t kLayerProbes = 500;
+// Points of each: fewer do not show three layers, more reach around the shape.
+constexpr std::size_t kLayerNeighbours = 256;
+// What the quantile kFlat of them says on smooth surfaces, over the noise.
+constexpr double kLayerBias = 0.92;
+// So many times as many points reach twice as far: where noise fills the neighbourhoods of layers, and to see whether a facet goes on.
+constexpr std::size_t kTwiceAsFar = 4;
+// A neighbourhood is no larger part of a cloud than one in so many points: larger ones follow its shape.
+constexpr std::size_t kSmallPart = 16;
 
 double share_of(std::size_t some, std::size_t all) { return static_cast<double>(some) / static_cast<double>(all); }
 
@@ -65,10 +75,10 @@ void for_some(const PointSet& set, std::size_t probes, std::size_t count, Visit 
 }
 
 // The residual at this quantile that noise of standard deviation 1 leaves of `count` points, an even number: x with
-// P(chi^2 <= d x^2) = share, d = count - kParameters, where P = 1 - e^-y (1 + y + y^2 / 2! + ... + y^(d/2 - 1) / (d/2 - 1)!), y = d x^2
+// P(chi^2 <= d x^2) = share, d = count - kQuadraticTerms, where P = 1 - e^-y (1 + y + y^2 / 2! + ... + y^(d/2 - 1) / (d/2 - 1)!), y = d x^2
 // / 2.
 double expected_residual(std::size_t count, double share) {
-  const std::size_t half = (count - kParameters) / 2;
+  const std::size_t half = (count - kQuadraticTerms) / 2;
   double low = 0, high = 4;
   for (int bit = 0; bit < std::numeric_limits<double>::digits; ++bit) {
     const double x = (low + high) / 2, y = static_cast<double>(half) * x * x;
@@ -107,9 +117,9 @@ double layered_noise(const PointSet& set) {
     sigma.push_back(layered_deviation(points, index.data(), index.size(), point, normal));
   });
   const double found = quantile(sigma, kFlat) / kLayerBias;
-  if (found < kResolved * spacing || points.size() < kThinning * kFewestThinned) return found;
+  if (found < spacing || points.size() < kTwiceAsFar * kSmallPart * kLayerNeighbours) return found;
   std::vector<Vec3> thinned;
-  for (std::size_t i = 0; i < points.size(); i += kThinning) thinned.push_back(points[i]);
+  for (std::size_t i = 0; i < points.size(); i += kTwiceAsFar) thinned.push_back(points[i]);
   return layered_noise(PointSet(std::move(thinned)));
 }
 
@@ -135,7 +145,7 @@ bool on_exact_planes(const PointSet& set) {
     const ExactPlane facet = find_facet(set.points(), index, set.spacing());
     if (facet.breadth == 0) return;
     const Vec3 around = fit_plane(set.points(), index.data(), index.size()).normal;
-    on_facets += std::abs(vector::dot(facet.normal, around)) > kAlong ? 1 : 0;
+    on_facets += std::abs(vector::dot(facet.normal, around)) > kSameSide ? 1 : 0;
   });
   return share_of(on_facets, looked) >= kOnPlanes;
 }
@@ -146,14 +156,14 @@ double rounding_noise(const PointSet& set, const Residuals& residuals) {
   const Vec3 steps = rounding_steps(set.points(), spacing);
   if (std::min({steps[0], steps[1], steps[2]}) == 0) return 0;
   const double sigma = std::hypot(steps[0], steps[1], steps[2]) / std::sqrt(3 * 12);
-  return sigma > kLeast * spacing && residuals.scatter(0.5) > kTerraces * sigma ? sigma : 0;
+  return sigma > kLeast * spacing && residuals.scatter(0.5) > kOfNoise * sigma ? sigma : 0;
 }
 
 // By the flattest neighbourhoods, 0 where these or exact planes show that there is none.
 double scattered_noise(const PointSet& set, const Residuals& residuals) {
   const double spacing = set.spacing();
   const double flattest = residuals.scatter(kFlattest);
-  if (flattest < kLeast * spacing || Residuals(set, kFewer).scatter(kFlattest) < kShape * residuals.scatter(kFlat)) return 0;
+  if (flattest < kLeast * spacing || Residuals(set, kFewer).scatter(kFlattest) < kOfNoise * residuals.scatter(kFlat)) return 0;
   const double filled = flattest / (kSaturation * spacing);
   if (on_exact_planes(set)) return 0;
   const double layered = layered_noise(set);
@@ -168,12 +178,12 @@ bool goes_on(const PointSet& set, const ExactPlane& plane, double scatter) {
   const std::vector<Vec3>& points = set.points();
   std::vector<std::uint32_t> index;
   std::vector<double> squared;
-  set.tree().nearest(points[plane.points.front()], kGoesOn, index, squared);
+  set.tree().nearest(points[plane.points.front()], kTwiceAsFar * kPlaneNeighbours, index, squared);
   Vec3 middle{0, 0, 0};
   for (const std::uint32_t i : plane.points)
     middle = vector::add(middle, vector::scale(points[i], 1 / static_cast<double>(plane.points.size())));
   const auto held = std::count_if(index.begin(), index.end(), [&](std::uint32_t i) {
-    return std::abs(vector::dot(plane.normal, vector::subtract(points[i], middle))) <= kHeld * scatter;
+    return std::abs(vector::dot(plane.normal, vector::subtract(points[i], middle))) <= kSigmas * scatter;
   });
   return share_of(static_cast<std::size_t>(held), index.size()) >= kOnPlanes;
 }
@@ -190,7 +200,7 @@ Vec3 rounding_steps(const std::vector<Vec3>& points, double spacing) {
     std::size_t levels = 1;
     for (std::size_t i = 1; i < sorted.size(); ++i) {
       const double step = sorted[i] - sorted[i - 1];
-      if (step <= kSameCoordinate * spacing) continue;
+      if (step <= kExactScatter * spacing) continue;
       least = std::min(least, step);
       ++levels;
     }
@@ -200,21 +210,21 @@ Vec3 rounding_steps(const std::vector<Vec3>& points, double spacing) {
 }
 
 double estimate_noise(const PointSet& set) {
-  if (set.size() < kFewestPoints) return 0;
+  if (set.size() < kSmallPart * kNeighbours) return 0;
   const Residuals residuals(set, kNeighbours);
   return std::max(scattered_noise(set, residuals), rounding_noise(set, residuals));
 }
 
 double largest_scatter(const PointSet& set) {
   const double spacing = set.spacing();
-  if (set.size() < kFewestPoints || on_exact_planes(set)) return 0;
+  if (set.size() < kSmallPart * kNeighbours || on_exact_planes(set)) return 0;
   const double x = Residuals(set, kNeighbours).scatter(kMostScattered);
-  const double filled = std::min(x / (kMostSaturation * spacing), kMostFilled);
+  const double filled = std::min(x / (kSaturation * spacing), kMostFilled);
   return x / std::sqrt(1 - filled * filled * filled * filled);
 }
 
 double facet_scatter(const PointSet& set) {
-  if (set.size() < kFewestPoints) return 0;
+  if (set.size() < kSmallPart * kNeighbours) return 0;
   std::map<double, std::size_t> counts;  // by scatter, in steps of 2
   std::size_t looked = 0;
   for_some(set, kLayerProbes, kPlaneNeighbours, [&](const Vec3&, const auto& index, const auto&) {
@@ -236,9 +246,9 @@ double facet_scatter(const PointSet& set) {
 }
 
 double dimension(const PointSet& set) {
-  constexpr std::size_t kMost = 2048, kShare = 16, kRatio = 8;
-  if (set.size() < kFewestPoints) return 2;
-  const std::size_t far = std::min(kMost, set.size() / kShare);
+  constexpr std::size_t kMost = 2048, kRatio = 8;
+  if (set.size() < kSmallPart * kNeighbours) return 2;
+  const std::size_t far = std::min(kMost, set.size() / kSmallPart);
   std::vector<double> found;
   for_some(set, kLayerProbes, far, [&](const Vec3&, const auto&, const std::vector<double>& squared) {
     const double ratio = squared.back() / squared[far / kRatio];

@@ -31,15 +31,15 @@ namespace g3r {
 /// The noise where it is largest, if all scatter is noise: of scans that do not fit onto each other, or of noise that differs from place to
 /// place, of which estimate_noise() finds the least. From the scatter x h of three quarters of the height fields above (measured within
 /// 20 % from 0.1 to 1 h):
-///     sigma = h x / sqrt(1 - (x / 0.56)^4).
-/// Walls and detail below the spacing lift it: not an estimate, but what to try. 0 for fewer than 200 points, or where exact planes
+///     sigma = h x / sqrt(1 - (x / 0.57)^4).
+/// Walls and detail below the spacing lift it: not an estimate, but what to try. 0 for fewer than 192 points, or where exact planes
 /// as above show that there is no noise. Units and cost as above.
 [[nodiscard]] double largest_scatter(const PointSet& set);
 
 /// Standard deviation of the points about the facets of a CAD model: what find_likeliest_plane() finds at most of about 500 points, where
 /// 40 % of the 132 nearest points are on that plane too. A scanner scatters alike everywhere, detail does not, so two adjacent ones of its
 /// steps have to hold 40 % of the points; else 0, and 0 for exact points. It sees a scatter too small to blur anything, for which
-/// estimate_noise() is 0, and that of walls closer together than the sampling. 0 for fewer than 200 points. About 20 ms.
+/// estimate_noise() is 0, and that of walls closer together than the sampling. 0 for fewer than 192 points. About 20 ms.
 [[nodiscard]] double facet_scatter(const PointSet& set);
 
 /// Along each axis, the step of which all coordinates are multiples, at least 0.04 typical spacings; 0 where there is none. Same units as
@@ -48,7 +48,7 @@ namespace g3r {
 
 /// How the number of points grows with the distance from one, as its power: about 2 on a surface, noisy or not, nearly 3 in a volume (2.6
 /// to 3: its boundary counts). From the distances r of the neighbours k = min(2048, N / 16) and k / 8, ln 8 / ln(r_k / r_(k/8)), the median
-/// over about 500 points; 2 for fewer than 200. O(k log N).
+/// over about 500 points; 2 for fewer than 192. O(k log N).
 [[nodiscard]] double dimension(const PointSet& set);
 
 }  // namespace g3r

@@ -28,7 +28,7 @@ PlaneFit fit_plane(const std::vector<Vec3>& points, const std::uint32_t* index, 
   }
   PlaneFit fit;
   fit.normal = {normal[0], normal[1], normal[2]};
-  fit.residual = std::sqrt(second / (total - 3));
+  fit.residual = std::sqrt(second / (total - kPlaneTerms));
   fit.flatness = eigen.eigenvalues()[1] > 0 ? std::sqrt(second / eigen.eigenvalues()[1]) : 1;
   fit.breadth = eigen.eigenvalues()[2] > 0 ? std::sqrt(std::max(0.0, eigen.eigenvalues()[1]) / eigen.eigenvalues()[2]) : 0;
   return fit;

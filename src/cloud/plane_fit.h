@@ -1,6 +1,8 @@
 // A plane through points.
 #pragma once
 
+#include "cloud/constants.h"
+
 #include <g3r/points.h>
 
 #include <cstddef>
@@ -9,17 +11,14 @@
 
 namespace g3r {
 
-/// Points of less breadth lie along a line: it has planes all around, and any slope across it fits.
-inline constexpr double kLineBreadth = 0.15;
-
 struct PlaneFit {
   Vec3 normal{0, 0, 1};  ///< unit length, either side
-  double residual = 0;   ///< root mean square distance, corrected for the 3 parameters
+  double residual = 0;   ///< root mean square distance, corrected for kPlaneTerms
   double flatness = 0;   ///< least principal spread over the middle one: 0 for points in a plane, 1 for a ball
   double breadth = 0;    ///< middle principal spread over the largest one: 0 for points on a line
 };
 
-/// The least squares plane through points[index[0]], ..., points[index[count - 1]], count > 3. O(count).
+/// The least squares plane through points[index[0]], ..., points[index[count - 1]], count > kPlaneTerms. O(count).
 [[nodiscard]] PlaneFit fit_plane(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count);
 
 }  // namespace g3r

@@ -8,25 +8,28 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kRidge = 1e-3;  // on the curvatures, relative to the weight of the data: keeps them bounded where points are few
+// On the curvatures, relative to the weight of the data: keeps them bounded where points are few.
+constexpr double kRidge = 1e-3;
+// The same on the slopes, for points on a line: far below what moves a slope, and above rounding.
+constexpr double kSlopeRidge = 1e-9;
 
 // Symmetric positive definite, the rows of the lower half one after the other.
-using Lower6 = std::array<double, 21>;
+using Lower = std::array<double, kQuadraticTerms*(kQuadraticTerms + 1) / 2>;
 
 // Replaces b by the solution x of A x = b, by A = L D L^T.
-void solve(Lower6 a, std::array<double, 6>& b) {
+void solve(Lower a, std::array<double, kQuadraticTerms>& b) {
   const auto at = [&](std::size_t i, std::size_t j) -> double& { return a[i * (i + 1) / 2 + j]; };
-  for (std::size_t j = 0; j < 6; ++j) {
-    for (std::size_t i = j + 1; i < 6; ++i) {
+  for (std::size_t j = 0; j < kQuadraticTerms; ++j) {
+    for (std::size_t i = j + 1; i < kQuadraticTerms; ++i) {
       const double factor = at(i, j) / at(j, j);
       for (std::size_t k = j + 1; k <= i; ++k) at(i, k) -= factor * at(k, j);
       b[i] -= factor * b[j];
     }
-    for (std::size_t i = j + 1; i < 6; ++i) at(i, j) /= at(j, j);
+    for (std::size_t i = j + 1; i < kQuadraticTerms; ++i) at(i, j) /= at(j, j);
   }
-  for (std::size_t j = 6; j-- > 0;) {
+  for (std::size_t j = kQuadraticTerms; j-- > 0;) {
     b[j] /= at(j, j);
-    for (std::size_t i = j + 1; i < 6; ++i) b[j] -= at(i, j) * b[i];
+    for (std::size_t i = j + 1; i < kQuadraticTerms; ++i) b[j] -= at(i, j) * b[i];
   }
 }
 
@@ -34,8 +37,7 @@ void solve(Lower6 a, std::array<double, 6>& b) {
 
 Eigen::Matrix3d tangent_frame(const Vector3d& n) {
   Eigen::Matrix3d f;
-  const Vector3d axis = std::abs(n.x()) < 0.6 ? Vector3d::UnitX() : std::abs(n.y()) < 0.6 ? Vector3d::UnitY() : Vector3d::UnitZ();
-  const Vector3d u = n.cross(axis).normalized();
+  const Vector3d u = n.unitOrthogonal();
   f.row(0) = u;
   f.row(1) = n.cross(u);
   f.row(2) = n;
@@ -82,46 +84,53 @@ QuadraticPatch fit_quadratic_patch(const std::vector<FitPoint>& points, int whic
   }
   const double m10 = first[0], m01 = first[1], m20 = second[0], m02 = second[1], m30 = cube[0], m03 = cube[1], m21 = mixed[0],
                m12 = mixed[1], m40 = fourth[0], m04 = fourth[1], m31 = uneven[0], m13 = uneven[1];
-  std::array<double, 6> right{right0, slope[0], slope[1], curved[0], right4, curved[1]};
+  std::array<double, kQuadraticTerms> right{right0, slope[0], slope[1], curved[0], right4, curved[1]};
   // Heights have the row (1, u, v, u^2, uv, v^2), slopes along u (0, 1, 0, 2u, v, 0) and along v (0, 0, 1, 0, u, 2v).
   const double k = normal_weight;
-  const Lower6 lower{m00 * (1 + 1e-12),
-                     m10,
-                     m20 + (k + 1e-9) * m00,
-                     m01,
-                     m11,
-                     m02 + (k + 1e-9) * m00,
-                     m20,
-                     m30 + 2 * k * m10,
-                     m21,
-                     m40 + 4 * k * m20 + kRidge * m00,
-                     m11,
-                     m21 + k * m01,
-                     m12 + k * m10,
-                     m31 + 2 * k * m11,
-                     m22 + k * (m20 + m02) + kRidge * m00,
-                     m02,
-                     m12,
-                     m03 + 2 * k * m01,
-                     m22,
-                     m13 + 2 * k * m11,
-                     m04 + 4 * k * m02 + kRidge * m00};
+  const Lower lower{m00,
+                    m10,
+                    m20 + (k + kSlopeRidge) * m00,
+                    m01,
+                    m11,
+                    m02 + (k + kSlopeRidge) * m00,
+                    m20,
+                    m30 + 2 * k * m10,
+                    m21,
+                    m40 + 4 * k * m20 + kRidge * m00,
+                    m11,
+                    m21 + k * m01,
+                    m12 + k * m10,
+                    m31 + 2 * k * m11,
+                    m22 + k * (m20 + m02) + kRidge * m00,
+                    m02,
+                    m12,
+                    m03 + 2 * k * m01,
+                    m22,
+                    m13 + 2 * k * m11,
+                    m04 + 4 * k * m02 + kRidge * m00};
   solve(lower, right);
-  const std::array<double, 6> unit{h, 1, 1, 1 / h, 1 / h, 1 / h};
-  for (std::size_t i = 0; i < 6; ++i) s.c[i] = right[i] * unit[i];
+  const std::array<double, kQuadraticTerms> unit{h, 1, 1, 1 / h, 1 / h, 1 / h};
+  for (std::size_t i = 0; i < kQuadraticTerms; ++i) s.c[i] = right[i] * unit[i];
   return s;
+}
+
+double residual(const QuadraticPatch& patch, const std::vector<FitPoint>& points) {
+  double total = 0, squares = 0, misfit = 0;
+  for (const FitPoint& m : points) {
+    const double distance = patch.distance(m.p);
+    total += m.weight;
+    squares += m.weight * m.weight;
+    misfit += m.weight * distance * distance;
+  }
+  const double effective = total * total / squares;
+  if (!(effective > kQuadraticTerms)) return HUGE_VAL;
+  return std::sqrt(misfit / total / (1 - kQuadraticTerms / effective));
 }
 
 double quadratic_residual(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count, const Vec3& normal, double h) {
   std::vector<FitPoint> members;
   for (std::size_t k = 0; k < count; ++k) members.push_back({to_eigen(points[index[k]]), to_eigen(normal), 1, 0});
-  const QuadraticPatch patch = fit_quadratic_patch(members, 0, h, 0);
-  double misfit = 0;
-  for (const FitPoint& m : members) {
-    const double distance = patch.distance(m.p);
-    misfit += distance * distance;
-  }
-  return std::sqrt(misfit / static_cast<double>(count - 6));
+  return residual(fit_quadratic_patch(members, 0, h, 0), members);
 }
 
 }  // namespace g3r

@@ -1,6 +1,8 @@
 // A smooth patch of surface, fitted to points and their normals.
 #pragma once
 
+#include "cloud/constants.h"
+
 #include <g3r/points.h>
 
 #include <Eigen/Core>
@@ -16,7 +18,7 @@ namespace g3r {
 struct QuadraticPatch {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< rows: u, v, normal
-  std::array<double, 6> c{};
+  std::array<double, kQuadraticTerms> c{};
 
   /// Distance to the patch to first order, positive outside, and its gradient (about a unit vector; may be null).
   double distance(const Eigen::Vector3d& x, Eigen::Vector3d* gradient = nullptr) const {
@@ -41,8 +43,12 @@ struct FitPoint {
 /// Throws nothing. O(points).
 [[nodiscard]] QuadraticPatch fit_quadratic_patch(const std::vector<FitPoint>& points, int which, double h, double normal_weight);
 
-/// Root mean square distance, corrected for the 6 numbers, of points[index[0]], ..., points[index[count - 1]] from the quadratic height
-/// field fitted to them over the plane with this normal, count > 6. `h` > 0: length unit of the fit. O(count).
+/// Root mean square distance of these points from the patch, sqrt(sum weight d^2 / sum weight), corrected for kQuadraticTerms: over
+/// sqrt(1 - kQuadraticTerms / n), n = (sum weight)^2 / sum weight^2 the effective number of points; infinite where n is no more. O(points).
+[[nodiscard]] double residual(const QuadraticPatch& patch, const std::vector<FitPoint>& points);
+
+/// Root mean square distance, corrected for kQuadraticTerms, of points[index[0]], ..., points[index[count - 1]] from the quadratic height
+/// field fitted to them over the plane with this normal, count > kQuadraticTerms. `h` > 0: length unit of the fit. O(count).
 [[nodiscard]] double quadratic_residual(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count, const Vec3& normal,
                                         double h);
 

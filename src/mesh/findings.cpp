@@ -1,5 +1,6 @@
 #include "mesh/findings.h"
 
+#include "base/percent.h"
 #include "base/vector.h"
 #include "mesh/constants.h"
 #include "mesh/crossings.h"
@@ -23,8 +24,6 @@ constexpr double kStepToMedian = 0.3;
 constexpr std::size_t kFewestOdd = 10;
 // The points for each handle, and for each part, that a mesh needs: the smallest handle that was right, in a lattice of rods, had 156.
 constexpr std::size_t kPointsPerOdd = 150;
-
-std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 
 std::string short_number(double value) {
   std::array<char, 32> text{};

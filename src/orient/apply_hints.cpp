@@ -1,5 +1,6 @@
 #include "orient/apply_hints.h"
 
+#include "base/percent.h"
 #include "orient/confidence.h"
 #include "orient/hints.h"
 
@@ -10,8 +11,6 @@
 
 namespace g3r {
 namespace {
-
-std::string percent(double share) { return std::to_string(std::lround(100 * share)) + " %"; }
 
 std::string in_words(const Vec3& place) {
   char text[96];

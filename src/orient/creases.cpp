@@ -12,22 +12,27 @@
 namespace g3r {
 namespace {
 
-constexpr double kCreaseCosine = 0.965926;  // 15 degrees
-constexpr double kPlane = 0.05;             // spacings from a plane that holds a point
-constexpr double kRadius = 1.5;             // spacings
-constexpr int kRounds = 2;                  // the first is still among blurred normals
-constexpr double kPiecewiseSmooth = 0.58;   // share that distinguishes CAD models from others
+// Cosine of 15 degrees, by which normals differ at creases: less takes in bends, more leaves shallow creases out.
+constexpr double kCreaseCosine = 0.965926;
+// Spacings from a plane that holds a point: more lets in what is beyond a crease, less what is on the plane out.
+constexpr double kPlane = 0.05;
+// Spacings, the reach of the mean.
+constexpr double kRadius = 1.5;
+// The first round is still among blurred normals: after one, CAD models do not differ from others by the share below.
+constexpr int kRounds = 2;
+// Share of the weight that planes leave on CAD models: 0.59 to 0.71, on others at most 0.56.
+constexpr double kPiecewiseSmooth = 0.58;
 
-struct Round {
+struct Averaged {
   std::vector<Vec3> normals;
   std::vector<double> share;  // of the weight that planes leave, at creases; -1 elsewhere
 };
 
-Round average_in_planes(const PointSet& set, const std::vector<Vec3>& normals) {
+Averaged average_in_planes(const PointSet& set, const std::vector<Vec3>& normals) {
   const std::vector<Vec3>& points = set.points();
   const std::vector<double>& spacing = set.smoothed_spacing();
   const std::vector<std::uint32_t>& near = set.near();
-  Round out{normals, std::vector<double>(points.size(), -1)};
+  Averaged out{normals, std::vector<double>(points.size(), -1)};
   parallel::for_blocks(points.size(), parallel::kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const double plane = kPlane * spacing[i];

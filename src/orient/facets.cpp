@@ -1,6 +1,7 @@
 #include "orient/facets.h"
 
 #include "base/vector.h"
+#include "cloud/constants.h"
 #include "cloud/exact_plane.h"
 #include "cloud/spacing.h"
 #include "orient/polish.h"
@@ -15,12 +16,10 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kFewest = 10;   // points of a facet
-constexpr double kParallel = 0.9995;  // cosine
-constexpr Steps kSteps{120, StepKind::kConjugateGradient};
-constexpr double kTolerance = 2e-3;        // less adds nothing, 5e-3 leaves walls of half a spacing on the wrong side
-constexpr double kSteadyTolerance = 5e-3;  // where no facet has changed its side in the last
-constexpr int kSteadySteps = 10;           // steps
+// Cosine between the normals of a facet and of its seed: less lets facets follow curved surfaces.
+constexpr double kParallel = 0.9995;
+// At most: 20 to 40 are enough as a rule.
+constexpr Steps kSteps{60, StepKind::kConjugateGradient};
 
 // The normal of the first point of every facet, to whose side those of the others are turned.
 std::vector<Vec3> first_normals(const Facets& facets, const std::vector<Vec3>& normals) {
@@ -62,27 +61,6 @@ class OnFacets : public LinearSystem {
   std::vector<double> squares_;  // sum of A_i^2 of every facet
 };
 
-// Says when the sides of all facets have been the same for some steps.
-class SteadySides {
- public:
-  SteadySides(const Facets& facets, const std::vector<Vec3>& normals) : facets_(facets), normals_(normals), last_(facets.count, 0) {}
-  bool operator()(const IterativeResult& solve) {
-    std::vector<std::uint8_t> sides(facets_.count, 0);
-    for (std::size_t i = 0; i < normals_.size(); ++i) {
-      if (facets_.of[i] != Facets::kNone) sides[facets_.of[i]] = vector::dot(solve.eta[i], normals_[i]) < 0 ? 1 : 0;
-    }
-    unchanged_ = sides == last_ ? unchanged_ + 1 : 0;
-    last_ = std::move(sides);
-    return unchanged_ >= kSteadySteps && solve.residuals.back() <= kSteadyTolerance;
-  }
-
- private:
-  const Facets& facets_;
-  const std::vector<Vec3>& normals_;
-  std::vector<std::uint8_t> last_;
-  int unchanged_ = 0;
-};
-
 }  // namespace
 
 Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven, const std::vector<Vec3>& normals) {
@@ -113,7 +91,7 @@ Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven,
         members.push_back(j);
       }
     }
-    if (members.size() < kFewest) continue;
+    if (members.size() < kQuadraticTerms) continue;
     for (const std::uint32_t i : members) facets.of[i] = static_cast<std::uint32_t>(facets.count);
     ++facets.count;
   }
@@ -148,10 +126,8 @@ void choose_facet_sides(const PointSet& set, const Settings& settings, const Fac
   FastSum sum(set.points(), set.morton(), local_widths(settings.polish_epsilon, settings, spacing), settings.first_sums, stages.cancel());
   EnergySystem free(sum, 0, settings.polish_winding_weight);
   OnFacets system(free, facets, areas, turned);
-  SteadySides steady(facets, turned);
   const auto still_going = [&stages](int, int, double) { stages.still_going(); };
-  const auto enough = [&steady](const IterativeResult& r) { return steady(r); };
-  const std::vector<Vec3> solved = solve_iteratively(system, {kSteps}, kTolerance, system.project(eta), still_going, enough).eta;
+  const std::vector<Vec3> solved = solve_iteratively(system, {kSteps}, settings.doubtful_tolerance, system.project(eta), still_going).eta;
   for (std::size_t i = 0; i < set.size(); ++i) {
     if (facets.of[i] == Facets::kNone) continue;
     normals[i] = vector::scale(turned[i], vector::dot(solved[i], turned[i]) < 0 ? -1 : 1);

@@ -20,9 +20,8 @@ struct Facets {
 };
 
 /// Grows facets over the 16 nearest points from seeds in the order of the points: p_j joins beside p_i if both are proven and each lies
-/// within 0.003 h of the other's plane, and its normal is parallel, on either side, to that of the seed to 1.8 degrees. Sets of
-/// fewer than 10 points are no facets. h: smoothed_spacing(); `proven`: fit_jets() or fit_planes() found its normal.
-/// O(N).
+/// within 0.003 h of the other's plane, and its normal is parallel, on either side, to that of the seed to 1.8 degrees. Sets of fewer than
+/// 6 points are no facets. h: smoothed_spacing(); `proven`: fit_jets() or fit_planes() found its normal. O(N).
 [[nodiscard]] Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven, const std::vector<Vec3>& normals);
 
 /// Share of all points whose normal is on another side than that of most points of their facet. O(N).
@@ -32,8 +31,7 @@ struct Facets {
 /// form's equations are restricted to area vectors eta_i = c_f A_i n_i on facets, with one unknown c_f per facet, its n_i on one side, and
 /// free ones elsewhere, which is Galerkin's method with the orthogonal projector P onto these: P M P eta = P b, by conjugate gradients from
 /// `eta`. On facets n_i gets the side of c_f and eta_i becomes A_i n_i; the others stay. docs/math.md, "Facets".
-/// A_i: square of the smoothed_spacing(). `eta`, `normals`: in and out. Up to 120 products, 20 to 40 as a rule: it ends when sides
-/// are steady.
+/// A_i: square of the smoothed_spacing(). `eta`, `normals`: in and out. Up to 60 products, 20 to 40 as a rule.
 void choose_facet_sides(const PointSet& set, const Settings& settings, const Facets& facets, std::vector<Vec3>& eta,
                         std::vector<Vec3>& normals, Stages& stages);
 

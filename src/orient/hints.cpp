@@ -3,6 +3,7 @@
 #include "base/disjoint_sets.h"
 #include "base/vector.h"
 #include "cloud/neighbours.h"
+#include "orient/settings.h"
 #include "sum/direct_sum.h"
 
 #include <g3r/error.h>
@@ -19,19 +20,18 @@ using vector::dot;
 using vector::normalised;
 using vector::subtract;
 
-constexpr double kFewestVotes = 0.02;  // per point: below, the patch is seen edge-on, and noise would vote
-constexpr double kMostOf = 2.0 / 3;    // of the votes: a majority that noise and hidden points do not make
-constexpr double kUsual = 0.2;         // of the votes on closed parts against their side; grazing points and thin walls make some
-constexpr double kInsideWinding =
-    0.25;                        // winding number of a closed part about a place inside it; a street, half of it open, has about 1/2
-constexpr double kWidth = 0.55;  // of the winding field, in spacings
-constexpr std::size_t kMostSensors = 32;  // whose winding numbers are taken; more are along a path, and every so-manieth tells
-constexpr std::size_t kAdjacent = 8;      // nearest points that a point is connected with
-constexpr double kConsistent = 0.8;  // of two adjacent points from which on one side follows from the other; across gaps it is by chance
-constexpr std::size_t kMostForMiddle = 10000;  // points that the middle of the cloud is taken of
-constexpr int kMiddleRounds = 20;              // the first, from the mean, goes most of the way
-constexpr double kAtMiddle = 1e-3;             // of the unit frame: nearer points weigh no more
-constexpr double kSpan = 0.5;                  // of the cloud's extent along every axis: from there on closed parts surround the scanner
+// Votes per point of a patch below which it is seen edge-on: noise would vote.
+constexpr double kFewestVotes = 0.02;
+// Of the votes, a majority that noise, hidden and grazing points do not make; less against a side is no contradiction.
+constexpr double kMostOf = 2.0 / 3;
+// Winding number of a closed part about a place inside it, at least: a street, half of it open, has about 1/2.
+constexpr double kInsideWinding = 0.25;
+// Sensors whose winding numbers are taken, to bound the time: more are along a path, and every so-manieth tells.
+constexpr std::size_t kMostSensors = 32;
+// Cosine of two adjacent normals from which the side of one follows from the other: across gaps it is by chance.
+constexpr double kConsistent = 0.8;
+// Of the cloud's extent along every axis, what closed parts span that surround the scanner.
+constexpr double kSpan = 0.5;
 
 struct Votes {
   double in_favour = 0;
@@ -69,23 +69,11 @@ class NearestPlace {
   std::vector<double> squared_;
 };
 
-// The point with the least sum of distances (Weiszfeld 1937): it turns with the cloud, lies in the plane of a flat one, and a few far
-// points do not move it.
+// The mean: it turns with the cloud, lies in the plane of a flat one, and is where a scanner inside, about which points are dense, stands.
 Vec3 middle_of(const std::vector<Vec3>& points) {
-  const std::size_t step = (points.size() + kMostForMiddle - 1) / kMostForMiddle;
-  Vec3 middle{};
-  for (int round = 0; round <= kMiddleRounds; ++round) {
-    Vec3 sum{};
-    double all = 0;
-    for (std::size_t i = 0; i < points.size(); i += step) {
-      const Vec3 d = subtract(points[i], middle);
-      const double weight = round > 0 ? 1 / std::max(kAtMiddle, std::sqrt(dot(d, d))) : 1;
-      sum = vector::add(sum, vector::scale(points[i], weight));
-      all += weight;
-    }
-    middle = vector::scale(sum, 1 / all);
-  }
-  return middle;
+  Vec3 sum{};
+  for (const Vec3& p : points) sum = vector::add(sum, p);
+  return vector::scale(sum, 1 / static_cast<double>(points.size()));
 }
 
 // Votes of single points.
@@ -205,7 +193,7 @@ class Following {
     const std::size_t stride = near_.size() / points_.size();
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
       if (is_closed(i)) continue;
-      for (std::size_t k = 1; k < std::min(stride, kAdjacent + 1); ++k) {
+      for (std::size_t k = 1; k < stride; ++k) {
         const std::uint32_t j = near_[i * stride + k];
         if (!is_closed(j) && patches_.of[i] == patches_.of[j]) body(i, j);
       }
@@ -243,7 +231,7 @@ class Following {
     for (std::size_t i = 0; i < eta.size(); ++i) {
       if (!is_closed(i)) eta[i] = {0, 0, 0};
     }
-    return direct_sum::winding(points_, kWidth * spacing_, eta, places, cancel_);
+    return direct_sum::winding(points_, kRefinementWidth * spacing_, eta, places, cancel_);
   }
 
   // Whether closed parts reach so far along every axis that what stands in the cloud stands in them.
@@ -291,7 +279,7 @@ class Following {
     const double inside = share_of_sensors_inside();
     bool against = each_known ? votes.share_against() >= kMostOf : inside > 0.5;
     // From outside a closed part, as much of it is seen from behind as from the front: only sensors inside, or those of the points, object.
-    if (each_known || inside > 0) effect_.contradicted_share = votes.share_against() > kUsual ? votes.share_against() : 0;
+    if (each_known || inside > 0) effect_.contradicted_share = votes.share_against() > 1 - kMostOf ? votes.share_against() : 0;
     if (hints_.seen_from_inside) {
       against = against || inside > 0 || spans_cloud();
       effect_.contradicted_share = 0;

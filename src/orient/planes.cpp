@@ -1,6 +1,7 @@
 #include "orient/planes.h"
 
 #include "base/vector.h"
+#include "cloud/constants.h"
 #include "cloud/exact_plane.h"
 #include "cpu/parallel.h"
 
@@ -10,10 +11,12 @@
 namespace g3r {
 namespace {
 
-constexpr double kAside = 0.9;      // cosine between a plane's normal and that of the field
-constexpr double kFewAside = 0.01;  // share of the points; slices have 1.1 to 27 %
-constexpr std::uint32_t kMany = 8;  // terms of a plane that chance does not make, from 10 points on it
-constexpr double kCurves = 1.4;     // dimension of the points on such planes: 1.7 to 2.1 on facets, 1.5 on wires, 1.1 to 1.3 on slices
+// Share of the points whose planes are aside of the field's normals: slices have 1.1 to 27 %.
+constexpr double kFewAside = 0.01;
+// Terms of a plane that chance does not make, from 10 points on it.
+constexpr std::uint32_t kMany = 8;
+// Dimension of the points on such planes: 1.7 to 2.1 on facets, 1.5 on wires, 1.1 to 1.3 on slices.
+constexpr double kCurves = 1.4;
 
 // A plane found, and the sum of ln(d_k / d_j) over the distances of its other points j < k to the first, of which k is the farthest.
 struct Found {
@@ -45,7 +48,7 @@ bool are_slices(const std::vector<Found>& found, const std::vector<Vec3>& normal
   std::size_t terms = 0;
   double logarithms = 0;
   for (std::size_t i = 0; i < found.size(); ++i) {
-    if (found[i].terms < kMany || std::abs(vector::dot(found[i].normal, normals[i])) > kAside) continue;
+    if (found[i].terms < kMany || std::abs(vector::dot(found[i].normal, normals[i])) > kSamePatch) continue;
     ++aside;
     terms += found[i].terms;
     logarithms += found[i].logarithms;

@@ -53,8 +53,7 @@ std::vector<Steps> parse_schedule(const std::string& text) {
 }
 
 IterativeResult solve_iteratively(LinearSystem& system, const std::vector<Steps>& schedule, double tolerance, std::vector<Vec3> start,
-                                  const std::function<void(int, int, double)>& after_step,
-                                  const std::function<bool(const IterativeResult&)>& enough) {
+                                  const std::function<void(int, int, double)>& after_step) {
   int total = 0;
   for (const Steps& steps : schedule) total += steps.count;
   IterativeResult result;
@@ -92,10 +91,6 @@ IterativeResult solve_iteratively(LinearSystem& system, const std::vector<Steps>
       result.kinds.push_back(steps.kind);
       result.residuals.push_back(std::sqrt(squared) / size);
       if (after_step) after_step(++done, total, result.residuals.back());
-      if (enough && enough(result)) {
-        result.converged = true;
-        return result;
-      }
     }
   }
   result.converged = squared == 0 || std::sqrt(squared) <= tolerance * size;

@@ -26,15 +26,13 @@ struct IterativeResult {
   std::vector<Vec3> eta;
   std::vector<StepKind> kinds;    ///< per step done
   std::vector<double> residuals;  ///< |b - M eta| / |b| after each step, by recurrence
-  bool converged = false;         ///< the tolerance was reached, or it was `enough`
+  bool converged = false;         ///< the tolerance was reached
 };
 
 /// Follows the schedule until the relative residual falls to `tolerance` (0: never stop early).
-/// `start`: eta to begin with, or empty for 0. `after_step(step, steps, residual)` may throw to stop; `enough`, asked after it, ends the
-/// solve when it is true, which then counts as converged.
+/// `start`: eta to begin with, or empty for 0. `after_step(step, steps, residual)` may throw to stop.
 /// Sources: Hestenes and Stiefel 1952. One product with M per step; reductions in fixed order.
 [[nodiscard]] IterativeResult solve_iteratively(LinearSystem& system, const std::vector<Steps>& schedule, double tolerance,
-                                                std::vector<Vec3> start = {}, const std::function<void(int, int, double)>& after_step = {},
-                                                const std::function<bool(const IterativeResult&)>& enough = {});
+                                                std::vector<Vec3> start = {}, const std::function<void(int, int, double)>& after_step = {});
 
 }  // namespace g3r

@@ -1,0 +1,23 @@
+// Numbers that several fits share, each with one meaning.
+#pragma once
+
+#include <cstddef>
+
+namespace g3r {
+
+/// Points of less breadth (middle principal spread over the largest) lie along a line: it has planes all around, and any slope across it
+/// fits.
+inline constexpr double kLineBreadth = 0.15;
+/// Cosine of two normals, 26 degrees, from which they are of one smooth patch: creases turn more, and smooth surfaces less from one point
+/// to the next.
+inline constexpr double kSamePatch = 0.9;
+/// Cosine of two normals, 60 degrees, from which they are of one side of a surface: across an edge or under noise they differ as much.
+inline constexpr double kSameSide = 0.5;
+/// Standard deviations from a surface within which its points lie, all but one in 80: fewer leave some out, more let in others.
+inline constexpr double kSigmas = 2.5;
+/// Numbers of a plane.
+inline constexpr std::size_t kPlaneTerms = 3;
+/// Numbers of a quadratic height field, 1, u, v, u^2, uv, v^2: one point more says how far they are off.
+inline constexpr std::size_t kQuadraticTerms = 6;
+
+}  // namespace g3r
