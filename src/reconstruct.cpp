@@ -4,6 +4,7 @@
 #include "cpu/parallel.h"
 #include "field/oriented_cloud.h"
 #include "field/winding_sampler.h"
+#include "mesh/constants.h"
 #include "mesh/field_mesher.h"
 #include "mesh/findings.h"
 #include "mesh/held_points.h"
@@ -11,7 +12,6 @@
 #include "mesh/screened_poisson.h"
 #include "mesh/separate_vertices.h"
 #include "mesh/smooth_spacing.h"
-#include "mesh/trim.h"
 #include "orient/settings.h"
 #include "sum/device_scope.h"
 
@@ -118,7 +118,8 @@ Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor
   if (options.mesher == Mesher::kPoisson) {
     mesh = mesh_with_poisson(oriented, directions, options.depth);
     normalised.min_component = 0;  // spurious components of screened Poisson are part of its result
-    mesh::finish_mesh(mesh, oriented.cloud.points(), mesh::smooth_spacing(oriented.cloud.points()), 0, normalised);
+    const std::vector<Vec3>& points = oriented.cloud.points();
+    mesh::finish_mesh(mesh, {points, directions, mesh::smooth_spacing(points)}, 0, normalised, left_out);
   } else {
     mesh = field_mesh(oriented.cloud.points(), directions, field, normalised, monitor, max_memory, &left_out);
   }
