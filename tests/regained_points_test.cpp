@@ -24,7 +24,8 @@ double norm(const Vec3& p) { return std::sqrt(vector::dot(p, p)); }
 std::vector<Vec3> random_points(std::size_t count, double half_side) {
   shapes::Random random(5);
   std::vector<Vec3> out(count);
-  for (Vec3& p : out) p = {random.uniform(-half_side, half_side), random.uniform(-half_side, half_side), random.uniform(-half_side, half_side)};
+  for (Vec3& p : out)
+    p = {random.uniform(-half_side, half_side), random.uniform(-half_side, half_side), random.uniform(-half_side, half_side)};
   return out;
 }
 

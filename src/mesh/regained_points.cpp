@@ -13,8 +13,8 @@
 namespace g3r::mesh {
 namespace {
 
-// The points and strays around a place that tell a surface from chance: of outliers that fill space 14 % are on any surface through them, and
-// of 8 as many as on a surface too often.
+// The points and strays around a place that are counted: of outliers that fill space 14 % are on any surface through them, and of 8 of them
+// often as many as on a surface.
 constexpr std::size_t kAround = 2 * kFitPoints;
 
 }  // namespace
