@@ -23,8 +23,6 @@
 namespace g3r::mesh {
 namespace {
 
-// The widths of a Gaussian beyond which its weights are below 1 %.
-constexpr double kTail = 3;
 // The share of an edge that a cut leaves on both sides at least: with less, triangles at rims are slivers.
 constexpr double kLeastCut = 0.1;
 
@@ -107,7 +105,7 @@ std::vector<double> past_rims(const Mesh& mesh, const OrientedPoints& points) {
       const Vec3& x = mesh.vertices[v];
       neighbours.nearest(x, 1, near, squared);
       const double s = kGap * width[near[0]], far = std::sqrt(squared[0]) / s - 1;
-      neighbours.within(x, kTail * s, near);
+      neighbours.within(x, kFarSpacings * width[near[0]], near);  // beyond, weights are below 2 %
       std::sort(near.begin(), near.end());  // the sums do not depend on the order of the search
       Vec3 m{0, 0, 0}, n{0, 0, 0};
       double total = 0;
