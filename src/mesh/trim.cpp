@@ -106,7 +106,7 @@ std::vector<double> past_rims(const Mesh& mesh, const OrientedPoints& points) {
       neighbours.nearest(x, 1, near, squared);
       const double s = kGap * width[near[0]], far = std::sqrt(squared[0]) / s - 1;
       neighbours.within(x, kFarSpacings * width[near[0]], near);  // beyond, weights are below 2 %
-      std::sort(near.begin(), near.end());  // the sums do not depend on the order of the search
+      std::sort(near.begin(), near.end());                        // the sums do not depend on the order of the search
       Vec3 m{0, 0, 0}, n{0, 0, 0};
       double total = 0;
       for (const std::uint32_t j : near) {
