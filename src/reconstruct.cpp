@@ -1,20 +1,22 @@
 // From points, or oriented points, to a mesh.
+#include "base/median.h"
 #include "base/percent.h"
 #include "base/stages.h"
 #include "base/vector.h"
 #include "cpu/parallel.h"
 #include "field/oriented_cloud.h"
 #include "field/winding_sampler.h"
+#include "mesh/constants.h"
 #include "mesh/field_mesher.h"
 #include "mesh/field_octree.h"
 #include "mesh/field_points.h"
 #include "mesh/findings.h"
 #include "mesh/held_points.h"
 #include "mesh/mesh_finish.h"
+#include "mesh/regained_points.h"
 #include "mesh/screened_poisson.h"
 #include "mesh/separate_vertices.h"
 #include "mesh/smooth_spacing.h"
-#include "mesh/trim.h"
 #include "orient/confidence.h"
 #include "orient/settings.h"
 #include "sum/device_scope.h"
@@ -90,6 +92,52 @@ void drop_strays(OrientedCloud& oriented, std::vector<Vec3>& strays, const std::
   cloud.set = PointSet(std::move(points), std::move(morton));
 }
 
+// Takes points back that the surface goes through. Areas follow the spacing.
+void regain_points(OrientedCloud& oriented, std::vector<Vec3>& strays, const std::atomic<bool>* cancel) {
+  CanonicalCloud& cloud = oriented.cloud;
+  std::sort(strays.begin(), strays.end());  // whatever the order of the input
+  const std::vector<Vec3> normals = mesh::normals_of_regained(cloud.points(), directions_of(oriented.eta), strays, cancel);
+  std::vector<Vec3> points = cloud.points(), left;
+  std::vector<double> density;  // area over squared spacing
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3& eta = oriented.eta[i];
+    const double h = cloud.set.smoothed_spacing()[i];
+    density.push_back(std::sqrt(vector::dot(eta, eta)) / (h * h));
+  }
+  const double usual = median(density);
+  std::vector<Vec3> directions = directions_of(oriented.eta);
+  for (std::size_t k = 0; k < strays.size(); ++k) {
+    if (normals[k] == Vec3{0, 0, 0}) {
+      left.push_back(strays[k]);
+      continue;
+    }
+    points.push_back(strays[k]);
+    directions.push_back(normals[k]);
+    density.push_back(usual);
+  }
+  if (left.size() == strays.size()) return;
+  strays = std::move(left);
+  const MortonOrder order = morton_order(points);
+  std::vector<Vec3> sorted, sorted_directions;
+  std::vector<double> sorted_density;
+  std::vector<std::uint64_t> code;
+  for (std::size_t k = 0; k < order.index.size(); ++k) {
+    const std::uint32_t i = order.index[k];
+    if (!sorted.empty() && sorted.back() == points[i]) continue;  // the input had it more than once
+    sorted.push_back(points[i]);
+    sorted_directions.push_back(directions[i]);
+    sorted_density.push_back(density[i]);
+    code.push_back(order.code[k]);
+  }
+  cloud.set = PointSet(std::move(sorted), std::move(code));
+  oriented.eta.resize(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const double h = cloud.set.smoothed_spacing()[i];
+    oriented.eta[i] = vector::scale(sorted_directions[i], sorted_density[i] * h * h);
+  }
+  oriented.spacing = cloud.set.spacing();
+}
+
 void turn(std::vector<Vec3>& vectors) {
   for (Vec3& v : vectors) v = {-v[0], -v[1], -v[2]};
 }
@@ -100,7 +148,12 @@ void turn(std::vector<Vec3>& vectors) {
 Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor& monitor, mesh::LeftOut& left_out,
                std::size_t max_memory = 0, double* far_share = nullptr) {
   for (Vec3& p : left_out.strays) p = oriented.cloud.frame.to_unit(p);
-  if (!options.keep_all) drop_strays(oriented, left_out.strays, monitor.cancel);
+  if (!options.keep_all) {
+    std::vector<Vec3> doubtful;
+    drop_strays(oriented, doubtful, monitor.cancel);
+    regain_points(oriented, left_out.strays, monitor.cancel);
+    left_out.strays.insert(left_out.strays.end(), doubtful.begin(), doubtful.end());
+  }
   left_out.dropped.points = left_out.strays.size();
   const WindingSampler field(oriented, monitor.cancel);
   const bool inside_out = is_inside_out(oriented, field);
@@ -115,7 +168,8 @@ Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor
   if (options.mesher == Mesher::kPoisson) {
     mesh = mesh_with_poisson(oriented, directions, options.depth);
     normalised.min_component = 0;  // spurious components of screened Poisson are part of its result
-    mesh::finish_mesh(mesh, oriented.cloud.points(), mesh::smooth_spacing(oriented.cloud.points()), 0, normalised);
+    const std::vector<Vec3>& points = oriented.cloud.points();
+    mesh::finish_mesh(mesh, {points, directions, mesh::smooth_spacing(points)}, 0, normalised, left_out);
   } else {
     mesh = field_mesh(oriented.cloud.points(), directions, field, normalised, monitor, max_memory, &left_out);
   }

@@ -165,8 +165,7 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
   std::vector<std::uint32_t>().swap(prepared.near);  // not only emptied
   mesh::soften_thorns(mesh, mesh::untangle(mesh, monitor.cancel));
   mesh::LeftOut nothing;
-  mesh::finish_mesh(mesh, prepared.points.positions, prepared.points.spacing, prepared.noise, options,
-                    left_out != nullptr ? *left_out : nothing);
+  mesh::finish_mesh(mesh, prepared.points, prepared.noise, options, left_out != nullptr ? *left_out : nothing);
   report(monitor, Done::kAll);
   return mesh;
 }

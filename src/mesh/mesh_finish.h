@@ -1,6 +1,8 @@
 // What is done to a closed mesh before it is returned: trimming, dropping components, simplifying.
 #pragma once
 
+#include "mesh/field_local_fit.h"
+
 #include <g3r/g3r.h>
 
 #include <vector>
@@ -18,10 +20,8 @@ struct LeftOut {
 
 /// Trims, drops components and simplifies as the options ask; `trim_distance` is in the units of the mesh. A closed 2-manifold stays
 /// closed unless trimmed, and 2-manifold always. Throws InvalidInput if an option is out of range or nothing would be left.
-/// `spacing`: of each point; `noise`: standard deviation of the points about the surface, in spacings; `left_out`: the points
+/// `noise`: standard deviation of the points about the surface, in spacings; `left_out`: the points
 /// that were left out before, to which the components that kept_components() leaves out are added.
-void finish_mesh(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>& spacing, double noise, const MeshOptions& options,
-                 LeftOut& left_out);
-void finish_mesh(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>& spacing, double noise, const MeshOptions& options);
+void finish_mesh(Mesh& mesh, const OrientedPoints& points, double noise, const MeshOptions& options, LeftOut& left_out);
 
 }  // namespace g3r::mesh

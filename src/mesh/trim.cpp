@@ -1,7 +1,10 @@
 #include "mesh/trim.h"
 
+#include "base/disjoint_sets.h"
 #include "base/median.h"
 #include "base/vector.h"
+#include "cloud/neighbours.h"
+#include "cpu/parallel.h"
 #include "mesh/constants.h"
 #include "mesh/distance_to_points.h"
 #include "mesh/lines.h"
@@ -13,14 +16,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
+#include <cstdint>
+#include <numbers>
+#include <unordered_map>
 
 namespace g3r::mesh {
 namespace {
 
-// The spacings that a rim may reach beyond its points: one gap in a hundred of a random sample is wider. Where points lie in lines the gaps
-// are those between the lines.
-constexpr double kRim = 1.2;
+// The share of an edge that a cut leaves on both sides at least: with less, triangles at rims are slivers.
+constexpr double kLeastCut = 0.1;
 
 using Triangle = std::array<std::uint32_t, 3>;
 
@@ -47,101 +51,159 @@ double longest_side(const std::array<Vec3, 3>& corner) {
   return longest;
 }
 
-// Which triangles are within the limits. Corners tell of small ones; of large ones the middles of the sides and the centre are asked as
-// well.
-std::vector<std::uint8_t> within(const Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>& limits) {
-  const auto limit = [&](std::uint32_t i) { return limits[i]; };
-  std::vector<double> distance = distance_to_points(mesh.vertices, points, limit);
+// Which triangles have no place farther than the limits but what is cut off with a corner. Corners tell of small ones; of large ones the
+// middles of the sides and the centre are asked as well. `off`: which vertices are farther.
+std::vector<std::uint8_t> within(const Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>& limits,
+                                 const std::vector<std::uint8_t>& off) {
   // No place of a smaller triangle is much farther from a point than its corners.
   const double small = 0.5 * *std::min_element(limits.begin(), limits.end());
-  std::vector<std::uint8_t> keep(mesh.triangles.size());
+  std::vector<std::uint8_t> keep(mesh.triangles.size(), 1);
   std::vector<Vec3> places;
   std::vector<std::uint32_t> asker;
   for (std::uint32_t t = 0; t < keep.size(); ++t) {
     const Triangle& v = mesh.triangles[t];
-    keep[t] = distance[v[0]] <= 1 && distance[v[1]] <= 1 && distance[v[2]] <= 1 ? 1 : 0;
+    if (off[v[0]] + off[v[1]] + off[v[2]] > 0) continue;
     const std::array<Vec3, 3> corner{mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]]};
-    if (keep[t] == 0 || longest_side(corner) <= small) continue;
+    if (longest_side(corner) <= small) continue;
     for (std::size_t k = 0; k < 3; ++k) places.push_back(vector::scale(vector::add(corner[k], corner[(k + 1) % 3]), 0.5));
     places.push_back(centre_of(mesh, v));
     asker.insert(asker.end(), 4, t);
   }
-  distance = distance_to_points(places, points, limit);
+  const std::vector<double> distance = distance_to_points(places, points, [&](std::uint32_t i) { return limits[i]; });
   for (std::size_t k = 0; k < places.size(); ++k) {
     if (distance[k] > 1) keep[asker[k]] = 0;
   }
   return keep;
 }
 
-// For every triangle those across its three sides: kNone where there is none. A side of more than two triangles has none.
-std::vector<Triangle> neighbours_of(const Mesh& mesh) {
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> sides;  // vertices, 3 t + k
-  sides.reserve(3 * mesh.triangles.size());
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::uint64_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
-      sides.emplace_back((std::min(a, b) << 32U) | std::max(a, b), 3 * t + k);
-    }
+// Of the triangles around each vertex.
+std::vector<Vec3> normals_of(const Mesh& mesh) {
+  std::vector<Vec3> normals(mesh.vertices.size(), Vec3{0, 0, 0});
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3& a = mesh.vertices[t[0]];
+    const Vec3 n = vector::cross(vector::subtract(mesh.vertices[t[1]], a), vector::subtract(mesh.vertices[t[2]], a));
+    for (const std::uint32_t v : t) normals[v] = vector::add(normals[v], n);
   }
-  std::sort(sides.begin(), sides.end());
-  std::vector<Triangle> across(mesh.triangles.size(), Triangle{kNone, kNone, kNone});
-  for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
-    const bool pair = sides[i].first == sides[i + 1].first && (i + 2 == sides.size() || sides[i + 2].first != sides[i].first) &&
-                      (i == 0 || sides[i - 1].first != sides[i].first);
-    if (!pair) continue;
-    const std::uint32_t a = sides[i].second, b = sides[i + 1].second;
-    across[a / 3][a % 3] = b / 3;
-    across[b / 3][b % 3] = a / 3;
-  }
-  return across;
+  for (Vec3& n : normals) n = vector::normalised(n);
+  return normals;
 }
 
-// From the rims inwards, as far as no point is near.
-void draw_in(const Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>& spacing, const std::vector<Triangle>& across,
-             std::vector<std::uint8_t>& keep) {
-  std::vector<Vec3> centres;
-  centres.reserve(mesh.triangles.size());
-  for (const Triangle& t : mesh.triangles) centres.push_back(centre_of(mesh, t));
-  const std::vector<double> distance = distance_to_points(centres, points, [&](std::uint32_t i) { return kRim * spacing[i]; });
-  std::vector<std::uint32_t> gone;
-  for (std::uint32_t t = 0; t < keep.size(); ++t) {
-    if (keep[t] == 0) gone.push_back(t);
-  }
-  while (!gone.empty()) {
-    const std::uint32_t t = gone.back();
-    gone.pop_back();
-    for (const std::uint32_t other : across[t]) {
-      if (other == kNone || keep[other] == 0 || distance[other] <= 1) continue;
-      keep[other] = 0;
-      gone.push_back(other);
+// How far past the rims of the points each vertex is: 0 at a rim, -1 amid points.
+//   past = |m x n| / (sqrt(2 / pi) s) + |n| - n . (normal of the vertex) - 1
+// with m and n the means of the offsets and normals of the points around it, weighed with the area that each stands for and a Gaussian of
+// width s = kGap spacings: at the rim of a flat half plane |m| = sqrt(2 / pi) s. Across creases m and n are parallel, at the edges of thin
+// parts n is short, and surface that closes the scan is turned away from n. What is farther than s from every point is past them too.
+std::vector<double> past_rims(const Mesh& mesh, const OrientedPoints& points) {
+  const std::vector<double> width = spacing_across_lines(points.positions, points.spacing);
+  const std::vector<Vec3> normals = normals_of(mesh);
+  const Neighbours neighbours(points.positions);
+  std::vector<double> past(mesh.vertices.size());
+  parallel::for_blocks(past.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> near;
+    std::vector<double> squared;
+    for (std::size_t v = begin; v < end; ++v) {
+      const Vec3& x = mesh.vertices[v];
+      neighbours.nearest(x, 1, near, squared);
+      const double s = kGap * width[near[0]], far = std::sqrt(squared[0]) / s - 1;
+      neighbours.within(x, kFarSpacings * width[near[0]], near);  // beyond, weights are below 2 %
+      std::sort(near.begin(), near.end());                        // the sums do not depend on the order of the search
+      Vec3 m{0, 0, 0}, n{0, 0, 0};
+      double total = 0;
+      for (const std::uint32_t j : near) {
+        const Vec3 d = vector::subtract(points.positions[j], x);
+        const double w = points.spacing[j] * points.spacing[j] * std::exp(-vector::dot(d, d) / (2 * s * s));
+        m = vector::add(m, vector::scale(d, w));
+        n = vector::add(n, vector::scale(points.normals[j], w));
+        total += w;
+      }
+      past[v] = far;
+      if (total <= 0) continue;
+      n = vector::scale(n, 1 / total);
+      const Vec3 across = vector::cross(vector::scale(m, 1 / total), n);
+      const double aside = std::sqrt(vector::dot(across, across)) / (std::sqrt(2 / std::numbers::pi) * s);
+      past[v] = std::max(far, aside + std::sqrt(vector::dot(n, n)) - vector::dot(n, normals[v]) - 1);
     }
-  }
+  });
+  return past;
 }
 
-// Triangles joined to the rest by one edge only are cut off.
-void drop_ears(const std::vector<Triangle>& across, std::vector<std::uint8_t>& keep) {
-  std::vector<std::uint32_t> ears;
-  for (std::uint32_t t = 0; t < keep.size(); ++t) {
-    const auto joined = std::count_if(across[t].begin(), across[t].end(), [&](std::uint32_t o) { return o != kNone && keep[o] != 0; });
-    if (keep[t] != 0 && joined < 2) ears.push_back(t);
+// From the marked vertices on over all that are past 0.
+void flood(const Mesh& mesh, const std::vector<double>& past, std::vector<std::uint8_t>& off) {
+  DisjointSets regions(off.size());
+  for (const Triangle& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (past[t[k]] > 0 && past[t[(k + 1) % 3]] > 0) regions.join(t[k], t[(k + 1) % 3]);
+    }
   }
-  for (const std::uint32_t t : ears) keep[t] = 0;
+  std::vector<std::uint8_t> is_off(off.size(), 0);
+  for (std::uint32_t v = 0; v < off.size(); ++v) {
+    if (off[v] != 0) is_off[regions.find(v)] = 1;
+  }
+  for (std::uint32_t v = 0; v < off.size(); ++v) off[v] = is_off[regions.find(v)];
+}
+
+// Cuts the marked vertices off, where `past` is 0 on the edges to the others. `keep`: by triangle.
+void cut_off(Mesh& mesh, const std::vector<double>& past, const std::vector<std::uint8_t>& off, std::vector<std::uint8_t>& keep) {
+  std::unordered_map<std::uint64_t, std::uint32_t> made;
+  const auto cut = [&](std::uint32_t in, std::uint32_t out) {
+    const auto [place, is_new] = made.try_emplace((std::uint64_t{in} << 32U) | out, static_cast<std::uint32_t>(mesh.vertices.size()));
+    if (is_new) {
+      const double t = std::clamp(past[in] / (past[in] - past[out]), kLeastCut, 1 - kLeastCut);
+      mesh.vertices.push_back(vector::add(vector::scale(mesh.vertices[in], 1 - t), vector::scale(mesh.vertices[out], t)));
+    }
+    return place->second;
+  };
+  const auto add = [&](const Triangle& t) {
+    mesh.triangles.push_back(t);
+    keep.push_back(1);
+  };
+  const std::size_t count = mesh.triangles.size();
+  for (std::size_t t = 0; t < count; ++t) {
+    Triangle v = mesh.triangles[t];
+    const int outside = off[v[0]] + off[v[1]] + off[v[2]];
+    if (keep[t] == 0 || outside == 0) continue;
+    keep[t] = 0;
+    if (outside == 3) continue;
+    const std::uint8_t single = outside == 1 ? 1 : 0;  // the corner on its own side goes first
+    while (off[v[0]] != single) std::rotate(v.begin(), v.begin() + 1, v.end());
+    if (outside == 2) {
+      add({v[0], cut(v[0], v[1]), cut(v[0], v[2])});
+    } else {
+      const std::uint32_t p = cut(v[1], v[0]), q = cut(v[2], v[0]);
+      add({p, v[1], v[2]});
+      add({p, v[2], q});
+    }
+  }
 }
 
 }  // namespace
 
-void trim(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>& spacing, const MeshOptions& options) {
-  const std::vector<double> limits = limits_of(spacing, options);
-  std::vector<std::uint8_t> keep = within(mesh, points, limits);
-  if (std::all_of(keep.begin(), keep.end(), [](std::uint8_t k) { return k != 0; })) return;
-  const std::vector<Triangle> across = neighbours_of(mesh);
-  if (options.trim == MeshOptions::Trim::kAuto) draw_in(mesh, points, spacing_across_lines(points, spacing), across, keep);
-  for (int pass = 0; pass < 2; ++pass) drop_ears(across, keep);  // of those that are left, the second time
+void trim(Mesh& mesh, const OrientedPoints& points, const MeshOptions& options) {
+  const std::vector<double> limits = limits_of(points.spacing, options);
+  const auto limit = [&](std::uint32_t i) { return limits[i]; };
+  std::vector<double> past = distance_to_points(mesh.vertices, points.positions, limit);
+  for (double& d : past) d -= 1;
+  std::vector<std::uint8_t> off(past.size());
+  std::transform(past.begin(), past.end(), off.begin(), [](double d) { return d > 0 ? 1 : 0; });
+  std::vector<std::uint8_t> keep = within(mesh, points.positions, limits, off);
+  const auto is_set = [](std::uint8_t byte) { return byte != 0; };
+  if (std::none_of(off.begin(), off.end(), is_set) && std::all_of(keep.begin(), keep.end(), is_set)) return;
+  if (options.trim == MeshOptions::Trim::kAuto) {
+    const std::vector<double> rims = past_rims(mesh, points);
+    for (std::size_t v = 0; v < past.size(); ++v) past[v] = std::max(past[v], rims[v]);
+    for (std::size_t t = 0; t < keep.size(); ++t) {
+      for (const std::uint32_t v : mesh.triangles[t]) {
+        if (keep[t] == 0 && past[v] > 0) off[v] = 1;
+      }
+    }
+    flood(mesh, past, off);
+  }
+  cut_off(mesh, past, off, keep);
   remove_triangles(mesh, keep);
   if (mesh.triangles.empty()) throw InvalidInput("trimming removed the whole mesh: the trim distance is too small");
   smooth_rims(mesh, [&](const std::vector<Vec3>& places) {
     std::vector<std::uint8_t> near(places.size());
-    const std::vector<double> distance = distance_to_points(places, points, [&](std::uint32_t i) { return limits[i]; });
+    const std::vector<double> distance = distance_to_points(places, points.positions, limit);
     std::transform(distance.begin(), distance.end(), near.begin(), [](double d) { return d <= 1 ? 1 : 0; });
     return near;
   });
