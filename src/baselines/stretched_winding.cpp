@@ -33,9 +33,10 @@ StretchedWinding::StretchedWinding(const std::vector<Vec3>& points, const Vec3& 
   for (std::size_t i = 0; i < points.size(); ++i) stretched[i] = multiplied(s, points[i]);
   MortonOrder order = morton_order(stretched);
   index_ = std::move(order.index);
-  points_.resize(points.size());
-  for (std::size_t k = 0; k < points.size(); ++k) points_[k] = stretched[index_[k]];
-  sum_ = std::make_unique<FastSum>(points_, order.code, Widths(epsilon_), plan, cancel);
+  std::vector<Vec3> sorted(points.size());
+  for (std::size_t k = 0; k < points.size(); ++k) sorted[k] = stretched[index_[k]];
+  points_ = std::make_unique<const std::vector<Vec3>>(std::move(sorted));
+  sum_ = std::make_unique<FastSum>(*points_, order.code, Widths(epsilon_), plan, cancel);
 }
 
 std::vector<double> StretchedWinding::apply(const std::vector<Vec3>& eta) {
@@ -57,13 +58,14 @@ std::vector<Vec3> StretchedWinding::adjoint(const std::vector<double>& q) {
 }
 
 std::vector<double> StretchedWinding::row_norms() const {
-  const NearPairs near = near_pairs(points_, kRowReach * epsilon_, cancel_);
-  std::vector<double> norms(points_.size());
+  const std::vector<Vec3>& points = *points_;
+  const NearPairs near = near_pairs(points, kRowReach * epsilon_, cancel_);
+  std::vector<double> norms(points.size());
   double largest = 0;
-  for (std::size_t k = 0; k < points_.size(); ++k) {
+  for (std::size_t k = 0; k < points.size(); ++k) {
     double sum = 0;
     for (std::size_t i = near.first[k]; i < near.first[k + 1]; ++i) {
-      const Vec3 r = vector::subtract(points_[near.other[i]], points_[k]);
+      const Vec3 r = vector::subtract(points[near.other[i]], points[k]);
       const Vec3 row = vector::scale(multiplied(cofactors_, r), mollified_kernels(vector::dot(r, r), epsilon_).double_layer);
       sum += vector::dot(row, row);
     }

@@ -33,8 +33,8 @@ class StretchedWinding {
   Vec3 cofactors_;
   double epsilon_;
   const std::atomic<bool>* cancel_;
-  std::vector<std::uint32_t> index_;  // canonical index of the k-th point in the stretched order
-  std::vector<Vec3> points_;          // stretched, in that order
+  std::vector<std::uint32_t> index_;                 // canonical index of the k-th point in the stretched order
+  std::unique_ptr<const std::vector<Vec3>> points_;  // stretched, in that order; stay where they are, for the sum
   std::unique_ptr<FastSum> sum_;
 };
 

@@ -110,7 +110,7 @@ IterativeResult solve_for_areas(FastSum& sum, const LevelCloud& cloud, const Set
   }
   std::vector<double> multiplicity = cloud.relative_spacing;
   for (double& m : multiplicity) m *= m;
-  EnergySystem system(sum, 0, winding_weight, multiplicity);
+  EnergySystem system(sum, 0, winding_weight, std::move(multiplicity));
   IterativeResult result =
       solve_iteratively(system, course.schedule, course.tolerance, system.from_areas(std::move(course.start)), course.observe);
   result.eta = system.to_areas(std::move(result.eta));
@@ -128,12 +128,13 @@ IterativeResult solve_from_zero(const LevelCloud& cloud, const Settings& setting
 // From a winding gradient at the points.
 IterativeResult solve_on(FastSum& field, const LevelCloud& cloud, const Settings& settings, double share, Stages& stages,
                          std::vector<Vec3> gradient) {
-  const std::vector<double> spacing = spacing_of(cloud, settings);
+  std::vector<double> spacing = spacing_of(cloud, settings);
   const bool is_narrower =
       settings.epsilon.points <= settings.refinement_width.points && settings.epsilon.noise <= settings.refinement_width.noise;
   FastSum sum = is_narrower ? FastSum(field, local_widths(settings.epsilon, settings, spacing))
                             : sum_over(cloud, settings, settings.epsilon, settings.sums, stages);
   gradient_to_areas(sum, point_areas(settings, spacing), gradient);
+  std::vector<double>().swap(spacing);
   return solve_for_areas(sum, cloud, settings, settings.winding_weight,
                          {std::move(gradient), settings.continued_schedule, settings.continued_tolerance, [&](int step, int steps, double) {
                             stages.progress(share * (kCoarseShare + (1 - kCoarseShare) * step / steps));

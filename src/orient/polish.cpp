@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace g3r {
 namespace {
@@ -44,15 +45,18 @@ std::vector<double> point_areas(const Settings& settings, const std::vector<doub
   return areas;
 }
 
-Polished polish(const PolishCloud& cloud, const Settings& settings, const Refinement& refined, Stages& stages) {
+Polished polish(PolishCloud cloud, const Settings& settings, Refinement refined, Stages& stages) {
   FastSum wider(cloud.points, cloud.morton, local_widths(settings.polish_width, settings, cloud.spacing), settings.sums, stages.cancel());
   FastSum sum(wider, local_widths(settings.polish_epsilon, settings, cloud.spacing));
-  EnergySystem system(sum, settings.polish_damping, settings.polish_winding_weight, cloud.multiplicity);
-  std::vector<Vec3> start = refined.normals;
+  EnergySystem system(sum, settings.polish_damping, settings.polish_winding_weight, std::move(cloud.multiplicity));
+  std::vector<double>().swap(cloud.spacing);
+  std::vector<Vec3> start = std::move(refined.normals);
   for (std::size_t i = 0; i < start.size(); ++i) {
     for (double& c : start[i]) c *= refined.strength[i];
   }
+  std::vector<double>().swap(refined.strength);
   gradient_to_areas(sum, cloud.areas, start);
+  std::vector<double>().swap(cloud.areas);
   const std::vector<Steps> schedule{{settings.polish_steps, StepKind::kConjugateGradient}};
   const auto still_going = [&stages](int, int, double) { stages.still_going(); };
   Polished polished;

@@ -42,6 +42,6 @@ struct PolishCloud {
 /// at settings.polish_width. The start has the right areas, which the first solve does not (its eta are 0.6 to 1.3 of them), so a few
 /// steps suffice. Once: a second round rounds edges. This step is ours, not the paper's. Measured:
 /// docs/evidence/formulation.md.
-[[nodiscard]] Polished polish(const PolishCloud& cloud, const Settings& settings, const Refinement& refined, Stages& stages);
+[[nodiscard]] Polished polish(PolishCloud cloud, const Settings& settings, Refinement refined, Stages& stages);
 
 }  // namespace g3r

@@ -153,18 +153,23 @@ bool any_turned(const std::vector<Vec3>& before, const std::vector<Vec3>& after)
   return false;
 }
 
+// Exact points as dense as they lie; others no denser than is typical, and counted as the area that they stand for.
+PolishCloud polish_cloud(const Problem& problem, const Options& options) {
+  const PointSet& set = problem.cloud.set;
+  const bool is_exact = problem.is_clean() && runs(problem, Step::kLocalWidths);
+  const std::vector<double> relative = is_exact ? problem.known.relative_spacing : relative_spacing(problem, options);
+  const std::vector<double> local = is_exact ? set.smoothed_spacing() : times(problem.spacing, relative);
+  return {set.points(), set.morton(), local, point_areas(problem.settings, local), squares(relative)};
+}
+
 Solution solve_on_points(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
   const Settings& s = problem.settings;
   const PointSet& set = problem.cloud.set;
   Solution solution = solve_equations(problem, options, stages, stats);
   if (s.refinement_width.typical() == 0) solution.refinement.normals = normalised(solution.eta);
   if (s.polish_steps == 0) return solution;
-  const bool is_exact = problem.is_clean() && runs(problem, Step::kLocalWidths);
-  const std::vector<double> relative = relative_spacing(problem, options);
-  const std::vector<double> local = is_exact ? set.smoothed_spacing() : times(problem.spacing, relative);
-  const std::vector<double> multiplicity = squares(is_exact ? problem.known.relative_spacing : relative);
-  const PolishCloud cloud{set.points(), set.morton(), local, point_areas(s, local), multiplicity};
-  Polished polished = polish(cloud, s, solution.refinement, stages);
+  std::vector<Vec3>().swap(solution.eta);  // the polish starts from the refinement
+  Polished polished = polish(polish_cloud(problem, options), s, std::move(solution.refinement), stages);
   std::vector<Vec3>& normals = polished.refinement.normals;
   const auto find_open = [&](std::vector<Vec3>& sides) {
     if (!runs(problem, Step::kOpenSurfaces)) return OpenSurfaces{};
@@ -207,9 +212,10 @@ Solution solve_on_clusters(const Problem& problem, const Options& options, Stage
   const std::vector<double> relative = relative_spacing(problem, options);
   const Clusters clusters = cluster_points(set.points(), set.morton(), s.cluster_side, relative);
   const std::vector<double> spacing = times(problem.spacing, clusters.relative_spacing);
-  const Refinement first = solve_clusters(clusters, spacing, s, stages, stats);
+  Refinement first = solve_clusters(clusters, spacing, s, stages, stats);
   const std::vector<double> areas = times(problem.spacing * problem.spacing, clusters.multiplicity);
-  const std::vector<Vec3> eta = polish({clusters.points, clusters.morton, spacing, areas, clusters.multiplicity}, s, first, stages).eta;
+  const PolishCloud cloud{clusters.points, clusters.morton, spacing, areas, clusters.multiplicity};
+  const std::vector<Vec3> eta = polish(cloud, s, std::move(first), stages).eta;
   Solution solution;
   solution.eta.resize(problem.cloud.size());
   for (std::size_t i = 0; i < solution.eta.size(); ++i) {
