@@ -215,7 +215,10 @@ Solution solve_on_clusters(const Problem& problem, const Options& options, Stage
   Refinement first = solve_clusters(clusters, spacing, s, stages, stats);
   const std::vector<double> areas = times(problem.spacing * problem.spacing, clusters.multiplicity);
   const PolishCloud cloud{clusters.points, clusters.morton, spacing, areas, clusters.multiplicity};
-  const std::vector<Vec3> eta = polish(cloud, s, std::move(first), stages).eta;
+  const Polished polished = polish(cloud, s, std::move(first), stages);
+  const std::vector<Vec3>& eta = polished.eta;
+  std::vector<std::uint32_t> members(clusters.points.size(), 0);
+  for (const std::uint32_t c : clusters.cluster_of) ++members[c];
   Solution solution;
   solution.eta.resize(problem.cloud.size());
   for (std::size_t i = 0; i < solution.eta.size(); ++i) {
@@ -223,8 +226,14 @@ Solution solve_on_clusters(const Problem& problem, const Options& options, Stage
     const double area = relative.empty() ? 1 : relative[i] * relative[i];
     for (std::size_t a = 0; a < 3; ++a) solution.eta[i][a] = eta[c][a] * area / clusters.multiplicity[c];
   }
-  FastSum field(set.points(), set.morton(), local_widths(s.polish_width, s, times(problem.spacing, relative)), s.sums, stages.cancel());
-  solution.refinement = refine_normals(field, solution.eta);
+  const FastSum field(clusters.points, clusters.morton, Widths(s.polish_width.typical()), s.sums, stages.cancel());
+  solution.refinement = unit_normals(field.winding_gradient_at(eta, set.points(), stages.cancel()), solution.eta);
+  for (std::size_t i = 0; i < solution.eta.size(); ++i) {  // points by themselves are sparse, and have kernels of their own width
+    const std::uint32_t c = clusters.cluster_of[i];
+    if (members[c] > 1) continue;
+    solution.refinement.normals[i] = polished.refinement.normals[c];
+    solution.refinement.strength[i] = polished.refinement.strength[c];
+  }
   if (!runs(problem, Step::kOpenSurfaces)) return solution;
   solution.open_surfaces = find_open_surfaces(problem.cloud.set, problem.noise, s.sums, solution.refinement.normals, stages.cancel());
   if (!solution.open_surfaces.part.empty())
