@@ -247,7 +247,7 @@ void SumEngine<T>::upward(cpu::NearForm form, int batch) {
           const OctreeNode& leaf = tree.nodes[tree.leaves[i]];
           cpu::LeafTask<T> task = leaf_task(form, batch, leaf.half_side());
           task.places = sources_->places.data() + leaf.begin;
-          task.source_width_squared = source_widths_->squared.data() + leaf.begin;
+          task.source_width_squared = local_widths_ ? source_widths_->squared.data() + leaf.begin : nullptr;
           task.values = values_.data() + leaf.begin;
           task.value_count = value_count_;
           task.field_stride = source_stride();
@@ -407,12 +407,15 @@ void SumEngine<T>::subtree(cpu::NearForm form, int batch, std::size_t out_channe
   for (std::size_t level = root.level > 0 ? 0 : 1; level + 1 < level_begin.size(); ++level) {
     downward(form, members.data() + level_begin[level], members.data() + level_begin[level + 1], at);
   }
-  const auto first = std::lower_bound(tree.leaves.begin(), tree.leaves.end(), root.begin,
-                                      [&](std::uint32_t leaf, std::uint32_t point) { return tree.nodes[leaf].begin < point; });
-  LeafSpace space(*this);
-  for (auto i = first; i != tree.leaves.end() && tree.nodes[*i].begin < root.end; ++i) {
-    leaf(form, batch, out_channels, static_cast<std::size_t>(i - tree.leaves.begin()), at(*i), space, take);
-  }
+  const auto leaf_from = [&](std::uint32_t point) {
+    const auto before = [&](std::uint32_t leaf, std::uint32_t p) { return tree.nodes[leaf].begin < p; };
+    return static_cast<std::size_t>(std::lower_bound(tree.leaves.begin(), tree.leaves.end(), point, before) - tree.leaves.begin());
+  };
+  const std::size_t first = leaf_from(root.begin);
+  parallel::for_blocks(leaf_from(root.end) - first, kLeafBlock, [&](std::size_t begin, std::size_t end) {  // small clouds are one part
+    LeafSpace space(*this);
+    for (std::size_t i = first + begin; i < first + end; ++i) leaf(form, batch, out_channels, i, at(tree.leaves[i]), space, take);
+  });
 }
 
 template <class T>
