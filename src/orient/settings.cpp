@@ -21,10 +21,10 @@ constexpr double kCoarsestEpsilon = 0.5;  // without a start: converges faster, 
 constexpr double kWindingWeight = 250;          // from eta = 0; larger converges slower, 0 loses nested shells
 constexpr double kContinuedWindingWeight = 30;  // with a coarse start or among outliers: finds more sides of thin walls
 constexpr double kDoubtfulWindingWeight = 35;   // more leaves walls wrong as a whole, less costs narrow gaps
-constexpr double kPolishWindingWeight = 100;    // 30 to 750 give the same normals within 2 %
-constexpr double kEnergyTolerance = 2.5e-3;     // slats and spokes need this residual; smooth shapes get there in half the steps
-constexpr double kAcceptedResidual = 2e-2;      // from here on normals change little
-constexpr double kAcceptedContinued = 0.1;  // after a coarse start; random points on spheres end at 0.05, their normals are right to 1e-4
+constexpr double kPolishWindingWeight = 70;  // of clean points and little noise; more costs sides, less costs narrow gaps and smooth shapes
+constexpr double kEnergyTolerance = 2.5e-3;  // slats and spokes need this residual; smooth shapes get there in half the steps
+constexpr double kAcceptedResidual = 2e-2;   // from here on normals change little
+constexpr double kAcceptedContinued = 0.1;   // after a coarse start; random points on spheres end at 0.05, their normals are right to 1e-4
 constexpr const char* kEnergySchedule = "45 cg";
 constexpr double kStartTolerance = 8e-3;  // of a coarse solution that is only a start
 // After a coarse start smooth shapes are there in 2 to 10 steps. More are right for thin walls and narrow gaps only: on open surfaces, of
@@ -55,9 +55,9 @@ constexpr int kNoisyPolishSteps = 9;
 constexpr double kClusterSide = 0.9;    // epsilon; the kernel at width epsilon cannot distinguish points of one cluster
 constexpr double kWideEpsilon = 1.5;    // h; from here on clusters pay, and an epsilon that is asked for is taken to mean noise
 constexpr double kNoisyDamping = 0.28;  // 1/h: the self term of a flat patch; without it the polish turns shells in cavities
-// W eta = 1/2 is wrong at points off the surface, and the more so the farther off they are: all weights fall with (1 + this s^2)^3.
+// W eta = 1/2 is wrong at points off the surface, and the more so the farther off they are: the polish's weight falls with
+// (1 + this s^2)^3. The solve stops so early that the fall of its weight would change nothing.
 constexpr double kWeightFall = 0.28;
-constexpr double kNoisyPolishWindingWeight = 70;  // h^3, for little noise; more costs sides, less costs narrow gaps
 // Of the sums. Solves from 0 amplify errors with every step; with a start kContinuedAccuracy does.
 constexpr double kAccuracy = 1e-2;
 // The default for least squares over the harmonics.
@@ -115,9 +115,6 @@ void require(bool good, const std::string& message) {
   if (!good) throw InvalidInput(message);
 }
 
-// What W eta = 1/2 counts under this noise, in spacings.
-double trust(double noise) { return cube(1 / (1 + kWeightFall * noise * noise)); }
-
 // Widths, steps and the polish of the default for noise of this many spacings.
 void follow_noise(double noise, const Options& options, std::size_t points, Settings& s) {
   const double width = noisy_width(noise) * s.spacing;
@@ -132,7 +129,7 @@ void follow_noise(double noise, const Options& options, std::size_t points, Sett
   s.polish_width = {s.polish_width.points, kNoisyPolishWidth * patch, 1 - kNoisyPolishPower};
   if (s.polish_steps > 0) s.polish_steps = kNoisyPolishSteps;
   s.polish_damping = kNoisyDamping / s.spacing;
-  s.polish_winding_weight = kNoisyPolishWindingWeight * trust(noise) * cube(s.spacing);
+  s.polish_winding_weight *= cube(1 / (1 + kWeightFall * noise * noise));
   s.unsure_of_noise = kUnsurePerNoise * noise;
   if (!s.doubtful_schedule.empty()) s.doubtful_schedule = {kDoubtfulNoisy};
   if (s.epsilon.typical() > kWideEpsilon * s.spacing) s.cluster_side = kClusterSide * s.epsilon.typical();
@@ -220,7 +217,7 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   const double scatter = paper || green ? 0 : wide ? hidden_noise(s.epsilon.points / spacing) : noise / spacing;
   if (scatter > 0) follow_noise(scatter, options, cloud.size(), s);
   const bool light = starts_coarse(s, cloud.size()) || among_outliers;
-  s.winding_weight = (light ? kContinuedWindingWeight : kWindingWeight) * trust(scatter) * cube(spacing);
+  s.winding_weight = (light ? kContinuedWindingWeight : kWindingWeight) * cube(spacing);
   s.accuracy = options.accuracy != -1 ? options.accuracy : kAccuracy;
   s.first_sums = sum_plan(s.accuracy, cloud.size());
   const bool continued = options.accuracy == -1 && s.method == Method::kEnergy;
