@@ -54,6 +54,20 @@ TEST(SumsOver, OfThePointAloneAreTheVectorsAndOfAllTheirSum) {
   EXPECT_EQ(sums_over({0, 1, 2, 1, 2, 0, 2, 0, 1}, v).lengths, std::vector<double>(3, 9));
 }
 
+// Dense points stand for less area, which is no reason for doubt; vectors that cancel are, wherever they are.
+TEST(SumsOver, TellHowFarVectorsAreOneDirectionWhateverTheDensity) {
+  std::vector<Vec3> eta(6, Vec3{0, 0, 1});
+  for (std::size_t i = 0; i < 3; ++i) eta[i][2] = 0.01;
+  eta[3][2] = -0.9;
+  const std::vector<Vec3> up(6, Vec3{0, 0, 1});
+  const Sums sums = sums_over({0, 1, 1, 2, 2, 0, 3, 4, 4, 5, 5, 5}, eta);  // of two points each
+  const std::vector<float> c = side_confidence(sums.vectors, up, {}, sums.lengths);
+  EXPECT_EQ(c[0], 1);
+  EXPECT_EQ(c[2], 1);
+  EXPECT_EQ(c[5], 1);
+  EXPECT_LT(c[3], 0.2F);
+}
+
 TEST(UnsureShare, CountsWhatIsBelowAHalf) { EXPECT_EQ(unsure_share({0, 0.49F, 0.5F, 1}), 0.5); }
 
 }  // namespace

@@ -174,21 +174,6 @@ TEST(Density, MayFallUnderNoise) {
   EXPECT_LT(share_right(surface, orient(surface.points, same_everywhere).normals), 0.99);
 }
 
-// Neither the kernels' widths nor the areas that points stand for are a reason for doubt: the dense half and the sparse half of a noisy
-// torus are as sure.
-TEST(Density, IsNoDoubtUnderNoise) {
-  shapes::Surface surface = uneven_torus(100);
-  shapes::scatter(surface, 0.01);
-  const Orientation o = orient(surface.points);
-  double dense = 0, sparse = 0, of_dense = 0, of_sparse = 0;
-  for (std::size_t i = 0; i < surface.points.size(); ++i) {
-    const bool is_dense = surface.points[i][0] < 0;
-    (is_dense ? dense : sparse) += static_cast<double>(o.confidence[i]);
-    ++(is_dense ? of_dense : of_sparse);
-  }
-  EXPECT_NEAR(dense / of_dense, sparse / of_sparse, 0.06);
-}
-
 TEST(Density, MayFallTenfold) {
   const shapes::Surface surface = uneven_torus();
   EXPECT_GE(share_right(surface, orient(surface.points).normals), 0.999);
