@@ -10,6 +10,7 @@
 #include "orient/apply_hints.h"
 #include "orient/confidence.h"
 #include "orient/hints.h"
+#include "orient/polish.h"
 #include "orient/problem.h"
 #include "orient/solution.h"
 #include "orient/start.h"
@@ -196,9 +197,13 @@ Oriented orient_problem(const Problem& problem, const Options& options, Stages& 
   out.solution = solve(problem, options, stages, stats);
   solve_open_surfaces_apart(problem, options, stages, stats, out.solution);
   const Refinement& refined = out.solution.refinement;
-  const std::vector<Vec3> vectors = problem.noise > 0 ? sums_over(problem.cloud.set.near(), out.solution.eta) : out.solution.eta;
-  const std::vector<double>& spacing = problem.is_clean() ? problem.cloud.set.smoothed_spacing() : problem.known.relative_spacing;
-  out.confidence = side_confidence(vectors, refined.normals, refined.strength, spacing);
+  if (problem.noise > 0) {
+    const Sums around = sums_over(problem.cloud.set.near(), out.solution.eta);
+    out.confidence = side_confidence(around.vectors, refined.normals, refined.strength, around.lengths);
+  } else {
+    const std::vector<double> areas = point_areas(problem.settings, problem.cloud.set.smoothed_spacing());
+    out.confidence = side_confidence(out.solution.eta, refined.normals, refined.strength, areas);
+  }
   add_open_surfaces(out.solution.open_surfaces, out.confidence, stats);
   out.doubt = unsure_share(out.confidence) + stats.open_share;
   if (out.solution.open_surfaces.worst_defect < kSidesAgree) out.agreed = stats.open_share;

@@ -9,48 +9,63 @@ namespace {
 
 const std::vector<Vec3> kUp(5, Vec3{0, 0, 1});
 const std::vector<Vec3> kAreas(5, Vec3{0, 0, 0.25});
-const std::vector<double> kStrength(5, 3.0);
+const std::vector<double> kJumps(5, 3.0);
 
 TEST(SideConfidence, IsOneWhereAllAgreesAndNoneWhereDirectionsAreOpposite) {
   std::vector<Vec3> eta = kAreas;
   eta[3] = {0, 0, -0.25};
   eta[4] = {0.25, 0, 0};
-  const std::vector<float> c = side_confidence(eta, kUp, kStrength, {});
+  const std::vector<float> c = side_confidence(eta, kUp, kJumps, {1});
   EXPECT_EQ(c, (std::vector<float>{1, 1, 1, 0, 0.5F}));
 }
 
 TEST(SideConfidence, FallsWithAreaAndFieldBelowHalfTheirMedians) {
   std::vector<Vec3> eta = kAreas;
   eta[0][2] = 0.25 * 0.2;
-  std::vector<double> strength = kStrength;
-  strength[1] = 3.0 * 0.25;
-  strength[2] = 3.0 * 0.5;
-  const std::vector<float> c = side_confidence(eta, kUp, strength, {});
+  std::vector<double> jumps = kJumps;
+  jumps[1] = 3.0 * 0.25;
+  jumps[2] = 3.0 * 0.5;
+  const std::vector<float> c = side_confidence(eta, kUp, jumps, {1});
   EXPECT_FLOAT_EQ(c[0], 0.4F);
   EXPECT_FLOAT_EQ(c[1], 0.5F);
   EXPECT_FLOAT_EQ(c[2], 1);
   eta[0] = {0, 0, 0};
-  EXPECT_EQ(side_confidence(eta, kUp, strength, {})[0], 0);
+  EXPECT_EQ(side_confidence(eta, kUp, jumps, {1})[0], 0);
 }
 
 TEST(SideConfidence, DoesNotDependOnUnits) {
   std::vector<Vec3> eta = kAreas;
   eta[2] = {0.01, 0.03, 0.02};
-  const std::vector<double> spacing{1, 2, 1, 0.5, 1};
-  const std::vector<float> c = side_confidence(eta, kUp, kStrength, spacing);
+  const std::vector<double> areas{1, 4, 1, 0.25, 1};
+  const std::vector<float> c = side_confidence(eta, kUp, kJumps, areas);
   for (Vec3& v : eta) {
     for (double& x : v) x *= 64;  // lengths 8 times as long
   }
-  std::vector<double> strength = kStrength, longer = spacing;
-  for (double& s : strength) s /= 8;
-  for (double& h : longer) h *= 8;
-  EXPECT_EQ(side_confidence(eta, kUp, strength, longer), c);
+  std::vector<double> larger = areas;
+  for (double& a : larger) a *= 64;
+  EXPECT_EQ(side_confidence(eta, kUp, kJumps, larger), c);
 }
 
 TEST(SumsOver, OfThePointAloneAreTheVectorsAndOfAllTheirSum) {
-  const std::vector<Vec3> v{{1, 2, 3}, {4, 5, 6}, {-1, 0, 1}};
-  EXPECT_EQ(sums_over({0, 1, 2}, v), v);
-  EXPECT_EQ(sums_over({0, 1, 2, 1, 2, 0, 2, 0, 1}, v), std::vector<Vec3>(3, Vec3{4, 7, 10}));
+  const std::vector<Vec3> v{{1, 2, 2}, {4, 0, 3}, {-1, 0, 0}};
+  EXPECT_EQ(sums_over({0, 1, 2}, v).vectors, v);
+  EXPECT_EQ(sums_over({0, 1, 2}, v).lengths, (std::vector<double>{3, 5, 1}));
+  EXPECT_EQ(sums_over({0, 1, 2, 1, 2, 0, 2, 0, 1}, v).vectors, std::vector<Vec3>(3, Vec3{4, 2, 5}));
+  EXPECT_EQ(sums_over({0, 1, 2, 1, 2, 0, 2, 0, 1}, v).lengths, std::vector<double>(3, 9));
+}
+
+// Dense points stand for less area, which is no reason for doubt; vectors that cancel are, wherever they are.
+TEST(SumsOver, TellHowFarVectorsAreOneDirectionWhateverTheDensity) {
+  std::vector<Vec3> eta(6, Vec3{0, 0, 1});
+  for (std::size_t i = 0; i < 3; ++i) eta[i][2] = 0.01;
+  eta[3][2] = -0.9;
+  const std::vector<Vec3> up(6, Vec3{0, 0, 1});
+  const Sums sums = sums_over({0, 1, 1, 2, 2, 0, 3, 4, 4, 5, 5, 5}, eta);  // of two points each
+  const std::vector<float> c = side_confidence(sums.vectors, up, {}, sums.lengths);
+  EXPECT_EQ(c[0], 1);
+  EXPECT_EQ(c[2], 1);
+  EXPECT_EQ(c[5], 1);
+  EXPECT_LT(c[3], 0.2F);
 }
 
 TEST(UnsureShare, CountsWhatIsBelowAHalf) { EXPECT_EQ(unsure_share({0, 0.49F, 0.5F, 1}), 0.5); }

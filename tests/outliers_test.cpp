@@ -77,6 +77,23 @@ TEST(Outliers, MostRandomPointsOfTheBoxAre) {
   EXPECT_LT(confidence, 0.3);
 }
 
+// The 16 nearest of a sparse point of the surface fill space where strays lie among them; that most are on one plane through it tells the
+// one from the other, and chance makes such planes of strays in one of a hundred.
+TEST(Outliers, StraysAmongThemMakeNoneOfSparsePoints) {
+  shapes::Surface surface = uneven_torus(100);
+  const std::size_t on = surface.points.size(), extra = on / 5;
+  shapes::Random random(3);
+  std::vector<Vec3> points = surface.points;
+  for (std::size_t i = 0; i < extra; ++i) points.push_back({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+  const CanonicalCloud cloud = canonical_cloud(points);
+  std::vector<char> taken(cloud.size(), 0);
+  for (const std::uint32_t p : find_outliers(cloud.set)) taken[p] = 1;
+  std::size_t lost = 0, found = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) (i < on ? lost : found) += static_cast<std::size_t>(taken[cloud.point_of[i]]);
+  EXPECT_LE(lost, on / 50);  // 3 % by the spread alone
+  EXPECT_GE(found, extra * 8 / 10);
+}
+
 TEST(Outliers, RemovedPointsAreNumberedAfterTheOthers) {
   CanonicalCloud cloud = canonical_cloud(shapes::torus(200, 0.6, 0.25, 1).points);
   const CanonicalCloud before = cloud;

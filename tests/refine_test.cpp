@@ -1,5 +1,6 @@
 #include "solve/refine.h"
 
+#include "base/median.h"
 #include "cloud/canonical_cloud.h"
 #include "shapes.h"
 
@@ -45,6 +46,24 @@ TEST(RefineNormals, MakesDirectionsOfTheFieldWhateverTheSizeOfTheVectors) {
   for (std::size_t i = 0; i < normals.size(); ++i) {
     for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(same[i][a], normals[i][a], 1e-5);  // sums are in single precision
   }
+}
+
+// The field of a sphere jumps by 1, however wide the kernels are that blur it.
+TEST(RefineNormals, StrengthIsTheSameForKernelsOfAnyWidth) {
+  constexpr double kNarrow = 0.12, kWide = 0.24;  // 1.5 and 3 spacings: single points are not seen, the sphere is flat
+  const CanonicalCloud cloud = canonical_cloud(shapes::sphere(800).points);
+  std::vector<double> widths(cloud.size());
+  std::vector<Vec3> eta(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    eta[i] = cloud.points()[i];
+    widths[i] = cloud.points()[i][2] > 0 ? kWide : kNarrow;
+  }
+  FastSum sum(cloud.points(), cloud.morton(), Widths(widths), sum_plan(1e-3, cloud.size()));
+  const std::vector<double> jumps = refine_normals(sum, eta).strength;
+  std::vector<double> wide, narrow;
+  for (std::size_t i = 0; i < cloud.size(); ++i) (widths[i] == kWide ? wide : narrow).push_back(jumps[i]);
+  EXPECT_NEAR(median(wide) / median(narrow), 1, 0.1);
+  EXPECT_NEAR(sum.width(0), widths[0], 1e-6);
 }
 
 }  // namespace

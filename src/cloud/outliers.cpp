@@ -1,10 +1,13 @@
 #include "cloud/outliers.h"
 
+#include "base/vector.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
 
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -12,8 +15,10 @@ namespace g3r {
 namespace {
 
 constexpr std::size_t kFewNeighbours = 8;
-constexpr double kSparse = 2;               // local spacing against the neighbours', of those alone, and against the typical one
-constexpr double kVolumetric = 0.07;        // share of the smallest principal spread; 1/3 in a ball
+constexpr double kSparse = 2;         // local spacing against the neighbours', of those alone, and against the typical one
+constexpr double kVolumetric = 0.07;  // share of the smallest principal spread; 1/3 in a ball
+constexpr double kThin = 0.1;         // of the farthest neighbour's distance, half of what a plane holds: more holds strays, less no bends
+constexpr std::ptrdiff_t kHeld = 10;  // of 15 points: one in a hundred that fill space has a plane with as many
 constexpr std::size_t kFewestPoints = 100;  // below, sparse parts are a matter of chance
 constexpr double kMostOutliers = 1.0 / 3;
 
@@ -27,6 +32,27 @@ bool fills_space(const std::vector<Vec3>& points, const std::uint32_t* index, st
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(spread, Eigen::EigenvaluesOnly);
   return eigen.eigenvalues()[0] > kVolumetric * spread.trace();
+}
+
+// Whether some plane through a point, the first of these, and two of the next holds most of the others, as that of a surface as sparse as
+// the point does, though strays among them fill space. An a contrario test (Desolneux, Moisan and Morel, "From Gestalt Theory to Image
+// Analysis", 2008): that many are not there by chance.
+bool on_a_plane(const std::vector<Vec3>& points, const std::uint32_t* index) {
+  std::array<Vec3, kSpacingNeighbours> q;
+  for (std::size_t k = 1; k < q.size(); ++k) q[k] = vector::subtract(points[index[k]], points[*index]);
+  const double half = kThin * kThin * vector::dot(q.back(), q.back());
+  for (std::size_t a = 1; a <= kFewNeighbours; ++a) {
+    for (std::size_t b = 1; b < a; ++b) {
+      const Vec3 m = vector::cross(q[a], q[b]);
+      const double most = half * vector::dot(m, m);
+      const auto held = std::count_if(q.begin() + 1, q.end() - 1, [&](const Vec3& v) {
+        const double d = vector::dot(v, m);
+        return d * d <= most;
+      });
+      if (held >= kHeld) return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace
@@ -45,7 +71,8 @@ std::vector<std::uint32_t> find_outliers(const PointSet& set, const std::vector<
       double neighbours = 0;  // mean logarithm
       for (std::size_t k = 1; k <= kFewNeighbours; ++k) neighbours += std::log(local[index[k]]) / kFewNeighbours;
       const bool alone = std::log(local[i]) - neighbours > std::log(kSparse);
-      outlier[i] = alone || (local[i] > kSparse * typical && fills_space(points, index, kSpacingNeighbours)) ? 1 : 0;
+      outlier[i] =
+          alone || (local[i] > kSparse * typical && fills_space(points, index, kSpacingNeighbours) && !on_a_plane(points, index)) ? 1 : 0;
     }
   });
   std::vector<std::uint32_t> indices;

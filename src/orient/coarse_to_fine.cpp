@@ -80,8 +80,8 @@ std::vector<Vec3> coarse_gradient(const LevelCloud& cloud, const Settings& setti
   return coarse.field->winding_gradient_at(coarse.result.eta, cloud.points, stages.cancel());
 }
 
-double unsure_share_of(const LevelCloud& cloud, const std::vector<Vec3>& eta, const Refinement& refined) {
-  return unsure_share(side_confidence(eta, refined.normals, refined.strength, cloud.relative_spacing));
+double unsure_share_of(const LevelCloud& cloud, const Settings& settings, const std::vector<Vec3>& eta, const Refinement& refined) {
+  return unsure_share(side_confidence(eta, refined.normals, refined.strength, point_areas(settings, spacing_of(cloud, settings))));
 }
 
 // Whether most of the points lie on surfaces without an inside, by the field of some of them.
@@ -144,14 +144,15 @@ IterativeResult solve_on(FastSum& field, const LevelCloud& cloud, const Settings
 // More steps where the sides of many points are unsure, but for surfaces of which the equations are not true.
 void solve_doubtful(FastSum& field, const LevelCloud& cloud, const Settings& settings, Stages& stages, IterativeResult& result) {
   const Refinement refined = refine_normals(field, result.eta);
-  const double unsure = unsure_share_of(cloud, result.eta, refined);
+  const double unsure = unsure_share_of(cloud, settings, result.eta, refined);
   if (unsure < kDoubtfulShare + settings.unsure_of_noise) return;
   if (is_mostly_open(cloud, settings, refined.normals, stages)) return;
   FastSum wider = sum_over(cloud, settings, settings.coarsest_epsilon, settings.first_sums, stages);
   IterativeResult more = solve_for_areas(
       wider, cloud, settings, settings.doubtful_winding_weight,
       {result.eta, settings.doubtful_schedule, settings.doubtful_tolerance, [&](int, int, double) { stages.still_going(); }});
-  if (settings.unsure_of_noise == 0 && unsure_share_of(cloud, more.eta, refine_normals(field, more.eta)) > kWorse * unsure) return;
+  if (settings.unsure_of_noise == 0 && unsure_share_of(cloud, settings, more.eta, refine_normals(field, more.eta)) > kWorse * unsure)
+    return;
   more.kinds.insert(more.kinds.begin(), result.kinds.begin(), result.kinds.end());
   more.residuals.insert(more.residuals.begin(), result.residuals.begin(), result.residuals.end());
   result = std::move(more);
@@ -184,7 +185,6 @@ Solved solve_coarse_to_fine(const std::vector<Vec3>& points, const std::vector<s
   stages.begin("refine");
   if (settings.refinement_width.typical() == 0) return {std::move(level.result), {}};
   Refinement refinement = refine_normals(*level.field, level.result.eta);
-  for (std::size_t i = 0; i < known.relative_spacing.size(); ++i) refinement.strength[i] *= known.relative_spacing[i];
   return {std::move(level.result), std::move(refinement)};
 }
 

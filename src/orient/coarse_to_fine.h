@@ -14,8 +14,7 @@
 
 namespace g3r {
 
-/// Area vectors, and their refinement at settings.refinement_width (empty if that is 0). Where that is wider, for points farther apart, its
-/// gradients are as much weaker: strengths are those times the relative spacing, so that they compare.
+/// Area vectors, and their refinement at settings.refinement_width (empty if that is 0).
 struct Solved {
   IterativeResult result;
   Refinement refinement;

@@ -10,16 +10,21 @@ namespace g3r {
 
 /// Confidence in the side of each normal, in [0, 1]: c = a m f with
 ///   a = (1 + cos angle(eta_i, n_i)) / 2              solved and refined directions agree
-///   m = min(1, 2 A_i / median A), A = |eta| / h^2    wrong points have small areas: about 0.2 of the median
-///   f = min(1, 2 G_i / median G), G = |grad w| h     and lie where the field is weak; 1 without a refinement (empty `strength`)
-/// with h the local `spacing`, in proportion to the widths that |grad w| is for; empty: the same everywhere.
-/// It must rank wrong sides on noisy data with AUC > 0.85 (tests/orient_test).
+///   m = min(1, 2 A_i / median A), A = |eta| / area   wrong points find little of their area: about 0.2 of the median
+///   f = min(1, 2 G_i / median G), G = |grad w| s     and lie where the field is weak; 1 without a refinement (empty `jumps`)
+/// with `areas` what each vector would be long if all was found, up to one factor, or one for all, and G the `jumps`, those of
+/// Refinement::strength. It must rank wrong sides on noisy data with AUC > 0.85 (tests/orient_test).
 [[nodiscard]] std::vector<float> side_confidence(const std::vector<Vec3>& eta, const std::vector<Vec3>& normals,
-                                                 const std::vector<double>& strength, const std::vector<double>& spacing);
+                                                 const std::vector<double>& jumps, const std::vector<double>& areas);
 
-/// Of every point the sum of the vectors of its near points, `near`: Neighbours::of_all(k). O(N k). Under noise the vectors of single
-/// points fit the noise; those of a place together tell its side.
-[[nodiscard]] std::vector<Vec3> sums_over(const std::vector<std::uint32_t>& near, const std::vector<Vec3>& vectors);
+/// Of every point the sums of the vectors of its near points and of their lengths, `near`: Neighbours::of_all(k). O(N k). Under noise the
+/// vectors of single points fit the noise; those of a place together tell its side, and how far they are one direction (the mean resultant
+/// length of directional statistics, as in open_surfaces.cpp) how surely, whatever the density.
+struct Sums {
+  std::vector<Vec3> vectors;
+  std::vector<double> lengths;
+};
+[[nodiscard]] Sums sums_over(const std::vector<std::uint32_t>& near, const std::vector<Vec3>& vectors);
 
 /// Share of the points, of at least one, whose side_confidence() is below a half. O(N).
 [[nodiscard]] double unsure_share(const std::vector<float>& confidence);

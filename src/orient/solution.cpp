@@ -228,6 +228,7 @@ Solution solve_on_clusters(const Problem& problem, const Options& options, Stage
   }
   const FastSum field(clusters.points, clusters.morton, Widths(s.polish_width.typical()), s.sums, stages.cancel());
   solution.refinement = unit_normals(field.winding_gradient_at(eta, set.points(), stages.cancel()), solution.eta);
+  for (double& jump : solution.refinement.strength) jump *= s.polish_width.typical();
   for (std::size_t i = 0; i < solution.eta.size(); ++i) {  // points by themselves are sparse, and have kernels of their own width
     const std::uint32_t c = clusters.cluster_of[i];
     if (members[c] > 1) continue;

@@ -15,7 +15,7 @@ namespace g3r {
 /// Of every point in canonical order.
 struct Solution {
   std::vector<Vec3> eta;  ///< area vectors
-  Refinement refinement;  ///< normals, and the strength of the field they come from (empty without a refinement)
+  Refinement refinement;  ///< normals, and the jump of the field they come from (empty without a refinement)
   OpenSurfaces open_surfaces;
 };
 

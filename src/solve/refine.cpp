@@ -19,7 +19,11 @@ std::vector<Vec3> normalised(const std::vector<Vec3>& eta) {
   return out;
 }
 
-Refinement refine_normals(FastSum& sum, const std::vector<Vec3>& eta) { return unit_normals(sum.winding_gradient(eta), eta); }
+Refinement refine_normals(FastSum& sum, const std::vector<Vec3>& eta) {
+  Refinement refined = unit_normals(sum.winding_gradient(eta), eta);
+  for (std::size_t i = 0; i < refined.strength.size(); ++i) refined.strength[i] *= sum.width(i);
+  return refined;
+}
 
 Refinement unit_normals(std::vector<Vec3> gradients, const std::vector<Vec3>& eta) {
   Refinement refined;

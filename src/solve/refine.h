@@ -15,11 +15,11 @@ namespace g3r {
 /// Where the gradient vanishes the normalised eta stays.
 struct Refinement {
   std::vector<Vec3> normals;     ///< N unit vectors
-  std::vector<double> strength;  ///< N: |grad w_s|, 1/length
+  std::vector<double> strength;  ///< N: |grad w_s| s, the jump of w there: the same on any smooth surface, however wide its kernels
 };
 [[nodiscard]] Refinement refine_normals(FastSum& sum, const std::vector<Vec3>& eta);
 
-/// The same from gradients already evaluated.
+/// The same from gradients already evaluated; strengths are their lengths, which the caller takes times the width.
 [[nodiscard]] Refinement unit_normals(std::vector<Vec3> gradients, const std::vector<Vec3>& eta);
 
 /// Unit vectors along eta; (0, 0, 1) where eta vanishes.

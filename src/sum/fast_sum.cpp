@@ -281,6 +281,10 @@ FastSum& FastSum::operator=(FastSum&&) noexcept = default;
 
 std::size_t FastSum::size() const { return impl_->points->size(); }
 
+double FastSum::width(std::size_t point) const {
+  return std::visit([&](const auto& engine) { return engine.source_width(point); }, impl_->engine);
+}
+
 std::vector<double> FastSum::green(const HarmonicValues& u, const std::vector<Vec3>& eta) {
   std::vector<double> out(size() * u.count);
   std::visit([&](auto& engine) { green_into(engine, u, eta, out); }, impl_->engine);

@@ -34,6 +34,8 @@ class FastSum {
   FastSum& operator=(FastSum&&) noexcept;
 
   [[nodiscard]] std::size_t size() const;
+  /// Of the kernel of this point, to rounding of the plan.
+  [[nodiscard]] double width(std::size_t point) const;
 
   /// A[u_k] eta at every point, all k in one sweep: N x K row-major. See direct_sum::green.
   std::vector<double> green(const HarmonicValues& u, const std::vector<Vec3>& eta);

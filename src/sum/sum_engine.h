@@ -12,6 +12,7 @@
 
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -45,6 +46,11 @@ class SumEngine {
   /// Another set of targets for the sources of `other` (uniform width), canonical order.
   SumEngine(const SumEngine& other, const std::vector<Vec3>& targets, const std::vector<std::uint64_t>& morton,
             const std::atomic<bool>* cancel);
+
+  /// Of the kernel of this source.
+  [[nodiscard]] double source_width(std::size_t source) const {
+    return local_widths_ ? std::sqrt(static_cast<double>(source_widths_->squared[source])) : source_widths_->uniform;
+  }
 
   /// Takes other targets in place of those, canonical order; the values of the sources stay, and so does what was made of them.
   void set_targets(const std::vector<Vec3>& targets, const std::vector<std::uint64_t>& morton);
