@@ -274,9 +274,11 @@ Reconstruction reconstruct(const PointsView& points, const Options& options, con
   });
   device.describe(out.orientation.stats);
   if (far > kDoubtful) {
-    out.orientation.stats.warnings.push_back(
-        percent(far) + " of the surface is farther than 4 spacings from any point: the cloud looks open; trim the mesh");
-    out.orientation.stats.doubtful = out.orientation.stats.doubtful || (far > kManyUnsure && chosen.trim == MeshOptions::Trim::kOff);
+    Stats& stats = out.orientation.stats;
+    const bool is_noisy = stats.noise > mesh::kNoisy * stats.spacing;
+    stats.warnings.push_back(percent(far) + " of the surface is farther than 4 spacings from any point: the cloud looks open" +
+                             (is_noisy ? ", as do two walls that are no farther apart than its noise" : "") + "; trim the mesh");
+    stats.doubtful = stats.doubtful || (far > kManyUnsure && chosen.trim == MeshOptions::Trim::kOff);
   }
   warn_of_topology(out.check, out.orientation.stats);
   const double widest = std::ldexp(mesh::kFinestCell, mesh::kMaxOctreeLevel) * out.orientation.stats.spacing;  // that the octree resolves

@@ -1,9 +1,13 @@
 // Field mesher: closed, manifold, accurate, sharp, deterministic, cancellable.
 #include "mesh/field_mesher.h"
 
+#include "mesh/field_points.h"
+#include "mesh/handle_removal.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -179,6 +183,25 @@ TEST(FieldMesher, NoisyPointsAreAveraged) {
   double sum = 0;
   for (const Vec3& v : mesh.vertices) sum += std::abs(norm(v) - 1);
   EXPECT_LT(sum / static_cast<double>(mesh.vertices.size()), 0.25 * h);  // a third of the mean deviation of the points, 0.8 h
+}
+
+// What fits smooth away needs no leaves: they are half as wide as the fits, and hold as many corners for each handle as without noise.
+TEST(FieldMesher, LeavesGrowWithTheFitsUnderNoise) {
+  EXPECT_EQ(mesh::cell_under(0), mesh::kFinestCell);
+  EXPECT_EQ(mesh::most_per_handle(0, mesh::kFinestCell), mesh::kMostPerHandle);
+  EXPECT_EQ(mesh::most_per_handle(0, mesh::kFinestCell / 2), mesh::kMostPerHandle);
+  EXPECT_EQ(mesh::most_per_handle(1, mesh::cell_under(1)), 8 * mesh::kMostPerHandle);
+  const OrientedSample s = sphere_sample(4000, 1, 8);
+  const double h = std::sqrt(4 * M_PI / 4000);
+  const DistanceSampler field([](const Vec3& p) { return norm(p) - 1; }, 2 * h);
+  std::array<double, 2> vertices{};
+  for (const double noise : {0.0, 1.0}) {
+    MeshOptions options;
+    options.noise = {Length::Unit::kInput, noise * h};
+    vertices.at(noise > 0 ? 1 : 0) = static_cast<double>(field_mesh(s.points, s.normals, field, options).vertices.size());
+  }
+  const double wider = mesh::cell_under(1) / mesh::kFinestCell;
+  EXPECT_NEAR(vertices[0] / vertices[1], wider * wider, 0.1 * wider * wider);
 }
 
 TEST(FieldMesher, FieldWithoutInsideStillGivesAManifold) {

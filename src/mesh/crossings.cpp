@@ -18,9 +18,6 @@ using vector::dot;
 
 // More take time, and shares of so many are good to a hundredth of a percent.
 constexpr std::size_t kLooks = 20000;
-// The cosine below which a normal has another direction: of shallower crossings the two surfaces are within kLayer of each other where they
-// are looked at.
-constexpr double kOther = 0.8;
 // How far from the point the line may be, and how far from the line surfaces are looked at, in spacings: farther, they curve.
 constexpr double kReach = 2.5;
 constexpr double kAround = 3.5;
@@ -71,7 +68,7 @@ double crossing_at(const PointSet& set, const std::vector<Vec3>& normals, std::s
   const std::uint32_t* const near = set.near().data() + i * set.near_count();
   const std::uint32_t* const end = near + set.near_count();
   const Vec3& a = normals[i];
-  const auto is_other = [&](std::uint32_t j) { return std::fabs(dot(a, normals[j])) < kOther; };
+  const auto is_other = [&](std::uint32_t j) { return std::fabs(dot(a, normals[j])) < kSamePatch; };
   if (static_cast<std::size_t>(std::count_if(near, end, is_other)) < kPatchPoints) return 0;  // fewer: noise of normals
   const std::uint32_t other = *std::find_if(near, end, is_other);
   const Vec3& b = normals[other];

@@ -89,9 +89,10 @@ Noise estimate_noise(const OrientedPoints& points, const Neighbours& neighbours)
   return {median(std::move(position)), median(std::move(normal))};
 }
 
+double smoothing_width(double position) { return std::min(kWidthFloor + 2 * position, kFarSpacings); }
+
 void denoise(OrientedPoints& points, const Neighbours& neighbours, const Noise& noise, const std::atomic<bool>* cancel) {
-  // Narrower fits leave noise; wider ones round detail and cost their square in time.
-  const double width = std::min(kWidthFloor + 2 * noise.position, kFarSpacings);
+  const double width = smoothing_width(noise.position);
   // Normals that are far better than positions would leave these without a say: slopes weigh no more against heights than heights do
   // against slopes in a fit to clean points. Without noise of the normals the ratio is infinite.
   const double ratio = noise.position / noise.normal;

@@ -16,7 +16,11 @@ struct Noise {
 /// the indices.
 [[nodiscard]] Noise estimate_noise(const OrientedPoints& points, const Neighbours& neighbours);
 
-/// Moves every point along the normal onto a quadratic fit whose width follows the noise, and takes over the normal of the fit.
+/// The width in spacings of the fits that points move onto under a noise: narrower ones leave noise; wider ones round detail and cost their
+/// square in time.
+[[nodiscard]] double smoothing_width(double position);
+
+/// Moves every point along the normal onto a quadratic fit of smoothing_width(), and takes over the normal of the fit.
 /// `neighbours`: of a copy of the positions. O(N) fits over up to 200 points. Throws Cancelled.
 void denoise(OrientedPoints& points, const Neighbours& neighbours, const Noise& noise, const std::atomic<bool>* cancel = nullptr);
 

@@ -21,7 +21,7 @@ enum class Way { kBoth, kFill, kCut };
 }  // namespace
 
 bool remove_handles(const Octree& octree, const AmbiguousCorners& ambiguous, const std::function<bool(std::uint32_t)>& may_change,
-                    const InsideTest& centre_inside, std::vector<std::uint8_t>& inside, const DualSurface& surface,
+                    long most_per_handle, const InsideTest& centre_inside, std::vector<std::uint8_t>& inside, const DualSurface& surface,
                     const std::atomic<bool>* cancel) {
   if (count_handles(surface) == 0) return false;
   const std::vector<std::vector<float>> smoothed = smooth_sides(octree, ambiguous, inside, 2, cancel);
@@ -38,7 +38,7 @@ bool remove_handles(const Octree& octree, const AmbiguousCorners& ambiguous, con
     is_ambiguous[c] = 1;
     changing.push_back(k);
   }
-  HandleRemoval removal(octree, is_ambiguous, inside, surface, centre_inside, cancel);
+  HandleRemoval removal(octree, is_ambiguous, inside, surface, centre_inside, most_per_handle, cancel);
   const std::vector<std::uint8_t> before = inside;
   bool changed = false;
   for (const Labelling& labelling : kLabellings) {

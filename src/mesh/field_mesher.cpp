@@ -69,24 +69,36 @@ vector::Box box_of(const std::vector<Vec3>& points) {
 // The side of the octree around points of a typical spacing in a box with this longest side, with room for all surface that is no guess.
 double octree_side(double spacing, double longest_side) { return longest_side * kMargin + 2 * mesh::kFarSpacings * spacing; }
 
-// `size`: of sizes_to_resolve().
-Octree make_octree(const Prepared& prepared, const std::vector<double>& size, const MeshOptions& options, const Monitor& monitor) {
-  const mesh::OrientedPoints& points = prepared.points;
-  const vector::Box box = box_of(points.positions);
+// The cube of the octree and its levels around points.
+struct Levels {
+  double side = 0;
+  mesh::LevelRule rule;
+};
+
+Levels levels_of(const Prepared& prepared, double longest_side, int depth) {
   const double h = prepared.typical;
-  double side = octree_side(h, box.longest_side());
-  mesh::LevelRule rule{h, options.depth};
-  if (options.depth == 0) {
-    rule.finest = std::clamp(static_cast<int>(std::ceil(std::log2(side / (kFinestCell * h)))), kBaseLevel, mesh::kMaxOctreeLevel);
-    side = std::max(side, kFinestCell * h * std::exp2(rule.finest));
+  Levels out{octree_side(h, longest_side), {h, depth}};
+  if (depth == 0) {
+    const double cell = mesh::cell_under(prepared.noise) * h;
+    const int level = static_cast<int>(std::ceil(std::log2(out.side / cell)));
+    out.rule.finest = std::clamp(level, kBaseLevel, mesh::kMaxOctreeLevel);
+    out.side = std::max(out.side, cell * std::exp2(out.rule.finest));
   } else {
-    rule.finer = 0;
+    out.rule.finer = 0;
   }
-  const Vec3 corner = vector::subtract(box.centre(), {0.5 * side, 0.5 * side, 0.5 * side});
+  return out;
+}
+
+// `size`: of sizes_to_resolve().
+Octree make_octree(const Prepared& prepared, const std::vector<double>& size, const Levels& levels, const vector::Box& box,
+                   const Monitor& monitor) {
+  const mesh::OrientedPoints& points = prepared.points;
+  const double half = 0.5 * levels.side;
   std::vector<RefineDisc> requests(points.positions.size());
   for (std::size_t i = 0; i < requests.size(); ++i)
-    requests[i] = mesh::disc_around(points.positions[i], points.normals[i], points.spacing[i], size[i], rule);
-  return Octree(corner, side, requests, std::min(kBaseLevel, rule.finest), monitor.cancel);
+    requests[i] = mesh::disc_around(points.positions[i], points.normals[i], points.spacing[i], size[i], levels.rule);
+  return Octree(vector::subtract(box.centre(), {half, half, half}), levels.side, requests, std::min(kBaseLevel, levels.rule.finest),
+                monitor.cancel);
 }
 
 void require_memory_for(std::size_t points, const Octree& octree, int depth, std::size_t max_memory) {
@@ -101,10 +113,11 @@ Mesh raw_mesh(const Prepared& prepared, const std::vector<double>& size, const F
               const Monitor& monitor, std::size_t max_memory) {
   const mesh::OrientedPoints& oriented = prepared.points;
   const mesh::LocalFit local(oriented, *prepared.neighbours, prepared.near);
-  const Octree octree = make_octree(prepared, size, options, monitor);
+  const vector::Box box = box_of(oriented.positions);
+  const Levels levels = levels_of(prepared, box.longest_side(), options.depth);
+  const Octree octree = make_octree(prepared, size, levels, box, monitor);
   require_memory_for(oriented.positions.size(), octree, options.depth, max_memory);
   report(monitor, Done::kOctree);
-  const vector::Box box = box_of(oriented.positions);
   // Every evaluation of the field sums the points anew, so fewer places at once than two a point take longer, and more take memory.
   const mesh::CornerSides side(local, sampler, prepared.typical, {box.centre(), box.longest_side()}, mesh::level_places(oriented.positions),
                                2 * oriented.positions.size());
@@ -117,7 +130,8 @@ Mesh raw_mesh(const Prepared& prepared, const std::vector<double>& size, const F
 
   const auto centre_inside = [&](const std::vector<Vec3>& centres) { return mesh::sides_by_fit(local, centres); };
   mesh::DualSurface surface = mesh::contour(octree, inside, centre_inside, monitor.cancel);
-  if (mesh::remove_handles(octree, corners.ambiguous, all, centre_inside, inside, surface, monitor.cancel)) {
+  const long most_per_handle = mesh::most_per_handle(prepared.noise, std::ldexp(levels.side, -levels.rule.finest) / prepared.typical);
+  if (mesh::remove_handles(octree, corners.ambiguous, all, most_per_handle, centre_inside, inside, surface, monitor.cancel)) {
     surface = {};
     surface = mesh::contour(octree, inside, centre_inside, monitor.cancel);
   }

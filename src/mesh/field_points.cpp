@@ -2,6 +2,7 @@
 
 #include "base/median.h"
 #include "mesh/constants.h"
+#include "mesh/handle_removal.h"
 #include "mesh/smooth_spacing.h"
 
 #include <g3r/error.h>
@@ -52,6 +53,13 @@ void smooth_noise(const Noise& noise, const std::atomic<bool>* cancel, Prepared&
   if (prepared.noise == 0) return;
   denoise(prepared.points, *prepared.neighbours, noise, cancel);
   find_neighbours(prepared);
+}
+
+double cell_under(double noise) { return std::max(kFinestCell, smoothing_width(noise) / 2); }
+
+long most_per_handle(double noise, double cell) {
+  const double blurred = noise > 0 ? std::max(1.0, smoothing_width(noise) / cell) : 1;
+  return std::lround(static_cast<double>(kMostPerHandle) * blurred * blurred * blurred);
 }
 
 std::vector<double> sizes_to_resolve(const Prepared& prepared) {

@@ -16,7 +16,8 @@
 
 namespace g3r::mesh {
 
-/// The side of the leaves around points, in typical spacings: smaller ones add vertices and no detail, larger ones lose some.
+/// The side of the leaves around points of a clean cloud, in typical spacings: smaller ones add vertices and no detail, larger ones lose
+/// some.
 inline constexpr double kFinestCell = 0.8;
 /// The level of the largest leaves: 16 along each axis, so that coarse places of the field are seen too.
 inline constexpr int kBaseLevel = kLeastMeshDepth;
@@ -43,13 +44,21 @@ void prepare(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, 
 /// Moves points that scatter more than a fit bears. Throws Cancelled.
 void smooth_noise(const Noise& noise, const std::atomic<bool>* cancel, Prepared& prepared);
 
+/// The side of the leaves around points, in typical spacings, under noise_seen(): half of the width of the fits that points move onto,
+/// where this is more than without noise. What fits smooth away needs no leaves, and with finer ones it comes back as handles.
+[[nodiscard]] double cell_under(double noise);
+
+/// For HandleRemoval, with leaves of such a side in spacings: as many corners as without noise, in what is to the width of the fits as
+/// those are to kFinestCell.
+[[nodiscard]] long most_per_handle(double noise, double cell);
+
 /// The size of what is to be seen at each point: its spacing, or less where walls and gaps are thinner.
 [[nodiscard]] std::vector<double> sizes_to_resolve(const Prepared& prepared);
 
 /// Levels of leaves around points.
 struct LevelRule {
   double typical = 0;  ///< spacing,
-  int finest = 0;      ///< and the level whose cells are kFinestCell such spacings or less
+  int finest = 0;      ///< and the level whose cells have the side that was asked for, or less
   int finer = 4;       ///< levels that dense sampling and walls may add
 };
 /// The disc around a point that leaves resolve. `size`: of sizes_to_resolve().

@@ -10,13 +10,6 @@
 namespace g3r::mesh {
 namespace {
 
-// The corners that may change sides for each handle that goes: more change the shape. With 100 the 28 models have a genus of 265 instead of
-// 287, but gears a CD of 0.702 instead of 0.677.
-constexpr long kMostPerHandle = 60;
-
-// Whether a group of so many corners may be taken for so many handles.
-bool is_worth(long handles, long corners) { return handles > 0 && corners <= kMostPerHandle * handles; }
-
 // How many different values each group has; most have one.
 class DifferentValues {
  public:
@@ -56,9 +49,10 @@ Patches patches_around(const Octree& octree, const OpenEdges& open, const std::v
 }  // namespace
 
 HandleRemoval::HandleRemoval(const Octree& octree, const std::vector<std::uint8_t>& open, const std::vector<std::uint8_t>& inside,
-                             const DualSurface& surface, InsideTest centre_inside, const std::atomic<bool>* cancel)
+                             const DualSurface& surface, InsideTest centre_inside, long most_per_handle, const std::atomic<bool>* cancel)
     : octree_(octree),
       centre_inside_(std::move(centre_inside)),
+      most_per_handle_(most_per_handle),
       cancel_(cancel),
       open_(open_edges(octree, open, cancel)),
       grouping_(open_, octree.leaf_count()),

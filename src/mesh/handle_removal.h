@@ -16,6 +16,10 @@
 
 namespace g3r::mesh {
 
+/// The corners that may change sides for each handle that goes, unless noise blurs more: more change the shape. With 100 the 28 models have
+/// a genus of 265 instead of 287, but gears a CD of 0.702 instead of 0.677.
+inline constexpr long kMostPerHandle = 60;
+
 /// Other labellings of the same corners, taken where they have fewer handles. The same result for any number of threads. Works on the part
 /// of the surface around the corners that a proposal may change.
 class HandleRemoval {
@@ -23,7 +27,8 @@ class HandleRemoval {
   /// `open`: 1 for corners that a proposal may change; `surface` = contour(octree, inside). `octree` must outlive this.
   /// O(nodes + crossings + edges near open corners). All members throw Cancelled.
   HandleRemoval(const Octree& octree, const std::vector<std::uint8_t>& open, const std::vector<std::uint8_t>& inside,
-                const DualSurface& surface, InsideTest centre_inside, const std::atomic<bool>* cancel = nullptr);
+                const DualSurface& surface, InsideTest centre_inside, long most_per_handle = kMostPerHandle,
+                const std::atomic<bool>* cancel = nullptr);
   HandleRemoval(const HandleRemoval&) = delete;  // its parts refer to each other
   HandleRemoval& operator=(const HandleRemoval&) = delete;
 
@@ -44,6 +49,7 @@ class HandleRemoval {
     long before = 0;  // components of the surface that pass through its leaves now
   };
 
+  [[nodiscard]] bool is_worth(long handles, long corners) const { return handles > 0 && corners <= most_per_handle_ * handles; }
   [[nodiscard]] Patches patches_of(const CornerGroups& groups, const std::vector<std::uint8_t>& inside) const;
   [[nodiscard]] std::vector<Change> changes_of(const CornerGroups& groups, const Patches& changed, const std::vector<std::uint8_t>& from,
                                                const std::vector<std::uint8_t>& to) const;
@@ -53,6 +59,7 @@ class HandleRemoval {
 
   const Octree& octree_;
   InsideTest centre_inside_;
+  long most_per_handle_;
   const std::atomic<bool>* cancel_;
   const OpenEdges open_;
   CornerGrouping grouping_;

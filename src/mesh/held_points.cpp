@@ -17,8 +17,6 @@ using vector::dot;
 
 // The height over the distance up to which two points are on one patch, at both: random directions have less once in eight times.
 constexpr double kSlope = 0.35;
-// n_i . (n_j mirrored in the middle between them) from which the patch goes on round a bend or crease.
-constexpr double kBends = 0.9;
 // The quantile of the heights that is the usual one: up to a tenth of the points may be strays, and do not change it.
 constexpr double kUsual = 0.9;
 // One stray in so many seems to be held by the one next to it, measured 1 in 4 to 1 in 50; and the clouds in which chance may make a part
@@ -104,7 +102,7 @@ class Search {
   [[nodiscard]] Look look_at(std::uint32_t i, std::uint32_t j) const {
     const Vec3 d = vector::subtract(points_[i], points_[j]);
     const double squared = dot(d, d), a = dot(d, normals_[i]), b = dot(d, normals_[j]);
-    return {std::max(std::abs(a), std::abs(b)), dot(normals_[i], normals_[j]) - 2 * a * b / squared > kBends, std::sqrt(squared)};
+    return {std::max(std::abs(a), std::abs(b)), dot(normals_[i], normals_[j]) - 2 * a * b / squared > kSamePatch, std::sqrt(squared)};
   }
 
   [[nodiscard]] double usual_height() const {

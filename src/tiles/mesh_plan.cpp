@@ -32,7 +32,7 @@ constexpr std::size_t kSamples = 32;         // cells, of 64 points or more each
 constexpr int kSampleAround = 1;             // cells around them: 8 spacings or more
 constexpr std::uint64_t kFixed = 72u << 20;  // as of the solves
 constexpr std::uint64_t kPerPoint = 4500;    // bytes of the octree, the sides and the patches around each point (docs/algorithms/tiles.md)
-// Times kFinestCell: the frame is made for cells of just that size, from a sample of the spacing that errs (scale_for() in plan.cpp).
+// Times cell_under(): the frame is made for cells of kFinestCell, from a sample of the spacing that errs (scale_for() in plan.cpp).
 constexpr double kLargestCell = 1.15;
 constexpr int kMaxLevel = mesh::kMaxOctreeLevel - 4;  // of the cells: leaves are finer
 
@@ -168,7 +168,7 @@ bool is_sound(const MeshPlan& plan, const Cells& cells) {
 }  // namespace
 
 mesh::LevelRule MeshFolder::levels() const {
-  const double level = std::ceil(std::log2(2 / (kLargestCell * mesh::kFinestCell * plan.spacing)));
+  const double level = std::ceil(std::log2(2 / (kLargestCell * mesh::cell_under(mesh::noise_seen(plan.noise)) * plan.spacing)));
   return {plan.spacing, std::clamp(static_cast<int>(level), mesh::kBaseLevel, mesh::kMaxOctreeLevel)};
 }
 
