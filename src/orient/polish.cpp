@@ -40,9 +40,12 @@ void gradient_to_areas(FastSum& sum, const std::vector<double>& areas, std::vect
 
 std::vector<double> point_areas(const Settings& settings, const std::vector<double>& spacing) {
   if (spacing.empty()) return {settings.spacing * settings.spacing};
-  std::vector<double> areas = spacing;
-  for (double& a : areas) a *= a;
-  return areas;
+  return squares(spacing);
+}
+
+std::vector<double> squares(std::vector<double> values) {
+  for (double& v : values) v *= v;
+  return values;
 }
 
 Polished polish(PolishCloud cloud, const Settings& settings, Refinement refined, Stages& stages) {

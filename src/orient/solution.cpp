@@ -67,11 +67,6 @@ std::vector<double> times(double factor, std::vector<double> values) {
   return values;
 }
 
-std::vector<double> squares(std::vector<double> values) {
-  for (double& v : values) v *= v;
-  return values;
-}
-
 // Area vectors, and their refinement unless its width is 0.
 Solution solve_equations(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
   const Settings& s = problem.settings;
