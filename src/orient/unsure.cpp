@@ -11,7 +11,7 @@ constexpr double kAround = 5;  // spacings: 3 leave up to 10 % more error, 8 tak
 }  // namespace
 
 std::vector<std::uint32_t> around_unsure(const std::vector<Vec3>& points, const std::vector<double>& spacing,
-                                        const std::vector<std::uint8_t>& unsure) {
+                                         const std::vector<std::uint8_t>& unsure) {
   std::vector<Vec3> seeds;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (unsure[i] != 0) seeds.push_back(points[i]);
