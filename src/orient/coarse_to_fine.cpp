@@ -111,7 +111,7 @@ IterativeResult solve_for_areas(FastSum& sum, const LevelCloud& cloud, const Set
     GreenSystem system(sum, cloud.points, settings.harmonics, settings.constant_weight);
     return solve_iteratively(system, course.schedule, course.tolerance, std::move(course.start), course.observe);
   }
-  EnergySystem system(sum, 0, settings.winding_weight, squares(cloud.relative_spacing));
+  EnergySystem system(sum, 0, settings.winding_weight, cloud.relative_spacing);
   IterativeResult result =
       solve_iteratively(system, course.schedule, course.tolerance, system.from_areas(std::move(course.start)), course.observe);
   result.eta = system.to_areas(std::move(result.eta));
@@ -149,7 +149,7 @@ IterativeResult solve_around_unsure(const LevelCloud& cloud, const Settings& set
   const std::vector<std::uint32_t> some = around_unsure(cloud.points, spacing, unsure);
   const auto with_system = [&](const LevelCloud& of, const auto& work) {
     FastSum sum = sum_over(of, settings, settings.coarsest_epsilon, settings.first_sums, stages);
-    EnergySystem system(sum, 0, settings.doubtful_winding_weight, squares(of.relative_spacing));
+    EnergySystem system(sum, 0, settings.doubtful_winding_weight, of.relative_spacing);
     return work(system);
   };
   const PartResidual right = with_system(cloud, [&](EnergySystem& all) { return residual_at(some, all, all.from_areas(start)); });

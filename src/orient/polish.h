@@ -36,9 +36,9 @@ struct Polished {
 struct PolishCloud {
   const std::vector<Vec3>& points;
   const std::vector<std::uint64_t>& morton;
-  std::vector<double> spacing;       ///< at each point, which both widths follow; empty: the typical one everywhere
-  std::vector<double> areas;         ///< that each point stands for, or one for all
-  std::vector<double> multiplicity;  ///< how much the equations of each point count; empty: ones
+  std::vector<double> spacing;  ///< at each point, which both widths follow; empty: the typical one everywhere
+  std::vector<double> areas;    ///< that each point stands for, or one for all
+  std::vector<double> roots;    ///< of how much the equations of each point count; empty: ones
 };
 
 /// settings.polish_steps of conjugate gradients on the energy form at settings.polish_epsilon, started from `refined`, and the refinement
