@@ -22,7 +22,7 @@ namespace {
 // Cosine between the normals of a facet and of its seed: less lets facets follow curved surfaces.
 constexpr double kParallel = 0.9995;
 // c_f from which the side of a facet is certain: 0.5 leaves single facets wrong as a whole, 1 solves for nearly all.
-constexpr double kSure = 0.8;
+constexpr double kCertainSide = 0.8;
 // At most: 20 to 40 are enough as a rule.
 constexpr Steps kSteps{60, StepKind::kConjugateGradient};
 
@@ -93,7 +93,7 @@ std::vector<std::uint8_t> unsure_facets(const Facets& facets, const std::vector<
   for (std::size_t i = 0; i < normals.size(); ++i) {
     if (facets.of[i] == Facets::kNone) continue;
     const bool is_against = vector::dot(normals[i], turned[i]) < 0;
-    if (is_against || vector::dot(mean[i], normals[i]) < kSure * areas[i]) is_unsure[facets.of[i]] = 1;
+    if (is_against || vector::dot(mean[i], normals[i]) < kCertainSide * areas[i]) is_unsure[facets.of[i]] = 1;
   }
   std::vector<std::uint8_t> unsure(normals.size(), 0);
   for (std::size_t i = 0; i < unsure.size(); ++i) unsure[i] = facets.of[i] == Facets::kNone ? 0 : is_unsure[facets.of[i]];

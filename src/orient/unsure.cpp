@@ -6,7 +6,7 @@
 namespace g3r {
 namespace {
 
-constexpr double kAround = 5;  // spacings: 3 leave up to 10 % more error, 8 take twice the time
+constexpr double kAround = 5;  // spacings: 3 leave a tenth more error, 8 solve for half as many points more
 
 }  // namespace
 
