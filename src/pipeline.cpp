@@ -11,6 +11,7 @@
 #include "orient/confidence.h"
 #include "orient/hints.h"
 #include "orient/polish.h"
+#include "orient/open_surfaces.h"
 #include "orient/problem.h"
 #include "orient/solution.h"
 #include "orient/start.h"
@@ -256,8 +257,10 @@ Attempt attempt(Problem problem, const PointsView& points, const Options& option
   Attempt out{std::move(problem), {}, {}};
   describe(out.problem, points, options, out.stats);
   require_memory(out.stats.planned_memory_bytes, options);
-  static_cast<void>(out.problem.cloud.set.smoothed_spacing());  // what solve and areas need of the neighbours
-  out.problem.cloud.set.release_neighbours();
+  const PointSet& set = out.problem.cloud.set;
+  static_cast<void>(set.smoothed_spacing());              // what solve and areas need of the neighbours,
+  static_cast<void>(set.spacing());                       // and what the certificate does
+  if (set.size() > kMostSites) set.release_neighbours();  // up to there the certificate takes more than they and the solve do
   out.oriented = orient_problem(out.problem, options, stages, out.stats);
   return out;
 }

@@ -54,7 +54,7 @@ TEST(Clusters, CountTheAreasOfTheirPoints) {
 // Coincident pairs: the restriction is exact.
 TEST(Clusters, SystemIsTheFullOneOnConstantVectors) {
   const CanonicalCloud cloud = canonical_cloud(shapes::torus(600, 0.6, 0.25, 1).points);
-  const std::vector<double> twos(cloud.size(), 2.0);
+  const std::vector<double> roots(cloud.size(), std::sqrt(2.0));
   std::vector<Vec3> doubled;
   std::vector<std::uint64_t> morton;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -66,7 +66,7 @@ TEST(Clusters, SystemIsTheFullOneOnConstantVectors) {
   const double weight = 0.3;
   FastSum one_sum(cloud.points(), cloud.morton(), Widths(width), sum_plan(0, cloud.size()));
   FastSum all_sum(doubled, morton, Widths(width), sum_plan(0, doubled.size()));
-  EnergySystem clustered(one_sum, damping, weight, twos);
+  EnergySystem clustered(one_sum, damping, weight, roots);
   EnergySystem full(all_sum, damping, weight);
   shapes::Random random(2);
   std::vector<Vec3> eta(cloud.size());  // of a cluster: both its points together

@@ -16,6 +16,8 @@ struct Clusters {
   std::vector<double> multiplicity;       ///< M: of the points in the cell, together
   std::vector<double> relative_spacing;   ///< M: theirs, root mean square; empty if none is given
   std::vector<std::uint32_t> cluster_of;  ///< N: point -> cluster
+
+  [[nodiscard]] std::vector<double> roots() const;  ///< M: of the multiplicities
 };
 
 /// Cells of the Morton grid with a side of at most `side` and more than side / 2. `points` and `morton` in canonical order.

@@ -13,9 +13,9 @@ namespace g3r {
 struct PointSet::Known {
   std::vector<Vec3> points;
   std::vector<std::uint64_t> morton;
-  std::mutex making;  // tree and near
-  std::atomic<bool> has_tree{false}, has_near{false};
-  std::once_flag local_made, smoothed_made, spacing_made;
+  std::mutex making;  // tree, near and local
+  std::atomic<bool> has_tree{false}, has_near{false}, has_local{false};
+  std::once_flag smoothed_made, spacing_made;
   std::unique_ptr<Neighbours> tree;
   std::vector<std::uint32_t> near;
   std::vector<double> local;
@@ -55,13 +55,19 @@ const std::vector<std::uint32_t>& PointSet::near() const {
 
 void PointSet::release_neighbours() const {
   const std::scoped_lock lock(known_->making);
-  known_->has_tree = known_->has_near = false;
+  known_->has_tree = known_->has_near = known_->has_local = false;
   known_->tree.reset();
   std::vector<std::uint32_t>().swap(known_->near);
+  std::vector<double>().swap(known_->local);
 }
 
 const std::vector<double>& PointSet::local_spacing() const {
-  std::call_once(known_->local_made, [this] { known_->local = g3r::local_spacing(known_->points, near()); });
+  if (!known_->has_local) {
+    const std::vector<std::uint32_t>& around = near();
+    const std::scoped_lock lock(known_->making);
+    if (known_->local.empty()) known_->local = g3r::local_spacing(known_->points, around);
+    known_->has_local = true;
+  }
   return known_->local;
 }
 

@@ -35,7 +35,8 @@ class PointSet {
   [[nodiscard]] const std::vector<double>& smoothed_spacing() const;
   [[nodiscard]] double spacing() const;
 
-  /// Gives back tree() and near(), a tenth of what a solve takes; references to them end. They are made again when they are asked for.
+  /// Gives back tree(), near() and local_spacing(), a quarter of what a solve takes; references to them end. They are made again when they
+  /// are asked for.
   void release_neighbours() const;
 
  private:

@@ -1,10 +1,13 @@
 #include "orient/coarse_to_fine.h"
 
+#include "base/vector.h"
 #include "orient/confidence.h"
 #include "orient/open_surfaces.h"
 #include "orient/polish.h"
+#include "orient/unsure.h"
 #include "solve/energy_system.h"
 #include "solve/green_system.h"
+#include "solve/part_system.h"
 #include "sum/fast_sum.h"
 
 #include <algorithm>
@@ -31,7 +34,7 @@ Settings coarser(Settings settings) {
     width->noise *= kSpacingRatio;
   }
   settings.winding_weight *= kCubeRatio;
-  settings.doubtful_winding_weight *= kCubeRatio;
+  settings.winding_weight *= kCubeRatio;
   settings.tolerance = settings.start_tolerance;
   settings.first_sums = settings.sums;
   return settings;
@@ -80,8 +83,8 @@ std::vector<Vec3> coarse_gradient(const LevelCloud& cloud, const Settings& setti
   return coarse.field->winding_gradient_at(coarse.result.eta, cloud.points, stages.cancel());
 }
 
-double unsure_share_of(const LevelCloud& cloud, const Settings& settings, const std::vector<Vec3>& eta, const Refinement& refined) {
-  return unsure_share(side_confidence(eta, refined.normals, refined.strength, point_areas(settings, spacing_of(cloud, settings))));
+std::vector<float> confidence_of(const LevelCloud& cloud, const Settings& settings, const std::vector<Vec3>& eta, const Refinement& refined) {
+  return side_confidence(eta, refined.normals, refined.strength, point_areas(settings, spacing_of(cloud, settings)));
 }
 
 // Whether most of the points lie on surfaces without an inside, by the field of some of them.
@@ -102,15 +105,13 @@ struct Course {
   std::function<void(int, int, double)> observe;
 };
 
-// Area vectors by settings.method, with this weight of the winding number.
-IterativeResult solve_for_areas(FastSum& sum, const LevelCloud& cloud, const Settings& settings, double winding_weight, Course course) {
+// Area vectors by settings.method.
+IterativeResult solve_for_areas(FastSum& sum, const LevelCloud& cloud, const Settings& settings, Course course) {
   if (settings.method == Method::kGreen) {
     GreenSystem system(sum, cloud.points, settings.harmonics, settings.constant_weight);
     return solve_iteratively(system, course.schedule, course.tolerance, std::move(course.start), course.observe);
   }
-  std::vector<double> multiplicity = cloud.relative_spacing;
-  for (double& m : multiplicity) m *= m;
-  EnergySystem system(sum, 0, winding_weight, std::move(multiplicity));
+  EnergySystem system(sum, 0, settings.winding_weight, cloud.relative_spacing);
   IterativeResult result =
       solve_iteratively(system, course.schedule, course.tolerance, system.from_areas(std::move(course.start)), course.observe);
   result.eta = system.to_areas(std::move(result.eta));
@@ -120,9 +121,9 @@ IterativeResult solve_for_areas(FastSum& sum, const LevelCloud& cloud, const Set
 // From eta = 0.
 IterativeResult solve_from_zero(const LevelCloud& cloud, const Settings& settings, double share, Stages& stages) {
   FastSum sum = sum_over(cloud, settings, settings.coarsest_epsilon, settings.first_sums, stages);
-  return solve_for_areas(
-      sum, cloud, settings, settings.winding_weight,
-      {{}, settings.schedule, settings.tolerance, [&](int step, int steps, double) { stages.progress(share * step / steps); }});
+  return solve_for_areas(sum, cloud, settings, {{}, settings.schedule, settings.tolerance, [&](int step, int steps, double) {
+                                                  stages.progress(share * step / steps);
+                                                }});
 }
 
 // From a winding gradient at the points.
@@ -135,24 +136,49 @@ IterativeResult solve_on(FastSum& field, const LevelCloud& cloud, const Settings
                             : sum_over(cloud, settings, settings.epsilon, settings.sums, stages);
   gradient_to_areas(sum, point_areas(settings, spacing), gradient);
   std::vector<double>().swap(spacing);
-  return solve_for_areas(sum, cloud, settings, settings.winding_weight,
+  return solve_for_areas(sum, cloud, settings,
                          {std::move(gradient), settings.continued_schedule, settings.continued_tolerance, [&](int step, int steps, double) {
                             stages.progress(share * (kCoarseShare + (1 - kCoarseShare) * step / steps));
                           }});
 }
 
+// More steps for the points around unsure sides, from what is known; the others are held.
+IterativeResult solve_around_unsure(const LevelCloud& cloud, const Settings& settings, const std::vector<std::uint8_t>& unsure,
+                                    Stages& stages, std::vector<Vec3> start) {
+  const std::vector<double> spacing = cloud.relative_spacing.empty() ? std::vector<double>{settings.spacing} : spacing_of(cloud, settings);
+  const std::vector<std::uint32_t> some = around_unsure(cloud.points, spacing, unsure);
+  const auto with_system = [&](const LevelCloud& of, const auto& work) {
+    FastSum sum = sum_over(of, settings, settings.coarsest_epsilon, settings.first_sums, stages);
+    EnergySystem system(sum, 0, settings.winding_weight, of.relative_spacing);
+    return work(system);
+  };
+  const PartResidual right = with_system(cloud, [&](EnergySystem& all) { return residual_at(some, all, all.from_areas(start)); });
+  const std::vector<Vec3> points = values_at(some, cloud.points);
+  const std::vector<std::uint64_t> morton = values_at(some, cloud.morton);
+  const std::vector<double> relative = values_at(some, cloud.relative_spacing);
+  IterativeResult result = with_system({points, morton, relative}, [&](EnergySystem& part) {
+    IterativeResult change = solve_for_part(part, right, settings.doubtful_schedule, settings.doubtful_tolerance,
+                                            [&](int, int, double) { stages.still_going(); });
+    change.eta = part.to_areas(std::move(change.eta));
+    return change;
+  });
+  for (std::size_t k = 0; k < some.size(); ++k) start[some[k]] = vector::add(start[some[k]], result.eta[k]);
+  result.eta = std::move(start);
+  return result;
+}
+
 // More steps where the sides of many points are unsure, but for surfaces of which the equations are not true.
 void solve_doubtful(FastSum& field, const LevelCloud& cloud, const Settings& settings, Stages& stages, IterativeResult& result) {
   const Refinement refined = refine_normals(field, result.eta);
-  const double unsure = unsure_share_of(cloud, settings, result.eta, refined);
+  const std::vector<float> confidence = confidence_of(cloud, settings, result.eta, refined);
+  const double unsure = unsure_share(confidence);
   if (unsure < kDoubtfulShare + settings.unsure_of_noise) return;
   if (is_mostly_open(cloud, settings, refined.normals, stages)) return;
-  FastSum wider = sum_over(cloud, settings, settings.coarsest_epsilon, settings.first_sums, stages);
-  IterativeResult more = solve_for_areas(
-      wider, cloud, settings, settings.doubtful_winding_weight,
-      {result.eta, settings.doubtful_schedule, settings.doubtful_tolerance, [&](int, int, double) { stages.still_going(); }});
-  if (settings.unsure_of_noise == 0 && unsure_share_of(cloud, settings, more.eta, refine_normals(field, more.eta)) > kWorse * unsure)
-    return;
+  IterativeResult more = solve_around_unsure(cloud, settings, unsure_points(confidence), stages, result.eta);
+  if (settings.unsure_of_noise == 0) {
+    const Refinement after = refine_normals(field, more.eta);
+    if (unsure_share(confidence_of(cloud, settings, more.eta, after)) > kWorse * unsure) return;
+  }
   more.kinds.insert(more.kinds.begin(), result.kinds.begin(), result.kinds.end());
   more.residuals.insert(more.residuals.begin(), result.residuals.begin(), result.residuals.end());
   result = std::move(more);

@@ -49,6 +49,12 @@ Sums sums_over(const std::vector<std::uint32_t>& near, const std::vector<Vec3>& 
   return sums;
 }
 
+std::vector<std::uint8_t> unsure_points(const std::vector<float>& confidence) {
+  std::vector<std::uint8_t> unsure(confidence.size());
+  for (std::size_t i = 0; i < unsure.size(); ++i) unsure[i] = confidence[i] < kUnsure ? 1 : 0;
+  return unsure;
+}
+
 double unsure_share(const std::vector<float>& confidence) {
   const auto unsure = std::count_if(confidence.begin(), confidence.end(), [](float c) { return c < kUnsure; });
   return static_cast<double>(unsure) / static_cast<double>(confidence.size());

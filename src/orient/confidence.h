@@ -26,6 +26,8 @@ struct Sums {
 };
 [[nodiscard]] Sums sums_over(const std::vector<std::uint32_t>& near, const std::vector<Vec3>& vectors);
 
+/// Of every point, whether its side_confidence() is below a half.
+[[nodiscard]] std::vector<std::uint8_t> unsure_points(const std::vector<float>& confidence);
 /// Share of the points, of at least one, whose side_confidence() is below a half. O(N).
 [[nodiscard]] double unsure_share(const std::vector<float>& confidence);
 /// Share of unsure sides from which other noises are tried, each with one more solve: few clean clouds leave as many, and with a

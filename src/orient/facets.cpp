@@ -5,19 +5,24 @@
 #include "cloud/exact_plane.h"
 #include "cloud/spacing.h"
 #include "orient/polish.h"
+#include "orient/unsure.h"
 #include "solve/energy_system.h"
 #include "solve/iterative_solver.h"
+#include "solve/part_system.h"
 #include "sum/fast_sum.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 namespace g3r {
 namespace {
 
 // Cosine between the normals of a facet and of its seed: less lets facets follow curved surfaces.
 constexpr double kParallel = 0.9995;
+// c_f from which the side of a facet is certain: 0.5 leaves single facets wrong as a whole, 1 solves for nearly all.
+constexpr double kCertainSide = 0.8;
 // At most: 20 to 40 are enough as a rule.
 constexpr Steps kSteps{60, StepKind::kConjugateGradient};
 
@@ -30,13 +35,13 @@ std::vector<Vec3> first_normals(const Facets& facets, const std::vector<Vec3>& n
   return first;
 }
 
-// P M P x = P b.
-class OnFacets : public LinearSystem {
+// Area vectors that are c_f A_i n_i on facets, and the projector P on them.
+class Subspace {
  public:
-  OnFacets(LinearSystem& system, const Facets& facets, const std::vector<double>& areas, const std::vector<Vec3>& normals)
-      : system_(system), facets_(facets), areas_(areas), normals_(normals), squares_(facets.count, 0) {
+  Subspace(const Facets& facets, std::vector<double> areas, std::vector<Vec3> normals)
+      : facets_(facets), areas_(std::move(areas)), normals_(std::move(normals)), squares_(facets.count, 0) {
     for (std::size_t i = 0; i < facets.of.size(); ++i) {
-      if (facets.of[i] != Facets::kNone) squares_[facets.of[i]] += areas[i] * areas[i];
+      if (facets.of[i] != Facets::kNone) squares_[facets.of[i]] += areas_[i] * areas_[i];
     }
   }
   [[nodiscard]] std::vector<Vec3> project(std::vector<Vec3> v) const {
@@ -50,16 +55,50 @@ class OnFacets : public LinearSystem {
     }
     return v;
   }
-  std::vector<Vec3> apply(const std::vector<Vec3>& x) override { return project(system_.apply(x)); }
-  std::vector<Vec3> right_side() override { return project(system_.right_side()); }
+
+ private:
+  const Facets& facets_;
+  std::vector<double> areas_;
+  std::vector<Vec3> normals_;
+  std::vector<double> squares_;  // sum of A_i^2 of every facet
+};
+
+// P M P.
+class OnFacets : public LinearSystem {
+ public:
+  OnFacets(LinearSystem& system, const Subspace& subspace) : system_(system), subspace_(subspace) {}
+  std::vector<Vec3> apply(const std::vector<Vec3>& x) override { return subspace_.project(system_.apply(x)); }
+  std::vector<Vec3> right_side() override { return subspace_.project(system_.right_side()); }
 
  private:
   LinearSystem& system_;
-  const Facets& facets_;
-  const std::vector<double>& areas_;
-  const std::vector<Vec3>& normals_;
-  std::vector<double> squares_;  // sum of A_i^2 of every facet
+  const Subspace& subspace_;
 };
+
+// The normals, those of every facet on the side of its first point's.
+std::vector<Vec3> turned_to_first(const Facets& facets, std::vector<Vec3> normals) {
+  const std::vector<Vec3> first = first_normals(facets, normals);
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const std::uint32_t f = facets.of[i];
+    if (f != Facets::kNone && vector::dot(normals[i], first[f]) < 0) normals[i] = vector::scale(normals[i], -1);
+  }
+  return normals;
+}
+
+// Which points are on facets whose sides are unsure: their points disagree, or |c_f| of `eta`, on the side of the normals, is small.
+std::vector<std::uint8_t> unsure_facets(const Facets& facets, const std::vector<double>& areas, const std::vector<Vec3>& turned,
+                                        const std::vector<Vec3>& normals, const std::vector<Vec3>& eta) {
+  std::vector<std::uint8_t> is_unsure(facets.count, 0);
+  const std::vector<Vec3> mean = Subspace(facets, areas, turned).project(eta);
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    if (facets.of[i] == Facets::kNone) continue;
+    const bool is_against = vector::dot(normals[i], turned[i]) < 0;
+    if (is_against || vector::dot(mean[i], normals[i]) < kCertainSide * areas[i]) is_unsure[facets.of[i]] = 1;
+  }
+  std::vector<std::uint8_t> unsure(normals.size(), 0);
+  for (std::size_t i = 0; i < unsure.size(); ++i) unsure[i] = facets.of[i] == Facets::kNone ? 0 : is_unsure[facets.of[i]];
+  return unsure;
+}
 
 }  // namespace
 
@@ -116,23 +155,41 @@ double minority_share(const Facets& facets, const std::vector<Vec3>& normals) {
 void choose_facet_sides(const PointSet& set, const Settings& settings, const Facets& facets, std::vector<Vec3>& eta,
                         std::vector<Vec3>& normals, Stages& stages) {
   const std::vector<double>& spacing = set.smoothed_spacing();
-  const std::vector<Vec3> first = first_normals(facets, normals);
-  std::vector<Vec3> turned = normals;
-  std::vector<double> areas(set.size());
-  for (std::size_t i = 0; i < set.size(); ++i) {
-    areas[i] = spacing[i] * spacing[i];
-    if (facets.of[i] != Facets::kNone && vector::dot(normals[i], first[facets.of[i]]) < 0) turned[i] = vector::scale(normals[i], -1);
+  const std::vector<double> areas = squares(spacing);
+  const std::vector<Vec3> turned = turned_to_first(facets, normals);
+  const std::vector<std::uint8_t> unsure = unsure_facets(facets, areas, turned, normals, eta);
+  const std::vector<std::uint32_t> some = around_unsure(set.points(), spacing, unsure);
+  const auto set_areas = [&] {
+    for (std::size_t i = 0; i < set.size(); ++i) {
+      if (facets.of[i] != Facets::kNone) eta[i] = vector::scale(normals[i], areas[i]);
+    }
+  };
+  set_areas();
+  const Facets here{values_at(some, facets.of), facets.count};
+  const Subspace subspace(here, values_at(some, areas), values_at(some, turned));
+  const std::vector<Vec3> start = subspace.project(values_at(some, eta));
+  for (std::size_t k = 0; k < some.size(); ++k) eta[some[k]] = start[k];
+  const auto with_system = [&](const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const std::vector<double>& h,
+                               const auto& work) {
+    FastSum sum(points, morton, local_widths(settings.polish_epsilon, settings, h), settings.first_sums, stages.cancel());
+    EnergySystem system(sum, 0, settings.polish_winding_weight);
+    return work(system);
+  };
+  PartResidual right = with_system(set.points(), set.morton(), spacing, [&](EnergySystem& all) { return residual_at(some, all, eta); });
+  right.residual = subspace.project(std::move(right.residual));
+  const std::vector<Vec3> points = values_at(some, set.points());
+  const std::vector<std::uint64_t> morton = values_at(some, set.morton());
+  const std::vector<Vec3> change = with_system(points, morton, values_at(some, spacing), [&](EnergySystem& free) {
+    OnFacets part(free, subspace);
+    const auto still_going = [&stages](int, int, double) { stages.still_going(); };
+    return solve_for_part(part, right, {kSteps}, settings.doubtful_tolerance, still_going).eta;
+  });
+  for (std::size_t k = 0; k < some.size(); ++k) {
+    const std::uint32_t i = some[k];
+    if (unsure[i] == 0) continue;
+    normals[i] = vector::scale(turned[i], vector::dot(vector::add(start[k], change[k]), turned[i]) < 0 ? -1 : 1);
   }
-  FastSum sum(set.points(), set.morton(), local_widths(settings.polish_epsilon, settings, spacing), settings.first_sums, stages.cancel());
-  EnergySystem free(sum, 0, settings.polish_winding_weight);
-  OnFacets system(free, facets, areas, turned);
-  const auto still_going = [&stages](int, int, double) { stages.still_going(); };
-  const std::vector<Vec3> solved = solve_iteratively(system, {kSteps}, settings.doubtful_tolerance, system.project(eta), still_going).eta;
-  for (std::size_t i = 0; i < set.size(); ++i) {
-    if (facets.of[i] == Facets::kNone) continue;
-    normals[i] = vector::scale(turned[i], vector::dot(solved[i], turned[i]) < 0 ? -1 : 1);
-    eta[i] = vector::scale(normals[i], areas[i]);
-  }
+  set_areas();
 }
 
 }  // namespace g3r

@@ -22,11 +22,10 @@ namespace {
 using vector::dot;
 
 // Scales.
-constexpr double kFirstScale = 1.5;         // spacings between sites of the first thinned scale; the next are twice as far apart each
-constexpr double kNoiseScale = 2;           // standard deviations of the noise between sites, at least
-constexpr int kScales = 3;                  // that are tried
-constexpr std::size_t kFewestSites = 30;    // of a scale: fewer say nothing of a surface
-constexpr std::size_t kMostSites = 200000;  // of the finest scale; more take long and say no more about sides
+constexpr double kFirstScale = 1.5;       // spacings between sites of the first thinned scale; the next are twice as far apart each
+constexpr double kNoiseScale = 2;         // standard deviations of the noise between sites, at least
+constexpr int kScales = 3;                // that are tried
+constexpr std::size_t kFewestSites = 30;  // of a scale: fewer say nothing of a surface
 // Graph.
 constexpr std::size_t kAdjacent = 10;  // nearest sites that a site is connected with
 constexpr double kLongest = 4;         // site distances: longer edges cross gaps

@@ -7,10 +7,14 @@
 #include <g3r/points.h>
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace g3r {
+
+/// Sites of the finest scale of the certificate, at most: more take long and say no more about sides.
+inline constexpr std::size_t kMostSites = 200000;
 
 /// Open surfaces of a cloud. Empty vectors of parts: there is none.
 struct OpenSurfaces {

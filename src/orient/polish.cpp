@@ -40,15 +40,18 @@ void gradient_to_areas(FastSum& sum, const std::vector<double>& areas, std::vect
 
 std::vector<double> point_areas(const Settings& settings, const std::vector<double>& spacing) {
   if (spacing.empty()) return {settings.spacing * settings.spacing};
-  std::vector<double> areas = spacing;
-  for (double& a : areas) a *= a;
-  return areas;
+  return squares(spacing);
+}
+
+std::vector<double> squares(std::vector<double> values) {
+  for (double& v : values) v *= v;
+  return values;
 }
 
 Polished polish(PolishCloud cloud, const Settings& settings, Refinement refined, Stages& stages) {
   FastSum wider(cloud.points, cloud.morton, local_widths(settings.polish_width, settings, cloud.spacing), settings.sums, stages.cancel());
   FastSum sum(wider, local_widths(settings.polish_epsilon, settings, cloud.spacing));
-  EnergySystem system(sum, settings.polish_damping, settings.polish_winding_weight, std::move(cloud.multiplicity));
+  EnergySystem system(sum, settings.polish_damping, settings.polish_winding_weight, cloud.roots);
   std::vector<double>().swap(cloud.spacing);
   std::vector<Vec3> start = std::move(refined.normals);
   for (std::size_t i = 0; i < start.size(); ++i) {

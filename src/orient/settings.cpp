@@ -1,6 +1,7 @@
 #include "orient/settings.h"
 
 #include "base/whole_bytes.h"
+#include "orient/open_surfaces.h"
 
 #include <g3r/error.h>
 
@@ -234,12 +235,11 @@ std::size_t planned_memory(const Settings& settings, std::size_t given, std::siz
   constexpr double kPerGiven = 70;        // what the program has of the input, index, result
   constexpr double kPerUnknown = 375;     // while the equations are solved,
   constexpr double kBase = 255;           // or what stays of it while sides are certified,
-  constexpr double kPerSite = 620;        // and what each of the sites then takes,
-  constexpr double kMostSites = 200000;   // which are no more than that
+  constexpr double kPerSite = 620;        // and what each of the sites then takes
   const std::size_t harmonics = settings.method == Method::kGreen ? settings.harmonics.size() : 0;
   const auto unknowns = static_cast<double>(used);
   const double solve = (kPerUnknown + 48 * static_cast<double>(harmonics)) * unknowns;
-  const double certificate = kBase * unknowns + kPerSite * std::min(unknowns, kMostSites);
+  const double certificate = kBase * unknowns + kPerSite * std::min(unknowns, static_cast<double>(kMostSites));
   double bytes = kProgram + kPerGiven * static_cast<double>(given) + std::max(solve, certificate);
   if (settings.dense) bytes += 9 * unknowns * unknowns * sizeof(double);
   return whole_bytes(bytes);

@@ -67,11 +67,6 @@ std::vector<double> times(double factor, std::vector<double> values) {
   return values;
 }
 
-std::vector<double> squares(std::vector<double> values) {
-  for (double& v : values) v *= v;
-  return values;
-}
-
 // Area vectors, and their refinement unless its width is 0.
 Solution solve_equations(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
   const Settings& s = problem.settings;
@@ -159,7 +154,7 @@ PolishCloud polish_cloud(const Problem& problem, const Options& options) {
   const bool is_exact = problem.is_clean() && runs(problem, Step::kLocalWidths);
   const std::vector<double> relative = is_exact ? problem.known.relative_spacing : relative_spacing(problem, options);
   const std::vector<double> local = is_exact ? set.smoothed_spacing() : times(problem.spacing, relative);
-  return {set.points(), set.morton(), local, point_areas(problem.settings, local), squares(relative)};
+  return {set.points(), set.morton(), local, point_areas(problem.settings, local), relative};
 }
 
 Solution solve_on_points(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
@@ -195,7 +190,8 @@ Solution solve_on_points(const Problem& problem, const Options& options, Stages&
 Refinement solve_clusters(const Clusters& clusters, const std::vector<double>& spacing, const Settings& s, Stages& stages, Stats& stats) {
   stages.begin("solve");
   FastSum sum(clusters.points, clusters.morton, local_widths(s.epsilon, s, spacing), s.first_sums, stages.cancel());
-  EnergySystem system(sum, 0, s.winding_weight, clusters.multiplicity);
+  const std::vector<double> roots = clusters.roots();
+  EnergySystem system(sum, 0, s.winding_weight, roots);
   IterativeResult result = solve_iteratively(system, s.schedule, s.tolerance, {},
                                              [&](int step, int steps, double) { stages.progress(static_cast<double>(step) / steps); });
   record(s, result, stats);
@@ -214,7 +210,7 @@ Solution solve_on_clusters(const Problem& problem, const Options& options, Stage
   const std::vector<double> spacing = times(problem.spacing, clusters.relative_spacing);
   Refinement first = solve_clusters(clusters, spacing, s, stages, stats);
   const std::vector<double> areas = times(problem.spacing * problem.spacing, clusters.multiplicity);
-  const PolishCloud cloud{clusters.points, clusters.morton, spacing, areas, clusters.multiplicity};
+  const PolishCloud cloud{clusters.points, clusters.morton, spacing, areas, clusters.roots()};
   const Polished polished = polish(cloud, s, std::move(first), stages);
   const std::vector<Vec3>& eta = polished.eta;
   std::vector<std::uint32_t> members(clusters.points.size(), 0);

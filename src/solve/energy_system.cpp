@@ -2,13 +2,13 @@
 
 #include "cpu/parallel.h"
 
-#include <cmath>
 #include <utility>
 
 namespace g3r {
 namespace {
 
 constexpr std::size_t kBlock = 4096;  // points per parallel block
+const std::vector<double> kOnes;
 
 // v_i *= factor(i)
 template <class Factor>
@@ -22,10 +22,10 @@ void scale(std::vector<Vec3>& v, const Factor& factor) {
 
 }  // namespace
 
-EnergySystem::EnergySystem(FastSum& sum, double damping, double winding_weight, std::vector<double> multiplicity)
-    : sum_(sum), damping_(damping), winding_weight_(winding_weight), root_(std::move(multiplicity)) {
-  for (double& m : root_) m = std::sqrt(m);
-}
+EnergySystem::EnergySystem(FastSum& sum, double damping, double winding_weight, const std::vector<double>& roots)
+    : sum_(sum), damping_(damping), winding_weight_(winding_weight), root_(roots) {}
+
+EnergySystem::EnergySystem(FastSum& sum, double damping, double winding_weight) : EnergySystem(sum, damping, winding_weight, kOnes) {}
 
 std::vector<Vec3> EnergySystem::to_areas(std::vector<Vec3> x) const {
   if (!root_.empty()) scale(x, [&](std::size_t i) { return root_[i]; });

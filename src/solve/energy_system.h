@@ -15,9 +15,11 @@ namespace g3r {
 /// M = D (S_e + l W^T D^2 W) D + d I, what the system of all points becomes on vectors that are constant on each group.
 class EnergySystem : public LinearSystem {
  public:
-  /// `damping` d >= 0, 1/length; `winding_weight` l > 0, cubed length. `sum` must outlive the system.
-  /// `multiplicity`: one m_i >= 1 per point, or empty for ones.
-  EnergySystem(FastSum& sum, double damping, double winding_weight, std::vector<double> multiplicity = {});
+  /// `damping` d >= 0, 1/length; `winding_weight` l > 0, cubed length. `roots`: sqrt(m_i) >= 1 of every point, or empty for ones; it and
+  /// `sum` must outlive the system.
+  EnergySystem(FastSum& sum, double damping, double winding_weight, const std::vector<double>& roots);
+  EnergySystem(FastSum& sum, double damping, double winding_weight);
+  EnergySystem(FastSum&, double, double, std::vector<double>&&) = delete;
 
   std::vector<Vec3> apply(const std::vector<Vec3>& x) override;
   std::vector<Vec3> right_side() override;
@@ -30,7 +32,7 @@ class EnergySystem : public LinearSystem {
   FastSum& sum_;
   double damping_;
   double winding_weight_;
-  std::vector<double> root_;  // sqrt(m), or empty
+  const std::vector<double>& root_;  // sqrt(m), or empty
 };
 
 }  // namespace g3r

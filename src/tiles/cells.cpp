@@ -11,9 +11,9 @@ namespace {
 
 // Points in a cell, on average, at least: 8 to 16 spacings across on a surface. Larger cells make halos wider than they need be.
 constexpr std::uint64_t kCellPoints = 64;
-// Width of a halo in cells: 16 to 32 spacings. Directions beside a border err no more than elsewhere (docs/math.md). Those of clean points
-// do so with 1 too, for two thirds of the work, also on thin walls; of noisy ones more sides turn, for kernels are as wide as that.
-constexpr std::int64_t kHaloCells = 2;
+// Width of a halo in cells: 8 to 16 spacings. Points beside a border err no more than elsewhere (docs/math.md), under noise too, where
+// kernels are as wide as that; 2 are no more accurate for a third more work.
+constexpr std::int64_t kHaloCells = 1;
 
 void sort_unique(std::vector<std::uint64_t>& codes) {
   std::sort(codes.begin(), codes.end());
