@@ -20,8 +20,8 @@ constexpr double kEnergyEpsilon = 0.4;    // smaller converges slower, larger bl
 constexpr double kCoarsestEpsilon = 0.5;  // without a start: converges faster, finds more sides
 // Weights l of the winding number, in h^3: S eta and l W^T W eta keep their proportion for any number of points.
 constexpr double kWindingWeight = 250;          // from eta = 0; larger converges slower, 0 loses nested shells
-constexpr double kContinuedWindingWeight = 30;  // with a coarse start or among outliers: finds more sides of thin walls
-constexpr double kDoubtfulWindingWeight = 35;   // more leaves walls wrong as a whole, less costs narrow gaps
+// With a coarse start or among outliers, and of further steps: finds more sides of thin walls; less costs narrow gaps.
+constexpr double kContinuedWindingWeight = 30;
 constexpr double kPolishWindingWeight = 70;  // of clean points and little noise; more costs sides, less costs narrow gaps and smooth shapes
 constexpr double kEnergyTolerance = 2.5e-3;  // slats and spokes need this residual; smooth shapes get there in half the steps
 constexpr double kAcceptedResidual = 2e-2;   // from here on normals change little
@@ -211,7 +211,7 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
                         : starts_coarse(s, cloud.size()) ? kAcceptedContinued
                                                          : std::max(s.tolerance, kAcceptedResidual);
   s.continued_tolerance = options.tolerance >= 0 ? options.tolerance : kContinuedTolerance;
-  s.doubtful_winding_weight = kDoubtfulWindingWeight * cube(spacing);
+  s.doubtful_winding_weight = kContinuedWindingWeight * cube(spacing);
   s.doubtful_tolerance = options.tolerance >= 0 ? options.tolerance : kDoubtfulTolerance;
   s.start_tolerance = std::max(s.tolerance, kStartTolerance);
   const bool wide = s.epsilon.points > kWideEpsilon * spacing && options.noise.unit == Length::Unit::kAuto;
