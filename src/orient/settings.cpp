@@ -211,7 +211,6 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
                         : starts_coarse(s, cloud.size()) ? kAcceptedContinued
                                                          : std::max(s.tolerance, kAcceptedResidual);
   s.continued_tolerance = options.tolerance >= 0 ? options.tolerance : kContinuedTolerance;
-  s.doubtful_winding_weight = kContinuedWindingWeight * cube(spacing);
   s.doubtful_tolerance = options.tolerance >= 0 ? options.tolerance : kDoubtfulTolerance;
   s.start_tolerance = std::max(s.tolerance, kStartTolerance);
   const bool wide = s.epsilon.points > kWideEpsilon * spacing && options.noise.unit == Length::Unit::kAuto;

@@ -51,8 +51,7 @@ struct Settings {
   KernelWidth polish_width;               ///< of the refinement that ends polish()
   std::vector<Steps> schedule;            ///< from eta = 0
   std::vector<Steps> continued_schedule;  ///< from a coarse solution
-  std::vector<Steps> doubtful_schedule;   ///< after it, where many sides are unsure; empty: never
-  double doubtful_winding_weight = 0;     ///< of these; their width is coarsest_epsilon
+  std::vector<Steps> doubtful_schedule;   ///< after it, where many sides are unsure, of width coarsest_epsilon; empty: never
   double unsure_of_noise = 0;             ///< share of the points whose sides noise alone makes unsure
   std::string schedule_text;
   double tolerance = 0;            ///< stop at this relative residual
