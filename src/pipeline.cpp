@@ -170,18 +170,19 @@ void certify_sides(const OpenSurfaces& surfaces, std::vector<float>& confidence)
   }
 }
 
-void judge(const CanonicalCloud& cloud, const std::vector<float>& confidence, Stats& stats) {
+void judge(const OpenSurfaces& surfaces, const std::vector<float>& confidence, Stats& stats) {
   double sum = 0;
   for (const float c : confidence) sum += static_cast<double>(c);
-  stats.confidence_mean = sum / static_cast<double>(cloud.size());
+  stats.confidence_mean = sum / static_cast<double>(confidence.size());
   stats.confidence_below_half = unsure_share(confidence);
+  const double unsure = unsure_share(surfaces, confidence);
   if (stats.open_share == 1) stats.converged = true;  // no side and no direction comes from the equations
   if (!stats.converged) {
     stats.warnings.emplace_back("the solver did not reach its tolerance; normals may be less accurate");
   }
-  stats.consistent = stats.confidence_below_half + stats.undecided_share <= kManyUnsure;
-  if (stats.confidence_below_half > kManyUnsure) {
-    stats.warnings.push_back("orientation not consistent: " + percent(stats.confidence_below_half) +
+  stats.consistent = unsure + stats.undecided_share <= kManyUnsure;
+  if (unsure > kManyUnsure) {
+    stats.warnings.push_back("orientation not consistent: " + percent(unsure) +
                              " of the points could face either way; the cloud may be open, very noisy or too sparse");
   }
 }
@@ -209,7 +210,7 @@ Oriented orient_problem(const Problem& problem, const Options& options, Stages& 
   out.doubt = unsure_share(out.confidence) + stats.open_share;
   if (out.solution.open_surfaces.worst_defect < kSidesAgree) out.agreed = stats.open_share;
   if (!contains(problem.settings.without, Step::kCertificate)) certify_sides(out.solution.open_surfaces, out.confidence);
-  judge(problem.cloud, out.confidence, stats);
+  judge(out.solution.open_surfaces, out.confidence, stats);
   return out;
 }
 

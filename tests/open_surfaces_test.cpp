@@ -325,6 +325,14 @@ TEST(OpenSurfaces, GroovesDoNotTurnWhatLiesBehindThem) {
   EXPECT_GT(right, 0.98);
 }
 
+TEST(OpenSurfaces, AHalfIsAChoiceOnThemAndUnsureElsewhere) {
+  OpenSurfaces surfaces;
+  EXPECT_EQ(unsure_share(surfaces, {0.4F, 0.5F, 0.6F, 1}), 0.5);
+  surfaces.part = {0, 0, 0, OpenSurfaces::kNone};
+  EXPECT_EQ(unsure_share(surfaces, {0.4F, 0.5F, 0.6F, 1}), 0.25);
+  EXPECT_EQ(unsure_share(surfaces, {0.6F, 0.5F, 0.6F, 0.5F}), 0.25);
+}
+
 TEST(PlaneFit, KnowsPlaneAndNoise) {
   shapes::Random random(9);
   const auto fit = [&](const std::function<double(int)>& height) {

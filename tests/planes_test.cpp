@@ -99,6 +99,23 @@ TEST(Planes, AreNotThoseOfSlices) {
   EXPECT_LT(shapes::angle_error(o.normals, body.normals), 5e-3);
 }
 
+// A pipe in rings half a radius apart, seen by its rings of 20 points and more: the planes of whole rings hold no line, but no facet
+// either.
+TEST(Planes, AreNotThoseOfRings) {
+  for (const int rings : {10, 12, 16}) {
+    Surface pipe;
+    for (int ring = 0; ring < rings; ++ring) {
+      const double y = 6.0 * ring / (rings - 1);
+      for (int k = 0; k < 300; ++k) {
+        const double phi = 2 * std::numbers::pi * k / 300;
+        pipe.points.push_back({std::cos(phi) + 0.3 * std::sin(y), y, std::sin(phi)});
+        pipe.normals.push_back({std::cos(phi), 0, std::sin(phi)});
+      }
+    }
+    EXPECT_EQ(shapes::share_correct(orient(pipe.points).normals, pipe.normals), 1) << rings;
+  }
+}
+
 // Rows five times as dense along as across, as scanners make them: every row lies in a plane across the surface.
 TEST(Planes, AreNotThoseOfRowsAcrossACurvedSurface) {
   constexpr double kAlong = 0.004;

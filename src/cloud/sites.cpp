@@ -22,7 +22,7 @@ constexpr std::size_t kFewestPoints = 12;  // of a plane: fewer follow the sampl
 constexpr double kSurfaceBreadth = 0.5;    // median breadth of a surface sample; lines have that of their noise over their length
 constexpr double kFirstDistance = 1.5;     // spacings, of the first thinned scale
 constexpr std::size_t kFewestSites = 30;   // of a scale: fewer say nothing of a surface
-constexpr std::size_t kPlaces = 2000;      // looked at for a median
+constexpr std::size_t kPlaces = 2000;      // looked at for a median, at most
 constexpr std::size_t kPlaceBlock = 64;    // places per parallel block
 
 // Cells of the size of the distance: whoever is nearer than that lies in the same or an adjacent one.
@@ -196,16 +196,18 @@ Sites place_sites(const PointSet& set, double distance) {
 double surface_distance(const PointSet& set) {
   const std::vector<Vec3>& points = set.points();
   const double spacing = set.spacing();
-  const std::size_t step = std::max<std::size_t>(1, points.size() / kPlaces);
-  const std::size_t places = (points.size() + step - 1) / step;
-  std::vector<double> breadth(places);
-  const double most = std::sqrt(static_cast<double>(points.size()) / static_cast<double>(kFewestSites)) * spacing;
-  for (double distance = 0; distance < most; distance = std::max(kFirstDistance * spacing, 2 * distance)) {
-    parallel::for_blocks(places, kPlaceBlock, [&](std::size_t begin, std::size_t end) {
+  const double length = static_cast<double>(points.size()) * spacing;  // of the lines that they are at most
+  for (double distance = 0; distance * static_cast<double>(kFewestSites) < length;
+       distance = std::max(kFirstDistance * spacing, 2 * distance)) {
+    const std::size_t sites = distance > 0 ? static_cast<std::size_t>(length / distance) : points.size();
+    const std::size_t step = std::max<std::size_t>(1, points.size() / std::min(kPlaces, sites));
+    std::vector<double> breadth((points.size() + step - 1) / step);
+    parallel::for_blocks(breadth.size(), kPlaceBlock, [&](std::size_t begin, std::size_t end) {
       Planes planes(set, distance);
       for (std::size_t k = begin; k < end; ++k) breadth[k] = planes.at(points[k * step]).breadth;
     });
-    if (median(breadth) >= kSurfaceBreadth) return distance;
+    if (median(breadth) < kSurfaceBreadth) continue;
+    return distance == 0 || taken_points(points, distance).size() >= kFewestSites ? distance : 0;
   }
   return 0;
 }

@@ -32,7 +32,7 @@ struct Sites {
 
 /// The least distance of sites at which the samples are a surface and not lines: 0, or 1.5, 3, 6 ... typical spacings, such that the median
 /// breadth of the planes is a half or more. Scan lines are a surface only as seen across the gaps between them. Looks at about 2000
-/// places; 0 where no distance would leave 30 sites across the cloud. O(log N) each.
+/// places, at fewer where lines would have fewer sites; 0 where there would be fewer than 30. O(N) for every distance.
 [[nodiscard]] double surface_distance(const PointSet& set);
 
 }  // namespace g3r

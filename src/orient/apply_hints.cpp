@@ -92,7 +92,7 @@ void apply_hints(const Problem& problem, const Options& options, Solution& solut
   for (const float c : confidence) sum += static_cast<double>(c);
   stats.confidence_mean = sum / static_cast<double>(confidence.size());
   stats.confidence_below_half = unsure_share(confidence);
-  stats.consistent = stats.confidence_below_half + stats.undecided_share <= kManyUnsure;
+  stats.consistent = unsure_share(solution.open_surfaces, confidence) + stats.undecided_share <= kManyUnsure;
   warn(effect, hints, problem.cloud, stats.open_share > 0, stats);
   if (stats.undecided_share > 0) {
     stats.warnings.push_back("which side of " + percent(stats.undecided_share) +

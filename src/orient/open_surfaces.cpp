@@ -39,7 +39,7 @@ constexpr double kAgreed = 0.5;         // of the jump that a side has to show: 
 constexpr double kHidden = 0.25;        // of the jump, below which the direction is that from afar; rims of open surfaces show 0.4 and more
 constexpr double kGradientWidth = 0.7;  // site spacings, from sites to points
 constexpr double kAccuracy = 1e-2;      // of the sums that tell whether a part encloses something
-constexpr double kFarBetter = 0.4;      // of the jump defect as given, up to which a hypothesis is taken where unrest alone does not decide
+constexpr double kFarBetter = 0.5;      // of the jump defect as given, up to which a hypothesis is taken where unrest alone does not decide
 // Verdict.
 constexpr double kUnrest = 0.08;      // mean of a part that is open: closed ones have up to 0.06, open ones 0.1 to 0.3
 constexpr double kUnrestNoisy = 0.2;  // the same where noise hides thin walls, whose field is open in places
@@ -384,6 +384,15 @@ OpenSurfaces choose(const Search& search, const std::vector<std::vector<Vec3>>& 
 }
 
 }  // namespace
+
+double unsure_share(const OpenSurfaces& surfaces, const std::vector<float>& confidence) {
+  std::size_t unsure = 0;
+  for (std::size_t i = 0; i < confidence.size(); ++i) {
+    const bool is_open = !surfaces.part.empty() && surfaces.part[i] != OpenSurfaces::kNone;
+    unsure += confidence[i] < kUndecided || (!is_open && confidence[i] == kUndecided) ? 1 : 0;
+  }
+  return static_cast<double>(unsure) / static_cast<double>(confidence.size());
+}
 
 std::vector<float> certified_sides(const PointSet& set, double noise, const SumPlan& sums, const std::vector<Vec3>& normals,
                                    const std::atomic<bool>* cancel) {

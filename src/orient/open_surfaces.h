@@ -58,6 +58,10 @@ struct OpenSurfaces {
 [[nodiscard]] OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan& sums, std::vector<Vec3>& normals,
                                               const std::atomic<bool>* cancel = nullptr);
 
+/// Share of the points that could face either way: confidence below a half, or a half on closed surfaces, whose sides are no choice and
+/// which nothing shows to be right. `confidence`: of the N points.
+[[nodiscard]] double unsure_share(const OpenSurfaces& surfaces, const std::vector<float>& confidence);
+
 /// OpenSurfaces::certified of the given normals alone, for sides that have changed since. O(N log N).
 [[nodiscard]] std::vector<float> certified_sides(const PointSet& set, double noise, const SumPlan& sums, const std::vector<Vec3>& normals,
                                                  const std::atomic<bool>* cancel = nullptr);

@@ -1,8 +1,10 @@
 #include "orient/planes.h"
 
+#include "base/median.h"
 #include "base/vector.h"
 #include "cloud/constants.h"
 #include "cloud/exact_plane.h"
+#include "cloud/plane_fit.h"
 #include "cpu/parallel.h"
 
 #include <cmath>
@@ -13,47 +15,34 @@ namespace {
 
 // Share of the points whose planes are aside of the field's normals: slices have 1.1 to 27 %.
 constexpr double kFewAside = 0.01;
-// Terms of a plane that chance does not make, from 10 points on it.
-constexpr std::uint32_t kMany = 8;
-// Dimension of the points on such planes: 1.7 to 2.1 on facets, 1.5 on wires, 1.1 to 1.3 on slices.
-constexpr double kCurves = 1.4;
+// Points on a plane that chance does not put there.
+constexpr std::size_t kMany = 8;
+// Nearest points of a plane, itself the first, by whose breadth a curve is no facet: fewer follow chance, more the bend of a ring.
+constexpr std::size_t kAlong = 4;
+// Median breadth of those on curves: rings of a dozen points have 0.31, slices 0.05 to 0.3, facets 0.40 to 0.49.
+constexpr double kCurveBreadth = 0.35;
 
-// A plane found, and the sum of ln(d_k / d_j) over the distances of its other points j < k to the first, of which k is the farthest.
 struct Found {
   Vec3 normal{0, 0, 0};
-  std::uint32_t terms = 0;  // 0: no plane
-  float logarithms = 0;
+  double breadth = 0;  // of the kAlong nearest points of a plane that holds kMany
 };
 
 Found find_at(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing, double scatter,
               const Vec3& towards) {
   ExactPlane plane = find_exact_plane(points, index, spacing, &towards);
   if (plane.points.empty() && scatter > 0) plane = find_scattered_plane(points, index, spacing, scatter, towards);
-  if (plane.points.empty()) return {};
-  const auto squared_distance = [&](std::uint32_t j) {
-    const Vec3 d = vector::subtract(points[j], points[plane.points.front()]);
-    return vector::dot(d, d);
-  };
-  const double farthest = squared_distance(plane.points.back());
-  double logarithms = 0;
-  for (std::size_t k = 1; k + 1 < plane.points.size(); ++k) logarithms += std::log(farthest / squared_distance(plane.points[k])) / 2;
-  return {plane.normal, static_cast<std::uint32_t>(plane.points.size() - 2), static_cast<float>(logarithms)};
+  if (plane.points.size() < kMany) return {plane.normal, 0};
+  return {plane.normal, fit_plane(points, plane.points.data(), kAlong).breadth};
 }
 
 // Slices, and scan lines denser along than across, have planes of their own, across the surface. Then the planes that are aside of the
-// field's normals hold curves: their dimension, by maximum likelihood (Levina and Bickel, "Maximum likelihood estimation of intrinsic
-// dimension", NIPS 2004), pooled over all such planes, is that of lines.
+// field's normals hold curves: at most of them the nearest points lie along a line.
 bool are_slices(const std::vector<Found>& found, const std::vector<Vec3>& normals) {
-  std::size_t aside = 0;
-  std::size_t terms = 0;
-  double logarithms = 0;
+  std::vector<double> aside;
   for (std::size_t i = 0; i < found.size(); ++i) {
-    if (found[i].terms < kMany || std::abs(vector::dot(found[i].normal, normals[i])) > kSamePatch) continue;
-    ++aside;
-    terms += found[i].terms;
-    logarithms += found[i].logarithms;
+    if (found[i].breadth > 0 && std::abs(vector::dot(found[i].normal, normals[i])) <= kSamePatch) aside.push_back(found[i].breadth);
   }
-  return static_cast<double>(aside) > kFewAside * static_cast<double>(found.size()) && static_cast<double>(terms) < kCurves * logarithms;
+  return static_cast<double>(aside.size()) > kFewAside * static_cast<double>(found.size()) && median(aside) < kCurveBreadth;
 }
 
 }  // namespace
@@ -74,7 +63,7 @@ void fit_planes(const PointSet& set, double scatter, std::vector<std::uint8_t>& 
   });
   if (are_slices(found, normals)) return;
   for (std::size_t i = 0; i < found.size(); ++i) {
-    if (found[i].terms == 0) continue;
+    if (vector::dot(found[i].normal, found[i].normal) == 0) continue;
     proven[i] = 1;
     normals[i] = vector::scale(found[i].normal, vector::dot(found[i].normal, normals[i]) < 0 ? -1 : 1);
   }
