@@ -325,12 +325,20 @@ TEST(OpenSurfaces, GroovesDoNotTurnWhatLiesBehindThem) {
   EXPECT_GT(right, 0.98);
 }
 
+template <class T>
+std::vector<T> repeated(int times, const std::vector<T>& values) {
+  std::vector<T> all;
+  for (int k = 0; k < times; ++k) all.insert(all.end(), values.begin(), values.end());
+  return all;
+}
+
 TEST(OpenSurfaces, AHalfIsAChoiceOnThemAndUnsureElsewhere) {
   OpenSurfaces surfaces;
-  EXPECT_EQ(unsure_share(surfaces, {0.4F, 0.5F, 0.6F, 1}), 0.5);
-  surfaces.part = {0, 0, 0, OpenSurfaces::kNone};
-  EXPECT_EQ(unsure_share(surfaces, {0.4F, 0.5F, 0.6F, 1}), 0.25);
-  EXPECT_EQ(unsure_share(surfaces, {0.6F, 0.5F, 0.6F, 0.5F}), 0.25);
+  EXPECT_EQ(unsure_share(surfaces, repeated<float>(8, {0.4F, 0.5F, 0.6F, 1})), 0.5);
+  EXPECT_EQ(unsure_share(surfaces, repeated<float>(7, {0.4F, 0.5F, 0.6F, 1})), 0.25);  // too few to show any side
+  surfaces.part = repeated<std::uint32_t>(8, {0, 0, 0, OpenSurfaces::kNone});
+  EXPECT_EQ(unsure_share(surfaces, repeated<float>(8, {0.4F, 0.5F, 0.6F, 1})), 0.25);
+  EXPECT_EQ(unsure_share(surfaces, repeated<float>(8, {0.6F, 0.5F, 0.6F, 0.5F})), 0.25);
 }
 
 TEST(PlaneFit, KnowsPlaneAndNoise) {

@@ -83,7 +83,8 @@ std::vector<Vec3> coarse_gradient(const LevelCloud& cloud, const Settings& setti
   return coarse.field->winding_gradient_at(coarse.result.eta, cloud.points, stages.cancel());
 }
 
-std::vector<float> confidence_of(const LevelCloud& cloud, const Settings& settings, const std::vector<Vec3>& eta, const Refinement& refined) {
+std::vector<float> confidence_of(const LevelCloud& cloud, const Settings& settings, const std::vector<Vec3>& eta,
+                                 const Refinement& refined) {
   return side_confidence(eta, refined.normals, refined.strength, point_areas(settings, spacing_of(cloud, settings)));
 }
 

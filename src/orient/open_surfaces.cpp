@@ -389,7 +389,8 @@ double unsure_share(const OpenSurfaces& surfaces, const std::vector<float>& conf
   std::size_t unsure = 0;
   for (std::size_t i = 0; i < confidence.size(); ++i) {
     const bool is_open = !surfaces.part.empty() && surfaces.part[i] != OpenSurfaces::kNone;
-    unsure += confidence[i] < kUndecided || (!is_open && confidence[i] == kUndecided) ? 1 : 0;
+    const bool not_shown = !is_open && confidence[i] == kUndecided && confidence.size() >= kFewestSites;
+    unsure += confidence[i] < kUndecided || not_shown ? 1 : 0;
   }
   return static_cast<double>(unsure) / static_cast<double>(confidence.size());
 }

@@ -59,7 +59,8 @@ struct OpenSurfaces {
                                               const std::atomic<bool>* cancel = nullptr);
 
 /// Share of the points that could face either way: confidence below a half, or a half on closed surfaces, whose sides are no choice and
-/// which nothing shows to be right. `confidence`: of the N points.
+/// which nothing shows to be right. Where there are fewer than 30 points nothing can show it, and a half is no reason. `confidence`: of the
+/// N points.
 [[nodiscard]] double unsure_share(const OpenSurfaces& surfaces, const std::vector<float>& confidence);
 
 /// OpenSurfaces::certified of the given normals alone, for sides that have changed since. O(N log N).

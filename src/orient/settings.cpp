@@ -19,7 +19,7 @@ constexpr std::size_t kFewestCoarsePoints = 10000;  // a coarser start costs sid
 constexpr double kEnergyEpsilon = 0.4;    // smaller converges slower, larger blurs thin walls
 constexpr double kCoarsestEpsilon = 0.5;  // without a start: converges faster, finds more sides
 // Weights l of the winding number, in h^3: S eta and l W^T W eta keep their proportion for any number of points.
-constexpr double kWindingWeight = 250;          // from eta = 0; larger converges slower, 0 loses nested shells
+constexpr double kWindingWeight = 250;  // from eta = 0; larger converges slower, 0 loses nested shells
 // With a coarse start or among outliers, and of further steps: finds more sides of thin walls; less costs narrow gaps.
 constexpr double kContinuedWindingWeight = 30;
 constexpr double kPolishWindingWeight = 70;  // of clean points and little noise; more costs sides, less costs narrow gaps and smooth shapes
