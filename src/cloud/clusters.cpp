@@ -7,13 +7,13 @@
 
 namespace g3r {
 
-// The points of a cell follow each other, and centroids lie in their cells: both sorts agree.
 std::vector<double> Clusters::roots() const {
   std::vector<double> roots = multiplicity;
   for (double& m : roots) m = std::sqrt(m);
   return roots;
 }
 
+// The points of a cell follow each other, and centroids lie in their cells: both sorts agree.
 Clusters cluster_points(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, double side,
                         const std::vector<double>& relative_spacing) {
   const int level = std::clamp(static_cast<int>(std::ceil(std::log2(2 / side))), 0, kGridBits);

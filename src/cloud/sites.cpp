@@ -20,8 +20,6 @@ namespace {
 constexpr double kReach = 2.5;             // distances: the plane of a site sees its neighbours and theirs, about 20 sites
 constexpr std::size_t kFewestPoints = 12;  // of a plane: fewer follow the sampling rather than the surface
 constexpr double kSurfaceBreadth = 0.5;    // median breadth of a surface sample; lines have that of their noise over their length
-constexpr double kFirstDistance = 1.5;     // spacings, of the first thinned scale
-constexpr std::size_t kFewestSites = 30;   // of a scale: fewer say nothing of a surface
 constexpr std::size_t kPlaces = 2000;      // looked at for a median, at most
 constexpr std::size_t kPlaceBlock = 64;    // places per parallel block
 

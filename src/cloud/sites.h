@@ -11,6 +11,13 @@
 
 namespace g3r {
 
+/// Distance of the sites of the first thinned scale, in typical spacings; the next are twice as far apart each.
+inline constexpr double kFirstDistance = 1.5;
+/// Sites of a scale, at least: fewer say nothing of a surface.
+inline constexpr std::size_t kFewestSites = 30;
+/// Width in spacings of the sites of their field where there are none: narrower shows single ones.
+inline constexpr double kBetweenSites = 0.7;
+
 struct Sites {
   double distance = 0;                 ///< least distance between the points that sites begin with; 0: every point is a site
   PointSet set;                        ///< M centroids of the points of each site; the square of a local spacing is the area of a site

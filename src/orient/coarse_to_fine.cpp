@@ -34,7 +34,6 @@ Settings coarser(Settings settings) {
     width->noise *= kSpacingRatio;
   }
   settings.winding_weight *= kCubeRatio;
-  settings.winding_weight *= kCubeRatio;
   settings.tolerance = settings.start_tolerance;
   settings.first_sums = settings.sums;
   return settings;

@@ -155,7 +155,7 @@ double minority_share(const Facets& facets, const std::vector<Vec3>& normals) {
 void choose_facet_sides(const PointSet& set, const Settings& settings, const Facets& facets, std::vector<Vec3>& eta,
                         std::vector<Vec3>& normals, Stages& stages) {
   const std::vector<double>& spacing = set.smoothed_spacing();
-  const std::vector<double> areas = squares(spacing);
+  const std::vector<double> areas = point_areas(settings, spacing);
   const std::vector<Vec3> turned = turned_to_first(facets, normals);
   const std::vector<std::uint8_t> unsure = unsure_facets(facets, areas, turned, normals, eta);
   const std::vector<std::uint32_t> some = around_unsure(set.points(), spacing, unsure);

@@ -22,24 +22,21 @@ namespace {
 using vector::dot;
 
 // Scales.
-constexpr double kFirstScale = 1.5;       // spacings between sites of the first thinned scale; the next are twice as far apart each
-constexpr double kNoiseScale = 2;         // standard deviations of the noise between sites, at least
-constexpr int kScales = 3;                // that are tried
-constexpr std::size_t kFewestSites = 30;  // of a scale: fewer say nothing of a surface
+constexpr double kNoiseScale = 2;  // standard deviations of the noise between sites, at least
+constexpr int kScales = 3;         // that are tried
 // Graph.
 constexpr std::size_t kAdjacent = 10;  // nearest sites that a site is connected with
 constexpr double kLongest = 4;         // site distances: longer edges cross gaps
 constexpr double kDecay = 0.3;         // of the weight with the squared length in site distances
 constexpr double kLeastWeight = 0.02;  // of a site whose surroundings are a ball: it still follows its neighbours
 // Hypothesis.
-constexpr int kTurns = 3;               // rounds of the winding gradient
-constexpr double kTurnWidth = 2;        // site spacings: wider than the grooves that the sampling cannot resolve
-constexpr double kAfar = 4;             // site spacings, the same where sides do not agree; more turns the rims of small surfaces
-constexpr double kAgreed = 0.5;         // of the jump that a side has to show: less is more against it than for it
-constexpr double kHidden = 0.25;        // of the jump, below which the direction is that from afar; rims of open surfaces show 0.4 and more
-constexpr double kGradientWidth = 0.7;  // site spacings, from sites to points
-constexpr double kAccuracy = 1e-2;      // of the sums that tell whether a part encloses something
-constexpr double kFarBetter = 0.5;      // of the jump defect as given, up to which a hypothesis is taken where unrest alone does not decide
+constexpr int kTurns = 3;           // rounds of the winding gradient
+constexpr double kTurnWidth = 2;    // site spacings: wider than the grooves that the sampling cannot resolve
+constexpr double kAfar = 4;         // site spacings, the same where sides do not agree; more turns the rims of small surfaces
+constexpr double kAgreed = 0.5;     // of the jump that a side has to show: less is more against it than for it
+constexpr double kHidden = 0.25;    // of the jump, below which the direction is that from afar; rims of open surfaces show 0.4 and more
+constexpr double kAccuracy = 1e-2;  // of the sums that tell whether a part encloses something
+constexpr double kFarBetter = 0.5;  // of the jump defect as given, up to which a hypothesis is taken where unrest alone does not decide
 // Verdict.
 constexpr double kUnrest = 0.08;      // mean of a part that is open: closed ones have up to 0.06, open ones 0.1 to 0.3
 constexpr double kUnrestNoisy = 0.2;  // the same where noise hides thin walls, whose field is open in places
@@ -58,8 +55,8 @@ class Search {
       : set_(set), points_(set.points()), noise_(noise), sums_(sums), cancel_(cancel) {
     const double spacing = set.spacing();
     const double all = std::sqrt(static_cast<double>(set.size()) / static_cast<double>(kMostSites));
-    const double least = std::max(kNoiseScale * noise, all > 1 ? kFirstScale * all * spacing : 0);
-    const double distance = least < kFirstScale / 2 * spacing ? 0 : std::max(kFirstScale * spacing, least);
+    const double least = std::max(kNoiseScale * noise, all > 1 ? kFirstDistance * all * spacing : 0);
+    const double distance = least < kFirstDistance / 2 * spacing ? 0 : std::max(kFirstDistance * spacing, least);
     finest_ = place_sites(set_, distance);
     edges_ = edges_of(finest_);
     DisjointSets parts(finest_.size());
@@ -130,7 +127,7 @@ class Search {
       morton.push_back(finest_.set.morton()[s]);
       eta.push_back(vector::scale(normals[s], finest_.spacing()[s] * finest_.spacing()[s]));
     }
-    FastSum field(points, morton, Widths(kGradientWidth * finest_.set.spacing()), sum_plan(kAccuracy, points.size()), cancel_);
+    FastSum field(points, morton, Widths(kBetweenSites * finest_.set.spacing()), sum_plan(kAccuracy, points.size()), cancel_);
     double sum = 0;
     for (const double w : field.winding(eta)) sum += w;
     return 2 * sum / static_cast<double>(points.size());
@@ -167,7 +164,7 @@ class Search {
   }
 
   [[nodiscard]] Sites coarser_than(const Sites& sites) const {
-    return place_sites(set_, std::max(kFirstScale * set_.spacing(), 2 * sites.distance));
+    return place_sites(set_, std::max(kFirstDistance * set_.spacing(), 2 * sites.distance));
   }
 
   static double reach_of(const Sites& sites, std::uint32_t a, std::uint32_t b) {
@@ -214,7 +211,7 @@ class Search {
     FastSum wide(sites.points(), sites.set.morton(), Widths(kTurnWidth * spacing), sums_, cancel_);
     for (int turn = 0; turn < kTurns; ++turn) normals = refine_normals(wide, areas_of(sites, normals)).normals;
     // Directions from a narrower field, where its side is the same.
-    const FastSum field(wide, Widths(kGradientWidth * spacing));
+    const FastSum field(wide, Widths(kBetweenSites * spacing));
     std::vector<Vec3> sided(points_.size());
     for (std::size_t i = 0; i < points_.size(); ++i) sided[i] = normals[sites.site_of[i]];
     std::vector<Vec3> narrow = unit_normals(field.winding_gradient_at(areas_of(sites, normals), points_, cancel_), sided).normals;

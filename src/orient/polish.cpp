@@ -40,12 +40,9 @@ void gradient_to_areas(FastSum& sum, const std::vector<double>& areas, std::vect
 
 std::vector<double> point_areas(const Settings& settings, const std::vector<double>& spacing) {
   if (spacing.empty()) return {settings.spacing * settings.spacing};
-  return squares(spacing);
-}
-
-std::vector<double> squares(std::vector<double> values) {
-  for (double& v : values) v *= v;
-  return values;
+  std::vector<double> areas = spacing;
+  for (double& a : areas) a *= a;
+  return areas;
 }
 
 Polished polish(PolishCloud cloud, const Settings& settings, Refinement refined, Stages& stages) {

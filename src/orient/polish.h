@@ -18,9 +18,6 @@ namespace g3r {
 /// The square of `spacing` at every point, or one value for all, that of settings.spacing, if it is empty.
 [[nodiscard]] std::vector<double> point_areas(const Settings& settings, const std::vector<double>& spacing);
 
-/// The square of each.
-[[nodiscard]] std::vector<double> squares(std::vector<double> values);
-
 /// Area vectors from a winding gradient: directions kept, lengths linear up to the median and constant beyond, so that thin parts whose
 /// sides the gradient cannot distinguish start near zero and not on the wrong side; times `areas`, what one point stands for (one for
 /// each, or one for all). One factor makes the median of W eta 1/2, what it is on the true surface; it is bounded to [1/3, 3], because an

@@ -16,23 +16,23 @@ namespace {
 constexpr std::size_t kFewestCoarsePoints = 10000;  // a coarser start costs sides on thin parts and saves little
 
 // The default: energy form. Widths in spacings h.
-constexpr double kEnergyEpsilon = 0.4;    // smaller converges slower, larger blurs thin walls
+constexpr double kEpsilon = 0.4;          // of least squares too; smaller converges slower, larger blurs thin walls
 constexpr double kCoarsestEpsilon = 0.5;  // without a start: converges faster, finds more sides
 // Weights l of the winding number, in h^3: S eta and l W^T W eta keep their proportion for any number of points.
 constexpr double kWindingWeight = 250;  // from eta = 0; larger converges slower, 0 loses nested shells
 // With a coarse start or among outliers, and of further steps: finds more sides of thin walls; less costs narrow gaps.
 constexpr double kContinuedWindingWeight = 30;
 constexpr double kPolishWindingWeight = 70;  // of clean points and little noise; more costs sides, less costs narrow gaps and smooth shapes
-constexpr double kEnergyTolerance = 2.5e-3;  // slats and spokes need this residual; smooth shapes get there in half the steps
-constexpr double kAcceptedResidual = 2e-2;   // from here on normals change little
-constexpr double kAcceptedContinued = 0.1;   // after a coarse start; random points on spheres end at 0.05, their normals are right to 1e-4
+constexpr double kTolerance =
+    2.5e-3;  // of further steps and of least squares too; slats and spokes need this residual; smooth shapes get there in half the steps
+constexpr double kAcceptedResidual = 2e-2;  // from here on normals change little
+constexpr double kAcceptedContinued = 0.1;  // after a coarse start; random points on spheres end at 0.05, their normals are right to 1e-4
 constexpr const char* kEnergySchedule = "45 cg";
 constexpr double kStartTolerance = 8e-3;  // of a coarse solution that is only a start
 // After a coarse start smooth shapes are there in 2 to 10 steps. More are right for thin walls and narrow gaps only: on open surfaces, of
 // which the equations are not true, and among outliers, some of which are always left, they fit what is wrong.
 constexpr Steps kContinued{10, StepKind::kConjugateGradient};
 constexpr Steps kDoubtful{60, StepKind::kConjugateGradient};
-constexpr double kDoubtfulTolerance = 2.5e-3;
 constexpr double kContinuedTolerance = 1.5e-2;
 constexpr double kFewOutliers = 1e-2;  // of the points; clean clouds lose one point, very uneven ones 0.6 %
 // The default on noisy input, sigma in spacings h: the field must not see single points. Kernels of a given number of sigma hide the
@@ -62,9 +62,7 @@ constexpr double kWeightFall = 0.28;
 // Of the sums. Solves from 0 amplify errors with every step; with a start kContinuedAccuracy does.
 constexpr double kAccuracy = 1e-2;
 // The default for least squares over the harmonics.
-constexpr double kGreenEpsilon = 0.4;       // converges in 10-15 iterations
 constexpr double kGreenConstantWeight = 2;  // the row u = 1 alone distinguishes inside from outside
-constexpr double kGreenTolerance = 2.5e-3;
 constexpr const char* kGreenSchedule = "20 cg";
 // The polish: narrower than the solve and the refinement it starts from.
 constexpr double kPolishEpsilon = 0.2;
@@ -179,7 +177,7 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   }
   const bool green = s.method == Method::kGreen;
   s.constant_weight = paper ? 1 : kGreenConstantWeight;
-  s.epsilon.points = (green ? kGreenEpsilon : kEnergyEpsilon) * spacing;
+  s.epsilon.points = kEpsilon * spacing;
   if (paper) s.epsilon.points = std::max(paper_epsilon(cloud), kPaperLeastEpsilon * spacing);
   if (options.epsilon.unit != Length::Unit::kAuto) {
     require(options.epsilon.value > 0 && std::isfinite(options.epsilon.value), "epsilon must be a positive number");
@@ -206,12 +204,12 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   const bool among_outliers = static_cast<double>(outliers) > kFewOutliers * static_cast<double>(cloud.size());
   s.continued_schedule = {kContinued};
   if (!among_outliers && !contains(s.without, Step::kMoreSteps)) s.doubtful_schedule = {kDoubtful};
-  s.tolerance = options.tolerance >= 0 ? options.tolerance : paper ? 0 : green ? kGreenTolerance : kEnergyTolerance;
+  s.tolerance = options.tolerance >= 0 ? options.tolerance : paper ? 0 : kTolerance;
   s.accepted_residual = options.tolerance >= 0           ? options.tolerance
                         : starts_coarse(s, cloud.size()) ? kAcceptedContinued
                                                          : std::max(s.tolerance, kAcceptedResidual);
   s.continued_tolerance = options.tolerance >= 0 ? options.tolerance : kContinuedTolerance;
-  s.doubtful_tolerance = options.tolerance >= 0 ? options.tolerance : kDoubtfulTolerance;
+  s.doubtful_tolerance = options.tolerance >= 0 ? options.tolerance : kTolerance;
   s.start_tolerance = std::max(s.tolerance, kStartTolerance);
   const bool wide = s.epsilon.points > kWideEpsilon * spacing && options.noise.unit == Length::Unit::kAuto;
   const double scatter = paper || green ? 0 : wide ? hidden_noise(s.epsilon.points / spacing) : noise / spacing;

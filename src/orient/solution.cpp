@@ -28,7 +28,6 @@ namespace {
 constexpr std::size_t kFewestApart = 100;  // points that are solved for again without the open surfaces of their cloud
 constexpr double kMinMinority = 1e-3;      // share of the points against most of their facet, from which facets are solved for
 constexpr float kChoice = 0.5F;            // certainty of an open surface that has no outside
-constexpr double kBetweenSites = 0.7;      // site spacings, of the field where there are no sites: narrower shows single ones
 constexpr double kChance = 1.12;           // of the typical spacing, up to which noise alone may have scattered points so far apart
 constexpr int kFacetRounds = 3;            // points on no facet come right after those on one, and facets grow
 

@@ -26,10 +26,11 @@ struct PartResidual {
   double size = 0;             ///< of the right side of all points
 };
 
+/// Of `system`, that of all points, at x; `some`: F, ascending. One product.
 [[nodiscard]] PartResidual residual_at(const std::vector<std::uint32_t>& some, LinearSystem& system, const std::vector<Vec3>& x);
 
 /// M_FF d = (b - M x)_F for the change d, which is result.eta; `part` has M_FF: the matrix of F as a cloud of its own. Tolerance and
-/// residuals are of F, relative to |b|.
+/// residuals are of F, relative to |b|. One product of F a step.
 [[nodiscard]] IterativeResult solve_for_part(LinearSystem& part, const PartResidual& right, const std::vector<Steps>& schedule,
                                              double tolerance, const std::function<void(int, int, double)>& after_step);
 

@@ -34,7 +34,7 @@ class FastSum {
   FastSum& operator=(FastSum&&) noexcept;
 
   [[nodiscard]] std::size_t size() const;
-  /// Of the kernel of this point, to rounding of the plan.
+  /// Of the kernel of this point: a length, to the rounding of the plan. O(1).
   [[nodiscard]] double width(std::size_t point) const;
 
   /// A[u_k] eta at every point, all k in one sweep: N x K row-major. See direct_sum::green.
