@@ -1,7 +1,7 @@
 // The sums, and orientation, on a device beside the processor. One JSON object per line on standard output.
 //   g3r_bench_gpu [--device gpu:0] [--points N,N,...] [--accuracy A] [--threads T] [--orient N,N,...]
 // pairs: near field alone, of every form; sums: whole sums, points per second; orient: seconds. Medians of wall clock times of three runs
-// after one that compiles and allocates.
+// after one that compiles and allocates. kernels: seconds of every kernel in one more run, in which each launch waits for its end.
 #include "cloud/canonical_cloud.h"
 #include "cpu/parallel.h"
 #include "sum/device_scope.h"
@@ -71,37 +71,42 @@ double median_seconds(const std::function<void()>& work) {
   return runs[1];
 }
 
-// Seconds of every form.
-struct Timed {
+// A sum of every form.
+struct FormRun {
   const char* form;
-  double seconds;
+  std::function<void()> work;
 };
-std::vector<Timed> time_forms(const sum_cases::Inputs& in, const SumPlan& plan) {
-  FastSum sum(in.points, sum_cases::codes(in.points), in.widths, plan);
-  std::vector<Vec3> s;
-  std::vector<double> w;
-  return {{"stokes_winding", median_seconds([&] { sum.stokes_winding(in.eta, s, w); })},
-          {"winding", median_seconds([&] { w = sum.winding(in.eta); })},
-          {"winding_adjoint", median_seconds([&] { s = sum.winding_adjoint(in.q1); })},
-          {"winding_gradient", median_seconds([&] { s = sum.winding_gradient(in.eta); })},
-          {"green_9", median_seconds([&] { w = sum.green(in.u, in.eta); })},
-          {"green_adjoint_9", median_seconds([&] { s = sum.green_adjoint(in.u, in.q); })}};
+std::vector<FormRun> runs_of(FastSum& sum, const sum_cases::Inputs& in) {
+  const auto keep = std::make_shared<std::pair<std::vector<Vec3>, std::vector<double>>>();
+  return {{"stokes_winding", [&, keep] { sum.stokes_winding(in.eta, keep->first, keep->second); }},
+          {"winding", [&, keep] { keep->second = sum.winding(in.eta); }},
+          {"winding_adjoint", [&, keep] { keep->first = sum.winding_adjoint(in.q1); }},
+          {"winding_gradient", [&, keep] { keep->first = sum.winding_gradient(in.eta); }},
+          {"green_9", [&, keep] { keep->second = sum.green(in.u, in.eta); }},
+          {"green_adjoint_9", [&, keep] { keep->first = sum.green_adjoint(in.u, in.q); }}};
 }
 
 // A line for every form: `count` things per second on the device and on the processor.
 void compare_forms(const char* what, const sum_cases::Inputs& in, SumPlan plan, const std::shared_ptr<gpu::Execution>& execution,
                    double count) {
-  const std::vector<Timed> processor = time_forms(in, plan);
+  FastSum on_processor(in.points, sum_cases::codes(in.points), in.widths, plan);
   plan.execution = execution;
-  const std::vector<Timed> device = time_forms(in, plan);
+  FastSum on_device(in.points, sum_cases::codes(in.points), in.widths, plan);
+  const std::vector<FormRun> processor = runs_of(on_processor, in);
+  const std::vector<FormRun> device = runs_of(on_device, in);
   for (std::size_t i = 0; i < device.size(); ++i) {
+    const double cpu_seconds = median_seconds(processor[i].work);
+    const double device_seconds = median_seconds(device[i].work);
+    execution->device().time_kernels();
+    device[i].work();
     std::cout << nlohmann::ordered_json{{"measured", what},
                                         {"form", device[i].form},
                                         {"points", in.points.size()},
-                                        {"device_seconds", device[i].seconds},
-                                        {"cpu_seconds", processor[i].seconds},
-                                        {"device_per_second", count / device[i].seconds},
-                                        {"cpu_per_second", count / processor[i].seconds}}
+                                        {"device_seconds", device_seconds},
+                                        {"cpu_seconds", cpu_seconds},
+                                        {"device_per_second", count / device_seconds},
+                                        {"cpu_per_second", count / cpu_seconds},
+                                        {"kernels", execution->device().take_kernel_seconds()}}
               << std::endl;
   }
 }

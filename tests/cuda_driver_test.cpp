@@ -7,8 +7,10 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <functional>
+#include <numeric>
 
 #include <dlfcn.h>
 
@@ -23,7 +25,7 @@ extern "C" __global__ void fill(float* p, float value, int n) {
 )";
 
 struct State {
-  int buffers, modules, contexts, pushed, failure;
+  int buffers, modules, contexts, pushed, events, failure;
 };
 
 template <class Function>
@@ -36,7 +38,19 @@ void expect_all_given_back() {
   EXPECT_EQ(state().buffers, 0);
   EXPECT_EQ(state().modules, 0);
   EXPECT_EQ(state().contexts, 0);
+  EXPECT_EQ(state().events, 0);
   EXPECT_EQ(state().pushed, 0) << "the thread's own context";
+}
+
+// The first elements of a buffer.
+template <class T>
+std::vector<T> read(gpu::Device& device, const gpu::Buffer& from, std::size_t count, std::size_t unit = 1) {
+  std::vector<T> out(count);
+  device.read(from, count * sizeof(T), unit * sizeof(T), [&](std::size_t offset, const unsigned char* data, std::size_t bytes) {
+    EXPECT_TRUE(bytes % (unit * sizeof(T)) == 0 || offset + bytes == count * sizeof(T));
+    std::memcpy(reinterpret_cast<unsigned char*>(out.data()) + offset, data, bytes);
+  });
+  return out;
 }
 
 std::string complaint(const std::function<void()>& work) {
@@ -62,10 +76,22 @@ TEST(CudaDriver, RunsWhatItIsGiven) {
     device->write(*buffer, 12, before.data(), 4);
     device->launch(device->program(kSource).kernel("fill"), 2, 1, {*buffer, 5.0F, 3}, 0);
     device->finish();
-    std::vector<float> after(4);
-    device->read(*buffer, after.data(), 16);
-    EXPECT_EQ(after, (std::vector<float>{5, 5, 3, 1})) << from_the_cache;
+    EXPECT_EQ(read<float>(*device, *buffer, 4), (std::vector<float>{5, 5, 3, 1})) << from_the_cache;
     EXPECT_EQ(state().pushed, 0);
+  }
+  expect_all_given_back();
+}
+
+TEST(CudaDriver, WhatIsTooLongForOneCopyGoesInParts) {
+  {
+    const std::shared_ptr<gpu::Device> device = gpu::open_cuda(gpu::cuda_devices().at(0));
+    std::vector<std::uint32_t> numbers(6'000'001);  // 24 MB
+    std::iota(numbers.begin(), numbers.end(), 7U);
+    const auto buffer = device->allocate(numbers.size() * sizeof numbers[0]);
+    device->write(*buffer, 0, numbers.data(), buffer->bytes());
+    for (const std::size_t unit : {1UL, 12UL, 1000UL}) {
+      EXPECT_EQ(read<std::uint32_t>(*device, *buffer, numbers.size(), unit), numbers);
+    }
   }
   expect_all_given_back();
 }
@@ -79,12 +105,11 @@ TEST(CudaDriver, FailuresAreErrorsInOneLine) {
     const auto buffer = device->allocate(16);
     gpu::Kernel& kernel = device->program(kSource).kernel("fill");
     fake<void(int)>("fake_cuda_fail")(700);  // as of a device that is lost
-    float value = 0;
     EXPECT_EQ(complaint([&] {
                 device->launch(kernel, 1, 1, {*buffer, 1.0F, 1}, 0);
               }),
               "cannot run a kernel: an illegal memory access was encountered");
-    EXPECT_NE(complaint([&] { device->read(*buffer, &value, 4); }), "none");
+    EXPECT_NE(complaint([&] { (void)read<float>(*device, *buffer, 1); }), "none");
     EXPECT_NE(complaint([&] { device->finish(); }), "none");
     EXPECT_EQ(state().pushed, 0);
     fake<void(int)>("fake_cuda_fail")(0);

@@ -13,6 +13,7 @@ struct State {
   int modules = 0;
   int contexts = 0;  ///< retained
   int pushed = 0;
+  int events = 0;
   int failure = 0;  ///< code that copies, launches and waiting return
 };
 State state;
@@ -56,14 +57,28 @@ int cuMemFree_v2(std::uint64_t pointer) {
   --state.buffers;
   return std::free(reinterpret_cast<void*>(pointer)), 0;
 }
-int cuMemcpyHtoD_v2(std::uint64_t to, const void* from, std::size_t bytes) {
+int cuMemHostAlloc(void** memory, std::size_t bytes, unsigned) {
+  if (state.pushed == 0) return kNoContext;
+  ++state.buffers;
+  return *memory = std::calloc(bytes, 1), 0;
+}
+int cuMemFreeHost(void* memory) {
+  if (state.pushed == 0) return kNoContext;
+  --state.buffers;
+  return std::free(memory), 0;
+}
+int cuMemcpyHtoDAsync_v2(std::uint64_t to, const void* from, std::size_t bytes, void*) {
   if (state.pushed == 0 || state.failure != 0) return state.pushed == 0 ? kNoContext : state.failure;
   return std::memcpy(reinterpret_cast<void*>(to), from, bytes), 0;
 }
-int cuMemcpyDtoH_v2(void* to, std::uint64_t from, std::size_t bytes) {
+int cuMemcpyDtoHAsync_v2(void* to, std::uint64_t from, std::size_t bytes, void*) {
   if (state.pushed == 0 || state.failure != 0) return state.pushed == 0 ? kNoContext : state.failure;
   return std::memcpy(to, reinterpret_cast<const void*>(from), bytes), 0;
 }
+int cuEventCreate(void** event, unsigned) { return ++state.events, *event = &state.events, 0; }
+int cuEventDestroy_v2(void*) { return --state.events, 0; }
+int cuEventRecord(void*, void*) { return state.pushed == 0 ? kNoContext : 0; }
+int cuEventSynchronize(void*) { return state.failure; }
 int cuModuleLoadData(void** module, const void* ptx) {
   if (state.pushed == 0) return kNoContext;
   ++state.modules;

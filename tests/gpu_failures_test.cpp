@@ -36,14 +36,15 @@ class FailingDevice : public gpu::Device {
     --left_;
     return std::make_unique<Counted>(bytes, alive);
   }
-  void write(const gpu::Buffer&, std::size_t, const void*, std::size_t) override {}
-  void read(const gpu::Buffer&, void*, std::size_t) override { ADD_FAILURE() << "nothing was computed"; }
   void finish() override {}
-  void launch(gpu::Kernel&, std::size_t, std::size_t, const std::vector<gpu::Argument>&, std::size_t) override {}
 
   std::size_t alive = 0;
 
  protected:
+  std::unique_ptr<gpu::Staging> make_staging(std::size_t bytes) override { return std::make_unique<HostMemory>(bytes); }
+  void start_write(const gpu::Buffer&, std::size_t, gpu::Staging&, std::size_t) override {}
+  void start_read(const gpu::Buffer&, std::size_t, gpu::Staging&, std::size_t) override { ADD_FAILURE() << "nothing was computed"; }
+  void start(gpu::Kernel&, std::size_t, std::size_t, const std::vector<gpu::Argument>&, std::size_t) override {}
   std::unique_ptr<gpu::Program> compile(const std::string&) override { throw gpu::DeviceError("the kernels do not compile"); }
 
  private:
@@ -53,6 +54,11 @@ class FailingDevice : public gpu::Device {
     ~Counted() override { --count; }
     Counted(const Counted&) = delete;
     Counted& operator=(const Counted&) = delete;
+  };
+  struct HostMemory : gpu::Staging {
+    std::vector<unsigned char> bytes;
+    explicit HostMemory(std::size_t size) : bytes(size) { data_ = bytes.data(); }
+    void wait() override {}
   };
   static gpu::DeviceInfo described() {
     gpu::DeviceInfo info;

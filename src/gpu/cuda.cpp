@@ -68,8 +68,42 @@ struct CudaBuffer : Buffer {
   CudaBuffer& operator=(const CudaBuffer&) = delete;
 };
 
+// Memory that is locked in its place, so that the device copies at full speed.
+class CudaStaging : public Staging {
+ public:
+  CudaStaging(Context context, std::size_t bytes) : context_(context) {
+    const Current current(context_);
+    check(api()->create_event(&copied_, kEventWithoutTime), "cannot use the device");
+    void* memory = nullptr;
+    const int code = api()->allocate_host(&memory, bytes, 0);
+    if (code != kSuccess) api()->destroy_event(copied_);
+    check(code, "cannot lock memory for copies to the device");
+    data_ = static_cast<unsigned char*>(memory);
+  }
+  ~CudaStaging() override {
+    in_context(context_, [&] {
+      api()->free_host(data_);
+      api()->destroy_event(copied_);
+    });
+  }
+  CudaStaging(const CudaStaging&) = delete;
+  CudaStaging& operator=(const CudaStaging&) = delete;
+
+  void wait() override {
+    const Current current(context_);
+    check(api()->wait_for_event(copied_), "the device failed");
+  }
+  // Within the context, after a copy was started.
+  void started() { check(api()->record_event(copied_, nullptr), "the device failed"); }
+
+ private:
+  Context context_;
+  Event copied_ = nullptr;
+};
+
 struct CudaKernel : Kernel {
   Function function = nullptr;
+  using Kernel::Kernel;
 };
 
 struct CudaProgram : Program {
@@ -91,7 +125,7 @@ struct CudaProgram : Program {
     const auto found = kernels.find(name);
     if (found != kernels.end()) return found->second;
     const Current current(context);
-    CudaKernel made;
+    CudaKernel made(name);
     check(api()->function(&made.function, module, name.c_str()), "cannot use a kernel");
     return kernels.emplace(name, made).first->second;
   }
@@ -103,7 +137,7 @@ class CudaDevice : public Device {
     check(api()->retain_context(&context_, ordinal_), "cannot use the device");
   }
   ~CudaDevice() override {
-    forget_programs();
+    forget();
     api()->release_context(ordinal_);
   }
   CudaDevice(const CudaDevice&) = delete;
@@ -115,23 +149,25 @@ class CudaDevice : public Device {
     check(api()->allocate(&pointer, std::max<std::size_t>(bytes, 1)), "cannot allocate on the device");
     return std::make_unique<CudaBuffer>(bytes, context_, pointer);
   }
-  void write(const Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override {
-    if (bytes == 0) return;
-    const Current current(context_);
-    check(api()->to_device(pointer(to) + offset, from, bytes), "cannot copy to the device");
-  }
-  void read(const Buffer& from, void* to, std::size_t bytes) override {
-    if (bytes == 0) return;
-    const Current current(context_);
-    check(api()->from_device(to, pointer(from), bytes), "cannot copy from the device");
-  }
   void finish() override {
     const Current current(context_);
     check(api()->synchronize(), "the device failed");
   }
-  void launch(Kernel& kernel, std::size_t groups, std::size_t group_size, const std::vector<Argument>& arguments,
-              std::size_t shared_bytes) override {
-    if (groups == 0) return;
+
+ protected:
+  std::unique_ptr<Staging> make_staging(std::size_t bytes) override { return std::make_unique<CudaStaging>(context_, bytes); }
+  void start_write(const Buffer& to, std::size_t offset, Staging& staging, std::size_t bytes) override {
+    const Current current(context_);
+    check(api()->start_to_device(pointer(to) + offset, staging.data(), bytes, nullptr), "cannot copy to the device");
+    static_cast<CudaStaging&>(staging).started();
+  }
+  void start_read(const Buffer& from, std::size_t offset, Staging& staging, std::size_t bytes) override {
+    const Current current(context_);
+    check(api()->start_from_device(staging.data(), pointer(from) + offset, bytes, nullptr), "cannot copy from the device");
+    static_cast<CudaStaging&>(staging).started();
+  }
+  void start(Kernel& kernel, std::size_t groups, std::size_t group_size, const std::vector<Argument>& arguments,
+             std::size_t shared_bytes) override {
     if (groups > std::numeric_limits<std::int32_t>::max()) throw DeviceError("too many points for the device");
     std::vector<Pointer> pointers(arguments.size());
     std::vector<void*> places;
@@ -145,8 +181,6 @@ class CudaDevice : public Device {
                         1, 1, static_cast<unsigned>(shared_bytes), nullptr, places.data(), nullptr),
           "cannot run a kernel");
   }
-
- protected:
   std::unique_ptr<Program> compile(const std::string& source) override {
     const int architecture = static_cast<int>(info().handle[1]);
     const KernelCache cache("sm_" + std::to_string(architecture) + '\n' + info().driver + '\n' + source);

@@ -11,9 +11,11 @@ namespace g3r::gpu::cuda {
 struct ContextTag;
 struct ModuleTag;
 struct FunctionTag;
+struct EventTag;
 using Context = ContextTag*;
 using Module = ModuleTag*;
 using Function = FunctionTag*;
+using Event = EventTag*;
 using Pointer = std::uint64_t;
 
 inline constexpr int kSuccess = 0;
@@ -23,6 +25,8 @@ inline constexpr int kOutOfMemory = 2;
 inline constexpr int kSharedMemoryPerBlock = 8;
 inline constexpr int kComputeMajor = 75;
 inline constexpr int kComputeMinor = 76;
+
+inline constexpr unsigned kEventWithoutTime = 2;  // CU_EVENT_DISABLE_TIMING
 
 /// Functions of libcuda. All are there, or none is used.
 struct Api {
@@ -39,8 +43,14 @@ struct Api {
   int (*pop_context)(Context*);
   int (*allocate)(Pointer*, std::size_t);
   int (*free)(Pointer);
-  int (*to_device)(Pointer, const void*, std::size_t);
-  int (*from_device)(void*, Pointer, std::size_t);
+  int (*allocate_host)(void**, std::size_t, unsigned);
+  int (*free_host)(void*);
+  int (*start_to_device)(Pointer, const void*, std::size_t, void*);
+  int (*start_from_device)(void*, Pointer, std::size_t, void*);
+  int (*create_event)(Event*, unsigned);
+  int (*destroy_event)(Event);
+  int (*record_event)(Event, void*);
+  int (*wait_for_event)(Event);
   int (*load_module)(Module*, const void*);
   int (*unload_module)(Module);
   int (*function)(Function*, Module, const char*);
@@ -56,8 +66,11 @@ struct Api {
            library.find("cuDeviceGetAttribute", device_attribute) && library.find("cuDevicePrimaryCtxRetain", retain_context) &&
            library.find("cuDevicePrimaryCtxRelease_v2", release_context) && library.find("cuCtxPushCurrent_v2", push_context) &&
            library.find("cuCtxPopCurrent_v2", pop_context) && library.find("cuMemAlloc_v2", allocate) &&
-           library.find("cuMemFree_v2", free) && library.find("cuMemcpyHtoD_v2", to_device) &&
-           library.find("cuMemcpyDtoH_v2", from_device) && library.find("cuModuleLoadData", load_module) &&
+           library.find("cuMemFree_v2", free) && library.find("cuMemHostAlloc", allocate_host) &&
+           library.find("cuMemFreeHost", free_host) && library.find("cuMemcpyHtoDAsync_v2", start_to_device) &&
+           library.find("cuMemcpyDtoHAsync_v2", start_from_device) && library.find("cuEventCreate", create_event) &&
+           library.find("cuEventDestroy_v2", destroy_event) && library.find("cuEventRecord", record_event) &&
+           library.find("cuEventSynchronize", wait_for_event) && library.find("cuModuleLoadData", load_module) &&
            library.find("cuModuleUnload", unload_module) && library.find("cuModuleGetFunction", function) &&
            library.find("cuLaunchKernel", launch) && library.find("cuCtxSynchronize", synchronize) &&
            library.find("cuGetErrorString", error_text);

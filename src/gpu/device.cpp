@@ -1,16 +1,74 @@
 #include "gpu/device.h"
 
+#include "cpu/parallel.h"
 #include "gpu/cuda.h"
 #include "gpu/opencl.h"
 
 #include <algorithm>
+#include <chrono>
 
 namespace g3r::gpu {
+namespace {
+
+constexpr std::size_t kStagingBytes = 8u << 20;  // of two: large beside what starting a copy costs, small beside any other memory
+constexpr std::size_t kCopyBlock = 1u << 18;     // bytes that a thread copies at a time
+
+}  // namespace
+
+Staging& Device::staging(std::size_t k) {
+  std::unique_ptr<Staging>& made = staging_[k];
+  if (!made) made = make_staging(kStagingBytes);
+  made->wait();
+  return *made;
+}
+
+void Device::write(const Buffer& to, std::size_t offset, const void* from, std::size_t bytes) {
+  const auto* const source = static_cast<const unsigned char*>(from);
+  for (std::size_t done = 0, k = 0; done < bytes; k = 1 - k) {
+    const std::size_t part = std::min(kStagingBytes, bytes - done);
+    Staging& through = staging(k);
+    parallel::for_blocks(part, kCopyBlock, [&](std::size_t begin, std::size_t end) {
+      std::memcpy(through.data() + begin, source + done + begin, end - begin);
+    });
+    start_write(to, offset + done, through, part);
+    done += part;
+  }
+}
+
+void Device::read(const Buffer& from, std::size_t bytes, std::size_t unit,
+                  const std::function<void(std::size_t offset, const unsigned char* data, std::size_t bytes)>& use) {
+  const std::size_t most = kStagingBytes / unit * unit;
+  const auto part = [&](std::size_t offset) { return std::min(most, bytes - offset); };
+  if (bytes > 0) start_read(from, 0, staging(0), part(0));
+  for (std::size_t done = 0, k = 0; done < bytes; k = 1 - k) {
+    const std::size_t some = part(done);
+    const std::size_t next = done + some;
+    if (next < bytes) start_read(from, next, staging(1 - k), part(next));
+    use(done, staging(k).data(), some);
+    done = next;
+  }
+}
 
 Program& Device::program(const std::string& source) {
   std::unique_ptr<Program>& made = programs_[source];
   if (!made) made = compile(source);
   return *made;
+}
+
+void Device::launch(Kernel& kernel, std::size_t groups, std::size_t group_size, const std::vector<Argument>& arguments,
+                    std::size_t shared_bytes) {
+  if (groups == 0) return;
+  if (!timed_) return start(kernel, groups, group_size, arguments, shared_bytes);
+  finish();
+  const auto begin = std::chrono::steady_clock::now();
+  start(kernel, groups, group_size, arguments, shared_bytes);
+  finish();
+  seconds_[kernel.name()] += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+std::map<std::string, double> Device::take_kernel_seconds() {
+  timed_ = false;
+  return std::exchange(seconds_, {});
 }
 
 std::vector<DeviceInfo> list_devices(Software software) {

@@ -4,9 +4,11 @@
 // that are open at the same time.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -52,10 +54,27 @@ class Buffer {
   std::size_t bytes_;
 };
 
+/// Memory of the processor that a device copies to and from by itself, while the processor does something else.
+class Staging {
+ public:
+  virtual ~Staging() = default;
+  [[nodiscard]] unsigned char* data() const { return data_; }
+  /// Until the last copy is done.
+  virtual void wait() = 0;
+
+ protected:
+  unsigned char* data_ = nullptr;
+};
+
 /// A compiled function.
 class Kernel {
  public:
+  explicit Kernel(std::string name) : name_(std::move(name)) {}
   virtual ~Kernel() = default;
+  [[nodiscard]] const std::string& name() const { return name_; }
+
+ private:
+  std::string name_;
 };
 
 /// A compiled source: its kernels are valid as long as it lives.
@@ -88,26 +107,48 @@ class Device {
 
   /// Memory that is not set to anything.
   [[nodiscard]] virtual std::unique_ptr<Buffer> allocate(std::size_t bytes) = 0;
-  virtual void write(const Buffer& to, std::size_t offset, const void* from, std::size_t bytes) = 0;
-  /// Waits for what was asked for before.
-  virtual void read(const Buffer& from, void* to, std::size_t bytes) = 0;
+  /// The bytes at `from` may change as soon as it returns.
+  void write(const Buffer& to, std::size_t offset, const void* from, std::size_t bytes);
+  /// Hands the first `bytes` bytes of a buffer to use(offset, data, bytes), in parts of a multiple of `unit`, each while the next is
+  /// copied.
+  void read(const Buffer& from, std::size_t bytes, std::size_t unit,
+            const std::function<void(std::size_t offset, const unsigned char* data, std::size_t bytes)>& use);
   virtual void finish() = 0;
   /// The compiled source, from now on kept by the device.
   [[nodiscard]] Program& program(const std::string& source);
   /// `groups` work-groups of `group_size` items, with `shared_bytes` of local memory in the kernel's last argument.
-  virtual void launch(Kernel& kernel, std::size_t groups, std::size_t group_size, const std::vector<Argument>& arguments,
-                      std::size_t shared_bytes) = 0;
+  void launch(Kernel& kernel, std::size_t groups, std::size_t group_size, const std::vector<Argument>& arguments, std::size_t shared_bytes);
+
+  /// From now on every launch waits for its end, and its wall clock time is added to that of its kernel's name.
+  void time_kernels() { timed_ = true; }
+  /// Seconds by name since the last call; no longer timed.
+  [[nodiscard]] std::map<std::string, double> take_kernel_seconds();
 
  protected:
   explicit Device(DeviceInfo info) : info_(std::move(info)) {}
+  [[nodiscard]] virtual std::unique_ptr<Staging> make_staging(std::size_t bytes) = 0;
+  /// Copies from and to the beginning of `staging`, in the order of the launches; returns at once.
+  virtual void start_write(const Buffer& to, std::size_t offset, Staging& staging, std::size_t bytes) = 0;
+  virtual void start_read(const Buffer& from, std::size_t offset, Staging& staging, std::size_t bytes) = 0;
+  virtual void start(Kernel& kernel, std::size_t groups, std::size_t group_size, const std::vector<Argument>& arguments,
+                     std::size_t shared_bytes) = 0;
   /// Compiles a source, or takes the result from the user's cache (gpu/kernel_cache.h).
   [[nodiscard]] virtual std::unique_ptr<Program> compile(const std::string& source) = 0;
-  /// For the destructors of devices: programs go before what they were made in.
-  void forget_programs() { programs_.clear(); }
+  /// For the destructors of devices: what was made in them goes first.
+  void forget() {
+    programs_.clear();
+    staging_ = {};
+  }
 
  private:
+  // The k-th staging memory, when its last copy is done.
+  Staging& staging(std::size_t k);
+
   DeviceInfo info_;
   std::map<std::string, std::unique_ptr<Program>> programs_;
+  std::array<std::unique_ptr<Staging>, 2> staging_;
+  bool timed_ = false;
+  std::map<std::string, double> seconds_;
   std::mutex mutex_;
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace g3r::gpu {
 namespace {
@@ -180,6 +181,18 @@ ListsOnDevice<T>::ListsOnDevice(Device& device, const Octree& targets, const Oct
   for (const std::size_t b : lists.near_begin) begin.push_back(narrow(b));
   near_begin_ = upload(device, begin);
   near_leaves_ = upload(device, lists.near);
+  std::vector<std::uint32_t> points(1, 0);
+  points.reserve(lists.near.size() + 1);
+  for (const std::uint32_t leaf : lists.near) {
+    points.push_back(narrow(std::size_t{points.back()} + sources.nodes[sources.leaves[leaf]].count()));
+  }
+  near_points_ = upload(device, points);
+  std::vector<std::uint32_t> order(targets.leaves.size());
+  std::iota(order.begin(), order.end(), 0U);
+  const auto cost = [&](std::uint32_t leaf) { return points[begin[leaf + 1]] - points[begin[leaf]]; };
+  parallel::sort(order.begin(), order.end(),
+                 [&](std::uint32_t a, std::uint32_t b) { return std::pair(cost(b), a) < std::pair(cost(a), b); });
+  near_order_ = upload(device, order);
 }
 
 template <class T>

@@ -67,6 +67,10 @@ class ListsOnDevice {
   [[nodiscard]] const TreeOnDevice& sources() const { return source_tree_; }
   [[nodiscard]] const Buffer& near_begin() const { return *near_begin_; }
   [[nodiscard]] const Buffer& near_leaves() const { return *near_leaves_; }
+  /// Points of the leaves before each one of near_leaves(), and of all.
+  [[nodiscard]] const Buffer& near_points() const { return *near_points_; }
+  /// Target leaves by what their near field costs, the most first: one that takes long has to begin early.
+  [[nodiscard]] const Buffer& near_order() const { return *near_order_; }
   [[nodiscard]] const Buffer& chunk_tiles() const { return *chunk_tiles_; }
   [[nodiscard]] const Buffer& tiles() const { return *tiles_; }
   [[nodiscard]] const Buffer& pairs() const { return *pairs_; }
@@ -84,7 +88,7 @@ class ListsOnDevice {
   std::size_t target_nodes_;
   TreeOnDevice source_tree_;
   std::unique_ptr<TreeOnDevice> target_tree_;  // null: the sources' tree
-  std::unique_ptr<Buffer> near_begin_, near_leaves_;
+  std::unique_ptr<Buffer> near_begin_, near_leaves_, near_points_, near_order_;
   std::size_t chunks_ = 0;
   std::unique_ptr<Buffer> chunk_tiles_, tiles_, pairs_;
   std::map<int, MatricesOnDevice> matrices_;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <bit>
 #include <map>
+#include <utility>
 
 namespace g3r::gpu {
 namespace {
@@ -93,9 +94,37 @@ struct ClBuffer : Buffer {
   ClBuffer& operator=(const ClBuffer&) = delete;
 };
 
+// Memory that the driver has made for copies, mapped for good.
+class ClStaging : public Staging {
+ public:
+  ClStaging(Queue queue, Memory memory, unsigned char* mapped) : queue_(queue), memory_(memory) { data_ = mapped; }
+  ~ClStaging() override {
+    if (copied_ != nullptr) api()->release_event(copied_);
+    api()->enqueue_unmap(queue_, memory_, data_, 0, nullptr, nullptr);
+    api()->finish(queue_);
+    api()->release_mem_object(memory_);
+  }
+  ClStaging(const ClStaging&) = delete;
+  ClStaging& operator=(const ClStaging&) = delete;
+
+  void wait() override {
+    if (copied_ == nullptr) return;
+    const std::int32_t code = api()->wait_for_events(1, &copied_);
+    api()->release_event(std::exchange(copied_, nullptr));
+    check(code, "the device failed");
+  }
+  // For a copy to signal; there is none before.
+  Event* copied() { return &copied_; }
+
+ private:
+  Queue queue_;
+  Memory memory_;
+  Event copied_ = nullptr;
+};
+
 struct ClKernel : Kernel {
   KernelId id;
-  explicit ClKernel(KernelId k) : id(k) {}
+  ClKernel(const std::string& name, KernelId k) : Kernel(name), id(k) {}
   ~ClKernel() override { api()->release_kernel(id); }
   ClKernel(const ClKernel&) = delete;
   ClKernel& operator=(const ClKernel&) = delete;
@@ -119,7 +148,7 @@ struct ClProgram : Program {
     std::int32_t code = 0;
     const KernelId made = api()->create_kernel(id, name.c_str(), &code);
     check(code, "cannot use a kernel");
-    return kernels.try_emplace(name, made).first->second;
+    return kernels.try_emplace(name, name, made).first->second;
   }
 };
 
@@ -134,7 +163,7 @@ class ClDevice : public Device {
     check(code, "cannot use the device");
   }
   ~ClDevice() override {
-    forget_programs();
+    forget();
     api()->release_command_queue(queue_);
     api()->release_context(context_);
   }
@@ -147,19 +176,30 @@ class ClDevice : public Device {
     check(code, "cannot allocate on the device");
     return std::make_unique<ClBuffer>(bytes, memory);
   }
-  void write(const Buffer& to, std::size_t offset, const void* from, std::size_t bytes) override {
-    if (bytes == 0) return;
-    check(api()->enqueue_write_buffer(queue_, memory(to), kTrue, offset, bytes, from, 0, nullptr, nullptr), "cannot copy to the device");
-  }
-  void read(const Buffer& from, void* to, std::size_t bytes) override {
-    if (bytes == 0) return;
-    check(api()->enqueue_read_buffer(queue_, memory(from), kTrue, 0, bytes, to, 0, nullptr, nullptr), "cannot copy from the device");
-  }
   void finish() override { check(api()->finish(queue_), "the device failed"); }
 
-  void launch(Kernel& kernel, std::size_t groups, std::size_t group_size, const std::vector<Argument>& arguments,
-              std::size_t shared_bytes) override {
-    if (groups == 0) return;
+ protected:
+  std::unique_ptr<Staging> make_staging(std::size_t bytes) override {
+    std::int32_t code = 0;
+    const Memory memory = api()->create_buffer(context_, kReadWrite | kAllocateHostMemory, bytes, nullptr, &code);
+    check(code, "cannot allocate for copies to the device");
+    void* const mapped = api()->enqueue_map_buffer(queue_, memory, kTrue, kMapReadAndWrite, 0, bytes, 0, nullptr, nullptr, &code);
+    if (code != kSuccess) api()->release_mem_object(memory);
+    check(code, "cannot allocate for copies to the device");
+    return std::make_unique<ClStaging>(queue_, memory, static_cast<unsigned char*>(mapped));
+  }
+  void start_write(const Buffer& to, std::size_t offset, Staging& staging, std::size_t bytes) override {
+    Event* const copied = static_cast<ClStaging&>(staging).copied();
+    check(api()->enqueue_write_buffer(queue_, memory(to), kFalse, offset, bytes, staging.data(), 0, nullptr, copied),
+          "cannot copy to the device");
+  }
+  void start_read(const Buffer& from, std::size_t offset, Staging& staging, std::size_t bytes) override {
+    Event* const copied = static_cast<ClStaging&>(staging).copied();
+    check(api()->enqueue_read_buffer(queue_, memory(from), kFalse, offset, bytes, staging.data(), 0, nullptr, copied),
+          "cannot copy from the device");
+  }
+  void start(Kernel& kernel, std::size_t groups, std::size_t group_size, const std::vector<Argument>& arguments,
+             std::size_t shared_bytes) override {
     const KernelId id = static_cast<ClKernel&>(kernel).id;
     std::uint32_t k = 0;
     for (const Argument& a : arguments) {
@@ -172,8 +212,6 @@ class ClDevice : public Device {
     const std::size_t items = groups * group_size;
     check(api()->enqueue_nd_range_kernel(queue_, id, 1, nullptr, &items, &group_size, 0, nullptr, nullptr), "cannot run a kernel");
   }
-
- protected:
   std::unique_ptr<Program> compile(const std::string& source) override {
     // PoCL's own cache keeps what it makes of a source for each launch; binaries of it take twice the time to make.
     const KernelCache cache =

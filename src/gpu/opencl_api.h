@@ -28,10 +28,13 @@ using KernelId = KernelTag*;
 using Event = EventTag*;
 
 inline constexpr std::int32_t kSuccess = 0;
+inline constexpr std::uint32_t kFalse = 0;
 inline constexpr std::uint32_t kTrue = 1;
 inline constexpr std::uint64_t kDeviceTypeCpu = 1 << 1;
 inline constexpr std::uint64_t kDeviceTypeAll = 0xFFFFFFFF;
 inline constexpr std::uint64_t kReadWrite = 1 << 0;
+inline constexpr std::uint64_t kAllocateHostMemory = 1 << 4;
+inline constexpr std::uint64_t kMapReadAndWrite = 3;
 
 // cl_platform_info, cl_device_info, cl_program_info, cl_program_build_info
 inline constexpr std::uint32_t kPlatformVersion = 0x0901;
@@ -66,6 +69,11 @@ struct Api {
   std::int32_t (*enqueue_write_buffer)(Queue, Memory, std::uint32_t, std::size_t, std::size_t, const void*, std::uint32_t, const Event*,
                                        Event*);
   std::int32_t (*enqueue_read_buffer)(Queue, Memory, std::uint32_t, std::size_t, std::size_t, void*, std::uint32_t, const Event*, Event*);
+  void* (*enqueue_map_buffer)(Queue, Memory, std::uint32_t, std::uint64_t, std::size_t, std::size_t, std::uint32_t, const Event*, Event*,
+                              std::int32_t*);
+  std::int32_t (*enqueue_unmap)(Queue, Memory, void*, std::uint32_t, const Event*, Event*);
+  std::int32_t (*wait_for_events)(std::uint32_t, const Event*);
+  std::int32_t (*release_event)(Event);
   std::int32_t (*enqueue_nd_range_kernel)(Queue, KernelId, std::uint32_t, const std::size_t*, const std::size_t*, const std::size_t*,
                                           std::uint32_t, const Event*, Event*);
   std::int32_t (*finish)(Queue);
@@ -90,6 +98,8 @@ struct Api {
            library.find("clCreateCommandQueue", create_command_queue) && library.find("clReleaseCommandQueue", release_command_queue) &&
            library.find("clCreateBuffer", create_buffer) && library.find("clReleaseMemObject", release_mem_object) &&
            library.find("clEnqueueWriteBuffer", enqueue_write_buffer) && library.find("clEnqueueReadBuffer", enqueue_read_buffer) &&
+           library.find("clEnqueueMapBuffer", enqueue_map_buffer) && library.find("clEnqueueUnmapMemObject", enqueue_unmap) &&
+           library.find("clWaitForEvents", wait_for_events) && library.find("clReleaseEvent", release_event) &&
            library.find("clEnqueueNDRangeKernel", enqueue_nd_range_kernel) && library.find("clFinish", finish) &&
            library.find("clCreateProgramWithSource", create_program_with_source) &&
            library.find("clCreateProgramWithBinary", create_program_with_binary) && library.find("clBuildProgram", build_program) &&

@@ -6,16 +6,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace g3r::gpu {
 namespace {
 
-constexpr std::size_t kBlock = 1u << 14;  // elements converted per parallel block
 // Leaves and chunks of one launch: between launches a sum can be cancelled, and a screen drawn by the same device refreshed.
-constexpr std::size_t kSlice = 1u << 14;
+constexpr std::size_t kSlice = 1u << 17;
 constexpr std::size_t kSoftwareSlice = 256;
 constexpr std::size_t kSharedBytes = 32u << 10;  // of local memory, which every device in use has
 constexpr std::size_t kMostSlots = 8;            // pairs of a tile at a time
+constexpr std::size_t kTakenBlocks = 64;         // of results, that a thread takes at a time
 constexpr std::size_t kMostPoints = 32;          // of a tile of points_to_multipoles()
 
 int as_int(std::size_t value) { return static_cast<int>(value); }
@@ -29,6 +30,15 @@ std::size_t up_parts(cpu::NearForm form, int batch, bool local_widths) {
 // Expansions that the moves of M2L take at most: MOST_MOVED there.
 std::size_t most_moved(cpu::NearForm form, std::size_t multipole_channels, bool local_widths) {
   return form == cpu::NearForm::kStokesWinding ? (local_widths ? 6 : 5) : multipole_channels;
+}
+
+// From a pair to the next in the local memory of multipoles_to_locals(): SLOT there.
+std::size_t packed_slot(std::size_t moved, std::size_t stride) { return stride * (moved > 1 ? (moved + 3) / 4 * 4 : 1) + 8; }
+
+// Kernels count in 32 bits.
+std::uint32_t narrow(std::size_t value) {
+  if (value > std::numeric_limits<std::uint32_t>::max()) throw DeviceError("too many points for the device");
+  return static_cast<std::uint32_t>(value);
 }
 
 // The largest power of two up to `most` with which `fixed` + count * each numbers fit the local memory; at least `least`.
@@ -47,25 +57,18 @@ SumOnDevice<T>::SumOnDevice(Device& device, const ListsOnDevice<T>& lists, const
       lists_(lists),
       target_tree_(targets),
       source_tree_(sources),
-      field_stride_(points.field_stride),
-      geometry_fields_(points.source_width_squared != nullptr ? 4 : 3),
-      lanes_(points.first_block.back() * cpu::kLanes),
-      uniform_width_(points.uniform_width),
-      geometry_(points.places, points.places + 3 * points.field_stride) {
-  if (points.source_width_squared != nullptr) {
-    geometry_.insert(geometry_.end(), points.source_width_squared, points.source_width_squared + points.field_stride);
-  }
-  std::vector<std::array<std::uint32_t, 2>> leaves;
-  for (std::size_t i = 0; i < targets.leaves.size(); ++i) {
-    leaves.push_back({static_cast<std::uint32_t>(points.first_block[i]), targets.nodes[targets.leaves[i]].count()});
-  }
-  target_leaves_ = upload(device, leaves);
-  for (const auto& [buffer, values] :
-       {std::pair{&x_, points.x}, std::pair{&y_, points.y}, std::pair{&z_, points.z}, std::pair{&width_squared_, points.width_squared}}) {
-    const std::size_t bytes = values != nullptr ? lanes_ * sizeof(T) : 0;
-    *buffer = device.allocate(bytes);
-    device.write(**buffer, 0, values, bytes);
-  }
+      local_widths_(points.source_width_squared != nullptr),
+      source_stride_(points.source_stride),
+      target_stride_(points.target_stride),
+      uniform_width_(points.uniform_width) {
+  const std::size_t bytes = 3 * source_stride_ * sizeof(T);
+  const std::size_t of_widths = local_widths_ ? source_stride_ * sizeof(T) : 0;
+  sources_ = device.allocate(bytes + of_widths);
+  device.write(*sources_, 0, points.sources, bytes);
+  device.write(*sources_, bytes, points.source_width_squared, of_widths);
+  if (points.targets == nullptr) return;
+  targets_ = device.allocate(3 * target_stride_ * sizeof(T));
+  device.write(*targets_, 0, points.targets, targets_->bytes());
 }
 
 template <class T>
@@ -83,7 +86,7 @@ KernelTraits SumOnDevice<T>::traits(const SumRequest<T>& request) const {
   KernelTraits traits;
   traits.form = request.form;
   traits.batch = request.batch;
-  traits.local_widths = geometry_fields_ > 3;
+  traits.local_widths = local_widths_;
   traits.doubles = sizeof(T) == sizeof(double);
   traits.rough = !traits.doubles && request.kernel_error >= kRoughPolynomialError;
   traits.lanes = traits.doubles ? device_.info().lanes_double : device_.info().lanes_float;
@@ -109,13 +112,13 @@ void SumOnDevice<T>::upward(const SumRequest<T>& request, Program& expansions, P
   const std::size_t stride = cpu::padded_count(n);
   const std::size_t parts = up_parts(request.form, request.batch, t.local_widths);
   Buffer& multipoles = room(multipoles_, source_tree_.nodes.size() * request.multipole_channels * stride);
-  const std::size_t points = that_fit(kMostPoints, t.lanes, 6 * n, n + 7, sizeof(T));
+  const std::size_t points = that_fit(kMostPoints, t.lanes, 7 * n, n + 7, sizeof(T));
   const std::size_t slice = device_.info().software ? kSoftwareSlice : kSlice;
   in_slices(source_tree_.leaves.size(), slice, request.cancel, [&](std::size_t first, std::size_t number) {
     device_.launch(expansions.kernel("points_to_multipoles"), number * parts, far_group(t),
-                   {as_int(first), *tree.leaf_points, *tree.leaf_nodes, *tree.leaf_centres, *fields_,
-                    static_cast<std::uint32_t>(field_stride_), request.order, as_int(stride), as_int(points), multipoles},
-                   (points * (n + 7) + 6 * n) * sizeof(T));
+                   {as_int(first), *tree.leaf_points, *tree.leaf_nodes, *tree.leaf_centres, *sources_, *values_, narrow(source_stride_),
+                    request.order, as_int(stride), as_int(points), multipoles},
+                   (points * (n + 7) + 7 * n) * sizeof(T));
   });
   const MatricesOnDevice& shifts = lists_.child_to_parent();
   const std::size_t apart = shifts.groups->bytes() / sizeof(std::array<std::uint32_t, 4>) / 8;
@@ -136,14 +139,15 @@ void SumOnDevice<T>::across(const SumRequest<T>& request, Program& translations)
   const std::size_t nodes = target_tree_.nodes.size();
   const MatricesOnDevice& matrices = lists_.matrices(request.order);
   Buffer& locals = room(locals_, nodes * request.local_channels * stride);
-  const std::size_t slots = that_fit(kMostSlots, 1, 0, moved * stride, sizeof(T));
+  const std::size_t each = packed_slot(moved, stride);
+  const std::size_t slots = that_fit(kMostSlots, 1, 0, each, sizeof(T));
   const std::size_t slice = std::max<std::size_t>(1, (device_.info().software ? kSoftwareSlice : kSlice) / 8);
   in_slices(lists_.chunks(), slice, request.cancel, [&](std::size_t first, std::size_t number) {
     device_.launch(translations.kernel("multipoles_to_locals"), number, far_group(t),
                    {as_int(first), as_int(kChunkNodes), as_int(nodes), lists_.chunk_tiles(), lists_.tiles(), lists_.pairs(),
                     *lists_.sources().centres, *lists_.targets().centres, *matrices.signs, *matrices.data, *matrices.groups,
                     *matrices.matrix_groups, as_int(stride), as_int(slots), *multipoles_, locals},
-                   slots * moved * stride * sizeof(T));
+                   slots * each * sizeof(T));
   });
 }
 
@@ -173,11 +177,12 @@ void SumOnDevice<T>::near(const SumRequest<T>& request) {
   const T reach2 = request.reach * request.reach;
   const std::size_t slice = device_.info().software ? kSoftwareSlice : kSlice;
   in_slices(target_tree_.leaves.size(), slice, request.cancel, [&](std::size_t first, std::size_t number) {
-    device_.launch(program.kernel("near_field"), number, near_group(t),
-                   {as_int(first), lists_.near_begin(), lists_.near_leaves(), *target_leaves_, *lists_.targets().leaf_centres,
-                    *lists_.sources().leaf_points, *lists_.sources().leaf_centres, *fields_, static_cast<std::uint32_t>(field_stride_), *x_,
-                    *y_, *z_, *width_squared_, *target_data_, width2, inverse_width, reach2, *out_},
-                   0);
+    device_.launch(
+        program.kernel("near_field"), number, near_group(t),
+        {as_int(first), lists_.near_order(), lists_.near_begin(), lists_.near_leaves(), lists_.near_points(), *lists_.targets().leaf_points,
+         *lists_.targets().leaf_centres, *lists_.sources().leaf_points, *lists_.sources().leaf_centres, *sources_, *values_,
+         narrow(source_stride_), target_geometry(), *target_data_, narrow(target_stride_), width2, inverse_width, reach2, *out_},
+        0);
   });
 }
 
@@ -188,23 +193,24 @@ void SumOnDevice<T>::far_to_points(const SumRequest<T>& request, Program& expans
   const T width2 = static_cast<T>(uniform_width_ * uniform_width_);
   const std::size_t slice = device_.info().software ? kSoftwareSlice : kSlice;
   in_slices(target_tree_.leaves.size(), slice, request.cancel, [&](std::size_t first, std::size_t number) {
-    device_.launch(expansions.kernel("locals_to_points"), number, far_group(t),
-                   {as_int(first), *target_leaves_, *lists_.targets().leaf_nodes, *lists_.targets().leaf_centres, *x_, *y_, *z_,
-                    *width_squared_, *target_data_, request.order, as_int(cpu::padded_count(n)), width2, *locals_, *out_},
-                   7 * n * sizeof(T));
+    device_.launch(
+        expansions.kernel("locals_to_points"), number, far_group(t),
+        {as_int(first), *lists_.targets().leaf_points, *lists_.targets().leaf_nodes, *lists_.targets().leaf_centres, target_geometry(),
+         *target_data_, narrow(target_stride_), request.order, as_int(cpu::padded_count(n)), width2, *locals_, *out_},
+        7 * n * sizeof(T));
   });
 }
 
 template <class T>
-void SumOnDevice<T>::run(const SumRequest<T>& request, std::vector<double>& out) {
-  const std::size_t field_count = geometry_fields_ + request.value_fields;
-  const std::size_t geometry_elements = geometry_fields_ * field_stride_;
-  const bool fresh = !fields_ || fields_->bytes() < field_count * field_stride_ * sizeof(T);
-  room(fields_, field_count * field_stride_);
-  if (fresh) device_.write(*fields_, 0, geometry_.data(), geometry_elements * sizeof(T));
-  device_.write(*fields_, geometry_elements * sizeof(T), request.values, request.value_fields * field_stride_ * sizeof(T));
-  device_.write(room(target_data_, lanes_ * request.data_channels), 0, request.target_data, lanes_ * request.data_channels * sizeof(T));
-  room(out_, lanes_ * request.out_channels);
+void SumOnDevice<T>::run(const SumRequest<T>& request, const Take& take) {
+  const std::size_t value_bytes = request.value_fields * source_stride_ * sizeof(T);
+  const std::size_t data_bytes = request.data_fields * target_stride_ * sizeof(T);
+  device_.write(room(values_, value_bytes / sizeof(T)), 0, request.values, value_bytes);
+  device_.write(room(target_data_, data_bytes / sizeof(T)), 0, request.target_data, data_bytes);
+  const std::size_t targets = target_tree_.nodes.front().count();
+  const std::size_t block = request.out_channels * cpu::kLanes;
+  const std::size_t elements = (targets + cpu::kLanes - 1) / cpu::kLanes * block;
+  room(out_, elements);
   near(request);
   if (!request.direct) {
     Program& expansions = device_.program(expansions_source(traits(request)));
@@ -214,11 +220,14 @@ void SumOnDevice<T>::run(const SumRequest<T>& request, std::vector<double>& out)
     downward(request, translations);
     far_to_points(request, expansions);
   }
-  staged_.resize(lanes_ * request.out_channels);
-  device_.read(*out_, staged_.data(), staged_.size() * sizeof(T));
-  out.resize(staged_.size());
-  parallel::for_blocks(staged_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) out[i] = static_cast<double>(staged_[i]);
+  device_.finish();  // what fails, fails before anything is taken
+  device_.read(*out_, elements * sizeof(T), block * sizeof(T), [&](std::size_t offset, const unsigned char* data, std::size_t bytes) {
+    const std::size_t first_block = offset / (block * sizeof(T));
+    const auto* const sums = reinterpret_cast<const T*>(data);
+    parallel::for_blocks(bytes / (block * sizeof(T)), kTakenBlocks, [&](std::size_t begin, std::size_t end) {
+      const std::size_t first = (first_block + begin) * cpu::kLanes;
+      take(first, std::min((first_block + end) * cpu::kLanes, targets) - first, sums + begin * block);
+    });
   });
 }
 

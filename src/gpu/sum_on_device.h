@@ -10,23 +10,21 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
 namespace g3r::gpu {
 
-/// Sources and targets of an engine, in the layout of cpu::NearTask.
+/// Where sources and targets are: x, y and z relative to the centre of their leaf, one field after the other.
 template <class T>
 struct PointsOfSum {
-  const T* places;                              ///< x, y and z of the sources
-  const T* source_width_squared;                ///< with local widths
-  std::size_t field_stride;                     ///< from one field to the next
-  const std::vector<std::size_t>& first_block;  ///< of every target leaf, and the total
-  const T* x;                                   ///< of the targets
-  const T* y;
-  const T* z;
-  const T* width_squared;  ///< with local widths
-  double uniform_width;    ///< without
+  const T* sources;
+  const T* source_width_squared;  ///< with local widths, and the targets' too
+  std::size_t source_stride;      ///< from one field to the next
+  const T* targets;               ///< null: the sources
+  std::size_t target_stride;
+  double uniform_width;  ///< without local widths
 };
 
 /// One sum: what, to how many terms, of which values.
@@ -38,10 +36,10 @@ struct SumRequest {
   int order;
   T reach;  ///< as in cpu::NearTask
   double kernel_error;
-  const T* values;  ///< fields as in places
+  const T* values;  ///< of the sources, fields as their places
   std::size_t value_fields;
-  const T* target_data;  ///< blocks x channels x kLanes
-  std::size_t data_channels;
+  const T* target_data;  ///< of the targets, fields as their places
+  std::size_t data_fields;
   std::size_t multipole_channels;
   std::size_t local_channels;
   std::size_t out_channels;
@@ -55,8 +53,9 @@ class SumOnDevice {
   /// The device and the lists must outlive it, as must the trees.
   SumOnDevice(Device& device, const ListsOnDevice<T>& lists, const Octree& targets, const Octree& sources, const PointsOfSum<T>& points);
 
-  /// Target blocks x out_channels x kLanes into `out`, without 1/(4 pi); lanes that repeat a target are not defined.
-  void run(const SumRequest<T>& request, std::vector<double>& out);
+  /// take(first target, count, sums), for all targets: blocks of kLanes x out_channels, without 1/(4 pi).
+  using Take = std::function<void(std::size_t first, std::size_t count, const T* sums)>;
+  void run(const SumRequest<T>& request, const Take& take);
 
  private:
   [[nodiscard]] KernelTraits traits(const SumRequest<T>& request) const;
@@ -69,19 +68,18 @@ class SumOnDevice {
   void in_slices(std::size_t count, std::size_t slice, const std::atomic<bool>* cancel, const Launch& launch);
   Buffer& room(std::unique_ptr<Buffer>& buffer, std::size_t elements);
 
+  [[nodiscard]] const Buffer& target_geometry() const { return targets_ ? *targets_ : *sources_; }
+
   Device& device_;
   const ListsOnDevice<T>& lists_;
   const Octree& target_tree_;
   const Octree& source_tree_;
-  std::size_t field_stride_;
-  std::size_t geometry_fields_;
-  std::size_t lanes_;  // of the targets
+  bool local_widths_;
+  std::size_t source_stride_;
+  std::size_t target_stride_;
   double uniform_width_;
-  AlignedVector<T> geometry_;              // until the fields have room
-  std::unique_ptr<Buffer> target_leaves_;  // uint2 of every leaf: first block, points
-  std::unique_ptr<Buffer> x_, y_, z_, width_squared_;
-  std::unique_ptr<Buffer> fields_, target_data_, multipoles_, locals_, out_;
-  std::vector<T> staged_;
+  std::unique_ptr<Buffer> sources_, targets_;  // null: the sources
+  std::unique_ptr<Buffer> values_, target_data_, multipoles_, locals_, out_;
 };
 
 extern template class SumOnDevice<float>;

@@ -7,6 +7,8 @@
 #include "gpu/sum_on_device.h"
 #include "kernels/kernels.h"
 
+#include <g3r/error.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -161,35 +163,20 @@ void SumEngine<T>::resize(Blocks& blocks, std::size_t count, std::size_t data_ch
   blocks.data.resize(lanes * data_channels);
 }
 
-// The targets of a leaf, from block `first` on.
 template <class T>
-void SumEngine<T>::place(const OctreeNode& leaf, std::size_t data_channels, std::size_t first, Blocks& blocks) const {
+void SumEngine<T>::place(const OctreeNode& leaf, std::size_t data_channels, Blocks& blocks) const {
   const T* places = (target_places_.empty() ? sources_->places : target_places_).data();
   const std::size_t stride = target_stride();
   for (std::size_t lane = 0; lane < blocks_of(leaf) * cpu::kLanes; ++lane) {
     const std::size_t p = std::min<std::size_t>(leaf.begin + lane, leaf.end - 1);
-    const std::size_t to = first * cpu::kLanes + lane;
-    blocks.x[to] = places[p];
-    blocks.y[to] = places[stride + p];
-    blocks.z[to] = places[2 * stride + p];
-    if (local_widths_) blocks.width_squared[to] = source_widths_->squared[p];
+    blocks.x[lane] = places[p];
+    blocks.y[lane] = places[stride + p];
+    blocks.z[lane] = places[2 * stride + p];
+    if (local_widths_) blocks.width_squared[lane] = source_widths_->squared[p];
     for (std::size_t k = 0; k < data_channels; ++k) {
-      blocks.data[(to / cpu::kLanes * data_channels + k) * cpu::kLanes + to % cpu::kLanes] = target_values_[k * stride + p];
+      blocks.data[(lane / cpu::kLanes * data_channels + k) * cpu::kLanes + lane % cpu::kLanes] = target_values_[k * stride + p];
     }
   }
-}
-
-template <class T>
-auto SumEngine<T>::target_blocks(std::size_t data_channels) const -> Blocks {
-  const Octree& tree = *target_tree_;
-  Blocks blocks;
-  blocks.first.assign(1, 0);
-  for (const std::uint32_t leaf : tree.leaves) blocks.first.push_back(blocks.first.back() + blocks_of(tree.nodes[leaf]));
-  resize(blocks, blocks.first.back(), data_channels);
-  parallel::for_blocks(tree.leaves.size(), kNodeBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) place(tree.nodes[tree.leaves[i]], data_channels, blocks.first[i], blocks);
-  });
-  return blocks;
 }
 
 template <class T>
@@ -434,7 +421,7 @@ void SumEngine<T>::leaf(cpu::NearForm form, int batch, std::size_t out_channels,
   const std::size_t count = blocks_of(leaf);
   Blocks& blocks = space.blocks;
   resize(blocks, count, target_channels(form, batch));
-  place(leaf, target_channels(form, batch), 0, blocks);
+  place(leaf, target_channels(form, batch), blocks);
   space.out.resize(count * cpu::kLanes * out_channels);
   cpu::NearTask<T> near{};
   near.form = form;
@@ -478,9 +465,15 @@ template <class T>
 bool SumEngine<T>::run_on_device(cpu::NearForm form, int batch, std::size_t out_channels, const Take& take) {
   if (!plan_.execution || !plan_.execution->usable(sizeof(T) == sizeof(double))) return false;
   gpu::Device& device = plan_.execution->device();
-  const std::size_t data_channels = target_channels(form, batch);
-  std::vector<double> out;
-  const Blocks blocks = target_blocks(data_channels);
+  std::atomic<bool> taken = false;
+  const auto take_some = [&](std::size_t first, std::size_t count, const T* sums) {
+    taken = true;
+    std::vector<double> block(out_channels * cpu::kLanes);
+    for (std::size_t done = 0; done < count; done += cpu::kLanes, sums += block.size()) {
+      std::copy_n(sums, block.size(), block.begin());
+      take(static_cast<std::uint32_t>(first + done), static_cast<std::uint32_t>(std::min(cpu::kLanes, count - done)), block.data());
+    }
+  };
   try {
     const std::unique_lock lock = device.lock();
     std::shared_ptr<gpu::ListsOnDevice<T>>& lists = interactions_->on_device;
@@ -491,29 +484,21 @@ bool SumEngine<T>::run_on_device(cpu::NearForm form, int batch, std::size_t out_
     }
     if (!on_device_) {
       const gpu::PointsOfSum<T> points{sources_->places.data(), local_widths_ ? source_widths_->squared.data() : nullptr,
-                                       source_stride(),         blocks.first,
-                                       blocks.x.data(),         blocks.y.data(),
-                                       blocks.z.data(),         local_widths_ ? blocks.width_squared.data() : nullptr,
-                                       source_widths_->uniform};
+                                       source_stride(),         target_places_.empty() ? nullptr : target_places_.data(),
+                                       target_stride(),         source_widths_->uniform};
       on_device_ = std::make_shared<gpu::SumOnDevice<T>>(device, *lists, *target_tree_, sources_->tree, points);
     }
     const T reach = static_cast<T>(std::min(plan_.reach, kMollifierReach<T>));
-    on_device_->run({form, batch, plan_.direct, terms_.order, reach, plan_.kernel_error, value(0), value_count_, blocks.data.data(),
-                     data_channels, multipole_channels_, local_channels_, out_channels, cancel_},
-                    out);
+    on_device_->run({form, batch, plan_.direct, terms_.order, reach, plan_.kernel_error, value(0), value_count_, target_values_.data(),
+                     target_channels(form, batch), multipole_channels_, local_channels_, out_channels, cancel_},
+                    take_some);
   } catch (const gpu::DeviceError& error) {
     on_device_.reset();
     interactions_->on_device.reset();
     plan_.execution->fail(error.what());
+    if (taken) throw Unavailable(plan_.execution->failure() + ", while its results were read; --device cpu does without it");
     return false;
   }
-  const Octree& tree = *target_tree_;
-  parallel::for_blocks(tree.leaves.size(), kNodeBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const OctreeNode& leaf = tree.nodes[tree.leaves[i]];
-      take(leaf.begin, leaf.count(), out.data() + blocks.first[i] * cpu::kLanes * out_channels);
-    }
-  });
   return true;
 }
 

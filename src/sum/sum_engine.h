@@ -89,17 +89,15 @@ class SumEngine {
     std::shared_ptr<gpu::ListsOnDevice<T>> on_device;       // made when it is needed
   };
 
-  // The targets in blocks of cpu::kLanes, leaf by leaf; the last block of a leaf repeats its last point.
+  // The targets of a leaf in blocks of cpu::kLanes; the last repeats the last point.
   struct Blocks {
-    std::vector<std::size_t> first;  // of every leaf, and the total; where they are those of all leaves
     AlignedVector<T> x, y, z, width_squared, data;
   };
 
   // The same on the plan's device; false if it failed or there is none, and the processor has to do it.
   bool run_on_device(cpu::NearForm form, int batch, std::size_t out_channels, const Take& take);
-  [[nodiscard]] Blocks target_blocks(std::size_t data_channels) const;
   void resize(Blocks& blocks, std::size_t count, std::size_t data_channels) const;
-  void place(const OctreeNode& leaf, std::size_t data_channels, std::size_t first, Blocks& blocks) const;
+  void place(const OctreeNode& leaf, std::size_t data_channels, Blocks& blocks) const;
   void set_terms(const M2lTerms& terms);
   const M2lMatrices<T>& make_matrices();  // of the current order
   [[nodiscard]] const M2lMatrices<T>& matrices() const { return *interactions_->matrices[static_cast<std::size_t>(terms_.order)]; }

@@ -29,15 +29,21 @@ typedef float real;
 #define RSQRT(x) rsqrtf(x)
 #define DIVIDE(a, b) __fdividef(a, b)
 #endif
+struct __align__(16) real4 {
+  real x, y, z, w;
+};
+#define LOAD4(from) (*(const real4*)(from))
 
 #else
 
 #if REAL_IS_DOUBLE
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 typedef double real;
+typedef double4 real4;
 #define DIVIDE(a, b) ((a) / (b))
 #else
 typedef float real;
+typedef float4 real4;
 #define DIVIDE(a, b) native_divide(a, b)
 #endif
 #define KERNEL __kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void
@@ -52,6 +58,7 @@ typedef float real;
 #define GROUP_INDEX ((int)get_group_id(0))
 #define FMA(a, b, c) fma(a, b, c)
 #define RSQRT(x) rsqrt(x)
+#define LOAD4(from) vload4(0, from)
 
 #endif
 

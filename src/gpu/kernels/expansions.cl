@@ -4,7 +4,6 @@
 // are sums of B_b as well, by coefficients that are put together at the beginning. So both are passes of at most four sums over B_b.
 //
 // The program says: FORM, BATCH (K), LOCAL_WIDTHS.
-#define GEOMETRY (3 + LOCAL_WIDTHS)
 #define STOKES_LOCALS 9        // cpu::kStokesLocals
 #define TRANSPOSED_WINDING 8   // cpu::kTransposedWinding
 #if FORM == GREEN
@@ -146,7 +145,10 @@ FUNCTION void source_weights(const GLOBAL real* values, uint stride, int part, r
 #endif
 }
 
-// B_a of a tile of points, n x points: an item does one order m for a vector of points.
+// From B_a to B_{a+1} of a tile of `points` points: where items read one point of many a, all are in banks of their own.
+#define PITCH(points) (LANES == 1 ? (points) + 1 : (points))
+
+// B_a of a tile of points: an item does one order m for a vector of points.
 FUNCTION void fill_basis(int order, int points, const LOCAL real* position, const LOCAL real* factors, LOCAL real* basis) {
   const int vectors = points / LANES;
   for (int i = ITEM; i < (order + 1) * vectors; i += GROUP) {
@@ -167,8 +169,8 @@ FUNCTION void fill_basis(int order, int points, const LOCAL real* position, cons
     lanes re_below = SPLAT(0);
     lanes im_below = SPLAT(0);
     for (int l = m; l <= order; ++l) {
-      STORE(re, basis + real_index(l, m) * points + p);
-      if (m > 0) STORE(im, basis + imaginary_index(l, m) * points + p);
+      STORE(re, basis + real_index(l, m) * PITCH(points) + p);
+      if (m > 0) STORE(im, basis + imaginary_index(l, m) * PITCH(points) + p);
       const lanes up = SPLAT(factors[2 * (l * l + m)]) * z;
       const lanes down = SPLAT(factors[2 * (l * l + m) + 1]) * r2;
       const lanes re_next = FMA(-down, re_below, up * re);
@@ -182,21 +184,21 @@ FUNCTION void fill_basis(int order, int points, const LOCAL real* position, cons
 }
 
 // Work-group g does part g % UP_PARTS of the multipoles of source leaf first_leaf + g / UP_PARTS. `points`: of a tile, a multiple of LANES.
-// Shared: points * (n + 7) + 6 n numbers, n = (order + 1)^2.
+// Geometry and values as in near_field(). Shared: points * (n + 7) + 7 n numbers, n = (order + 1)^2.
 KERNEL points_to_multipoles(int first_leaf, const GLOBAL uint2* leaves, const GLOBAL uint* leaf_nodes, const GLOBAL int4* centres,
-                            const GLOBAL real* fields, uint field_stride, int order, int stride, int points,
-                            GLOBAL real* multipoles SHARED_ARGUMENT) {
+                            const GLOBAL real* geometry, const GLOBAL real* values, uint field_stride, int order, int stride,
+                            int points, GLOBAL real* multipoles SHARED_ARGUMENT) {
   SHARED(shared);
   const int leaf = first_leaf + GROUP_INDEX / UP_PARTS;
   const int part = GROUP_INDEX % UP_PARTS;
   const int n = (order + 1) * (order + 1);
-  LOCAL real* basis = shared;                  // n x points
-  LOCAL real* weights = basis + n * points;    // 4 x points
-  LOCAL real* position = weights + 4 * points; // 3 x points, in half sides
-  LOCAL real* sums = position + 3 * points;    // 4 x n
-  LOCAL real* factors = sums + 4 * n;          // 2 x n
+  LOCAL real* basis = shared;                        // n x points
+  LOCAL real* weights = basis + n * PITCH(points);   // 4 x points
+  LOCAL real* position = weights + 4 * points;       // 3 x points, in half sides
+  LOCAL real* sums = position + 3 * points;          // 4 x n
+  LOCAL real* factors = sums + 4 * n;                // 2 x n
   const int count = (int)leaves[leaf].y;
-  const GLOBAL real* source = fields + leaves[leaf].x;
+  const uint first_point = leaves[leaf].x;
   const real unit = (real)(1 << centres[leaf].w);  // 1 / half side
   for (int i = ITEM; i < 4 * n; i += GROUP) sums[i] = 0;
   make_factors(order, factors);
@@ -208,12 +210,12 @@ KERNEL points_to_multipoles(int first_leaf, const GLOBAL uint2* leaves, const GL
       real y = 0;
       real z = 0;
       if (begin + p < count) {
-        const GLOBAL real* s = source + begin + p;
-        x = s[0];
-        y = s[field_stride];
-        z = s[2 * (size_t)field_stride];
-        source_weights(s + GEOMETRY * (size_t)field_stride, field_stride, part, x, y, z,
-                       LOCAL_WIDTHS ? s[3 * (size_t)field_stride * LOCAL_WIDTHS] : 0, w);
+        const size_t at_point = first_point + (uint)(begin + p);
+        x = geometry[at_point];
+        y = geometry[field_stride + at_point];
+        z = geometry[2 * (size_t)field_stride + at_point];
+        source_weights(values + at_point, field_stride, part, x, y, z,
+                       LOCAL_WIDTHS ? geometry[3 * (size_t)field_stride * LOCAL_WIDTHS + at_point] : 0, w);
       }
       position[p] = unit * x;
       position[points + p] = unit * y;
@@ -228,7 +230,7 @@ KERNEL points_to_multipoles(int first_leaf, const GLOBAL uint2* leaves, const GL
       for (; b >= n; b -= n) ++q;
       if (q >= SUMS) break;
       lanes sum = SPLAT(0);
-      for (int p = 0; p < points; p += LANES) sum = FMA(LOAD(basis + b * points + p), LOAD(weights + q * points + p), sum);
+      for (int p = 0; p < points; p += LANES) sum = FMA(LOAD(basis + b * PITCH(points) + p), LOAD(weights + q * points + p), sum);
       sums[q * n + b] += sum_of(sum);
     }
   }
@@ -336,7 +338,7 @@ FUNCTION void add_pass(int pass, Evaluated e, real unit, lanes x, lanes y, lanes
 #if FORM == GREEN || FORM == WINDING
   out[0] = value;
 #elif FORM == GREEN_ADJOINT
-  const lanes u = LOAD(data + pass * BLOCK);
+  const lanes u = LOAD(data);
   UNROLL for (int k = 0; k < BATCH; ++k) out[k] = k == pass ? value : out[k];
   out[BATCH] = FMA(u, gx, out[BATCH]);
   out[BATCH + 1] = FMA(u, gy, out[BATCH + 1]);
@@ -370,11 +372,11 @@ FUNCTION void add_pass(int pass, Evaluated e, real unit, lanes x, lanes y, lanes
 #endif
 }
 
-// Work-group g does target leaf first_leaf + g and adds to out: blocks x CHANNELS x BLOCK. Leaves: (first block, points). Shared: 7 n numbers.
+// Work-group g does target leaf first_leaf + g and adds to out: blocks x CHANNELS x BLOCK. Leaves, targets and their data as in near_field().
+// Shared: 7 n numbers.
 KERNEL locals_to_points(int first_leaf, const GLOBAL uint2* leaves, const GLOBAL uint* leaf_nodes, const GLOBAL int4* centres,
-                        const GLOBAL real* target_x, const GLOBAL real* target_y, const GLOBAL real* target_z,
-                        const GLOBAL real* target_width2, const GLOBAL real* target_data, int order, int stride, real uniform_width2,
-                        const GLOBAL real* locals, GLOBAL real* out SHARED_ARGUMENT) {
+                        const GLOBAL real* targets_, const GLOBAL real* target_data, uint target_stride, int order, int stride,
+                        real uniform_width2, const GLOBAL real* locals, GLOBAL real* out SHARED_ARGUMENT) {
   SHARED(shared);
   const int leaf = first_leaf + GROUP_INDEX;
   const int n = (order + 1) * (order + 1);
@@ -388,13 +390,11 @@ KERNEL locals_to_points(int first_leaf, const GLOBAL uint2* leaves, const GLOBAL
   for (int begin = 0; begin < count; begin += GROUP * LANES) {
     const int target = begin + ITEM * LANES;
     const int last = (count - 1) / LANES * LANES;
-    const size_t at = (size_t)leaves[leaf].x * BLOCK + (size_t)(target < last ? target : last);
-    const size_t block = at / BLOCK;
-    const size_t lane = at % BLOCK;
-    const lanes x = LOAD(target_x + at);
-    const lanes y = LOAD(target_y + at);
-    const lanes z = LOAD(target_z + at);
-    const lanes width2 = LOCAL_WIDTHS ? LOAD(target_width2 + at * LOCAL_WIDTHS) : SPLAT(0);
+    const size_t at = leaves[leaf].x + (uint)(target < last ? target : last);
+    const lanes x = LOAD(targets_ + at);
+    const lanes y = LOAD(targets_ + target_stride + at);
+    const lanes z = LOAD(targets_ + 2 * (size_t)target_stride + at);
+    const lanes width2 = LOCAL_WIDTHS ? LOAD(targets_ + 3 * (size_t)target_stride * LOCAL_WIDTHS + at) : SPLAT(0);
     lanes sum[CHANNELS];
     UNROLL for (int c = 0; c < CHANNELS; ++c) sum[c] = SPLAT(0);
     for (int pass = 0; pass < DOWN_PASSES; ++pass) {
@@ -412,7 +412,7 @@ KERNEL locals_to_points(int first_leaf, const GLOBAL uint2* leaves, const GLOBAL
       BARRIER();
 #endif
       const Evaluated e = evaluate(coefficients, factors, n, order, SPLAT(unit) * x, SPLAT(unit) * y, SPLAT(unit) * z);
-      const GLOBAL real* data = target_data + block * TARGET_DATA * BLOCK + lane;
+      const GLOBAL real* data = target_data + (size_t)pass * target_stride + at;
 #if FORM == GREEN
       lanes one[1];
       add_pass(pass, e, unit, x, y, z, width2, data, one);
@@ -421,10 +421,11 @@ KERNEL locals_to_points(int first_leaf, const GLOBAL uint2* leaves, const GLOBAL
       add_pass(pass, e, unit, x, y, z, width2, data, sum);
 #endif
     }
-    if (target < count) {
-      UNROLL for (int c = 0; c < CHANNELS; ++c) {
-        GLOBAL real* to = out + (block * CHANNELS + (size_t)c) * BLOCK + lane;
-        STORE(LOAD(to) + sum[c], to);
+    UNROLL for (int c = 0; c < CHANNELS; ++c) {
+      real one[LANES];
+      STORE(sum[c], one);
+      for (int i = 0; i < LANES && target + i < count; ++i) {
+        out[((at + (size_t)i) / BLOCK * CHANNELS + (size_t)c) * BLOCK + (at + (size_t)i) % BLOCK] += one[i];
       }
     }
   }

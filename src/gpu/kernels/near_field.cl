@@ -184,63 +184,54 @@ FUNCTION void add_tile(const LOCAL real* tile, int first, int step, int size, re
   UNROLL for (int c = 0; c < CHANNELS; ++c) add_exactly(t->high + c, t->low + c, sum_of(sum[c]));
 }
 
-// Work-group g does target leaf first_leaf + g. Leaves: (first block, points) of the targets, (first point, points) of the sources.
-// Fields of the sources: x y z [squared width] values, `stride` apart. out: blocks x CHANNELS x BLOCK, overwritten.
-KERNEL near_field(int first_leaf, const GLOBAL uint* near_begin, const GLOBAL uint* near_leaves, const GLOBAL uint2* target_leaves,
-                  const GLOBAL int4* target_centres, const GLOBAL uint2* source_leaves, const GLOBAL int4* source_centres,
-                  const GLOBAL real* fields, uint stride, const GLOBAL real* target_x, const GLOBAL real* target_y,
-                  const GLOBAL real* target_z, const GLOBAL real* target_width2, const GLOBAL real* target_data, real uniform_width2,
-                  real inverse_width, real reach2, GLOBAL real* out) {
+// Work-group g does target leaf order[first + g]. Leaves: (first point, points). The near leaves of a target leaf and the points before
+// each in all of them: near_leaves and near_points, from near_begin on. Geometry: x y z [squared width], each `stride` apart, as are the
+// values of the sources, and the targets' by target_stride. out: blocks x CHANNELS x BLOCK, overwritten.
+KERNEL near_field(int first, const GLOBAL uint* order, const GLOBAL uint* near_begin, const GLOBAL uint* near_leaves,
+                  const GLOBAL uint* near_points, const GLOBAL uint2* target_leaves, const GLOBAL int4* target_centres,
+                  const GLOBAL uint2* source_leaves, const GLOBAL int4* source_centres, const GLOBAL real* geometry,
+                  const GLOBAL real* values, uint stride, const GLOBAL real* targets_, const GLOBAL real* target_data, uint target_stride,
+                  real uniform_width2, real inverse_width, real reach2, GLOBAL real* out) {
   LOCAL_ARRAY(real, tile, FIELDS * TILE);
   LOCAL_ARRAY(real, parts, 2 * GROUP);
-  const int leaf = first_leaf + GROUP_INDEX;
+  const int leaf = (int)order[first + GROUP_INDEX];
   const int count = (int)target_leaves[leaf].y;
-  const size_t first_target = (size_t)target_leaves[leaf].x * BLOCK;
   const int4 centre = target_centres[leaf];
+  const uint first_run = near_begin[leaf];
+  const uint end = near_points[near_begin[leaf + 1]];
   for (int begin = 0; begin < count; begin += GROUP) {
     const int targets = count - begin < GROUP ? count - begin : GROUP;
     const int shares = GROUP / targets < TILE / LANES ? GROUP / targets : TILE / LANES;
     const int item = ITEM;
     const int share = item / targets;
-    const size_t at = first_target + (size_t)(begin + item % targets);
+    const size_t at = target_leaves[leaf].x + (uint)(begin + item % targets);
     Target t;
-    t.x = target_x[at];
-    t.y = target_y[at];
-    t.z = target_z[at];
-    t.width2 = LOCAL_WIDTHS ? target_width2[at] : 0;
-    UNROLL for (int c = 0; c < TARGET_DATA; ++c) t.u[c] = target_data[(at / BLOCK * TARGET_DATA + (size_t)c) * BLOCK + at % BLOCK];
+    t.x = targets_[at];
+    t.y = targets_[target_stride + at];
+    t.z = targets_[2 * (size_t)target_stride + at];
+    t.width2 = LOCAL_WIDTHS ? targets_[3 * (size_t)target_stride * LOCAL_WIDTHS + at] : 0;
+    UNROLL for (int c = 0; c < TARGET_DATA; ++c) t.u[c] = target_data[(size_t)c * target_stride + at];
     UNROLL for (int c = 0; c < CHANNELS; ++c) t.high[c] = t.low[c] = 0;
-    const uint end = near_begin[leaf + 1];
-    uint run = near_begin[leaf];
-    uint done = 0;  // sources of the run
-    while (run < end) {
-      int size = 0;
-      BARRIER();
-      while (run < end && size < TILE) {
-        const uint2 source = source_leaves[near_leaves[run]];
-        const int4 from = source_centres[near_leaves[run]];
-        const real shift_x = (real)(from.x - centre.x) * CELL;
-        const real shift_y = (real)(from.y - centre.y) * CELL;
-        const real shift_z = (real)(from.z - centre.z) * CELL;
-        const int left = (int)(source.y - done);
-        const int some = left < TILE - size ? left : TILE - size;
-        for (int i = item; i < some; i += GROUP) {
-          const GLOBAL real* p = fields + source.x + done + (uint)i;
-          tile[size + i] = p[0] + shift_x;
-          tile[TILE + size + i] = p[stride] + shift_y;
-          tile[2 * TILE + size + i] = p[2 * (size_t)stride] + shift_z;
-          UNROLL for (int f = 3; f < FIELDS; ++f) tile[f * TILE + size + i] = p[(size_t)f * stride];
-        }
-        size += some;
-        done += (uint)some;
-        if (done == source.y) {
-          done = 0;
-          ++run;
-        }
-      }
+    uint run = first_run;  // that holds the item's source
+    for (uint done = near_points[first_run]; done < end; done += TILE) {
+      const int size = end - done < TILE ? (int)(end - done) : TILE;
       const int padded = (size + LANES - 1) / LANES * LANES;
-      for (int i = size + item; i < padded; i += GROUP) {
-        UNROLL for (int f = 0; f < FIELDS; ++f) tile[f * TILE + i] = 0;
+      BARRIER();
+      for (int i = item; i < padded; i += GROUP) {
+        if (i >= size) {
+          UNROLL for (int f = 0; f < FIELDS; ++f) tile[f * TILE + i] = 0;
+          continue;
+        }
+        const uint source = done + (uint)i;
+        while (near_points[run + 1] <= source) ++run;
+        const uint source_leaf = near_leaves[run];
+        const int4 from = source_centres[source_leaf];
+        const size_t p = source_leaves[source_leaf].x + (source - near_points[run]);
+        tile[i] = geometry[p] + (real)(from.x - centre.x) * CELL;
+        tile[TILE + i] = geometry[stride + p] + (real)(from.y - centre.y) * CELL;
+        tile[2 * TILE + i] = geometry[2 * (size_t)stride + p] + (real)(from.z - centre.z) * CELL;
+        if (LOCAL_WIDTHS) tile[3 * TILE * LOCAL_WIDTHS + i] = geometry[3 * (size_t)stride * LOCAL_WIDTHS + p];
+        UNROLL for (int f = 0; f < VALUES; ++f) tile[(GEOMETRY + f) * TILE + i] = values[(size_t)f * stride + p];
       }
       BARRIER();
       if (share < shares) add_tile(tile, share * LANES, shares * LANES, padded, uniform_width2, inverse_width, reach2, &t);

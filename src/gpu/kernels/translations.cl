@@ -25,6 +25,18 @@
 #endif
 #define POSITIVE 8  // flag of a pair, besides the mirror image in bits 0 to 2
 
+// multipoles_to_locals(): an item does this many groups of rows, so that what it reads of an expansion serves them all. Processors have no
+// registers to spare.
+#if LANES == 1
+#define ROW_GROUPS 3
+#else
+#define ROW_GROUPS 1
+#endif
+// From a coefficient to the next of a pair's expansions in local memory, and from a pair to the next: the expansions of a coefficient lie
+// side by side, in fours, and neighbouring pairs in other banks.
+#define PACKED ((MOST_MOVED + (MOST_MOVED > 1 ? 3 : 0)) / (MOST_MOVED > 1 ? 4 : 1) * (MOST_MOVED > 1 ? 4 : 1))
+#define SLOT(stride) ((stride) * PACKED + 8)
+
 // sum[c] = rows of the matrix from `row` on times expansion c of `from`, `stride` apart. Columns from `most` on are left out.
 FUNCTION void product(const GLOBAL real* matrices, const GLOBAL uint4* groups, int row, int most, const LOCAL real* from, int stride,
                       int expansions, lanes* sum) {
@@ -114,37 +126,85 @@ FUNCTION int target_expansion(int c, int moved, int transposed) {
 #endif
 }
 
-// locals of the target += D K D multipoles of the source, D the signs of the pair's mirror image, for LANES rows of one pair.
-FUNCTION void add_pair(const GLOBAL real* matrices, const GLOBAL uint4* groups, int row, int most, const LOCAL real* from, int stride,
-                       int moved, int transposed, uint4 pair, const GLOBAL int4* source_centres, const GLOBAL int4* target_centres,
-                       const GLOBAL real* signs, GLOBAL real* locals) {
-  lanes sum[MOST_MOVED];
-  product(matrices, groups, row, most, from, stride, moved, sum);
+// The expansions of one coefficient.
+FUNCTION void load_packed(const LOCAL real* from, int moved, real* value) {
+#if MOST_MOVED == 1
+  value[0] = from[0];
+#else
+  UNROLL for (int c = 0; c < PACKED; c += 4) {
+    if (c < moved) {
+      const real4 four = LOAD4(from + c);
+      value[c] = four.x;
+      value[c + 1] = four.y;
+      value[c + 2] = four.z;
+      value[c + 3] = four.w;
+    }
+  }
+#endif
+}
+
+// locals of the target += D K D multipoles of the source, D the signs of the pair's mirror image, for LANES rows at `lane` of the groups of
+// rows [first_group, first_group + ROW_GROUPS), of which there are `row_groups`.
+FUNCTION void add_pair(const GLOBAL real* matrices, const GLOBAL uint4* groups, int row_groups, int first_group, int lane, int most,
+                       const LOCAL real* from, int stride, int moved, int transposed, uint4 pair, const GLOBAL int4* source_centres,
+                       const GLOBAL int4* target_centres, const GLOBAL real* signs, GLOBAL real* locals) {
+  lanes sum[ROW_GROUPS][MOST_MOVED];
+  int first[ROW_GROUPS];
+  int end[ROW_GROUPS];
+  int at_zero[ROW_GROUPS];  // where column 0 would be, in blocks
+  int from_column = most;
+  int to_column = 0;
+  UNROLL for (int g = 0; g < ROW_GROUPS; ++g) {
+    const int within = first_group + g < row_groups;
+    const uint4 group = groups[within ? first_group + g : first_group];
+    first[g] = within ? (int)group.y : most;
+    end[g] = within ? ((int)group.z < most ? (int)group.z : most) : 0;
+    at_zero[g] = (int)group.x - (int)group.y;
+    from_column = first[g] < from_column ? first[g] : from_column;
+    to_column = end[g] > to_column ? end[g] : to_column;
+    UNROLL for (int c = 0; c < moved; ++c) sum[g][c] = SPLAT(0);
+  }
+  for (int j = from_column; j < to_column; ++j) {
+    real value[PACKED];
+    load_packed(from + j * PACKED, moved, value);
+    UNROLL for (int g = 0; g < ROW_GROUPS; ++g) {
+      if (ROW_GROUPS == 1 || (j >= first[g] && j < end[g])) {
+        const lanes entry = LOAD(matrices + (size_t)(at_zero[g] + j) * BLOCK + lane);
+        UNROLL for (int c = 0; c < moved; ++c) sum[g][c] = FMA(entry, SPLAT(value[c]), sum[g][c]);
+      }
+    }
+  }
 #if FORM == STOKES_WINDING
   const int4 source = source_centres[pair.y];
   const int4 target = target_centres[pair.x];
   const real x = (real)(source.x - target.x) * CELL;
   const real y = (real)(source.y - target.y) * CELL;
   const real z = (real)(source.z - target.z) * CELL;
-  if (transposed) {
-    sum[4] = FMA(SPLAT(x), sum[1], FMA(SPLAT(y), sum[2], FMA(SPLAT(z), sum[3], sum[4])));
-  } else {
-    sum[1] = FMA(SPLAT(x), sum[0], sum[1]);
-    sum[2] = FMA(SPLAT(y), sum[0], sum[2]);
-    sum[3] = FMA(SPLAT(z), sum[0], sum[3]);
-  }
 #endif
-  const lanes sign = LOAD(signs + (int)(pair.z & 7) * stride + row);
-  GLOBAL real* to = locals + (size_t)pair.x * LOCALS * (size_t)stride + row;
-  UNROLL for (int c = 0; c < moved; ++c) {
-    GLOBAL real* at = to + target_expansion(c, moved, transposed) * stride;
-    STORE(FMA(sign, sum[c], LOAD(at)), at);
+  UNROLL for (int g = 0; g < ROW_GROUPS; ++g) {
+    if (first_group + g >= row_groups) continue;
+#if FORM == STOKES_WINDING
+    if (transposed) {
+      sum[g][4] = FMA(SPLAT(x), sum[g][1], FMA(SPLAT(y), sum[g][2], FMA(SPLAT(z), sum[g][3], sum[g][4])));
+    } else {
+      sum[g][1] = FMA(SPLAT(x), sum[g][0], sum[g][1]);
+      sum[g][2] = FMA(SPLAT(y), sum[g][0], sum[g][2]);
+      sum[g][3] = FMA(SPLAT(z), sum[g][0], sum[g][3]);
+    }
+#endif
+    const int row = (first_group + g) * BLOCK + lane;
+    const lanes sign = LOAD(signs + (int)(pair.z & 7) * stride + row);
+    GLOBAL real* to = locals + (size_t)pair.x * LOCALS * (size_t)stride + row;
+    UNROLL for (int c = 0; c < moved; ++c) {
+      GLOBAL real* at = to + target_expansion(c, moved, transposed) * stride;
+      STORE(FMA(sign, sum[g][c], LOAD(at)), at);
+    }
   }
 }
 
 // Work-group g does the target nodes [chunk_nodes * chunk, ...) of chunk = first_chunk + g: tiles of pairs (target, source, flags, -) that
 // share a matrix and have different targets, so that no two items add to one place. Tiles: (matrix, first pair, pairs, -), of one sense
-// (POSITIVE or not). Matrix k has groups [matrix_groups[k], matrix_groups[k + 1]). Shared: slots * MOST_MOVED * stride numbers.
+// (POSITIVE or not). Matrix k has groups [matrix_groups[k], matrix_groups[k + 1]). Shared: slots * SLOT(stride) numbers.
 KERNEL multipoles_to_locals(int first_chunk, int chunk_nodes, int nodes, const GLOBAL uint* chunk_tiles, const GLOBAL uint4* tiles,
                             const GLOBAL uint4* pairs, const GLOBAL int4* source_centres, const GLOBAL int4* target_centres,
                             const GLOBAL real* signs, const GLOBAL real* matrices, const GLOBAL uint4* groups,
@@ -160,7 +220,8 @@ KERNEL multipoles_to_locals(int first_chunk, int chunk_nodes, int nodes, const G
   for (uint tile = chunk_tiles[chunk]; tile < chunk_tiles[chunk + 1]; ++tile) {
     const uint4 t = tiles[tile];
     const GLOBAL uint4* group = groups + matrix_groups[t.x];
-    const int rows = (int)(matrix_groups[t.x + 1] - matrix_groups[t.x]) * BLOCK;
+    const int row_groups = (int)(matrix_groups[t.x + 1] - matrix_groups[t.x]);
+    const int of_pair = (row_groups + ROW_GROUPS - 1) / ROW_GROUPS * (BLOCK / LANES);  // items
     const int most = (int)group[0].z;
     const int transposed = FORM == STOKES_WINDING && (pairs[t.y].z & POSITIVE) == 0;
     const int moved = FORM == STOKES_WINDING ? 4 + transposed + LOCAL_WIDTHS : MOST_MOVED;
@@ -175,24 +236,29 @@ KERNEL multipoles_to_locals(int first_chunk, int chunk_nodes, int nodes, const G
         const GLOBAL real* sign = signs + (int)(pair.z & 7) * stride;
         for (int j = ITEM % COPIERS * LANES; j < most; j += COPIERS * LANES) {
           const lanes value = LOAD(sign + j) * LOAD(multipoles + expansion * (size_t)stride + j);
-          STORE(value, packed + (slot * MOST_MOVED + c) * stride + j);
+          real one[LANES];
+          STORE(value, one);
+          UNROLL for (int i = 0; i < LANES; ++i) packed[slot * SLOT(stride) + (j + i) * PACKED + c] = one[i];
         }
       }
       BARRIER();
-      int slot = 0;
-      for (int row = ITEM * LANES; slot < some; row += GROUP * LANES) {
-        for (; row >= rows; row -= rows) ++slot;
-        if (slot >= some) break;
-        const LOCAL real* from = packed + slot * MOST_MOVED * stride;
+      for (int i = ITEM; i < some * of_pair; i += GROUP) {
+        const int slot = i / of_pair;
+        const int group_of_item = (i - slot * of_pair) / (BLOCK / LANES) * ROW_GROUPS;
+        const int lane = i % (BLOCK / LANES) * LANES;
+        const LOCAL real* from = packed + slot * SLOT(stride);
         const uint4 pair = pairs[t.y + (uint)(first + slot)];
 #if FORM == STOKES_WINDING
         if (transposed) {
-          add_pair(matrices, group, row, most, from, stride, 5 + LOCAL_WIDTHS, 1, pair, source_centres, target_centres, signs, locals);
+          add_pair(matrices, group, row_groups, group_of_item, lane, most, from, stride, 5 + LOCAL_WIDTHS, 1, pair, source_centres,
+                   target_centres, signs, locals);
         } else {
-          add_pair(matrices, group, row, most, from, stride, 4 + LOCAL_WIDTHS, 0, pair, source_centres, target_centres, signs, locals);
+          add_pair(matrices, group, row_groups, group_of_item, lane, most, from, stride, 4 + LOCAL_WIDTHS, 0, pair, source_centres,
+                   target_centres, signs, locals);
         }
 #else
-        add_pair(matrices, group, row, most, from, stride, MOST_MOVED, 0, pair, source_centres, target_centres, signs, locals);
+        add_pair(matrices, group, row_groups, group_of_item, lane, most, from, stride, MOST_MOVED, 0, pair, source_centres, target_centres,
+                 signs, locals);
 #endif
       }
     }
