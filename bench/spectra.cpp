@@ -29,7 +29,7 @@ Eigen::MatrixXd matrix_of(LinearSystem& system, std::size_t points) {
   std::vector<Vec3> unit(points, Vec3{0, 0, 0});
   for (std::size_t column = 0; column < 3 * points; ++column) {
     unit[column / 3][column % 3] = 1;
-    const std::vector<Vec3> product = system.apply(unit);
+    const std::vector<Vec3> product = product_of(system, unit);
     for (std::size_t row = 0; row < 3 * points; ++row) {
       matrix(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) = product[row / 3][row % 3];
     }

@@ -311,6 +311,7 @@ Orientation orient_from(const PointsView& points, const Known& known, const Opti
   Stages stages(monitor);
   return parallel::with_threads(options.threads, [&] {
     const gpu::Scope device(options.device, points.count);
+    stages.time_device([&device] { return device.seconds(); });
     Orientation out = orient_in_arena(points, known, options, stages, open);
     device.describe(out.stats);
     return out;

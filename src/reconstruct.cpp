@@ -261,6 +261,7 @@ Reconstruction reconstruct(const PointsView& points, const Options& options, con
   out.orientation = orient(points, options, monitor);
   out.orientation.stats.planned_memory_bytes = planned(out.orientation.stats, chosen);
   Stages stages(monitor);
+  stages.time_device([&device] { return device.seconds(); });
   stages.begin("mesh");
   double far = 0;
   parallel::with_threads(options.threads, [&] {

@@ -102,7 +102,8 @@ std::string report_json(const Stats& stats, const MeshCheck* mesh) {
   report["planned_memory_bytes"] = stats.planned_memory_bytes;
   report["peak_memory_bytes"] = stats.peak_memory_bytes;
   report["threads"] = stats.threads;
-  report["device"] = {{"name", stats.device}, {"driver", stats.driver}};
+  report["device"] = {{"name", stats.device}, {"driver", stats.driver}, {"seconds", Json::object()}};
+  for (const auto& [stage, seconds] : stats.device_seconds) report["device"]["seconds"][stage] = seconds;
   report["confidence"] = {{"mean", number(stats.confidence_mean)}, {"below_half", number(stats.confidence_below_half)}};
   report["mesh"] = mesh != nullptr ? mesh_json(*mesh) : Json(nullptr);
   report["warnings"] = stats.warnings;

@@ -120,9 +120,9 @@ TEST(GaussSystem, IsLinearAndSymmetric) {
   const std::vector<Vec3> b = random_vectors(cloud.size(), 2);
   std::vector<Vec3> sum(a);
   for (std::size_t i = 0; i < a.size(); ++i) sum[i] = vector::add(a[i], vector::scale(b[i], -2));
-  const std::vector<Vec3> ma = system.apply(a);
-  const std::vector<Vec3> mb = system.apply(b);
-  const std::vector<Vec3> ms = system.apply(sum);
+  const std::vector<Vec3> ma = product_of(system, a);
+  const std::vector<Vec3> mb = product_of(system, b);
+  const std::vector<Vec3> ms = product_of(system, sum);
   double ab = 0, ba = 0, size = 0, nonlinear = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     ab += vector::dot(a[i], mb[i]);

@@ -75,8 +75,8 @@ TEST(Clusters, SystemIsTheFullOneOnConstantVectors) {
     v = random.direction();
     halves.insert(halves.end(), 2, Vec3{v[0] / 2, v[1] / 2, v[2] / 2});
   }
-  const std::vector<Vec3> a = clustered.apply(clustered.from_areas(eta));
-  const std::vector<Vec3> b = full.apply(halves);
+  const std::vector<Vec3> a = product_of(clustered, clustered.from_areas(eta));
+  const std::vector<Vec3> b = product_of(full, halves);
   const std::vector<Vec3> ra = clustered.right_side();
   const std::vector<Vec3> rb = full.right_side();
   double error = 0;

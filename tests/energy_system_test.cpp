@@ -30,7 +30,7 @@ TEST(EnergySystem, HasNoUnitOfLength) {
   shapes::Random random(2);
   std::vector<Vec3> eta(cloud.size());
   for (Vec3& v : eta) v = random.direction();
-  const std::vector<Vec3> product = system.apply(eta), small_product = small.apply(eta);
+  const std::vector<Vec3> product = product_of(system, eta), small_product = product_of(small, eta);
   const std::vector<Vec3> right = system.right_side(), small_right = small.right_side();
   double error = 0, size = 0;
   for (std::size_t i = 0; i < eta.size(); ++i) {

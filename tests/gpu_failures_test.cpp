@@ -21,6 +21,9 @@
 #include <fstream>
 #include <set>
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 namespace g3r {
 namespace {
 
@@ -120,13 +123,15 @@ TEST(GpuFailures, WordsThatNameNoDeviceAreInvalid) {
 
 TEST(GpuFailures, EveryFarPairIsInOneTileAndTilesDoNotMeetATargetTwice) {
   const std::vector<Vec3> points = unit_points(shapes::torus(20000, 0.6, 0.25, 3).points);
+  constexpr std::size_t kChunkNodes = 32;
   const Octree tree = build_octree(points, codes(points), {0.005}, 32);
   const InteractionLists lists = build_interaction_lists(tree, tree, 0.8, 4);
   const M2lMatrices<float> matrices(lists.offsets, {});
   std::vector<std::uint32_t> matrix_of;
   for (std::size_t i = 0; i < lists.offsets.size(); ++i) matrix_of.push_back(static_cast<std::uint32_t>(matrices.index(i)));
-  const gpu::TiledPairs tiled = gpu::tile_pairs(lists, tree.nodes.size(), matrix_of);
+  const gpu::TiledPairs tiled = gpu::tile_pairs(lists, tree.nodes.size(), kChunkNodes, matrix_of);
   ASSERT_EQ(tiled.pairs.size(), lists.far.size());
+  ASSERT_EQ(tiled.chunk_tiles.size(), (tree.nodes.size() + kChunkNodes - 1) / kChunkNodes + 1);
   std::set<std::pair<std::uint32_t, std::uint32_t>> expected;
   for (const FarPair& pair : lists.far) expected.emplace(pair.target, pair.source);
   std::set<std::pair<std::uint32_t, std::uint32_t>> found;
@@ -136,8 +141,8 @@ TEST(GpuFailures, EveryFarPairIsInOneTileAndTilesDoNotMeetATargetTwice) {
       EXPECT_LE(tile[2], gpu::kMostTilePairs);
       std::set<std::uint32_t> targets;
       for (std::uint32_t i = tile[1]; i < tile[1] + tile[2]; ++i) {
-        EXPECT_EQ(tiled.pairs[i][0] / gpu::kChunkNodes, chunk);
-        EXPECT_EQ(tiled.pairs[i][2] & gpu::kPositive, tiled.pairs[tile[1]][2] & gpu::kPositive);
+        EXPECT_EQ(tiled.pairs[i][0] / kChunkNodes, chunk);
+        EXPECT_EQ(tiled.pairs[i][2] & gpu::kPositive, tile[3]);
         EXPECT_TRUE(targets.insert(tiled.pairs[i][0]).second);
         found.emplace(tiled.pairs[i][0], tiled.pairs[i][1]);
       }
@@ -178,6 +183,24 @@ TEST(GpuFailures, TheCacheGivesBackWhatIsWholeAndNothingElse) {
   cache.write(binary);
   EXPECT_TRUE(cache.read().empty());
   std::filesystem::remove_all(folder);
+}
+
+TEST(GpuFailures, AKeptDeviceIsGivenOutOnceAndNotAfterAFork) {
+  const auto device = std::make_shared<FailingDevice>(kPlenty);
+  gpu::DeviceInfo other = device->info();
+  other.handle[1] = 7;
+  gpu::keep_device(device);
+  EXPECT_EQ(gpu::take_kept_device(other), nullptr);
+  EXPECT_EQ(gpu::take_kept_device(device->info()), device);
+  EXPECT_EQ(gpu::take_kept_device(device->info()), nullptr) << "it is somebody else's";
+  gpu::keep_device(device);
+  const pid_t child = fork();
+  if (child == 0) _exit(gpu::take_kept_device(device->info()) == nullptr ? 0 : 1);
+  int status = 1;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0) << "a child has its parent's device";
+  EXPECT_EQ(gpu::take_kept_device(device->info()), device);
+  EXPECT_EQ(device.use_count(), 1);
 }
 
 // The folder of OpenCL's drivers, of files that name one each.

@@ -184,6 +184,9 @@ TEST(Gpu, OrientationsAndMeshesEqualThoseOfTheProcessor) {
     EXPECT_EQ(processor.stats.device, "cpu");
     EXPECT_EQ(device.stats.device, gpu::list_devices()[0].name);
     EXPECT_FALSE(device.stats.driver.empty());
+    EXPECT_TRUE(processor.stats.device_seconds.empty());
+    EXPECT_FALSE(device.stats.device_seconds.empty());
+    for (const auto& [stage, seconds] : device.stats.device_seconds) EXPECT_GT(seconds, 0) << stage;
     EXPECT_EQ(shapes::share_correct(device.normals, surface.normals), shapes::share_correct(processor.normals, surface.normals));
     const double error = shapes::angle_error(processor.normals, surface.normals);
     EXPECT_NEAR(shapes::angle_error(device.normals, surface.normals), error, kSameError * error);

@@ -132,7 +132,7 @@ def test_devices(sphere):
             g3r.orient(sphere, device=device)
     with pytest.raises(g3r.UnavailableError, match="there is no device gpu:999"):
         g3r.orient(sphere, device="gpu:999")
-    assert g3r.run(sphere, device="cpu", mesh=False).stats["device"] == {"name": "cpu", "driver": ""}
+    assert g3r.run(sphere, device="cpu", mesh=False).stats["device"] == {"name": "cpu", "driver": "", "seconds": {}}
 
 
 def test_threads_do_not_change_the_result(sphere):

@@ -6,6 +6,7 @@
 #include <g3r/g3r.h>
 
 #include <chrono>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +18,11 @@ class Stages {
  public:
   explicit Stages(const Monitor& monitor) : monitor_(monitor), stage_start_(Clock::now()) {}
 
+  /// `total`: seconds that a device has worked so far.
+  void time_device(std::function<double()> total) {
+    device_total_ = std::move(total);
+    device_start_ = device_total_();
+  }
   void begin(const std::string& stage) {
     end_stage();
     stage_ = stage;
@@ -41,7 +47,9 @@ class Stages {
     progress(1);
     end_stage();
     stats.seconds.insert(stats.seconds.end(), seconds_.begin(), seconds_.end());
+    stats.device_seconds.insert(stats.device_seconds.end(), device_seconds_.begin(), device_seconds_.end());
     seconds_.clear();
+    device_seconds_.clear();
     stats.peak_memory_bytes = platform::peak_memory();
   }
 
@@ -51,7 +59,10 @@ class Stages {
   void end_stage() {
     const Clock::time_point now = Clock::now();
     if (!stage_.empty()) seconds_.emplace_back(stage_, std::chrono::duration<double>(now - stage_start_).count());
+    const double on_device = device_total_ ? device_total_() : 0;
+    if (!stage_.empty() && on_device > device_start_) device_seconds_.emplace_back(stage_, on_device - device_start_);
     stage_start_ = now;
+    device_start_ = on_device;
     stage_.clear();
   }
 
@@ -60,6 +71,9 @@ class Stages {
   std::string stage_;
   double fraction_ = 0;
   std::vector<std::pair<std::string, double>> seconds_;
+  std::function<double()> device_total_;  // empty: none is timed
+  double device_start_ = 0;               // what it was when the stage began
+  std::vector<std::pair<std::string, double>> device_seconds_;
 };
 
 }  // namespace g3r

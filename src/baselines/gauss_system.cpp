@@ -22,15 +22,14 @@ GaussSystem::GaussSystem(const std::vector<Vec3>& points, const std::vector<Vec3
   }
 }
 
-std::vector<Vec3> GaussSystem::apply(const std::vector<Vec3>& eta) {
-  std::vector<Vec3> out(size_);
+void GaussSystem::apply(const std::vector<Vec3>& eta, std::vector<Vec3>& out) {
+  out.resize(size_);
   for (std::size_t i = 0; i < size_; ++i) out[i] = vector::scale(eta[i], damping_);
   for (Rows& rows : rows_) {
     std::vector<double> w = rows.winding.apply(eta);
     for (std::size_t i = 0; i < size_; ++i) w[i] *= rows.weights[i];
     add_to(out, rows.winding.adjoint(w));
   }
-  return out;
 }
 
 std::vector<Vec3> GaussSystem::right_side() {

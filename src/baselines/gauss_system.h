@@ -30,7 +30,7 @@ class GaussSystem : public LinearSystem {
   GaussSystem(const std::vector<Vec3>& points, const std::vector<Vec3>& stretches, double epsilon, double damping, const SumPlan& plan,
               const std::atomic<bool>* cancel);
 
-  std::vector<Vec3> apply(const std::vector<Vec3>& eta) override;
+  void apply(const std::vector<Vec3>& eta, std::vector<Vec3>& product) override;
   std::vector<Vec3> right_side() override;
 
  private:

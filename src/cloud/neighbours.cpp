@@ -33,6 +33,22 @@ struct Nearest {
   }
 };
 
+// The k nearest points that have a mark.
+class NearestMarked {
+ public:
+  NearestMarked(std::size_t k, const std::vector<std::uint8_t>& marks, std::uint32_t* index, double* squared) : found_(k), marks_(marks) {
+    found_.init(index, squared);
+  }
+  [[nodiscard]] std::size_t size() const { return found_.size(); }
+  [[nodiscard]] bool full() const { return found_.full(); }
+  [[nodiscard]] double worstDist() const { return found_.worstDist(); }
+  bool addPoint(double distance, std::uint32_t point) { return marks_[point] == 0 || found_.addPoint(distance, point); }
+
+ private:
+  nanoflann::KNNResultSet<double, std::uint32_t> found_;
+  const std::vector<std::uint8_t>& marks_;
+};
+
 using KdTree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, std::uint32_t>;
 
 }  // namespace
@@ -53,6 +69,16 @@ void Neighbours::nearest(const Vec3& x, std::size_t k, std::vector<std::uint32_t
   index.resize(k);
   squared.resize(k);
   tree_->index.knnSearch(x.data(), k, index.data(), squared.data());
+}
+
+void Neighbours::nearest_marked(const Vec3& x, std::size_t k, const std::vector<std::uint8_t>& marks, std::vector<std::uint32_t>& index,
+                                std::vector<double>& squared) const {
+  index.resize(k);
+  squared.resize(k);
+  NearestMarked found(k, marks, index.data(), squared.data());
+  tree_->index.findNeighbors(found, x.data(), {});
+  index.resize(found.size());
+  squared.resize(found.size());
 }
 
 std::uint32_t Neighbours::nearest(const Vec3& x, double& squared, std::uint32_t none) const {

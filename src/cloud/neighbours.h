@@ -20,6 +20,9 @@ class Neighbours {
 
   /// The min(k, N) points nearest to x, nearest first, and their squared distances. O(k log N).
   void nearest(const Vec3& x, std::size_t k, std::vector<std::uint32_t>& index, std::vector<double>& squared) const;
+  /// The same among the points with a mark other than 0, one mark a point.
+  void nearest_marked(const Vec3& x, std::size_t k, const std::vector<std::uint8_t>& marks, std::vector<std::uint32_t>& index,
+                      std::vector<double>& squared) const;
   /// The point nearest to x among those whose squared distance is less than `squared`, which becomes that of this point; `none` if there is
   /// no such point. The less `squared`, the faster. O(log N).
   [[nodiscard]] std::uint32_t nearest(const Vec3& x, double& squared, std::uint32_t none) const;

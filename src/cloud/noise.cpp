@@ -7,9 +7,11 @@
 #include "cloud/plane_fit.h"
 #include "cloud/quadratic_patch.h"
 #include "cloud/spacing.h"
+#include "cpu/parallel.h"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <map>
@@ -195,7 +197,7 @@ Vec3 rounding_steps(const std::vector<Vec3>& points, double spacing) {
   std::vector<double> sorted(points.size());
   for (std::size_t a = 0; a < 3; ++a) {
     std::transform(points.begin(), points.end(), sorted.begin(), [&](const Vec3& p) { return p[a]; });
-    std::sort(sorted.begin(), sorted.end());
+    parallel::sort(sorted.begin(), sorted.end(), std::less<>());
     double least = std::numeric_limits<double>::infinity();
     std::size_t levels = 1;
     for (std::size_t i = 1; i < sorted.size(); ++i) {

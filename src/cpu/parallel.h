@@ -34,6 +34,14 @@ void for_blocks(std::size_t count, std::size_t block, const Body& body, const st
   for_each((count + block - 1) / block, [&](std::size_t b) { body(b * block, std::min(count, (b + 1) * block)); }, cancel);
 }
 
+/// body(i) for i in [0, count), in blocks: for bodies that do little.
+template <class Body>
+void for_all(std::size_t count, const Body& body) {
+  for_blocks(count, kBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) body(i);
+  });
+}
+
 /// Sum of term(begin, end) over blocks, added in block order.
 template <class T, class Term>
 T sum_blocks(std::size_t count, std::size_t block, T zero, const Term& term) {

@@ -1,10 +1,12 @@
 #include "gpu/device.h"
 
+#include "base/platform.h"
 #include "cpu/parallel.h"
 #include "gpu/cuda.h"
 #include "gpu/opencl.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 
 namespace g3r::gpu {
@@ -12,6 +14,18 @@ namespace {
 
 constexpr std::size_t kStagingBytes = 8u << 20;  // of two: large beside what starting a copy costs, small beside any other memory
 constexpr std::size_t kCopyBlock = 1u << 18;     // bytes that a thread copies at a time
+constexpr std::size_t kKeptDevices = 4;          // of calls at once; the devices of more are closed after each
+
+struct Kept {
+  std::uint64_t process;
+  std::shared_ptr<Device> device;
+};
+
+// Slots instead of a lock: in the child of a fork nobody would unlock it. Never destroyed: drivers may be gone by then.
+std::array<std::atomic<Kept*>, kKeptDevices>& kept_devices() {
+  static auto* const slots = new std::array<std::atomic<Kept*>, kKeptDevices>{};
+  return *slots;
+}
 
 }  // namespace
 
@@ -72,17 +86,42 @@ std::map<std::string, double> Device::take_kernel_seconds() {
 }
 
 std::vector<DeviceInfo> list_devices(Software software) {
-  std::vector<DeviceInfo> all = opencl_devices(software);
-  const std::size_t of_opencl = all.size();
-  for (const DeviceInfo& info : cuda_devices()) {
-    const auto end = all.begin() + static_cast<std::ptrdiff_t>(of_opencl);
-    const bool known = std::any_of(all.begin(), end, [&](const DeviceInfo& d) { return !d.software && d.name == info.name; });
-    if (!known) all.push_back(info);
+  std::vector<DeviceInfo> all = cuda_devices();
+  const std::size_t of_cuda = all.size();
+  for (const DeviceInfo& info : opencl_devices(software)) {
+    const auto end = all.begin() + static_cast<std::ptrdiff_t>(of_cuda);
+    const bool known = std::any_of(all.begin(), end, [&](const DeviceInfo& d) { return d.name == info.name; });
+    if (!known || info.software) all.push_back(info);
   }
   std::stable_partition(all.begin(), all.end(), [](const DeviceInfo& d) { return !d.software; });
   return all;
 }
 
 std::shared_ptr<Device> open_device(const DeviceInfo& info) { return info.cuda ? open_cuda(info) : open_opencl(info); }
+
+void keep_device(std::shared_ptr<Device> device) {
+  auto entry = std::make_unique<Kept>(Kept{platform::process(), std::move(device)});
+  for (std::atomic<Kept*>& slot : kept_devices()) {
+    Kept* empty = nullptr;
+    if (slot.compare_exchange_strong(empty, entry.get())) {
+      (void)entry.release();
+      return;
+    }
+  }
+}
+
+std::shared_ptr<Device> take_kept_device(const DeviceInfo& info) {
+  for (std::atomic<Kept*>& slot : kept_devices()) {
+    Kept* const entry = slot.exchange(nullptr);
+    if (entry == nullptr) continue;
+    if (entry->process != platform::process()) continue;  // its driver does not work here, not even to free it
+    std::shared_ptr<Device> device = std::move(entry->device);
+    delete entry;
+    const DeviceInfo& kept = device->info();
+    if (kept.cuda == info.cuda && kept.handle[0] == info.handle[0] && kept.handle[1] == info.handle[1]) return device;
+    keep_device(std::move(device));
+  }
+  return nullptr;
+}
 
 }  // namespace g3r::gpu

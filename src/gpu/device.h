@@ -155,11 +155,16 @@ class Device {
 /// kNotLoaded: where an OpenCL that runs on the processor is the only one, its driver (some 90 MB of memory) is not loaded, nor listed.
 enum class Software { kListed, kNotLoaded };
 
-/// All devices, in a fixed order: GPUs before software. A GPU that both interfaces know is there once, through OpenCL. Never throws for
-/// want of a driver: the list is empty then.
+/// All devices, in a fixed order: GPUs before software. A GPU that both interfaces know is there once, through CUDA. Never throws for want
+/// of a driver: the list is empty then.
 [[nodiscard]] std::vector<DeviceInfo> list_devices(Software software = Software::kListed);
 
 /// Takes a device into use.
 [[nodiscard]] std::shared_ptr<Device> open_device(const DeviceInfo& info);
+
+/// Keeps a device that works for the next call of this process: opening one and loading its kernels takes longer than many a sum.
+void keep_device(std::shared_ptr<Device> device);
+/// One that was kept, for the caller alone; null if there is none. What was opened before a fork is not given out after it.
+[[nodiscard]] std::shared_ptr<Device> take_kept_device(const DeviceInfo& info);
 
 }  // namespace g3r::gpu

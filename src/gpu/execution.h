@@ -3,6 +3,7 @@
 
 #include "gpu/device.h"
 
+#include <atomic>
 #include <memory>
 #include <string>
 
@@ -14,8 +15,12 @@ class Execution {
   Execution(std::shared_ptr<Device> device, bool required) : device_(std::move(device)), required_(required) {}
 
   [[nodiscard]] Device& device() const { return *device_; }
+  [[nodiscard]] std::shared_ptr<Device> shared_device() const { return device_; }
   /// Whether sums of this precision run on the device: it has not failed, and has doubles if they are needed.
   [[nodiscard]] bool usable(bool doubles) const { return failure_.empty() && (!doubles || device_->info().doubles); }
+  /// Adds the time of a sum; seconds() is that of all.
+  void add_seconds(double seconds) { seconds_ = seconds_ + seconds; }
+  [[nodiscard]] double seconds() const { return seconds_; }
   /// Takes note that the device has failed. Throws Unavailable if it was required.
   void fail(const std::string& why);
   /// Why the processor took over; empty if it did not.
@@ -25,6 +30,7 @@ class Execution {
   std::shared_ptr<Device> device_;
   bool required_;
   std::string failure_;
+  std::atomic<double> seconds_ = 0;
 };
 
 }  // namespace g3r::gpu

@@ -18,7 +18,7 @@ namespace {
 
 // GPUs: two full leaves of targets, or one and its sources in shares; large enough to hide the way to memory, small enough for many groups.
 constexpr std::size_t kNearGroup = 128;
-constexpr std::size_t kFarGroup = 64;
+constexpr std::size_t kFarGroup = 32;
 constexpr std::size_t kSoftwareGroup = 16;
 // Sources of the near field in local memory at a time: one per item; processors rather have few turns, within their cache.
 constexpr std::size_t kTile = 128;

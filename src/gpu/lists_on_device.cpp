@@ -12,6 +12,16 @@ namespace {
 constexpr int kFinest = 21;               // level of the grid; centres are multiples of 2^-21
 constexpr std::size_t kMatrixBatch = 64;  // M2L matrices made at a time where the processor does not keep them
 constexpr std::size_t kMirrors = 8;
+// Target nodes whose M2L a work-group does. Pairs of more nodes share more matrices, but a GPU stands still while it has fewer groups than it
+// can run at a time: an H200 runs 4,224. Measured there, between 1 and 32: at 50,000 points 1 was best, at 1,000,000 it was 4. Processors run
+// few groups at a time.
+constexpr std::size_t kGroupsWanted = 8192;
+constexpr std::size_t kMostChunkNodes = 4;
+constexpr std::size_t kSoftwareChunkNodes = 32;
+
+std::size_t chunk_nodes_for(std::size_t nodes, bool software) {
+  return software ? kSoftwareChunkNodes : std::clamp(nodes / kGroupsWanted, std::size_t{1}, kMostChunkNodes);
+}
 
 using Int4 = std::array<std::int32_t, 4>;
 using Uint2 = std::array<std::uint32_t, 2>;
@@ -45,16 +55,14 @@ std::size_t add_groups(const cpu::TranslationMatrix<T>& matrix, std::size_t& off
 template <class T>
 MatricesOnDevice upload_shifts(Device& device, const std::array<StoredTranslation<T>, 8>& shifts, std::size_t coefficients) {
   std::vector<Uint4> groups;
-  std::vector<std::uint32_t> begin(1, 0);
   std::vector<T> data;
   std::size_t offset = 0;
   for (const StoredTranslation<T>& shift : shifts) {
     const cpu::TranslationMatrix<T> matrix = shift.first(coefficients);
     const std::size_t elements = add_groups(matrix, offset, groups);
     data.insert(data.end(), matrix.data, matrix.data + elements);
-    begin.push_back(narrow(groups.size()));
   }
-  return {upload(device, data), upload(device, groups), upload(device, begin), nullptr};
+  return {upload(device, data), upload(device, groups), nullptr, nullptr};
 }
 
 template <class T>
@@ -67,12 +75,13 @@ MatricesOnDevice upload_matrices(Device& device, const std::vector<Offset>& offs
   }
   const std::size_t count = offsets.empty() ? 0 : matrices.index(offsets.size() - 1) + 1;
   std::vector<Uint4> groups;
-  std::vector<std::uint32_t> begin(1, 0);
+  std::vector<Uint4> shapes;
   std::vector<std::size_t> first_element(1, 0);
   std::size_t offset = 0;
   for (std::size_t k = 0; k < count; ++k) {
-    first_element.push_back(first_element.back() + add_groups(matrices.shape(k), offset, groups));
-    begin.push_back(narrow(groups.size()));
+    const cpu::TranslationMatrix<T> shape = matrices.shape(k);
+    shapes.push_back({narrow(groups.size()), narrow(shape.groups), shape.most_columns, 0});
+    first_element.push_back(first_element.back() + add_groups(shape, offset, groups));
   }
   out.data = device.allocate(first_element.back() * sizeof(T));
   std::vector<T> batch;
@@ -88,7 +97,7 @@ MatricesOnDevice upload_matrices(Device& device, const std::vector<Offset>& offs
     device.write(*out.data, first_element[first] * sizeof(T), batch.data(), batch.size() * sizeof(T));
   }
   out.groups = upload(device, groups);
-  out.matrix_groups = upload(device, begin);
+  out.shapes = upload(device, shapes);
   out.signs = upload(device, signs);
   return out;
 }
@@ -101,11 +110,11 @@ TiledPairs tile_chunk(const InteractionLists& lists, const std::vector<FarPair>&
     const std::uint32_t flags = offset.mirror() | (offset.positive() ? kPositive : 0);
     const auto joins = [&](const Uint4& tile) {
       if (tile[0] != matrix_of[pair.offset] || tile[2] == kMostTilePairs) return false;
-      if (((out.pairs.back()[2] ^ flags) & kPositive) != 0) return false;
+      if (tile[3] != (flags & kPositive)) return false;
       return std::none_of(out.pairs.end() - tile[2], out.pairs.end(), [&](const Uint4& other) { return other[0] == pair.target; });
     };
     if (out.tiles.empty() || !joins(out.tiles.back())) {
-      out.tiles.push_back({matrix_of[pair.offset], static_cast<std::uint32_t>(out.pairs.size()), 0, 0});
+      out.tiles.push_back({matrix_of[pair.offset], static_cast<std::uint32_t>(out.pairs.size()), 0, flags & kPositive});
     }
     ++out.tiles.back()[2];
     out.pairs.push_back({pair.target, pair.source, flags, 0});
@@ -114,9 +123,9 @@ TiledPairs tile_chunk(const InteractionLists& lists, const std::vector<FarPair>&
 }
 
 // The pairs of every chunk, ascending by offset.
-std::vector<std::vector<FarPair>> pairs_of_chunks(const InteractionLists& lists, std::size_t nodes) {
-  std::vector<std::vector<FarPair>> of_chunk((nodes + kChunkNodes - 1) / kChunkNodes);
-  for (const FarPair& pair : lists.far) of_chunk[pair.target / kChunkNodes].push_back(pair);
+std::vector<std::vector<FarPair>> pairs_of_chunks(const InteractionLists& lists, std::size_t nodes, std::size_t chunk_nodes) {
+  std::vector<std::vector<FarPair>> of_chunk((nodes + chunk_nodes - 1) / chunk_nodes);
+  for (const FarPair& pair : lists.far) of_chunk[pair.target / chunk_nodes].push_back(pair);
   parallel::for_each(of_chunk.size(), [&](std::size_t c) {
     std::stable_sort(of_chunk[c].begin(), of_chunk[c].end(), [](const FarPair& a, const FarPair& b) { return a.offset < b.offset; });
   });
@@ -151,8 +160,9 @@ TreeOnDevice::TreeOnDevice(Device& device, const Octree& tree) {
   leaf_centres = upload(device, leaf_centre_of);
 }
 
-TiledPairs tile_pairs(const InteractionLists& lists, std::size_t nodes, const std::vector<std::uint32_t>& matrix_of) {
-  const std::vector<std::vector<FarPair>> of_chunk = pairs_of_chunks(lists, nodes);
+TiledPairs tile_pairs(const InteractionLists& lists, std::size_t nodes, std::size_t chunk_nodes,
+                      const std::vector<std::uint32_t>& matrix_of) {
+  const std::vector<std::vector<FarPair>> of_chunk = pairs_of_chunks(lists, nodes, chunk_nodes);
   std::vector<TiledPairs> parts(of_chunk.size());
   parallel::for_each(parts.size(), [&](std::size_t c) { parts[c] = tile_chunk(lists, of_chunk[c], matrix_of); });
   TiledPairs out;
@@ -174,7 +184,11 @@ TiledPairs tile_pairs(const InteractionLists& lists, std::size_t nodes, const st
 
 template <class T>
 ListsOnDevice<T>::ListsOnDevice(Device& device, const Octree& targets, const Octree& sources, const InteractionLists& lists)
-    : device_(device), lists_(lists), target_nodes_(targets.nodes.size()), source_tree_(device, sources) {
+    : device_(device),
+      lists_(lists),
+      target_nodes_(targets.nodes.size()),
+      source_tree_(device, sources),
+      chunk_nodes_(chunk_nodes_for(target_nodes_, device.info().software)) {
   if (&targets != &sources) target_tree_ = std::make_unique<TreeOnDevice>(device, targets);
   std::vector<std::uint32_t> begin;
   begin.reserve(lists.near_begin.size());
@@ -200,7 +214,7 @@ void ListsOnDevice<T>::prepare_far(const M2lMatrices<T>& matrices, int order, co
   if (!pairs_) {
     std::vector<std::uint32_t> matrix_of(lists_.offsets.size());
     for (std::size_t i = 0; i < matrix_of.size(); ++i) matrix_of[i] = narrow(matrices.index(i));
-    const TiledPairs tiled = tile_pairs(lists_, target_nodes_, matrix_of);
+    const TiledPairs tiled = tile_pairs(lists_, target_nodes_, chunk_nodes_, matrix_of);
     chunks_ = tiled.chunk_tiles.size() - 1;
     chunk_tiles_ = upload(device_, tiled.chunk_tiles);
     tiles_ = upload(device_, tiled.tiles);

@@ -33,7 +33,7 @@ struct TreeOnDevice {
 struct MatricesOnDevice {
   std::unique_ptr<Buffer> data;
   std::unique_ptr<Buffer> groups;         ///< uint4
-  std::unique_ptr<Buffer> matrix_groups;  ///< uint of every matrix, and the total
+  std::unique_ptr<Buffer> shapes;         ///< uint4 of every matrix: first group, groups, columns, -; M2L only
   std::unique_ptr<Buffer> signs;          ///< of every mirror image; M2L only
 };
 
@@ -47,15 +47,15 @@ struct Shifts {
 /// Pairs of a chunk of targets that share a matrix, in tiles whose targets differ.
 struct TiledPairs {
   std::vector<std::uint32_t> chunk_tiles;           ///< of every chunk, and the total
-  std::vector<std::array<std::uint32_t, 4>> tiles;  ///< matrix, first pair, pairs, 0
+  std::vector<std::array<std::uint32_t, 4>> tiles;  ///< matrix, first pair, pairs, kPositive or 0
   std::vector<std::array<std::uint32_t, 4>> pairs;  ///< target, source, mirror image | kPositive, 0
 };
-inline constexpr std::size_t kChunkNodes = 32;     ///< of one work-group: enough pairs to share matrices, enough groups for a small cloud
 inline constexpr std::size_t kMostTilePairs = 16;  ///< more share no more, for the matrix is in a cache by then
 inline constexpr std::uint32_t kPositive = 8;      ///< Offset::positive()
 
-/// `matrix_of`: M2lMatrices::index().
-[[nodiscard]] TiledPairs tile_pairs(const InteractionLists& lists, std::size_t nodes, const std::vector<std::uint32_t>& matrix_of);
+/// `nodes` targets, of which a chunk has `chunk_nodes`. `matrix_of`: M2lMatrices::index().
+[[nodiscard]] TiledPairs tile_pairs(const InteractionLists& lists, std::size_t nodes, std::size_t chunk_nodes,
+                                    const std::vector<std::uint32_t>& matrix_of);
 
 /// Throws DeviceError, std::bad_alloc. Built once per tree and lists; matrices when an order is first used.
 template <class T>
@@ -75,6 +75,7 @@ class ListsOnDevice {
   [[nodiscard]] const Buffer& tiles() const { return *tiles_; }
   [[nodiscard]] const Buffer& pairs() const { return *pairs_; }
   [[nodiscard]] std::size_t chunks() const { return chunks_; }
+  [[nodiscard]] std::size_t chunk_nodes() const { return chunk_nodes_; }
 
   /// Uploads what the far field of one order needs, unless it is there.
   void prepare_far(const M2lMatrices<T>& matrices, int order, const Shifts<T>& shifts, std::size_t coefficients);
@@ -89,6 +90,7 @@ class ListsOnDevice {
   TreeOnDevice source_tree_;
   std::unique_ptr<TreeOnDevice> target_tree_;  // null: the sources' tree
   std::unique_ptr<Buffer> near_begin_, near_leaves_, near_points_, near_order_;
+  std::size_t chunk_nodes_;
   std::size_t chunks_ = 0;
   std::unique_ptr<Buffer> chunk_tiles_, tiles_, pairs_;
   std::map<int, MatricesOnDevice> matrices_;

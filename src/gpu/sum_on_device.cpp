@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kSlice = 1u << 17;
 constexpr std::size_t kSoftwareSlice = 256;
 constexpr std::size_t kSharedBytes = 32u << 10;  // of local memory, which every device in use has
-constexpr std::size_t kMostSlots = 8;            // pairs of a tile at a time
+constexpr std::size_t kMostSlots = 4;             // pairs of a tile at a time
 constexpr std::size_t kTakenBlocks = 64;         // of results, that a thread takes at a time
 constexpr std::size_t kMostPoints = 32;          // of a tile of points_to_multipoles()
 
@@ -144,9 +144,9 @@ void SumOnDevice<T>::across(const SumRequest<T>& request, Program& translations)
   const std::size_t slice = std::max<std::size_t>(1, (device_.info().software ? kSoftwareSlice : kSlice) / 8);
   in_slices(lists_.chunks(), slice, request.cancel, [&](std::size_t first, std::size_t number) {
     device_.launch(translations.kernel("multipoles_to_locals"), number, far_group(t),
-                   {as_int(first), as_int(kChunkNodes), as_int(nodes), lists_.chunk_tiles(), lists_.tiles(), lists_.pairs(),
+                   {as_int(first), as_int(lists_.chunk_nodes()), as_int(nodes), lists_.chunk_tiles(), lists_.tiles(), lists_.pairs(),
                     *lists_.sources().centres, *lists_.targets().centres, *matrices.signs, *matrices.data, *matrices.groups,
-                    *matrices.matrix_groups, as_int(stride), as_int(slots), *multipoles_, locals},
+                    *matrices.shapes, as_int(stride), as_int(slots), *multipoles_, locals},
                    slots * each * sizeof(T));
   });
 }

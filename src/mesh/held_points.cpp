@@ -58,6 +58,7 @@ class Search {
   // Strays that hold each other go one after the other, until all that are left are held. `usual`: of the cloud, where it is known.
   std::vector<std::uint8_t> run(std::optional<double> usual) {
     look();
+    neighbours_.reset();  // few clouds need it again, and the heights their room
     usual_ = usual ? *usual : usual_height();
     for (take_strays(); !doubtful_.empty(); take_strays()) look();
     return std::move(held_);
@@ -67,31 +68,22 @@ class Search {
  private:
   // From every doubtful point at those nearest to it that are still held.
   void look() {
-    const bool all = std::find(held_.begin(), held_.end(), std::uint8_t{0}) == held_.end();
-    std::vector<Vec3> places;
-    std::vector<std::uint32_t> number;
-    for (std::uint32_t i = 0; !all && i < points_.size(); ++i) {
-      if (held_[i] == 0) continue;
-      places.push_back(points_[i]);
-      number.push_back(i);
-    }
-    if ((all ? points_ : places).size() <= kRing) {
+    if (held_.size() - static_cast<std::size_t>(std::count(held_.begin(), held_.end(), std::uint8_t{0})) <= kRing) {
       doubtful_.clear();
       return;
     }
-    const Neighbours neighbours(all ? points_ : places);
+    if (!neighbours_) neighbours_.emplace(points_);
     const auto look_from = [&](std::size_t begin, std::size_t end) {
       std::vector<std::uint32_t> index;
       std::vector<double> squared;
       for (std::size_t k = begin; k < end; ++k) {
         const std::uint32_t i = doubtful_[k];
-        neighbours.nearest(points_[i], kRing + 1, index, squared);
+        neighbours_->nearest_marked(points_[i], kRing + 1, held_, index, squared);
         Ring& ring = rings_[i];
         std::size_t to = 0;
         for (std::size_t m = 0; m <= kRing && to < kRing; ++m) {
-          const std::uint32_t j = all ? index[m] : number[index[m]];
-          if (j == i) continue;
-          ring.near[to++] = j;
+          if (index[m] == i) continue;
+          ring.near[to++] = index[m];
           ring.reach = std::sqrt(squared[m]);
         }
       }
@@ -107,11 +99,13 @@ class Search {
 
   [[nodiscard]] double usual_height() const {
     std::vector<double> heights(rings_.size());
-    for (std::uint32_t i = 0; i < rings_.size(); ++i) {
-      std::array<double, kRing> height{};
-      for (std::size_t m = 0; m < kRing; ++m) height[m] = look_at(i, rings_[i].near[m]).height;
-      heights[i] = upper_median(height);
-    }
+    parallel::for_blocks(rings_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        std::array<double, kRing> height{};
+        for (std::size_t m = 0; m < kRing; ++m) height[m] = look_at(static_cast<std::uint32_t>(i), rings_[i].near[m]).height;
+        heights[i] = upper_median(height);
+      }
+    });
     return quantile(std::move(heights), kUsual);
   }
 
@@ -154,6 +148,7 @@ class Search {
   const std::vector<Vec3>& points_;
   const std::vector<Vec3>& normals_;
   const std::atomic<bool>* cancel_;
+  std::optional<Neighbours> neighbours_;
   std::vector<std::uint8_t> held_;
   std::vector<Ring> rings_;
   std::vector<std::uint32_t> doubtful_;  // points whose nearest ones have changed

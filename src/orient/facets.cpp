@@ -67,7 +67,10 @@ class Subspace {
 class OnFacets : public LinearSystem {
  public:
   OnFacets(LinearSystem& system, const Subspace& subspace) : system_(system), subspace_(subspace) {}
-  std::vector<Vec3> apply(const std::vector<Vec3>& x) override { return subspace_.project(system_.apply(x)); }
+  void apply(const std::vector<Vec3>& x, std::vector<Vec3>& product) override {
+    system_.apply(x, product);
+    product = subspace_.project(std::move(product));
+  }
   std::vector<Vec3> right_side() override { return subspace_.project(system_.right_side()); }
 
  private:

@@ -1,6 +1,7 @@
 #include "orient/polish.h"
 
 #include "base/median.h"
+#include "cpu/parallel.h"
 #include "solve/energy_system.h"
 #include "solve/iterative_solver.h"
 #include "sum/fast_sum.h"
@@ -19,23 +20,23 @@ constexpr double kMostArea = 3;  // of the areas handed in, and its inverse the 
 Widths local_widths(const KernelWidth& width, const Settings& settings, const std::vector<double>& spacing) {
   if (spacing.empty()) return Widths(width.typical());
   std::vector<double> widths(spacing.size());
-  for (std::size_t i = 0; i < widths.size(); ++i) widths[i] = width.at(spacing[i] / settings.spacing);
+  parallel::for_all(widths.size(), [&](std::size_t i) { widths[i] = width.at(spacing[i] / settings.spacing); });
   return Widths(std::move(widths));
 }
 
 void gradient_to_areas(FastSum& sum, const std::vector<double>& areas, std::vector<Vec3>& gradient) {
   std::vector<double> lengths(gradient.size());
-  for (std::size_t i = 0; i < gradient.size(); ++i) lengths[i] = std::hypot(gradient[i][0], gradient[i][1], gradient[i][2]);
+  parallel::for_all(gradient.size(), [&](std::size_t i) { lengths[i] = std::hypot(gradient[i][0], gradient[i][1], gradient[i][2]); });
   const double middle = median(lengths);
-  for (std::size_t i = 0; i < gradient.size(); ++i) {
+  parallel::for_all(gradient.size(), [&](std::size_t i) {
     const double scale = lengths[i] > 0 ? areas[areas.size() == 1 ? 0 : i] / std::max(lengths[i], middle) : 0;
     for (double& c : gradient[i]) c *= scale;
-  }
+  });
   const double winding = median(sum.winding(gradient));
   const double factor = winding > 0 ? std::clamp(0.5 / winding, 1 / kMostArea, kMostArea) : 1;
-  for (Vec3& v : gradient) {
-    for (double& c : v) c *= factor;
-  }
+  parallel::for_all(gradient.size(), [&](std::size_t i) {
+    for (double& c : gradient[i]) c *= factor;
+  });
 }
 
 std::vector<double> point_areas(const Settings& settings, const std::vector<double>& spacing) {

@@ -37,24 +37,25 @@ std::vector<Vec3> EnergySystem::from_areas(std::vector<Vec3> eta) const {
   return eta;
 }
 
-std::vector<Vec3> EnergySystem::apply(const std::vector<Vec3>& x) {
-  std::vector<Vec3> s;
-  std::vector<double> w;
-  sum_.stokes_winding(x, s, w, root_);
-  for (std::size_t i = 0; i < root_.size(); ++i) w[i] *= root_[i] * root_[i];
-  sum_.add_winding_adjoint(w, winding_weight_, s);
+void EnergySystem::apply(const std::vector<Vec3>& x, std::vector<Vec3>& s) {
+  sum_.stokes_winding(x, s, w_, root_);
+  weight(w_);
+  sum_.add_winding_adjoint(w_, winding_weight_, s);
   parallel::for_blocks(x.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const double root = root_.empty() ? 1 : root_[i];
       for (std::size_t a = 0; a < 3; ++a) s[i][a] = root * s[i][a] + damping_ * x[i][a];
     }
   });
-  return s;
+}
+
+void EnergySystem::weight(std::vector<double>& w) const {
+  parallel::for_all(root_.size(), [&](std::size_t i) { w[i] *= root_[i] * root_[i]; });
 }
 
 std::vector<Vec3> EnergySystem::right_side() {
   std::vector<double> half(sum_.size(), 0.5 * winding_weight_);
-  for (std::size_t i = 0; i < root_.size(); ++i) half[i] *= root_[i] * root_[i];
+  weight(half);
   return to_areas(sum_.winding_adjoint(half));
 }
 

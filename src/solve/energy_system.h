@@ -21,7 +21,7 @@ class EnergySystem : public LinearSystem {
   EnergySystem(FastSum& sum, double damping, double winding_weight);
   EnergySystem(FastSum&, double, double, std::vector<double>&&) = delete;
 
-  std::vector<Vec3> apply(const std::vector<Vec3>& x) override;
+  void apply(const std::vector<Vec3>& x, std::vector<Vec3>& product) override;
   std::vector<Vec3> right_side() override;
 
   /// eta = D x and x = D^-1 eta
@@ -29,10 +29,14 @@ class EnergySystem : public LinearSystem {
   [[nodiscard]] std::vector<Vec3> from_areas(std::vector<Vec3> eta) const;
 
  private:
+  // The rows of W: w_i *= m_i.
+  void weight(std::vector<double>& w) const;
+
   FastSum& sum_;
   double damping_;
   double winding_weight_;
   const std::vector<double>& root_;  // sqrt(m), or empty
+  std::vector<double> w_;            // of the product at hand, whose memory is used again
 };
 
 }  // namespace g3r

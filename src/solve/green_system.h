@@ -19,7 +19,7 @@ class GreenSystem : public LinearSystem {
   /// `constant_weight`: w of u = 1; all other weights are 1. `sum` must outlive the system.
   GreenSystem(FastSum& sum, const std::vector<Vec3>& points, const std::vector<Harmonic>& harmonics, double constant_weight = 1);
 
-  std::vector<Vec3> apply(const std::vector<Vec3>& eta) override;
+  void apply(const std::vector<Vec3>& eta, std::vector<Vec3>& product) override;
   std::vector<Vec3> right_side() override;
 
  private:

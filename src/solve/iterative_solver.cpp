@@ -58,12 +58,14 @@ IterativeResult solve_iteratively(LinearSystem& system, const std::vector<Steps>
   for (const Steps& steps : schedule) total += steps.count;
   IterativeResult result;
   std::vector<Vec3> residual = system.right_side();
+  std::vector<Vec3> product;
   const double size = std::sqrt(dot(residual, residual));
   result.eta = std::move(start);
   if (result.eta.empty()) {
     result.eta.assign(residual.size(), Vec3{0, 0, 0});
   } else {
-    combine(residual, 1, -1, system.apply(result.eta));
+    system.apply(result.eta, product);
+    combine(residual, 1, -1, product);
   }
   double squared = dot(residual, residual);  // |r|^2
   int done = 0;
@@ -74,7 +76,7 @@ IterativeResult solve_iteratively(LinearSystem& system, const std::vector<Steps>
         result.converged = true;
         return result;
       }
-      const std::vector<Vec3> product = system.apply(direction);
+      system.apply(direction, product);
       const double curvature = dot(direction, product);
       const double step = squared / curvature;  // alpha = r.r / p.Mp
       // M is indefinite below the accuracy of its sums, or out of the range of numbers: no step can be trusted any more.

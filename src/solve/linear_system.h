@@ -11,10 +11,17 @@ namespace g3r {
 class LinearSystem {
  public:
   virtual ~LinearSystem() = default;
-  /// M eta
-  virtual std::vector<Vec3> apply(const std::vector<Vec3>& eta) = 0;
+  /// M eta into `product`, another vector, whose memory is used again.
+  virtual void apply(const std::vector<Vec3>& eta, std::vector<Vec3>& product) = 0;
   /// b
   virtual std::vector<Vec3> right_side() = 0;
 };
+
+/// M eta
+[[nodiscard]] inline std::vector<Vec3> product_of(LinearSystem& system, const std::vector<Vec3>& eta) {
+  std::vector<Vec3> product;
+  system.apply(eta, product);
+  return product;
+}
 
 }  // namespace g3r

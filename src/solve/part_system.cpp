@@ -16,7 +16,7 @@ double length_of(const std::vector<Vec3>& vectors) {
 class PartSystem : public LinearSystem {
  public:
   PartSystem(LinearSystem& part, const std::vector<Vec3>& residual) : part_(part), residual_(residual) {}
-  std::vector<Vec3> apply(const std::vector<Vec3>& x) override { return part_.apply(x); }
+  void apply(const std::vector<Vec3>& x, std::vector<Vec3>& product) override { part_.apply(x, product); }
   std::vector<Vec3> right_side() override { return residual_; }
 
  private:
@@ -28,7 +28,7 @@ class PartSystem : public LinearSystem {
 
 PartResidual residual_at(const std::vector<std::uint32_t>& some, LinearSystem& system, const std::vector<Vec3>& x) {
   const std::vector<Vec3> right = system.right_side();
-  PartResidual out{values_at(some, system.apply(x)), length_of(right)};
+  PartResidual out{values_at(some, product_of(system, x)), length_of(right)};
   for (std::size_t k = 0; k < some.size(); ++k) out.residual[k] = vector::subtract(right[some[k]], out.residual[k]);
   return out;
 }

@@ -1,5 +1,7 @@
 #include "solve/refine.h"
 
+#include "cpu/parallel.h"
+
 #include <cmath>
 #include <utility>
 
@@ -12,16 +14,16 @@ double length(const Vec3& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2]
 
 std::vector<Vec3> normalised(const std::vector<Vec3>& eta) {
   std::vector<Vec3> out(eta.size());
-  for (std::size_t i = 0; i < eta.size(); ++i) {
+  parallel::for_all(eta.size(), [&](std::size_t i) {
     const double size = length(eta[i]);
     out[i] = size > 0 ? Vec3{eta[i][0] / size, eta[i][1] / size, eta[i][2] / size} : Vec3{0, 0, 1};
-  }
+  });
   return out;
 }
 
 Refinement refine_normals(FastSum& sum, const std::vector<Vec3>& eta) {
   Refinement refined = unit_normals(sum.winding_gradient(eta), eta);
-  for (std::size_t i = 0; i < refined.strength.size(); ++i) refined.strength[i] *= sum.width(i);
+  parallel::for_all(refined.strength.size(), [&](std::size_t i) { refined.strength[i] *= sum.width(i); });
   return refined;
 }
 
@@ -29,7 +31,7 @@ Refinement unit_normals(std::vector<Vec3> gradients, const std::vector<Vec3>& et
   Refinement refined;
   refined.normals = std::move(gradients);
   refined.strength.resize(eta.size());
-  for (std::size_t i = 0; i < eta.size(); ++i) {
+  parallel::for_all(eta.size(), [&](std::size_t i) {
     Vec3& n = refined.normals[i];
     const double size = length(n);
     refined.strength[i] = size;
@@ -38,7 +40,7 @@ Refinement unit_normals(std::vector<Vec3> gradients, const std::vector<Vec3>& et
     } else {
       n = normalised({eta[i]}).front();
     }
-  }
+  });
   return refined;
 }
 

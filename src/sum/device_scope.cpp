@@ -12,8 +12,9 @@
 namespace g3r::gpu {
 namespace {
 
-// Below, moving the data and starting kernels costs more than the sums: an estimate (docs/algorithms/gpu.md), not a measurement.
-constexpr std::size_t kFewestPoints = 10'000;
+// Points per core of the machine from which "auto" takes a GPU: below, starting kernels and moving data take longer than the cores do. With
+// 16 cores and an H200 an orientation takes as long on both at 50,000 points.
+constexpr std::size_t kFewestPointsPerCore = 3'000;
 constexpr std::size_t kTrialPoints = 2'000;  // some levels of a tree
 constexpr double kTrialAccuracy = 1e-2;
 
@@ -91,14 +92,19 @@ void try_out(const std::shared_ptr<Execution>& execution) {
 
 Scope::Scope(const std::string& request, std::size_t points) : request_(request), outer_(innermost) {
   const Request parsed = parse(request);
+  const auto cores = static_cast<std::size_t>(parallel::thread_count(0));
   if (outer_ != nullptr && outer_->request_ == request) {
     execution_ = outer_->execution_;
     note_ = outer_->note_;
-  } else if (parsed.wanted != Wanted::kProcessor && (parsed.wanted != Wanted::kAuto || points >= kFewestPoints)) {
+  } else if (parsed.wanted != Wanted::kProcessor && (parsed.wanted != Wanted::kAuto || points >= kFewestPointsPerCore * cores)) {
     if (const std::optional<DeviceInfo> info = choose(parsed)) {
       try {
-        execution_ = std::make_shared<Execution>(open_device(*info), parsed.wanted != Wanted::kAuto);
-        try_out(execution_);
+        std::shared_ptr<Device> device = take_kept_device(*info);
+        const bool trusted = device != nullptr;
+        if (!trusted) device = open_device(*info);
+        execution_ = std::make_shared<Execution>(std::move(device), parsed.wanted != Wanted::kAuto);
+        opened_ = true;
+        if (!trusted) try_out(execution_);
         if (!execution_->failure().empty()) note_ = execution_->failure();
       } catch (const DeviceError& error) {
         note_ = info->name + ": " + error.what();
@@ -110,7 +116,10 @@ Scope::Scope(const std::string& request, std::size_t points) : request_(request)
   innermost = this;
 }
 
-Scope::~Scope() { innermost = outer_; }
+Scope::~Scope() {
+  innermost = outer_;
+  if (opened_ && execution_ != nullptr && execution_->failure().empty()) keep_device(execution_->shared_device());
+}
 
 std::shared_ptr<Execution> Scope::current() { return innermost != nullptr ? innermost->execution_ : nullptr; }
 

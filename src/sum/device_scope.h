@@ -25,13 +25,16 @@ class Scope {
   /// The device of the innermost Scope of this thread; null: the processor.
   [[nodiscard]] static std::shared_ptr<Execution> current();
 
+  /// Wall clock seconds that sums on its device have taken since it was opened by this call.
+  [[nodiscard]] double seconds() const { return execution_ != nullptr ? execution_->seconds() : 0; }
   /// Device and driver into `stats`, and a warning if the processor had to take over.
   void describe(Stats& stats) const;
 
  private:
   std::string request_;
   std::shared_ptr<Execution> execution_;
-  std::string note_;  // why "auto" did not take the device that is there
+  bool opened_ = false;  // by this Scope, not by an outer one
+  std::string note_;     // why "auto" did not take the device that is there
   Scope* outer_;
 };
 

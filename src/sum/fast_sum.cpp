@@ -141,7 +141,7 @@ template <class T, class Use>
 void winding_adjoint_into(SumEngine<T>& engine, const std::vector<double>& q, const Use& use) {
   engine.begin_values(1);
   T* charge = engine.value(0);
-  std::transform(q.begin(), q.end(), charge, [](double v) { return static_cast<T>(v); });
+  parallel::for_all(q.size(), [&](std::size_t i) { charge[i] = static_cast<T>(q[i]); });
   const auto keep = [&](std::size_t p, const double* value) {
     for (std::size_t a = 0; a < 3; ++a) use(p, a, -kInv4Pi * value[a * kLanes]);  // the kernel sums g (x - y), the formula wants g (y - x)
   };

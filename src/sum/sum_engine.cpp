@@ -10,6 +10,7 @@
 #include <g3r/error.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <stdexcept>
 
@@ -489,9 +490,11 @@ bool SumEngine<T>::run_on_device(cpu::NearForm form, int batch, std::size_t out_
       on_device_ = std::make_shared<gpu::SumOnDevice<T>>(device, *lists, *target_tree_, sources_->tree, points);
     }
     const T reach = static_cast<T>(std::min(plan_.reach, kMollifierReach<T>));
+    const auto start = std::chrono::steady_clock::now();
     on_device_->run({form, batch, plan_.direct, terms_.order, reach, plan_.kernel_error, value(0), value_count_, target_values_.data(),
                      target_channels(form, batch), multipole_channels_, local_channels_, out_channels, cancel_},
                     take_some);
+    plan_.execution->add_seconds(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   } catch (const gpu::DeviceError& error) {
     on_device_.reset();
     interactions_->on_device.reset();

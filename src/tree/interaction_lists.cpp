@@ -10,6 +10,7 @@
 #include <numeric>
 #include <span>
 #include <unordered_map>
+#include <utility>
 
 namespace g3r {
 namespace {
@@ -244,21 +245,31 @@ InteractionLists build_interaction_lists(const Octree& targets, const Octree& so
   for (std::uint32_t i = 0; i < targets.leaves.size(); ++i) target_leaf[targets.leaves[i]] = i;
   for (std::uint32_t i = 0; i < sources.leaves.size(); ++i) source_leaf[sources.leaves[i]] = i;
   lists.near_begin.assign(targets.leaves.size() + 1, 0);
-  for (const Found& part : found) {
-    for (const NodePair& pair : part.far) ++lists.far_begin[part_of[pair.target] + 1];
-    for (const NodePair& pair : part.near) ++lists.near_begin[target_leaf[pair.target] + 1];
+  // Of what each task has found, where its pairs of every part of the tree begin; the near pairs of a leaf are all of one task, or of the
+  // last, which is what was found before there were tasks.
+  std::vector<std::vector<std::size_t>> next_far(found.size(), std::vector<std::size_t>(lists.parts.size(), 0));
+  const auto for_all = [&](const auto& work) {
+    parallel::for_each(found.size() - 1, work);
+    work(found.size() - 1);
+  };
+  for_all([&](std::size_t i) {
+    for (const NodePair& pair : found[i].far) ++next_far[i][part_of[pair.target]];
+    for (const NodePair& pair : found[i].near) ++lists.near_begin[target_leaf[pair.target] + 1];
+  });
+  std::size_t far_pairs = 0;
+  for (std::size_t c = 0; c < lists.parts.size(); ++c) {
+    for (std::vector<std::size_t>& next : next_far) far_pairs += std::exchange(next[c], far_pairs);
+    lists.far_begin[c + 1] = far_pairs;
   }
-  for (std::size_t c = 0; c < lists.parts.size(); ++c) lists.far_begin[c + 1] += lists.far_begin[c];
   for (std::size_t i = 0; i < targets.leaves.size(); ++i) lists.near_begin[i + 1] += lists.near_begin[i];
   lists.far.resize(lists.far_begin.back());
   lists.near.resize(lists.near_begin.back());
-  std::vector<std::size_t> next_far(lists.far_begin.begin(), lists.far_begin.end() - 1);
   std::vector<std::size_t> next_near(lists.near_begin.begin(), lists.near_begin.end() - 1);
-  for (Found& part : found) {
-    for (const NodePair& pair : part.far) lists.far[next_far[part_of[pair.target]]++] = {0, pair.target, pair.source};
-    for (const NodePair& pair : part.near) lists.near[next_near[target_leaf[pair.target]]++] = source_leaf[pair.source];
-    part = {};
-  }
+  for_all([&](std::size_t i) {
+    for (const NodePair& pair : found[i].far) lists.far[next_far[i][part_of[pair.target]]++] = {0, pair.target, pair.source};
+    for (const NodePair& pair : found[i].near) lists.near[next_near[target_leaf[pair.target]]++] = source_leaf[pair.source];
+    found[i] = {};
+  });
   parallel::for_blocks(targets.leaves.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       std::sort(lists.near.begin() + static_cast<std::ptrdiff_t>(lists.near_begin[i]),

@@ -25,12 +25,14 @@
 #endif
 #define POSITIVE 8  // flag of a pair, besides the mirror image in bits 0 to 2
 
-// multipoles_to_locals(): an item does this many groups of rows, so that what it reads of an expansion serves them all. Processors have no
-// registers to spare.
+// multipoles_to_locals(): an item does this many groups of rows, so that what it reads of an expansion serves them all, and asks for this
+// many columns at a time. Processors have no registers to spare, and wait less.
 #if LANES == 1
 #define ROW_GROUPS 3
+#define COLUMNS 4
 #else
 #define ROW_GROUPS 1
+#define COLUMNS 1
 #endif
 // From a coefficient to the next of a pair's expansions in local memory, and from a pair to the next: the expansions of a coefficient lie
 // side by side, in fours, and neighbouring pairs in other banks.
@@ -164,13 +166,18 @@ FUNCTION void add_pair(const GLOBAL real* matrices, const GLOBAL uint4* groups, 
     to_column = end[g] > to_column ? end[g] : to_column;
     UNROLL for (int c = 0; c < moved; ++c) sum[g][c] = SPLAT(0);
   }
-  for (int j = from_column; j < to_column; ++j) {
-    real value[PACKED];
-    load_packed(from + j * PACKED, moved, value);
+  for (int j = from_column; j < to_column; j += COLUMNS) {
+    lanes entry[ROW_GROUPS][COLUMNS];  // asked for together, so that the way to memory is waited for once
     UNROLL for (int g = 0; g < ROW_GROUPS; ++g) {
-      if (ROW_GROUPS == 1 || (j >= first[g] && j < end[g])) {
-        const lanes entry = LOAD(matrices + (size_t)(at_zero[g] + j) * BLOCK + lane);
-        UNROLL for (int c = 0; c < moved; ++c) sum[g][c] = FMA(entry, SPLAT(value[c]), sum[g][c]);
+      UNROLL for (int k = 0; k < COLUMNS; ++k) {
+        entry[g][k] = j + k >= first[g] && j + k < end[g] ? LOAD(matrices + (size_t)(at_zero[g] + j + k) * BLOCK + lane) : SPLAT(0);
+      }
+    }
+    UNROLL for (int k = 0; k < COLUMNS; ++k) {
+      real value[PACKED];
+      load_packed(from + (j + k) * PACKED, moved, value);
+      UNROLL for (int g = 0; g < ROW_GROUPS; ++g) {
+        UNROLL for (int c = 0; c < moved; ++c) sum[g][c] = FMA(entry[g][k], SPLAT(value[c]), sum[g][c]);
       }
     }
   }
@@ -203,12 +210,12 @@ FUNCTION void add_pair(const GLOBAL real* matrices, const GLOBAL uint4* groups, 
 }
 
 // Work-group g does the target nodes [chunk_nodes * chunk, ...) of chunk = first_chunk + g: tiles of pairs (target, source, flags, -) that
-// share a matrix and have different targets, so that no two items add to one place. Tiles: (matrix, first pair, pairs, -), of one sense
-// (POSITIVE or not). Matrix k has groups [matrix_groups[k], matrix_groups[k + 1]). Shared: slots * SLOT(stride) numbers.
+// share a matrix and have different targets, so that no two items add to one place. Tiles: (matrix, first pair, pairs, POSITIVE or 0).
+// Matrices: (first group of rows, groups, columns, -). Shared: slots * SLOT(stride) numbers.
 KERNEL multipoles_to_locals(int first_chunk, int chunk_nodes, int nodes, const GLOBAL uint* chunk_tiles, const GLOBAL uint4* tiles,
                             const GLOBAL uint4* pairs, const GLOBAL int4* source_centres, const GLOBAL int4* target_centres,
                             const GLOBAL real* signs, const GLOBAL real* matrices, const GLOBAL uint4* groups,
-                            const GLOBAL uint* matrix_groups, int stride, int slots, const GLOBAL real* multipoles,
+                            const GLOBAL uint4* shapes, int stride, int slots, const GLOBAL real* multipoles,
                             GLOBAL real* locals SHARED_ARGUMENT) {
   SHARED(packed);
   const int chunk = first_chunk + GROUP_INDEX;
@@ -217,13 +224,20 @@ KERNEL multipoles_to_locals(int first_chunk, int chunk_nodes, int nodes, const G
   const size_t begin = (size_t)first_node * LOCALS * (size_t)stride;
   const size_t end = (size_t)end_node * LOCALS * (size_t)stride;
   for (size_t i = begin + (size_t)ITEM; i < end; i += GROUP) locals[i] = 0;
-  for (uint tile = chunk_tiles[chunk]; tile < chunk_tiles[chunk + 1]; ++tile) {
-    const uint4 t = tiles[tile];
-    const GLOBAL uint4* group = groups + matrix_groups[t.x];
-    const int row_groups = (int)(matrix_groups[t.x + 1] - matrix_groups[t.x]);
+  const uint first_tile = chunk_tiles[chunk];
+  const uint end_tile = chunk_tiles[chunk + 1];
+  if (first_tile == end_tile) return;
+  uint4 t = tiles[first_tile];
+  uint4 shape = shapes[t.x];
+  for (uint tile = first_tile; tile < end_tile; ++tile) {
+    const uint4 next_t = tiles[tile + 1 < end_tile ? tile + 1 : tile];  // on its way while this one is worked on
+    const uint4 next_shape = shapes[next_t.x];
+    const GLOBAL uint4* group = groups + shape.x;
+    const int row_groups = (int)shape.y;
     const int of_pair = (row_groups + ROW_GROUPS - 1) / ROW_GROUPS * (BLOCK / LANES);  // items
-    const int most = (int)group[0].z;
-    const int transposed = FORM == STOKES_WINDING && (pairs[t.y].z & POSITIVE) == 0;
+    const int most = (int)shape.z;
+    const int copied = (most + COLUMNS - 1) / COLUMNS * COLUMNS;
+    const int transposed = FORM == STOKES_WINDING && t.w == 0;
     const int moved = FORM == STOKES_WINDING ? 4 + transposed + LOCAL_WIDTHS : MOST_MOVED;
     for (int first = 0; first < (int)t.z; first += slots) {
       const int some = (int)t.z - first < slots ? (int)t.z - first : slots;
@@ -234,10 +248,9 @@ KERNEL multipoles_to_locals(int first_chunk, int chunk_nodes, int nodes, const G
         const uint4 pair = pairs[t.y + (uint)(first + slot)];
         const size_t expansion = (size_t)pair.y * MULTIPOLES + (size_t)source_expansion(c, moved, transposed);
         const GLOBAL real* sign = signs + (int)(pair.z & 7) * stride;
-        for (int j = ITEM % COPIERS * LANES; j < most; j += COPIERS * LANES) {
-          const lanes value = LOAD(sign + j) * LOAD(multipoles + expansion * (size_t)stride + j);
+        for (int j = ITEM % COPIERS * LANES; j < copied; j += COPIERS * LANES) {
           real one[LANES];
-          STORE(value, one);
+          STORE(LOAD(sign + j) * LOAD(multipoles + expansion * (size_t)stride + j), one);
           UNROLL for (int i = 0; i < LANES; ++i) packed[slot * SLOT(stride) + (j + i) * PACKED + c] = one[i];
         }
       }
@@ -262,5 +275,7 @@ KERNEL multipoles_to_locals(int first_chunk, int chunk_nodes, int nodes, const G
 #endif
       }
     }
+    t = next_t;
+    shape = next_shape;
   }
 }
