@@ -12,9 +12,9 @@ namespace {
 constexpr int kFinest = 21;               // level of the grid; centres are multiples of 2^-21
 constexpr std::size_t kMatrixBatch = 64;  // M2L matrices made at a time where the processor does not keep them
 constexpr std::size_t kMirrors = 8;
-// Target nodes whose M2L a work-group does. Pairs of more nodes share more matrices, but a GPU stands still while it has fewer groups than it
-// can run at a time: an H200 runs 4,224. Measured there, between 1 and 32: at 50,000 points 1 was best, at 1,000,000 it was 4. Processors run
-// few groups at a time.
+// Target nodes whose M2L a work-group does. Pairs of more nodes share more matrices, but a GPU stands still while it has fewer groups than
+// it can run at a time: an H200 runs 4,224. Measured there, between 1 and 32: at 50,000 points 1 was best, at 1,000,000 it was 4.
+// Processors run few groups at a time.
 constexpr std::size_t kGroupsWanted = 8192;
 constexpr std::size_t kMostChunkNodes = 4;
 constexpr std::size_t kSoftwareChunkNodes = 32;

@@ -32,9 +32,9 @@ struct TreeOnDevice {
 /// own.
 struct MatricesOnDevice {
   std::unique_ptr<Buffer> data;
-  std::unique_ptr<Buffer> groups;         ///< uint4
-  std::unique_ptr<Buffer> shapes;         ///< uint4 of every matrix: first group, groups, columns, -; M2L only
-  std::unique_ptr<Buffer> signs;          ///< of every mirror image; M2L only
+  std::unique_ptr<Buffer> groups;  ///< uint4
+  std::unique_ptr<Buffer> shapes;  ///< uint4 of every matrix: first group, groups, columns, -; M2L only
+  std::unique_ptr<Buffer> signs;   ///< of every mirror image; M2L only
 };
 
 /// The moves between a node and its parent, by octant.

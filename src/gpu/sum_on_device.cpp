@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kSlice = 1u << 17;
 constexpr std::size_t kSoftwareSlice = 256;
 constexpr std::size_t kSharedBytes = 32u << 10;  // of local memory, which every device in use has
-constexpr std::size_t kMostSlots = 4;             // pairs of a tile at a time
+constexpr std::size_t kMostSlots = 4;            // pairs of a tile at a time
 constexpr std::size_t kTakenBlocks = 64;         // of results, that a thread takes at a time
 constexpr std::size_t kMostPoints = 32;          // of a tile of points_to_multipoles()
 

@@ -15,9 +15,7 @@ HarmonicValues weighted_harmonics(const std::vector<Harmonic>& harmonics, const 
 GreenSystem::GreenSystem(FastSum& sum, const std::vector<Vec3>& points, const std::vector<Harmonic>& harmonics, double constant_weight)
     : sum_(sum), u_(weighted_harmonics(harmonics, points, constant_weight)) {}
 
-void GreenSystem::apply(const std::vector<Vec3>& eta, std::vector<Vec3>& product) {
-  product = sum_.green_adjoint(u_, sum_.green(u_, eta));
-}
+void GreenSystem::apply(const std::vector<Vec3>& eta, std::vector<Vec3>& product) { product = sum_.green_adjoint(u_, sum_.green(u_, eta)); }
 
 std::vector<Vec3> GreenSystem::right_side() {
   std::vector<double> half(u_.value);
