@@ -29,8 +29,6 @@
 namespace g3r {
 namespace {
 
-// Mean jump defect of an open surface up to which its sides are called consistent: 1 where none agree.
-constexpr double kSidesAgree = 0.45;
 // Of the unsure share under the estimated noise, that under another one up to which that is taken: chance changes it by less.
 constexpr double kFarLess = 0.55;
 // Times the estimate, the scatter that speaks against it; times the scatter, the noise that is tried: kernels have to hide all of it.
@@ -139,11 +137,13 @@ std::vector<std::uint8_t> open_points(const CanonicalCloud& cloud, const OpenSur
   return open;
 }
 
-// The sides of points on open surfaces do not come from the equations, and their confidence neither.
-void add_open_surfaces(const OpenSurfaces& surfaces, std::vector<float>& confidence, Stats& stats) {
-  if (surfaces.part.empty()) return;
+// The sides of points on open surfaces do not come from the equations, and their confidence neither. Returns the share of the points that
+// lie on open surfaces whose sides agree.
+double add_open_surfaces(const OpenSurfaces& surfaces, std::vector<float>& confidence, Stats& stats) {
+  if (surfaces.part.empty()) return 0;
   std::size_t open = 0;
   std::size_t undecided = 0;
+  std::size_t agreed = 0;
   for (std::size_t i = 0; i < surfaces.part.size(); ++i) {
     if (surfaces.part[i] == OpenSurfaces::kNone) {
       confidence[i] *= surfaces.certainty[i];
@@ -151,14 +151,16 @@ void add_open_surfaces(const OpenSurfaces& surfaces, std::vector<float>& confide
     }
     confidence[i] = surfaces.certainty[i];
     ++open;
+    agreed += surfaces.agrees[i];
     undecided += surfaces.certainty[i] <= 0.5F ? 1 : 0;
   }
-  if (open == 0) return;
+  if (open == 0) return 0;
   const auto all = static_cast<double>(confidence.size());
   stats.open_share = static_cast<double>(open) / all;
   stats.undecided_share = static_cast<double>(undecided) / all;
   stats.warnings.push_back("open: " + percent(stats.open_share) + " of the points lie on surfaces without an inside; " +
-                           (surfaces.worst_defect < kSidesAgree ? "their sides are consistent" : "their sides do not agree everywhere"));
+                           (agreed == open ? "their sides are consistent" : "their sides do not agree everywhere"));
+  return static_cast<double>(agreed) / all;
 }
 
 // Sides of closed surfaces that their field does not show to be right are worth less, those on open ones that do not agree nothing.
@@ -206,9 +208,8 @@ Oriented orient_problem(const Problem& problem, const Options& options, Stages& 
     const std::vector<double> areas = point_areas(problem.settings, problem.cloud.set.smoothed_spacing());
     out.confidence = side_confidence(out.solution.eta, refined.normals, refined.strength, areas);
   }
-  add_open_surfaces(out.solution.open_surfaces, out.confidence, stats);
+  out.agreed = add_open_surfaces(out.solution.open_surfaces, out.confidence, stats);
   out.doubt = unsure_share(out.confidence) + stats.open_share;
-  if (out.solution.open_surfaces.worst_defect < kSidesAgree) out.agreed = stats.open_share;
   if (!contains(problem.settings.without, Step::kCertificate)) certify_sides(out.solution.open_surfaces, out.confidence);
   judge(out.solution.open_surfaces, out.confidence, stats);
   return out;

@@ -236,6 +236,17 @@ TEST(OpenSurfaces, AreTheSameForEveryOrderAndNumberOfThreads) {
   }
 }
 
+// A small open surface far away has no part in the equations of the solid, one right below has.
+TEST(OpenSurfaces, AreTakenOutOfEquationsThatTheyArePartOf) {
+  const auto scene = [](double below, double side) {
+    Surface s = terrain(400, waves);
+    for (Vec3& p : s.points) p = {side * p[0], side * p[1], side * p[2] - below};
+    return orient(shapes::join(s, shapes::sphere(4000)).points);
+  };
+  EXPECT_EQ(solves(scene(20, 0.5)), 1);
+  EXPECT_EQ(solves(scene(1.6, 2)), 2);
+}
+
 // Points in canonical order, with their normals.
 struct Sorted {
   MortonOrder order;
@@ -272,6 +283,22 @@ TEST(OpenSurfaces, AreFoundWhateverTheGivenNormals) {
   const OpenSurfaces found = find(s, normals);
   EXPECT_EQ(found.part, std::vector<std::uint32_t>(normals.size(), 0));
   EXPECT_EQ(shapes::share_correct(normals, s.normals), 1);
+}
+
+// What is said of a part that may be open does not depend on closed ones.
+TEST(OpenSurfaces, AreJudgedWithoutTheClosedParts) {
+  const Surface ground = terrain(2000, waves);
+  Surface ball = shapes::sphere(3000);
+  for (Vec3& p : ball.points) p = {p[0] + 5, p[1], p[2]};
+  Surface scene = shapes::join(ground, ball);
+  std::vector<Vec3> alone = ground.normals;
+  std::vector<Vec3> together = scene.normals;
+  for (std::size_t i = 0; i < alone.size(); i += 3) alone[i] = together[i] = vector::scale(alone[i], -1);
+  const OpenSurfaces by_itself = find(ground, alone);
+  const OpenSurfaces beside = find(scene, together);
+  EXPECT_EQ(std::count(beside.part.begin(), beside.part.end(), OpenSurfaces::kNone), 3000);
+  for (std::size_t i = 0; i < alone.size(); ++i) EXPECT_EQ(together[i], alone[i]) << i;
+  EXPECT_EQ(std::count(beside.agrees.begin(), beside.agrees.end(), 1), std::count(by_itself.agrees.begin(), by_itself.agrees.end(), 1));
 }
 
 // Random points of both sides of a plate 0.1 spacings thick: the field cannot see its sides, but it is not open.

@@ -8,6 +8,7 @@
 #include "orient/certificate.h"
 #include "orient/sign_graph.h"
 #include "orient/two_walls.h"
+#include "solve/part_system.h"
 #include "solve/refine.h"
 #include "sum/fast_sum.h"
 
@@ -45,8 +46,10 @@ constexpr double kNoJumpNoisy = 0.8;  // the same under noise
 constexpr double kOutside = 0.55;     // enclosure from which a part has an outside; a plane has 0, half a sphere 0.6, a sphere 1
 constexpr double kEncloses = 0.7;     // enclosure under noise that no bowl up to a half sphere has, so that the part is a closed one
 constexpr double kLevel = 1e-6;       // part of the mean normal that counts as none
-constexpr std::size_t kRing = 7;      // sites that a side is common to: one and those around it, six in the densest packing
-constexpr float kUndecided = 0.5F;    // certainty of a side that is chosen, or not certified
+// Mean jump defect of an open surface up to which its sides agree: 1 where none do.
+constexpr double kSidesAgree = 0.45;
+constexpr std::size_t kRing = 7;    // sites that a side is common to: one and those around it, six in the densest packing
+constexpr float kUndecided = 0.5F;  // certainty of a side that is chosen, or not certified
 
 // Places where the unrest of the given normals is that of an open surface, and what to try there.
 class Search {
@@ -354,6 +357,7 @@ OpenSurfaces choose(const Search& search, const std::vector<std::vector<Vec3>>& 
   found.certified = std::move(certified);
   found.part.assign(normals.size(), OpenSurfaces::kNone);
   found.certainty.assign(normals.size(), 1);
+  found.agrees.assign(normals.size(), 0);
   const std::vector<Vec3> wide = tried.empty() ? std::vector<Vec3>{} : search.seen_from_afar(tried, verdict.best);
   std::vector<Vec3> sum(search.parts(), Vec3{0, 0, 0});
   std::vector<std::uint32_t> first(search.parts(), OpenSurfaces::kNone);
@@ -363,7 +367,7 @@ OpenSurfaces choose(const Search& search, const std::vector<std::vector<Vec3>>& 
     if (verdict.is_open[p] == 0) continue;
     first[p] = std::min(first[p], i);
     found.part[i] = first[p];
-    found.worst_defect = std::max(found.worst_defect, verdict.defect[p]);
+    found.agrees[i] = verdict.defect[p] < kSidesAgree ? 1 : 0;
     const double agreed = 1 - verdict.defects[verdict.best[p]][search.sites().site_of[i]];
     normals[i] = agreed < kHidden ? wide[i] : tried[verdict.best[p]][i];
     found.certified[i] = static_cast<float>(std::clamp(agreed / kAgreed, 0.0, 1.0));
@@ -378,6 +382,37 @@ OpenSurfaces choose(const Search& search, const std::vector<std::vector<Vec3>>& 
     found.certainty[i] = decided ? static_cast<float>(std::min(1.0, std::abs(enclosure))) : kUndecided;
   }
   return found;
+}
+
+// The points of marked parts, ascending.
+std::vector<std::uint32_t> points_of(const Search& search, const std::vector<std::uint8_t>& marked) {
+  std::vector<std::uint32_t> some;
+  for (std::uint32_t i = 0; i < search.sites().site_of.size(); ++i) {
+    if (marked[search.part_of_point(i)] != 0) some.push_back(i);
+  }
+  return some;
+}
+
+// Looks at some of the points without the others, which are closed.
+void find_among(const std::vector<std::uint32_t>& some, const PointSet& set, double noise, const SumPlan& sums,
+                const std::atomic<bool>* cancel, std::vector<Vec3>& normals, OpenSurfaces& found) {
+  std::vector<Vec3> sides = values_at(some, normals);
+  const OpenSurfaces here =
+      find_open_surfaces(PointSet(values_at(some, set.points()), values_at(some, set.morton())), noise, sums, sides, cancel);
+  if (!here.part.empty() && found.part.empty()) {
+    found.part.assign(set.size(), OpenSurfaces::kNone);
+    found.certainty.assign(set.size(), 1);
+    found.agrees.assign(set.size(), 0);
+  }
+  for (std::size_t k = 0; k < some.size(); ++k) {
+    const std::uint32_t i = some[k];
+    normals[i] = sides[k];
+    found.certified[i] = here.certified[k];
+    if (here.part.empty()) continue;
+    found.part[i] = here.part[k] == OpenSurfaces::kNone ? OpenSurfaces::kNone : some[here.part[k]];
+    found.certainty[i] = here.certainty[k];
+    found.agrees[i] = here.agrees[k];
+  }
 }
 
 }  // namespace
@@ -412,6 +447,9 @@ OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan
   const std::vector<double> unrest = search.mean_of_parts(given.unrest);
   const std::vector<double> defect = search.mean_of_parts(given.jump_defect);
   Verdict verdict = suspect(search, unrest, defect, noise);
+  const std::vector<std::uint32_t> suspects = points_of(search, verdict.is_open);
+  const bool are_some = !suspects.empty() && suspects.size() < set.size();
+  if (are_some) std::fill(verdict.is_open.begin(), verdict.is_open.end(), std::uint8_t{0});
   std::vector<std::vector<Vec3>> tried;
   if (any(verdict.is_open)) {
     tried = search.hypotheses();
@@ -425,6 +463,7 @@ OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan
     found.certified = std::move(shown);
   }
   found.uncertified = noise == 0 ? kUndecided : 0;
+  if (are_some) find_among(suspects, set, noise, sums, cancel, normals, found);
   return found;
 }
 

@@ -19,21 +19,21 @@ inline constexpr std::size_t kMostSites = 200000;
 /// Open surfaces of a cloud. Empty vectors of parts: there is none.
 struct OpenSurfaces {
   static constexpr std::uint32_t kNone = 0xffffffff;
-  std::vector<std::uint32_t> part;  ///< N: number of the open surface a point belongs to (its first point), or kNone: part of a closed one
-  std::vector<float> certainty;     ///< N, of the outside: up to 1 where there is one, 0.5 where either side could be it; 0.5 on closed
-                                    ///< parts whose field is not at rest, so that their sides are not certified
-  std::vector<float> certified;     ///< N, 0..1: how far the field shows the sides of the solution to be right, where they are kept; on
-                                    ///< open surfaces, that the side of a point agrees with those around it
-  float uncertified = 0.5F;         ///< confidence, at most, of a side that it does not show: a choice, or under noise none
-  double worst_defect = 0;          ///< largest mean jump defect of an open part: about 0 where all sides agree, 1 where none do
+  std::vector<std::uint32_t> part;   ///< N: number of the open surface a point belongs to (its first point), or kNone: part of a closed one
+  std::vector<float> certainty;      ///< N, of the outside: up to 1 where there is one, 0.5 where either side could be it; 0.5 on closed
+                                     ///< parts whose field is not at rest, so that their sides are not certified
+  std::vector<float> certified;      ///< N, 0..1: how far the field shows the sides of the solution to be right, where they are kept; on
+                                     ///< open surfaces, that the side of a point agrees with those around it
+  float uncertified = 0.5F;          ///< confidence, at most, of a side that it does not show: a choice, or under noise none
+  std::vector<std::uint8_t> agrees;  ///< N: 1 on open surfaces whose sides agree (their mean jump defect is small), 0 elsewhere
 };
 
 /// The equations are true of the boundary of a solid. A surface without an inside (terrain, one depth frame, a dental arch) satisfies them
 /// too, but with area vectors that lie in it or change their side from place to place. The field of the result shows it: beside a closed
 /// surface it is 0 or 1, beside an open one it is not (Certificate::unrest). So every connected part of the cloud is tested, and where its
 /// unrest is above 0.08 or its jump defect above 0.6 (0.8 under noise), and its points do not lie on two walls close together
-/// (on_two_walls()), other hypotheses are tried, from the finest scale on which the samples are a surface (scan lines are one only across
-/// their gaps) and two coarser ones:
+/// (on_two_walls()), it is looked at without the closed parts and other hypotheses are tried, from the finest scale on which
+/// the samples are a surface (scan lines are one only across their gaps) and two coarser ones:
 ///   1. sites an even distance apart, with the planes of their surroundings (place_sites());
 ///   2. signs by agreement of neighbours (agree_on_signs()), weights w_ij = f_i f_j exp(-0.3 |d|^2 / r^2) (n_i . n_j - 2 (n_i . e)(n_j .
 ///   e)),

@@ -19,6 +19,7 @@
 #include "sum/fast_sum.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -26,10 +27,13 @@ namespace g3r {
 namespace {
 
 constexpr std::size_t kFewestApart = 100;  // points that are solved for again without the open surfaces of their cloud
-constexpr double kMinMinority = 1e-3;      // share of the points against most of their facet, from which facets are solved for
-constexpr float kChoice = 0.5F;            // certainty of an open surface that has no outside
-constexpr double kChance = 1.12;           // of the typical spacing, up to which noise alone may have scattered points so far apart
-constexpr int kFacetRounds = 3;            // points on no facet come right after those on one, and facets grow
+// Mean winding number of the others at a part, of the 1/2 that its equations ask for, up to which it has been solved for by itself already:
+// more keeps the sides that others gave it.
+constexpr double kAlone = 0.02;
+constexpr double kMinMinority = 1e-3;  // share of the points against most of their facet, from which facets are solved for
+constexpr float kChoice = 0.5F;        // certainty of an open surface that has no outside
+constexpr double kChance = 1.12;       // of the typical spacing, up to which noise alone may have scattered points so far apart
+constexpr int kFacetRounds = 3;        // points on no facet come right after those on one, and facets grow
 
 bool runs(const Problem& problem, Step step) { return !contains(problem.settings.without, step); }
 
@@ -245,7 +249,6 @@ Solution solve_on_sites(const Problem& problem, const Options& options, Stages& 
   Solution solved = solve(coarse, options, stages, stats);
   solve_open_surfaces_apart(coarse, options, stages, stats, solved);
   Solution out;
-  out.open_surfaces.worst_defect = solved.open_surfaces.worst_defect;
   out.open_surfaces.uncertified = solved.open_surfaces.uncertified;
   out.eta.resize(points.size());
   std::vector<double> members(sites.size(), 0);
@@ -260,17 +263,40 @@ Solution solve_on_sites(const Problem& problem, const Options& options, Stages& 
     if (part != OpenSurfaces::kNone) first[part] = std::min(first[part], i);
     out.open_surfaces.part.push_back(part == OpenSurfaces::kNone ? part : first[part]);
     out.open_surfaces.certainty.push_back(solved.open_surfaces.certainty[s]);
+    out.open_surfaces.agrees.push_back(solved.open_surfaces.agrees[s]);
   }
   const FastSum field(sites.points(), sites.set.morton(), Widths(kBetweenSites * coarse.spacing), coarse.settings.sums, stages.cancel());
   out.refinement = unit_normals(field.winding_gradient_at(solved.eta, points, stages.cancel()), out.eta);
   return out;
 }
 
-// Solves for some points (ascending) without the others. An open surface that is one by itself too stays as it is. Returns false if
-// what it took did not converge.
+// Mean size of the winding number at some points (ascending) of all the others: how much of the equations there is theirs.
+double winding_of_others(const Problem& problem, const std::vector<std::uint32_t>& some, const std::vector<Vec3>& eta, Stages& stages) {
+  std::vector<Vec3> others;
+  std::vector<std::uint64_t> morton;
+  std::vector<Vec3> areas;
+  std::vector<Vec3> here;
+  for (std::uint32_t i = 0, k = 0; i < eta.size(); ++i) {
+    if (k < some.size() && some[k] == i) {
+      here.push_back(problem.cloud.points()[i]);
+      ++k;
+      continue;
+    }
+    others.push_back(problem.cloud.points()[i]);
+    morton.push_back(problem.cloud.morton()[i]);
+    areas.push_back(eta[i]);
+  }
+  const FastSum field(others, morton, Widths(kBetweenSites * problem.spacing), problem.settings.sums, stages.cancel());
+  double sum = 0;
+  for (const double w : field.winding_at(areas, here, stages.cancel())) sum += std::abs(w);
+  return sum / static_cast<double>(here.size());
+}
+
+// Solves for some points (ascending) without the others, unless these take no part in their equations. An open surface that is one by
+// itself too stays as it is. Returns false if what it took did not converge.
 bool solve_apart(const Problem& problem, const std::vector<std::uint32_t>& some, bool is_open, const Options& options, Stages& stages,
                  Stats& stats, Solution& solution) {
-  if (some.size() < kFewestApart) return true;
+  if (some.size() < kFewestApart || winding_of_others(problem, some, solution.eta, stages) <= kAlone) return true;
   const Solution apart = solve(part_of(problem, some, options), options, stages, stats);
   if (is_open && !apart.open_surfaces.part.empty()) return true;
   for (std::size_t k = 0; k < some.size(); ++k) {
@@ -282,6 +308,7 @@ bool solve_apart(const Problem& problem, const std::vector<std::uint32_t>& some,
     const bool open = !apart.open_surfaces.part.empty() && apart.open_surfaces.part[k] != OpenSurfaces::kNone;
     solution.open_surfaces.part[i] = open ? some[apart.open_surfaces.part[k]] : OpenSurfaces::kNone;
     solution.open_surfaces.certainty[i] = apart.open_surfaces.certainty.empty() ? 1 : apart.open_surfaces.certainty[k];
+    solution.open_surfaces.agrees[i] = apart.open_surfaces.agrees.empty() ? 0 : apart.open_surfaces.agrees[k];
   }
   return stats.converged;
 }
