@@ -90,7 +90,7 @@ std::pair<std::size_t, std::size_t> lost_and_found(const std::vector<Vec3>& poin
 }
 
 // The 16 nearest of a sparse point of the surface fill space where strays lie among them; that more of those around are on one plane
-// through it than chance puts there tells the one from the other.
+// through it than chance puts there distinguishes the one from the other.
 TEST(Outliers, StraysAmongThemMakeNoneOfSparsePoints) {
   std::vector<Vec3> points = uneven_torus(100).points;
   const std::size_t on = points.size(), extra = on / 5;

@@ -22,10 +22,10 @@ constexpr std::size_t kFewNeighbours = 8;  // of the spacing, and spread over a 
 constexpr std::array<std::size_t, 3> kSlabNeighbours = {16, 32, 64};
 // Half the thickness of slabs, of the reach of those: what is flat is seen best in thin ones, bends and noise need thick ones.
 constexpr std::array<double, 3> kThickness = {0.05, 0.1, 0.2};
-constexpr double kHeldWhole = 4;            // standard deviations of noise: a ball about a point of the layer holds all of it but its rim
-constexpr std::size_t kFewestPoints = 100;  // below, sparse parts are a matter of chance
-constexpr double kMostOutliers = 0.5;       // of the points: beyond, which of them are the surface is a choice
-constexpr std::size_t kProbes = 2000;       // points whose median stands for that of all
+constexpr double kHeldWhole = 4;             // standard deviations of noise: a ball about a point of the layer holds all of it but its rim
+constexpr std::size_t kFewestPoints = 100;   // below, sparse parts are a matter of chance
+constexpr double kMostOutliers = 0.5;        // of the points: beyond, which of them are the surface is a choice
+constexpr std::size_t kMedianProbes = 2000;  // points whose median stands for that of all
 
 // P(Poisson(mean) < count).
 double chance_of_fewer(std::size_t count, double mean) {
@@ -70,6 +70,8 @@ double least_spacing() {
   return high;
 }
 
+static_assert(kSlabNeighbours.front() < kSpacingNeighbours);
+
 // Whether a slab through a point holds more of those around than chance would put there if they filled space: an a contrario test
 // (Desolneux, Moisan and Morel, "From Gestalt Theory to Image Analysis", 2008).
 class Slabs {
@@ -108,10 +110,11 @@ class Slabs {
     for (std::size_t a = 1; a <= kFewNeighbours; ++a) {
       for (std::size_t b = 1; b < a; ++b) {
         const Vec3 m = vector::cross(q[a * apart - 1], q[b * apart - 1]);
+        const double most = reach * vector::dot(m, m);  // 0 of points in a line, which every slab along it holds
         std::array<std::size_t, kThickness.size()> held{};
         for (std::size_t k = 0; k < n; ++k) {
-          const double d = vector::dot(q[k], m), squared = d * d / (reach * vector::dot(m, m));
-          for (std::size_t t = 0; t < held.size(); ++t) held[t] += squared <= kThickness[t] * kThickness[t] ? 1 : 0;
+          const double d = vector::dot(q[k], m);
+          for (std::size_t t = 0; t < held.size(); ++t) held[t] += d * d <= kThickness[t] * kThickness[t] * most ? 1 : 0;
         }
         for (std::size_t t = 0; t < held.size(); ++t) {
           if (held[t] >= least_[t][n - 2] + 2) return true;  // the two that it goes through
@@ -129,7 +132,6 @@ class Slabs {
 std::vector<std::uint32_t> find_strays(const PointSet& set, const std::vector<double>& local, double typical) {
   const double least = least_spacing() * typical;
   const Slabs slabs;
-  const Neighbours& tree = set.tree();
   const std::vector<std::uint32_t>& near = set.near();
   std::vector<char> stray(set.size(), 0);
   parallel::for_blocks(set.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
@@ -138,7 +140,7 @@ std::vector<std::uint32_t> find_strays(const PointSet& set, const std::vector<do
     for (std::size_t i = begin; i < end; ++i) {
       if (local[i] <= least || slabs.hold(set, near.data() + i * set.near_count(), kSlabNeighbours.front())) continue;
       stray[i] = std::none_of(kSlabNeighbours.begin() + 1, kSlabNeighbours.end(), [&](std::size_t count) {
-        tree.nearest(set.points()[i], count + 1, index, squared);
+        set.tree().nearest(set.points()[i], count + 1, index, squared);
         return slabs.hold(set, index.data(), count);
       });
     }
@@ -169,7 +171,6 @@ std::vector<std::uint32_t> choose(const std::vector<std::uint32_t>& strays, cons
 // Spacings of the strays by their `count` nearest, in medians of all.
 std::vector<double> wide_spacing(const PointSet& set, const std::vector<std::uint32_t>& strays, const std::vector<double>& relative_spacing,
                                  std::size_t count) {
-  const Neighbours& tree = set.tree();
   const auto measured = [&](std::size_t size, const auto& at) {
     std::vector<double> spacing(size);
     parallel::for_blocks(size, parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
@@ -177,20 +178,20 @@ std::vector<double> wide_spacing(const PointSet& set, const std::vector<std::uin
       std::vector<double> squared;
       for (std::size_t k = begin; k < end; ++k) {
         const std::size_t i = at(k);
-        tree.nearest(set.points()[i], count + 1, index, squared);
+        set.tree().nearest(set.points()[i], count + 1, index, squared);
         spacing[k] = std::sqrt(squared.back()) / (relative_spacing.empty() ? 1 : relative_spacing[i]);
       }
     });
     return spacing;
   };
-  const std::size_t probes = std::min(kProbes, set.size());
+  const std::size_t probes = std::min(kMedianProbes, set.size());
   const double typical = typical_spacing(measured(probes, [&](std::size_t k) { return k * set.size() / probes; }));
   std::vector<double> spacing = measured(strays.size(), [&](std::size_t k) { return std::size_t{strays[k]}; });
   for (double& s : spacing) s /= typical;
   return spacing;
 }
 
-PointSet without(const PointSet& set, const std::vector<std::uint32_t>& some) {
+PointSet others_than(const PointSet& set, const std::vector<std::uint32_t>& some) {
   std::vector<Vec3> others;
   std::size_t next = 0;
   for (std::size_t i = 0; i < set.size(); ++i) {
@@ -217,7 +218,7 @@ Outliers find_outliers(const PointSet& set, const std::vector<double>& relative_
   if (chosen.empty() || too_many()) return {{}, noise};
   double h = set.spacing();
   if (!noise) {
-    const PointSet others = without(set, chosen);
+    const PointSet others = others_than(set, chosen);
     noise = estimate_noise(others);
     h = others.spacing();
   }
@@ -228,7 +229,7 @@ Outliers find_outliers(const PointSet& set, const std::vector<double>& relative_
   const EvenSurface layer{count, sigma * std::sqrt(std::numbers::pi / static_cast<double>(count))};
   chosen = choose(strays, wide_spacing(set, strays, relative_spacing, count), layer, set.size());
   if (too_many()) chosen.clear();
-  return {chosen, std::nullopt};
+  return {chosen, noise};
 }
 
 std::vector<Vec3> remove_points(CanonicalCloud& cloud, const std::vector<std::uint32_t>& indices) {
