@@ -11,13 +11,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace g3r {
 namespace {
 
 constexpr std::size_t kPoints = 6000;
 
-std::size_t flagged(const std::vector<Vec3>& points) { return find_outliers(canonical_cloud(points).set).size(); }
+std::size_t flagged(const std::vector<Vec3>& points) { return find_outliers(canonical_cloud(points).set).indices.size(); }
 
 // Samples of a torus of which the share falls by this ratio from one end to the other.
 shapes::Surface uneven_torus(double ratio = 10) {
@@ -77,21 +78,52 @@ TEST(Outliers, MostRandomPointsOfTheBoxAre) {
   EXPECT_LT(confidence, 0.3);
 }
 
-// The 16 nearest of a sparse point of the surface fill space where strays lie among them; that most are on one plane through it tells the
-// one from the other, and chance makes such planes of strays in one of a hundred.
-TEST(Outliers, StraysAmongThemMakeNoneOfSparsePoints) {
-  shapes::Surface surface = uneven_torus(100);
-  const std::size_t on = surface.points.size(), extra = on / 5;
-  shapes::Random random(3);
-  std::vector<Vec3> points = surface.points;
-  for (std::size_t i = 0; i < extra; ++i) points.push_back({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+// Points of a surface that are lost and stray points that are found, of a cloud that has the stray ones last.
+std::pair<std::size_t, std::size_t> lost_and_found(const std::vector<Vec3>& points, std::size_t on) {
   const CanonicalCloud cloud = canonical_cloud(points);
   std::vector<char> taken(cloud.size(), 0);
-  for (const std::uint32_t p : find_outliers(cloud.set)) taken[p] = 1;
-  std::size_t lost = 0, found = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) (i < on ? lost : found) += static_cast<std::size_t>(taken[cloud.point_of[i]]);
-  EXPECT_LE(lost, on / 50);  // 3 % by the spread alone
+  for (const std::uint32_t p : find_outliers(cloud.set).indices) taken[p] = 1;
+  std::pair<std::size_t, std::size_t> counts{0, 0};
+  for (std::size_t i = 0; i < points.size(); ++i)
+    (i < on ? counts.first : counts.second) += static_cast<std::size_t>(taken[cloud.point_of[i]]);
+  return counts;
+}
+
+// The 16 nearest of a sparse point of the surface fill space where strays lie among them; that more of those around are on one plane
+// through it than chance puts there distinguishes the one from the other.
+TEST(Outliers, StraysAmongThemMakeNoneOfSparsePoints) {
+  std::vector<Vec3> points = uneven_torus(100).points;
+  const std::size_t on = points.size(), extra = on / 5;
+  shapes::Random random(3);
+  for (std::size_t i = 0; i < extra; ++i) points.push_back({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+  const auto [lost, found] = lost_and_found(points, on);
+  EXPECT_LE(lost, on / 100);
   EXPECT_GE(found, extra * 8 / 10);
+}
+
+// They may be hardly sparser than the surface: what chance explains is measured against their number.
+TEST(Outliers, MayBeDense) {
+  std::vector<Vec3> points = shapes::sphere(kPoints, 1).points;
+  shapes::Random random(3);
+  constexpr std::size_t kStray = kPoints * 2 / 5;
+  while (points.size() < kPoints + kStray) {
+    const Vec3 p{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+    if (std::hypot(p[0], p[1], p[2]) < 1) points.push_back(p);
+  }
+  const auto [lost, found] = lost_and_found(points, kPoints);
+  EXPECT_LE(lost, kPoints / 200);
+  EXPECT_GE(found, kStray / 2);  // the others are too near the surface
+}
+
+// Noise of more than a spacing fills space too, and scatters points as far apart as outliers.
+TEST(Outliers, NoiseMakesNone) {
+  for (const double spacings : {0.5, 1.0, 1.5}) {
+    shapes::Surface sphere = shapes::sphere(16000, 1);
+    shapes::scatter(sphere, spacings * std::sqrt(4 * 3.14159265 / 16000));
+    EXPECT_LE(flagged(sphere.points), 3U) << spacings;
+    if (spacings < 1.5) continue;
+    EXPECT_GE(find_outliers(canonical_cloud(sphere.points).set, {}, 0.0).indices.size(), 30U);  // told that there is no noise
+  }
 }
 
 TEST(Outliers, RemovedPointsAreNumberedAfterTheOthers) {

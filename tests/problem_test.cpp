@@ -54,9 +54,9 @@ TEST(Prepare, KnowsWhereTheCloudHasBeenThinned) {
   Known known;
   for (std::size_t i = 0; i < dense.size(); ++i) {
     const bool thinned = dense[i][0] > -0.2;
-    if (thinned && i % 25 != 0) continue;
+    if (thinned && i % 64 != 0) continue;
     points.push_back(dense[i]);
-    known.relative_spacing.push_back(thinned ? 5 : 1);
+    known.relative_spacing.push_back(thinned ? 8 : 1);
   }
   const Monitor monitor;
   Stages stages(monitor);

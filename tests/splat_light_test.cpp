@@ -231,7 +231,7 @@ TEST(Splats, TheReaderSaysWhatIsLeftOut) {
   EXPECT_NE(warning.find("--all-splats"), std::string::npos) << warning;
 }
 
-// splats: the mesh of the scene is one closed component near the ellipsoid, and sides are right; with all splats it is not.
+// splats: the mesh of the scene is one closed component near the ellipsoid, and sides are right; with all splats it is twice as far off.
 TEST(Splats, TheSceneIsMeshed) {
   const Scene scene = ellipsoid_of_splats(kSanitized ? 1500 : 3000);
   const auto farthest = [&](const ReadOptions& options) {
@@ -250,7 +250,7 @@ TEST(Splats, TheSceneIsMeshed) {
   const auto [most, wrong] = farthest({});
   EXPECT_LT(most, 2 * scene.spacing);
   EXPECT_EQ(wrong, 0U);
-  EXPECT_GT(farthest({.all_splats = true}).first, 2 * scene.spacing);
+  EXPECT_GT(farthest({.all_splats = true}).first, 2 * most);
 }
 
 }  // namespace

@@ -1,86 +1,235 @@
 #include "cloud/outliers.h"
 
 #include "base/vector.h"
+#include "cloud/noise.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace g3r {
 namespace {
 
-constexpr std::size_t kFewNeighbours = 8;
-constexpr double kSparse = 2;         // local spacing against the neighbours', of those alone, and against the typical one
-constexpr double kVolumetric = 0.07;  // share of the smallest principal spread; 1/3 in a ball
-constexpr double kThin = 0.1;         // of the farthest neighbour's distance, half of what a plane holds: more holds strays, less no bends
-constexpr std::ptrdiff_t kHeld = 10;  // of 15 points: one in a hundred that fill space has a plane with as many
-constexpr std::size_t kFewestPoints = 100;  // below, sparse parts are a matter of chance
-constexpr double kMostOutliers = 1.0 / 3;
+// One in fifty: of the points taken those that an even surface leaves as far apart by chance, and of points that fill space those that
+// chance puts on a slab. More loses points of surfaces, of which meshes lack sparse parts; less leaves strays, which open closed surfaces.
+constexpr double kChance = 0.02;
+constexpr std::size_t kFewNeighbours = 8;  // of the spacing, and spread over a ball to lay planes through: more cost their square
+// Neighbours of a point within which a slab is looked for: more see a surface among more strays, but bends are flat in few.
+constexpr std::array<std::size_t, 3> kSlabNeighbours = {16, 32, 64};
+// Half the thickness of slabs, of the reach of those: what is flat is seen best in thin ones, bends and noise need thick ones.
+constexpr std::array<double, 3> kThickness = {0.05, 0.1, 0.2};
+constexpr double kHeldWhole = 4;             // standard deviations of noise: a ball about a point of the layer holds all of it but its rim
+constexpr std::size_t kFewestPoints = 100;   // below, sparse parts are a matter of chance
+constexpr double kMostOutliers = 0.5;        // of the points: beyond, which of them are the surface is a choice
+constexpr std::size_t kMedianProbes = 2000;  // points whose median stands for that of all
 
-bool fills_space(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count) {
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (std::size_t k = 0; k < count; ++k) mean += Eigen::Map<const Eigen::Vector3d>(points[index[k]].data()) / static_cast<double>(count);
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (std::size_t k = 0; k < count; ++k) {
-    const Eigen::Vector3d d = Eigen::Map<const Eigen::Vector3d>(points[index[k]].data()) - mean;
-    spread += d * d.transpose();
+// P(Poisson(mean) < count).
+double chance_of_fewer(std::size_t count, double mean) {
+  if (mean <= 0) return 1;
+  const double most = static_cast<double>(count) - 1;
+  double term = std::exp(most * std::log(mean) - mean - std::lgamma(most + 1)), sum = 0;
+  for (double k = most; k >= 0; --k) {
+    sum += term;
+    term *= k / mean;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(spread, Eigen::EigenvaluesOnly);
-  return eigen.eigenvalues()[0] > kVolumetric * spread.trace();
+  return sum;
 }
 
-// Whether some plane through a point, the first of these, and two of the next holds most of the others, as that of a surface as sparse as
-// the point does, though strays among them fill space. An a contrario test (Desolneux, Moisan and Morel, "From Gestalt Theory to Image
-// Analysis", 2008): that many are not there by chance.
-bool on_a_plane(const std::vector<Vec3>& points, const std::uint32_t* index) {
-  std::array<Vec3, kSpacingNeighbours> q;
-  for (std::size_t k = 1; k < q.size(); ++k) q[k] = vector::subtract(points[index[k]], points[*index]);
-  const double half = kThin * kThin * vector::dot(q.back(), q.back());
-  for (std::size_t a = 1; a <= kFewNeighbours; ++a) {
-    for (std::size_t b = 1; b < a; ++b) {
-      const Vec3 m = vector::cross(q[a], q[b]);
-      const double most = half * vector::dot(m, m);
-      const auto held = std::count_if(q.begin() + 1, q.end() - 1, [&](const Vec3& v) {
-        const double d = vector::dot(v, m);
-        return d * d <= most;
-      });
-      if (held >= kHeld) return true;
+// How far apart points of an even surface are by chance, in spacings by their `count` nearest; `height`: the noise over the reach of these.
+struct EvenSurface {
+  std::size_t count = kFewNeighbours;
+  double height = 0;
+
+  // The share that is farther apart than so many times the median: a surface puts a Poisson number of points into a ball, of which the mean
+  // goes with its cross-section, and by which the `count`-th point is at the median for a mean of count - 1/3. Mean over heights, in
+  // standard deviations: high above its layer a ball cuts less out of it.
+  [[nodiscard]] double share_beyond(double spacing) const {
+    constexpr double kStep = 0.25, kHighest = 6;
+    double sum = 0, weights = 0;
+    for (double z = kStep / 2; z < kHighest; z += kStep) {
+      const double weight = std::exp(-z * z / 2);
+      weights += weight;
+      sum += weight * chance_of_fewer(count, (static_cast<double>(count) - 1.0 / 3) * (spacing * spacing - z * z * height * height));
+      if (height == 0) break;
+    }
+    return sum / weights;
+  }
+};
+
+// The least spacing, in medians, that can be an outlier's: of fewer points than kMostOutliers of all, kChance are as far apart by chance.
+double least_spacing() {
+  double low = 1, high = 4;
+  for (int bit = 0; bit < 30; ++bit) {
+    const double middle = (low + high) / 2;
+    (EvenSurface().share_beyond(middle) > kChance * kMostOutliers ? low : high) = middle;
+  }
+  return high;
+}
+
+static_assert(kSlabNeighbours.front() < kSpacingNeighbours);
+
+// Whether a slab through a point holds more of those around than chance would put there if they filled space: an a contrario test
+// (Desolneux, Moisan and Morel, "From Gestalt Theory to Image Analysis", 2008).
+class Slabs {
+ public:
+  Slabs() {
+    constexpr double kTests = kSlabNeighbours.size() * kThickness.size() * kFewNeighbours * (kFewNeighbours - 1) / 2;
+    for (std::size_t t = 0; t < kThickness.size(); ++t) {
+      const double share = 1.5 * kThickness[t] - 0.5 * std::pow(kThickness[t], 3);  // of a ball's volume
+      for (std::size_t n = 0; n <= kSlabNeighbours.back(); ++n) {
+        // the least number with kTests P(Binomial(n, share) >= number) <= kChance
+        std::size_t least = n + 1;
+        double tail = 0, term = std::pow(share, static_cast<double>(n));
+        while (least > 0 && kTests * (tail += term) <= kChance) {
+          --least;
+          term *= static_cast<double>(least) / static_cast<double>(n - least + 1) * (1 - share) / share;
+        }
+        least_[t].push_back(least);
+      }
     }
   }
-  return false;
+
+  // `near`: the point and its `count` nearest. Those count that have it among as many nearest of their own, to judge by their spacing: all
+  // of a surface's, none of a dense patch beside the point, which is flat from afar.
+  [[nodiscard]] bool hold(const PointSet& set, const std::uint32_t* near, std::size_t count) const {
+    std::array<Vec3, kSlabNeighbours.back()> q;
+    std::size_t n = 0;
+    double reach = 0;
+    for (std::size_t k = 1; k <= count; ++k) {
+      q[n] = vector::subtract(set.points()[near[k]], set.points()[*near]);
+      reach = vector::dot(q[n], q[n]);
+      const double spacing = set.local_spacing()[near[k]];
+      if (k < count && reach <= spacing * spacing * static_cast<double>(count) / std::numbers::pi) ++n;
+    }
+    const std::size_t apart = n / kFewNeighbours;
+    if (apart == 0) return false;
+    for (std::size_t a = 1; a <= kFewNeighbours; ++a) {
+      for (std::size_t b = 1; b < a; ++b) {
+        const Vec3 m = vector::cross(q[a * apart - 1], q[b * apart - 1]);
+        const double most = reach * vector::dot(m, m);  // 0 of points in a line, which every slab along it holds
+        std::array<std::size_t, kThickness.size()> held{};
+        for (std::size_t k = 0; k < n; ++k) {
+          const double d = vector::dot(q[k], m);
+          for (std::size_t t = 0; t < held.size(); ++t) held[t] += d * d <= kThickness[t] * kThickness[t] * most ? 1 : 0;
+        }
+        for (std::size_t t = 0; t < held.size(); ++t) {
+          if (held[t] >= least_[t][n - 2] + 2) return true;  // the two that it goes through
+        }
+      }
+    }
+    return false;
+  }
+
+ private:
+  std::array<std::vector<std::size_t>, kThickness.size()> least_;
+};
+
+// Points so far apart as outliers may be and on no slab.
+std::vector<std::uint32_t> find_strays(const PointSet& set, const std::vector<double>& local, double typical) {
+  const double least = least_spacing() * typical;
+  const Slabs slabs;
+  const std::vector<std::uint32_t>& near = set.near();
+  std::vector<char> stray(set.size(), 0);
+  parallel::for_blocks(set.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> index;
+    std::vector<double> squared;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (local[i] <= least || slabs.hold(set, near.data() + i * set.near_count(), kSlabNeighbours.front())) continue;
+      stray[i] = std::none_of(kSlabNeighbours.begin() + 1, kSlabNeighbours.end(), [&](std::size_t count) {
+        set.tree().nearest(set.points()[i], count + 1, index, squared);
+        return slabs.hold(set, index.data(), count);
+      });
+    }
+  });
+  std::vector<std::uint32_t> strays;
+  for (std::uint32_t i = 0; i < stray.size(); ++i) {
+    if (stray[i] != 0) strays.push_back(i);
+  }
+  return strays;
+}
+
+// As many of the strays, those farthest apart first, as can be taken with kChance of them by chance (Benjamini and Hochberg, "Controlling
+// the false discovery rate", 1995). `spacing`: theirs, in medians of all `points`.
+std::vector<std::uint32_t> choose(const std::vector<std::uint32_t>& strays, const std::vector<double>& spacing, const EvenSurface& surface,
+                                  std::size_t points) {
+  std::vector<std::pair<double, std::uint32_t>> farthest;
+  for (std::size_t k = 0; k < strays.size(); ++k) farthest.emplace_back(-spacing[k], strays[k]);
+  std::sort(farthest.begin(), farthest.end());
+  std::size_t taken = farthest.size();
+  while (taken > 0 && static_cast<double>(points) * surface.share_beyond(-farthest[taken - 1].first) > kChance * static_cast<double>(taken))
+    --taken;
+  std::vector<std::uint32_t> chosen(taken);
+  for (std::size_t k = 0; k < taken; ++k) chosen[k] = farthest[k].second;
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
+}
+
+// Spacings of the strays by their `count` nearest, in medians of all.
+std::vector<double> wide_spacing(const PointSet& set, const std::vector<std::uint32_t>& strays, const std::vector<double>& relative_spacing,
+                                 std::size_t count) {
+  const auto measured = [&](std::size_t size, const auto& at) {
+    std::vector<double> spacing(size);
+    parallel::for_blocks(size, parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::uint32_t> index;
+      std::vector<double> squared;
+      for (std::size_t k = begin; k < end; ++k) {
+        const std::size_t i = at(k);
+        set.tree().nearest(set.points()[i], count + 1, index, squared);
+        spacing[k] = std::sqrt(squared.back()) / (relative_spacing.empty() ? 1 : relative_spacing[i]);
+      }
+    });
+    return spacing;
+  };
+  const std::size_t probes = std::min(kMedianProbes, set.size());
+  const double typical = typical_spacing(measured(probes, [&](std::size_t k) { return k * set.size() / probes; }));
+  std::vector<double> spacing = measured(strays.size(), [&](std::size_t k) { return std::size_t{strays[k]}; });
+  for (double& s : spacing) s /= typical;
+  return spacing;
+}
+
+PointSet others_than(const PointSet& set, const std::vector<std::uint32_t>& some) {
+  std::vector<Vec3> others;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    if (next < some.size() && some[next] == i) {
+      ++next;
+    } else {
+      others.push_back(set.points()[i]);
+    }
+  }
+  return PointSet(std::move(others));
 }
 
 }  // namespace
 
-std::vector<std::uint32_t> find_outliers(const PointSet& set, const std::vector<double>& relative_spacing) {
-  if (set.size() < kFewestPoints) return {};
-  const std::vector<Vec3>& points = set.points();
-  const std::vector<std::uint32_t>& near = set.near();
+Outliers find_outliers(const PointSet& set, const std::vector<double>& relative_spacing, std::optional<double> noise) {
+  if (set.size() < kFewestPoints) return {{}, noise};
   const std::vector<double> local = spacing_before_thinning(set.local_spacing(), relative_spacing);
   const double typical = typical_spacing(local);
-  std::vector<char> outlier(points.size(), 0);
-  parallel::for_blocks(points.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      if (local[i] <= 1.5 * typical) continue;  // most points; both rules ask for more
-      const std::uint32_t* index = near.data() + i * set.near_count();
-      double neighbours = 0;  // mean logarithm
-      for (std::size_t k = 1; k <= kFewNeighbours; ++k) neighbours += std::log(local[index[k]]) / kFewNeighbours;
-      const bool alone = std::log(local[i]) - neighbours > std::log(kSparse);
-      outlier[i] =
-          alone || (local[i] > kSparse * typical && fills_space(points, index, kSpacingNeighbours) && !on_a_plane(points, index)) ? 1 : 0;
-    }
-  });
-  std::vector<std::uint32_t> indices;
-  for (std::uint32_t i = 0; i < outlier.size(); ++i) {
-    if (outlier[i] != 0) indices.push_back(i);
+  const std::vector<std::uint32_t> strays = find_strays(set, local, typical);
+  std::vector<double> spacing;
+  for (const std::uint32_t i : strays) spacing.push_back(local[i] / typical);
+  std::vector<std::uint32_t> chosen = choose(strays, spacing, {}, set.size());
+  const auto too_many = [&] { return static_cast<double>(chosen.size()) > kMostOutliers * static_cast<double>(set.size()); };
+  if (chosen.empty() || too_many()) return {{}, noise};
+  double h = set.spacing();
+  if (!noise) {
+    const PointSet others = others_than(set, chosen);
+    noise = estimate_noise(others);
+    h = others.spacing();
   }
-  if (static_cast<double>(indices.size()) > kMostOutliers * static_cast<double>(points.size())) indices.clear();
-  return indices;
+  const double sigma = *noise / h;
+  const auto count = static_cast<std::size_t>(std::numbers::pi * std::pow(kHeldWhole * sigma, 2));
+  if (count <= kFewNeighbours) return {chosen, noise};
+  if (count >= set.size()) return {};
+  const EvenSurface layer{count, sigma * std::sqrt(std::numbers::pi / static_cast<double>(count))};
+  chosen = choose(strays, wide_spacing(set, strays, relative_spacing, count), layer, set.size());
+  if (too_many()) chosen.clear();
+  return {chosen, noise};
 }
 
 std::vector<Vec3> remove_points(CanonicalCloud& cloud, const std::vector<std::uint32_t>& indices) {

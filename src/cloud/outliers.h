@@ -6,19 +6,29 @@
 #include <g3r/points.h>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace g3r {
 
-/// Indices, ascending, of the points of which one of these holds:
-///   - the local spacing is more than twice that of their 8 neighbours (geometric mean): alone near a surface;
-///   - it is more than twice the typical one, and the 16 nearest points fill space: the smallest principal spread is more than 7 % of the
-///     sum of all three (on a surface, however sparse, below 3 %), and no plane through the point holds most of them, as that of a sparse
-///     surface does where strays are near: one of many outliers.
-/// A density that changes smoothly, by whatever factor, is no reason. Never more than a third of the points: then the cloud is something
-/// else, and none is returned. O(N).
+struct Outliers {
+  std::vector<std::uint32_t> indices;  ///< ascending
+  std::optional<double> noise;         ///< that of the other points, where it is known
+};
+
+/// The points that are not on a surface:
+///   - no slab through the point holds more of its 16, 32 or 64 nearest than chance would put there if they filled space: one in fifty
+///     of those that do has such a slab. Only neighbours count that have it among as many nearest as well: all of a surface's, none of a
+///     dense patch beside it;
+///   - and its spacing is more than chance explains: of as many points as are taken, one in fifty are as far apart on an even surface.
+///     That is from 1.5 typical spacings on among many outliers, from 2 on where there is one.
+/// Noise scatters points as well, as far apart as outliers. So where a ball of 4 standard deviations holds more than 8 points of the noisy
+/// layer, spacings are measured over as many, and chance moves points from its middle too. `noise`: if known; otherwise that of the points
+/// left without it is estimated, where outliers are found. A density that changes smoothly, by whatever factor, is no reason. Never more
+/// than half of the points: then the cloud is something else, and none is returned. O(N log N).
 /// `relative_spacing`: how many times as far apart the points of a cloud are that has been thinned, which is no reason either; or empty.
-[[nodiscard]] std::vector<std::uint32_t> find_outliers(const PointSet& set, const std::vector<double>& relative_spacing = {});
+[[nodiscard]] Outliers find_outliers(const PointSet& set, const std::vector<double>& relative_spacing = {},
+                                     std::optional<double> noise = std::nullopt);
 
 /// Takes the points with these indices out of the cloud and returns them. point_of and multiplicity number them after those that stay, and
 /// before those taken out earlier.

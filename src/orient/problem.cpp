@@ -40,22 +40,26 @@ Problem prepare(const PointsView& points, const Known& known, const Options& opt
   problem.cloud = canonical_cloud(points);
   stages.check();
   const StepSet without = parse_steps(options.without);
+  const auto known_noise = [&](double spacing) {
+    const std::optional<double> given = given_noise(options.noise, problem.cloud, spacing);
+    return given || (options.preset != Preset::kPaper && !contains(without, Step::kNoise)) ? given : 0;
+  };
   bool outliers_wanted = options.preset != Preset::kPaper && !is_baseline(options.method) && !contains(without, Step::kOutliers);
+  std::optional<double> noise;
   while (outliers_wanted) {
     const std::vector<double> relative_spacing = in_canonical_order(problem.cloud, known.relative_spacing);
-    std::vector<Vec3> removed = remove_points(problem.cloud, find_outliers(problem.cloud.set, relative_spacing));
-    if (removed.empty()) break;
+    Outliers found = find_outliers(problem.cloud.set, relative_spacing, known_noise(problem.cloud.set.spacing()));
+    noise = found.noise;
+    if (found.indices.empty()) break;
+    std::vector<Vec3> removed = remove_points(problem.cloud, found.indices);
     problem.outliers.insert(problem.outliers.begin(), removed.begin(), removed.end());
     outliers_wanted = refit_frame(problem.cloud, problem.outliers);  // far ones may have hidden nearer ones
   }
   const PointSet& set = problem.cloud.set;
   problem.known = {in_canonical_order(problem.cloud, known.gradient), in_canonical_order(problem.cloud, known.relative_spacing)};
   problem.spacing = typical_spacing(spacing_before_thinning(set.local_spacing(), problem.known.relative_spacing));
-  if (const std::optional<double> given = given_noise(options.noise, problem.cloud, problem.spacing)) {
-    problem.noise = *given;
-  } else if (options.preset != Preset::kPaper && !contains(without, Step::kNoise)) {
-    problem.noise = estimate_noise(set);
-  }
+  if (const std::optional<double> given = known_noise(problem.spacing)) noise = given;
+  problem.noise = noise ? *noise : estimate_noise(set);
   if (options.method == Method::kAuto && options.preset != Preset::kPaper && !contains(without, Step::kSites)) {
     problem.line_distance = surface_distance(set);
   }
