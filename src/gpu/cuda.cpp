@@ -212,7 +212,8 @@ std::string version_text(int version) { return std::to_string(version / 1000) + 
 
 std::vector<DeviceInfo> cuda_devices() {
   int count = 0;
-  if (!nvrtc_available() || api() == nullptr || api()->device_count(&count) != kSuccess) return {};
+  // The compiler last: it takes 30 MB, in vain where there is no device.
+  if (api() == nullptr || api()->device_count(&count) != kSuccess || count == 0 || !nvrtc_available()) return {};
   int driver = 0;
   api()->driver_version(&driver);
   std::vector<DeviceInfo> out;
