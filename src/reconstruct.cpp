@@ -79,6 +79,8 @@ void drop_strays(OrientedCloud& oriented, std::vector<Vec3>& strays, const std::
   const std::vector<std::uint8_t> held = mesh::held_points(cloud.points(), directions_of(oriented.eta), cancel);
   std::vector<Vec3> points;
   std::vector<std::uint64_t> morton;
+  points.reserve(held.size());
+  morton.reserve(held.size());
   for (std::size_t i = 0; i < held.size(); ++i) {
     if (held[i] == 0) {
       strays.push_back(cloud.points()[i]);
@@ -158,7 +160,7 @@ Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor
   const WindingSampler field(oriented, monitor.cancel);
   const bool inside_out = is_inside_out(oriented, field);
   if (inside_out) turn(oriented.eta);
-  const std::vector<Vec3> directions = directions_of(oriented.eta);
+  std::vector<Vec3> directions = directions_of(oriented.eta);
   const Frame& frame = oriented.cloud.frame;
   MeshOptions normalised = options;
   normalised.trim_distance *= frame.scale;
@@ -171,7 +173,8 @@ Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor
     const std::vector<Vec3>& points = oriented.cloud.points();
     mesh::finish_mesh(mesh, {points, directions, mesh::smooth_spacing(points)}, 0, normalised, left_out);
   } else {
-    mesh = field_mesh(oriented.cloud.points(), directions, field, normalised, monitor, max_memory, &left_out);
+    oriented.cloud.set.release_neighbours();  // the mesher has its own, of the points that it moves
+    mesh = field_mesh(oriented.cloud.points(), std::move(directions), field, normalised, monitor, max_memory, &left_out);
   }
   left_out.dropped.area /= frame.scale * frame.scale;
   if (mesh.triangles.empty()) throw InvalidInput("no surface found: the oriented points do not enclose a volume");

@@ -23,6 +23,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace g3r {
 namespace {
@@ -156,7 +157,7 @@ std::size_t field_mesh_memory(std::size_t points, double spacing, double longest
   return memory_for(points, leaves * static_cast<double>(points), depth);
 }
 
-Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const FieldSampler& sampler, const MeshOptions& options,
+Mesh field_mesh(const std::vector<Vec3>& points, std::vector<Vec3> normals, const FieldSampler& sampler, const MeshOptions& options,
                 const Monitor& monitor, std::size_t max_memory, mesh::LeftOut* left_out) {
   if (points.size() != normals.size()) throw InvalidInput("points and normals differ in number");
   if (points.size() < 4) throw InvalidInput("a mesh needs at least 4 points");
@@ -164,7 +165,7 @@ Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normal
     throw InvalidInput("mesh depth must be 4 to 12");
   report(monitor, Done::kNothing);
   Prepared prepared;
-  mesh::prepare(points, normals, 0, prepared);
+  mesh::prepare(points, std::move(normals), 0, prepared);
   mesh::Noise noise = mesh::estimate_noise(prepared.points, *prepared.neighbours);
   if (options.noise.unit != Length::Unit::kAuto) noise.position = options.noise.value / prepared.typical;
   report(monitor, Done::kNoise);

@@ -16,7 +16,7 @@ namespace g3r {
 /// and the rest of reconstruct(), in bytes; looked at once the octree shows what is needed. `left_out` (may be null): as of finish_mesh().
 /// O(N log N) time. Throws InvalidInput (sizes that differ, too few points, an option out of range), Unavailable (beyond max_memory),
 /// Cancelled, std::bad_alloc.
-[[nodiscard]] Mesh field_mesh(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const FieldSampler& sampler,
+[[nodiscard]] Mesh field_mesh(const std::vector<Vec3>& points, std::vector<Vec3> normals, const FieldSampler& sampler,
                               const MeshOptions& options = {}, const Monitor& monitor = {}, std::size_t max_memory = 0,
                               mesh::LeftOut* left_out = nullptr);
 

@@ -90,8 +90,8 @@ Octree::Octree(const Vec3& low, double side, const std::vector<RefineDisc>& requ
     : low_(low), unit_(side / static_cast<double>(std::uint32_t{1} << kMaxOctreeLevel)) {
   refine(requests, rule, cancel);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    if (nodes_[i].first_child >= 0) continue;
-    nodes_[i].leaf = static_cast<std::int32_t>(leaf_nodes_.size());
+    if (nodes_[i].split) continue;
+    nodes_[i].next = static_cast<std::uint32_t>(leaf_nodes_.size());
     leaf_nodes_.push_back(static_cast<std::uint32_t>(i));
     depth_ = std::max(depth_, static_cast<int>(nodes_[i].level));
   }
@@ -116,7 +116,8 @@ void Octree::refine(const std::vector<RefineDisc>& requests, const SplitRule& ru
       if (!deeper) continue;
       OctreeNode& parent = nodes_[front.node[f]];
       if (nodes_.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()) - 8) throw std::bad_alloc();
-      parent.first_child = static_cast<std::int32_t>(nodes_.size());
+      parent.split = true;
+      parent.next = static_cast<std::uint32_t>(nodes_.size());
       const OctreeNode copy = parent;
       const std::uint32_t half = extent(copy) / 2;
       for (std::uint32_t c = 0; c < 8; ++c) {
@@ -134,7 +135,7 @@ void Octree::refine(const std::vector<RefineDisc>& requests, const SplitRule& ru
     std::vector<std::vector<std::uint32_t>> lists(children);
     parallel::for_blocks(split.size(), kBlock, [&](std::size_t first, std::size_t last) {
       for (std::size_t s = first; s < last; ++s) {
-        const auto base = static_cast<std::uint32_t>(nodes_[front.node[split[s]]].first_child);
+        const auto base = nodes_[front.node[split[s]]].next;
         for (std::uint32_t c = 0; c < 8; ++c) {
           const OctreeNode& child = nodes_[base + c];
           const Vec3 low = world(child.low[0], child.low[1], child.low[2]);
@@ -158,14 +159,14 @@ void Octree::refine(const std::vector<RefineDisc>& requests, const SplitRule& ru
 }
 
 void Octree::number_corners() {
-  corners_.resize(leaf_nodes_.size());
+  family_corners_.resize(family(static_cast<std::uint32_t>(nodes_.size() - 1)) + 1);
   CornerTable table(2 * leaf_nodes_.size());
-  for (std::size_t l = 0; l < corners_.size(); ++l) {
-    const OctreeNode& node = nodes_[leaf_nodes_[l]];
+  for (const std::uint32_t leaf : leaf_nodes_) {
+    const OctreeNode& node = nodes_[leaf];
     for (std::uint32_t c = 0; c < 8; ++c) {
       std::array<std::uint32_t, 3> g{};
       for (std::size_t a = 0; a < 3; ++a) g[a] = node.low[a] + ((c >> a) & 1U) * extent(node);
-      corners_[l][c] = table.number(corner_key(g), corner_keys_);
+      family_corners_[family(leaf)][kLattice[sibling(leaf)] + kLattice[c]] = table.number(corner_key(g), corner_keys_);
     }
   }
 }

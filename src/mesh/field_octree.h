@@ -27,9 +27,10 @@ struct RefineDisc {
 
 struct OctreeNode {
   std::array<std::uint32_t, 3> low{};  ///< lower corner, in units of the smallest possible cell
-  std::int32_t first_child = -1;       ///< children are 8 consecutive nodes, child bit a set = upper half along axis a; -1: leaf
-  std::int32_t leaf = -1;              ///< number among the leaves; -1: internal
-  std::uint8_t level = 0;              ///< 0 = root
+  /// Of a split node, its first child: children are 8 consecutive nodes, child bit a set = upper half along axis a. Of a leaf, its number.
+  std::uint32_t next = 0;
+  std::uint8_t level = 0;  ///< 0 = root
+  bool split = false;
 };
 
 /// An edge of a leaf that no smaller leaf's edge subdivides.
@@ -60,8 +61,17 @@ class Octree {
   [[nodiscard]] std::size_t leaf_count() const { return leaf_nodes_.size(); }
   /// Node index of each leaf.
   [[nodiscard]] const std::vector<std::uint32_t>& leaf_nodes() const { return leaf_nodes_; }
-  /// Numbers of a leaf's eight corners, bit a of the position set = upper along axis a.
-  [[nodiscard]] const std::array<std::uint32_t, 8>& corners(std::size_t leaf) const { return corners_[leaf]; }
+  /// Number of a leaf's corner, bit a of `place` set = upper along axis a.
+  [[nodiscard]] std::uint32_t corner(std::size_t leaf, std::uint32_t place) const {
+    const std::uint32_t node = leaf_nodes_[leaf];
+    return family_corners_[family(node)][kLattice[sibling(node)] + kLattice[place]];
+  }
+  /// All eight of them.
+  [[nodiscard]] std::array<std::uint32_t, 8> corners(std::size_t leaf) const {
+    std::array<std::uint32_t, 8> out{};
+    for (std::uint32_t place = 0; place < 8; ++place) out[place] = corner(leaf, place);
+    return out;
+  }
   [[nodiscard]] std::size_t corner_count() const { return corner_keys_.size(); }
   /// Integer coordinates of a corner, in units of the smallest possible cell.
   [[nodiscard]] std::array<std::uint32_t, 3> corner_grid(std::size_t corner) const;
@@ -75,6 +85,10 @@ class Octree {
   [[nodiscard]] int depth() const { return depth_; }
 
  private:
+  // Eight siblings have 27 corners, on a lattice of 3 x 3 x 3: the corner of a sibling is at the sum of the places of their bits.
+  static constexpr std::array<std::uint32_t, 8> kLattice{0, 1, 3, 4, 9, 10, 12, 13};
+  static std::size_t family(std::uint32_t node) { return node == 0 ? 0 : (node - 1) / 8; }
+  static std::uint32_t sibling(std::uint32_t node) { return node == 0 ? 0 : (node - 1) % 8; }
   void refine(const std::vector<RefineDisc>& requests, const SplitRule& rule, const std::atomic<bool>* cancel);
   void number_corners();
 
@@ -83,7 +97,7 @@ class Octree {
   int depth_ = 0;
   std::vector<OctreeNode> nodes_;
   std::vector<std::uint32_t> leaf_nodes_;
-  std::vector<std::array<std::uint32_t, 8>> corners_;
+  std::vector<std::array<std::uint32_t, 27>> family_corners_;  // 108 bytes where its leaves' own would take up to 256
   std::vector<std::uint64_t> corner_keys_;
 };
 

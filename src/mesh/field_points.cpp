@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace g3r::mesh {
 namespace {
@@ -30,9 +31,9 @@ void find_neighbours(Prepared& prepared) {
   prepared.near = prepared.neighbours->of_all(kNear);
 }
 
-void prepare(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, double typical, Prepared& prepared) {
+void prepare(const std::vector<Vec3>& points, std::vector<Vec3> normals, double typical, Prepared& prepared) {
   OrientedPoints& out = prepared.points;
-  out = {points, normals, {}};
+  out = {points, std::move(normals), {}};
   find_neighbours(prepared);
   out.spacing = smooth_spacing(out.positions, prepared.near);
   for (Vec3& n : out.normals) {

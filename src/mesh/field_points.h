@@ -36,7 +36,7 @@ void find_neighbours(Prepared& prepared);
 
 /// Fills in points, neighbours and spacings. `typical`: spacing of the cloud that these points are a part of; 0: theirs. Throws
 /// InvalidInput (a normal is zero, all points are at one place).
-void prepare(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, double typical, Prepared& prepared);
+void prepare(const std::vector<Vec3>& points, std::vector<Vec3> normals, double typical, Prepared& prepared);
 
 /// Of the positions, in spacings; 0 where it is too little to tell.
 [[nodiscard]] double noise_seen(const Noise& noise);

@@ -35,10 +35,10 @@ std::vector<std::uint8_t> mark_nodes(const Octree& octree, const Marked& marked)
   const std::vector<OctreeNode>& nodes = octree.nodes();
   std::vector<std::uint8_t> out(nodes.size(), 0);
   for (std::size_t i = nodes.size(); i-- > 0;) {  // children come after their parents
-    if (nodes[i].first_child < 0) {
-      out[i] = marked(static_cast<std::size_t>(nodes[i].leaf)) ? 1 : 0;
+    if (!nodes[i].split) {
+      out[i] = marked(static_cast<std::size_t>(nodes[i].next)) ? 1 : 0;
     } else {
-      for (std::size_t c = 0; c < 8; ++c) out[i] |= out[static_cast<std::size_t>(nodes[i].first_child) + c];
+      for (std::size_t c = 0; c < 8; ++c) out[i] |= out[nodes[i].next + c];
     }
   }
   return out;
@@ -73,10 +73,8 @@ class Traversal {
   }
 
  private:
-  bool internal(std::uint32_t n) const { return octree_.nodes()[n].first_child >= 0; }
-  std::uint32_t child(std::uint32_t n, std::uint32_t bits) const {
-    return internal(n) ? static_cast<std::uint32_t>(octree_.nodes()[n].first_child) + bits : n;
-  }
+  bool internal(std::uint32_t n) const { return octree_.nodes()[n].split; }
+  std::uint32_t child(std::uint32_t n, std::uint32_t bits) const { return internal(n) ? octree_.nodes()[n].next + bits : n; }
 
   template <class OnTask>
   void expand_cell(const Task& task, const OnTask& on_task) const {
@@ -139,12 +137,12 @@ class Traversal {
     for (std::uint32_t q = 1; q < 4; ++q) {
       if (octree_.nodes()[task.node[q]].level > octree_.nodes()[task.node[smallest]].level) smallest = q;
     }
-    const auto& corners = octree_.corners(static_cast<std::size_t>(octree_.nodes()[task.node[smallest]].leaf));
+    const std::uint32_t leaf = octree_.nodes()[task.node[smallest]].next;
     MinimalEdge edge;
-    edge.low = corners[bits_of(smallest)];
-    edge.high = corners[bits_of(smallest) | (1U << d)];
+    edge.low = octree_.corner(leaf, bits_of(smallest));
+    edge.high = octree_.corner(leaf, bits_of(smallest) | (1U << d));
     edge.axis = task.axis;
-    for (std::size_t k = 0; k < 4; ++k) edge.leaf[k] = static_cast<std::uint32_t>(octree_.nodes()[task.node[quadrant(k)]].leaf);
+    for (std::size_t k = 0; k < 4; ++k) edge.leaf[k] = octree_.nodes()[task.node[quadrant(k)]].next;
     on_edge(edge);
   }
 

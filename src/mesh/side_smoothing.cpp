@@ -26,7 +26,7 @@ std::vector<Around> leaves_around(const Octree& octree, const std::vector<std::u
   std::vector<Around> out(ambiguous);
   for (std::uint32_t leaf = 0; leaf < octree.leaf_count(); ++leaf) {
     for (std::uint8_t place = 0; place < 8; ++place) {
-      const std::uint32_t k = number[octree.corners(leaf)[place]];
+      const std::uint32_t k = number[octree.corner(leaf, place)];
       if (k == kNone) continue;
       Around& a = out[k];
       a.leaf[a.count] = leaf;
@@ -66,7 +66,7 @@ std::vector<std::vector<float>> smooth_sides(const Octree& octree, const Ambiguo
     for (std::size_t i = 0; i < a.count; ++i) {
       for (std::uint32_t other = 0; other < 8; ++other) {
         if (other == a.place[i]) continue;
-        const std::uint32_t c = octree.corners(a.leaf[i])[other];
+        const std::uint32_t c = octree.corner(a.leaf[i], other);
         const double weight = along[along.size() / 2 + grid_of(other) - grid_of(a.place[i])];
         sum += weight * (number[c] != kNone ? static_cast<double>(side[number[c]]) : inside[c] != 0 ? 1.0 : -1.0);
         total += weight;
