@@ -87,6 +87,8 @@ bool sync_folder(const std::string& folder);
 [[nodiscard]] std::size_t peak_memory();
 /// From now on, large blocks are the system's again once they are freed. For programs: it is a setting of the whole process.
 void give_back_freed_blocks();
+/// What small blocks have left free becomes the system's again. Takes milliseconds.
+void give_back_holes();
 /// Memory that nobody uses, in bytes.
 [[nodiscard]] double free_memory();
 /// The number of this process.

@@ -164,6 +164,12 @@ void give_back_freed_blocks() {
 #endif
 }
 
+void give_back_holes() {
+#ifdef __GLIBC__
+  (void)::malloc_trim(0);
+#endif
+}
+
 double free_memory() {
 #ifdef __APPLE__
   vm_statistics64_data_t pages{};

@@ -299,6 +299,8 @@ std::size_t peak_memory() {
 
 void give_back_freed_blocks() {}
 
+void give_back_holes() {}
+
 double free_memory() {
   MEMORYSTATUSEX memory{};
   memory.dwLength = sizeof memory;

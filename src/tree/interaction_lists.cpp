@@ -1,6 +1,7 @@
 // Source: the dual tree traversal of Dehnen 2002 with a symmetric splitting rule.
 #include "tree/interaction_lists.h"
 
+#include "base/platform.h"
 #include "cpu/parallel.h"
 
 #include <algorithm>
@@ -15,8 +16,9 @@
 namespace g3r {
 namespace {
 
-constexpr int kMaxLevelDifference = 3;     // bounds the number of distinct offsets
-constexpr std::size_t kTasksWanted = 512;  // target subtrees traversed in parallel; any value gives the same lists
+constexpr int kMaxLevelDifference = 3;         // bounds the number of distinct offsets
+constexpr std::size_t kTasksWanted = 512;      // target subtrees traversed in parallel; any value gives the same lists
+constexpr std::size_t kManyTargets = 1 << 17;  // whose pairs are found in blocks of tens of MB; fewer leave less than the time is worth
 constexpr std::uint32_t kNotALeaf = 0xffffffffu;
 
 struct NodePair {
@@ -277,6 +279,7 @@ InteractionLists build_interaction_lists(const Octree& targets, const Octree& so
     }
   });
   index_offsets(targets, sources, lists);
+  if (targets.nodes.front().count() > kManyTargets) platform::give_back_holes();  // of what subtrees have found
   return lists;
 }
 
