@@ -212,7 +212,7 @@ MeshOptions choose(const MeshOptions& given, const Options& options) {
 // Orientation and mesh come one after the other. What Open3D will take is not known.
 std::size_t planned(const Stats& stats, const MeshOptions& chosen) {
   if (chosen.mesher == Mesher::kPoisson) return stats.planned_memory_bytes;
-  return std::max(stats.planned_memory_bytes, field_mesh_memory(stats.used, stats.spacing, stats.box_side, chosen.depth));
+  return std::max(stats.planned_memory_bytes, field_mesh_memory(stats.used, stats.spacing, stats.noise, stats.box_side, chosen.depth));
 }
 
 }  // namespace

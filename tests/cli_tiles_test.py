@@ -13,7 +13,7 @@ import unittest
 from cli_support import *
 
 COUNT = 8200  # few more than tiles take
-LARGE_COUNT = 100_000  # of a cloud that fits a limit in tiles and does not in core
+LARGE_COUNT = 200_000  # of a cloud that fits a limit in tiles and does not in core
 KILLS = int(os.environ.get("G3R_TILE_KILLS", "2"))
 
 

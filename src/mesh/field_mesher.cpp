@@ -39,9 +39,10 @@ using mesh::RefineDisc;
 constexpr double kMargin = 1 + 2 * mesh::kBeyond;
 
 // Peak memory, measured (docs/evidence/meshes.md). If it is planned too small a run is killed, if too large it is refused for nothing.
-constexpr double kBaseBytes = 26 << 20;  // Code, libraries (those of E57 are a third) and the stacks of threads take so many.
-constexpr double kBytesPerPoint = 500;   // A point takes so many, those of the winding field included.
-constexpr double kBytesPerLeaf = 210;  // A leaf takes so many, twice as many one of a thin wall or gap: most of its corners are ambiguous.
+constexpr double kBaseBytes = 36 << 20;  // Code, libraries, the stacks of threads, and 131,072 queries of a sum take so many.
+constexpr double kBytesPerPoint = 380;   // A point takes so many, those of the winding field included.
+constexpr double kBytesPerLeaf = 190;  // A leaf takes so many, twice as many one of a thin wall or gap: most of its corners are ambiguous.
+constexpr double kMoreLeaves = 0.1;    // More are planned before the octree is known, so that no plain shape is refused once it is.
 constexpr double kPlainLeaves = 8.5;   // A point of a shape without thin walls has 5.7 to 8.6 leaves; what exceeds this is thin.
 // The thickness of the layer that is refined, in cells of the automatic depth.
 constexpr double kThickness = 2 * mesh::kDiscHalf / kFinestCell;
@@ -146,8 +147,12 @@ Mesh raw_mesh(const Prepared& prepared, const std::vector<double>& size, const F
 
 }  // namespace
 
-std::size_t field_mesh_memory(std::size_t points, double spacing, double longest_side, int depth) {
-  double leaves = kPlainLeaves + 1;  // one more, as nobody knows of thin walls yet
+std::size_t field_mesh_memory(std::size_t points, double spacing, double noise, double longest_side, int depth) {
+  double leaves = kPlainLeaves + kMoreLeaves;
+  if (depth == 0 && spacing > 0) {
+    const double larger = mesh::cell_under(mesh::noise_seen({noise / spacing, 0})) / kFinestCell;
+    leaves /= larger * larger;
+  }
   if (depth > 0 && longest_side > 0) {
     // So many cells of its own are as wide as one of the automatic depth; a finer one refines the layer and one cell on both sides of it.
     // Nine points at depth 10 took 2.3 GiB of 3.3 planned so.

@@ -20,8 +20,9 @@ namespace g3r {
                               const MeshOptions& options = {}, const Monitor& monitor = {}, std::size_t max_memory = 0,
                               mesh::LeftOut* left_out = nullptr);
 
-/// The memory that field_mesh() and the rest of reconstruct() take for N points of a typical spacing in a box with this longest side (same
-/// units), in bytes; depth 0: automatic. Walls and gaps of less than about 0.7 spacings, which are not known ahead, take up to 5 times it.
-[[nodiscard]] std::size_t field_mesh_memory(std::size_t points, double spacing, double longest_side, int depth);
+/// The memory that field_mesh() and the rest of reconstruct() take for N points of a typical spacing and noise in a box with this longest
+/// side (same units), in bytes; depth 0: automatic. Walls and gaps of less than about 0.7 spacings, which are not known ahead, take up to 5
+/// times it.
+[[nodiscard]] std::size_t field_mesh_memory(std::size_t points, double spacing, double noise, double longest_side, int depth);
 
 }  // namespace g3r

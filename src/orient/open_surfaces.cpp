@@ -56,11 +56,7 @@ class Search {
  public:
   Search(const PointSet& set, double noise, const SumPlan& sums, const std::atomic<bool>* cancel)
       : set_(set), points_(set.points()), noise_(noise), sums_(sums), cancel_(cancel) {
-    const double spacing = set.spacing();
-    const double all = std::sqrt(static_cast<double>(set.size()) / static_cast<double>(kMostSites));
-    const double least = std::max(kNoiseScale * noise, all > 1 ? kFirstDistance * all * spacing : 0);
-    const double distance = least < kFirstDistance / 2 * spacing ? 0 : std::max(kFirstDistance * spacing, least);
-    finest_ = place_sites(set_, distance);
+    finest_ = place_sites(set_, site_distance(set.size(), set.spacing(), noise));
     edges_ = edges_of(finest_);
     DisjointSets parts(finest_.size());
     for (const SignEdge& edge : edges_) parts.join(edge.a, edge.b);
@@ -433,6 +429,12 @@ std::vector<float> certified_sides(const PointSet& set, double noise, const SumP
   const Search search(set, noise, sums, cancel);
   const Certificate given = search.test(normals);
   return certified(search, given, normals, noise == 0);
+}
+
+double site_distance(std::size_t points, double spacing, double noise) {
+  const double all = std::sqrt(static_cast<double>(points) / static_cast<double>(kMostSites));
+  const double least = std::max(kNoiseScale * noise, all > 1 ? kFirstDistance * all * spacing : 0);
+  return least < kFirstDistance / 2 * spacing ? 0 : std::max(kFirstDistance * spacing, least);
 }
 
 OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan& sums, std::vector<Vec3>& normals,

@@ -16,6 +16,9 @@ namespace g3r {
 /// Sites of the finest scale of the certificate, at most: more take long and say no more about sides.
 inline constexpr std::size_t kMostSites = 200000;
 
+/// The least distance of the sites of that scale, of a cloud with this typical spacing and noise; 0: every point is one.
+[[nodiscard]] double site_distance(std::size_t points, double spacing, double noise);
+
 /// Open surfaces of a cloud. Empty vectors of parts: there is none.
 struct OpenSurfaces {
   static constexpr std::uint32_t kNone = 0xffffffff;

@@ -228,15 +228,18 @@ bool starts_coarse(const Settings& settings, std::size_t points) {
 }
 
 std::size_t planned_memory(const Settings& settings, std::size_t given, std::size_t used) {
-  constexpr double kProgram = 40u << 20;  // code, libraries (those of E57 are a third), thread stacks, matrices
+  constexpr double kProgram = 20u << 20;  // code, libraries, thread stacks, matrices, queries
   constexpr double kPerGiven = 70;        // what the program has of the input, index, result
-  constexpr double kPerUnknown = 375;     // while the equations are solved,
+  constexpr double kPerUnknown = 330;     // while the equations are solved,
   constexpr double kBase = 255;           // or what stays of it while sides are certified,
-  constexpr double kPerSite = 620;        // and what each of the sites then takes
+  constexpr double kPerSite = 445;        // and what each of the sites then takes:
+  constexpr double kFilled = 0.7;         // as many as a maximal sample of points so far apart has, in squares of that side
   const std::size_t harmonics = settings.method == Method::kGreen ? settings.harmonics.size() : 0;
   const auto unknowns = static_cast<double>(used);
   const double solve = (kPerUnknown + 48 * static_cast<double>(harmonics)) * unknowns;
-  const double certificate = kBase * unknowns + kPerSite * std::min(unknowns, static_cast<double>(kMostSites));
+  const double apart = site_distance(used, settings.spacing, settings.noise) / settings.spacing;
+  const double sites = apart > 0 ? kFilled * unknowns / (apart * apart) : unknowns;
+  const double certificate = kBase * unknowns + kPerSite * sites;
   double bytes = kProgram + kPerGiven * static_cast<double>(given) + std::max(solve, certificate);
   if (settings.dense) bytes += 9 * unknowns * unknowns * sizeof(double);
   return whole_bytes(bytes);
