@@ -121,8 +121,17 @@ TEST(StartsCoarse, OnlyWhereItIsAskedForAndPointsAreMany) {
   EXPECT_TRUE(starts_coarse(s, 1'000'000));
 }
 
+TEST(PlannedMemory, HasASiteOfTheCertificateForEveryPointOnlyWithoutNoise) {
+  Settings s;
+  s.spacing = 0.01;
+  const std::size_t clean = planned_memory(s, 100'000, 100'000);
+  s.noise = 0.01;
+  EXPECT_LT(static_cast<double>(planned_memory(s, 100'000, 100'000)), 0.8 * static_cast<double>(clean));
+}
+
 TEST(PlannedMemory, GrowsWithEveryPointAndIsHeldToTheLimit) {
   Settings s;
+  s.spacing = 0.01;
   EXPECT_LT(planned_memory(s, 1000, 1000), planned_memory(s, 2000, 1000));
   EXPECT_LT(planned_memory(s, 2000, 1000), planned_memory(s, 2000, 2000));
   s.dense = true;

@@ -84,8 +84,8 @@ inline constexpr std::size_t kThinning = 4;
 /// Whether solve_coarse_to_fine() begins with fewer points.
 [[nodiscard]] bool starts_coarse(const Settings& settings, std::size_t points);
 
-/// Predicted peak memory of orient() in bytes for N points. Measured peaks are 0.9 to 1.08 of it from 50,000 points on, but for clouds whose
-/// facets are solved for, 1.25 (docs/evidence/speed.md).
+/// Predicted peak memory of orient() in bytes for N points. Measured peaks are 0.9 to 1.08 of it from 50,000 points on, but for clouds
+/// whose facets are solved for, 1.25 (docs/evidence/speed.md).
 [[nodiscard]] std::size_t planned_memory(const Settings& settings, std::size_t given, std::size_t used);
 
 /// Throws Unavailable if the plan exceeds options.max_memory.

@@ -6,6 +6,7 @@
 #include "io/point_stream.h"
 #include "io/tiles.h"
 #include "mesh/field_points.h"
+#include "orient/open_surfaces.h"
 #include "orient/settings.h"
 #include "orient/start.h"
 #include "tiles/external_sort.h"
@@ -162,8 +163,13 @@ Manifest survey(const std::vector<std::string>& files, const TileOptions& option
   return m;
 }
 
+// Of so many points without noise, or of fewer: up to kMostSites the certificate takes more of each.
 std::size_t in_core(std::uint64_t points) {
-  return planned_memory(Settings(), static_cast<std::size_t>(points), static_cast<std::size_t>(points));
+  Settings clean;
+  clean.spacing = 1;
+  const auto all = static_cast<std::size_t>(points);
+  const std::size_t some = std::min(all, kMostSites);
+  return std::max(planned_memory(clean, all, all), planned_memory(clean, some, some));
 }
 
 std::size_t memory_for(std::uint64_t points) { return in_core(points) + kFixed + kBeside * static_cast<std::size_t>(points); }
