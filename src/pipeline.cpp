@@ -152,7 +152,7 @@ double add_open_surfaces(const OpenSurfaces& surfaces, std::vector<float>& confi
     confidence[i] = surfaces.certainty[i];
     ++open;
     agreed += surfaces.agrees[i];
-    undecided += surfaces.certainty[i] <= 0.5F ? 1 : 0;
+    undecided += surfaces.certainty[i] <= kUndecided ? 1 : 0;
   }
   if (open == 0) return 0;
   const auto all = static_cast<double>(confidence.size());

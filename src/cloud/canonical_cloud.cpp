@@ -22,15 +22,16 @@ struct Keyed {
   std::uint32_t index;
 };
 
-// Least-significant-digit radix sort, 8 digits of 8 bits, stable; blocks of fixed size keep it the same for any number of threads.
+// Least-significant-digit radix sort, stable; blocks of fixed size keep it the same for any number of threads.
 void radix_sort(std::vector<Keyed>& items) {
-  constexpr std::size_t kDigits = 256;
+  constexpr int kBits = std::numeric_limits<std::uint8_t>::digits;
+  constexpr std::size_t kDigits = std::size_t{1} << kBits;
   const std::size_t n = items.size();
   const std::size_t blocks = (n + parallel::kBlock - 1) / parallel::kBlock;
   std::vector<Keyed> other(n);
   std::vector<std::array<std::uint32_t, kDigits>> offset(blocks);
-  for (int shift = 0; shift < 64; shift += 8) {
-    const auto digit = [shift](const Keyed& item) { return static_cast<std::size_t>(item.code >> shift & 0xff); };
+  for (int shift = 0; shift < std::numeric_limits<std::uint64_t>::digits; shift += kBits) {
+    const auto digit = [shift](const Keyed& item) { return static_cast<std::size_t>(static_cast<std::uint8_t>(item.code >> shift)); };
     parallel::for_blocks(n, parallel::kBlock, [&](std::size_t begin, std::size_t end) {
       auto& count = offset[begin / parallel::kBlock];
       count.fill(0);
@@ -120,12 +121,9 @@ void require_not_collinear(const std::vector<Vec3>& points) {
 }  // namespace
 
 std::uint64_t spread_bits(std::uint64_t v) {
-  v &= 0x1fffff;
-  v = (v | v << 32) & 0x1f00000000ffffULL;
-  v = (v | v << 16) & 0x1f0000ff0000ffULL;
-  v = (v | v << 8) & 0x100f00f00f00f00fULL;
-  v = (v | v << 4) & 0x10c30c30c30c30c3ULL;
-  return (v | v << 2) & 0x1249249249249249ULL;
+  std::uint64_t spread = 0;
+  for (int bit = 0; bit < kGridBits; ++bit) spread |= (v >> bit & 1) << 3 * bit;
+  return spread;
 }
 
 std::uint64_t morton_code(const Vec3& unit) {

@@ -15,6 +15,19 @@ inline constexpr double kSamePatch = 0.9;
 inline constexpr double kSameSide = 0.5;
 /// Standard deviations from a surface within which its points lie, all but one in 80: fewer leave some out, more let in others.
 inline constexpr double kSigmas = 2.5;
+/// On the squares of the unknowns of a fit, relative: points on a line leave some of them open. Above rounding, and far below what moves a
+/// fit.
+inline constexpr double kRidge = 1e-9;
+/// Places of a cloud that are looked at where a median or a quantile of all is asked for: fewer leave it to chance.
+inline constexpr std::size_t kPlaces = 2000;
+/// The same where each costs a hundred times as much.
+inline constexpr std::size_t kFewPlaces = 500;
+/// Nearest points that say what a surface is like at a place: fewer follow the noise or the sampling, more reach across walls.
+inline constexpr std::size_t kPatchNeighbours = 12;
+/// So many times as many points of a surface reach twice as far.
+inline constexpr std::size_t kTwiceAsFar = 4;
+/// Reach in spacings of Gaussian weights over near points: without them CAD models have up to 1.13 times the error.
+inline constexpr double kWeightReach = 1.5;
 /// Numbers of a plane.
 inline constexpr std::size_t kPlaneTerms = 3;
 /// Numbers of a quadratic height field, 1, u, v, u^2, uv, v^2: one point more says how far they are off.

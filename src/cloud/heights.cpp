@@ -1,5 +1,6 @@
 #include "cloud/heights.h"
 
+#include "cloud/constants.h"
 #include "cloud/quadratic_patch.h"
 
 #include <Eigen/Cholesky>
@@ -11,7 +12,6 @@ namespace g3r {
 namespace {
 
 constexpr Eigen::Index kColumns = 10;  // the monomials of u and v up to degree 3
-constexpr double kRidge = 1e-12;       // on their squares, relative: above rounding, and far below what moves a height
 
 }  // namespace
 

@@ -1,11 +1,14 @@
 #include "cloud/layers.h"
 
+#include "cloud/constants.h"
+#include "cloud/exact_plane.h"
 #include "cloud/quadratic_patch.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace g3r {
 namespace {
@@ -14,16 +17,14 @@ using Eigen::ArrayXd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kRadius = 0.6;       // of the cylinder, in distances of the farthest point
-constexpr double kTail = 1.5;         // deviations of a layer that have to be inside for its own deviation to count
-constexpr Eigen::Index kFewest = 20;  // heights: three layers have ten numbers
-constexpr Eigen::Index kTerms = 5;    // u, v, u^2, u v, v^2
-constexpr int kSteps = 20;            // of expectation and maximisation
+constexpr double kRadius = 0.6;     // of the cylinder, in distances of the farthest point
+constexpr double kTail = 1.5;       // deviations of a layer that have to be inside for its own deviation to count
+constexpr Eigen::Index kTerms = 5;  // u, v, u^2, u v, v^2
+constexpr int kSteps = 20;          // of expectation and maximisation, and of points that look for their layer: most change theirs 4 times
+constexpr Eigen::Index kMostLayers = 3;
 constexpr double kLeastShare = 0.05;  // of the deviation about one layer, that about more: a mixture must not shrink to points
-constexpr double kRidge = 1e-9;       // on the terms, relative: points on a line leave some of them open
-constexpr int kRounds = 12;           // of two layers: most do not change after 4
 constexpr int kFewestOnLayer = 4;     // of two layers, on either
-constexpr double kNoShare = 1e-300;   // keeps the logarithm of a likelihood finite
+constexpr double kNoShare = std::numeric_limits<double>::min();  // keeps the logarithm of a likelihood finite
 
 struct Heights {
   MatrixXd terms;   // n x kTerms, of order 1
@@ -102,7 +103,7 @@ double layered_deviation(const std::vector<Vec3>& points, const std::uint32_t* i
                          const Vec3& normal) {
   const Heights h = heights(points, index, count, centre, normal);
   const Eigen::Index n = h.z.size();
-  if (n < kFewest) return 0;
+  if (n <= kTerms + kMostLayers) return 0;
   const auto total = static_cast<double>(n);
   const MatrixXd ridge = kRidge * total * MatrixXd::Identity(kTerms, kTerms);
   // One layer: the constant is the mean of what the other terms leave, so both are taken about their means.
@@ -117,14 +118,14 @@ double layered_deviation(const std::vector<Vec3>& points, const std::uint32_t* i
   Mixture best{deviation, total * std::log(misfit / total) + total};
   const Eigen::LDLT<MatrixXd> several(h.terms.transpose() * h.terms + ridge);
   for (const Mixture& mixture :
-       {fit_mixture<2>(h, several, slopes, middle, deviation), fit_mixture<3>(h, several, slopes, middle, deviation)}) {
+       {fit_mixture<2>(h, several, slopes, middle, deviation), fit_mixture<kMostLayers>(h, several, slopes, middle, deviation)}) {
     if (mixture.criterion < best.criterion) best = mixture;
   }
   return best.sigma;
 }
 
 TwoLayers fit_two_layers(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count, const Vec3& normal) {
-  constexpr Eigen::Index kMost = 32;
+  constexpr Eigen::Index kMost = kPlaneNeighbours;
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, kTerms + 2, 0, kMost, kTerms + 2>;
   using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
   using Square = Eigen::Matrix<double, kTerms + 2, kTerms + 2>;
@@ -150,7 +151,7 @@ TwoLayers fit_two_layers(const std::vector<Vec3>& points, const std::uint32_t* i
   std::nth_element(sorted.data(), sorted.data() + n / 2, sorted.data() + n);
   double middle = sorted[n / 2];
   TwoLayers layers;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kSteps; ++round) {
     bool unchanged = round > 0;
     int upper = 0;
     for (Eigen::Index k = 0; k < n; ++k) {

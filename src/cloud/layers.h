@@ -14,7 +14,7 @@ namespace g3r {
 /// fitted by expectation and maximisation (Dempster, Laird, Rubin 1977) for C = 1, 2, 3; the C with the smallest Bayesian information
 /// criterion (Schwarz 1978) counts. So two sides of a wall 3 sigma thick are two layers, where the spread about one is 1.8 sigma.
 /// `index`: `count` > 40 points around `centre`, nearest first; those less than 0.6 of the last one's distance away from the axis through
-/// `centre` along `normal` take part. Same unit as the points; 0 where fewer than 20 do. O(count).
+/// `centre` along `normal` take part. Same unit as the points; 0 where 8 or fewer do. O(count).
 [[nodiscard]] double layered_deviation(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count, const Vec3& centre,
                                        const Vec3& normal);
 
@@ -27,7 +27,7 @@ struct TwoLayers {
 /// Heights over the plane with this normal, z = q(u, v) + one of two offsets, q a quadratic without constant: least squares, and every
 /// point to the nearer offset, in turn (Lloyd, "Least squares quantization in PCM", IEEE Transactions on Information Theory 1982), from the
 /// points above and below the middle of one layer. Noise about one layer leaves a deviation of 0.3 gaps, of 0.15 in one of fifty cases,
-/// walls next to nothing. 8 <= `count` <= 32 points. Same unit as the points. O(count).
+/// walls next to nothing. 8 <= `count` <= kPlaneNeighbours points. Same unit as the points. O(count).
 [[nodiscard]] TwoLayers fit_two_layers(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count, const Vec3& normal);
 
 }  // namespace g3r

@@ -19,12 +19,6 @@
 namespace g3r {
 namespace {
 
-// Neighbourhoods looked at, spread along the canonical order: fewer leave the quantiles to chance.
-constexpr std::size_t kProbes = 2000;
-// Points of each, to which height fields are fitted: more reach across walls, fewer follow the noise.
-constexpr std::size_t kNeighbours = 12;
-// Nearest of them, of which more than kQuadraticTerms are needed: shape lifts these less, noise as much.
-constexpr std::size_t kFewer = 8;
 // Quantile of the neighbourhoods that decides: shape lifts the others.
 constexpr double kFlattest = 0.02;
 // Quantile that shape lifts more than the flattest, and that of the layers that decides.
@@ -33,7 +27,7 @@ constexpr double kFlat = 0.1;
 constexpr double kOfNoise = 0.5;
 // In spacings, of noise: less blurs nothing, and curvature leaves as much.
 constexpr double kLeast = 0.04;
-// In spacings, what height fields through kNeighbours say where noise fills their balls.
+// In spacings, what height fields through kPatchNeighbours say where noise fills their balls.
 constexpr double kSaturation = 0.57;
 // Of that, what the flattest say at most of noise: beyond, they tell no more.
 constexpr double kFilled = 0.75;
@@ -45,14 +39,10 @@ constexpr double kMostFilled = 0.97;
 constexpr double kOnPlanes = 0.4;
 // Values of a rounded coordinate, at least: those of plates and boxes that stand straight are fewer.
 constexpr std::size_t kFewestLevels = 5;
-// Neighbourhoods that may hold several layers: each costs a hundred times as much.
-constexpr std::size_t kLayerProbes = 500;
-// Points of each: fewer do not show three layers, more reach around the shape.
+// Points of neighbourhoods that may hold several layers: fewer do not show three, more reach around the shape.
 constexpr std::size_t kLayerNeighbours = 256;
 // What the quantile kFlat of them says on smooth surfaces, over the noise.
 constexpr double kLayerBias = 0.92;
-// So many times as many points reach twice as far: where noise fills the neighbourhoods of layers, and to see whether a facet goes on.
-constexpr std::size_t kTwiceAsFar = 4;
 // A neighbourhood is no larger part of a cloud than one in so many points: larger ones follow its shape.
 constexpr std::size_t kSmallPart = 16;
 
@@ -64,13 +54,13 @@ double quantile(std::vector<double> values, double share) {
   return *at;
 }
 
-// Calls visit(point, its `count` nearest, their squared distances) for about `probes` points, spread along their order.
+// Calls visit(point, its `count` nearest, their squared distances) for about `places` points, spread along their order.
 template <typename Visit>
-void for_some(const PointSet& set, std::size_t probes, std::size_t count, Visit visit) {
+void for_some(const PointSet& set, std::size_t places, std::size_t count, Visit visit) {
   std::vector<std::uint32_t> index;
   std::vector<double> squared;
   const std::vector<Vec3>& points = set.points();
-  for (std::size_t i = 0; i < points.size(); i += std::max<std::size_t>(1, points.size() / probes)) {
+  for (std::size_t i = 0; i < points.size(); i += std::max<std::size_t>(1, points.size() / places)) {
     set.tree().nearest(points[i], count, index, squared);
     visit(points[i], index, squared);
   }
@@ -96,7 +86,7 @@ class Residuals {
  public:
   Residuals(const PointSet& set, std::size_t count) : count_(count) {
     const std::vector<Vec3>& points = set.points();
-    for_some(set, kProbes, count, [&](const Vec3&, const auto& index, const auto&) {
+    for_some(set, kPlaces, count, [&](const Vec3&, const auto& index, const auto&) {
       const Vec3 normal = fit_plane(points, index.data(), index.size()).normal;
       residuals_.push_back(quadratic_residual(points, index.data(), index.size(), normal, set.spacing()));
     });
@@ -114,7 +104,7 @@ double layered_noise(const PointSet& set) {
   const std::vector<Vec3>& points = set.points();
   const double spacing = set.spacing();
   std::vector<double> sigma;
-  for_some(set, kLayerProbes, kLayerNeighbours, [&](const Vec3& point, const auto& index, const auto&) {
+  for_some(set, kFewPlaces, kLayerNeighbours, [&](const Vec3& point, const auto& index, const auto&) {
     const Vec3 normal = fit_plane(points, index.data(), index.size()).normal;
     sigma.push_back(layered_deviation(points, index.data(), index.size(), point, normal));
   });
@@ -142,7 +132,7 @@ bool on_exact_planes(const PointSet& set) {
   const Vec3 steps = rounding_steps(set.points(), set.spacing());
   if (std::max({steps[0], steps[1], steps[2]}) > 0) return false;
   std::size_t looked = 0, on_facets = 0;
-  for_some(set, kProbes, kPlaneNeighbours, [&](const Vec3&, const auto& index, const auto&) {
+  for_some(set, kPlaces, kPlaneNeighbours, [&](const Vec3&, const auto& index, const auto&) {
     ++looked;
     const ExactPlane facet = find_facet(set.points(), index, set.spacing());
     if (facet.breadth == 0) return;
@@ -165,7 +155,8 @@ double rounding_noise(const PointSet& set, const Residuals& residuals) {
 double scattered_noise(const PointSet& set, const Residuals& residuals) {
   const double spacing = set.spacing();
   const double flattest = residuals.scatter(kFlattest);
-  if (flattest < kLeast * spacing || Residuals(set, kFewer).scatter(kFlattest) < kOfNoise * residuals.scatter(kFlat)) return 0;
+  // Shape lifts the residuals of fewer points less, noise as much.
+  if (flattest < kLeast * spacing || Residuals(set, kClosest).scatter(kFlattest) < kOfNoise * residuals.scatter(kFlat)) return 0;
   const double filled = flattest / (kSaturation * spacing);
   if (on_exact_planes(set)) return 0;
   const double layered = layered_noise(set);
@@ -212,24 +203,24 @@ Vec3 rounding_steps(const std::vector<Vec3>& points, double spacing) {
 }
 
 double estimate_noise(const PointSet& set) {
-  if (set.size() < kSmallPart * kNeighbours) return 0;
-  const Residuals residuals(set, kNeighbours);
+  if (set.size() < kSmallPart * kPatchNeighbours) return 0;
+  const Residuals residuals(set, kPatchNeighbours);
   return std::max(scattered_noise(set, residuals), rounding_noise(set, residuals));
 }
 
 double largest_scatter(const PointSet& set) {
   const double spacing = set.spacing();
-  if (set.size() < kSmallPart * kNeighbours || on_exact_planes(set)) return 0;
-  const double x = Residuals(set, kNeighbours).scatter(kMostScattered);
+  if (set.size() < kSmallPart * kPatchNeighbours || on_exact_planes(set)) return 0;
+  const double x = Residuals(set, kPatchNeighbours).scatter(kMostScattered);
   const double filled = std::min(x / (kSaturation * spacing), kMostFilled);
   return x / std::sqrt(1 - filled * filled * filled * filled);
 }
 
 double facet_scatter(const PointSet& set) {
-  if (set.size() < kSmallPart * kNeighbours) return 0;
+  if (set.size() < kSmallPart * kPatchNeighbours) return 0;
   std::map<double, std::size_t> counts;  // by scatter, in steps of 2
   std::size_t looked = 0;
-  for_some(set, kLayerProbes, kPlaneNeighbours, [&](const Vec3&, const auto& index, const auto&) {
+  for_some(set, kFewPlaces, kPlaneNeighbours, [&](const Vec3&, const auto& index, const auto&) {
     ++looked;
     const LikeliestPlane found = find_likeliest_plane(set.points(), index, set.spacing());
     if (found.scatter > 0 && goes_on(set, found.plane, found.scatter * set.spacing())) ++counts[found.scatter];
@@ -249,10 +240,10 @@ double facet_scatter(const PointSet& set) {
 
 double dimension(const PointSet& set) {
   constexpr std::size_t kMost = 2048, kRatio = 8;
-  if (set.size() < kSmallPart * kNeighbours) return 2;
+  if (set.size() < kSmallPart * kPatchNeighbours) return 2;
   const std::size_t far = std::min(kMost, set.size() / kSmallPart);
   std::vector<double> found;
-  for_some(set, kLayerProbes, far, [&](const Vec3&, const auto&, const std::vector<double>& squared) {
+  for_some(set, kFewPlaces, far, [&](const Vec3&, const auto&, const std::vector<double>& squared) {
     const double ratio = squared.back() / squared[far / kRatio];
     if (ratio > 1) found.push_back(2 * std::log(kRatio) / std::log(ratio));
   });

@@ -9,9 +9,7 @@ namespace {
 using Eigen::Vector3d;
 
 // On the curvatures, relative to the weight of the data: keeps them bounded where points are few.
-constexpr double kRidge = 1e-3;
-// The same on the slopes, for points on a line: far below what moves a slope, and above rounding.
-constexpr double kSlopeRidge = 1e-9;
+constexpr double kCurvatureRidge = 1e-3;
 
 // Symmetric positive definite, the rows of the lower half one after the other.
 using Lower = std::array<double, kQuadraticTerms*(kQuadraticTerms + 1) / 2>;
@@ -64,7 +62,7 @@ QuadraticPatch fit_quadratic_patch(const std::vector<FitPoint>& points, int whic
     if (m.patch != which) continue;
     const Vector3d q = s.frame * (m.p - s.origin) / h;
     const Vector3d n = s.frame * m.n;
-    const double w = m.weight, up = 1 / std::max(n[2], 0.2), z = q[2];
+    const double w = m.weight, up = 1 / std::max(n[2], kSameSide), z = q[2];
     const Pair uv(q[0], q[1]), vu(q[1], q[0]), along = -Pair(n[0], n[1]) * up * normal_weight;  // slopes
     const Pair wuv = w * uv, wsquare = wuv * uv, wcube = wsquare * uv, wmixed = wsquare * vu;
     const double product = wuv[0] * q[1];
@@ -89,25 +87,25 @@ QuadraticPatch fit_quadratic_patch(const std::vector<FitPoint>& points, int whic
   const double k = normal_weight;
   const Lower lower{m00,
                     m10,
-                    m20 + (k + kSlopeRidge) * m00,
+                    m20 + (k + kRidge) * m00,
                     m01,
                     m11,
-                    m02 + (k + kSlopeRidge) * m00,
+                    m02 + (k + kRidge) * m00,
                     m20,
                     m30 + 2 * k * m10,
                     m21,
-                    m40 + 4 * k * m20 + kRidge * m00,
+                    m40 + 4 * k * m20 + kCurvatureRidge * m00,
                     m11,
                     m21 + k * m01,
                     m12 + k * m10,
                     m31 + 2 * k * m11,
-                    m22 + k * (m20 + m02) + kRidge * m00,
+                    m22 + k * (m20 + m02) + kCurvatureRidge * m00,
                     m02,
                     m12,
                     m03 + 2 * k * m01,
                     m22,
                     m13 + 2 * k * m11,
-                    m04 + 4 * k * m02 + kRidge * m00};
+                    m04 + 4 * k * m02 + kCurvatureRidge * m00};
   solve(lower, right);
   const std::array<double, kQuadraticTerms> unit{h, 1, 1, 1 / h, 1 / h, 1 / h};
   for (std::size_t i = 0; i < kQuadraticTerms; ++i) s.c[i] = right[i] * unit[i];

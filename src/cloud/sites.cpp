@@ -3,6 +3,7 @@
 #include "base/median.h"
 #include "base/vector.h"
 #include "cloud/canonical_cloud.h"
+#include "cloud/constants.h"
 #include "cpu/parallel.h"
 
 #include <Eigen/Eigenvalues>
@@ -17,11 +18,8 @@
 namespace g3r {
 namespace {
 
-constexpr double kReach = 2.5;             // distances: the plane of a site sees its neighbours and theirs, about 20 sites
-constexpr std::size_t kFewestPoints = 12;  // of a plane: fewer follow the sampling rather than the surface
-constexpr double kSurfaceBreadth = 0.5;    // median breadth of a surface sample; lines have that of their noise over their length
-constexpr std::size_t kPlaces = 2000;      // looked at for a median, at most
-constexpr std::size_t kPlaceBlock = 64;    // places per parallel block
+constexpr double kReach = 2.5;           // distances: the plane of a site sees its neighbours and theirs, about 20 sites
+constexpr double kSurfaceBreadth = 0.5;  // median breadth of a surface sample; lines have that of their noise over their length
 
 // Cells of the size of the distance: whoever is nearer than that lies in the same or an adjacent one.
 class Grid {
@@ -31,12 +29,11 @@ class Grid {
   bool add_if_alone(const std::vector<Vec3>& points, std::uint32_t i) {
     std::array<std::int64_t, 3> at{};
     for (std::size_t a = 0; a < 3; ++a) at[a] = static_cast<std::int64_t>(std::floor(points[i][a] / cell_));
-    for (std::int64_t n = 0; n < 27; ++n) {
-      const auto found = taken_.find(key({at[0] + n % 3 - 1, at[1] + n / 3 % 3 - 1, at[2] + n / 9 - 1}));
-      if (found == taken_.end()) continue;
-      for (const std::uint32_t j : found->second) {
-        const Vec3 d = vector::subtract(points[i], points[j]);
-        if (vector::dot(d, d) < cell_ * cell_) return false;
+    for (std::int64_t x = at[0] - 1; x <= at[0] + 1; ++x) {
+      for (std::int64_t y = at[1] - 1; y <= at[1] + 1; ++y) {
+        for (std::int64_t z = at[2] - 1; z <= at[2] + 1; ++z) {
+          if (holds_near(points, points[i], {x, y, z})) return false;
+        }
       }
     }
     taken_[key(at)].push_back(i);
@@ -44,10 +41,20 @@ class Grid {
   }
 
  private:
-  // 21 bits each: cells of other keys that meet here cost time only.
+  // Cells whose keys meet cost time only.
   static std::uint64_t key(const std::array<std::int64_t, 3>& at) {
-    const auto bits = [](std::int64_t x) { return static_cast<std::uint64_t>(x) & 0x1fffffU; };
-    return bits(at[0]) << 42U | bits(at[1]) << 21U | bits(at[2]);
+    std::uint64_t key = 0;
+    for (const std::int64_t i : at) key = (key << kGridBits) ^ static_cast<std::uint64_t>(i);
+    return key;
+  }
+
+  [[nodiscard]] bool holds_near(const std::vector<Vec3>& points, const Vec3& point, const std::array<std::int64_t, 3>& cell) const {
+    const auto found = taken_.find(key(cell));
+    if (found == taken_.end()) return false;
+    return std::any_of(found->second.begin(), found->second.end(), [&](std::uint32_t j) {
+      const Vec3 d = vector::subtract(point, points[j]);
+      return vector::dot(d, d) < cell_ * cell_;
+    });
   }
 
   double cell_;
@@ -68,7 +75,8 @@ struct Plane {
   double flatness, breadth;
 };
 
-// The plane through points around `centre`, weights 1 - r^2 / R^2 with R the distance of the farthest.
+// The plane through n points around `centre`, weights 1 - r^2 / R^2, with R the radius that one more would be at: that of the farthest
+// times sqrt(1 + 1 / n).
 Plane fit_plane_at(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, const Vec3& centre) {
   using Eigen::Vector3d;
   const auto from_centre = [&](std::uint32_t j) {
@@ -77,7 +85,7 @@ Plane fit_plane_at(const std::vector<Vec3>& points, const std::vector<std::uint3
   };
   double reach = 0;
   for (const std::uint32_t j : index) reach = std::max(reach, from_centre(j).squaredNorm());
-  reach *= 1.0001;  // the farthest takes part a little
+  reach *= 1 + 1 / static_cast<double>(index.size());
   Vector3d mean = Vector3d::Zero();
   double total = 0;
   for (const std::uint32_t j : index) {
@@ -108,7 +116,7 @@ class Planes {
   Plane at(const Vec3& centre) {
     index_.clear();
     if (reach_ > 0) set_.tree().within(centre, reach_, index_);
-    if (index_.size() < kFewestPoints) set_.tree().nearest(centre, kFewestPoints, index_, squared_);
+    if (index_.size() < kPatchNeighbours) set_.tree().nearest(centre, kPatchNeighbours, index_, squared_);
     std::sort(index_.begin(), index_.end());
     return fit_plane_at(set_.points(), index_, centre);
   }
@@ -116,7 +124,7 @@ class Planes {
   // Of a point and its nearest, where every point is a site.
   Plane at_point(std::size_t i) {
     const auto first = set_.near().begin() + static_cast<std::ptrdiff_t>(i * set_.near_count());
-    index_.assign(first, first + static_cast<std::ptrdiff_t>(std::min(kFewestPoints, set_.near_count())));
+    index_.assign(first, first + static_cast<std::ptrdiff_t>(std::min(kPatchNeighbours, set_.near_count())));
     std::sort(index_.begin(), index_.end());
     return fit_plane_at(set_.points(), index_, set_.points()[i]);
   }
@@ -200,7 +208,7 @@ double surface_distance(const PointSet& set) {
     const std::size_t sites = distance > 0 ? static_cast<std::size_t>(length / distance) : points.size();
     const std::size_t step = std::max<std::size_t>(1, points.size() / std::min(kPlaces, sites));
     std::vector<double> breadth((points.size() + step - 1) / step);
-    parallel::for_blocks(breadth.size(), kPlaceBlock, [&](std::size_t begin, std::size_t end) {
+    parallel::for_blocks(breadth.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
       Planes planes(set, distance);
       for (std::size_t k = begin; k < end; ++k) breadth[k] = planes.at(points[k * step]).breadth;
     });

@@ -10,15 +10,9 @@
 #include <utility>
 
 namespace g3r {
-namespace {
-
-constexpr std::size_t kNeighbours = 8;  // enough to average out random sampling, few enough to stay local
-
-}  // namespace
-
 std::vector<double> local_spacing(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near) {
   const std::size_t stride = near.size() / points.size();
-  const std::size_t k = std::min(kNeighbours + 1, stride) - 1;
+  const std::size_t k = std::min(kClosest + 1, stride) - 1;
   const double factor = std::sqrt(std::numbers::pi / static_cast<double>(k));
   std::vector<double> spacing(points.size());
   parallel::for_blocks(points.size(), parallel::kBlock, [&](std::size_t begin, std::size_t end) {
@@ -32,7 +26,7 @@ std::vector<double> local_spacing(const std::vector<Vec3>& points, const std::ve
 }
 
 std::vector<double> local_spacing(const std::vector<Vec3>& points) {
-  return local_spacing(points, Neighbours(points).of_all(kNeighbours + 1));
+  return local_spacing(points, Neighbours(points).of_all(kClosest + 1));
 }
 
 std::vector<double> smoothed_spacing(const std::vector<double>& local, const std::vector<std::uint32_t>& near) {

@@ -13,6 +13,9 @@ namespace g3r {
 /// which leaves the range of float not far below.
 inline constexpr double kLeastSpacing = 1e-6;
 
+/// Nearest others that say how far apart points are: enough to average out random sampling, few enough to stay local.
+inline constexpr std::size_t kClosest = 8;
+
 /// Length of the lists of near points: a point itself and its 16 nearest, enough for both kinds of spacing.
 inline constexpr std::size_t kSpacingNeighbours = 17;
 

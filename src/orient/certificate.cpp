@@ -14,10 +14,11 @@
 namespace g3r {
 namespace {
 
-// Spacings between a site and the probes beside it. The jump is looked at up to the third: farther away the surface bends. Walls are seen
-// at the smaller ones, emptiness at the larger.
-constexpr std::array<double, 4> kDistances = {1, 2, 4, 8};
-constexpr std::size_t kJumps = 3;
+// Distances of the probes beside a site, 1, 2, 4 and 8 spacings: walls are seen at the smaller ones, emptiness at the larger.
+constexpr std::size_t kProbes = 4;
+constexpr std::size_t kJumps = 3;  // of them, at which the jump is looked at: farther away the surface bends
+double distance_of(std::size_t probe) { return std::ldexp(1.0, static_cast<int>(probe)); }
+
 constexpr double kWidth = 0.4;  // typical spacings, of the field: single sites are not seen at the nearest probes, walls of a spacing are
 constexpr double kApart = 1.9;  // spacings between a probe and any site, so that the field there knows of no single ones
 constexpr double kIsolated = 1.5;    // times the spacing around a site, its own: more is the emptiness around a stray point, no surface
@@ -74,7 +75,7 @@ std::vector<double> jump_defects(const Sites& sites, const std::vector<Vec3>& no
                                  const std::atomic<bool>* cancel) {
   const Probed probed(sites, normals, sums, cancel);
   std::vector<double> defect(sites.size(), 0);
-  for (std::size_t d = 0; d < kJumps; ++d) add_defects(probed.winding(probed.at(kDistances[d])), 1, defect);
+  for (std::size_t d = 0; d < kJumps; ++d) add_defects(probed.winding(probed.at(distance_of(d))), 1, defect);
   return defect;
 }
 
@@ -90,35 +91,35 @@ Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const 
   out.scaled_defect.assign(count, 0);
   out.unrest.assign(count, 0);
   std::vector<double> quiet(count, 0);
-  std::array<std::vector<double>, kDistances.size()> w;
-  std::vector<std::uint8_t> is_quiet(2 * count * kDistances.size(), 0);
-  for (std::size_t d = 0; d < kDistances.size(); ++d) {
-    const std::vector<Vec3> probes = probed.at(kDistances[d]);
+  std::array<std::vector<double>, kProbes> w;
+  std::vector<std::uint8_t> is_quiet(2 * count * kProbes, 0);
+  for (std::size_t d = 0; d < kProbes; ++d) {
+    const std::vector<Vec3> probes = probed.at(distance_of(d));
     w[d] = probed.winding(probes);
     if (d < kJumps) {
       add_defects(w[d], 1, out.jump_defect);
       for (std::size_t i = 0; i < count; ++i) out.jump[i] = std::max(out.jump[i], w[d][i] - w[d][count + i]);
     }
-    if (kDistances[d] < kApart) continue;  // its own site is too near
+    if (distance_of(d) < kApart) continue;  // its own site is too near
     parallel::for_blocks(2 * count, parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         const double apart = kApart * spacing[k % count];
         double squared = apart * apart;
-        if (kDistances[d] * spacing[k % count] > reach[k % count]) continue;
+        if (distance_of(d) * spacing[k % count] > reach[k % count]) continue;
         is_quiet[2 * count * d + k] = tree.nearest(probes[k], squared, UINT32_MAX) == UINT32_MAX ? 1 : 0;
       }
     });
   }
   // Areas are known up to a factor near 1, for points that scatter it is too large: inside, w is 1.
   std::vector<double> inside;
-  for (std::size_t d = 0; d < kDistances.size(); ++d) {
+  for (std::size_t d = 0; d < kProbes; ++d) {
     for (std::size_t k = 0; k < 2 * count; ++k) {
       if (is_quiet[2 * count * d + k] != 0 && w[d][k] > 0.5) inside.push_back(w[d][k]);
     }
   }
   const double factor = inside.empty() ? 1 : std::clamp(1 / median(inside), 1 / kMostFactor, kMostFactor);
   for (std::size_t d = 0; d < kJumps; ++d) add_defects(w[d], factor, out.scaled_defect);
-  for (std::size_t d = 0; d < kDistances.size(); ++d) {
+  for (std::size_t d = 0; d < kProbes; ++d) {
     for (std::size_t k = 0; k < 2 * count; ++k) {
       if (is_quiet[2 * count * d + k] == 0) continue;
       const double value = factor * w[d][k];

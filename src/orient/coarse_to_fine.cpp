@@ -24,8 +24,6 @@ constexpr double kCubeRatio = kSpacingRatio * kSpacingRatio * kSpacingRatio;  //
 constexpr double kCoarseShare = 0.2;                                          // of the progress bar
 constexpr double kDoubtfulShare = 0.04;                                       // share of the points from which more steps are tried
 constexpr double kWorse = 1.25;                                               // of that share after them, from which they are undone
-// Points whose field distinguishes open surfaces from closed ones: fewer would lose small parts, more take longer and say the same.
-constexpr std::size_t kOpenPoints = 10000;
 
 Settings coarser(Settings settings) {
   settings.spacing *= kSpacingRatio;
@@ -75,8 +73,8 @@ Level solve_level(const LevelCloud& cloud, const Settings& settings, double shar
 // The winding gradient at the points of the solution on a quarter of them, all with kernels of one width: a field of several has no value
 // between its points.
 std::vector<Vec3> coarse_gradient(const LevelCloud& cloud, const Settings& settings, double share, Stages& stages) {
-  const std::vector<Vec3> points = every(kThinning, cloud.points);
-  const std::vector<std::uint64_t> morton = every(kThinning, cloud.morton);
+  const std::vector<Vec3> points = every(kTwiceAsFar, cloud.points);
+  const std::vector<std::uint64_t> morton = every(kTwiceAsFar, cloud.morton);
   const std::vector<double> one_width;
   const Level coarse = solve_level({points, morton, one_width}, coarser(settings), kCoarseShare * share, stages, {});
   return coarse.field->winding_gradient_at(coarse.result.eta, cloud.points, stages.cancel());
@@ -89,7 +87,7 @@ std::vector<float> confidence_of(const LevelCloud& cloud, const Settings& settin
 
 // Whether most of the points lie on surfaces without an inside, by the field of some of them.
 bool is_mostly_open(const LevelCloud& cloud, const Settings& settings, const std::vector<Vec3>& normals, const Stages& stages) {
-  const std::size_t step = std::max<std::size_t>(1, cloud.points.size() / kOpenPoints);
+  const std::size_t step = std::max<std::size_t>(1, cloud.points.size() / kFewestCoarsePoints);
   const PointSet set(every(step, cloud.points), every(step, cloud.morton));
   std::vector<Vec3> sides = every(step, normals);
   const OpenSurfaces surfaces = find_open_surfaces(set, settings.noise, settings.sums, sides, stages.cancel());

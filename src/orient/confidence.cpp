@@ -8,7 +8,6 @@
 namespace g3r {
 namespace {
 
-constexpr float kUnsure = 0.5F;    // confidence below which a point counts as unsure
 constexpr double kFullSize = 0.5;  // share of the median from which a size no longer lowers the confidence
 
 double length(const Vec3& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
@@ -51,12 +50,12 @@ Sums sums_over(const std::vector<std::uint32_t>& near, const std::vector<Vec3>& 
 
 std::vector<std::uint8_t> unsure_points(const std::vector<float>& confidence) {
   std::vector<std::uint8_t> unsure(confidence.size());
-  for (std::size_t i = 0; i < unsure.size(); ++i) unsure[i] = confidence[i] < kUnsure ? 1 : 0;
+  for (std::size_t i = 0; i < unsure.size(); ++i) unsure[i] = confidence[i] < kUndecided ? 1 : 0;
   return unsure;
 }
 
 double unsure_share(const std::vector<float>& confidence) {
-  const auto unsure = std::count_if(confidence.begin(), confidence.end(), [](float c) { return c < kUnsure; });
+  const auto unsure = std::count_if(confidence.begin(), confidence.end(), [](float c) { return c < kUndecided; });
   return static_cast<double>(unsure) / static_cast<double>(confidence.size());
 }
 

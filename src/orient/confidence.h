@@ -8,6 +8,9 @@
 
 namespace g3r {
 
+/// Confidence in a side that is a choice, or that nothing shows to be right; below it the other side is likelier, and the point unsure.
+inline constexpr float kUndecided = 0.5F;
+
 /// Confidence in the side of each normal, in [0, 1]: c = a m f with
 ///   a = (1 + cos angle(eta_i, n_i)) / 2              solved and refined directions agree
 ///   m = min(1, 2 A_i / median A), A = |eta| / area   wrong points find little of their area: about 0.2 of the median

@@ -2,6 +2,7 @@
 
 #include "base/median.h"
 #include "base/vector.h"
+#include "cloud/constants.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
 
@@ -12,12 +13,8 @@
 namespace g3r {
 namespace {
 
-// Cosine of 15 degrees, by which normals differ at creases: less takes in bends, more leaves shallow creases out.
-constexpr double kCreaseCosine = 0.965926;
 // Spacings from a plane that holds a point: more lets in what is beyond a crease, less what is on the plane out.
 constexpr double kPlane = 0.05;
-// Spacings, the reach of the mean.
-constexpr double kRadius = 1.5;
 // The first round is still among blurred normals: after one, CAD models do not differ from others by the share below.
 constexpr int kRounds = 2;
 // Share of the weight that planes leave on CAD models: 0.59 to 0.71, on others at most 0.56.
@@ -36,7 +33,7 @@ Averaged average_in_planes(const PointSet& set, const std::vector<Vec3>& normals
   parallel::for_blocks(points.size(), parallel::kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const double plane = kPlane * spacing[i];
-      const double radius = kRadius * spacing[i];
+      const double radius = kWeightReach * spacing[i];
       double least = 1;
       double all = 0;
       double held = 0;
@@ -54,7 +51,7 @@ Averaged average_in_planes(const PointSet& set, const std::vector<Vec3>& normals
         held += weight;
         sum = vector::add(sum, vector::scale(normals[j], weight));
       }
-      if (least > kCreaseCosine || !(all > 0)) continue;
+      if (least > kSamePatch || !(all > 0)) continue;
       out.share[i] = held / all;
       const Vec3 n = vector::normalised(sum);
       if (vector::dot(n, n) > 0) out.normals[i] = n;

@@ -10,7 +10,7 @@
 namespace g3r {
 
 /// The winding gradient is a mean over about a spacing, so it rounds the normals at creases. Where the 16 nearest points' normals differ
-/// by more than 15 degrees, n_i becomes the mean of those whose tangent planes hold the point,
+/// by more than 26 degrees, n_i becomes the mean of those whose tangent planes hold the point,
 ///   n_i <- normalised sum_j w_ij n_j over n_i . n_j > 0,
 ///   w_ij = exp(-(n_j . (p_i - p_j))^2 / 2 (0.05 h_i)^2) exp(-|p_i - p_j|^2 / 2 (1.5 h_i)^2),
 /// twice: on a facet the planes of its points do, those beyond the crease do not. Each round turns a normal by less than 90 degrees.

@@ -23,8 +23,6 @@ namespace {
 constexpr double kParallel = 0.9995;
 // c_f from which the side of a facet is certain: 0.5 leaves single facets wrong as a whole, 1 solves for nearly all.
 constexpr double kCertainSide = 0.8;
-// At most: 20 to 40 are enough as a rule.
-constexpr Steps kSteps{60, StepKind::kConjugateGradient};
 
 // The normal of the first point of every facet, to whose side those of the others are turned.
 std::vector<Vec3> first_normals(const Facets& facets, const std::vector<Vec3>& normals) {
@@ -185,7 +183,7 @@ void choose_facet_sides(const PointSet& set, const Settings& settings, const Fac
   const std::vector<Vec3> change = with_system(points, morton, values_at(some, spacing), [&](EnergySystem& free) {
     OnFacets part(free, subspace);
     const auto still_going = [&stages](int, int, double) { stages.still_going(); };
-    return solve_for_part(part, right, {kSteps}, settings.doubtful_tolerance, still_going).eta;
+    return solve_for_part(part, right, {kMoreSteps}, settings.doubtful_tolerance, still_going).eta;
   });
   for (std::size_t k = 0; k < some.size(); ++k) {
     const std::uint32_t i = some[k];

@@ -14,7 +14,7 @@ namespace g3r {
 
 /// Sets of points side by side in one plane.
 struct Facets {
-  static constexpr std::uint32_t kNone = 0xffffffffU;
+  static constexpr std::uint32_t kNone = UINT32_MAX;
   std::vector<std::uint32_t> of;  ///< N: number of the facet of every point, or kNone
   std::size_t count = 0;
 };

@@ -14,7 +14,7 @@ namespace g3r {
 
 /// The parts of a cloud that are turned as a whole.
 struct Patches {
-  static constexpr std::uint32_t kNone = 0xffffffff;
+  static constexpr std::uint32_t kNone = UINT32_MAX;
   std::vector<std::uint32_t> of;        ///< N: number of the patch a point belongs to, or kNone: it lies on a closed part; empty: all do
   std::vector<std::uint8_t> is_choice;  ///< N: not 0 where nothing tells the side of the patch; empty: nowhere
   std::vector<float> agreed;            ///< N, 0..1: how far the side of a point is that of its patch; empty: everywhere

@@ -16,8 +16,6 @@ using Eigen::Vector3d;
 
 // Spacings, standard deviation of the heights about a jet: more takes rough surfaces for smooth ones.
 constexpr double kScatter = 0.007;
-// Spacings, the reach of the weights: without them CAD models have up to 1.13 times the error.
-constexpr double kRadius = 1.5;
 
 bool spread_out(const std::vector<FitPoint>& members, const Vector3d& normal) {
   const Eigen::Matrix3d frame = tangent_frame(normal);
@@ -51,7 +49,7 @@ std::vector<std::uint8_t> fit_jets(const PointSet& set, std::vector<Vec3>& norma
     for (std::size_t i = begin; i < end; ++i) {
       const Vector3d centre = to_eigen(points[i]);
       const Vector3d normal = to_eigen(normals[i]);
-      const double scale = 1 / (2 * kRadius * kRadius * spacing[i] * spacing[i]);
+      const double scale = 1 / (2 * kWeightReach * kWeightReach * spacing[i] * spacing[i]);
       members.clear();
       for (std::size_t k = 0; k < kSpacingNeighbours; ++k) {
         const std::uint32_t j = near[i * kSpacingNeighbours + k];

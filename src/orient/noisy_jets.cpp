@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 
 namespace g3r {
 namespace {
@@ -15,21 +16,15 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kBlock = parallel::kSmallBlock;  // points among which fits are shared
-constexpr std::size_t kFewest = 9;                     // points in a fit, of six numbers
-constexpr std::size_t kMost = 2000;    // points in a fit; of more, evenly picked ones: bounds the work where many lie close together
-constexpr double kNarrowest = 4.2;     // first reach over sqrt(s h): 3.6 leaves 5 % more of the error, 4.8 blurs detail
-constexpr double kWider = 1.41;        // from one reach to the next: three in steps of 1.7 leave up to 3 % more of the error
-constexpr int kReaches = 4;            // as far as 12 sqrt(s h)
-constexpr double kNormalWeight = 0.3;  // the normals are those of a smooth field already: less leaves noise, more blurs
-constexpr double kAgreement = 0.85;    // standard deviations between the normals of two reaches: less leaves noise, more blurs
-constexpr double kOpposed = 0.05;      // share of points that face the other way from which a fit has another wall too close
-constexpr double kShared = 0.25;       // of the reach: how far a fit serves other points
-constexpr double kEnough = 0.4;        // share of points with a fit: of clouds with fewer the sides are unsure
-constexpr std::size_t kEvery = 16;     // of the points of a block, one tells of the noise there
-constexpr double kNoiseReach = 3;      // spacings, of the fits that do: 4 takes detail for noise
-// Times the noise found: what is within a tenth of the cloud's is chance; without, nested spheres have 1.26 times the error.
-constexpr double kOfFound = 1.1;
-constexpr double kLeastNoise = 0.15;  // of the cloud's
+constexpr std::size_t kMost = 2000;  // points in a fit; of more, evenly picked ones: bounds the work where many lie close together
+constexpr double kNarrowest = 4.2;   // first reach over sqrt(s h): 3.6 leaves 5 % more of the error, 4.8 blurs detail
+constexpr double kWider = std::numbers::sqrt2;  // from one reach to the next: twice the area
+constexpr int kReaches = 4;                     // as far as 12 sqrt(s h)
+constexpr double kNormalWeight = 0.3;           // the normals are those of a smooth field already: less leaves noise, more blurs
+constexpr double kOpposed = 0.05;               // share of points that face the other way from which a fit has another wall too close
+constexpr double kShared = 0.25;                // of the reach: how far a fit serves other points
+constexpr std::size_t kEvery = 16;              // of the points of a block, one tells of the noise there
+constexpr double kNoiseReach = 3;               // spacings, of the fits that do: 4 takes detail for noise
 
 struct Fit {
   QuadraticPatch patch;  // relative to the point it was fitted at
@@ -57,7 +52,7 @@ class Fitter {
     if (scatter_.empty()) return;
     const auto middle = scatter_.begin() + static_cast<std::ptrdiff_t>(scatter_.size() / 2);
     std::nth_element(scatter_.begin(), middle, scatter_.end());
-    noise_ = std::clamp(kOfFound * *middle, kLeastNoise * noise_, noise_);
+    noise_ = std::min(*middle, noise_);
   }
 
   // The widest fit at point i whose normal agrees with those of the narrower ones.
@@ -69,13 +64,13 @@ class Fitter {
     double reach = first_reach();
     for (int k = 0; k < kReaches; ++k, reach *= kWider) {
       if (!gather(i, axis, reach)) break;
-      if (members_.size() < kFewest) continue;
+      if (members_.size() <= kQuadraticTerms) continue;
       const QuadraticPatch patch = fit_quadratic_patch(members_, 0, reach / 2, kNormalWeight);
       Vector3d fitted;
       (void)patch.distance(Vector3d::Zero(), &fitted);
       if (fitted.dot(normal) <= kSameSide) continue;
-      const bool agrees = std::all_of(narrower_.begin(), narrower_.end(),
-                                      [&](const Estimate& e) { return (e.normal - fitted).norm() <= kAgreement * e.deviation; });
+      const bool agrees =
+          std::all_of(narrower_.begin(), narrower_.end(), [&](const Estimate& e) { return (e.normal - fitted).norm() <= e.deviation; });
       if (!agrees) break;
       narrower_.push_back({fitted, noise_ * std::sqrt(6 / total_) / reach});
       best = {patch, reach};
@@ -129,12 +124,11 @@ class Fitter {
 
 }  // namespace
 
-bool fit_noisy_jets(const PointSet& set, double noise, std::vector<Vec3>& normals, const std::atomic<bool>* cancel) {
+void fit_noisy_jets(const PointSet& set, double noise, std::vector<Vec3>& normals, const std::atomic<bool>* cancel) {
   const std::vector<Vec3>& points = set.points();
   const double spacing = set.spacing();
   const Neighbours& tree = set.tree();
   std::vector<Vec3> out = normals;
-  std::vector<std::size_t> fitted((points.size() + kBlock - 1) / kBlock, 0);
   const auto fit_block = [&](std::size_t begin, std::size_t end) {
     Fitter fitter(points, tree, normals, noise, spacing);
     fitter.follow_noise(begin, end);
@@ -156,16 +150,11 @@ bool fit_noisy_jets(const PointSet& set, double noise, std::vector<Vec3>& normal
         if (j != i && !served) continue;
         out[j] = {above[0], above[1], above[2]};
         done[j - begin] = 1;
-        ++fitted[begin / kBlock];
       }
     }
   };
   parallel::for_blocks(points.size(), kBlock, fit_block, cancel);
-  std::size_t count = 0;
-  for (const std::size_t some : fitted) count += some;
-  if (static_cast<double>(count) < kEnough * static_cast<double>(points.size())) return false;
   normals = std::move(out);
-  return true;
 }
 
 }  // namespace g3r

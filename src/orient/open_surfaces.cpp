@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -25,15 +26,16 @@ using vector::dot;
 // Scales.
 constexpr double kNoiseScale = 2;  // standard deviations of the noise between sites, at least
 constexpr int kScales = 3;         // that are tried
+// Site distances that are far: longer edges cross gaps, and where sides do not agree a field so wide sees what is around; wider ones turn
+// the rims of small surfaces.
+constexpr double kFar = 4;
 // Graph.
 constexpr std::size_t kAdjacent = 10;  // nearest sites that a site is connected with
-constexpr double kLongest = 4;         // site distances: longer edges cross gaps
 constexpr double kDecay = 0.3;         // of the weight with the squared length in site distances
 constexpr double kLeastWeight = 0.02;  // of a site whose surroundings are a ball: it still follows its neighbours
 // Hypothesis.
 constexpr int kTurns = 3;           // rounds of the winding gradient
 constexpr double kTurnWidth = 2;    // site spacings: wider than the grooves that the sampling cannot resolve
-constexpr double kAfar = 4;         // site spacings, the same where sides do not agree; more turns the rims of small surfaces
 constexpr double kAgreed = 0.5;     // of the jump that a side has to show: less is more against it than for it
 constexpr double kHidden = 0.25;    // of the jump, below which the direction is that from afar; rims of open surfaces show 0.4 and more
 constexpr double kAccuracy = 1e-2;  // of the sums that tell whether a part encloses something
@@ -48,8 +50,7 @@ constexpr double kEncloses = 0.7;     // enclosure under noise that no bowl up t
 constexpr double kLevel = 1e-6;       // part of the mean normal that counts as none
 // Mean jump defect of an open surface up to which its sides agree: 1 where none do.
 constexpr double kSidesAgree = 0.45;
-constexpr std::size_t kRing = 7;    // sites that a side is common to: one and those around it, six in the densest packing
-constexpr float kUndecided = 0.5F;  // certainty of a side that is chosen, or not certified
+constexpr std::size_t kRing = 7;  // sites that a side is common to: one and those around it, six in the densest packing
 
 // Places where the unrest of the given normals is that of an open surface, and what to try there.
 class Search {
@@ -152,7 +153,7 @@ class Search {
   [[nodiscard]] std::vector<Vec3> seen_from_afar(const std::vector<std::vector<Vec3>>& tried, const std::vector<std::size_t>& best) const {
     std::vector<Vec3> chosen(points_.size());
     for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i] = tried[best[part_of_point(i)]][i];
-    const FastSum field(finest_.points(), finest_.set.morton(), Widths(kAfar * finest_.set.spacing()), sums_, cancel_);
+    const FastSum field(finest_.points(), finest_.set.morton(), Widths(kFar * finest_.set.spacing()), sums_, cancel_);
     return unit_normals(field.winding_gradient_at(areas_of(finest_, at_sites(chosen)), points_, cancel_), chosen).normals;
   }
 
@@ -174,9 +175,9 @@ class Search {
     const Vec3 d = vector::subtract(sites.points()[b], sites.points()[a]);
     const double squared = dot(d, d);
     const double reach = reach_of(sites, a, b);
-    if (squared > kLongest * kLongest * reach * reach) return {a, a, 0};
-    const double mirrored =
-        dot(sites.axis[a], sites.axis[b]) - 2 * dot(sites.axis[a], d) * dot(sites.axis[b], d) / std::max(squared, 1e-300);
+    if (squared > kFar * kFar * reach * reach) return {a, a, 0};
+    const double mirrored = dot(sites.axis[a], sites.axis[b]) -
+                            2 * dot(sites.axis[a], d) * dot(sites.axis[b], d) / std::max(squared, std::numeric_limits<double>::min());
     const double flat = std::max(kLeastWeight, 1 - sites.flatness[a]) * std::max(kLeastWeight, 1 - sites.flatness[b]);
     return {a, b, flat * std::exp(-kDecay * squared / (reach * reach)) * mirrored};
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cloud/point_set.h"
+#include "orient/confidence.h"
 #include "orient/settings.h"
 
 #include <g3r/points.h>
@@ -21,13 +22,13 @@ inline constexpr std::size_t kMostSites = 200000;
 
 /// Open surfaces of a cloud. Empty vectors of parts: there is none.
 struct OpenSurfaces {
-  static constexpr std::uint32_t kNone = 0xffffffff;
+  static constexpr std::uint32_t kNone = UINT32_MAX;
   std::vector<std::uint32_t> part;   ///< N: number of the open surface a point belongs to (its first point), or kNone: part of a closed one
   std::vector<float> certainty;      ///< N, of the outside: up to 1 where there is one, 0.5 where either side could be it; 0.5 on closed
                                      ///< parts whose field is not at rest, so that their sides are not certified
   std::vector<float> certified;      ///< N, 0..1: how far the field shows the sides of the solution to be right, where they are kept; on
                                      ///< open surfaces, that the side of a point agrees with those around it
-  float uncertified = 0.5F;          ///< confidence, at most, of a side that it does not show: a choice, or under noise none
+  float uncertified = kUndecided;    ///< confidence, at most, of a side that it does not show: a choice, or under noise none
   std::vector<std::uint8_t> agrees;  ///< N: 1 on open surfaces whose sides agree (their mean jump defect is small), 0 elsewhere
 };
 

@@ -15,8 +15,6 @@ namespace {
 
 // Share of the points whose planes are aside of the field's normals: slices have 1.1 to 27 %.
 constexpr double kFewAside = 0.01;
-// Points on a plane that chance does not put there.
-constexpr std::size_t kMany = 8;
 // Nearest points of a plane, itself the first, by whose breadth a curve is no facet: fewer follow chance, more the bend of a ring.
 constexpr std::size_t kAlong = 4;
 // Median breadth of those on curves: rings of a dozen points have 0.31, slices 0.05 to 0.3, facets 0.40 to 0.49.
@@ -24,14 +22,14 @@ constexpr double kCurveBreadth = 0.35;
 
 struct Found {
   Vec3 normal{0, 0, 0};
-  double breadth = 0;  // of the kAlong nearest points of a plane that holds kMany
+  double breadth = 0;  // of the kAlong nearest points of the plane
 };
 
 Found find_at(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing, double scatter,
               const Vec3& towards) {
   ExactPlane plane = find_exact_plane(points, index, spacing, &towards);
   if (plane.points.empty() && scatter > 0) plane = find_scattered_plane(points, index, spacing, scatter, towards);
-  if (plane.points.size() < kMany) return {plane.normal, 0};
+  if (plane.points.empty()) return {};
   return {plane.normal, fit_plane(points, plane.points.data(), kAlong).breadth};
 }
 

@@ -13,8 +13,6 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kFewestCoarsePoints = 10000;  // a coarser start costs sides on thin parts and saves little
-
 // The default: energy form. Widths in spacings h.
 constexpr double kEpsilon = 0.4;          // of least squares too; smaller converges slower, larger blurs thin walls
 constexpr double kCoarsestEpsilon = 0.5;  // without a start: converges faster, finds more sides
@@ -32,19 +30,15 @@ constexpr double kStartTolerance = 8e-3;  // of a coarse solution that is only a
 // After a coarse start smooth shapes are there in 2 to 10 steps. More are right for thin walls and narrow gaps only: on open surfaces, of
 // which the equations are not true, and among outliers, some of which are always left, they fit what is wrong.
 constexpr Steps kContinued{10, StepKind::kConjugateGradient};
-constexpr Steps kDoubtful{60, StepKind::kConjugateGradient};
 constexpr double kContinuedTolerance = 1.5e-2;
 constexpr double kFewOutliers = 1e-2;  // of the points; clean clouds lose one point, very uneven ones 0.6 %
 // The default on noisy input, sigma in spacings h: the field must not see single points. Kernels of a given number of sigma hide the
 // scatter of points, and blur walls as thin as that; below a spacing fewer points share the scatter, and walls matter more. So the width
-// grows with the square of sigma first and in proportion later, w = A s^2 / hypot(s, B) for s = sigma / h.
-constexpr double kNoisyWidth = 5;   // A, that many sigma in the end: more blurs walls, less turns shells in cavities
-constexpr double kSharesNoise = 1;  // B, the noise below which the width falls off: less blurs walls, more turns shells
+// grows with the square of sigma first and in proportion later, w = A s^2 / hypot(s, 1) for s = sigma / h.
+constexpr double kNoisyWidth = 5;  // A, that many sigma in the end: more blurs walls, less turns shells in cavities
 // Raw solutions fit the noise with every step, and the more noise there is the sooner: h / sigma times this many steps.
 constexpr double kStepsPerNoise = 7;
 constexpr double kFewestNoisySteps = 10;  // fewer leave far sides undecided
-constexpr double kUnsurePerNoise = 0.9;   // share of the points whose sides a noise of one h makes unsure, about
-constexpr Steps kDoubtfulNoisy{30, StepKind::kConjugateGradient};
 // From fewer points, a start under more noise than this has lost the walls: half of the sides of 95,000 points on walls of 3 h. In h.
 constexpr double kStartsUnderNoise = 0.35;
 // Noise turns the normal of a patch of side s by about sigma h / s^2: widths in proportion to sqrt(sigma h) leave one accuracy. Those in
@@ -53,7 +47,6 @@ constexpr double kNoisyPolishPower = 0.6;
 constexpr double kNoisyPolishEpsilon = 1.95;  // h; 1.8 and the power 1/2 leave more sides of thin walls right, and turn shells
 constexpr double kNoisyPolishWidth = 2.4;     // h
 constexpr int kNoisyPolishSteps = 9;
-constexpr double kClusterSide = 0.9;    // epsilon; the kernel at width epsilon cannot distinguish points of one cluster
 constexpr double kWideEpsilon = 1.5;    // h; from here on clusters pay, and an epsilon that is asked for is taken to mean noise
 constexpr double kNoisyDamping = 0.28;  // 1/h: the self term of a flat patch; without it the polish turns shells in cavities
 // W eta = 1/2 is wrong at points off the surface, and the more so the farther off they are: the polish's weight falls with
@@ -74,7 +67,6 @@ constexpr double kPaperLeastEpsilon = 0.15;  // h; below, 80 iterations are far 
 constexpr const char* kPaperSchedule = "20 sd 60 cg";
 constexpr std::size_t kPaperDensePoints = 500;  // "small N": seconds, not minutes
 constexpr int kDefaultDegree = 2;
-constexpr int kGridLevels = 21;
 
 // Not automatic, in the cloud's frame.
 double in_frame(const Length& length, const CanonicalCloud& cloud, double spacing) {
@@ -100,12 +92,12 @@ double in_frame(const Length& length, const CanonicalCloud& cloud, double spacin
 }
 
 // Width in spacings of the kernels that hide this noise, in spacings too.
-double noisy_width(double noise) { return kNoisyWidth * noise * noise / std::hypot(noise, kSharesNoise); }
+double noisy_width(double noise) { return kNoisyWidth * noise * noise / std::hypot(noise, 1); }
 
 // The noise that kernels of this width hide.
 double hidden_noise(double width) {
   const double sigmas = width / kNoisyWidth;
-  return std::sqrt(sigmas * (sigmas + std::hypot(sigmas, 2 * kSharesNoise)) / 2);
+  return std::sqrt(sigmas * (sigmas + std::hypot(sigmas, 2)) / 2);
 }
 
 double cube(double x) { return x * x * x; }
@@ -129,9 +121,8 @@ void follow_noise(double noise, const Options& options, std::size_t points, Sett
   if (s.polish_steps > 0) s.polish_steps = kNoisyPolishSteps;
   s.polish_damping = kNoisyDamping / s.spacing;
   s.polish_winding_weight *= cube(1 / (1 + kWeightFall * noise * noise));
-  s.unsure_of_noise = kUnsurePerNoise * noise;
-  if (!s.doubtful_schedule.empty()) s.doubtful_schedule = {kDoubtfulNoisy};
-  if (s.epsilon.typical() > kWideEpsilon * s.spacing) s.cluster_side = kClusterSide * s.epsilon.typical();
+  s.unsure_of_noise = noise;  // a noise of one h makes nearly all unsure
+  if (s.epsilon.typical() > kWideEpsilon * s.spacing) s.cluster_side = s.epsilon.typical();
   if (noise > kStartsUnderNoise) s.coarse_to_fine = false;
   if (options.schedule.empty() && !starts_coarse(s, points)) {
     const double steps = std::clamp(kStepsPerNoise / noise, kFewestNoisySteps, static_cast<double>(s.schedule.front().count));
@@ -154,7 +145,7 @@ double paper_epsilon(const CanonicalCloud& cloud) {
   int deepest = 0;
   for (std::size_t i = 1; i < cloud.size(); ++i) {
     const int common_bits = std::countl_zero(cloud.morton()[i - 1] ^ cloud.morton()[i]) - 1;  // the top bit of a code is unused
-    deepest = std::max(deepest, std::min(common_bits / 3 + 1, kGridLevels));
+    deepest = std::max(deepest, std::min(common_bits / 3 + 1, kGridBits));
   }
   return kPaperLeafFactor * std::ldexp(2.0, -deepest);
 }
@@ -203,7 +194,7 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   s.coarse_to_fine = !paper && !green && options.schedule.empty() && !contains(s.without, Step::kCoarseStart);
   const bool among_outliers = static_cast<double>(outliers) > kFewOutliers * static_cast<double>(cloud.size());
   s.continued_schedule = {kContinued};
-  if (!among_outliers && !contains(s.without, Step::kMoreSteps)) s.doubtful_schedule = {kDoubtful};
+  if (!among_outliers && !contains(s.without, Step::kMoreSteps)) s.doubtful_schedule = {kMoreSteps};
   s.tolerance = options.tolerance >= 0 ? options.tolerance : paper ? 0 : kTolerance;
   s.accepted_residual = options.tolerance >= 0           ? options.tolerance
                         : starts_coarse(s, cloud.size()) ? kAcceptedContinued
@@ -224,7 +215,7 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
 }
 
 bool starts_coarse(const Settings& settings, std::size_t points) {
-  return settings.coarse_to_fine && points / kThinning >= kFewestCoarsePoints;
+  return settings.coarse_to_fine && points / kTwiceAsFar >= kFewestCoarsePoints;
 }
 
 std::size_t planned_memory(const Settings& settings, std::size_t given, std::size_t used) {

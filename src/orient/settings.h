@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cloud/canonical_cloud.h"
+#include "cloud/constants.h"
 #include "orient/steps.h"
 #include "solve/harmonics.h"
 #include "solve/iterative_solver.h"
@@ -79,8 +80,10 @@ struct Settings {
 inline constexpr double kRefinementWidth = 0.55;
 /// Accuracy of the sums of a solve that has a start: it gives the same normals with 2e-2 as with 1e-3, while one from 0 amplifies errors.
 inline constexpr double kContinuedAccuracy = 2e-2;
-/// Points per point of the coarse cloud that solve_coarse_to_fine() starts from: twice the spacing.
-inline constexpr std::size_t kThinning = 4;
+/// Points of a coarse cloud, at least: fewer cost sides on thin parts, lose small open ones, and save little.
+inline constexpr std::size_t kFewestCoarsePoints = 10000;
+/// Where sides are unsure, around them or around facets, at most: 20 to 40 are enough as a rule.
+inline constexpr Steps kMoreSteps{60, StepKind::kConjugateGradient};
 /// Whether solve_coarse_to_fine() begins with fewer points.
 [[nodiscard]] bool starts_coarse(const Settings& settings, std::size_t points);
 

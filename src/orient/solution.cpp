@@ -6,6 +6,7 @@
 #include "cloud/sites.h"
 #include "cloud/spacing.h"
 #include "orient/coarse_to_fine.h"
+#include "orient/confidence.h"
 #include "orient/creases.h"
 #include "orient/facets.h"
 #include "orient/jets.h"
@@ -31,7 +32,6 @@ constexpr std::size_t kFewestApart = 100;  // points that are solved for again w
 // more keeps the sides that others gave it.
 constexpr double kAlone = 0.02;
 constexpr double kMinMinority = 1e-3;  // share of the points against most of their facet, from which facets are solved for
-constexpr float kChoice = 0.5F;        // certainty of an open surface that has no outside
 constexpr double kChance = 1.12;       // of the typical spacing, up to which noise alone may have scattered points so far apart
 constexpr int kFacetRounds = 3;        // points on no facet come right after those on one, and facets grow
 
@@ -334,7 +334,7 @@ void solve_open_surfaces_apart(const Problem& problem, const Options& options, S
   bool converged = true;         // what is open does not solve the equations, and does not have to
   for (const auto& [surface, points] : parts) {
     // What encloses nothing is not closed by itself either.
-    const bool may_be_closed = surface != OpenSurfaces::kNone && solution.open_surfaces.certainty[surface] > kChoice;
+    const bool may_be_closed = surface != OpenSurfaces::kNone && solution.open_surfaces.certainty[surface] > kUndecided;
     if (may_be_closed) converged &= solve_apart(problem, points, true, options, stages, stats, solution);
   }
   collect();

@@ -1,6 +1,7 @@
 #include "orient/two_walls.h"
 
 #include "base/median.h"
+#include "cloud/constants.h"
 #include "cloud/heights.h"
 #include "cloud/layers.h"
 #include "cloud/noise.h"
@@ -13,7 +14,6 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kPlaces = 500;       // looked at, to twice as many
 constexpr double kThin = 2;                // site spacings between two walls: the field distinguishes walls farther apart
 constexpr double kExact = 0.01;            // site spacings: deviations below are as good as none
 constexpr std::size_t kPoints = 24;        // of the heights that distinguish one wall from two
@@ -26,7 +26,7 @@ template <typename Visit>
 void for_some(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members, std::size_t count, Visit visit) {
   std::vector<std::uint32_t> index;
   std::vector<double> squared;
-  for (std::size_t k = 0; k < members.size(); k += std::max<std::size_t>(1, members.size() / kPlaces)) {
+  for (std::size_t k = 0; k < members.size(); k += std::max<std::size_t>(1, members.size() / kFewPlaces)) {
     set.tree().nearest(sites.points()[members[k]], count, index, squared);
     std::sort(index.begin(), index.end());
     visit(members[k], index);
