@@ -121,9 +121,12 @@ void require_not_collinear(const std::vector<Vec3>& points) {
 }  // namespace
 
 std::uint64_t spread_bits(std::uint64_t v) {
-  std::uint64_t spread = 0;
-  for (int bit = 0; bit < kGridBits; ++bit) spread |= (v >> bit & 1) << 3 * bit;
-  return spread;
+  v &= 0x1fffff;
+  v = (v | v << 32) & 0x1f00000000ffffULL;
+  v = (v | v << 16) & 0x1f0000ff0000ffULL;
+  v = (v | v << 8) & 0x100f00f00f00f00fULL;
+  v = (v | v << 4) & 0x10c30c30c30c30c3ULL;
+  return (v | v << 2) & 0x1249249249249249ULL;
 }
 
 std::uint64_t morton_code(const Vec3& unit) {

@@ -20,7 +20,7 @@ inline constexpr double kBetweenSites = 0.7;
 
 struct Sites {
   double distance = 0;                 ///< least distance between the points that sites begin with; 0: every point is a site
-  PointSet set;                        ///< M centroids of the points of each site; the square of a local spacing is the area of a site
+  PointSet set;                        ///< M centroids of the points of each site; the square of side() is the area of a site
   std::vector<std::uint32_t> site_of;  ///< N: point -> nearest site
   std::vector<Vec3> axis;              ///< M unit normals of the planes, either side
   std::vector<double> flatness;        ///< M: least principal spread over the middle one; 0: a plane, 1: a ball
@@ -29,6 +29,9 @@ struct Sites {
   [[nodiscard]] std::size_t size() const { return set.size(); }
   [[nodiscard]] const std::vector<Vec3>& points() const { return set.points(); }
   [[nodiscard]] const std::vector<double>& spacing() const { return set.local_spacing(); }
+  /// The side of the square of surface that a site stands for: its spacing, but that of the sites around it where it is much farther from
+  /// them, for the emptiness around a stray point is no surface.
+  [[nodiscard]] double side(std::size_t site) const;
 };
 
 /// Takes points in canonical order as long as they are `distance` away from all taken before (a maximal Poisson disk sample), and the

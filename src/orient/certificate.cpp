@@ -21,7 +21,6 @@ double distance_of(std::size_t probe) { return std::ldexp(1.0, static_cast<int>(
 
 constexpr double kWidth = 0.4;  // typical spacings, of the field: single sites are not seen at the nearest probes, walls of a spacing are
 constexpr double kApart = 1.9;  // spacings between a probe and any site, so that the field there knows of no single ones
-constexpr double kIsolated = 1.5;    // times the spacing around a site, its own: more is the emptiness around a stray point, no surface
 constexpr double kMostFactor = 1.3;  // of the areas: those of points that scatter are too large, of a grid too small
 
 // The field of the sites with the given normals, at probes on either side of them.
@@ -33,9 +32,8 @@ class Probed {
         field_(sites.points(), sites.set.morton(), Widths(kWidth * sites.set.spacing()), sums, cancel),
         eta_(sites.size()),
         axis_(sites.size()) {
-    const std::vector<double>& around = sites.set.smoothed_spacing();
     for (std::size_t i = 0; i < eta_.size(); ++i) {
-      const double side = sites.spacing()[i] > kIsolated * around[i] ? around[i] : sites.spacing()[i];
+      const double side = sites.side(i);
       eta_[i] = vector::scale(normals[i], side * side);
       axis_[i] = vector::scale(sites.axis[i], vector::dot(normals[i], sites.axis[i]) < 0 ? -1 : 1);
     }

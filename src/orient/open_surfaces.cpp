@@ -125,7 +125,7 @@ class Search {
     for (const std::uint32_t s : members_[part]) {
       points.push_back(finest_.points()[s]);
       morton.push_back(finest_.set.morton()[s]);
-      eta.push_back(vector::scale(normals[s], finest_.spacing()[s] * finest_.spacing()[s]));
+      eta.push_back(vector::scale(normals[s], finest_.side(s) * finest_.side(s)));
     }
     FastSum field(points, morton, Widths(kBetweenSites * finest_.set.spacing()), sum_plan(kAccuracy, points.size()), cancel_);
     double sum = 0;
