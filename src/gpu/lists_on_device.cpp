@@ -33,12 +33,6 @@ Int4 centre(const OctreeNode& node) {
   return out;
 }
 
-// Sizes of lists are 32-bit numbers on the device.
-std::uint32_t narrow(std::size_t value) {
-  if (value > std::numeric_limits<std::uint32_t>::max()) throw DeviceError("too many points for the device");
-  return static_cast<std::uint32_t>(value);
-}
-
 // Groups and data of a matrix at the end of what is there; `offset` in units of kLanes, moves on.
 template <class T>
 std::size_t add_groups(const cpu::TranslationMatrix<T>& matrix, std::size_t& offset, std::vector<Uint4>& groups) {
@@ -133,6 +127,11 @@ std::vector<std::vector<FarPair>> pairs_of_chunks(const InteractionLists& lists,
 }
 
 }  // namespace
+
+std::uint32_t narrow(std::size_t value) {
+  if (value > std::numeric_limits<std::uint32_t>::max()) throw DeviceError("too many points for the device");
+  return static_cast<std::uint32_t>(value);
+}
 
 TreeOnDevice::TreeOnDevice(Device& device, const Octree& tree) {
   std::vector<Int4> centre_of;

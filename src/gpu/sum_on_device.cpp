@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace g3r::gpu {
 namespace {
@@ -34,12 +33,6 @@ std::size_t most_moved(cpu::NearForm form, std::size_t multipole_channels, bool 
 
 // From a pair to the next in the local memory of multipoles_to_locals(): SLOT there.
 std::size_t packed_slot(std::size_t moved, std::size_t stride) { return stride * (moved > 1 ? (moved + 3) / 4 * 4 : 1) + 8; }
-
-// Kernels count in 32 bits.
-std::uint32_t narrow(std::size_t value) {
-  if (value > std::numeric_limits<std::uint32_t>::max()) throw DeviceError("too many points for the device");
-  return static_cast<std::uint32_t>(value);
-}
 
 // The largest power of two up to `most` with which `fixed` + count * each numbers fit the local memory; at least `least`.
 std::size_t that_fit(std::size_t most, std::size_t least, std::size_t fixed, std::size_t each, std::size_t bytes_of_one) {
