@@ -34,10 +34,15 @@
 #define ROW_GROUPS 1
 #define COLUMNS 1
 #endif
-// From a coefficient to the next of a pair's expansions in local memory, and from a pair to the next: the expansions of a coefficient lie
-// side by side, in fours, and neighbouring pairs in other banks.
-#define PACKED ((MOST_MOVED + (MOST_MOVED > 1 ? 3 : 0)) / (MOST_MOVED > 1 ? 4 : 1) * (MOST_MOVED > 1 ? 4 : 1))
+// Where coefficient j of a pair's expansion c is in local memory, and from a pair to the next. On a GPU the expansions of a coefficient lie
+// side by side, in fours, and neighbouring pairs in other banks; a processor copies expansions as vectors.
+#define PACKED (MOST_MOVED == 1 ? 1 : (MOST_MOVED + 3) / 4 * 4)
 #define SLOT(stride) ((stride) * PACKED + 8)
+#if LANES == 1
+#define PACKED_AT(c, j, stride) ((j) * PACKED + (c))
+#else
+#define PACKED_AT(c, j, stride) ((c) * (stride) + (j))
+#endif
 
 // sum[c] = rows of the matrix from `row` on times expansion c of `from`, `stride` apart. Columns from `most` on are left out.
 FUNCTION void product(const GLOBAL real* matrices, const GLOBAL uint4* groups, int row, int most, const LOCAL real* from, int stride,
@@ -128,14 +133,14 @@ FUNCTION int target_expansion(int c, int moved, int transposed) {
 #endif
 }
 
-// The expansions of one coefficient.
-FUNCTION void load_packed(const LOCAL real* from, int moved, real* value) {
-#if MOST_MOVED == 1
-  value[0] = from[0];
+// Coefficient j of all expansions.
+FUNCTION void load_packed(const LOCAL real* from, int j, int stride, int moved, real* value) {
+#if MOST_MOVED == 1 || LANES > 1
+  UNROLL for (int c = 0; c < moved; ++c) value[c] = from[PACKED_AT(c, j, stride)];
 #else
   UNROLL for (int c = 0; c < PACKED; c += 4) {
     if (c < moved) {
-      const real4 four = LOAD4(from + c);
+      const real4 four = LOAD4(from + PACKED_AT(c, j, stride));
       value[c] = four.x;
       value[c + 1] = four.y;
       value[c + 2] = four.z;
@@ -175,7 +180,7 @@ FUNCTION void add_pair(const GLOBAL real* matrices, const GLOBAL uint4* groups, 
     }
     UNROLL for (int k = 0; k < COLUMNS; ++k) {
       real value[PACKED];
-      load_packed(from + (j + k) * PACKED, moved, value);
+      load_packed(from, j + k, stride, moved, value);
       UNROLL for (int g = 0; g < ROW_GROUPS; ++g) {
         UNROLL for (int c = 0; c < moved; ++c) sum[g][c] = FMA(entry[g][k], SPLAT(value[c]), sum[g][c]);
       }
@@ -249,9 +254,8 @@ KERNEL multipoles_to_locals(int first_chunk, int chunk_nodes, int nodes, const G
         const size_t expansion = (size_t)pair.y * MULTIPOLES + (size_t)source_expansion(c, moved, transposed);
         const GLOBAL real* sign = signs + (int)(pair.z & 7) * stride;
         for (int j = ITEM % COPIERS * LANES; j < copied; j += COPIERS * LANES) {
-          real one[LANES];
-          STORE(LOAD(sign + j) * LOAD(multipoles + expansion * (size_t)stride + j), one);
-          UNROLL for (int i = 0; i < LANES; ++i) packed[slot * SLOT(stride) + (j + i) * PACKED + c] = one[i];
+          const lanes value = LOAD(sign + j) * LOAD(multipoles + expansion * (size_t)stride + j);
+          STORE(value, packed + slot * SLOT(stride) + PACKED_AT(c, j, stride));
         }
       }
       BARRIER();
