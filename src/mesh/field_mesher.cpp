@@ -43,6 +43,7 @@ constexpr double kBaseBytes = 36 << 20;  // Code, libraries, the stacks of threa
 constexpr double kBytesPerPoint = 380;   // A point takes so many, those of the winding field included.
 constexpr double kBytesPerLeaf = 190;  // A leaf takes so many, twice as many one of a thin wall or gap: most of its corners are ambiguous.
 constexpr double kMoreLeaves = 0.1;    // More are planned before the octree is known, so that no plain shape is refused once it is.
+constexpr double kFewLeaves = 4000;    // Clouds of few points have so many beside: 300 on a sphere have 3,300, 1,500 have 2,000.
 constexpr double kPlainLeaves = 8.5;   // A point of a shape without thin walls has 5.7 to 8.6 leaves; what exceeds this is thin.
 // The thickness of the layer that is refined, in cells of the automatic depth.
 constexpr double kThickness = 2 * mesh::kDiscHalf / kFinestCell;
@@ -159,7 +160,7 @@ std::size_t field_mesh_memory(std::size_t points, double spacing, double noise, 
     const double finer = kFinestCell * spacing * std::exp2(depth) / octree_side(spacing, longest_side);
     leaves *= std::max(1.0, finer * finer * (kThickness * finer + 2) / (kThickness + 2));
   }
-  return memory_for(points, leaves * static_cast<double>(points), depth);
+  return memory_for(points, leaves * static_cast<double>(points) + (depth == 0 ? kFewLeaves : 0), depth);
 }
 
 Mesh field_mesh(const std::vector<Vec3>& points, std::vector<Vec3> normals, const FieldSampler& sampler, const MeshOptions& options,
