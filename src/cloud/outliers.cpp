@@ -1,6 +1,7 @@
 #include "cloud/outliers.h"
 
 #include "base/vector.h"
+#include "cloud/constants.h"
 #include "cloud/noise.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
@@ -17,15 +18,13 @@ namespace {
 // One in fifty: of the points taken those that an even surface leaves as far apart by chance, and of points that fill space those that
 // chance puts on a slab. More loses points of surfaces, of which meshes lack sparse parts; less leaves strays, which open closed surfaces.
 constexpr double kChance = 0.02;
-constexpr std::size_t kFewNeighbours = 8;  // of the spacing, and spread over a ball to lay planes through: more cost their square
 // Neighbours of a point within which a slab is looked for: more see a surface among more strays, but bends are flat in few.
 constexpr std::array<std::size_t, 3> kSlabNeighbours = {16, 32, 64};
 // Half the thickness of slabs, of the reach of those: what is flat is seen best in thin ones, bends and noise need thick ones.
 constexpr std::array<double, 3> kThickness = {0.05, 0.1, 0.2};
-constexpr double kHeldWhole = 4;             // standard deviations of noise: a ball about a point of the layer holds all of it but its rim
-constexpr std::size_t kFewestPoints = 100;   // below, sparse parts are a matter of chance
-constexpr double kMostOutliers = 0.5;        // of the points: beyond, which of them are the surface is a choice
-constexpr std::size_t kMedianProbes = 2000;  // points whose median stands for that of all
+constexpr double kHeldWhole = 4;            // standard deviations of noise: a ball about a point of the layer holds all of it but its rim
+constexpr std::size_t kFewestPoints = 100;  // below, sparse parts are a matter of chance
+constexpr double kMostOutliers = 0.5;       // of the points: beyond, which of them are the surface is a choice
 
 // P(Poisson(mean) < count).
 double chance_of_fewer(std::size_t count, double mean) {
@@ -41,7 +40,7 @@ double chance_of_fewer(std::size_t count, double mean) {
 
 // How far apart points of an even surface are by chance, in spacings by their `count` nearest; `height`: the noise over the reach of these.
 struct EvenSurface {
-  std::size_t count = kFewNeighbours;
+  std::size_t count = kClosest;
   double height = 0;
 
   // The share that is farther apart than so many times the median: a surface puts a Poisson number of points into a ball, of which the mean
@@ -72,12 +71,12 @@ double least_spacing() {
 
 static_assert(kSlabNeighbours.front() < kSpacingNeighbours);
 
-// Whether a slab through a point holds more of those around than chance would put there if they filled space: an a contrario test
-// (Desolneux, Moisan and Morel, "From Gestalt Theory to Image Analysis", 2008).
+// Whether a slab through a point, and two of kClosest spread over a ball, holds more of those around than chance would put there if they
+// filled space: an a contrario test (Desolneux, Moisan and Morel, "From Gestalt Theory to Image Analysis", 2008).
 class Slabs {
  public:
   Slabs() {
-    constexpr double kTests = kSlabNeighbours.size() * kThickness.size() * kFewNeighbours * (kFewNeighbours - 1) / 2;
+    constexpr double kTests = kSlabNeighbours.size() * kThickness.size() * kClosest * (kClosest - 1) / 2;
     for (std::size_t t = 0; t < kThickness.size(); ++t) {
       const double share = 1.5 * kThickness[t] - 0.5 * std::pow(kThickness[t], 3);  // of a ball's volume
       for (std::size_t n = 0; n <= kSlabNeighbours.back(); ++n) {
@@ -105,9 +104,9 @@ class Slabs {
       const double spacing = set.local_spacing()[near[k]];
       if (k < count && reach <= spacing * spacing * static_cast<double>(count) / std::numbers::pi) ++n;
     }
-    const std::size_t apart = n / kFewNeighbours;
+    const std::size_t apart = n / kClosest;
     if (apart == 0) return false;
-    for (std::size_t a = 1; a <= kFewNeighbours; ++a) {
+    for (std::size_t a = 1; a <= kClosest; ++a) {
       for (std::size_t b = 1; b < a; ++b) {
         const Vec3 m = vector::cross(q[a * apart - 1], q[b * apart - 1]);
         const double most = reach * vector::dot(m, m);  // 0 of points in a line, which every slab along it holds
@@ -184,7 +183,7 @@ std::vector<double> wide_spacing(const PointSet& set, const std::vector<std::uin
     });
     return spacing;
   };
-  const std::size_t probes = std::min(kMedianProbes, set.size());
+  const std::size_t probes = std::min(kPlaces, set.size());
   const double typical = typical_spacing(measured(probes, [&](std::size_t k) { return k * set.size() / probes; }));
   std::vector<double> spacing = measured(strays.size(), [&](std::size_t k) { return std::size_t{strays[k]}; });
   for (double& s : spacing) s /= typical;
@@ -224,7 +223,7 @@ Outliers find_outliers(const PointSet& set, const std::vector<double>& relative_
   }
   const double sigma = *noise / h;
   const auto count = static_cast<std::size_t>(std::numbers::pi * std::pow(kHeldWhole * sigma, 2));
-  if (count <= kFewNeighbours) return {chosen, noise};
+  if (count <= kClosest) return {chosen, noise};
   if (count >= set.size()) return {};
   const EvenSurface layer{count, sigma * std::sqrt(std::numbers::pi / static_cast<double>(count))};
   chosen = choose(strays, wide_spacing(set, strays, relative_spacing, count), layer, set.size());

@@ -20,8 +20,7 @@ namespace {
 
 constexpr double kReach = 2.5;           // distances: the plane of a site sees its neighbours and theirs, about 20 sites
 constexpr double kSurfaceBreadth = 0.5;  // median breadth of a surface sample; lines have that of their noise over their length
-
-constexpr double kIsolated = 1.5;  // times the spacing around a site, its own: more is that of a stray
+constexpr double kIsolated = 1.5;        // times the spacing around a site, its own: more is that of a stray
 
 // Cells of the size of the distance: whoever is nearer than that lies in the same or an adjacent one.
 class Grid {
