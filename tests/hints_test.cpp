@@ -157,6 +157,30 @@ TEST(Hints, PiecesOfAPatchAgree) {
   for (std::size_t i = 800; i < sides.points.size(); ++i) EXPECT_GT(dot(sides.normals[i], between({-2.1, 0, 0}, sides.points[i])), 0.9);
 }
 
+// hints: a thing on the ground that normals of the crevice between them lead into from behind faces the sensor too; few points are between.
+TEST(Hints, WhatIsJoinedByACreviceAloneFacesTheSensor) {
+  Sides sides;
+  for (const double x : {-0.95, 0.95}) sides.add_square({x, 0, -1}, 2, 1, 0);
+  const Vec3 sensor{-3, 0, 0.5};
+  Sides ball;
+  ball.add_sphere({0, 0, 0}, 1);
+  for (std::size_t i = 0; i < ball.points.size(); ++i) {
+    const Vec3& n = ball.normals[i];
+    if (dot(n, between(ball.points[i], sensor)) > 0 && n[2] > -0.9) sides.add(ball.points[i], {-n[0], -n[1], -n[2]}, 0, true);
+  }
+  // From the ground beside the ball to its lower side, turning evenly from up to the inside of the ball.
+  for (int k = 0; k <= 12; ++k) {
+    const double part = k / 12.0, turn = 0.57 * part;
+    sides.add({-0.54, -0.8 * (1 - part), -0.99 + 0.15 * part}, {std::sin(turn), 0, std::cos(turn)}, 0, true);
+  }
+  (void)sides.follow({.sensors = {sensor}});
+  std::size_t away = 0;
+  for (std::size_t i = 0; i < sides.points.size(); ++i) {
+    away += dot(sides.normals[i], between(sides.points[i], sensor)) < 0 ? 1 : 0;
+  }
+  EXPECT_LE(away, 13U);
+}
+
 // hints: a sensor outside a closed part sees as much of its back as of its front and says nothing, however near it is.
 TEST(Hints, ASensorOutsideDoesNotContradictASolid) {
   for (const double distance : {1.2, 3.0, 1e6}) {

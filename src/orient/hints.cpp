@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <string>
 
 namespace g3r {
@@ -30,6 +31,9 @@ constexpr double kInsideWinding = 0.25;
 constexpr std::size_t kMostSensors = 32;
 // Cosine of two adjacent normals from which the side of one follows from the other: across gaps it is by chance.
 constexpr double kConsistent = 0.8;
+// Votes a and -b, products of a unit vector with two normals at that angle, multiply to sin^2 of half of it at most: where one place saw
+// both points and they object more, they are on surfaces of their own.
+constexpr double kMostOpposed = (1 - kConsistent) / 2;
 // Of the cloud's extent along every axis, what closed parts span that surround the scanner.
 constexpr double kSpan = 0.5;
 
@@ -200,28 +204,76 @@ class Following {
     }
   }
 
-  // Where gaps or creases cut a patch into pieces that are not consistent with each other, those go over that two thirds of their votes are
-  // against. Sides of points along an edge d are consistent if
+  // Whether the sides of two adjacent points are consistent: along the edge d from one to the other
   //   n_i . (n_j - 2 (n_j . d) d / |d|^2)
   // is near 1, as it is on bends and at sharp edges too (Koenig and Gumhold, "Consistent propagation of normal orientations in point
   // clouds", VMV 2009).
-  void turn_pieces(const std::vector<double>& votes) {
+  [[nodiscard]] bool consistent(std::uint32_t i, std::uint32_t j) const {
+    const Vec3 d = normalised(subtract(points_[j], points_[i]));
+    const Vec3 mirrored = subtract(sided_.normals[j], vector::scale(d, 2 * dot(sided_.normals[j], d)));
+    return dot(sided_.normals[i], mirrored) > kConsistent;
+  }
+
+  // What smoothness says of two adjacent points: one surface, seen from behind beyond its horizon if they object to each other a little.
+  [[nodiscard]] bool joined(const std::vector<double>& votes, std::uint32_t i, std::uint32_t j) const {
+    return consistent(i, j) && -votes[i] * votes[j] <= kMostOpposed;
+  }
+
+  // Where gaps or creases cut a patch into pieces that are not consistent with each other, those go over that two thirds of their votes are
+  // against.
+  void turn_pieces(std::vector<double> votes) {
     if (near_.empty()) return;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      if (effect_.turned[i] != 0) votes[i] = -votes[i];
+    }
     DisjointSets pieces(points_.size());
     for_adjacent([&](std::uint32_t i, std::uint32_t j) {
-      const Vec3 d = normalised(subtract(points_[j], points_[i]));
-      const Vec3 mirrored = subtract(sided_.normals[j], vector::scale(d, 2 * dot(sided_.normals[j], d)));
-      if (dot(sided_.normals[i], mirrored) > kConsistent) pieces.join(i, j);
+      if (joined(votes, i, j)) pieces.join(i, j);
     });
+    turn_objecting(pieces, votes);
+    turn_hardly_joined(votes);
+  }
+
+  // Of the pieces, what objects as a whole and hangs together with the rest by a few pairs of points only: in the crevice between a thing
+  // and the ground, normals lead from the one to the inside of the other. It goes over if it has more votes than such pairs, and fewer
+  // pairs than half of the rim of a disc of as many points.
+  void turn_hardly_joined(const std::vector<double>& votes) {
+    DisjointSets regions(points_.size());
+    for_adjacent([&](std::uint32_t i, std::uint32_t j) {
+      if (votes[i] < 0 && votes[j] < 0 && joined(votes, i, j)) regions.join(i, j);
+    });
+    std::vector<double> seam(points_.size(), 0);
+    for_adjacent([&](std::uint32_t i, std::uint32_t j) {
+      if (!joined(votes, i, j) || (votes[i] < 0) == (votes[j] < 0)) return;
+      seam[regions.find(votes[i] < 0 ? i : j)] += 1;
+    });
+    const std::vector<Votes> sums = sums_of(regions, votes);
+    const double links = static_cast<double>(near_.size()) / static_cast<double>(points_.size()) - 1;
+    for (std::uint32_t i = 0; i < points_.size(); ++i) {
+      const std::size_t region = regions.find(i);
+      const double rim = links * std::sqrt(std::numbers::pi * static_cast<double>(sums[region].points));
+      if (votes[i] < 0 && sums[region].against > seam[region] && seam[region] < rim / 2) effect_.turned[i] ^= 1;
+    }
+  }
+
+  [[nodiscard]] std::vector<Votes> sums_of(DisjointSets& sets, const std::vector<double>& votes) const {
     std::vector<Votes> sums(points_.size());
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
-      Votes& sum = sums[pieces.find(i)];
-      sum.add(effect_.turned[i] != 0 ? -votes[i] : votes[i]);
+      Votes& sum = sums[sets.find(i)];
+      sum.add(votes[i]);
       ++sum.points;
     }
+    return sums;
+  }
+
+  // Turns the pieces that two thirds of their votes are against, and the votes of their points.
+  void turn_objecting(DisjointSets& pieces, std::vector<double>& votes) {
+    const std::vector<Votes> sums = sums_of(pieces, votes);
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
       const Votes& piece = sums[pieces.find(i)];
-      if (!is_closed(i) && piece.count() && piece.share_against() >= kMostOf) effect_.turned[i] ^= 1;
+      if (is_closed(i) || !piece.count() || piece.share_against() < kMostOf) continue;
+      effect_.turned[i] ^= 1;
+      votes[i] = -votes[i];
     }
   }
 
