@@ -31,8 +31,8 @@ constexpr double kInsideWinding = 0.25;
 constexpr std::size_t kMostSensors = 32;
 // Cosine of two adjacent normals from which the side of one follows from the other: across gaps it is by chance.
 constexpr double kConsistent = 0.8;
-// Votes a and -b, products of a unit vector with two normals at that angle, multiply to sin^2 of half of it at most: where one place saw
-// both points and they object more, they are on surfaces of their own.
+// Cosines a and -b under which one place sees two points with normals at that angle multiply to sin^2 of half of it at most: where they
+// object more, the points are on surfaces of their own.
 constexpr double kMostOpposed = (1 - kConsistent) / 2;
 // Of the cloud's extent along every axis, what closed parts span that surround the scanner.
 constexpr double kSpan = 0.5;
@@ -204,20 +204,36 @@ class Following {
     }
   }
 
+  [[nodiscard]] Vec3 normal(std::size_t i) const { return vector::scale(sided_.normals[i], effect_.turned[i] != 0 ? -1 : 1); }
+
   // Whether the sides of two adjacent points are consistent: along the edge d from one to the other
   //   n_i . (n_j - 2 (n_j . d) d / |d|^2)
   // is near 1, as it is on bends and at sharp edges too (Koenig and Gumhold, "Consistent propagation of normal orientations in point
   // clouds", VMV 2009).
   [[nodiscard]] bool consistent(std::uint32_t i, std::uint32_t j) const {
     const Vec3 d = normalised(subtract(points_[j], points_[i]));
-    const Vec3 mirrored = subtract(sided_.normals[j], vector::scale(d, 2 * dot(sided_.normals[j], d)));
-    return dot(sided_.normals[i], mirrored) > kConsistent;
+    const Vec3 n = normal(j);
+    return dot(normal(i), subtract(n, vector::scale(d, 2 * dot(n, d)))) > kConsistent;
   }
 
-  // What smoothness says of two adjacent points: one surface, seen from behind beyond its horizon if they object to each other a little.
-  [[nodiscard]] bool joined(const std::vector<double>& votes, std::uint32_t i, std::uint32_t j) const {
-    return consistent(i, j) && -votes[i] * votes[j] <= kMostOpposed;
+  // Whether a sensor has seen the front of the one point and the back of the other, further from edge-on than a horizon is.
+  [[nodiscard]] bool opposed(const Vec3& sensor_i, std::uint32_t i, const Vec3& sensor_j, std::uint32_t j) const {
+    return -seen_from(sensor_i, points_[i], normal(i)) * seen_from(sensor_j, points_[j], normal(j)) > kMostOpposed;
   }
+
+  // Whether they are so for all sensors that may have seen them. Up is no such fact: an eave has a lower side.
+  [[nodiscard]] bool opposed(std::uint32_t i, std::uint32_t j) const {
+    if (hints_.sensors.empty()) return false;
+    if (hints_.sensor_of_point.empty()) {
+      return std::all_of(hints_.sensors.begin(), hints_.sensors.end(), [&](const Vec3& sensor) { return opposed(sensor, i, sensor, j); });
+    }
+    const std::uint32_t of_i = hints_.sensor_of_point[i];
+    const std::uint32_t of_j = hints_.sensor_of_point[j];
+    return of_i != kNoSensor && of_j != kNoSensor && opposed(hints_.sensors[of_i], i, hints_.sensors[of_j], j);
+  }
+
+  // Two adjacent points are of one surface, which may be seen from behind beyond its horizon.
+  [[nodiscard]] bool joined(std::uint32_t i, std::uint32_t j) const { return consistent(i, j) && !opposed(i, j); }
 
   // Where gaps or creases cut a patch into pieces that are not consistent with each other, those go over that two thirds of their votes are
   // against.
@@ -228,7 +244,7 @@ class Following {
     }
     DisjointSets pieces(points_.size());
     for_adjacent([&](std::uint32_t i, std::uint32_t j) {
-      if (joined(votes, i, j)) pieces.join(i, j);
+      if (joined(i, j)) pieces.join(i, j);
     });
     turn_objecting(pieces, votes);
     turn_hardly_joined(votes);
@@ -240,11 +256,11 @@ class Following {
   void turn_hardly_joined(const std::vector<double>& votes) {
     DisjointSets regions(points_.size());
     for_adjacent([&](std::uint32_t i, std::uint32_t j) {
-      if (votes[i] < 0 && votes[j] < 0 && joined(votes, i, j)) regions.join(i, j);
+      if (votes[i] < 0 && votes[j] < 0 && joined(i, j)) regions.join(i, j);
     });
     std::vector<double> seam(points_.size(), 0);
     for_adjacent([&](std::uint32_t i, std::uint32_t j) {
-      if (!joined(votes, i, j) || (votes[i] < 0) == (votes[j] < 0)) return;
+      if (!joined(i, j) || (votes[i] < 0) == (votes[j] < 0)) return;
       seam[regions.find(votes[i] < 0 ? i : j)] += 1;
     });
     const std::vector<Votes> sums = sums_of(regions, votes);
@@ -252,7 +268,8 @@ class Following {
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
       const std::size_t region = regions.find(i);
       const double rim = links * std::sqrt(std::numbers::pi * static_cast<double>(sums[region].points));
-      if (votes[i] < 0 && sums[region].against > seam[region] && seam[region] < rim / 2) effect_.turned[i] ^= 1;
+      const bool squarely = sums[region].against > std::sqrt(kMostOpposed) * static_cast<double>(sums[region].points);
+      if (votes[i] < 0 && squarely && sums[region].against > seam[region] && seam[region] < rim / 2) effect_.turned[i] ^= 1;
     }
   }
 
