@@ -302,27 +302,44 @@ TEST(Noise, ScansThatDoNotFitAreNoWalls) {
   EXPECT_GT(o.stats.noise / o.stats.spacing, 0.1);
 }
 
-// Terraces of voxels are exact planes, and their steps were taken for shape.
-TEST(Noise, VoxelsCountAsNoise) {
+// The ellipsoid of axes 1, 0.7, 0.6 in voxels of these sides.
+Surface voxels_of(const Vec3& steps) {
   const Surface s = shapes::ellipsoid(60000, 1, 0.7, 0.6);
-  const double step = 0.02;
   std::map<std::array<std::int64_t, 3>, Vec3> normal_of;
   for (std::size_t i = 0; i < s.points.size(); ++i) {
     std::array<std::int64_t, 3> voxel{};
-    for (std::size_t a = 0; a < 3; ++a) voxel[a] = std::llround(s.points[i][a] / step);
+    for (std::size_t a = 0; a < 3; ++a) voxel[a] = std::llround(s.points[i][a] / steps[a]);
     normal_of.emplace(voxel, s.normals[i]);
   }
   Surface voxels;
   for (const auto& [voxel, normal] : normal_of) {
     Vec3 p{};
-    for (std::size_t a = 0; a < 3; ++a) p[a] = step * static_cast<double>(voxel[a]);
+    for (std::size_t a = 0; a < 3; ++a) p[a] = steps[a] * static_cast<double>(voxel[a]);
     voxels.points.push_back(p);
     voxels.normals.push_back(normal);
   }
+  return voxels;
+}
+
+// Terraces of voxels are exact planes, and their steps were taken for shape.
+TEST(Noise, VoxelsCountAsNoise) {
+  const double step = 0.02;
+  const Surface voxels = voxels_of({step, step, step});
   const Orientation o = orient(voxels.points);
   EXPECT_NEAR(plan(voxels.points).noise / step, 1 / std::sqrt(12.0), 1e-6);
   EXPECT_GE(shapes::share_correct(o.normals, voxels.normals), 0.999);
   EXPECT_LE(shapes::angle_error(o.normals, voxels.normals), 0.02);
+}
+
+// Slices of a scanner that are thicker than its pixels: whole neighbourhoods are in one slice, exactly, and none is on the surface.
+TEST(Noise, VoxelsOfThickSlicesCountAsNoise) {
+  for (const double thickness : {2.0, 3.0, 5.0}) {
+    const Vec3 steps{0.02, 0.02, 0.02 * thickness};
+    const Surface voxels = voxels_of(steps);
+    const Orientation o = orient(voxels.points);
+    EXPECT_NEAR(plan(voxels.points).noise, std::hypot(steps[0], steps[1], steps[2]) / 6, 1e-6) << thickness;
+    EXPECT_GE(shapes::share_correct(o.normals, voxels.normals), 0.999) << thickness;
+  }
 }
 
 // A grid on a cube is a lattice too.

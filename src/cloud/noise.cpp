@@ -46,6 +46,9 @@ constexpr double kLayerBias = 0.92;
 // A neighbourhood is no larger part of a cloud than one in so many points: larger ones follow its shape.
 constexpr std::size_t kSmallPart = 16;
 
+// 1 over the variance of what rounding to integers leaves, evenly between -1/2 and 1/2.
+constexpr double kRounding = 12;
+
 double share_of(std::size_t some, std::size_t all) { return static_cast<double>(some) / static_cast<double>(all); }
 
 double quantile(std::vector<double> values, double share) {
@@ -142,15 +145,6 @@ bool on_exact_planes(const PointSet& set) {
   return share_of(on_facets, looked) >= kOnPlanes;
 }
 
-// Standard deviation of what rounding all three coordinates leaves, 0 if it leaves none: a box may well have integer coordinates.
-double rounding_noise(const PointSet& set, const Residuals& residuals) {
-  const double spacing = set.spacing();
-  const Vec3 steps = rounding_steps(set.points(), spacing);
-  if (std::min({steps[0], steps[1], steps[2]}) == 0) return 0;
-  const double sigma = std::hypot(steps[0], steps[1], steps[2]) / std::sqrt(3 * 12);
-  return sigma > kLeast * spacing && residuals.scatter(0.5) > kOfNoise * sigma ? sigma : 0;
-}
-
 // By the flattest neighbourhoods, 0 where these or exact planes show that there is none.
 double scattered_noise(const PointSet& set, const Residuals& residuals) {
   const double spacing = set.spacing();
@@ -202,10 +196,21 @@ Vec3 rounding_steps(const std::vector<Vec3>& points, double spacing) {
   return steps;
 }
 
+double rounding_noise(const PointSet& set) {
+  const Vec3 steps = rounding_steps(set.points(), set.spacing());
+  if (std::min({steps[0], steps[1], steps[2]}) == 0) return 0;
+  const double sigma = std::hypot(steps[0], steps[1], steps[2]) / std::sqrt(3 * kRounding);
+  if (sigma <= kLeast * set.spacing()) return 0;
+  std::vector<Vec3> cubes;
+  for (const Vec3& p : set.points()) cubes.push_back({p[0] / steps[0], p[1] / steps[1], p[2] / steps[2]});
+  const double scatter = Residuals(PointSet(std::move(cubes)), kPatchNeighbours).scatter(0.5);
+  return scatter > kOfNoise / std::sqrt(kRounding) ? sigma : 0;
+}
+
 double estimate_noise(const PointSet& set) {
   if (set.size() < kSmallPart * kPatchNeighbours) return 0;
   const Residuals residuals(set, kPatchNeighbours);
-  return std::max(scattered_noise(set, residuals), rounding_noise(set, residuals));
+  return std::max(scattered_noise(set, residuals), rounding_noise(set));
 }
 
 double largest_scatter(const PointSet& set) {

@@ -21,12 +21,16 @@ namespace g3r {
 ///     two counts. It needs the layers to be smooth as far as that. Noise above h fills such neighbourhoods as well, so every fourth point
 ///     is taken then, as often as needed.
 ///   - Less than 0.04 h is none.
-///   - Rounding of all three coordinates to steps q, as in voxels, counts as noise of the mean square of q_a^2 / 12 where that is above
-///     0.04 h and the median residual of the height fields is half of it or more: rounded flat neighbourhoods may be exact. Coordinates of
-///     less than 5 values are not rounded: they are those of a plate that stands straight.
+///   - Rounding leaves noise as well: rounding_noise().
 /// Within about 15 % of the truth on smooth shapes from 0.1 to 3 h and on walls of 3 sigma (docs/evidence/noise.md). Same units as the
 /// points. Looks at about 2000 points, in O(log N) each, and sorts the thinned clouds, O(N log N).
 [[nodiscard]] double estimate_noise(const PointSet& set);
+
+/// Standard deviation of what rounding all three coordinates to steps q leaves, as in voxels: the root of the mean of q_a^2 / 12, where
+/// that is above 0.04 h. 0 where the points are exact, as those of a box with integer coordinates are: where the median residual of the
+/// height fields above is less than half of what rounding leaves, in units of the steps, in which voxels of slices that are far apart are
+/// cubes. Coordinates of less than 5 values are not rounded: they are those of a plate that stands straight. O(N log N).
+[[nodiscard]] double rounding_noise(const PointSet& set);
 
 /// The noise where it is largest, if all scatter is noise: of scans that do not fit onto each other, or of noise that differs from place to
 /// place, of which estimate_noise() finds the least. From the scatter x h of three quarters of the height fields above (measured within
