@@ -229,16 +229,19 @@ struct OtherNoise {
 
 // What to try where the sides of many points are unsure. No noise: few points on much shape look noisy, but not rounded. More: what
 // scatters most, of noise that differs from place to place and of scans that do not fit onto each other, looks like shape beside what
-// scatters least, which the estimate goes by; and noise of a spacing or so can turn whole shells, in cavities for example, in the narrow
-// polish. A surface that is open at the estimate may be closed at such a scatter, but not at one that kernels hide anyway.
+// scatters least, which the estimate goes by; what rounding leaves, where exact terraces hide it; and noise of a spacing or so can turn
+// whole shells, in cavities for example, in the narrow polish. A surface that is open at the estimate may be closed at such a scatter, but
+// not at one that kernels hide anyway.
 std::vector<OtherNoise> other_noises(const Problem& problem, const Options& options, const Oriented& found) {
   if (!may_try_noises(problem, options) || found.doubt < kDoubtful) return {};
   const PointSet& set = problem.cloud.set;
   const double scatter = largest_scatter(set);
   const double least = kLeastTried * problem.spacing;
   const double unsure = found.doubt - found.agreed;
-  if (kAboveScatter * scatter <= least && unsure < kDoubtful) return {};
   std::vector<OtherNoise> noises;
+  const double rounding = rounding_deviation(set);
+  if (rounding > problem.noise) noises.push_back({rounding, kFarLess});
+  if (kAboveScatter * scatter <= least && unsure < kDoubtful) return noises;
   if (set.size() <= kFewPoints && problem.noise > rounding_noise(set)) noises.push_back({0, kFarLess});
   if (scatter > kAboveScatter * problem.noise) {
     noises.push_back({std::max(kAboveScatter * scatter, least), kFarLess});

@@ -196,11 +196,17 @@ Vec3 rounding_steps(const std::vector<Vec3>& points, double spacing) {
   return steps;
 }
 
-double rounding_noise(const PointSet& set) {
+double rounding_deviation(const PointSet& set) {
   const Vec3 steps = rounding_steps(set.points(), set.spacing());
   if (std::min({steps[0], steps[1], steps[2]}) == 0) return 0;
   const double sigma = std::hypot(steps[0], steps[1], steps[2]) / std::sqrt(3 * kRounding);
-  if (sigma <= kLeast * set.spacing()) return 0;
+  return sigma > kLeast * set.spacing() ? sigma : 0;
+}
+
+double rounding_noise(const PointSet& set) {
+  const double sigma = rounding_deviation(set);
+  if (sigma == 0) return 0;
+  const Vec3 steps = rounding_steps(set.points(), set.spacing());
   std::vector<Vec3> cubes;
   for (const Vec3& p : set.points()) cubes.push_back({p[0] / steps[0], p[1] / steps[1], p[2] / steps[2]});
   const double scatter = Residuals(PointSet(std::move(cubes)), kPatchNeighbours).scatter(0.5);

@@ -26,10 +26,12 @@ namespace g3r {
 /// points. Looks at about 2000 points, in O(log N) each, and sorts the thinned clouds, O(N log N).
 [[nodiscard]] double estimate_noise(const PointSet& set);
 
-/// Standard deviation of what rounding all three coordinates to steps q leaves, as in voxels: the root of the mean of q_a^2 / 12, where
-/// that is above 0.04 h. 0 where the points are exact, as those of a box with integer coordinates are: where the median residual of the
-/// height fields above is less than half of what rounding leaves, in units of the steps, in which voxels of slices that are far apart are
-/// cubes. Coordinates of less than 5 values are not rounded: they are those of a plate that stands straight. O(N log N).
+/// Standard deviation of what rounding all three coordinates to steps q leaves, as in voxels: the root of the mean of q_a^2 / 12, 0 where
+/// that is 0.04 h or less. Coordinates of less than 5 values are not rounded: they are those of a plate that stands straight. O(N log N).
+[[nodiscard]] double rounding_deviation(const PointSet& set);
+
+/// The same, but 0 where the points are exact, as those of a box with integer coordinates are: where the median residual of the height
+/// fields above is less than half of what rounding leaves, in units of the steps, in which voxels of slices that are far apart are cubes.
 [[nodiscard]] double rounding_noise(const PointSet& set);
 
 /// The noise where it is largest, if all scatter is noise: of scans that do not fit onto each other, or of noise that differs from place to
