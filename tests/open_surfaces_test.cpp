@@ -126,6 +126,16 @@ TEST(OpenSurfaces, TakeTheOutsideTheEquationsFind) {
   EXPECT_TRUE(o.stats.consistent);
 }
 
+// What is seen of an object from one place, under noise as large as the spacing, encloses so much that it may be a closed one whose other
+// wall the noise hides. It is not called certain then, but the equations of a solid turn whole patches of it, and neighbours know better.
+TEST(OpenSurfaces, NoisyBowlsKeepTheSidesOfTheirNeighbours) {
+  Surface bowl = upper_part(shapes::ellipsoid(20000, 1, 0.8, 1.3), 0);
+  shapes::scatter(bowl, 0.04);
+  const Orientation o = orient(bowl.points);
+  EXPECT_GE(shapes::share_correct(o.normals, bowl.normals), 0.98);
+  EXPECT_FALSE(o.stats.consistent);
+}
+
 // The faces of a box, random points `spacing` apart.
 Surface box(const Vec3& low, const Vec3& high, double spacing, shapes::Random& random) {
   Surface s;

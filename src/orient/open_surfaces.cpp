@@ -46,6 +46,7 @@ constexpr double kUnrestNoisy = 0.2;  // the same where noise hides thin walls, 
 constexpr double kNoJump = 0.6;       // mean jump defect of a part whose sides change from site to site, or of two walls
 constexpr double kNoJumpNoisy = 0.8;  // the same under noise
 constexpr double kOutside = 0.55;     // enclosure from which a part has an outside; a plane has 0, half a sphere 0.6, a sphere 1
+constexpr double kOneWay = 0.5;       // length of the mean normal of a site and those around it whose points have one side
 constexpr double kEncloses = 0.7;     // enclosure under noise that no bowl up to a half sphere has, so that the part is a closed one
 constexpr double kLevel = 1e-6;       // part of the mean normal that counts as none
 // Mean jump defect of an open surface up to which its sides agree: 1 where none do.
@@ -294,6 +295,7 @@ bool any(const std::vector<std::uint8_t>& parts) {
 struct Verdict {
   std::vector<std::uint8_t> is_open;
   std::vector<std::uint8_t> is_doubtful;     // neither at rest nor shown to be open
+  std::vector<std::uint8_t> is_turned;       // of those, whose sides are more certain by a hypothesis
   std::vector<std::vector<double>> defects;  // jump defects of the sites, of every hypothesis
   std::vector<std::size_t> best;             // of the hypotheses
   std::vector<double> defect;                // mean jump defect of the best
@@ -303,8 +305,9 @@ struct Verdict {
 // From the field of the given normals, unrest and jump defects being means of the parts.
 Verdict suspect(const Search& search, const std::vector<double>& unrest, const std::vector<double>& defect, double noise) {
   const std::size_t parts = search.parts();
-  Verdict verdict{std::vector<std::uint8_t>(parts, 0), std::vector<std::uint8_t>(parts, 0),  {},
-                  std::vector<std::size_t>(parts, 0),  std::vector<double>(parts, HUGE_VAL), std::vector<double>(parts, 0)};
+  const std::vector<std::uint8_t> none(parts, 0);
+  Verdict verdict{
+      none, none, none, {}, std::vector<std::size_t>(parts, 0), std::vector<double>(parts, HUGE_VAL), std::vector<double>(parts, 0)};
   for (std::uint32_t p = 0; p < parts; ++p) {
     if (search.size(p) < kFewestSites) continue;
     if (unrest[p] <= kUnrest && defect[p] <= (noise > 0 ? kNoJumpNoisy : kNoJump)) continue;
@@ -327,23 +330,38 @@ void choose(const Search& search, const std::vector<std::vector<Vec3>>& tried, c
       verdict.best[p] = h;
     }
   }
-  const double most_unrest = search.sites().distance > 0 ? kUnrestNoisy : kUnrest;
-  for (std::size_t p = 0; p < unrest.size(); ++p) {
-    if (verdict.is_open[p] == 0 || unrest[p] > most_unrest || verdict.defect[p] <= kFarBetter * defect[p]) continue;
-    verdict.is_open[p] = 0;
-    verdict.is_doubtful[p] = unrest[p] > kUnrest ? 1 : 0;
-  }
   for (std::size_t h = 0; h < tried.size(); ++h) {
     const std::vector<Vec3> at_sites = search.at_sites(tried[h]);
     for (std::uint32_t p = 0; p < unrest.size(); ++p) {
       if (verdict.is_open[p] != 0 && verdict.best[p] == h) verdict.enclosure[p] = search.enclosure(p, at_sites);
     }
   }
-  // Noise makes one wall of two: what encloses nearly everything is a closed surface whose thin parts it hides.
+  const double most_unrest = search.sites().distance > 0 ? kUnrestNoisy : kUnrest;
   for (std::size_t p = 0; p < unrest.size(); ++p) {
-    if (verdict.is_open[p] == 0 || noise == 0 || std::abs(verdict.enclosure[p]) < kEncloses) continue;
+    if (verdict.is_open[p] == 0) continue;
+    const bool is_better = unrest[p] > most_unrest || verdict.defect[p] <= kFarBetter * defect[p];
+    // Noise makes one wall of two: what encloses nearly everything is a closed surface whose thin parts it hides.
+    const bool is_enclosed = noise > 0 && std::abs(verdict.enclosure[p]) >= kEncloses;
+    if (is_better && !is_enclosed) continue;
     verdict.is_open[p] = 0;
-    verdict.is_doubtful[p] = 1;
+    verdict.is_doubtful[p] = unrest[p] > kUnrest ? 1 : 0;
+    verdict.is_turned[p] = verdict.is_doubtful[p] != 0 && verdict.defect[p] < defect[p] ? 1 : 0;
+  }
+}
+
+// Turns the points of doubtful parts to the sides of the best hypothesis, but where points of both sides are mixed: those may be on two
+// walls. Patches that are turned the other way are not, but at their rims, which they are no longer once the patches are turned.
+void turn_doubtful(const Search& search, const std::vector<std::vector<Vec3>>& tried, const Verdict& verdict, std::vector<Vec3>& normals) {
+  for (bool is_turned = true; is_turned;) {
+    is_turned = false;
+    const std::vector<double> one_way = concentration(search, normals);
+    for (std::uint32_t i = 0; i < normals.size(); ++i) {
+      const std::uint32_t p = search.part_of_point(i);
+      if (verdict.is_turned[p] == 0 || one_way[search.sites().site_of[i]] < kOneWay) continue;
+      if (dot(normals[i], tried[verdict.best[p]][i]) * verdict.enclosure[p] >= 0) continue;
+      normals[i] = vector::scale(normals[i], -1);
+      is_turned = true;
+    }
   }
 }
 
@@ -458,7 +476,9 @@ OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan
     tried = search.hypotheses();
     choose(search, tried, unrest, defect, noise, verdict);
   }
-  std::vector<float> shown = certified(search, given, normals, noise == 0);
+  const bool are_turned = any(verdict.is_turned);
+  if (are_turned) turn_doubtful(search, tried, verdict, normals);
+  std::vector<float> shown = certified(search, are_turned ? search.test(normals) : given, normals, noise == 0);
   OpenSurfaces found;
   if (any(verdict.is_open) || any(verdict.is_doubtful)) {
     found = choose(search, tried, verdict, std::move(shown), normals);

@@ -52,7 +52,9 @@ struct OpenSurfaces {
 /// sees what is around. Above a half the side of a point is not certified in full. The outside of a part is the side on which the mean of w
 /// at the part, of its own field, is positive: e / 2, with e = 1 on a closed surface, 0.62 on half a sphere, 0 on a plane. Where |e| is
 /// below 0.55 either side could be it, and the one that faces up (+z; if the part is level, +y, then +x) is taken. Under noise a part with
-/// |e| above 0.7 is closed: noise makes one wall of two, and what is left encloses nearly everything. Where the solution stays as it is, J
+/// |e| above 0.7 is closed: noise makes one wall of two, and what is left encloses nearly everything. Its sides, and those of any part that
+/// is neither at rest nor shown to be open, are those of the best hypothesis where the normals of a site and those around it have one side,
+/// and its mean defect is less than that of the solution. Where the solution stays as it is, J
 /// = max(0, jump of its site) certifies a side: where walls are too close for the sampling the field does not jump from 0 to 1, whatever
 /// the sides. J is the largest jump, and 1 - scaled_defect where sites are thinned for noise, which makes layers of single wrong patches.
 /// Under noise it counts R times, R the length of the mean of the normals of the points of the site and the six around it: two walls closer
