@@ -289,7 +289,6 @@ Orientation orient_in_arena(const PointsView& points, const Known& known, const 
   Orientation out;
   out.stats = std::move(best.stats);
   fit_noisy_surface(best.problem, stages, solution);
-  best.problem.cloud.set.release_neighbours();
   replace_areas(best.problem, stages, solution);
   apply_hints(best.problem, options, solution, confidence, out.stats, stages.cancel());
   warn_of_volume(best.problem, out.stats);

@@ -21,7 +21,7 @@ constexpr double kMost = 1.3;
 std::vector<Vec3> area_vectors(const PointSet& set, const std::vector<Vec3>& normals, const OpenSurfaces& surfaces,
                                const std::atomic<bool>* cancel) {
   std::vector<double> spacing = set.smoothed_spacing();
-  const std::vector<std::uint8_t> held = mesh::held_points(set.points(), normals, cancel);
+  const std::vector<std::uint8_t> held = mesh::held_points(set, normals, cancel);
   for (std::size_t i = 0; i < spacing.size(); ++i) {
     if (held[i] == 0) spacing[i] = std::min(spacing[i], set.spacing());  // the emptiness around a stray is not its surface
   }
