@@ -116,15 +116,15 @@ void hand_out(const CanonicalCloud& cloud, const std::vector<Vec3>& eta, const s
   out.normals.assign(n, Vec3{0, 0, 0});
   out.areas.assign(n, 0);
   out.confidence.assign(n, 0);
-  for (std::size_t i = 0; i < n; ++i) {
+  parallel::for_all(n, [&](std::size_t i) {
     const std::uint32_t p = cloud.point_of[i];
-    if (p == kNoPoint) continue;
+    if (p == kNoPoint) return;
     out.normals[i] = normals[p];
     // One length at a time: the square of a scale may leave the range of double where the area 0 does not.
     const double area = std::hypot(eta[p][0], eta[p][1], eta[p][2]) / cloud.multiplicity[p];
     out.areas[i] = cloud.frame.length_to_world(cloud.frame.length_to_world(area));
     out.confidence[i] = confidence[p];
-  }
+  });
 }
 
 // Which of the caller's points lie on open surfaces.
@@ -292,7 +292,6 @@ Orientation orient_in_arena(const PointsView& points, const Known& known, const 
   Orientation out;
   out.stats = std::move(best.stats);
   fit_noisy_surface(best.problem, stages, solution);
-  best.problem.cloud.set.release_neighbours();
   replace_areas(best.problem, stages, solution);
   apply_hints(best.problem, options, solution, confidence, out.stats, stages.cancel());
   warn_of_volume(best.problem, out.stats);

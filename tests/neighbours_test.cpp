@@ -69,6 +69,46 @@ TEST(Neighbours, WithinARadiusAreAllThatAreCloser) {
   EXPECT_EQ(found, expected);
 }
 
+// Many are far more than a leaf holds, and than one thread builds alone.
+TEST(Neighbours, OfManyAndOfTheMarkedAreThoseOfALookAtAllPoints) {
+  shapes::Random random(4);
+  std::vector<Vec3> points(20000);
+  for (Vec3& p : points) p = {random.uniform(), random.uniform() * random.uniform(), 1e-3 * random.uniform()};
+  std::vector<std::uint8_t> marks(points.size());
+  for (std::size_t i = 0; i < marks.size(); ++i) marks[i] = i % 3 == 0 ? 1 : 0;
+  const Neighbours neighbours(points);
+  std::vector<std::uint32_t> found;
+  std::vector<double> squared;
+  for (int trial = 0; trial < 10; ++trial) {
+    const Vec3 x{random.uniform(-0.5, 1.5), random.uniform(), random.uniform(-1e-3, 1e-3)};
+    std::vector<std::uint32_t> index = sorted_around(x, points);
+    neighbours.nearest(x, 40, found, squared);
+    EXPECT_EQ(found, std::vector<std::uint32_t>(index.begin(), index.begin() + 40));
+    index.erase(std::remove_if(index.begin(), index.end(), [&](std::uint32_t i) { return marks[i] == 0; }), index.end());
+    neighbours.nearest_marked(x, 9, marks, found, squared);
+    EXPECT_EQ(found, std::vector<std::uint32_t>(index.begin(), index.begin() + 9));
+  }
+}
+
+TEST(Neighbours, AsFarAsOneAnotherAreInTheOrderOfTheirIndices) {
+  std::vector<Vec3> grid;
+  for (int i = 0; i < 1000; ++i)
+    grid.push_back({static_cast<double>(i * 7 % 10), static_cast<double>(i / 10 % 10), static_cast<double>(i / 100)});
+  const Neighbours neighbours(grid);
+  std::vector<std::uint32_t> found;
+  std::vector<double> squared;
+  for (const Vec3& x : {Vec3{4, 5, 5}, Vec3{4.5, 4.5, 4.5}, Vec3{0, 9, -1}}) {
+    std::vector<std::uint32_t> index(grid.size());
+    std::iota(index.begin(), index.end(), 0U);
+    std::stable_sort(index.begin(), index.end(),
+                     [&](std::uint32_t i, std::uint32_t j) { return squared_distance(x, grid[i]) < squared_distance(x, grid[j]); });
+    neighbours.nearest(x, 22, found, squared);
+    EXPECT_EQ(found, std::vector<std::uint32_t>(index.begin(), index.begin() + 22));
+    double nearest = 100;
+    EXPECT_EQ(neighbours.nearest(x, nearest, 0), index.front());
+  }
+}
+
 TEST(Neighbours, AreNoneBeyondTheGivenDistance) {
   const std::vector<Vec3> points = cube();
   const Neighbours neighbours(points);

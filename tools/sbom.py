@@ -17,8 +17,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 # Name and licence of what tools/sources.sh brings, by its folder.
 SOURCES = {"laszip": ("LASzip", "Apache-2.0"), "e57": ("libE57Format", "BSL-1.0"), "tbb": ("oneTBB", "Apache-2.0"),
            "highway": ("Highway", "Apache-2.0"), "meshoptimizer": ("meshoptimizer", "MIT"), "png": ("libpng", "Libpng"),
-           "zlib": ("zlib", "Zlib"), "eigen": ("Eigen", "MPL-2.0"), "nanoflann": ("nanoflann", "BSD-2-Clause"),
-           "json": ("nlohmann-json", "MIT")}
+           "zlib": ("zlib", "Zlib"), "eigen": ("Eigen", "MPL-2.0"), "json": ("nlohmann-json", "MIT")}
 
 
 def output_of(*command):

@@ -91,8 +91,6 @@ if [ "${1:-}" = all ]; then
     --no-wildcards-match-slash '*/*.c' '*/*.h' '*/README' || missing+=(zlib)
   fetch eigen from_debian libeigen3-dev_3.4.0-4_all.deb 1a167bb381acb90c1d8450a8f3e66a09d216dbc64b33ac8a082a0912513ef939 \
     ./usr/include/eigen3/Eigen || missing+=(Eigen)
-  fetch nanoflann from_debian libnanoflann-dev_1.4.3+ds-2_all.deb 313fae94336c3d51fa893d9e57c72c549b0067be9f6fa76a9364f19e2bfbe43f \
-    ./usr/include/nanoflann.hpp || missing+=(nanoflann)
   fetch json from_debian nlohmann-json3-dev_3.11.2-2_all.deb ec57940def6b6186c30be0e0ee81d1e58f86d11a54a145b28686a1e3e4aae801 \
     ./usr/include/nlohmann || missing+=(nlohmann-json)
 fi

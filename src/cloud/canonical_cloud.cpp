@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 
 namespace g3r {
@@ -61,20 +62,25 @@ struct Bounds {
   Vec3 low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   Vec3 high{-low[0], -low[1], -low[2]};
   std::size_t finite_points = 0;
+
+  Bounds& operator+=(const Bounds& other) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], other.low[a]);
+      high[a] = std::max(high[a], other.high[a]);
+    }
+    finite_points += other.finite_points;
+    return *this;
+  }
 };
 
 Bounds bounds_of(const PointsView& points) {
-  Bounds b;
-  for (std::size_t i = 0; i < points.count; ++i) {
-    const Vec3 p = points[i];
-    if (!finite(p)) continue;
-    ++b.finite_points;
-    for (std::size_t a = 0; a < 3; ++a) {
-      b.low[a] = std::min(b.low[a], p[a]);
-      b.high[a] = std::max(b.high[a], p[a]);
+  return parallel::sum_blocks(points.count, parallel::kBlock, Bounds{}, [&](std::size_t begin, std::size_t end) {
+    Bounds b;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (const Vec3 p = points[i]; finite(p)) b += {p, p, 1};
     }
-  }
-  return b;
+    return b;
+  });
 }
 
 Frame frame_of(const Bounds& b) {
@@ -92,6 +98,28 @@ Frame frame_of(const Bounds& b) {
   return frame;
 }
 
+double norm(const Vec3& v) { return std::hypot(v[0], v[1], v[2]); }
+
+// The longest of the vectors that `of` makes of the points; 0 where all are.
+template <class Of>
+Vec3 longest(const std::vector<Vec3>& points, const Of& of) {
+  struct Longest {
+    Vec3 vector{0, 0, 0};
+    double length = 0;
+    Longest& operator+=(const Longest& other) { return other.length > length ? *this = other : *this; }
+  };
+  return parallel::sum_blocks(points.size(), parallel::kBlock, Longest{},
+                              [&](std::size_t begin, std::size_t end) {
+                                Longest out;
+                                for (std::size_t i = begin; i < end; ++i) {
+                                  const Vec3 v = of(points[i]);
+                                  out += {v, norm(v)};
+                                }
+                                return out;
+                              })
+      .vector;
+}
+
 // Distance of all points from the line through their mean and the point farthest from it.
 void require_not_collinear(const std::vector<Vec3>& points) {
   Vec3 mean{0, 0, 0};
@@ -99,16 +127,8 @@ void require_not_collinear(const std::vector<Vec3>& points) {
     for (std::size_t a = 0; a < 3; ++a) mean[a] += p[a] / static_cast<double>(points.size());
   }
   const auto from_mean = [&mean](const Vec3& p) { return Vec3{p[0] - mean[0], p[1] - mean[1], p[2] - mean[2]}; };
-  Vec3 axis{0, 0, 0};
-  double length = 0;
-  for (const Vec3& p : points) {
-    const Vec3 d = from_mean(p);
-    const double distance = std::hypot(d[0], d[1], d[2]);
-    if (distance > length) {
-      length = distance;
-      axis = d;
-    }
-  }
+  const Vec3 axis = longest(points, from_mean);
+  const double length = norm(axis);
   for (const Vec3& p : points) {
     const Vec3 d = from_mean(p);
     const double off_line =
@@ -182,31 +202,30 @@ CanonicalCloud canonical_cloud(const PointsView& points) {
   cloud.frame = frame_of(bounds);
   cloud.non_finite = points.count - bounds.finite_points;
 
-  std::vector<Vec3> unit;
   std::vector<std::uint32_t> input;
-  unit.reserve(bounds.finite_points);
   input.reserve(bounds.finite_points);
   for (std::size_t i = 0; i < points.count; ++i) {
-    const Vec3 p = points[i];
-    if (!finite(p)) continue;
-    unit.push_back(cloud.frame.to_unit(p));
-    input.push_back(static_cast<std::uint32_t>(i));
+    if (finite(points[i])) input.push_back(static_cast<std::uint32_t>(i));
   }
+  const std::size_t n = input.size();
+  std::vector<Vec3> unit(n);
+  parallel::for_all(n, [&](std::size_t i) { unit[i] = cloud.frame.to_unit(points[input[i]]); });
   const MortonOrder order = morton_order(unit);
+  std::vector<std::uint32_t> number(n);  // how many distinct ones there are up to a point
+  parallel::for_all(n, [&](std::size_t k) { number[k] = k == 0 || unit[order.index[k]] != unit[order.index[k - 1]] ? 1 : 0; });
+  std::partial_sum(number.begin(), number.end(), number.begin());
+  std::vector<Vec3> kept(number.back());
+  std::vector<std::uint64_t> morton(kept.size());
+  cloud.multiplicity.resize(kept.size());
   cloud.point_of.assign(points.count, kNoPoint);
-  std::vector<Vec3> kept;
-  std::vector<std::uint64_t> morton;
-  kept.reserve(unit.size());
-  for (std::size_t k = 0; k < unit.size(); ++k) {
-    const Vec3& p = unit[order.index[k]];
-    if (kept.empty() || kept.back() != p) {
-      kept.push_back(p);
-      morton.push_back(order.code[k]);
-      cloud.multiplicity.push_back(0);
-    }
-    ++cloud.multiplicity.back();
-    cloud.point_of[input[order.index[k]]] = static_cast<std::uint32_t>(kept.size() - 1);
-  }
+  parallel::for_all(n, [&](std::size_t k) {
+    const std::uint32_t place = number[k] - 1;
+    cloud.point_of[input[order.index[k]]] = place;
+    if (k > 0 && number[k - 1] == number[k]) return;
+    kept[place] = unit[order.index[k]];
+    morton[place] = order.code[k];
+    for (std::size_t same = k; same < n && number[same] == number[k]; ++same) ++cloud.multiplicity[place];
+  });
   cloud.set = PointSet(std::move(kept), std::move(morton));
   if (cloud.size() < kFewestPoints) {
     throw InvalidInput("too few distinct points: " + std::to_string(cloud.size()) + " (the rest are duplicates), at least 4 are needed");
@@ -250,15 +269,8 @@ bool is_flat(const CanonicalCloud& cloud) {
   const auto cross = [](const Vec3& a, const Vec3& b) {
     return Vec3{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
   };
-  const auto norm = [](const Vec3& v) { return std::hypot(v[0], v[1], v[2]); };
-  Vec3 axis{0, 0, 0};
-  for (const Vec3& p : cloud.points()) {
-    if (const Vec3 d = to(p); norm(d) > norm(axis)) axis = d;
-  }
-  Vec3 normal{0, 0, 0};
-  for (const Vec3& p : cloud.points()) {
-    if (const Vec3 n = cross(axis, to(p)); norm(n) > norm(normal)) normal = n;
-  }
+  const Vec3 axis = longest(cloud.points(), to);
+  const Vec3 normal = longest(cloud.points(), [&](const Vec3& p) { return cross(axis, to(p)); });
   const double allowed = kLeastSpacing * norm(normal);
   return std::all_of(cloud.points().begin(), cloud.points().end(), [&](const Vec3& p) {
     const Vec3 d = to(p);

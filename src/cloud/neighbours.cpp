@@ -1,63 +1,205 @@
 #include "cloud/neighbours.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <nanoflann.hpp>
+#include <numeric>
 
+#include "base/vector.h"
 #include "cpu/parallel.h"
 
 namespace g3r {
 namespace {
 
-constexpr std::size_t kLeaf = 12;  // points per leaf of the k-d tree; a matter of speed only
+constexpr std::size_t kLeaf = 16;       // points per leaf: fewer make more nodes, more are looked at in vain; a matter of speed only
+constexpr std::size_t kApart = 1 << 9;  // leaves from which halves are built side by side: fewer take less time than handing them out
 
-struct Cloud {
-  const std::vector<Vec3>& p;
-  [[nodiscard]] std::size_t kdtree_get_point_count() const { return p.size(); }
-  [[nodiscard]] double kdtree_get_pt(std::size_t i, std::size_t d) const { return p[i][d]; }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
+bool is_before(double squared, std::uint32_t point, double other_squared, std::uint32_t other) {
+  return squared < other_squared || (squared == other_squared && point < other);
+}
 
-// The nearest point so far, as nanoflann's searches see it.
-struct Nearest {
-  std::uint32_t index;
-  double squared;
-  [[nodiscard]] bool full() const { return true; }
-  [[nodiscard]] double worstDist() const { return squared; }
-  bool addPoint(double distance, std::uint32_t point) {
-    if (distance < squared) squared = distance, index = point;
-    return true;
-  }
-};
-
-// The k nearest points that have a mark.
-class NearestMarked {
+// The k nearest points so far, nearest first, those as far by their index.
+class Nearest {
  public:
-  NearestMarked(std::size_t k, const std::vector<std::uint8_t>& marks, std::uint32_t* index, double* squared) : found_(k), marks_(marks) {
-    found_.init(index, squared);
+  Nearest(std::size_t k, std::uint32_t* index, double* squared) : k_(k), index_(index), squared_(squared) {}
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] double reach() const { return size_ < k_ ? HUGE_VAL : squared_[k_ - 1]; }
+  void add(double squared, std::uint32_t point) {
+    if (size_ == k_) {
+      if (k_ == 0 || !is_before(squared, point, squared_[k_ - 1], index_[k_ - 1])) return;
+    } else {
+      ++size_;
+    }
+    std::size_t at = size_ - 1;
+    for (; at > 0 && is_before(squared, point, squared_[at - 1], index_[at - 1]); --at) {
+      squared_[at] = squared_[at - 1];
+      index_[at] = index_[at - 1];
+    }
+    squared_[at] = squared;
+    index_[at] = point;
   }
-  [[nodiscard]] std::size_t size() const { return found_.size(); }
-  [[nodiscard]] bool full() const { return found_.full(); }
-  [[nodiscard]] double worstDist() const { return found_.worstDist(); }
-  bool addPoint(double distance, std::uint32_t point) { return marks_[point] == 0 || found_.addPoint(distance, point); }
 
  private:
-  nanoflann::KNNResultSet<double, std::uint32_t> found_;
+  std::size_t k_;
+  std::uint32_t* index_;
+  double* squared_;
+  std::size_t size_ = 0;
+};
+
+// The same among the points that have a mark.
+class NearestMarked : public Nearest {
+ public:
+  NearestMarked(std::size_t k, const std::vector<std::uint8_t>& marks, std::uint32_t* index, double* squared)
+      : Nearest(k, index, squared), marks_(marks) {}
+  void add(double squared, std::uint32_t point) {
+    if (marks_[point] != 0) Nearest::add(squared, point);
+  }
+
+ private:
   const std::vector<std::uint8_t>& marks_;
 };
 
-using KdTree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, std::uint32_t>;
+// The nearest point that is nearer than `reach`.
+class Nearer {
+ public:
+  Nearer(double reach, std::uint32_t none) : point_(none), squared_(reach) {}
+  [[nodiscard]] std::uint32_t point() const { return point_; }
+  [[nodiscard]] double reach() const { return squared_; }
+  void add(double squared, std::uint32_t point) {
+    if (!(squared < squared_ || (found_ && squared == squared_ && point < point_))) return;
+    found_ = true;
+    squared_ = squared;
+    point_ = point;
+  }
+
+ private:
+  bool found_ = false;
+  std::uint32_t point_;
+  double squared_;
+};
+
+// All points that are nearer than `reach`.
+class Within {
+ public:
+  Within(double reach, std::vector<std::uint32_t>& index) : reach_(reach), index_(index) {}
+  [[nodiscard]] double reach() const { return reach_; }
+  void add(double squared, std::uint32_t point) {
+    if (squared < reach_) index_.push_back(point);
+  }
+
+ private:
+  double reach_;
+  std::vector<std::uint32_t>& index_;
+};
+
+struct Box {
+  Vec3 low, high;
+};
 
 }  // namespace
 
+// Balanced: leaves of kLeaf points, but for the last, side by side in `order`; of every node half of the leaves, rounded down, are before
+// the cut. So the tree is known by their number, and its inner nodes, parents first, hold the cuts only.
 struct Neighbours::Tree {
-  Cloud cloud;
-  KdTree index;
-  explicit Tree(const std::vector<Vec3>& p) : cloud{p}, index(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(kLeaf)) {
-    index.buildIndex();
+  // Across `axis`: the last point before the cut and the first one after it.
+  struct Cut {
+    double before = 0, after = 0;
+    std::size_t axis = 0;
+  };
+  // Leaves [begin, end) and the first of their inner nodes, of which there is one fewer.
+  struct Node {
+    std::size_t begin, end, first;
+    [[nodiscard]] std::size_t leaves() const { return end - begin; }
+    [[nodiscard]] std::size_t middle() const { return begin + leaves() / 2; }
+    [[nodiscard]] Node before() const { return {begin, middle(), first + 1}; }
+    [[nodiscard]] Node after() const { return {middle(), end, first + leaves() / 2}; }
+  };
+
+  const std::vector<Vec3>& points;
+  std::vector<std::uint32_t> order;
+  std::vector<Cut> cuts;
+  Box box{};
+
+  explicit Tree(const std::vector<Vec3>& p) : points(p), order(p.size()) {
+    std::iota(order.begin(), order.end(), std::uint32_t{0});
+    if (order.empty()) return;
+    const Node all = root();
+    cuts.resize(all.leaves() - 1);
+    box = box_of(all);
+    cut(all, box);
+  }
+
+  [[nodiscard]] Node root() const { return {0, (order.size() + kLeaf - 1) / kLeaf, 0}; }
+  [[nodiscard]] std::size_t end_of(const Node& node) const { return std::min(order.size(), node.end * kLeaf); }
+
+  [[nodiscard]] Box box_of(const Node& node) const {
+    Box out{points[order[node.begin * kLeaf]], points[order[node.begin * kLeaf]]};
+    for (std::size_t i = node.begin * kLeaf; i < end_of(node); ++i) {
+      const Vec3& p = points[order[i]];
+      for (std::size_t a = 0; a < 3; ++a) {
+        out.low[a] = std::min(out.low[a], p[a]);
+        out.high[a] = std::max(out.high[a], p[a]);
+      }
+    }
+    return out;
+  }
+
+  // Where the points in `around` reach farthest.
+  void cut(const Node& node, const Box& around) {
+    if (node.leaves() < 2) return;
+    const Vec3 extent = vector::subtract(around.high, around.low);
+    const auto axis = static_cast<std::size_t>(std::max_element(extent.begin(), extent.end()) - extent.begin());
+    const auto place = [this](std::size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
+    const auto first = place(node.begin * kLeaf), middle = place(node.middle() * kLeaf);
+    std::nth_element(first, middle, place(end_of(node)),
+                     [&](std::uint32_t i, std::uint32_t j) { return points[i][axis] < points[j][axis]; });
+    const std::array<Node, 2> halves = {node.before(), node.after()};
+    std::array<Box, 2> boxes{};
+    const auto go_on = [&](std::size_t half) {
+      boxes[half] = box_of(halves[half]);
+      cut(halves[half], boxes[half]);
+    };
+    if (node.leaves() < kApart) {
+      go_on(0);
+      go_on(1);
+    } else {
+      parallel::for_each(halves.size(), go_on);
+    }
+    cuts[node.first] = {boxes[0].high[axis], boxes[1].low[axis], axis};
+  }
+
+  // Shows `found` every point that is no farther from x than it still looks, and some others.
+  template <class Found>
+  void search(const Vec3& x, Found& found) const {
+    if (order.empty()) return;
+    Vec3 off{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double d = std::max({box.low[a] - x[a], x[a] - box.high[a], 0.0});
+      off[a] = d * d;
+    }
+    look(root(), x, off, found);
+  }
+
+  // `off`: of x from the node's box along every axis, squared. Same order of additions as for points, so that no point is nearer than its
+  // box.
+  template <class Found>
+  void look(const Node& node, const Vec3& x, Vec3& off, Found& found) const {
+    if (node.leaves() < 2) {
+      for (std::size_t i = node.begin * kLeaf; i < end_of(node); ++i) {
+        const Vec3 d = vector::subtract(points[order[i]], x);
+        const double squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        if (squared <= found.reach()) found.add(squared, order[i]);
+      }
+      return;
+    }
+    const Cut& cut = cuts[node.first];
+    const double past = x[cut.axis] - cut.before, short_of = cut.after - x[cut.axis];
+    const bool is_before_cut = past < short_of;
+    look(is_before_cut ? node.before() : node.after(), x, off, found);
+    const double d = std::max(is_before_cut ? short_of : past, 0.0), here = off[cut.axis];
+    off[cut.axis] = std::max(here, d * d);
+    if (!(off[0] + off[1] + off[2] > found.reach())) look(is_before_cut ? node.after() : node.before(), x, off, found);
+    off[cut.axis] = here;
   }
 };
 
@@ -65,10 +207,11 @@ Neighbours::Neighbours(const std::vector<Vec3>& positions) : tree_(std::make_uni
 Neighbours::~Neighbours() = default;
 
 void Neighbours::nearest(const Vec3& x, std::size_t k, std::vector<std::uint32_t>& index, std::vector<double>& squared) const {
-  k = std::min(k, tree_->cloud.p.size());
+  k = std::min(k, tree_->points.size());
   index.resize(k);
   squared.resize(k);
-  tree_->index.knnSearch(x.data(), k, index.data(), squared.data());
+  Nearest found(k, index.data(), squared.data());
+  tree_->search(x, found);
 }
 
 void Neighbours::nearest_marked(const Vec3& x, std::size_t k, const std::vector<std::uint8_t>& marks, std::vector<std::uint32_t>& index,
@@ -76,32 +219,34 @@ void Neighbours::nearest_marked(const Vec3& x, std::size_t k, const std::vector<
   index.resize(k);
   squared.resize(k);
   NearestMarked found(k, marks, index.data(), squared.data());
-  tree_->index.findNeighbors(found, x.data(), {});
+  tree_->search(x, found);
   index.resize(found.size());
   squared.resize(found.size());
 }
 
 std::uint32_t Neighbours::nearest(const Vec3& x, double& squared, std::uint32_t none) const {
-  Nearest result{none, squared};
-  tree_->index.findNeighbors(result, x.data(), {});
-  squared = result.squared;
-  return result.index;
+  Nearer found(squared, none);
+  tree_->search(x, found);
+  squared = found.reach();
+  return found.point();
 }
 
 void Neighbours::within(const Vec3& x, double radius, std::vector<std::uint32_t>& index) const {
-  std::vector<std::pair<std::uint32_t, double>> matches;
-  tree_->index.radiusSearch(x.data(), radius * radius, matches, nanoflann::SearchParams(0, 0, false));
   index.clear();
-  for (const auto& match : matches) index.push_back(match.first);
+  Within found(radius * radius, index);
+  tree_->search(x, found);
 }
 
 std::vector<std::uint32_t> Neighbours::of_all(std::size_t k) const {
-  const std::vector<Vec3>& points = tree_->cloud.p;
+  const std::vector<Vec3>& points = tree_->points;
   k = std::min(k, points.size());
   std::vector<std::uint32_t> out(points.size() * k);
   parallel::for_blocks(points.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<double> squared(k);
-    for (std::size_t i = begin; i < end; ++i) tree_->index.knnSearch(points[i].data(), k, out.data() + i * k, squared.data());
+    for (std::size_t i = begin; i < end; ++i) {
+      Nearest found(k, out.data() + i * k, squared.data());
+      tree_->search(points[i], found);
+    }
   });
   return out;
 }

@@ -1,4 +1,4 @@
-// Nearest points: a k-d tree over positions. The only file that names nanoflann is neighbours.cpp.
+// Nearest points: a k-d tree over positions.
 #pragma once
 
 #include <g3r/points.h>
@@ -18,7 +18,7 @@ class Neighbours {
   Neighbours(const Neighbours&) = delete;
   Neighbours& operator=(const Neighbours&) = delete;
 
-  /// The min(k, N) points nearest to x, nearest first, and their squared distances. O(k log N).
+  /// The min(k, N) points nearest to x, nearest first, those as far by their index, and their squared distances. O(k log N).
   void nearest(const Vec3& x, std::size_t k, std::vector<std::uint32_t>& index, std::vector<double>& squared) const;
   /// The same among the points with a mark other than 0, one mark a point.
   void nearest_marked(const Vec3& x, std::size_t k, const std::vector<std::uint8_t>& marks, std::vector<std::uint32_t>& index,

@@ -28,16 +28,24 @@ class Grid {
   explicit Grid(double cell) : cell_(cell) {}
 
   bool add_if_alone(const std::vector<Vec3>& points, std::uint32_t i) {
+    const auto is_near = [&](std::uint32_t j) {
+      const Vec3 d = vector::subtract(points[i], points[j]);
+      return vector::dot(d, d) < cell_ * cell_;
+    };
+    if (!taken_.empty() && is_near(last_)) return false;  // as half of them are, in Morton order
     std::array<std::int64_t, 3> at{};
     for (std::size_t a = 0; a < 3; ++a) at[a] = static_cast<std::int64_t>(std::floor(points[i][a] / cell_));
     for (std::int64_t x = at[0] - 1; x <= at[0] + 1; ++x) {
       for (std::int64_t y = at[1] - 1; y <= at[1] + 1; ++y) {
         for (std::int64_t z = at[2] - 1; z <= at[2] + 1; ++z) {
-          if (holds_near(points, points[i], {x, y, z})) return false;
+          const auto found = taken_.find(key({x, y, z}));
+          if (found == taken_.end()) continue;
+          if (std::any_of(found->second.begin(), found->second.end(), is_near)) return false;
         }
       }
     }
     taken_[key(at)].push_back(i);
+    last_ = i;
     return true;
   }
 
@@ -49,16 +57,8 @@ class Grid {
     return key;
   }
 
-  [[nodiscard]] bool holds_near(const std::vector<Vec3>& points, const Vec3& point, const std::array<std::int64_t, 3>& cell) const {
-    const auto found = taken_.find(key(cell));
-    if (found == taken_.end()) return false;
-    return std::any_of(found->second.begin(), found->second.end(), [&](std::uint32_t j) {
-      const Vec3 d = vector::subtract(point, points[j]);
-      return vector::dot(d, d) < cell_ * cell_;
-    });
-  }
-
   double cell_;
+  std::uint32_t last_ = 0;  // taken
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> taken_;
 };
 

@@ -33,7 +33,7 @@ std::vector<double> smoothed_spacing(const std::vector<double>& local, const std
   const std::size_t stride = near.size() / local.size();
   const std::size_t count = std::min(kSpacingNeighbours - 1, stride);
   std::vector<double> logarithm(local.size());
-  for (std::size_t i = 0; i < local.size(); ++i) logarithm[i] = std::log(local[i]);
+  parallel::for_all(local.size(), [&](std::size_t i) { logarithm[i] = std::log(local[i]); });
   std::vector<double> spacing(local.size());
   parallel::for_blocks(local.size(), parallel::kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

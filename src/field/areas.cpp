@@ -1,6 +1,7 @@
 #include "field/areas.h"
 
 #include "base/median.h"
+#include "cpu/parallel.h"
 #include "field/winding_sampler.h"
 #include "mesh/held_points.h"
 #include "sum/fast_sum.h"
@@ -21,16 +22,15 @@ constexpr double kMost = 1.3;
 std::vector<Vec3> area_vectors(const PointSet& set, const std::vector<Vec3>& normals, const OpenSurfaces& surfaces,
                                const std::atomic<bool>* cancel) {
   std::vector<double> spacing = set.smoothed_spacing();
-  const std::vector<std::uint8_t> held = mesh::held_points(set.points(), normals, cancel);
-  for (std::size_t i = 0; i < spacing.size(); ++i) {
-    if (held[i] == 0) spacing[i] = std::min(spacing[i], set.spacing());  // the emptiness around a stray is not its surface
-  }
+  const std::vector<std::uint8_t> held = mesh::held_points(set, normals, cancel);
+  const double typical = set.spacing();
   std::vector<Vec3> eta = normals;
-  std::vector<double> widths = spacing;
-  for (std::size_t i = 0; i < eta.size(); ++i) {
+  std::vector<double> widths(spacing.size());
+  parallel::for_all(eta.size(), [&](std::size_t i) {
+    if (held[i] == 0) spacing[i] = std::min(spacing[i], typical);  // the emptiness around a stray is not its surface
     for (double& c : eta[i]) c *= spacing[i] * spacing[i];
-    widths[i] *= kFieldWidth;
-  }
+    widths[i] = spacing[i] * kFieldWidth;
+  });
   FastSum sum(set.points(), set.morton(), Widths(std::move(widths)), sum_plan(kFieldAccuracy, set.size()), cancel);
   std::vector<double> winding = sum.winding(eta);
   if (!surfaces.part.empty()) {
@@ -43,9 +43,9 @@ std::vector<Vec3> area_vectors(const PointSet& set, const std::vector<Vec3>& nor
   }
   const double level = std::abs(median(std::move(winding)));  // normals may face into the solid, as those of a room do
   const double factor = level > 0 ? std::clamp(0.5 / level, kLeast, kMost) : kMost;
-  for (Vec3& v : eta) {
-    for (double& c : v) c *= factor;
-  }
+  parallel::for_all(eta.size(), [&](std::size_t i) {
+    for (double& c : eta[i]) c *= factor;
+  });
   return eta;
 }
 

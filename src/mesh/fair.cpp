@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace g3r::mesh {
@@ -24,8 +25,8 @@ using vector::subtract;
 
 // Rounds of finding where the points meet the surface, which moves in each.
 constexpr int kRounds = 3;
-// Conjugate gradients in each: so many steps at most, or until the residual is this share of the first. What is left moves no vertex
-// visibly.
+// Conjugate gradients in each: so many steps at most, or until the residual is this share of that of the surface as it was. What is left
+// moves no vertex visibly.
 constexpr int kSteps = 300;
 constexpr double kTolerance = 1e-4;
 
@@ -86,30 +87,30 @@ class Energy {
  public:
   Energy(const Rings& rings, const std::vector<std::uint8_t>& free) : rings_(rings), free_(free) {
     counts_.resize(free.size(), 0);
+    inverse_.resize(free.size(), 0);
     for (std::uint32_t v = 0; v < free.size(); ++v) {
       bool near = free[v] != 0;
       for (std::uint32_t k = rings.begin[v]; k < rings.begin[v + 1]; ++k) near = near || free[rings.vertex[k]] != 0;
       counts_[v] = near ? 1 : 0;
+      inverse_[v] = 1.0 / std::max(1U, rings.begin[v + 1] - rings.begin[v]);
     }
   }
 
   // Half the gradient at the positions, 0 at the vertices that stay. `home`: subtract the places of the pins.
-  [[nodiscard]] std::vector<Vec3> gradient(const std::vector<Vec3>& at, const std::vector<Pin>& pins, bool home) const {
+  void gradient(const std::vector<Vec3>& at, const std::vector<Pin>& pins, bool home, std::vector<Vec3>& out) {
     const std::size_t n = at.size();
-    std::vector<Vec3> laplacian(n, Vec3{0, 0, 0}), out(n, Vec3{0, 0, 0});
+    shares_.resize(n, Vec3{0, 0, 0});
+    out.resize(n, Vec3{0, 0, 0});
     parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
-        if (counts_[v] != 0) laplacian[v] = subtract(at[v], mean(at, v));
+        if (counts_[v] != 0) shares_[v] = scale(subtract(at[v], mean(at, v)), inverse_[v]);
       }
     });
     parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
         if (free_[v] == 0) continue;
-        out[v] = laplacian[v];
-        for (std::uint32_t k = rings_.begin[v]; k < rings_.begin[v + 1]; ++k) {
-          const std::uint32_t other = rings_.vertex[k];
-          out[v] = subtract(out[v], scale(laplacian[other], 1.0 / (rings_.begin[other + 1] - rings_.begin[other])));
-        }
+        out[v] = scale(shares_[v], rings_.begin[v + 1] - rings_.begin[v]);
+        for (std::uint32_t k = rings_.begin[v]; k < rings_.begin[v + 1]; ++k) out[v] = subtract(out[v], shares_[rings_.vertex[k]]);
       }
     });
     // The distance of a point from the surface weighs half as much as the Laplacian of a vertex: less smooths, and leaves the points.
@@ -120,45 +121,51 @@ class Energy {
         if (free_[pin.vertex[k]] != 0) out[pin.vertex[k]] = add(out[pin.vertex[k]], scale(miss, 0.5 * pin.weight[k]));
       }
     }
-    return out;
   }
 
  private:
   [[nodiscard]] Vec3 mean(const std::vector<Vec3>& at, std::size_t v) const {
     Vec3 sum{0, 0, 0};
     for (std::uint32_t k = rings_.begin[v]; k < rings_.begin[v + 1]; ++k) sum = add(sum, at[rings_.vertex[k]]);
-    return scale(sum, 1.0 / std::max(1U, rings_.begin[v + 1] - rings_.begin[v]));
+    return scale(sum, inverse_[v]);
   }
 
   const Rings& rings_;
   const std::vector<std::uint8_t>& free_;
   std::vector<std::uint8_t> counts_;  // vertices whose Laplacian is part of the energy
+  std::vector<double> inverse_;       // of the number of neighbours of each vertex
+  std::vector<Vec3> shares_;          // of each neighbour, in the Laplacian of a vertex; 0 where that does not count
 };
 
 double product(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += dot(a[i], b[i]);
-  return sum;
+  return parallel::sum_blocks(a.size(), kBlock, 0.0, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t i = begin; i < end; ++i) sum += dot(a[i], b[i]);
+    return sum;
+  });
 }
 
-// Conjugate gradients from where the vertices are.
-void minimise(const Energy& energy, const std::vector<Pin>& pins, std::vector<Vec3>& at, const std::atomic<bool>* cancel) {
-  std::vector<Vec3> residual = energy.gradient(at, pins, true);
+// Conjugate gradients from where the vertices are, until the squared residual is at most `enough`; if that is nothing yet, it follows from
+// the first.
+void minimise(Energy& energy, const std::vector<Pin>& pins, std::vector<Vec3>& at, std::optional<double>& enough,
+              const std::atomic<bool>* cancel) {
+  std::vector<Vec3> residual, image;
+  energy.gradient(at, pins, true, residual);
   for (Vec3& r : residual) r = scale(r, -1);
   std::vector<Vec3> direction = residual;
   double squared = product(residual, residual);
-  const double enough = kTolerance * kTolerance * squared;
-  for (int step = 0; step < kSteps && squared > enough && squared > 0; ++step) {
+  if (!enough) enough = kTolerance * kTolerance * squared;
+  for (int step = 0; step < kSteps && squared > *enough; ++step) {
     if (cancel != nullptr && cancel->load()) throw Cancelled();
-    const std::vector<Vec3> image = energy.gradient(direction, pins, false);
+    energy.gradient(direction, pins, false, image);
     const double alpha = squared / product(direction, image);
     if (!std::isfinite(alpha)) return;
-    for (std::size_t v = 0; v < at.size(); ++v) {
+    parallel::for_all(at.size(), [&](std::size_t v) {
       at[v] = add(at[v], scale(direction[v], alpha));
       residual[v] = subtract(residual[v], scale(image[v], alpha));
-    }
+    });
     const double now = product(residual, residual);
-    for (std::size_t v = 0; v < at.size(); ++v) direction[v] = add(residual[v], scale(direction[v], now / squared));
+    parallel::for_all(at.size(), [&](std::size_t v) { direction[v] = add(residual[v], scale(direction[v], now / squared)); });
     squared = now;
   }
 }
@@ -273,10 +280,11 @@ void make_fair(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<st
   const Rings rings = rings_of(mesh);
   const std::vector<Vec3> home = mesh.vertices;
   const std::vector<TrianglePair> before = self_intersections(mesh);
+  std::optional<double> enough;
   // Each attempt holds what crossed in the one before, and the rings around it; after as many as there are rings it stays.
   for (int attempt = 1;; ++attempt) {
-    const Energy energy(rings, free);
-    for (int round = 0; round < kRounds; ++round) minimise(energy, pin(mesh, points, in_lines), mesh.vertices, cancel);
+    Energy energy(rings, free);
+    for (int round = 0; round < kRounds; ++round) minimise(energy, pin(mesh, points, in_lines), mesh.vertices, enough, cancel);
     const std::vector<TrianglePair> after = self_intersections(mesh);
     if (after.size() <= before.size()) return;
     if (attempt > kRings) {

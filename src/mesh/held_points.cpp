@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 namespace g3r::mesh {
@@ -51,14 +52,17 @@ double quantile(std::vector<double> values, double share) {
 class Search {
  public:
   Search(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const std::atomic<bool>* cancel)
-      : points_(points), normals_(normals), cancel_(cancel), held_(points.size(), 1), rings_(points.size()) {
-    for (std::uint32_t i = 0; i < points.size(); ++i) doubtful_.push_back(i);
+      : points_(points), normals_(normals), cancel_(cancel), held_(points.size(), 1), rings_(points.size()), doubtful_(points.size()) {
+    std::iota(doubtful_.begin(), doubtful_.end(), std::uint32_t{0});
+  }
+  Search(const PointSet& set, const std::vector<Vec3>& normals, const std::atomic<bool>* cancel) : Search(set.points(), normals, cancel) {
+    known_ = &set;
   }
 
   // Strays that hold each other go one after the other, until all that are left are held. `usual`: of the cloud, where it is known.
   std::vector<std::uint8_t> run(std::optional<double> usual) {
     look();
-    neighbours_.reset();  // few clouds need it again, and the heights their room
+    own_.reset();  // few clouds need it again, and the heights their room
     usual_ = usual ? *usual : usual_height();
     for (take_strays(); !doubtful_.empty(); take_strays()) look();
     return std::move(held_);
@@ -72,23 +76,40 @@ class Search {
       doubtful_.clear();
       return;
     }
-    if (!neighbours_) neighbours_.emplace(points_);
+    const bool all_near_known = known_ != nullptr && doubtful_.size() == points_.size();  // at first, while all are held
+    const std::uint32_t* const near = all_near_known ? known_->near().data() : nullptr;
+    const Neighbours* const neighbours = all_near_known ? nullptr : &tree();
     const auto look_from = [&](std::size_t begin, std::size_t end) {
       std::vector<std::uint32_t> index;
       std::vector<double> squared;
       for (std::size_t k = begin; k < end; ++k) {
         const std::uint32_t i = doubtful_[k];
-        neighbours_->nearest_marked(points_[i], kRing + 1, held_, index, squared);
-        Ring& ring = rings_[i];
-        std::size_t to = 0;
-        for (std::size_t m = 0; m <= kRing && to < kRing; ++m) {
-          if (index[m] == i) continue;
-          ring.near[to++] = index[m];
-          ring.reach = std::sqrt(squared[m]);
+        if (all_near_known) {
+          set_ring(i, near + i * known_->near_count());
+        } else {
+          neighbours->nearest_marked(points_[i], kRing + 1, held_, index, squared);
+          set_ring(i, index.data());
         }
       }
     };
     parallel::for_blocks(doubtful_.size(), kBlock, look_from, cancel_);
+  }
+
+  [[nodiscard]] const Neighbours& tree() {
+    if (known_ != nullptr) return known_->tree();
+    if (!own_) own_.emplace(points_);
+    return *own_;
+  }
+
+  // `near`: the kRing + 1 nearest, as a rule with the point itself.
+  void set_ring(std::uint32_t i, const std::uint32_t* near) {
+    Ring& ring = rings_[i];
+    std::size_t to = 0;
+    for (std::size_t m = 0; m <= kRing && to < kRing; ++m) {
+      if (near[m] != i) ring.near[to++] = near[m];
+    }
+    const Vec3 d = vector::subtract(points_[ring.near[kRing - 1]], points_[i]);
+    ring.reach = std::sqrt(dot(d, d));
   }
 
   [[nodiscard]] Look look_at(std::uint32_t i, std::uint32_t j) const {
@@ -148,7 +169,8 @@ class Search {
   const std::vector<Vec3>& points_;
   const std::vector<Vec3>& normals_;
   const std::atomic<bool>* cancel_;
-  std::optional<Neighbours> neighbours_;
+  const PointSet* known_ = nullptr;  // the points, where more is known of them
+  std::optional<Neighbours> own_;    // where it is not
   std::vector<std::uint8_t> held_;
   std::vector<Ring> rings_;
   std::vector<std::uint32_t> doubtful_;  // points whose nearest ones have changed
@@ -159,13 +181,22 @@ double share_of_strays(const std::vector<std::uint8_t>& held) {
   return static_cast<double>(std::count(held.begin(), held.end(), std::uint8_t{0})) / static_cast<double>(held.size());
 }
 
-}  // namespace
-
-std::vector<std::uint8_t> held_points(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const std::atomic<bool>* cancel) {
+template <class Points>
+std::vector<std::uint8_t> held_among(const Points& points, const std::vector<Vec3>& normals, const std::atomic<bool>* cancel) {
   if (points.size() < kFewestPoints) return std::vector<std::uint8_t>(points.size(), 1);
   std::vector<std::uint8_t> held = Search(points, normals, cancel).run({});
   if (share_of_strays(held) > kMostStrays) std::fill(held.begin(), held.end(), 1);
   return held;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> held_points(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const std::atomic<bool>* cancel) {
+  return held_among(points, normals, cancel);
+}
+
+std::vector<std::uint8_t> held_points(const PointSet& set, const std::vector<Vec3>& normals, const std::atomic<bool>* cancel) {
+  return held_among(set, normals, cancel);
 }
 
 CloudHeights cloud_heights(const std::vector<Vec3>& points, const std::vector<Vec3>& normals) {

@@ -1,6 +1,8 @@
 // Points that no surface holds, once sides and directions are known.
 #pragma once
 
+#include "cloud/point_set.h"
+
 #include <g3r/points.h>
 
 #include <atomic>
@@ -24,6 +26,8 @@ inline constexpr double kMostStrays = 1.0 / 3;
 /// else, and all are held. `normals`: unit. O(N log N), once more for points near strays. Throws Cancelled.
 [[nodiscard]] std::vector<std::uint8_t> held_points(const std::vector<Vec3>& points, const std::vector<Vec3>& normals,
                                                     const std::atomic<bool>* cancel = nullptr);
+/// The same of points whose surroundings are known.
+[[nodiscard]] std::vector<std::uint8_t> held_points(const PointSet& set, const std::vector<Vec3>& normals, const std::atomic<bool>* cancel);
 
 /// The same of a part of a cloud, of which more than the part is known. Points within 12 of their spacings of where the part ends are not
 /// what they are in the cloud.

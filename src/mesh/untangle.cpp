@@ -18,8 +18,10 @@
 namespace g3r::mesh {
 namespace {
 
-// Rounds of moving vertices of crossing triangles: what still crosses after them hardly comes apart.
+// Rounds of moving vertices of crossing triangles: what still crosses after them hardly comes apart. From the first of the later ones on
+// the vertices around move too: it smooths more, and is for few crossings, not for where most stay as they are.
 constexpr int kRounds = 12;
+constexpr int kFirstLater = 4;
 // The cosine between normals below which two triangles fold back, at a dihedral angle of less than 60 degrees: creases are duller.
 constexpr double kFold = -0.5;
 // Rounds of moving vertices of folds: what still folds after them is a blade, and would become shorter.
@@ -163,12 +165,14 @@ std::size_t untangle(Mesh& mesh, const std::atomic<bool>* cancel, const std::vec
   std::vector<std::uint8_t> crossing(mesh.vertices.size(), 0);
   mark_corners(
       mesh, pairs, [](std::uint32_t v) { return v; }, crossing);
-  std::size_t fewest = pairs.size();
+  const std::size_t first = pairs.size();
+  std::size_t fewest = first;
   std::vector<Vec3> best = mesh.vertices;
   for (int round = 0; round < kRounds && !pairs.empty(); ++round) {
     if (cancel != nullptr && cancel->load()) throw Cancelled();
+    if (round == kFirstLater && 2 * fewest > first) break;
     std::vector<std::uint8_t> move = crossing;
-    if (3 * round >= kRounds) grow(mesh, move);  // few crossings need it, and it smooths more
+    if (round >= kFirstLater) grow(mesh, move);
     std::vector<std::uint8_t> near = move;
     for (std::size_t v = 0; v < fixed.size(); ++v) {
       if (fixed[v] != 0) move[v] = 0;

@@ -1,6 +1,7 @@
 #include "orient/confidence.h"
 
 #include "base/median.h"
+#include "cpu/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,34 +18,34 @@ double length(const Vec3& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2]
 std::vector<float> side_confidence(const std::vector<Vec3>& eta, const std::vector<Vec3>& normals, const std::vector<double>& jumps,
                                    const std::vector<double>& areas) {
   std::vector<double> sizes(eta.size()), shares(eta.size());
-  for (std::size_t i = 0; i < eta.size(); ++i) {
+  parallel::for_all(eta.size(), [&](std::size_t i) {
     const double area = areas[areas.size() == 1 ? 0 : i];
     sizes[i] = length(eta[i]);
     shares[i] = area > 0 ? sizes[i] / area : 0;
-  }
+  });
   const double full_share = kFullSize * median(shares);
   const double full_jump = jumps.empty() ? 0 : kFullSize * median(jumps);
   std::vector<float> confidence(eta.size(), 0.0F);
-  for (std::size_t i = 0; i < eta.size(); ++i) {
-    if (!(sizes[i] > 0)) continue;
+  parallel::for_all(eta.size(), [&](std::size_t i) {
+    if (!(sizes[i] > 0)) return;
     const double cosine = (eta[i][0] * normals[i][0] + eta[i][1] * normals[i][1] + eta[i][2] * normals[i][2]) / sizes[i];
     double c = std::clamp((1 + cosine) / 2, 0.0, 1.0) * std::min(1.0, shares[i] / full_share);
     if (full_jump > 0) c *= std::min(1.0, jumps[i] / full_jump);
     confidence[i] = static_cast<float>(c);
-  }
+  });
   return confidence;
 }
 
 Sums sums_over(const std::vector<std::uint32_t>& near, const std::vector<Vec3>& vectors) {
   const std::size_t stride = near.size() / vectors.size();
   Sums sums{std::vector<Vec3>(vectors.size(), Vec3{0, 0, 0}), std::vector<double>(vectors.size(), 0)};
-  for (std::size_t i = 0; i < vectors.size(); ++i) {
+  parallel::for_all(vectors.size(), [&](std::size_t i) {
     for (std::size_t k = 0; k < stride; ++k) {
       const Vec3& v = vectors[near[i * stride + k]];
       for (std::size_t a = 0; a < 3; ++a) sums.vectors[i][a] += v[a];
       sums.lengths[i] += length(v);
     }
-  }
+  });
   return sums;
 }
 

@@ -4,6 +4,7 @@
 #include "cloud/constants.h"
 #include "cloud/exact_plane.h"
 #include "cloud/spacing.h"
+#include "cpu/parallel.h"
 #include "orient/polish.h"
 #include "orient/unsure.h"
 #include "solve/energy_system.h"
@@ -110,23 +111,32 @@ Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven,
   Facets facets;
   facets.of.assign(points.size(), Facets::kNone);
   if (points.size() < kSpacingNeighbours) return facets;
-  const auto parallel = [&](std::size_t i, std::size_t j) { return std::abs(vector::dot(normals[i], normals[j])) >= kParallel; };
+  const auto is_parallel = [&](std::size_t i, std::size_t j) { return std::abs(vector::dot(normals[i], normals[j])) >= kParallel; };
   const auto in_one_plane = [&](std::size_t i, std::size_t j) {
     const Vec3 d = vector::subtract(points[i], points[j]);
     return std::max(std::abs(vector::dot(normals[i], d)), std::abs(vector::dot(normals[j], d))) <=
            kExactWithin * std::min(spacing[i], spacing[j]);
   };
+  // The neighbours in one plane with a point, a bit each: most points of curved surfaces have none.
+  std::vector<std::uint32_t> beside(points.size(), 0);
+  parallel::for_all(points.size(), [&](std::size_t i) {
+    for (std::size_t k = 1; proven[i] != 0 && k < kSpacingNeighbours; ++k) {
+      const std::uint32_t j = near[i * kSpacingNeighbours + k];
+      if (proven[j] != 0 && in_one_plane(i, j)) beside[i] |= 1U << k;
+    }
+  });
   std::vector<std::uint8_t> done(proven.size(), 0);
   std::vector<std::uint32_t> members;
   for (std::uint32_t seed = 0; seed < points.size(); ++seed) {
     if (proven[seed] == 0 || done[seed] != 0) continue;
-    members.assign(1, seed);
     done[seed] = 1;
+    if (beside[seed] == 0) continue;
+    members.assign(1, seed);
     for (std::size_t m = 0; m < members.size(); ++m) {
       const std::uint32_t i = members[m];
       for (std::size_t k = 1; k < kSpacingNeighbours; ++k) {
         const std::uint32_t j = near[i * kSpacingNeighbours + k];
-        if (proven[j] == 0 || done[j] != 0 || !parallel(seed, j) || !in_one_plane(i, j)) continue;
+        if ((beside[i] >> k & 1U) == 0 || done[j] != 0 || !is_parallel(seed, j)) continue;
         done[j] = 1;
         members.push_back(j);
       }

@@ -60,11 +60,11 @@ void fit_planes(const PointSet& set, double scatter, std::vector<std::uint8_t>& 
     }
   });
   if (are_slices(found, normals)) return;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (vector::dot(found[i].normal, found[i].normal) == 0) continue;
+  parallel::for_all(found.size(), [&](std::size_t i) {
+    if (vector::dot(found[i].normal, found[i].normal) == 0) return;
     proven[i] = 1;
     normals[i] = vector::scale(found[i].normal, vector::dot(found[i].normal, normals[i]) < 0 ? -1 : 1);
-  }
+  });
 }
 
 }  // namespace g3r

@@ -232,7 +232,7 @@ struct FastSum::Impl {
   // Puts the targets of `index`, shrunk, into canonical order. Returns their codes.
   static std::vector<std::uint64_t> sort_by_code(const std::vector<Vec3>& targets, double factor, std::vector<std::uint32_t>& index) {
     std::vector<Vec3> some(index.size());
-    for (std::size_t i = 0; i < some.size(); ++i) some[i] = targets[index[i]];
+    parallel::for_all(some.size(), [&](std::size_t i) { some[i] = targets[index[i]]; });
     MortonOrder order = morton_order(scaled(std::move(some), factor));
     for (std::uint32_t& i : order.index) i = index[i];
     index.swap(order.index);

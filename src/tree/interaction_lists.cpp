@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <span>
@@ -36,11 +37,10 @@ class Traversal {
  public:
   Traversal(const Octree& targets, const Octree& sources, double opening, double reach)
       : targets_(targets), sources_(sources), opening_(opening), reach_(reach) {
-    for (const Octree* tree : {&targets, &sources}) {
-      std::vector<Vec3>& centres = tree == &targets ? target_centres_ : source_centres_;
+    for (const auto& [tree, to] : {std::pair{&targets, &target_centres_}, std::pair{&sources, &source_centres_}}) {
+      std::vector<Vec3>& centres = *to;
       centres.resize(tree->nodes.size());
-      for (std::size_t i = 0; i < centres.size(); ++i) centres[i] = tree->nodes[i].centre();
-      if (&targets == &sources) source_centres_ = target_centres_;
+      parallel::for_all(centres.size(), [&](std::size_t i) { centres[i] = tree->nodes[i].centre(); });
     }
   }
 
@@ -197,7 +197,7 @@ void index_offsets(const Octree& targets, const Octree& sources, InteractionList
     }
   });
   for (const OffsetNumbers& part : found) lists.offsets.insert(lists.offsets.end(), part.offsets().begin(), part.offsets().end());
-  std::sort(lists.offsets.begin(), lists.offsets.end());
+  parallel::sort(lists.offsets.begin(), lists.offsets.end(), std::less<>());
   lists.offsets.erase(std::unique(lists.offsets.begin(), lists.offsets.end()), lists.offsets.end());
   parallel::for_each(parts, [&](std::size_t c) {
     const std::vector<Offset>& local = found[c].offsets();

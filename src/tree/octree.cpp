@@ -72,11 +72,12 @@ Octree split_while(std::size_t points, const std::vector<std::uint64_t>& morton,
     tree.level_begin.push_back(static_cast<std::uint32_t>(tree.nodes.size()));
   }
   tree.nodes.shrink_to_fit();
-  for (std::uint32_t i = 0; i < tree.nodes.size(); ++i) {
+  for (std::vector<std::uint32_t> next{0}; !next.empty();) {  // depth first
+    const std::uint32_t i = next.back();
+    next.pop_back();
     if (tree.nodes[i].leaf()) tree.leaves.push_back(i);
+    for (std::uint32_t c = tree.nodes[i].child_count; c-- > 0;) next.push_back(tree.nodes[i].first_child + c);
   }
-  std::sort(tree.leaves.begin(), tree.leaves.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return tree.nodes[a].begin < tree.nodes[b].begin; });
   return tree;
 }
 
