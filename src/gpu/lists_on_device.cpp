@@ -97,31 +97,37 @@ MatricesOnDevice upload_matrices(Device& device, const std::vector<Offset>& offs
 }
 
 // The tiles of one chunk, whose pairs ascend by offset and so by matrix. Numbers of tiles and pairs from 0.
-TiledPairs tile_chunk(const InteractionLists& lists, const std::vector<FarPair>& pairs, const std::vector<std::uint32_t>& matrix_of) {
+TiledPairs tile_chunk(const InteractionLists& lists, const std::vector<NumberedPair>& pairs, const std::vector<std::uint32_t>& matrix_of) {
   TiledPairs out;
-  for (const FarPair& pair : pairs) {
-    const Offset& offset = lists.offsets[pair.offset];
+  for (const auto& [pair, number] : pairs) {
+    const Offset& offset = lists.offsets[number];
+    const std::uint32_t target = pair.target;
+    const std::uint32_t matrix = matrix_of[number];
     const std::uint32_t flags = offset.mirror() | (offset.positive() ? kPositive : 0);
     const auto joins = [&](const Uint4& tile) {
-      if (tile[0] != matrix_of[pair.offset] || tile[2] == kMostTilePairs) return false;
+      if (tile[0] != matrix || tile[2] == kMostTilePairs) return false;
       if (tile[3] != (flags & kPositive)) return false;
-      return std::none_of(out.pairs.end() - tile[2], out.pairs.end(), [&](const Uint4& other) { return other[0] == pair.target; });
+      return std::none_of(out.pairs.end() - tile[2], out.pairs.end(), [&](const Uint4& other) { return other[0] == target; });
     };
     if (out.tiles.empty() || !joins(out.tiles.back())) {
-      out.tiles.push_back({matrix_of[pair.offset], static_cast<std::uint32_t>(out.pairs.size()), 0, flags & kPositive});
+      out.tiles.push_back({matrix, static_cast<std::uint32_t>(out.pairs.size()), 0, flags & kPositive});
     }
     ++out.tiles.back()[2];
-    out.pairs.push_back({pair.target, pair.source, flags, 0});
+    out.pairs.push_back({target, pair.source, flags, 0});
   }
   return out;
 }
 
 // The pairs of every chunk, ascending by offset.
-std::vector<std::vector<FarPair>> pairs_of_chunks(const InteractionLists& lists, std::size_t nodes, std::size_t chunk_nodes) {
-  std::vector<std::vector<FarPair>> of_chunk((nodes + chunk_nodes - 1) / chunk_nodes);
-  for (const FarPair& pair : lists.far) of_chunk[pair.target / chunk_nodes].push_back(pair);
+std::vector<std::vector<NumberedPair>> pairs_of_chunks(const InteractionLists& lists, std::size_t nodes, std::size_t chunk_nodes) {
+  std::vector<std::vector<NumberedPair>> of_chunk((nodes + chunk_nodes - 1) / chunk_nodes);
+  auto pair = lists.far.begin();
+  for (const FarRun& run : lists.runs) {
+    for (std::uint32_t k = 0; k < run.pairs; ++k, ++pair) of_chunk[pair->target / chunk_nodes].push_back({*pair, run.offset});
+  }
   parallel::for_each(of_chunk.size(), [&](std::size_t c) {
-    std::stable_sort(of_chunk[c].begin(), of_chunk[c].end(), [](const FarPair& a, const FarPair& b) { return a.offset < b.offset; });
+    std::stable_sort(of_chunk[c].begin(), of_chunk[c].end(),
+                     [](const NumberedPair& a, const NumberedPair& b) { return a.offset < b.offset; });
   });
   return of_chunk;
 }
@@ -161,7 +167,7 @@ TreeOnDevice::TreeOnDevice(Device& device, const Octree& tree) {
 
 TiledPairs tile_pairs(const InteractionLists& lists, std::size_t nodes, std::size_t chunk_nodes,
                       const std::vector<std::uint32_t>& matrix_of) {
-  const std::vector<std::vector<FarPair>> of_chunk = pairs_of_chunks(lists, nodes, chunk_nodes);
+  const std::vector<std::vector<NumberedPair>> of_chunk = pairs_of_chunks(lists, nodes, chunk_nodes);
   std::vector<TiledPairs> parts(of_chunk.size());
   parallel::for_each(parts.size(), [&](std::size_t c) { parts[c] = tile_chunk(lists, of_chunk[c], matrix_of); });
   TiledPairs out;

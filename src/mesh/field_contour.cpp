@@ -55,8 +55,7 @@ class AmbiguousFace {
     const std::uint32_t normal = rim_[0].place % 2 == 0 ? u : v;
     p_ = (normal + 1U) % 3U;
     q_ = (normal + 2U) % 3U;
-    const auto node = [&](std::uint64_t leaf) { return octree.nodes()[octree.leaf_nodes()[leaf]]; };
-    const OctreeNode a = node(rim_[0].face >> 32U), b = node(rim_[0].face & 0xffffffffU);
+    const OctreeNode a = octree.leaf(rim_[0].face >> 32U), b = octree.leaf(rim_[0].face & 0xffffffffU);
     const OctreeNode& small = a.level >= b.level ? a : b;
     low_ = small.low;
     extent_ = octree.extent(small);
@@ -224,8 +223,7 @@ std::unordered_map<std::uint32_t, std::uint32_t> split_double_edges(const Arcs& 
 
 // A diagonal between opposite leaves belongs to this polygon alone if the leaves touch along this edge only.
 bool touch_only_here(const Octree& octree, const ActiveEdge& e, std::uint32_t leaf_a, std::uint32_t leaf_b) {
-  const OctreeNode& a = octree.nodes()[octree.leaf_nodes()[leaf_a]];
-  const OctreeNode& b = octree.nodes()[octree.leaf_nodes()[leaf_b]];
+  const OctreeNode a = octree.leaf(leaf_a), b = octree.leaf(leaf_b);
   const std::uint32_t low = std::max(a.low[e.axis], b.low[e.axis]);
   const std::uint32_t high = std::min(a.low[e.axis] + octree.extent(a), b.low[e.axis] + octree.extent(b));
   return low == octree.corner_grid(e.low)[e.axis] && high == octree.corner_grid(e.high)[e.axis];

@@ -21,7 +21,7 @@ enum class Way { kBoth, kFill, kCut };
 }  // namespace
 
 bool remove_handles(const Octree& octree, const AmbiguousCorners& ambiguous, const std::function<bool(std::uint32_t)>& may_change,
-                    long most_per_handle, const InsideTest& centre_inside, std::vector<std::uint8_t>& inside, const DualSurface& surface,
+                    long most_per_handle, const InsideTest& centre_inside, std::vector<std::uint8_t>& inside, DualSurface& surface,
                     const std::atomic<bool>* cancel) {
   if (count_handles(surface) == 0) return false;
   const std::vector<std::vector<float>> smoothed = smooth_sides(octree, ambiguous, inside, 2, cancel);
@@ -39,8 +39,8 @@ bool remove_handles(const Octree& octree, const AmbiguousCorners& ambiguous, con
     changing.push_back(k);
   }
   HandleRemoval removal(octree, is_ambiguous, inside, surface, centre_inside, most_per_handle, cancel);
+  surface = {};
   const std::vector<std::uint8_t> before = inside;
-  bool changed = false;
   for (const Labelling& labelling : kLabellings) {
     for (const Way way : {Way::kBoth, Way::kFill, Way::kCut}) {
       if (removal.handles() == 0) break;
@@ -49,13 +49,12 @@ bool remove_handles(const Octree& octree, const AmbiguousCorners& ambiguous, con
         const std::uint8_t now = sign(labelling, k);
         if (way == Way::kBoth || (now != 0) == (way == Way::kFill)) proposal[ambiguous.corner[k]] = now;
       }
-      changed = removal.propose(proposal, inside) || changed;
+      (void)removal.propose(proposal, inside);
     }
   }
   // A ring of few points has no handle where it is gone: then it stays.
-  if (std::any_of(inside.begin(), inside.end(), [](std::uint8_t side) { return side != 0; })) return changed;
-  inside = before;
-  return false;
+  if (std::none_of(inside.begin(), inside.end(), [](std::uint8_t side) { return side != 0; })) inside = before;
+  return true;
 }
 
 }  // namespace g3r::mesh

@@ -135,7 +135,6 @@ Mesh raw_mesh(const Prepared& prepared, const std::vector<double>& size, const F
   mesh::DualSurface surface = mesh::contour(octree, inside, centre_inside, monitor.cancel);
   const long most_per_handle = mesh::most_per_handle(prepared.noise, std::ldexp(levels.side, -levels.rule.finest) / prepared.typical);
   if (mesh::remove_handles(octree, corners.ambiguous, all, most_per_handle, centre_inside, inside, surface, monitor.cancel)) {
-    surface = {};
     surface = mesh::contour(octree, inside, centre_inside, monitor.cancel);
   }
   corners.ambiguous = {};

@@ -16,6 +16,8 @@ namespace {
 
 constexpr int kKeyBits = kMaxOctreeLevel + 1;  // A corner coordinate is 0 to 2^kMaxOctreeLevel, the last included.
 
+constexpr std::uint32_t kLargestNode = std::numeric_limits<std::int32_t>::max();  // a node's number has 31 bits
+
 std::uint64_t corner_key(const std::array<std::uint32_t, 3>& c) {
   return (std::uint64_t{c[2]} << (2 * kKeyBits)) | (std::uint64_t{c[1]} << kKeyBits) | c[0];
 }
@@ -90,16 +92,17 @@ Octree::Octree(const Vec3& low, double side, const std::vector<RefineDisc>& requ
     : low_(low), unit_(side / static_cast<double>(std::uint32_t{1} << kMaxOctreeLevel)) {
   refine(requests, rule, cancel);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    if (nodes_[i].split) continue;
-    nodes_[i].next = static_cast<std::uint32_t>(leaf_nodes_.size());
+    if (nodes_[i].split != 0) continue;
+    nodes_[i].next = static_cast<std::uint32_t>(leaf_nodes_.size()) & kLargestNode;
     leaf_nodes_.push_back(static_cast<std::uint32_t>(i));
-    depth_ = std::max(depth_, static_cast<int>(nodes_[i].level));
+    depth_ = std::max(depth_, static_cast<int>(level_of(static_cast<std::uint32_t>(i))));
   }
   number_corners();
 }
 
 void Octree::refine(const std::vector<RefineDisc>& requests, const SplitRule& rule, const std::atomic<bool>* cancel) {
-  nodes_.push_back({});
+  nodes_.push_back({0, 0});
+  families_.emplace_back();  // until the root is split
   Frontier front{{0}, {0, requests.size()}, {}};
   front.request.resize(requests.size());
   for (std::size_t i = 0; i < requests.size(); ++i) front.request[i] = static_cast<std::uint32_t>(i);
@@ -109,23 +112,18 @@ void Octree::refine(const std::vector<RefineDisc>& requests, const SplitRule& ru
     // Split every node that some request wants deeper.
     std::vector<std::size_t> split;
     for (std::size_t f = 0; f < front.node.size(); ++f) {
-      const Split split_it = rule(nodes_[front.node[f]]);
+      const Split split_it = rule(node(front.node[f]));
       bool deeper = split_it == Split::kYes;
       for (std::size_t k = front.begin[f]; split_it == Split::kAsRequested && !deeper && k < front.begin[f + 1]; ++k)
         deeper = requests[front.request[k]].level > level;
       if (!deeper) continue;
-      OctreeNode& parent = nodes_[front.node[f]];
-      if (nodes_.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()) - 8) throw std::bad_alloc();
-      parent.split = true;
-      parent.next = static_cast<std::uint32_t>(nodes_.size());
-      const OctreeNode copy = parent;
-      const std::uint32_t half = extent(copy) / 2;
-      for (std::uint32_t c = 0; c < 8; ++c) {
-        OctreeNode child;
-        child.level = static_cast<std::uint8_t>(level + 1);
-        for (std::size_t a = 0; a < 3; ++a) child.low[a] = copy.low[a] + ((c >> a) & 1U) * half;
-        nodes_.push_back(child);
-      }
+      if (nodes_.size() > kLargestNode - 8) throw std::bad_alloc();
+      const std::uint32_t parent = front.node[f];
+      const Family children{node(parent).low, static_cast<std::uint8_t>(level + 1)};
+      nodes_[parent] = {static_cast<std::uint32_t>(nodes_.size()) & kLargestNode, 1};
+      if (parent == 0) families_.clear();
+      families_.push_back(children);
+      nodes_.resize(nodes_.size() + 8, {0, 0});
       split.push_back(f);
     }
     // Hand each request to the children it touches: count, then fill, so that the order does not depend on the threads.
@@ -135,9 +133,9 @@ void Octree::refine(const std::vector<RefineDisc>& requests, const SplitRule& ru
     std::vector<std::vector<std::uint32_t>> lists(children);
     parallel::for_blocks(split.size(), kBlock, [&](std::size_t first, std::size_t last) {
       for (std::size_t s = first; s < last; ++s) {
-        const auto base = nodes_[front.node[split[s]]].next;
+        const std::uint32_t base = next_of(front.node[split[s]]);
         for (std::uint32_t c = 0; c < 8; ++c) {
-          const OctreeNode& child = nodes_[base + c];
+          const OctreeNode child = node(base + c);
           const Vec3 low = world(child.low[0], child.low[1], child.low[2]);
           const double side = unit_ * extent(child);
           next.node[8 * s + c] = base + c;
@@ -162,10 +160,10 @@ void Octree::number_corners() {
   family_corners_.resize(family(static_cast<std::uint32_t>(nodes_.size() - 1)) + 1);
   CornerTable table(2 * leaf_nodes_.size());
   for (const std::uint32_t leaf : leaf_nodes_) {
-    const OctreeNode& node = nodes_[leaf];
+    const OctreeNode own = node(leaf);
     for (std::uint32_t c = 0; c < 8; ++c) {
       std::array<std::uint32_t, 3> g{};
-      for (std::size_t a = 0; a < 3; ++a) g[a] = node.low[a] + ((c >> a) & 1U) * extent(node);
+      for (std::size_t a = 0; a < 3; ++a) g[a] = own.low[a] + ((c >> a) & 1U) * extent(own);
       family_corners_[family(leaf)][kLattice[sibling(leaf)] + kLattice[c]] = table.number(corner_key(g), corner_keys_);
     }
   }

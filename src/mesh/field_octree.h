@@ -57,10 +57,20 @@ class Octree {
   Octree(const Vec3& low, double side, const std::vector<RefineDisc>& requests, const SplitRule& rule,
          const std::atomic<bool>* cancel = nullptr);
 
-  [[nodiscard]] const std::vector<OctreeNode>& nodes() const { return nodes_; }
+  [[nodiscard]] std::size_t node_count() const { return nodes_.size(); }
+  [[nodiscard]] OctreeNode node(std::uint32_t n) const {
+    OctreeNode out{families_[family(n)].low, nodes_[n].next, level_of(n), is_split(n)};
+    for (std::size_t a = 0; a < 3; ++a) out.low[a] += n == 0 ? 0 : ((sibling(n) >> a) & 1U) * extent(out);
+    return out;
+  }
+  /// Of node(n), each alone.
+  [[nodiscard]] bool is_split(std::uint32_t n) const { return nodes_[n].split != 0; }
+  [[nodiscard]] std::uint32_t next_of(std::uint32_t n) const { return nodes_[n].next; }
+  [[nodiscard]] std::uint8_t level_of(std::uint32_t n) const { return n == 0 ? 0 : families_[family(n)].level; }
   [[nodiscard]] std::size_t leaf_count() const { return leaf_nodes_.size(); }
   /// Node index of each leaf.
   [[nodiscard]] const std::vector<std::uint32_t>& leaf_nodes() const { return leaf_nodes_; }
+  [[nodiscard]] OctreeNode leaf(std::size_t number) const { return node(leaf_nodes_[number]); }
   /// Number of a leaf's corner, bit a of `place` set = upper along axis a.
   [[nodiscard]] std::uint32_t corner(std::size_t leaf, std::uint32_t place) const {
     const std::uint32_t node = leaf_nodes_[leaf];
@@ -95,7 +105,17 @@ class Octree {
   Vec3 low_;
   double unit_ = 1;
   int depth_ = 0;
-  std::vector<OctreeNode> nodes_;
+  // Nodes are most of the memory: what eight siblings share is held once, so that one takes 6 bytes where OctreeNode has 20.
+  struct Node {
+    std::uint32_t next : 31;
+    std::uint32_t split : 1;
+  };
+  struct Family {
+    std::array<std::uint32_t, 3> low{};  // of the parent
+    std::uint8_t level = 0;              // of the siblings
+  };
+  std::vector<Node> nodes_;
+  std::vector<Family> families_;
   std::vector<std::uint32_t> leaf_nodes_;
   std::vector<std::array<std::uint32_t, 27>> family_corners_;  // 108 bytes where its leaves' own would take up to 256
   std::vector<std::uint64_t> corner_keys_;

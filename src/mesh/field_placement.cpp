@@ -138,7 +138,7 @@ class Placement {
     start /= static_cast<double>(surface_.patch_begin[i + 1] - surface_.patch_begin[i]);
     const double length = outward.norm();
     if (length > 0) outward /= length;
-    const OctreeNode& leaf = octree_.nodes()[octree_.leaf_nodes()[surface_.patch_leaf[i]]];
+    const OctreeNode leaf = octree_.leaf(surface_.patch_leaf[i]);
     const Vector3d low = to_eigen(octree_.world(leaf.low[0], leaf.low[1], leaf.low[2]));
     const double cell = octree_.unit() * octree_.extent(leaf);
     const AlignedBox3d box(low, low + Vector3d::Constant(cell));

@@ -32,13 +32,12 @@ struct Task {
 // Marks the nodes above the leaves for which marked(leaf) is not 0.
 template <class Marked>
 std::vector<std::uint8_t> mark_nodes(const Octree& octree, const Marked& marked) {
-  const std::vector<OctreeNode>& nodes = octree.nodes();
-  std::vector<std::uint8_t> out(nodes.size(), 0);
-  for (std::size_t i = nodes.size(); i-- > 0;) {  // children come after their parents
-    if (!nodes[i].split) {
-      out[i] = marked(static_cast<std::size_t>(nodes[i].next)) ? 1 : 0;
+  std::vector<std::uint8_t> out(octree.node_count(), 0);
+  for (auto i = static_cast<std::uint32_t>(out.size()); i-- > 0;) {  // children come after their parents
+    if (!octree.is_split(i)) {
+      out[i] = marked(static_cast<std::size_t>(octree.next_of(i))) ? 1 : 0;
     } else {
-      for (std::size_t c = 0; c < 8; ++c) out[i] |= out[nodes[i].next + c];
+      for (std::size_t c = 0; c < 8; ++c) out[i] |= out[octree.next_of(i) + c];
     }
   }
   return out;
@@ -73,8 +72,8 @@ class Traversal {
   }
 
  private:
-  bool internal(std::uint32_t n) const { return octree_.nodes()[n].split; }
-  std::uint32_t child(std::uint32_t n, std::uint32_t bits) const { return internal(n) ? octree_.nodes()[n].next + bits : n; }
+  bool internal(std::uint32_t n) const { return octree_.is_split(n); }
+  std::uint32_t child(std::uint32_t n, std::uint32_t bits) const { return internal(n) ? octree_.next_of(n) + bits : n; }
 
   template <class OnTask>
   void expand_cell(const Task& task, const OnTask& on_task) const {
@@ -135,14 +134,14 @@ class Traversal {
     }
     std::uint32_t smallest = 0;
     for (std::uint32_t q = 1; q < 4; ++q) {
-      if (octree_.nodes()[task.node[q]].level > octree_.nodes()[task.node[smallest]].level) smallest = q;
+      if (octree_.level_of(task.node[q]) > octree_.level_of(task.node[smallest])) smallest = q;
     }
-    const std::uint32_t leaf = octree_.nodes()[task.node[smallest]].next;
+    const std::uint32_t leaf = octree_.next_of(task.node[smallest]);
     MinimalEdge edge;
     edge.low = octree_.corner(leaf, bits_of(smallest));
     edge.high = octree_.corner(leaf, bits_of(smallest) | (1U << d));
     edge.axis = task.axis;
-    for (std::size_t k = 0; k < 4; ++k) edge.leaf[k] = octree_.nodes()[task.node[quadrant(k)]].next;
+    for (std::size_t k = 0; k < 4; ++k) edge.leaf[k] = octree_.next_of(task.node[quadrant(k)]);
     on_edge(edge);
   }
 

@@ -285,9 +285,10 @@ void SumEngine<T>::across(cpu::NearForm form, std::size_t part, T* locals) {
   const M2lMatrices<T>& matrices = this->matrices();
   AlignedVector<T> made;
   Moves moves;
-  for (std::size_t i = lists.far_begin[part]; i < lists.far_begin[part + 1];) {
-    const std::size_t index = matrices.index(lists.far[i].offset);
-    i = gather(form, matrices, i, lists.far_begin[part + 1], locals, moves);
+  const FarPair* pair = lists.far.data() + lists.far_begin[part];
+  for (std::size_t run = lists.run_begin[part]; run < lists.run_begin[part + 1];) {
+    const std::size_t index = matrices.index(lists.runs[run].offset);
+    run = gather(form, matrices, run, lists.run_begin[part + 1], pair, locals, moves);
     const cpu::TranslationMatrix<T> matrix = matrices.matrix(index, made);
     for (const auto& [moving, some] : {std::pair{cpu::Moved::kAll, &moves.all}, std::pair{cpu::Moved::kStokesForward, &moves.forward},
                                        std::pair{cpu::Moved::kStokesTransposed, &moves.transposed}}) {
@@ -296,36 +297,34 @@ void SumEngine<T>::across(cpu::NearForm form, std::size_t part, T* locals) {
   }
 }
 
-// The far pairs from `begin` on that share its matrix. Returns the end of them.
+// The runs of far pairs from `begin` on that share its matrix. Returns the end of them, and `pair` is that of their pairs.
 template <class T>
-std::size_t SumEngine<T>::gather(cpu::NearForm form, const M2lMatrices<T>& matrices, std::size_t begin, std::size_t end, T* locals,
-                                 Moves& moves) {
+std::size_t SumEngine<T>::gather(cpu::NearForm form, const M2lMatrices<T>& matrices, std::size_t begin, std::size_t end,
+                                 const FarPair*& pair, T* locals, Moves& moves) {
   const InteractionLists& lists = *interactions_->lists;
   moves.all.clear();
   moves.forward.clear();
   moves.transposed.clear();
   const std::vector<std::uint32_t>& level_begin = target_tree_->level_begin;
-  const std::size_t index = matrices.index(lists.far[begin].offset);
-  std::size_t i = begin;
-  while (i < end && matrices.index(lists.far[i].offset) == index) {
-    const std::uint32_t number = lists.far[i].offset;
-    const Offset& offset = lists.offsets[number];
+  const std::size_t index = matrices.index(lists.runs[begin].offset);
+  std::size_t run = begin;
+  for (; run < end && matrices.index(lists.runs[run].offset) == index; ++run) {
+    const Offset& offset = lists.offsets[lists.runs[run].offset];
     const T* signs = matrices.signs(offset);
     std::vector<cpu::Translation<T>>& to =
         form != cpu::NearForm::kStokesWinding ? moves.all : (offset.positive() ? moves.forward : moves.transposed);
     std::size_t level = 0;  // of the target; an offset's targets ascend, and nodes are numbered level by level
     std::array<T, 3> move = moved<T>(offset.to_source(level));
-    for (; i < end && lists.far[i].offset == number; ++i) {
-      const FarPair& pair = lists.far[i];
-      if (pair.target >= level_begin[level + 1]) {
-        while (pair.target >= level_begin[level + 1]) ++level;
+    for (const FarPair* run_end = pair + lists.runs[run].pairs; pair != run_end; ++pair) {
+      if (pair->target >= level_begin[level + 1]) {
+        while (pair->target >= level_begin[level + 1]) ++level;
         move = moved<T>(offset.to_source(level));
       }
-      T* local = locals + lists.parts.slot[pair.target] * local_channels_ * stride_;
-      to.push_back({multipole(pair.source), local, signs, move});
+      T* local = locals + lists.parts.slot[pair->target] * local_channels_ * stride_;
+      to.push_back({multipole(pair->source), local, signs, move});
     }
   }
-  return i;
+  return run;
 }
 
 template <class T>

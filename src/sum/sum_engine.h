@@ -116,7 +116,8 @@ class SumEngine {
   struct Moves {
     std::vector<cpu::Translation<T>> all, forward, transposed;
   };
-  std::size_t gather(cpu::NearForm form, const M2lMatrices<T>& matrices, std::size_t begin, std::size_t end, T* locals, Moves& moves);
+  std::size_t gather(cpu::NearForm form, const M2lMatrices<T>& matrices, std::size_t begin, std::size_t end, const FarPair*& pair,
+                     T* locals, Moves& moves);
   // Local expansions of the far pairs of a part, by the slots of its nodes.
   void across(cpu::NearForm form, std::size_t part, T* locals);
   // From parents to some children. `at(node)`: where the local expansions of a node are.

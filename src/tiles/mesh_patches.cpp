@@ -77,7 +77,7 @@ class Names {
   static constexpr int kBits = mesh::kMaxOctreeLevel;  // lower corners of leaves and of edges that cross are below the upper boundary
 
   static std::uint64_t pack(const Grid& g) { return std::uint64_t{g[2]} << (2 * kBits) | std::uint64_t{g[1]} << kBits | g[0]; }
-  [[nodiscard]] const Grid& low_of_leaf(std::size_t leaf) const { return octree_.nodes()[octree_.leaf_nodes()[leaf]].low; }
+  [[nodiscard]] Grid low_of_leaf(std::size_t leaf) const { return octree_.leaf(leaf).low; }
   [[nodiscard]] std::uint64_t leaf(std::size_t leaf) const { return pack(low_of_leaf(leaf)); }
   [[nodiscard]] Grid low_of_edge(std::size_t crossing) const {
     const Grid a = octree_.corner_grid(surface_.crossings[crossing].inside), b = octree_.corner_grid(surface_.crossings[crossing].outside);

@@ -186,19 +186,52 @@ void counting_sort(std::span<const T> in, std::span<T> out, std::size_t keys, co
   for (const T& element : in) out[next[key(element)]++] = element;
 }
 
-// Gives every far pair the index of its offset in the sorted list of distinct offsets.
-void index_offsets(const Octree& targets, const Octree& sources, InteractionLists& lists) {
+// Sorts the far pairs of a part by offset, target, source; an offset and a target have one source. `pairs`: with offsets by their number in
+// the part, which is `global[number]` among all. Returns the runs.
+std::vector<FarRun> sort_part(const std::vector<NumberedPair>& pairs, const std::vector<std::uint32_t>& global,
+                              const std::vector<std::uint32_t>& slot, std::span<FarPair> sorted) {
+  std::vector<FarRun> runs;
+  if (pairs.empty()) return runs;
+  std::uint32_t first = std::numeric_limits<std::uint32_t>::max();
+  std::uint32_t last = 0;
+  for (const NumberedPair& p : pairs) {
+    first = std::min(first, slot[p.pair.target]);
+    last = std::max(last, slot[p.pair.target]);
+  }
+  std::vector<NumberedPair> by_target(pairs.size());
+  counting_sort<NumberedPair>(pairs, by_target, last - first + 1, [&](const NumberedPair& p) { return slot[p.pair.target] - first; });
+  std::vector<std::uint32_t> rank(global.size());
+  std::vector<std::uint32_t> order(global.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) { return global[i] < global[j]; });
+  for (std::uint32_t k = 0; k < order.size(); ++k) rank[order[k]] = k;
+  std::vector<NumberedPair> by_offset(pairs.size());
+  counting_sort<NumberedPair>(by_target, by_offset, global.size(), [&](const NumberedPair& p) { return rank[p.offset]; });
+  for (std::size_t i = 0; i < by_offset.size(); ++i) {
+    const std::uint32_t offset = global[by_offset[i].offset];
+    sorted[i] = by_offset[i].pair;
+    if (runs.empty() || runs.back().offset != offset) runs.push_back({offset, 0});
+    ++runs.back().pairs;
+  }
+  return runs;
+}
+
+// Finds the distinct offsets and puts the far pairs, so far in no order within a part, into theirs.
+void sort_far_pairs(const Octree& targets, const Octree& sources, InteractionLists& lists) {
   const std::size_t parts = lists.parts.size();
   std::vector<OffsetNumbers> found(parts);
+  std::vector<std::vector<std::uint32_t>> number(parts);  // of the offset of each far pair
   parallel::for_each(parts, [&](std::size_t c) {
+    number[c].reserve(lists.far_begin[c + 1] - lists.far_begin[c]);
     for (std::size_t i = lists.far_begin[c]; i < lists.far_begin[c + 1]; ++i) {
-      FarPair& pair = lists.far[i];
-      pair.offset = found[c].number(offset_of(targets.nodes[pair.target], sources.nodes[pair.source]));
+      const FarPair& pair = lists.far[i];
+      number[c].push_back(found[c].number(offset_of(targets.nodes[pair.target], sources.nodes[pair.source])));
     }
   });
   for (const OffsetNumbers& part : found) lists.offsets.insert(lists.offsets.end(), part.offsets().begin(), part.offsets().end());
   parallel::sort(lists.offsets.begin(), lists.offsets.end(), std::less<>());
   lists.offsets.erase(std::unique(lists.offsets.begin(), lists.offsets.end()), lists.offsets.end());
+  std::vector<std::vector<FarRun>> runs(parts);
   parallel::for_each(parts, [&](std::size_t c) {
     const std::vector<Offset>& local = found[c].offsets();
     std::vector<std::uint32_t> global(local.size());
@@ -206,26 +239,16 @@ void index_offsets(const Octree& targets, const Octree& sources, InteractionList
       global[k] =
           static_cast<std::uint32_t>(std::lower_bound(lists.offsets.begin(), lists.offsets.end(), local[k]) - lists.offsets.begin());
     }
-    // An offset and a target have one source.
-    const std::span<FarPair> pairs(lists.far.data() + lists.far_begin[c], lists.far_begin[c + 1] - lists.far_begin[c]);
-    if (pairs.empty()) return;
-    std::vector<FarPair> by_target(pairs.size());
-    const std::vector<std::uint32_t>& slot = lists.parts.slot;
-    std::uint32_t first = std::numeric_limits<std::uint32_t>::max();
-    std::uint32_t last = 0;
-    for (const FarPair& pair : pairs) {
-      first = std::min(first, slot[pair.target]);
-      last = std::max(last, slot[pair.target]);
-    }
-    counting_sort<FarPair>(pairs, by_target, last - first + 1, [&](const FarPair& pair) { return slot[pair.target] - first; });
-    std::vector<std::uint32_t> rank(local.size());
-    std::vector<std::uint32_t> order(local.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) { return global[i] < global[j]; });
-    for (std::uint32_t k = 0; k < order.size(); ++k) rank[order[k]] = k;
-    counting_sort<FarPair>(by_target, pairs, local.size(), [&](const FarPair& pair) { return rank[pair.offset]; });
-    for (FarPair& pair : pairs) pair.offset = global[pair.offset];
+    const std::span<FarPair> pairs(lists.far.data() + lists.far_begin[c], number[c].size());
+    std::vector<NumberedPair> numbered(pairs.size());
+    for (std::size_t i = 0; i < pairs.size(); ++i) numbered[i] = {pairs[i], number[c][i]};
+    std::vector<std::uint32_t>().swap(number[c]);
+    runs[c] = sort_part(numbered, global, lists.parts.slot, pairs);
   });
+  lists.run_begin.assign(1, 0);
+  for (const std::vector<FarRun>& part : runs) lists.run_begin.push_back(lists.run_begin.back() + part.size());
+  lists.runs.reserve(lists.run_begin.back());
+  for (const std::vector<FarRun>& part : runs) lists.runs.insert(lists.runs.end(), part.begin(), part.end());
 }
 
 }  // namespace
@@ -268,7 +291,7 @@ InteractionLists build_interaction_lists(const Octree& targets, const Octree& so
   lists.near.resize(lists.near_begin.back());
   std::vector<std::size_t> next_near(lists.near_begin.begin(), lists.near_begin.end() - 1);
   for_all([&](std::size_t i) {
-    for (const NodePair& pair : found[i].far) lists.far[next_far[i][part_of[pair.target]]++] = {0, pair.target, pair.source};
+    for (const NodePair& pair : found[i].far) lists.far[next_far[i][part_of[pair.target]]++] = {pair.target, pair.source};
     for (const NodePair& pair : found[i].near) lists.near[next_near[target_leaf[pair.target]]++] = source_leaf[pair.source];
     found[i] = {};
   });
@@ -278,7 +301,7 @@ InteractionLists build_interaction_lists(const Octree& targets, const Octree& so
                 lists.near.begin() + static_cast<std::ptrdiff_t>(lists.near_begin[i + 1]));
     }
   });
-  index_offsets(targets, sources, lists);
+  sort_far_pairs(targets, sources, lists);
   if (targets.nodes.front().count() > kManyTargets) platform::give_back_holes();  // of what subtrees have found
   return lists;
 }

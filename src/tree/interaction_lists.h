@@ -48,9 +48,20 @@ struct Offset {
 
 /// A far pair: target's local expansion += M2L(offset) source's multipole expansion.
 struct FarPair {
-  std::uint32_t offset;  ///< index into InteractionLists::offsets
   std::uint32_t target;  ///< node of the target tree
   std::uint32_t source;  ///< node of the source tree
+};
+
+/// A far pair and its offset, while pairs are sorted.
+struct NumberedPair {
+  FarPair pair;
+  std::uint32_t offset;
+};
+
+/// Consecutive far pairs of one part and one offset.
+struct FarRun {
+  std::uint32_t offset;  ///< index into InteractionLists::offsets
+  std::uint32_t pairs;
 };
 
 /// Every (target point, source point) pair is in exactly one near list or under exactly one far pair. With the same tree on both sides the
@@ -60,6 +71,8 @@ struct InteractionLists {
   TreeParts parts;                      ///< of the targets, whose far pairs are done together: one M2L matrix serves many of them
   std::vector<FarPair> far;             ///< sorted by the target's part, then offset, target, source
   std::vector<std::size_t> far_begin;   ///< far pairs of part p: [far_begin[p], far_begin[p + 1])
+  std::vector<FarRun> runs;             ///< all far pairs in order
+  std::vector<std::size_t> run_begin;   ///< runs of part p: [run_begin[p], run_begin[p + 1])
   std::vector<std::size_t> near_begin;  ///< near sources of the i-th target leaf: [near_begin[i], near_begin[i + 1])
   std::vector<std::uint32_t> near;      ///< source leaves, as indices into the source tree's `leaves`, ascending
 };
