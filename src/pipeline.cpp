@@ -1,7 +1,9 @@
 // The whole program on one page: one line per step (orient_in_arena).
 #include "base/percent.h"
 #include "base/stages.h"
+#include "base/vector.h"
 #include "baselines/baseline.h"
+#include "cloud/clusters.h"
 #include "cloud/noise.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
@@ -91,13 +93,31 @@ void warn_of_volume(const Problem& problem, Stats& stats) {
   stats.warnings.emplace_back("the points fill a volume: there is no surface, or the noise hides it");
 }
 
+// The gradient of the winding field at the outliers: that of the groups of points where these were solved for, whose kernels are so wide
+// that the pairs of single points would fill the memory.
+std::vector<Vec3> gradient_at_outliers(const Problem& problem, const std::vector<Vec3>& eta, Stages& stages) {
+  const Settings& s = problem.settings;
+  const PointSet& set = problem.cloud.set;
+  const Widths widths(s.refinement_width.typical());
+  if (s.cluster_side == 0) {
+    return FastSum(set.points(), set.morton(), widths, s.sums, stages.cancel())
+        .winding_gradient_at(eta, problem.outliers, stages.cancel());
+  }
+  const Clusters clusters = cluster_points(set.points(), set.morton(), s.cluster_side);
+  std::vector<Vec3> together(clusters.points.size(), Vec3{0, 0, 0});
+  for (std::size_t i = 0; i < eta.size(); ++i) {
+    Vec3& sum = together[clusters.cluster_of[i]];
+    sum = vector::add(sum, eta[i]);
+  }
+  return FastSum(clusters.points, clusters.morton, widths, s.sums, stages.cancel())
+      .winding_gradient_at(together, problem.outliers, stages.cancel());
+}
+
 // Outliers follow the field, have no area and deserve no confidence.
 void add_outliers(const Problem& problem, Stages& stages, Solution& solution, std::vector<float>& confidence) {
   if (problem.outliers.empty()) return;
-  const Settings& s = problem.settings;
-  const FastSum field(problem.cloud.points(), problem.cloud.morton(), Widths(s.refinement_width.typical()), s.sums, stages.cancel());
   const std::vector<Vec3> none(problem.outliers.size(), Vec3{0, 0, 0});
-  const std::vector<Vec3> normals = unit_normals(field.winding_gradient_at(solution.eta, problem.outliers, stages.cancel()), none).normals;
+  const std::vector<Vec3> normals = unit_normals(gradient_at_outliers(problem, solution.eta, stages), none).normals;
   solution.refinement.normals.insert(solution.refinement.normals.end(), normals.begin(), normals.end());
   solution.eta.insert(solution.eta.end(), none.begin(), none.end());
   confidence.insert(confidence.end(), none.size(), 0.0F);
@@ -137,10 +157,9 @@ std::vector<std::uint8_t> open_points(const CanonicalCloud& cloud, const OpenSur
   return open;
 }
 
-// The sides of points on open surfaces do not come from the equations, and their confidence neither. Returns the share of the points that
-// lie on open surfaces whose sides agree.
-double add_open_surfaces(const OpenSurfaces& surfaces, std::vector<float>& confidence, Stats& stats) {
-  if (surfaces.part.empty()) return 0;
+// The sides of points on open surfaces do not come from the equations, and their confidence neither.
+void add_open_surfaces(const OpenSurfaces& surfaces, std::vector<float>& confidence, Stats& stats) {
+  if (surfaces.part.empty()) return;
   std::size_t open = 0;
   std::size_t undecided = 0;
   std::size_t agreed = 0;
@@ -154,13 +173,12 @@ double add_open_surfaces(const OpenSurfaces& surfaces, std::vector<float>& confi
     agreed += surfaces.agrees[i];
     undecided += surfaces.certainty[i] <= kUndecided ? 1 : 0;
   }
-  if (open == 0) return 0;
+  if (open == 0) return;
   const auto all = static_cast<double>(confidence.size());
   stats.open_share = static_cast<double>(open) / all;
   stats.undecided_share = static_cast<double>(undecided) / all;
   stats.warnings.push_back("open: " + percent(stats.open_share) + " of the points lie on surfaces without an inside; " +
                            (agreed == open ? "their sides are consistent" : "their sides do not agree everywhere"));
-  return static_cast<double>(agreed) / all;
 }
 
 // Sides of closed surfaces that their field does not show to be right are worth less, those on open ones that do not agree nothing.
@@ -189,11 +207,26 @@ void judge(const OpenSurfaces& surfaces, const std::vector<float>& confidence, S
   }
 }
 
+// The share of the wanted points for which is_so(i); of all, if none is.
+template <class IsSo>
+double share_of_wanted(const Problem& problem, const IsSo& is_so) {
+  const std::vector<std::uint8_t>& wanted = problem.known.wanted;
+  const bool all = std::none_of(wanted.begin(), wanted.end(), [](std::uint8_t w) { return w != 0; });
+  std::size_t points = 0;
+  std::size_t so = 0;
+  for (std::size_t i = 0; i < problem.cloud.size(); ++i) {
+    if (!all && wanted[i] == 0) continue;
+    ++points;
+    so += is_so(i) ? 1 : 0;
+  }
+  return static_cast<double>(so) / static_cast<double>(points);
+}
+
 struct Oriented {
   Solution solution;
   std::vector<float> confidence;
-  double doubt = 0;   // share of the points that could face either way by their own equations, or lie on open surfaces
-  double agreed = 0;  // share of the points that lie on open surfaces whose sides agree: these could face either way, but together
+  double doubt = 0;   // share of the wanted points that could face either way by their own equations, or lie on open surfaces
+  double agreed = 0;  // share of the wanted points that lie on open surfaces whose sides agree: these could face either way, but together
 };
 
 Oriented orient_problem(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
@@ -208,8 +241,11 @@ Oriented orient_problem(const Problem& problem, const Options& options, Stages& 
     const std::vector<double> areas = point_areas(problem.settings, problem.cloud.set.smoothed_spacing());
     out.confidence = side_confidence(out.solution.eta, refined.normals, refined.strength, areas);
   }
-  out.agreed = add_open_surfaces(out.solution.open_surfaces, out.confidence, stats);
-  out.doubt = unsure_share(out.confidence) + stats.open_share;
+  const OpenSurfaces& surfaces = out.solution.open_surfaces;
+  add_open_surfaces(surfaces, out.confidence, stats);
+  const auto is_open = [&](std::size_t i) { return stats.open_share > 0 && surfaces.part[i] != OpenSurfaces::kNone; };
+  out.agreed = share_of_wanted(problem, [&](std::size_t i) { return is_open(i) && surfaces.agrees[i] != 0; });
+  out.doubt = share_of_wanted(problem, [&](std::size_t i) { return out.confidence[i] < kUndecided; }) + share_of_wanted(problem, is_open);
   if (!contains(problem.settings.without, Step::kCertificate)) certify_sides(out.solution.open_surfaces, out.confidence);
   judge(out.solution.open_surfaces, out.confidence, stats);
   return out;
@@ -294,8 +330,10 @@ Orientation orient_in_arena(const PointsView& points, const Known& known, const 
   fit_noisy_surface(best.problem, stages, solution);
   replace_areas(best.problem, stages, solution);
   apply_hints(best.problem, options, solution, confidence, out.stats, stages.cancel());
-  warn_of_volume(best.problem, out.stats);
-  warn_of_sampling(best.problem.cloud, solution.refinement.normals, out.stats);
+  if (known.wanted.empty()) {  // what surroundings and a part of a cloud look like says nothing of it
+    warn_of_volume(best.problem, out.stats);
+    warn_of_sampling(best.problem.cloud, solution.refinement.normals, out.stats);
+  }
   add_outliers(best.problem, stages, solution, confidence);
   if (open != nullptr) *open = open_points(best.problem.cloud, solution.open_surfaces);
   hand_out(best.problem.cloud, solution.eta, solution.refinement.normals, confidence, out);

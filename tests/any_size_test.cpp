@@ -148,13 +148,6 @@ TEST(Cells, PartsThatDoNotTouchAreApart) {
   EXPECT_EQ(parts[3], tiles::kNoPart);
 }
 
-TEST(TileCloud, ThinnedPointsInDoubtDoNotCount) {
-  tiles::TileCloud cloud;
-  cloud.own = {1, 0, 0, 1, 0, 1, 1};
-  EXPECT_EQ(tiles::unsure_share_of_own(cloud, {0.9F, 0, 0.1F, 1, 0, 0.8F, 1}), 0);
-  EXPECT_EQ(tiles::unsure_share_of_own(cloud, {0.9F, 1, 1, 0.1F, 1, 0.8F, 1}), 0.25);
-}
-
 class Tiles : public testing::Test {
  protected:
   static void SetUpTestSuite() {

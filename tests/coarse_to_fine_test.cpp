@@ -72,7 +72,7 @@ TEST(SolveCoarseToFine, MayStartFromWhatIsKnown) {
   Options only_solve;
   only_solve.without = "polish,more-steps";
   const auto first_residual = [&](const std::vector<Vec3>& start) {
-    return orient_from(torus.points, {start, {}}, only_solve, {}).stats.iterations.front().residual;
+    return orient_from(torus.points, {start, {}, {}}, only_solve, {}).stats.iterations.front().residual;
   };
   EXPECT_LT(first_residual(torus.normals), first_residual({}));
   EXPECT_GT(first_residual({torus.normals.rbegin(), torus.normals.rend()}), 0.5);
@@ -137,7 +137,7 @@ TEST(OrientFrom, ThinningFarPointsCostsNoDirections) {
   Options only_field;
   only_field.without = "jets,planes,creases,facets";
   const std::vector<Vec3> whole = orient(torus.points, only_field).normals;
-  const std::vector<Vec3> half = orient_from(points, {{}, relative}, only_field, {}).normals;
+  const std::vector<Vec3> half = orient_from(points, {{}, relative, {}}, only_field, {}).normals;
   double error_of_whole = 0, error_of_half = 0;  // of 1 - cos
   for (std::size_t k = 0; k < of.size(); ++k) {
     if (points[k][0] > -kFarFromThem) continue;
@@ -145,6 +145,31 @@ TEST(OrientFrom, ThinningFarPointsCostsNoDirections) {
     error_of_half += 1 - vector::dot(half[k], torus.normals[of[k]]);
   }
   EXPECT_LT(error_of_half, 1.05 * error_of_whole);
+}
+
+// The surroundings of the wanted points keep the directions of the field.
+TEST(OrientFrom, OnlyWantedPointsOfANoisyCloudHaveFits) {
+  shapes::Surface torus = shapes::torus(6000, 0.6, 0.25, 2);
+  shapes::Random random(3);
+  Known known;
+  for (Vec3& p : torus.points) {
+    known.wanted.push_back(p[0] > 0 ? 1 : 0);
+    for (double& x : p) x += 0.01 * random.gaussian();
+  }
+  Options no_fits;
+  no_fits.without = "noisy-jets";
+  const std::vector<Vec3> fitted = orient_from(torus.points, known, {}, {}).normals;
+  const std::vector<Vec3> field = orient_from(torus.points, known, no_fits, {}).normals;
+  std::size_t changed = 0, wanted = 0;
+  for (std::size_t i = 0; i < fitted.size(); ++i) {
+    if (known.wanted[i] == 0) {
+      ASSERT_EQ(fitted[i], field[i]);
+    } else {
+      ++wanted;
+      changed += fitted[i] != field[i] ? 1 : 0;
+    }
+  }
+  EXPECT_GT(changed, wanted / 2);
 }
 
 // Points 10 times as far apart on one side as on the other: kernels as wide as the typical spacing are single points there.

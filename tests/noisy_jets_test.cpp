@@ -24,7 +24,7 @@ constexpr double kTurned = 0.12;  // radians in each coordinate of the normals b
 double sphere_spacing() { return 0.9 * std::sqrt(4 * std::numbers::pi / static_cast<double>(kCount)); }
 
 std::vector<Vec3> fitted(const Surface& s, std::vector<Vec3> normals, double noise) {
-  fit_noisy_jets(PointSet(s.points), noise, normals);
+  fit_noisy_jets(PointSet(s.points), noise, {}, normals);
   return normals;
 }
 
@@ -100,7 +100,7 @@ TEST(NoisyJets, FollowTheNoiseOfAPlaceThatHasLess) {
 TEST(NoisyJets, LeaveFewPointsAsTheyAre) {
   const std::vector<Vec3> few{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   std::vector<Vec3> normals(3, Vec3{0, 0, 1});
-  fit_noisy_jets(PointSet(few), 0.1, normals);
+  fit_noisy_jets(PointSet(few), 0.1, {}, normals);
   EXPECT_EQ(normals, std::vector<Vec3>(3, Vec3{0, 0, 1}));
 }
 
@@ -117,7 +117,7 @@ TEST(NoisyJets, StopWhenAsked) {
   const Surface s = shapes::sphere(kCount);
   std::vector<Vec3> normals = s.normals;
   const std::atomic<bool> cancel{true};
-  EXPECT_THROW(fit_noisy_jets(PointSet(s.points), 0.01, normals, &cancel), Cancelled);
+  EXPECT_THROW(fit_noisy_jets(PointSet(s.points), 0.01, {}, normals, &cancel), Cancelled);
 }
 
 // Of a whole run: without the fits it is 0.0022.

@@ -124,25 +124,30 @@ class Fitter {
 
 }  // namespace
 
-void fit_noisy_jets(const PointSet& set, double noise, std::vector<Vec3>& normals, const std::atomic<bool>* cancel) {
+void fit_noisy_jets(const PointSet& set, double noise, const std::vector<std::uint8_t>& wanted, std::vector<Vec3>& normals,
+                    const std::atomic<bool>* cancel) {
   const std::vector<Vec3>& points = set.points();
   const double spacing = set.spacing();
   const Neighbours& tree = set.tree();
   std::vector<Vec3> out = normals;
+  const auto is_wanted = [&](std::size_t i) { return wanted.empty() || wanted[i] != 0; };
   const auto fit_block = [&](std::size_t begin, std::size_t end) {
+    std::size_t first = begin;
+    while (first < end && !is_wanted(first)) ++first;
+    if (first == end) return;
     Fitter fitter(points, tree, normals, noise, spacing);
     fitter.follow_noise(begin, end);
     const double depth = kSigmas * fitter.noise();
     std::vector<std::uint8_t> done(end - begin, 0);
-    for (std::size_t i = begin; i < end; ++i) {
-      if (done[i - begin] != 0) continue;
+    for (std::size_t i = first; i < end; ++i) {
+      if (done[i - begin] != 0 || !is_wanted(i)) continue;
       const Fit fit = fitter.widest(i);
       const Vector3d centre = to_eigen(points[i]);
       if (fit.reach == 0) continue;
       const double shared = kShared * fit.reach;
       for (std::size_t j = i; j < end; ++j) {
         const Vector3d d = to_eigen(points[j]) - centre;
-        if (done[j - begin] != 0 || d.squaredNorm() > shared * shared + depth * depth) continue;
+        if (done[j - begin] != 0 || !is_wanted(j) || d.squaredNorm() > shared * shared + depth * depth) continue;
         const Vector3d n = to_eigen(normals[j]);
         Vector3d above;
         const double beside = std::abs(fit.patch.distance(d, &above));

@@ -6,6 +6,7 @@
 #include <g3r/points.h>
 
 #include <atomic>
+#include <cstdint>
 #include <vector>
 
 namespace g3r {
@@ -26,8 +27,9 @@ namespace g3r {
 /// than its direction: n_i stays, as it does where the fitted normal is more than 60 degrees off. Sides are kept but for normals that were
 /// all but in the surface.
 ///
-/// Blocks of points in canonical order share fits; `noise`: of the cloud, > 0; h: the typical spacing; `normals`: N unit vectors,
-/// consistent sides. Throws Cancelled. docs/math.md, "Fits of noisy points". O(N).
-void fit_noisy_jets(const PointSet& set, double noise, std::vector<Vec3>& normals, const std::atomic<bool>* cancel = nullptr);
+/// Blocks of points in canonical order share fits; `noise`: of the cloud, > 0; h: the typical spacing; `wanted`: 1 for points whose normals
+/// are to be fitted, empty for all; `normals`: N unit vectors, consistent sides. Throws Cancelled. docs/math.md, "Fits of noisy points". O(N).
+void fit_noisy_jets(const PointSet& set, double noise, const std::vector<std::uint8_t>& wanted, std::vector<Vec3>& normals,
+                    const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace g3r

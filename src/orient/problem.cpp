@@ -56,7 +56,8 @@ Problem prepare(const PointsView& points, const Known& known, const Options& opt
     outliers_wanted = refit_frame(problem.cloud, problem.outliers);  // far ones may have hidden nearer ones
   }
   const PointSet& set = problem.cloud.set;
-  problem.known = {in_canonical_order(problem.cloud, known.gradient), in_canonical_order(problem.cloud, known.relative_spacing)};
+  problem.known = {in_canonical_order(problem.cloud, known.gradient), in_canonical_order(problem.cloud, known.relative_spacing),
+                   in_canonical_order(problem.cloud, known.wanted)};
   problem.spacing = typical_spacing(spacing_before_thinning(set.local_spacing(), problem.known.relative_spacing));
   if (const std::optional<double> given = known_noise(problem.spacing)) noise = given;
   problem.noise = noise ? *noise : estimate_noise(set);

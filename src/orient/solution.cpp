@@ -76,7 +76,7 @@ Solution solve_equations(const Problem& problem, const Options& options, Stages&
   const std::vector<Vec3>& points = problem.cloud.points();
   stages.begin("solve");
   if (!s.dense) {
-    const Known known{problem.known.gradient, relative_spacing(problem, options)};
+    const Known known{problem.known.gradient, relative_spacing(problem, options), {}};
     Solved solved = solve_coarse_to_fine(points, problem.cloud.morton(), s, stages, known);
     record(s, solved.result, stats);
     return {std::move(solved.result.eta), std::move(solved.refinement), {}};
@@ -346,7 +346,7 @@ void solve_open_surfaces_apart(const Problem& problem, const Options& options, S
 
 void fit_noisy_surface(const Problem& problem, Stages& stages, Solution& solution) {
   if (problem.baseline || problem.noise == 0 || problem.settings.polish_steps == 0 || !runs(problem, Step::kNoisyJets)) return;
-  fit_noisy_jets(problem.cloud.set, problem.noise, solution.refinement.normals, stages.cancel());
+  fit_noisy_jets(problem.cloud.set, problem.noise, problem.known.wanted, solution.refinement.normals, stages.cancel());
   std::vector<std::uint8_t> none(problem.cloud.size(), 0);
   if (problem.scatter > 0 && runs(problem, Step::kPlanes))
     fit_planes(problem.cloud.set, problem.scatter, none, solution.refinement.normals);

@@ -16,6 +16,9 @@ struct Known {
   /// How many times as far apart the points are as the densest ones, at least 1, where the cloud has been thinned more at some places than
   /// at others: the square root of the number of points that each one stands for. Kernels are as much wider there.
   std::vector<double> relative_spacing;
+  /// 1 for each point whose normal is asked for; the others are its surroundings. What is tried where sides are unsure goes by these points
+  /// alone, and only they have fits of noisy points.
+  std::vector<std::uint8_t> wanted;
 };
 
 /// orient(points, options, monitor) with what is known. `open`: unless null, becomes 1 for each point that lies on a surface without an

@@ -2,7 +2,6 @@
 #include "base/vector.h"
 #include "cpu/parallel.h"
 #include "io/output_file.h"
-#include "orient/confidence.h"
 #include "orient/start.h"
 #include "orient/steps.h"
 #include "tiles/coarse_sides.h"
@@ -38,19 +37,13 @@ std::map<std::uint32_t, double> signs_of_parts(const TileCloud& cloud, const std
   return votes;
 }
 
-// Other noises than the estimate are tried where the tile's own points ask for it, or the thinned cloud is open, as in core.
-Orientation solve(const TileCloud& cloud, const Known& known, const Manifest& m, const TileWorker& worker, const Monitor& monitor) {
+Orientation solve(const TileCloud& cloud, const Known& known, const TileWorker& worker, const Monitor& monitor) {
   std::vector<Vec3> points(cloud.records.size());
   for (std::size_t i = 0; i < points.size(); ++i) points[i] = cloud.records[i].point;
   Options options;
   options.threads = worker.threads;
   options.device = worker.device;
-  if (m.open_share < kDoubtful) {
-    Options one_noise = options;
-    one_noise.without = kStepNames[static_cast<std::size_t>(Step::kNoiseChoice)];
-    Orientation solved = orient_from(points, known, one_noise, monitor);
-    if (unsure_share_of_own(cloud, solved.confidence) < kDoubtful) return solved;
-  }
+  options.without = kStepNames[static_cast<std::size_t>(Step::kAreas)];  // of which a tile says nothing
   return orient_from(points, known, options, monitor);
 }
 
@@ -77,7 +70,7 @@ void solve_tile(const std::string& folder, const Manifest& m, const Cells& cells
                 const Monitor& monitor) {
   const TileCloud cloud = read_tile_cloud(folder, m, cells, m.tiles[t]);
   const CoarseSides coarse = parallel::with_threads(worker.threads, [&] { return coarse_sides(folder, m, cloud, monitor.cancel); });
-  const Orientation solved = solve(cloud, {coarse.gradient, cloud.relative_spacing}, m, worker,
+  const Orientation solved = solve(cloud, {coarse.gradient, cloud.relative_spacing, cloud.own}, worker,
                                    named(monitor, "tile " + std::to_string(t + 1) + " of " + std::to_string(m.tiles.size())));
   io::OutputFile out(result_path(folder, t), monitor.cancel);
   out.write_records(results_of(cloud, solved, coarse));

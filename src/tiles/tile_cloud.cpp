@@ -1,7 +1,6 @@
 #include "tiles/tile_cloud.h"
 
 #include "io/output_file.h"
-#include "orient/confidence.h"
 
 #include <algorithm>
 #include <cmath>
@@ -72,14 +71,6 @@ TileCloud read_tile_cloud(const std::string& folder, const Manifest& manifest, c
     }
   }
   return cloud;
-}
-
-double unsure_share_of_own(const TileCloud& cloud, const std::vector<float>& confidence) {
-  std::vector<float> own;
-  for (std::size_t i = 0; i < confidence.size(); ++i) {
-    if (cloud.own[i] != 0) own.push_back(confidence[i]);
-  }
-  return unsure_share(own);
 }
 
 Monitor named(const Monitor& monitor, const std::string& name) {

@@ -34,10 +34,6 @@ Cells find_cells(const std::string& folder, const Manifest& manifest, Stages& st
 /// Reads them. Throws IoError.
 [[nodiscard]] TileCloud read_tile_cloud(const std::string& folder, const Manifest& manifest, const Cells& cells, const Tile& tile);
 
-/// Share of the tile's own points that may face either way, by the confidence of all points of its solve. Thinned points far away, which
-/// are unsure more often, do not count.
-[[nodiscard]] double unsure_share_of_own(const TileCloud& cloud, const std::vector<float>& confidence);
-
 /// The monitor with `name` before the names of stages. It must outlive what is returned.
 [[nodiscard]] Monitor named(const Monitor& monitor, const std::string& name);
 
