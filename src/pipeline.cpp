@@ -100,8 +100,7 @@ std::vector<Vec3> gradient_at_outliers(const Problem& problem, const std::vector
   const PointSet& set = problem.cloud.set;
   const Widths widths(s.refinement_width.typical());
   if (s.cluster_side == 0) {
-    return FastSum(set.points(), set.morton(), widths, s.sums, stages.cancel())
-        .winding_gradient_at(eta, problem.outliers, stages.cancel());
+    return FastSum(set.points(), set.morton(), widths, s.sums, stages.cancel()).winding_gradient_at(eta, problem.outliers, stages.cancel());
   }
   const Clusters clusters = cluster_points(set.points(), set.morton(), s.cluster_side);
   std::vector<Vec3> together(clusters.points.size(), Vec3{0, 0, 0});

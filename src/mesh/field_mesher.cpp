@@ -39,12 +39,13 @@ using mesh::RefineDisc;
 constexpr double kMargin = 1 + 2 * mesh::kBeyond;
 
 // Peak memory, measured (docs/evidence/meshes.md). If it is planned too small a run is killed, if too large it is refused for nothing.
-constexpr double kBaseBytes = 36 << 20;  // Code, libraries, the stacks of threads, and 131,072 queries of a sum take so many.
-constexpr double kBytesPerPoint = 380;   // A point takes so many, those of the winding field included.
-constexpr double kBytesPerLeaf = 190;  // A leaf takes so many, twice as many one of a thin wall or gap: most of its corners are ambiguous.
-constexpr double kMoreLeaves = 0.1;    // More are planned before the octree is known, so that no plain shape is refused once it is.
-constexpr double kFewLeaves = 4000;    // Clouds of few points have so many beside: 300 on a sphere have 3,300, 1,500 have 2,000.
-constexpr double kPlainLeaves = 8.5;   // A point of a shape without thin walls has 5.7 to 8.6 leaves; what exceeds this is thin.
+constexpr double kBaseBytes = 25 << 20;    // Code, libraries, the stacks of threads, and queries of a sum take so many.
+constexpr double kBytesPerPoint = 340;     // A point takes so many, those of the winding field included.
+constexpr double kBytesPerLeaf = 130;      // A leaf takes so many,
+constexpr double kBytesPerThinLeaf = 360;  // and one of a thin wall or gap so many: most of its corners are ambiguous.
+constexpr double kMoreLeaves = 0.1;        // More are planned before the octree is known, so that no plain shape is refused once it is.
+constexpr double kFewLeaves = 4000;        // Clouds of few points have so many beside: 300 on a sphere have 3,300, 1,500 have 2,000.
+constexpr double kPlainLeaves = 8.5;       // A point of a shape without thin walls has 5.7 to 8.6 leaves; what exceeds this is thin.
 // The thickness of the layer that is refined, in cells of the automatic depth.
 constexpr double kThickness = 2 * mesh::kDiscHalf / kFinestCell;
 
@@ -60,7 +61,8 @@ void report(const Monitor& monitor, Done done) {
 // `depth`: 0 for the automatic one.
 std::size_t memory_for(std::size_t points, double leaves, int depth) {
   const double thin = depth > 0 ? 0 : std::max(0.0, leaves - kPlainLeaves * static_cast<double>(points));
-  return whole_bytes(kBaseBytes + kBytesPerPoint * static_cast<double>(points) + kBytesPerLeaf * (leaves + thin));
+  return whole_bytes(kBaseBytes + kBytesPerPoint * static_cast<double>(points) + kBytesPerLeaf * (leaves - thin) +
+                     kBytesPerThinLeaf * thin);
 }
 
 vector::Box box_of(const std::vector<Vec3>& points) {

@@ -28,7 +28,8 @@ namespace g3r {
 /// all but in the surface.
 ///
 /// Blocks of points in canonical order share fits; `noise`: of the cloud, > 0; h: the typical spacing; `wanted`: 1 for points whose normals
-/// are to be fitted, empty for all; `normals`: N unit vectors, consistent sides. Throws Cancelled. docs/math.md, "Fits of noisy points". O(N).
+/// are to be fitted, empty for all; `normals`: N unit vectors, consistent sides. Throws Cancelled. docs/math.md, "Fits of noisy points".
+/// O(N).
 void fit_noisy_jets(const PointSet& set, double noise, const std::vector<std::uint8_t>& wanted, std::vector<Vec3>& normals,
                     const std::atomic<bool>* cancel = nullptr);
 
