@@ -43,7 +43,7 @@ Tested test(const Surface& s) {
   const Sites sites = place_sites(PointSet(points, order.code), 0);
   const SumPlan sums = sum_plan(1e-3, points.size());
   Tested tested{certify(sites, normals, std::vector<double>(points.size(), 10), sums, nullptr), points};
-  EXPECT_EQ(tested.certificate.jump_defect, jump_defects(sites, normals, sums, nullptr));
+  EXPECT_EQ(tested.certificate.jump_defect, jump_defects(sites, {normals}, sums, nullptr).front());
   return tested;
 }
 

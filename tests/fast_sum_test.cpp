@@ -131,6 +131,16 @@ TEST(FastSum, QueriesSeeTheSameFieldAsThePoints) {
   EXPECT_LE(relative_error(sum.winding_gradient_at(eta, queries), direct_sum::winding_gradient(points, 0.01, eta, queries)), 1e-3);
 }
 
+TEST(FastSum, TheFieldsOfSeveralVectorsAreThoseOfEach) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(1000, 0.6, 0.25, 3).points);
+  const std::vector<std::vector<Vec3>> etas{random_vectors(points.size(), 1), random_vectors(points.size(), 5)};
+  const FastSum sum(points, codes(points), Widths(0.01), sum_plan(2e-2, 1000000));
+  const std::vector<Vec3> queries{{0.1, 0.2, 0.3}, {-0.5, 0.4, 0}, {2.5, 0, 1}, {1e9, 0, 0}};  // two outside the cube, one far
+  const std::vector<std::vector<double>> w = sum.windings_at(etas, queries);
+  ASSERT_EQ(w.size(), 2U);
+  for (std::size_t h = 0; h < 2; ++h) EXPECT_EQ(w[h], sum.winding_at(etas[h], queries)) << h;
+}
+
 // More than are summed at once, whatever else is asked for.
 TEST(FastSum, AQueryHasTheSameBytesAmongMany) {
   const std::vector<Vec3> points = unit_points(shapes::torus(3000, 0.6, 0.25, 3).points);

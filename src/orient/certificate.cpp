@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 namespace g3r {
 namespace {
@@ -23,25 +24,25 @@ constexpr double kWidth = 0.4;  // typical spacings, of the field: single sites 
 constexpr double kApart = 1.9;  // spacings between a probe and any site, so that the field there knows of no single ones
 constexpr double kMostFactor = 1.3;  // of the areas: those of points that scatter are too large, of a grid too small
 
-// The field of the sites with the given normals, at probes on either side of them.
+// The field of the sites with the normals of several hypotheses, at probes on either side of them.
 class Probed {
  public:
-  Probed(const Sites& sites, const std::vector<Vec3>& normals, const SumPlan& sums, const std::atomic<bool>* cancel)
+  Probed(const Sites& sites, const std::vector<std::vector<Vec3>>& hypotheses, const SumPlan& sums, const std::atomic<bool>* cancel)
       : sites_(sites),
         cancel_(cancel),
         field_(sites.points(), sites.set.morton(), Widths(kWidth * sites.set.spacing()), sums, cancel),
-        eta_(sites.size()),
-        axis_(sites.size()) {
-    for (std::size_t i = 0; i < eta_.size(); ++i) {
+        etas_(hypotheses),
+        axis_(sites.axis) {
+    for (std::size_t i = 0; i < axis_.size(); ++i) {
       const double side = sites.side(i);
-      eta_[i] = vector::scale(normals[i], side * side);
-      axis_[i] = vector::scale(sites.axis[i], vector::dot(normals[i], sites.axis[i]) < 0 ? -1 : 1);
+      if (vector::dot(hypotheses.front()[i], axis_[i]) < 0) axis_[i] = vector::scale(axis_[i], -1);
+      for (std::vector<Vec3>& eta : etas_) eta[i] = vector::scale(eta[i], side * side);
     }
   }
 
-  // So many spacings behind every site, then before every site.
+  // So many spacings behind every site, then before every site, as the first hypothesis has it.
   [[nodiscard]] std::vector<Vec3> at(double distance) const {
-    const std::size_t count = eta_.size();
+    const std::size_t count = axis_.size();
     std::vector<Vec3> probes(2 * count);
     for (std::size_t i = 0; i < count; ++i) {
       const Vec3 step = vector::scale(axis_[i], distance * sites_.spacing()[i]);
@@ -51,14 +52,24 @@ class Probed {
     return probes;
   }
 
-  [[nodiscard]] std::vector<double> winding(const std::vector<Vec3>& probes) const { return field_.winding_at(eta_, probes, cancel_); }
+  // Of every hypothesis at the probes, behind every site and then before it, as that one has it.
+  [[nodiscard]] std::vector<std::vector<double>> windings(const std::vector<Vec3>& probes) const {
+    std::vector<std::vector<double>> w = field_.windings_at(etas_, probes, cancel_);
+    const std::size_t count = axis_.size();
+    for (std::size_t h = 1; h < w.size(); ++h) {
+      for (std::size_t i = 0; i < count; ++i) {
+        if (vector::dot(etas_[h][i], axis_[i]) < 0) std::swap(w[h][i], w[h][count + i]);
+      }
+    }
+    return w;
+  }
 
  private:
   const Sites& sites_;
   const std::atomic<bool>* cancel_;
   FastSum field_;
-  std::vector<Vec3> eta_;
-  std::vector<Vec3> axis_;  // on the side of the normals
+  std::vector<std::vector<Vec3>> etas_;
+  std::vector<Vec3> axis_;  // on the side of the first hypothesis
 };
 
 // What one distance adds to the mean over all of |1 - jump|, of the field times a factor.
@@ -69,12 +80,16 @@ void add_defects(const std::vector<double>& w, double factor, std::vector<double
 
 }  // namespace
 
-std::vector<double> jump_defects(const Sites& sites, const std::vector<Vec3>& normals, const SumPlan& sums,
-                                 const std::atomic<bool>* cancel) {
-  const Probed probed(sites, normals, sums, cancel);
-  std::vector<double> defect(sites.size(), 0);
-  for (std::size_t d = 0; d < kJumps; ++d) add_defects(probed.winding(probed.at(distance_of(d))), 1, defect);
-  return defect;
+std::vector<std::vector<double>> jump_defects(const Sites& sites, const std::vector<std::vector<Vec3>>& hypotheses, const SumPlan& sums,
+                                              const std::atomic<bool>* cancel) {
+  std::vector<std::vector<double>> defects(hypotheses.size(), std::vector<double>(sites.size(), 0));
+  if (hypotheses.empty()) return defects;
+  const Probed probed(sites, hypotheses, sums, cancel);
+  for (std::size_t d = 0; d < kJumps; ++d) {
+    const std::vector<std::vector<double>> w = probed.windings(probed.at(distance_of(d)));
+    for (std::size_t h = 0; h < w.size(); ++h) add_defects(w[h], 1, defects[h]);
+  }
+  return defects;
 }
 
 Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const std::vector<double>& reach, const SumPlan& sums,
@@ -82,7 +97,7 @@ Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const 
   const std::size_t count = sites.size();
   const std::vector<double>& spacing = sites.spacing();
   const Neighbours& tree = sites.set.tree();
-  const Probed probed(sites, normals, sums, cancel);
+  const Probed probed(sites, {normals}, sums, cancel);
   Certificate out;
   out.jump.assign(count, -HUGE_VAL);
   out.jump_defect.assign(count, 0);
@@ -93,7 +108,7 @@ Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const 
   std::vector<std::uint8_t> is_quiet(2 * count * kProbes, 0);
   for (std::size_t d = 0; d < kProbes; ++d) {
     const std::vector<Vec3> probes = probed.at(distance_of(d));
-    w[d] = probed.winding(probes);
+    w[d] = std::move(probed.windings(probes).front());
     if (d < kJumps) {
       add_defects(w[d], 1, out.jump_defect);
       for (std::size_t i = 0; i < count; ++i) out.jump[i] = std::max(out.jump[i], w[d][i] - w[d][count + i]);

@@ -34,8 +34,8 @@ struct Certificate {
 [[nodiscard]] Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const std::vector<double>& reach,
                                   const SumPlan& sums, const std::atomic<bool>* cancel);
 
-/// Certificate::jump_defect alone: six evaluations of the field.
-[[nodiscard]] std::vector<double> jump_defects(const Sites& sites, const std::vector<Vec3>& normals, const SumPlan& sums,
-                                               const std::atomic<bool>* cancel);
+/// Certificate::jump_defect alone of each of several hypotheses, the normals that they have: six evaluations of the field of each.
+[[nodiscard]] std::vector<std::vector<double>> jump_defects(const Sites& sites, const std::vector<std::vector<Vec3>>& hypotheses,
+                                                            const SumPlan& sums, const std::atomic<bool>* cancel);
 
 }  // namespace g3r

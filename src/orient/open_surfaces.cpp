@@ -112,8 +112,10 @@ class Search {
     return certify(finest_, at_sites(normals), reach_, sums_, cancel_);
   }
 
-  [[nodiscard]] std::vector<double> jump_defects(const std::vector<Vec3>& normals) const {
-    return g3r::jump_defects(finest_, at_sites(normals), sums_, cancel_);
+  [[nodiscard]] std::vector<std::vector<double>> jump_defects(const std::vector<std::vector<Vec3>>& hypotheses) const {
+    std::vector<std::vector<Vec3>> normals;
+    for (const std::vector<Vec3>& hypothesis : hypotheses) normals.push_back(at_sites(hypothesis));
+    return g3r::jump_defects(finest_, normals, sums_, cancel_);
   }
 
   [[nodiscard]] bool has_two_walls(std::uint32_t part) const { return on_two_walls(set_, finest_, members_[part], noise_); }
@@ -321,8 +323,8 @@ Verdict suspect(const Search& search, const std::vector<double>& unrest, const s
 // certain, if the part is not at rest either.
 void choose(const Search& search, const std::vector<std::vector<Vec3>>& tried, const std::vector<double>& unrest,
             const std::vector<double>& defect, double noise, Verdict& verdict) {
+  verdict.defects = search.jump_defects(tried);
   for (std::size_t h = 0; h < tried.size(); ++h) {
-    verdict.defects.push_back(search.jump_defects(tried[h]));
     const std::vector<double> here = search.mean_of_parts(verdict.defects[h]);
     for (std::size_t p = 0; p < here.size(); ++p) {
       if (here[p] >= verdict.defect[p]) continue;

@@ -340,17 +340,27 @@ std::vector<Vec3> FastSum::winding_gradient(const std::vector<Vec3>& eta) {
 
 std::vector<double> FastSum::winding_at(const std::vector<Vec3>& eta, const std::vector<Vec3>& targets,
                                         const std::atomic<bool>* cancel) const {
-  std::vector<double> out(targets.size());
+  return std::move(windings_at({eta}, targets, cancel).front());
+}
+
+std::vector<std::vector<double>> FastSum::windings_at(const std::vector<std::vector<Vec3>>& etas, const std::vector<Vec3>& targets,
+                                                      const std::atomic<bool>* cancel) const {
+  std::vector<std::vector<double>> out(etas.size(), std::vector<double>(targets.size()));
   impl_->at(
-      eta, targets, cancel,
+      etas.front(), targets, cancel,
       [&](auto& engine, const std::vector<std::uint32_t>& index, double factor) {
         std::vector<double> sorted(index.size());
-        winding_into(engine, sorted);
-        for (std::size_t i = 0; i < index.size(); ++i) out[index[i]] = factor * factor * sorted[i];
+        for (std::size_t h = 0; h < etas.size(); ++h) {
+          if (etas.size() > 1) fill_eta(engine, etas[h], 3);
+          winding_into(engine, sorted);
+          for (std::size_t i = 0; i < index.size(); ++i) out[h][index[i]] = factor * factor * sorted[i];
+        }
       },
       [&](const std::vector<Vec3>& far, const std::vector<std::uint32_t>& index) {
-        const std::vector<double> w = direct_sum::winding(*impl_->points, impl_->width, eta, far, cancel);
-        for (std::size_t i = 0; i < index.size(); ++i) out[index[i]] = w[i];
+        for (std::size_t h = 0; h < etas.size(); ++h) {
+          const std::vector<double> w = direct_sum::winding(*impl_->points, impl_->width, etas[h], far, cancel);
+          for (std::size_t i = 0; i < index.size(); ++i) out[h][index[i]] = w[i];
+        }
       });
   return out;
 }
