@@ -114,7 +114,7 @@ Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven,
   const auto in_one_plane = [&](std::size_t i, std::size_t j) {
     const Vec3 d = vector::subtract(points[i], points[j]);
     return std::max(std::abs(vector::dot(normals[i], d)), std::abs(vector::dot(normals[j], d))) <=
-           kExactWithin * std::min(spacing[i], spacing[j]);
+           kExactScatter * std::min(spacing[i], spacing[j]);
   };
   std::vector<std::uint8_t> done(proven.size(), 0);
   std::vector<std::uint32_t> members;
