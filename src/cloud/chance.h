@@ -7,7 +7,8 @@
 namespace g3r {
 
 /// One in fifty: of all that is found, planes, slabs and outliers, what chance alone would put there. More takes rows of noise for planes
-/// and sparse points of surfaces, of which meshes lack parts, for outliers; less leaves narrow facets and strays, which open closed surfaces.
+/// and sparse points of surfaces, of which meshes lack parts, for outliers; less leaves narrow facets and strays, which open closed
+/// surfaces.
 inline constexpr double kFalseAlarms = 0.02;
 
 /// Share of a ball that is no farther from a plane through its centre than `height` of its radii.
