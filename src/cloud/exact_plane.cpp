@@ -1,6 +1,7 @@
 #include "cloud/exact_plane.h"
 
 #include "base/vector.h"
+#include "cloud/chance.h"
 #include "cloud/constants.h"
 #include "cloud/plane_fit.h"
 #include "cloud/quadratic_patch.h"
@@ -8,21 +9,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace g3r {
 namespace {
 
-constexpr std::size_t kSeeds = 10;        // nearest others that candidates pass through
-constexpr int kFewest = kQuadraticTerms;  // points on a plane: fewer are on a bend, too
-// Within what distance, in spacings, kFewest points, one more, or two or more lie: so few by chance on one in a thousand planes through
-// points that scatter by a third of a spacing.
-constexpr std::array<double, 3> kWithin{0.0005, 0.002, kExactWithin};
-constexpr double kLeastAngle = 0.1;  // sine, between the two that a candidate passes through
-// Of points that scatter.
-constexpr double kBackground = 1.5;    // spacings to either side that points on no plane fill, as far as 32 neighbours reach
-constexpr double kFalseAlarms = 1e-3;  // expected number of planes by chance, of all candidates
-constexpr double kMostScatter = 0.15;  // spacings: with more, half of 33 points prove nothing
-constexpr int kRefits = 2;             // the candidate passes through three points, so it is tilted by their scatter
+constexpr std::size_t kSeeds = kPatchNeighbours - 1;         // nearest others that candidates pass through
+constexpr double kCandidates = kSeeds * (kSeeds - 1) / 2.0;  // pairs of them
+constexpr int kFewest = kQuadraticTerms;                     // points on a plane: fewer are on a bend, too
 
 // The nearest points of one, relative to it, itself first, in spacings.
 struct Around {
@@ -57,60 +51,35 @@ Around around_first(const std::vector<Vec3>& points, const std::vector<std::uint
 
 struct Candidate {
   Vec3 normal{0, 0, 0};
-  double within = 0;
   int held = 0;
   double cosine = 0;  // between its normal and the direction asked for
 };
 
-// The points that a plane through the first holds under the loosest of the bounds that it meets; none if it meets none.
-Candidate held_by(const Around& around, const Vec3& normal) {
-  for (std::size_t b = kWithin.size(); b-- > 0;) {
-    const int held = around.held(normal, kWithin[b]);
-    if (held < kFewest) break;
-    if (held >= kFewest + static_cast<int>(b)) return {normal, kWithin[b], held, 0};
-  }
-  return {};
-}
+// Share of the points that lie within `within` of a plane through one by chance, if they fill the ball that as many of a surface lie in.
+double share_by_chance(double within) { return share_of_ball(within / std::sqrt(kPlaneNeighbours / std::numbers::pi)); }
 
-// How many of the candidates, planes through three of `count` points, hold k points or more by chance, k = 0 ... count, where each other
-// point is within `within` of one with the probability of kBackground: a binomial tail.
-std::vector<double> false_alarms(std::size_t count, double within) {
-  const double chance = within / kBackground;
-  const double candidates = kSeeds * (kSeeds - 1) / 2.0;
-  std::vector<double> expected(count + 1, candidates);
-  const std::size_t others = count < 3 ? 0 : count - 3;
-  double tail = 0;
-  double term = std::pow(chance, static_cast<double>(others));  // of all others
-  for (std::size_t k = others; k > 0; --k) {
-    tail += term;
-    expected[k + 3] = candidates * tail;
-    term *= static_cast<double>(k) * (1 - chance) / (static_cast<double>(others - k + 1) * chance);
-  }
-  return expected;
-}
-
-// How many points prove a plane.
+// How many of `count` points, three of them those that it goes through, prove a plane.
 int proof(std::size_t count, double within) {
-  const std::vector<double> expected = false_alarms(count, within);
-  const auto first = std::find_if(expected.begin(), expected.end(), [](double e) { return e <= kFalseAlarms; });
-  return std::max(static_cast<int>(first - expected.begin()), kFewest + 1);
+  const std::size_t others = count < 3 ? 0 : count - 3;
+  return std::max(static_cast<int>(proving_number(others, share_by_chance(within), kCandidates)) + 3, kFewest);
 }
 
-template <typename HeldBy>
-Candidate best_plane(const Around& around, const Vec3* towards, const HeldBy& held_by) {
+// Whether so many are more than half: what needs them proves nothing, for another plane may hold as many.
+bool is_most(int some, std::size_t count) { return 2 * static_cast<std::size_t>(some) > count; }
+
+// The candidate that holds most points to within a distance.
+Candidate best_plane(const Around& around, const Vec3* towards, double within) {
   Candidate best;
   const std::size_t seeds = std::min(kSeeds + 1, around.count);
   for (std::size_t a = 1; a < seeds; ++a) {
     for (std::size_t b = a + 1; b < seeds; ++b) {
-      const Vec3 first = around.at(a);
-      const Vec3 second = around.at(b);
-      const Vec3 across = vector::cross(first, second);
+      const Vec3 across = vector::cross(around.at(a), around.at(b));
       const double size = std::sqrt(vector::dot(across, across));
-      if (!(size > kLeastAngle * std::sqrt(vector::dot(first, first) * vector::dot(second, second)))) continue;
-      const double cosine = towards != nullptr ? std::abs(vector::dot(across, *towards)) / size : 1;
-      Candidate found = held_by(vector::scale(across, 1 / size));
-      found.cosine = cosine;
-      if (found.held > best.held || (found.held > 0 && found.held == best.held && found.cosine > best.cosine)) best = found;
+      if (!(size > 0)) continue;
+      const Vec3 normal = vector::scale(across, 1 / size);
+      const double cosine = towards != nullptr ? std::abs(vector::dot(normal, *towards)) : 1;
+      const int held = around.held(normal, within);
+      if (held > best.held || (held == best.held && cosine > best.cosine)) best = {normal, held, cosine};
     }
   }
   return best;
@@ -152,29 +121,27 @@ Held fit_to_held(const std::vector<Vec3>& points, const std::vector<std::uint32_
 
 ExactPlane find_exact_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing, const Vec3* towards) {
   const Around around = around_first(points, index, spacing);
-  const Candidate best = best_plane(around, towards, [&](const Vec3& normal) { return held_by(around, normal); });
-  if (best.held == 0) return {};
-  const Held held = fit_to_held(points, index, around, best.normal, {0, 0, 0}, best.within);
+  const Candidate best = best_plane(around, towards, kExactScatter);
+  if (best.held < proof(around.count, kExactScatter)) return {};
+  const Held held = fit_to_held(points, index, around, best.normal, {0, 0, 0}, kExactScatter);
   return held.fit.breadth < kLineBreadth ? ExactPlane{} : held.plane();
 }
 
 ExactPlane find_scattered_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing, double scatter,
                                 const Vec3& towards) {
-  if (scatter > kMostScatter * spacing) return {};
   const Around around = around_first(points, index, spacing);
   const double within = kSigmas * scatter / spacing;
   const int needed = proof(around.count, within);
-  if (around.count < static_cast<std::size_t>(needed)) return {};
-  const Candidate best = best_plane(around, &towards, [&](const Vec3& normal) {
-    const int held = around.held(normal, within);
-    return held >= needed ? Candidate{normal, within, held, 0} : Candidate{};
-  });
-  if (best.held == 0) return {};
+  if (is_most(needed, around.count)) return {};
+  const Candidate best = best_plane(around, &towards, within);
+  if (best.held < needed) return {};
   Held held;
   held.fit.normal = best.normal;
-  for (int fit = 0; fit <= kRefits; ++fit) {
+  for (std::size_t before = 0;;) {  // it passes through three points, so it is tilted by their scatter
     held = fit_to_held(points, index, around, held.fit.normal, held.middle, within);
     if (static_cast<int>(held.points.size()) < needed || held.points.front() != index[0]) return {};
+    if (held.points.size() <= before) break;
+    before = held.points.size();
   }
   return held.fit.breadth < kLineBreadth || is_bent(points, held.points, held.fit, spacing) ? ExactPlane{} : held.plane();
 }
@@ -182,19 +149,19 @@ ExactPlane find_scattered_plane(const std::vector<Vec3>& points, const std::vect
 LikeliestPlane find_likeliest_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing) {
   const Around around = around_first(points, index, spacing);
   LikeliestPlane found;
-  double least = kFalseAlarms;
-  for (double scatter = kExactScatter; scatter < kMostScatter; scatter *= 2) {
+  double least = 1;
+  for (double scatter = kExactScatter;; scatter *= 2) {
     const double within = kSigmas * scatter;
-    const Candidate best = best_plane(around, nullptr, [&](const Vec3& normal) {
-      return Candidate{normal, within, around.held(normal, within), 0};
-    });
-    if (best.held <= kFewest) continue;
-    const double expected = false_alarms(around.count, within)[static_cast<std::size_t>(best.held)];
-    if (expected >= least) continue;
+    const int needed = proof(around.count, within);
+    if (is_most(needed, around.count)) break;
+    const Candidate best = best_plane(around, nullptr, within);
+    if (best.held < needed) continue;
+    const double chance = chances_of_as_many(around.count - 3, share_by_chance(within))[static_cast<std::size_t>(best.held - 3)];
+    if (chance >= least) continue;
     const Held held = fit_to_held(points, index, around, best.normal, {0, 0, 0}, within);
     if (held.points.size() <= static_cast<std::size_t>(kFewest)) continue;  // rounding
     if (held.fit.breadth < kFacetBreadth || is_bent(points, held.points, held.fit, spacing)) continue;
-    least = expected;
+    least = chance;
     found = {held.plane(), scatter};
   }
   return found;

@@ -1,6 +1,8 @@
 // Planes that hold more points than chance would put there.
 #pragma once
 
+#include "cloud/constants.h"
+
 #include <g3r/points.h>
 
 #include <cstddef>
@@ -20,27 +22,29 @@ struct ExactPlane {
   double breadth = 0;                 ///< their second principal spread over the first: 0 along a line, 1 all around
 };
 
-/// The plane through points[index[0]] that holds most of the points `index` (at most kPlaneNeighbours, nearest first): 8 or more to within
-/// 0.003 `spacing`, 7 to within 0.002 or 6 to within 0.0005. Candidates are the planes through the first and two of the next 10 (every
-/// pair, as RANSAC would in the limit: Fischler and Bolles, "Random sample consensus", Communications of the ACM 1981); the best is fitted
-/// to what it holds. Points along a line, which a curved surface has in planes across it, prove nothing: their second principal spread has
-/// to be 0.15 of the first. With `towards` (unit length), of equal ones the one least off it counts. Of random points on a smooth or noisy
-/// surface about one in a thousand has such a plane; rows of a raster have one across it. About 3 us.
+/// The plane through points[index[0]] that holds most of the points `index` (at most kPlaneNeighbours, nearest first): 6 or more to within
+/// kExactScatter. Candidates are the planes through the first and two of the next 11 (every pair, as RANSAC would in the limit: Fischler
+/// and Bolles, "Random sample consensus", Communications of the ACM 1981); the best is fitted to what it holds. Points along a line, which
+/// a curved surface has in planes across it, prove nothing: their second principal spread has to be 0.15 of the first. With `towards` (unit
+/// length), of equal ones the one least off it counts. Of random points on a smooth or noisy surface few have such a plane; rows of a
+/// raster have one across it. About 3 us.
 [[nodiscard]] ExactPlane find_exact_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing,
                                           const Vec3* towards = nullptr);
 
-/// The same among points that scatter by `scatter` (standard deviation, above 0) about their surfaces; none where that is more than 0.15
-/// `spacing`. The plane has to hold, to within 2.5 `scatter`, so many points that points uniform within 1.5 spacings on either side would
-/// give as many to any of the 45 candidates once in a thousand times (binomial law: detection a contrario, Desolneux, Moisan, Morel,
-/// "Meaningful alignments", International Journal of Computer Vision 2000): 9 of 33 for a scatter of 0.01 spacings, 13 for 0.04, 17 for
-/// 0.08. It is fitted anew to what it holds, twice, and must not be the plane of a bend: a quadratic height field through the same points
-/// may not be likelier by Schwarz's criterion (three more numbers cost 3/2 ln n). docs/math.md, "Planes of scattered points". About 7 us.
+/// The same among points that scatter by `scatter` (standard deviation, above 0) about their surfaces. The plane has to hold, to within 2.5
+/// `scatter`, so many points that points which fill the ball of the 33 would give as many to any of the 55 candidates by chance
+/// kFalseAlarms times (binomial law: detection a contrario, Desolneux, Moisan, Morel, "Meaningful alignments", International Journal of
+/// Computer Vision 2000): 8 of 33 for a scatter of 0.01 spacings, 10 for 0.04, 13 for 0.08; from 0.15 on that is more than half of them,
+/// and there is none. It is fitted anew to what it holds for as long as that becomes more, and must not be the plane of a bend: a quadratic
+/// height field through the same points may not be likelier by Schwarz's criterion (three more numbers cost 3/2 ln n). docs/math.md,
+/// "Planes of scattered points". About 8 us.
 [[nodiscard]] ExactPlane find_scattered_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing,
                                               double scatter, const Vec3& towards);
 
-inline constexpr double kExactWithin = 0.003;   ///< spacings, of a point from the exact plane that holds it, at most
-inline constexpr double kExactScatter = 0.001;  ///< spacings: points that scatter less are exact
-inline constexpr double kFacetBreadth = 0.4;    ///< of the points on a facet; the rows of a raster lie in narrow strips of planes across it
+/// Spacings: points that scatter less are exact. Above the rounding of files and of a box far larger than the spacing; noise that matters
+/// is far above.
+inline constexpr double kExactScatter = 0.001;
+inline constexpr double kFacetBreadth = 0.4;  ///< of the points on a facet; the rows of a raster lie in narrow strips of planes across it
 
 struct LikeliestPlane {
   ExactPlane plane;

@@ -250,13 +250,12 @@ double facet_scatter(const PointSet& set) {
 }
 
 double dimension(const PointSet& set) {
-  constexpr std::size_t kMost = 2048, kRatio = 8;
   if (set.size() < kSmallPart * kPatchNeighbours) return 2;
-  const std::size_t far = std::min(kMost, set.size() / kSmallPart);
+  const std::size_t far = std::min(kTwiceAsFar * kLayerNeighbours, set.size() / kSmallPart);
   std::vector<double> found;
   for_some(set, kFewPlaces, far, [&](const Vec3&, const auto&, const std::vector<double>& squared) {
-    const double ratio = squared.back() / squared[far / kRatio];
-    if (ratio > 1) found.push_back(2 * std::log(kRatio) / std::log(ratio));
+    const double ratio = squared.back() / squared[far / kTwiceAsFar];
+    if (ratio > 1) found.push_back(2 * std::log(kTwiceAsFar) / std::log(ratio));
   });
   return found.empty() ? 2 : quantile(std::move(found), 0.5);
 }

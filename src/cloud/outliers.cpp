@@ -1,6 +1,7 @@
 #include "cloud/outliers.h"
 
 #include "base/vector.h"
+#include "cloud/chance.h"
 #include "cloud/constants.h"
 #include "cloud/noise.h"
 #include "cloud/spacing.h"
@@ -15,9 +16,6 @@
 namespace g3r {
 namespace {
 
-// One in fifty: of the points taken those that an even surface leaves as far apart by chance, and of points that fill space those that
-// chance puts on a slab. More loses points of surfaces, of which meshes lack sparse parts; less leaves strays, which open closed surfaces.
-constexpr double kChance = 0.02;
 // Neighbours of a point within which a slab is looked for: more see a surface among more strays, but bends are flat in few.
 constexpr std::array<std::size_t, 3> kSlabNeighbours = {16, 32, 64};
 // Half the thickness of slabs, of the reach of those: what is flat is seen best in thin ones, bends and noise need thick ones.
@@ -59,12 +57,13 @@ struct EvenSurface {
   }
 };
 
-// The least spacing, in medians, that can be an outlier's: of fewer points than kMostOutliers of all, kChance are as far apart by chance.
+// The least spacing, in medians, that can be an outlier's: of fewer points than kMostOutliers of all, kFalseAlarms are as far apart by
+// chance.
 double least_spacing() {
   double low = 1, high = 4;
   for (int bit = 0; bit < 30; ++bit) {
     const double middle = (low + high) / 2;
-    (EvenSurface().share_beyond(middle) > kChance * kMostOutliers ? low : high) = middle;
+    (EvenSurface().share_beyond(middle) > kFalseAlarms * kMostOutliers ? low : high) = middle;
   }
   return high;
 }
@@ -78,17 +77,8 @@ class Slabs {
   Slabs() {
     constexpr double kTests = kSlabNeighbours.size() * kThickness.size() * kClosest * (kClosest - 1) / 2;
     for (std::size_t t = 0; t < kThickness.size(); ++t) {
-      const double share = 1.5 * kThickness[t] - 0.5 * std::pow(kThickness[t], 3);  // of a ball's volume
-      for (std::size_t n = 0; n <= kSlabNeighbours.back(); ++n) {
-        // the least number with kTests P(Binomial(n, share) >= number) <= kChance
-        std::size_t least = n + 1;
-        double tail = 0, term = std::pow(share, static_cast<double>(n));
-        while (least > 0 && kTests * (tail += term) <= kChance) {
-          --least;
-          term *= static_cast<double>(least) / static_cast<double>(n - least + 1) * (1 - share) / share;
-        }
-        least_[t].push_back(least);
-      }
+      const double share = share_of_ball(kThickness[t]);
+      for (std::size_t n = 0; n <= kSlabNeighbours.back(); ++n) least_[t].push_back(proving_number(n, share, kTests));
     }
   }
 
@@ -151,15 +141,16 @@ std::vector<std::uint32_t> find_strays(const PointSet& set, const std::vector<do
   return strays;
 }
 
-// As many of the strays, those farthest apart first, as can be taken with kChance of them by chance (Benjamini and Hochberg, "Controlling
-// the false discovery rate", 1995). `spacing`: theirs, in medians of all `points`.
+// As many of the strays, those farthest apart first, as can be taken with kFalseAlarms of them by chance (Benjamini and Hochberg,
+// "Controlling the false discovery rate", 1995). `spacing`: theirs, in medians of all `points`.
 std::vector<std::uint32_t> choose(const std::vector<std::uint32_t>& strays, const std::vector<double>& spacing, const EvenSurface& surface,
                                   std::size_t points) {
   std::vector<std::pair<double, std::uint32_t>> farthest;
   for (std::size_t k = 0; k < strays.size(); ++k) farthest.emplace_back(-spacing[k], strays[k]);
   std::sort(farthest.begin(), farthest.end());
   std::size_t taken = farthest.size();
-  while (taken > 0 && static_cast<double>(points) * surface.share_beyond(-farthest[taken - 1].first) > kChance * static_cast<double>(taken))
+  while (taken > 0 &&
+         static_cast<double>(points) * surface.share_beyond(-farthest[taken - 1].first) > kFalseAlarms * static_cast<double>(taken))
     --taken;
   std::vector<std::uint32_t> chosen(taken);
   for (std::size_t k = 0; k < taken; ++k) chosen[k] = farthest[k].second;

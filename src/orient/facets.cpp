@@ -115,7 +115,7 @@ Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven,
   const auto in_one_plane = [&](std::size_t i, std::size_t j) {
     const Vec3 d = vector::subtract(points[i], points[j]);
     return std::max(std::abs(vector::dot(normals[i], d)), std::abs(vector::dot(normals[j], d))) <=
-           kExactWithin * std::min(spacing[i], spacing[j]);
+           kExactScatter * std::min(spacing[i], spacing[j]);
   };
   // The neighbours in one plane with a point, a bit each: most points of curved surfaces have none.
   std::vector<std::uint32_t> beside(points.size(), 0);
