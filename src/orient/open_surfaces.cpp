@@ -347,7 +347,9 @@ void choose(const Search& search, const std::vector<std::vector<Vec3>>& tried, c
     if (is_better && !is_enclosed) continue;
     verdict.is_open[p] = 0;
     verdict.is_doubtful[p] = unrest[p] > kUnrest ? 1 : 0;
-    verdict.is_turned[p] = verdict.is_doubtful[p] != 0 && verdict.defect[p] < defect[p] ? 1 : 0;
+    // What encloses little has no outside that tells which way to turn it.
+    const bool has_outside = std::abs(verdict.enclosure[p]) >= kEncloses;
+    verdict.is_turned[p] = verdict.is_doubtful[p] != 0 && has_outside && verdict.defect[p] < defect[p] ? 1 : 0;
   }
 }
 

@@ -52,15 +52,15 @@ struct OpenSurfaces {
 /// sees what is around. Above a half the side of a point is not certified in full. The outside of a part is the side on which the mean of w
 /// at the part, of its own field, is positive: e / 2, with e = 1 on a closed surface, 0.62 on half a sphere, 0 on a plane. Where |e| is
 /// below 0.55 either side could be it, and the one that faces up (+z; if the part is level, +y, then +x) is taken. Under noise a part with
-/// |e| above 0.7 is closed: noise makes one wall of two, and what is left encloses nearly everything. Its sides, and those of any part that
-/// is neither at rest nor shown to be open, are those of the best hypothesis where the normals of a site and those around it have one side,
-/// and its mean defect is less than that of the solution. Where the solution stays as it is, J
-/// = max(0, jump of its site) certifies a side: where walls are too close for the sampling the field does not jump from 0 to 1, whatever
-/// the sides. J is the largest jump, and 1 - scaled_defect where sites are thinned for noise, which makes layers of single wrong patches.
-/// Under noise it counts R times, R the length of the mean of the normals of the points of the site and the six around it: two walls closer
-/// together than 4 sigma are one site or two neighbours, and which normal is whose is chance. Points that face the other way than the mean
-/// of their site have 0, and all points of a cloud of fewer than 30. `noise`: standard deviation; `normals`: N unit vectors, in: the
-/// solution, out: changed on open surfaces. O(N log N).
+/// |e| above 0.7 is closed: noise makes one wall of two, and what is left encloses nearly everything. Where it is
+/// neither at rest nor shown to be open, its sides are those of the best hypothesis where the normals of a site and those around it have
+/// one side, if the mean defect of the hypothesis is less than that of the solution. Where the solution stays as it is, J = max(0, jump of
+/// its site) certifies a side: where walls are too close for the sampling the field does not jump from 0 to 1, whatever the sides. J is the
+/// largest jump, and 1 - scaled_defect where sites are thinned for noise, which makes layers of single wrong patches. Under noise it counts
+/// R times, R the length of the mean of the normals of the points of the site and the six around it: two walls closer together than 4 sigma
+/// are one site or two neighbours, and which normal is whose is chance. Points that face the other way than the mean of their site have 0,
+/// and all points of a cloud of fewer than 30. `noise`: standard deviation; `normals`: N unit vectors, in: the solution, out: changed on
+/// open surfaces. O(N log N).
 [[nodiscard]] OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan& sums, std::vector<Vec3>& normals,
                                               const std::atomic<bool>* cancel = nullptr);
 
