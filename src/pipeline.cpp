@@ -37,8 +37,6 @@ constexpr double kAboveScatter = 1.4;
 constexpr double kManyDoubtful = 0.1;
 // Of that share, what is left at most where such noise is taken: noise hides thin walls and all doubt about them.
 constexpr double kHardlyAny = 0.2;
-// In spacings, the noise that is tried at least: less blurs no less, and leaves more unsure.
-constexpr double kLeastTried = 0.3;
 // Points up to which shape looks like noise, so that none is tried too: with more it costs time and is never taken.
 constexpr std::size_t kFewPoints = 2500;
 // Dimension from which points fill a volume: cubes and balls have 2.57 and more, surfaces under noise of 2 h at most 2.45.
@@ -236,7 +234,7 @@ std::vector<OtherNoise> other_noises(const Problem& problem, const Options& opti
   if (!may_try_noises(problem, options) || found.doubt < kDoubtful) return {};
   const PointSet& set = problem.cloud.set;
   const double scatter = largest_scatter(set);
-  const double least = kLeastTried * problem.spacing;
+  const double least = noise_of_clean_widths() * problem.spacing;  // less blurs no less, and leaves more unsure
   const double unsure = found.doubt - found.agreed;
   std::vector<OtherNoise> noises;
   const double rounding = rounding_deviation(set);

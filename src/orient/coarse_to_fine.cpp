@@ -19,17 +19,16 @@
 namespace g3r {
 namespace {
 
-constexpr double kSpacingRatio = 2;
-constexpr double kCubeRatio = kSpacingRatio * kSpacingRatio * kSpacingRatio;  // of the weights of the winding number
-constexpr double kCoarseShare = 0.2;                                          // of the progress bar
+constexpr double kCubeRatio = kLevelRatio * kLevelRatio * kLevelRatio;  // of the weights of the winding number
+const double kCoarseShare = 1.0 / (1 + kTwiceAsFar);  // of the progress bar: a quarter of the points beside all
 constexpr double kDoubtfulShare = 0.04;                                       // share of the points from which more steps are tried
 constexpr double kWorse = 1.25;                                               // of that share after them, from which they are undone
 
 Settings coarser(Settings settings) {
-  settings.spacing *= kSpacingRatio;
+  settings.spacing *= kLevelRatio;
   for (KernelWidth* width : {&settings.epsilon, &settings.coarsest_epsilon, &settings.refinement_width}) {
-    width->points *= kSpacingRatio;
-    width->noise *= kSpacingRatio;
+    width->points *= kLevelRatio;
+    width->noise *= kLevelRatio;
   }
   settings.winding_weight *= kCubeRatio;
   settings.tolerance = settings.start_tolerance;

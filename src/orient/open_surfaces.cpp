@@ -38,7 +38,6 @@ constexpr int kTurns = 3;           // rounds of the winding gradient
 constexpr double kTurnWidth = 2;    // site spacings: wider than the grooves that the sampling cannot resolve
 constexpr double kAgreed = 0.5;     // of the jump that a side has to show: less is more against it than for it
 constexpr double kHidden = 0.25;    // of the jump, below which the direction is that from afar; rims of open surfaces show 0.4 and more
-constexpr double kAccuracy = 1e-2;  // of the sums that tell whether a part encloses something
 constexpr double kFarBetter = 0.5;  // of the jump defect as given, up to which a hypothesis is taken where unrest alone does not decide
 // Verdict.
 constexpr double kUnrest = 0.08;      // mean of a part that is open: closed ones have up to 0.06, open ones 0.1 to 0.3
@@ -128,7 +127,7 @@ class Search {
       morton.push_back(finest_.set.morton()[s]);
       eta.push_back(vector::scale(normals[s], finest_.side(s) * finest_.side(s)));
     }
-    FastSum field(points, morton, Widths(kBetweenSites * finest_.set.spacing()), sum_plan(kAccuracy, points.size()), cancel_);
+    FastSum field(points, morton, Widths(kBetweenSites * finest_.set.spacing()), sum_plan(kContinuedAccuracy, points.size()), cancel_);
     double sum = 0;
     for (const double w : field.winding(eta)) sum += w;
     return 2 * sum / static_cast<double>(points.size());
