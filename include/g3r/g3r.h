@@ -235,7 +235,7 @@ void carry_attributes(Mesh& mesh, const PointsView& points, const std::vector<st
 /// with eta_i = areas[i] * normals[i] and g_s the Gaussian-mollified kernel of width s (docs/math.md).
 class Field {
  public:
-  /// From oriented points; `width` s in input units, 0: 0.57 spacings. Throws InvalidInput like orient().
+  /// From oriented points; `width` s in input units, 0: 0.55 spacings. Throws InvalidInput like orient().
   Field(const PointsView& points, const Orientation& orientation, double width = 0);
   ~Field();
   Field(Field&&) noexcept;

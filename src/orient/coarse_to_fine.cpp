@@ -20,9 +20,7 @@ namespace g3r {
 namespace {
 
 constexpr double kCubeRatio = kLevelRatio * kLevelRatio * kLevelRatio;  // of the weights of the winding number
-const double kCoarseShare = 1.0 / (1 + kTwiceAsFar);  // of the progress bar: a quarter of the points beside all
-constexpr double kDoubtfulShare = 0.04;                                       // share of the points from which more steps are tried
-constexpr double kWorse = 1.25;                                               // of that share after them, from which they are undone
+const double kCoarseShare = 1.0 / (1 + kTwiceAsFar);                    // of the progress bar: a quarter of the points beside all
 
 Settings coarser(Settings settings) {
   settings.spacing *= kLevelRatio;
@@ -169,12 +167,12 @@ void solve_doubtful(FastSum& field, const LevelCloud& cloud, const Settings& set
   const Refinement refined = refine_normals(field, result.eta);
   const std::vector<float> confidence = confidence_of(cloud, settings, result.eta, refined);
   const double unsure = unsure_share(confidence);
-  if (unsure < kDoubtfulShare + settings.unsure_of_noise) return;
+  if (unsure < kDoubtful + settings.unsure_of_noise) return;
   if (is_mostly_open(cloud, settings, refined.normals, stages)) return;
   IterativeResult more = solve_around_unsure(cloud, settings, unsure_points(confidence), stages, result.eta);
   if (settings.unsure_of_noise == 0) {
     const Refinement after = refine_normals(field, more.eta);
-    if (unsure_share(confidence_of(cloud, settings, more.eta, after)) > kWorse * unsure) return;
+    if (unsure_share(confidence_of(cloud, settings, more.eta, after)) > unsure) return;
   }
   more.kinds.insert(more.kinds.begin(), result.kinds.begin(), result.kinds.end());
   more.residuals.insert(more.residuals.begin(), result.residuals.begin(), result.residuals.end());

@@ -17,8 +17,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kBlock = parallel::kSmallBlock;  // points among which fits are shared
-constexpr std::size_t kMost = 2000;  // points in a fit: wider ones gain nothing; of more, evenly picked ones, to bound the work
-constexpr double kNarrowest = 4.2;   // first reach over sqrt(s h): 3.6 leaves 5 % more of the error, 4.8 blurs detail
+constexpr std::size_t kMost = 2000;             // points in a fit: wider ones gain nothing; of more, evenly picked ones, to bound the work
+constexpr double kNarrowest = 4.2;              // first reach over sqrt(s h): 3.6 leaves 5 % more of the error, 4.8 blurs detail
 constexpr double kWider = std::numbers::sqrt2;  // from one reach to the next: twice the area
 constexpr double kNormalWeight = 0.3;           // the normals are those of a smooth field already: less leaves noise, more blurs
 constexpr double kOpposed = 0.05;               // share of points that face the other way from which a fit has another wall too close
@@ -55,14 +55,14 @@ class Fitter {
     noise_ = std::min(*middle, noise_);
   }
 
-  // The widest fit at point i whose normal agrees with those of the narrower ones.
+  // The widest fit at point i whose normal agrees with those of the narrower ones; none where there is no noise.
   Fit widest(std::size_t i) {
     const Vector3d normal = to_eigen(normals_[i]);
     Vector3d axis = normal;
     Fit best;
     narrower_.clear();
     index_.clear();
-    for (double reach = first_reach(); index_.size() < std::min(kMost, points_.size()); reach *= kWider) {
+    for (double reach = first_reach(); reach > 0 && index_.size() < std::min(kMost, points_.size()); reach *= kWider) {
       if (!gather(i, axis, reach)) break;
       if (members_.size() <= kQuadraticTerms) continue;
       const QuadraticPatch patch = fit_quadratic_patch(members_, 0, reach / 2, kNormalWeight);

@@ -24,13 +24,11 @@ constexpr double kContinuedWindingWeight = 30;
 constexpr double kPolishWindingWeight = 70;  // of clean points and little noise; more costs sides, less costs narrow gaps and smooth shapes
 constexpr double kTolerance =
     2.5e-3;  // of further steps and of least squares too; slats and spokes need this residual; smooth shapes get there in half the steps
-constexpr double kAcceptedResidual = 0.1;  // random points on spheres end at 0.05 after a coarse start, with normals right to 1e-4
 constexpr const char* kEnergySchedule = "45 cg";
-constexpr double kStartTolerance = 8e-3;  // of a coarse solution that is only a start
+constexpr double kAcceptedResidual = 0.1;  // random points on spheres end at 0.05 after a coarse start, with normals right to 1e-4
 // Steps in which what is known reaches the far sides: fewer leave those undecided. More fit what is wrong with the equations: noise, above
 // all in the polish, and after a coarse start, where smooth shapes take 2 to 10, open surfaces and the outliers that are always left.
 constexpr int kFewSteps = 10;
-constexpr double kContinuedTolerance = 1.5e-2;
 constexpr double kFewOutliers = 1e-2;  // of the points; clean clouds lose one point, very uneven ones 0.6 %
 // The default on noisy input, sigma in spacings h: the field must not see single points. Kernels of a given number of sigma hide the
 // scatter of points, and blur walls as thin as that; below a spacing fewer points share the scatter, and walls matter more. So the width
@@ -112,8 +110,8 @@ void follow_noise(double noise, const Options& options, std::size_t points, Sett
   s.polish_width = {s.polish_width.points, kNoisyPolishWidth * patch, 1 - kNoisyPolishPower};
   if (s.polish_steps > 0) s.polish_steps = kFewSteps;
   s.polish_damping = kFlatPatch / s.spacing;
-  // W eta = 1/2 is wrong at points off the surface, and the more so the farther off they are: in the polish the length whose cube its weight
-  // is falls from h to that over hypot(1, sigma / h). The solve stops so early that less weight would change nothing.
+  // W eta = 1/2 is wrong at points off the surface, and the more so the farther off they are: in the polish the length whose cube its
+  // weight is falls from h to that over hypot(1, sigma / h). The solve stops so early that less weight would change nothing.
   s.polish_winding_weight *= cube(1 / std::hypot(noise, 1));
   s.unsure_of_noise = noise;  // a noise of one h makes nearly all unsure
   if (s.epsilon.typical() > kFirstDistance * s.spacing) s.cluster_side = s.epsilon.typical();
@@ -194,9 +192,10 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   if (!among_outliers && !contains(s.without, Step::kMoreSteps)) s.doubtful_schedule = {kMoreSteps};
   s.tolerance = options.tolerance >= 0 ? options.tolerance : paper ? 0 : kTolerance;
   s.accepted_residual = options.tolerance >= 0 ? options.tolerance : kAcceptedResidual;
-  s.continued_tolerance = options.tolerance >= 0 ? options.tolerance : kContinuedTolerance;
+  // Starts, and what starts from them, are no better than their sums.
+  s.continued_tolerance = options.tolerance >= 0 ? options.tolerance : kContinuedAccuracy;
   s.doubtful_tolerance = options.tolerance >= 0 ? options.tolerance : kTolerance;
-  s.start_tolerance = std::max(s.tolerance, kStartTolerance);
+  s.start_tolerance = std::max(s.tolerance, kAccuracy);
   // An epsilon as wide as a scale of fewer points, asked for, is taken to mean noise.
   const bool wide = s.epsilon.points > kFirstDistance * spacing && options.noise.unit == Length::Unit::kAuto;
   const double scatter = paper || green ? 0 : wide ? hidden_noise(s.epsilon.points / spacing) : noise / spacing;
@@ -234,8 +233,9 @@ std::size_t planned_memory(const Settings& settings, std::size_t given, std::siz
 
 void require_memory(std::size_t planned_bytes, const Options& options) {
   if (options.max_memory == 0 || planned_bytes <= options.max_memory) return;
-  throw Unavailable("the plan needs " + std::to_string(planned_bytes >> 20) + " MiB, the limit is " +
-                    std::to_string(options.max_memory >> 20) + " MiB; raise the limit, thin the cloud, or lower the depth of the mesh");
+  throw Unavailable("the plan needs " + std::to_string(mebibytes(planned_bytes)) + " MiB, the limit is " +
+                    std::to_string(mebibytes(options.max_memory)) +
+                    " MiB; raise the limit, thin the cloud, or lower the depth of the mesh");
 }
 
 }  // namespace g3r

@@ -288,8 +288,8 @@ double winding_of_others(const Problem& problem, const std::vector<std::uint32_t
   return sum / static_cast<double>(here.size());
 }
 
-// Solves for some points (ascending) without the others, unless the sums do not show that these take part in their equations. An open surface that is one by
-// itself too stays as it is. Returns false if what it took did not converge.
+// Solves for some points (ascending) without the others, unless the sums do not show that these take part in their equations. An open
+// surface that is one by itself too stays as it is. Returns false if what it took did not converge.
 bool solve_apart(const Problem& problem, const std::vector<std::uint32_t>& some, bool is_open, const Options& options, Stages& stages,
                  Stats& stats, Solution& solution) {
   if (some.size() < kFewestSites || winding_of_others(problem, some, solution.eta, stages) <= kContinuedAccuracy) return true;
