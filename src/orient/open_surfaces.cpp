@@ -29,6 +29,7 @@ constexpr double kNoiseScale = 2;  // standard deviations of the noise between s
 // the rims of small surfaces.
 constexpr double kFar = 4;
 // Graph.
+constexpr std::size_t kAdjacent = 10;  // nearest sites that a site is connected with: 12 lead from a thin wall to the next under noise
 constexpr double kDecay = 0.3;         // of the weight with the squared length in site distances
 constexpr double kLeastWeight = 0.02;  // of a site whose surroundings are a ball: it still follows its neighbours
 // Hypothesis.
@@ -175,7 +176,7 @@ class Search {
     const std::size_t count = sites.size();
     const std::vector<std::uint32_t>& near = sites.set.near();
     const std::size_t stride = sites.set.near_count();
-    const std::size_t adjacent = std::min(kPatchNeighbours + 1, stride);
+    const std::size_t adjacent = std::min(kAdjacent + 1, stride);
     std::vector<SignEdge> edges;
     for (std::uint32_t i = 0; i < count; ++i) {
       for (std::size_t k = 0; k < adjacent; ++k) {
