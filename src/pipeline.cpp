@@ -35,12 +35,8 @@ namespace {
 constexpr double kFarLess = 0.55;
 // Times the estimate, the scatter that speaks against it; times the scatter, the noise that is tried: kernels have to hide all of it.
 constexpr double kAboveScatter = 1.4;
-// Share of unsure sides from which more noise is tried with nothing to speak for it: few clouds whose estimate is right leave as many.
-constexpr double kManyDoubtful = 0.1;
-// Of that share, what is left at most where such noise is taken: noise hides thin walls and all doubt about them.
+// The same for more noise than the points speak for: noise hides thin walls and all doubt about them.
 constexpr double kHardlyAny = 0.2;
-// In spacings, the noise that is tried at least: less blurs no less, and leaves more unsure.
-constexpr double kLeastTried = 0.3;
 // Points up to which shape looks like noise, so that none is tried too: with more it costs time and is never taken.
 constexpr std::size_t kFewPoints = 2500;
 // Dimension from which points fill a volume: cubes and balls have 2.57 and more, surfaces under noise of 2 h at most 2.45.
@@ -271,7 +267,7 @@ std::vector<OtherNoise> other_noises(const Problem& problem, const Options& opti
   if (!may_try_noises(problem, options) || found.doubt < kDoubtful) return {};
   const PointSet& set = problem.cloud.set;
   const double scatter = largest_scatter(set);
-  const double least = kLeastTried * problem.spacing;
+  const double least = noise_of_clean_widths() * problem.spacing;  // less blurs no less, and leaves more unsure
   const double unsure = found.doubt - found.agreed;
   std::vector<OtherNoise> noises;
   const double rounding = rounding_deviation(set);
@@ -280,7 +276,7 @@ std::vector<OtherNoise> other_noises(const Problem& problem, const Options& opti
   if (set.size() <= kFewPoints && problem.noise > rounding_noise(set)) noises.push_back({0, kFarLess});
   if (scatter > kAboveScatter * problem.noise) {
     noises.push_back({std::max(kAboveScatter * scatter, least), kFarLess});
-  } else if (problem.noise > 0 && unsure >= kManyDoubtful) {
+  } else if (problem.noise > 0 && unsure >= kDoubtful) {
     noises.push_back({kAboveScatter * problem.noise, kHardlyAny});
   }
   return noises;

@@ -98,7 +98,7 @@ TEST(ScatteredPlane, ErrorsOfABoxGrowInProportionToTheScatter) {
   for (const double sigma : kSanitized ? std::vector{0.02, 0.035} : std::vector{0.0, 0.005, 0.01, 0.02, 0.035, 0.05}) {
     const Surface box = scattered(shapes::plates(1, 0.7, 12, 5, kSpacing), sigma);
     const double error = shapes::angle_error(orient(box.points).normals, box.normals);
-    EXPECT_LT(error, 4e-4 + 0.16 * sigma) << sigma;
+    EXPECT_LT(error, 4e-4 + 0.19 * sigma) << sigma;
     EXPECT_LT(error, before + 4e-3) << sigma;
     before = error;
   }

@@ -2,9 +2,13 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 
 namespace g3r {
+
+/// Whole mebibytes in so many bytes.
+inline std::uint64_t mebibytes(std::uint64_t bytes) { return bytes >> 20U; }
 
 /// The number of bytes as a size, the largest one where it is more: sizes have 32 bits in a browser. Not negative.
 inline std::size_t whole_bytes(double bytes) {

@@ -22,7 +22,6 @@ double distance_of(std::size_t probe) { return std::ldexp(1.0, static_cast<int>(
 
 constexpr double kWidth = 0.4;  // typical spacings, of the field: single sites are not seen at the nearest probes, walls of a spacing are
 constexpr double kApart = 1.9;  // spacings between a probe and any site, so that the field there knows of no single ones
-constexpr double kMostFactor = 1.3;  // of the areas: those of points that scatter are too large, of a grid too small
 
 // The field of the sites with the normals of several hypotheses, at probes on either side of them.
 class Probed {
@@ -123,14 +122,14 @@ Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const 
       }
     });
   }
-  // Areas are known up to a factor near 1, for points that scatter it is too large: inside, w is 1.
+  // Areas are known up to a factor near 1, those of points that scatter are too large, of a grid too small: inside, w is 1.
   std::vector<double> inside;
   for (std::size_t d = 0; d < kProbes; ++d) {
     for (std::size_t k = 0; k < 2 * count; ++k) {
       if (is_quiet[2 * count * d + k] != 0 && w[d][k] > 0.5) inside.push_back(w[d][k]);
     }
   }
-  const double factor = inside.empty() ? 1 : std::clamp(1 / median(inside), 1 / kMostFactor, kMostFactor);
+  const double factor = inside.empty() ? 1 : 1 / median(inside);
   for (std::size_t d = 0; d < kJumps; ++d) add_defects(w[d], factor, out.scaled_defect);
   for (std::size_t d = 0; d < kProbes; ++d) {
     for (std::size_t k = 0; k < 2 * count; ++k) {

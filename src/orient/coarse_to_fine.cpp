@@ -19,17 +19,14 @@
 namespace g3r {
 namespace {
 
-constexpr double kSpacingRatio = 2;
-constexpr double kCubeRatio = kSpacingRatio * kSpacingRatio * kSpacingRatio;  // of the weights of the winding number
-constexpr double kCoarseShare = 0.2;                                          // of the progress bar
-constexpr double kDoubtfulShare = 0.04;                                       // share of the points from which more steps are tried
-constexpr double kWorse = 1.25;                                               // of that share after them, from which they are undone
+constexpr double kCubeRatio = kLevelRatio * kLevelRatio * kLevelRatio;  // of the weights of the winding number
+const double kCoarseShare = 1.0 / (1 + kTwiceAsFar);                    // of the progress bar: a quarter of the points beside all
 
 Settings coarser(Settings settings) {
-  settings.spacing *= kSpacingRatio;
+  settings.spacing *= kLevelRatio;
   for (KernelWidth* width : {&settings.epsilon, &settings.coarsest_epsilon, &settings.refinement_width}) {
-    width->points *= kSpacingRatio;
-    width->noise *= kSpacingRatio;
+    width->points *= kLevelRatio;
+    width->noise *= kLevelRatio;
   }
   settings.winding_weight *= kCubeRatio;
   settings.tolerance = settings.start_tolerance;
@@ -170,12 +167,12 @@ void solve_doubtful(FastSum& field, const LevelCloud& cloud, const Settings& set
   const Refinement refined = refine_normals(field, result.eta);
   const std::vector<float> confidence = confidence_of(cloud, settings, result.eta, refined);
   const double unsure = unsure_share(confidence);
-  if (unsure < kDoubtfulShare + settings.unsure_of_noise) return;
+  if (unsure < kDoubtful + settings.unsure_of_noise) return;
   if (is_mostly_open(cloud, settings, refined.normals, stages)) return;
   IterativeResult more = solve_around_unsure(cloud, settings, unsure_points(confidence), stages, result.eta);
   if (settings.unsure_of_noise == 0) {
     const Refinement after = refine_normals(field, more.eta);
-    if (unsure_share(confidence_of(cloud, settings, more.eta, after)) > kWorse * unsure) return;
+    if (unsure_share(confidence_of(cloud, settings, more.eta, after)) > unsure) return;
   }
   more.kinds.insert(more.kinds.begin(), result.kinds.begin(), result.kinds.end());
   more.residuals.insert(more.residuals.begin(), result.residuals.begin(), result.residuals.end());

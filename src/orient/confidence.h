@@ -33,8 +33,8 @@ struct Sums {
 [[nodiscard]] std::vector<std::uint8_t> unsure_points(const std::vector<float>& confidence);
 /// Share of the points, of at least one, whose side_confidence() is below a half. O(N).
 [[nodiscard]] double unsure_share(const std::vector<float>& confidence);
-/// Share of unsure sides from which other noises are tried, each with one more solve: few clean clouds leave as many, and with a
-/// larger share scans that do not fit onto each other would stay wrong.
+/// Share of unsure sides from which more steps and other noises are tried: few clean clouds leave as many, and with a larger share thin
+/// parts, and scans that do not fit onto each other, would stay wrong.
 inline constexpr double kDoubtful = 0.05;
 inline constexpr double kManyUnsure = 0.2;  ///< share of unsure points above which the orientation is called inconsistent
 

@@ -2,6 +2,7 @@
 
 #include "base/disjoint_sets.h"
 #include "base/vector.h"
+#include "cloud/constants.h"
 #include "cloud/neighbours.h"
 #include "orient/settings.h"
 #include "sum/direct_sum.h"
@@ -27,8 +28,6 @@ constexpr double kFewestVotes = 0.02;
 constexpr double kMostOf = 2.0 / 3;
 // Winding number of a closed part about a place inside it, at least: a street, half of it open, has about 1/2.
 constexpr double kInsideWinding = 0.25;
-// Sensors whose winding numbers are taken, to bound the time: more are along a path, and every so-manieth tells.
-constexpr std::size_t kMostSensors = 32;
 // Cosine of two adjacent normals from which the side of one follows from the other: across gaps it is by chance.
 constexpr double kConsistent = 0.8;
 // Cosines a and -b under which one place sees two points with normals at that angle multiply to sin^2 of half of it at most: where they
@@ -317,11 +316,11 @@ class Following {
     return true;
   }
 
-  // Share of the sensors that stand inside closed parts.
+  // Share of the sensors that stand inside closed parts. Of many, which are along a path, every so-manieth tells.
   [[nodiscard]] double share_of_sensors_inside() const {
     if (hints_.sensors.empty()) return 0;
     std::vector<Vec3> some;
-    const std::size_t step = (hints_.sensors.size() + kMostSensors - 1) / kMostSensors;
+    const std::size_t step = (hints_.sensors.size() + kFewPlaces - 1) / kFewPlaces;
     for (std::size_t s = 0; s < hints_.sensors.size(); s += step) some.push_back(hints_.sensors[s]);
     double inside = 0;
     for (const double w : winding_at(some)) inside += w >= kInsideWinding ? 1 : 0;

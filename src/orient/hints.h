@@ -47,7 +47,7 @@ struct HintEffect {
 /// together with it by a few pairs of points only, as in a crevice, is turned by itself. Closed parts have one side: they are turned by
 /// `seen_from_inside` and by sensors inside them, where the winding number of `eta` is 1/4 and more (outside it is 0, however near or far),
 /// or, if the sensor of each point is known, by two thirds of the votes. `near`: Neighbours::of_all(k), or empty: patches have no pieces;
-/// `spacing`: of the points, for the winding number. O(N log(sensors) + N k), and O(N) for each of at most 32 sensors. Throws Cancelled.
+/// `spacing`: of the points, for the winding number. O(N log(sensors) + N k), and O(N) for each of at most 500 sensors. Throws Cancelled.
 [[nodiscard]] HintEffect follow_hints(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near, double spacing,
                                       const Patches& patches, const Hints& hints, const SidedPoints& sided,
                                       const std::atomic<bool>* cancel = nullptr);

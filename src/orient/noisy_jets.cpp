@@ -2,6 +2,7 @@
 
 #include "cloud/constants.h"
 #include "cloud/quadratic_patch.h"
+#include "cloud/spacing.h"
 #include "cpu/parallel.h"
 
 #include <algorithm>
@@ -16,14 +17,12 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kBlock = parallel::kSmallBlock;  // points among which fits are shared
-constexpr std::size_t kMost = 2000;  // points in a fit; of more, evenly picked ones: bounds the work where many lie close together
-constexpr double kNarrowest = 4.2;   // first reach over sqrt(s h): 3.6 leaves 5 % more of the error, 4.8 blurs detail
+constexpr std::size_t kMost = 2000;             // points in a fit: wider ones gain nothing; of more, evenly picked ones, to bound the work
+constexpr double kNarrowest = 4.2;              // first reach over sqrt(s h): 3.6 leaves 5 % more of the error, 4.8 blurs detail
 constexpr double kWider = std::numbers::sqrt2;  // from one reach to the next: twice the area
-constexpr int kReaches = 4;                     // as far as 12 sqrt(s h)
 constexpr double kNormalWeight = 0.3;           // the normals are those of a smooth field already: less leaves noise, more blurs
 constexpr double kOpposed = 0.05;               // share of points that face the other way from which a fit has another wall too close
 constexpr double kShared = 0.25;                // of the reach: how far a fit serves other points
-constexpr std::size_t kEvery = 16;              // of the points of a block, one tells of the noise there
 constexpr double kNoiseReach = 3;               // spacings, of the fits that do: 4 takes detail for noise
 
 struct Fit {
@@ -40,10 +39,11 @@ class Fitter {
   [[nodiscard]] double noise() const { return noise_; }
   [[nodiscard]] double first_reach() const { return kNarrowest * std::sqrt(noise_ * spacing_); }
 
-  // From now on, fits with the noise of points [begin, end) where it is less than the cloud's: what is more may be detail.
+  // From now on, fits with the noise of points [begin, end) where it is less than the cloud's: what is more may be detail. One of as many
+  // points as are near one tells.
   void follow_noise(std::size_t begin, std::size_t end) {
     scatter_.clear();
-    for (std::size_t i = begin; i < end; i += kEvery) {
+    for (std::size_t i = begin; i < end; i += kSpacingNeighbours) {
       const double reach = kNoiseReach * spacing_;
       if (!gather(i, to_eigen(normals_[i]), reach) || members_.empty()) continue;
       const double found = residual(fit_quadratic_patch(members_, 0, reach / 2, 0), members_);
@@ -55,14 +55,14 @@ class Fitter {
     noise_ = std::min(*middle, noise_);
   }
 
-  // The widest fit at point i whose normal agrees with those of the narrower ones.
+  // The widest fit at point i whose normal agrees with those of the narrower ones; none where there is no noise.
   Fit widest(std::size_t i) {
     const Vector3d normal = to_eigen(normals_[i]);
     Vector3d axis = normal;
     Fit best;
     narrower_.clear();
-    double reach = first_reach();
-    for (int k = 0; k < kReaches; ++k, reach *= kWider) {
+    index_.clear();
+    for (double reach = first_reach(); reach > 0 && index_.size() < std::min(kMost, points_.size()); reach *= kWider) {
       if (!gather(i, axis, reach)) break;
       if (members_.size() <= kQuadraticTerms) continue;
       const QuadraticPatch patch = fit_quadratic_patch(members_, 0, reach / 2, kNormalWeight);

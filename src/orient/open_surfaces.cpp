@@ -3,6 +3,7 @@
 #include "base/disjoint_sets.h"
 #include "base/median.h"
 #include "base/vector.h"
+#include "cloud/constants.h"
 #include "cloud/sites.h"
 #include "cpu/parallel.h"
 #include "orient/certificate.h"
@@ -23,14 +24,12 @@ namespace {
 
 using vector::dot;
 
-// Scales.
 constexpr double kNoiseScale = 2;  // standard deviations of the noise between sites, at least
-constexpr int kScales = 3;         // that are tried
 // Site distances that are far: longer edges cross gaps, and where sides do not agree a field so wide sees what is around; wider ones turn
 // the rims of small surfaces.
 constexpr double kFar = 4;
 // Graph.
-constexpr std::size_t kAdjacent = 10;  // nearest sites that a site is connected with
+constexpr std::size_t kAdjacent = 10;  // nearest sites that a site is connected with: 12 lead from a thin wall to the next under noise
 constexpr double kDecay = 0.3;         // of the weight with the squared length in site distances
 constexpr double kLeastWeight = 0.02;  // of a site whose surroundings are a ball: it still follows its neighbours
 // Hypothesis.
@@ -38,17 +37,14 @@ constexpr int kTurns = 3;           // rounds of the winding gradient
 constexpr double kTurnWidth = 2;    // site spacings: wider than the grooves that the sampling cannot resolve
 constexpr double kAgreed = 0.5;     // of the jump that a side has to show: less is more against it than for it
 constexpr double kHidden = 0.25;    // of the jump, below which the direction is that from afar; rims of open surfaces show 0.4 and more
-constexpr double kAccuracy = 1e-2;  // of the sums that tell whether a part encloses something
 constexpr double kFarBetter = 0.5;  // of the jump defect as given, up to which a hypothesis is taken where unrest alone does not decide
 // Verdict.
 constexpr double kUnrest = 0.08;      // mean of a part that is open: closed ones have up to 0.06, open ones 0.1 to 0.3
 constexpr double kUnrestNoisy = 0.2;  // the same where noise hides thin walls, whose field is open in places
 constexpr double kNoJump = 0.6;       // mean jump defect of a part whose sides change from site to site, or of two walls
 constexpr double kNoJumpNoisy = 0.8;  // the same under noise
-constexpr double kOutside = 0.55;     // enclosure from which a part has an outside; a plane has 0, half a sphere 0.6, a sphere 1
 constexpr double kOneWay = 0.5;       // length of the mean normal of a site and those around it whose points have one side
 constexpr double kEncloses = 0.7;     // enclosure under noise that no bowl up to a half sphere has, so that the part is a closed one
-constexpr double kLevel = 1e-6;       // part of the mean normal that counts as none
 // Mean jump defect of an open surface up to which its sides agree: 1 where none do.
 constexpr double kSidesAgree = 0.45;
 constexpr std::size_t kRing = 7;  // sites that a side is common to: one and those around it, six in the densest packing
@@ -130,25 +126,23 @@ class Search {
       morton.push_back(finest_.set.morton()[s]);
       eta.push_back(vector::scale(normals[s], finest_.side(s) * finest_.side(s)));
     }
-    FastSum field(points, morton, Widths(kBetweenSites * finest_.set.spacing()), sum_plan(kAccuracy, points.size()), cancel_);
+    FastSum field(points, morton, Widths(kBetweenSites * finest_.set.spacing()), sum_plan(kContinuedAccuracy, points.size()), cancel_);
     double sum = 0;
     for (const double w : field.winding(eta)) sum += w;
     return 2 * sum / static_cast<double>(points.size());
   }
 
-  // Normals of all points from the signs that neighbours agree on: the sides of every scale, the directions of the finest, so that they
+  // Normals of all points from the signs that neighbours agree on: the sides of two scales, the directions of the finest, so that they
   // differ in sides only.
   [[nodiscard]] std::vector<std::vector<Vec3>> hypotheses() const {
     std::vector<std::vector<Vec3>> all{by_agreement(finest_, edges_)};
-    Sites sites = coarser_than(finest_);
-    while (static_cast<int>(all.size()) < kScales && sites.size() >= kFewestSites) {
-      std::vector<Vec3> normals = by_agreement(sites, edges_of(sites));
-      for (std::size_t i = 0; i < normals.size(); ++i) {
-        normals[i] = vector::scale(all.front()[i], dot(all.front()[i], normals[i]) < 0 ? -1 : 1);
-      }
-      all.push_back(std::move(normals));
-      sites = coarser_than(sites);
+    const Sites coarser = place_sites(set_, std::max(kFirstDistance * set_.spacing(), 2 * finest_.distance));
+    if (coarser.size() < kFewestSites) return all;
+    std::vector<Vec3> normals = by_agreement(coarser, edges_of(coarser));
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+      normals[i] = vector::scale(all.front()[i], dot(all.front()[i], normals[i]) < 0 ? -1 : 1);
     }
+    all.push_back(std::move(normals));
     return all;
   }
 
@@ -166,10 +160,6 @@ class Search {
     return normals;
   }
 
-  [[nodiscard]] Sites coarser_than(const Sites& sites) const {
-    return place_sites(set_, std::max(kFirstDistance * set_.spacing(), 2 * sites.distance));
-  }
-
   static double reach_of(const Sites& sites, std::uint32_t a, std::uint32_t b) {
     return sites.distance > 0 ? sites.distance : (sites.spacing()[a] + sites.spacing()[b]) / 2;
   }
@@ -185,7 +175,7 @@ class Search {
     return {a, b, flat * std::exp(-kDecay * squared / (reach * reach)) * mirrored};
   }
 
-  // Every pair of near sites once.
+  // Every pair of near sites once, from the nearest sites of each.
   static std::vector<SignEdge> edges_of(const Sites& sites) {
     const std::size_t count = sites.size();
     const std::vector<std::uint32_t>& near = sites.set.near();
@@ -236,11 +226,11 @@ class Search {
   std::vector<double> reach_;                        // half the side of a square of as many sites as the part has
 };
 
-// By the first axis from z to x that the sum of the normals is not level to.
+// By the first axis from z to x that the sum of the normals is not level to, as far as a float tells.
 bool faces_down(const Vec3& sum) {
   const double size = std::max({std::abs(sum[0]), std::abs(sum[1]), std::abs(sum[2])});
   for (const std::size_t axis : {std::size_t{2}, std::size_t{1}, std::size_t{0}}) {
-    if (std::abs(sum[axis]) > kLevel * size) return sum[axis] < 0;
+    if (std::abs(sum[axis]) > std::numeric_limits<float>::epsilon() * size) return sum[axis] < 0;
   }
   return false;
 }
@@ -396,7 +386,7 @@ OpenSurfaces choose(const Search& search, const std::vector<std::vector<Vec3>>& 
     const std::uint32_t p = search.part_of_point(i);
     if (verdict.is_open[p] == 0) continue;
     const double enclosure = verdict.enclosure[p];
-    const bool decided = std::abs(enclosure) > kOutside;
+    const bool decided = std::abs(enclosure) > kUndecided;
     if (decided ? enclosure < 0 : faces_down(sum[p])) normals[i] = vector::scale(normals[i], -1);
     found.certainty[i] = decided ? static_cast<float>(std::min(1.0, std::abs(enclosure))) : kUndecided;
   }

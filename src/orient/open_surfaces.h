@@ -37,21 +37,21 @@ struct OpenSurfaces {
 /// surface it is 0 or 1, beside an open one it is not (Certificate::unrest). So every connected part of the cloud is tested, and where its
 /// unrest is above 0.08 or its jump defect above 0.6 (0.8 under noise), and its points do not lie on two walls close together
 /// (on_two_walls()), it is looked at without the closed parts and other hypotheses are tried, from the finest scale on which
-/// the samples are a surface (scan lines are one only across their gaps) and two coarser ones:
+/// the samples are a surface (scan lines are one only across their gaps) and one with sites twice as far apart:
 ///   1. sites an even distance apart, with the planes of their surroundings (place_sites());
 ///   2. signs by agreement of neighbours (agree_on_signs()), weights w_ij = f_i f_j exp(-0.3 |d|^2 / r^2) (n_i . n_j - 2 (n_i . e)(n_j .
 ///   e)),
 ///      d = p_j - p_i, e = d / |d|, r the distance of the sites, f = 1 - flatness: two normals agree if one is the mirror image of the
 ///      other across the plane between the points, as on every arc (Xie, Wang, Hua, Qin, Kaufman, "Piecewise C1 continuous surface
 ///      reconstruction of noisy point clouds via local implicit quadric regression", IEEE Visualization 2003);
-///   3. three times the direction of the winding gradient of what came out, two site spacings wide, which fills grooves narrower than the
-///      sampling and turns single sites;
+///   3. the direction of the winding gradient of what came out, four site spacings wide, which fills grooves narrower than the sampling
+///      and turns single sites;
 ///   4. the sides of each scale, with the directions of the finest: so that only sides differ.
 /// The hypothesis with the least mean Certificate::jump_defect is taken, of equal ones the finest. Where the defect of a site is above
 /// three quarters, in a groove narrower than the sampling for instance, the direction is that of a field four site spacings wide, which
 /// sees what is around. Above a half the side of a point is not certified in full. The outside of a part is the side on which the mean of w
 /// at the part, of its own field, is positive: e / 2, with e = 1 on a closed surface, 0.62 on half a sphere, 0 on a plane. Where |e| is
-/// below 0.55 either side could be it, and the one that faces up (+z; if the part is level, +y, then +x) is taken. Under noise a part with
+/// below 1/2 either side could be it, and the one that faces up (+z; if the part is level, +y, then +x) is taken. Under noise a part with
 /// |e| above 0.7 is closed: noise makes one wall of two, and what is left encloses nearly everything. Where it is
 /// neither at rest nor shown to be open, its sides are those of the best hypothesis where the normals of a site and those around it have
 /// one side, if the mean defect of the hypothesis is less than that of the solution. Where the solution stays as it is, J = max(0, jump of

@@ -15,14 +15,12 @@ namespace {
 
 // Share of the points whose planes are aside of the field's normals: slices have 1.1 to 27 %.
 constexpr double kFewAside = 0.01;
-// Nearest points of a plane, itself the first, by whose breadth a curve is no facet: fewer follow chance, more the bend of a ring.
-constexpr std::size_t kAlong = 4;
 // Median breadth of those on curves: rings of a dozen points have 0.31, slices 0.05 to 0.3, facets 0.40 to 0.49.
 constexpr double kCurveBreadth = 0.35;
 
 struct Found {
   Vec3 normal{0, 0, 0};
-  double breadth = 0;  // of the kAlong nearest points of the plane
+  double breadth = 0;  // of its nearest points, one more than determine it: more follow the bend of a ring
 };
 
 Found find_at(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing, double scatter,
@@ -30,7 +28,7 @@ Found find_at(const std::vector<Vec3>& points, const std::vector<std::uint32_t>&
   ExactPlane plane = find_exact_plane(points, index, spacing, &towards);
   if (plane.points.empty() && scatter > 0) plane = find_scattered_plane(points, index, spacing, scatter, towards);
   if (plane.points.empty()) return {};
-  return {plane.normal, fit_plane(points, plane.points.data(), kAlong).breadth};
+  return {plane.normal, fit_plane(points, plane.points.data(), kPlaneTerms + 1).breadth};
 }
 
 // Slices, and scan lines denser along than across, have planes of their own, across the surface. Then the planes that are aside of the

@@ -11,11 +11,6 @@
 #include <utility>
 
 namespace g3r {
-namespace {
-
-constexpr double kMostArea = 3;  // of the areas handed in, and its inverse the least
-
-}  // namespace
 
 Widths local_widths(const KernelWidth& width, const Settings& settings, const std::vector<double>& spacing) {
   if (spacing.empty()) return Widths(width.typical());
@@ -33,7 +28,7 @@ void gradient_to_areas(FastSum& sum, const std::vector<double>& areas, std::vect
     for (double& c : gradient[i]) c *= scale;
   });
   const double winding = median(sum.winding(gradient));
-  const double factor = winding > 0 ? std::clamp(0.5 / winding, 1 / kMostArea, kMostArea) : 1;
+  const double factor = winding > 0 ? 0.5 / winding : 1;
   parallel::for_all(gradient.size(), [&](std::size_t i) {
     for (double& c : gradient[i]) c *= factor;
   });

@@ -1,6 +1,7 @@
 #include "orient/settings.h"
 
 #include "base/whole_bytes.h"
+#include "cloud/sites.h"
 #include "orient/open_surfaces.h"
 
 #include <g3r/error.h>
@@ -8,13 +9,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 #include <sstream>
 
 namespace g3r {
 namespace {
 
 // The default: energy form. Widths in spacings h.
-constexpr double kEpsilon = 0.4;          // of least squares too; smaller converges slower, larger blurs thin walls
 constexpr double kCoarsestEpsilon = 0.5;  // without a start: converges faster, finds more sides
 // Weights l of the winding number, in h^3: S eta and l W^T W eta keep their proportion for any number of points.
 constexpr double kWindingWeight = 250;  // from eta = 0; larger converges slower, 0 loses nested shells
@@ -23,14 +24,11 @@ constexpr double kContinuedWindingWeight = 30;
 constexpr double kPolishWindingWeight = 70;  // of clean points and little noise; more costs sides, less costs narrow gaps and smooth shapes
 constexpr double kTolerance =
     2.5e-3;  // of further steps and of least squares too; slats and spokes need this residual; smooth shapes get there in half the steps
-constexpr double kAcceptedResidual = 2e-2;  // from here on normals change little
-constexpr double kAcceptedContinued = 0.1;  // after a coarse start; random points on spheres end at 0.05, their normals are right to 1e-4
 constexpr const char* kEnergySchedule = "45 cg";
-constexpr double kStartTolerance = 8e-3;  // of a coarse solution that is only a start
-// After a coarse start smooth shapes are there in 2 to 10 steps. More are right for thin walls and narrow gaps only: on open surfaces, of
-// which the equations are not true, and among outliers, some of which are always left, they fit what is wrong.
-constexpr Steps kContinued{10, StepKind::kConjugateGradient};
-constexpr double kContinuedTolerance = 1.5e-2;
+constexpr double kAcceptedResidual = 0.1;  // random points on spheres end at 0.05 after a coarse start, with normals right to 1e-4
+// Steps in which what is known reaches the far sides: fewer leave those undecided. More fit what is wrong with the equations: noise, above
+// all in the polish, and after a coarse start, where smooth shapes take 2 to 10, open surfaces and the outliers that are always left.
+constexpr int kFewSteps = 10;
 constexpr double kFewOutliers = 1e-2;  // of the points; clean clouds lose one point, very uneven ones 0.6 %
 // The default on noisy input, sigma in spacings h: the field must not see single points. Kernels of a given number of sigma hide the
 // scatter of points, and blur walls as thin as that; below a spacing fewer points share the scatter, and walls matter more. So the width
@@ -38,28 +36,20 @@ constexpr double kFewOutliers = 1e-2;  // of the points; clean clouds lose one p
 constexpr double kNoisyWidth = 5;  // A, that many sigma in the end: more blurs walls, less turns shells in cavities
 // Raw solutions fit the noise with every step, and the more noise there is the sooner: h / sigma times this many steps.
 constexpr double kStepsPerNoise = 7;
-constexpr double kFewestNoisySteps = 10;  // fewer leave far sides undecided
-// From fewer points, a start under more noise than this has lost the walls: half of the sides of 95,000 points on walls of 3 h. In h.
-constexpr double kStartsUnderNoise = 0.35;
 // Noise turns the normal of a patch of side s by about sigma h / s^2: widths in proportion to sqrt(sigma h) leave one accuracy. Those in
 // proportion to sigma hide the scatter, without which shells in cavities turn. Between the two, with this power of sigma / h:
 constexpr double kNoisyPolishPower = 0.6;
 constexpr double kNoisyPolishEpsilon = 1.95;  // h; 1.8 and the power 1/2 leave more sides of thin walls right, and turn shells
 constexpr double kNoisyPolishWidth = 2.4;     // h
-constexpr int kNoisyPolishSteps = 9;
-constexpr double kWideEpsilon = 1.5;    // h; from here on clusters pay, and an epsilon that is asked for is taken to mean noise
-constexpr double kNoisyDamping = 0.28;  // 1/h: the self term of a flat patch; without it the polish turns shells in cavities
-// W eta = 1/2 is wrong at points off the surface, and the more so the farther off they are: the polish's weight falls with
-// (1 + this s^2)^3. The solve stops so early that the fall of its weight would change nothing.
-constexpr double kWeightFall = 0.28;
+// The single layer at the middle of a flat disk of area h^2: kernels this wide leave out most of the term of a point and itself, and
+// without it the polish turns shells in cavities.
+const double kFlatPatch = std::numbers::inv_sqrtpi / 2;  // 1/h
 // Of the sums. Solves from 0 amplify errors with every step; with a start kContinuedAccuracy does.
 constexpr double kAccuracy = 1e-2;
 // The default for least squares over the harmonics.
 constexpr double kGreenConstantWeight = 2;  // the row u = 1 alone distinguishes inside from outside
 constexpr const char* kGreenSchedule = "20 cg";
-// The polish: narrower than the solve and the refinement it starts from.
-constexpr double kPolishEpsilon = 0.2;
-constexpr double kPolishWidth = 0.3;
+// The polish is one more level on the same points.
 constexpr int kPolishSteps = 5;  // narrow gaps want more, smooth shapes fewer
 // The paper preset.
 constexpr double kPaperLeafFactor = 0.8;
@@ -118,14 +108,17 @@ void follow_noise(double noise, const Options& options, std::size_t points, Sett
   }
   s.polish_epsilon = {s.polish_epsilon.points, kNoisyPolishEpsilon * patch, 1 - kNoisyPolishPower};
   s.polish_width = {s.polish_width.points, kNoisyPolishWidth * patch, 1 - kNoisyPolishPower};
-  if (s.polish_steps > 0) s.polish_steps = kNoisyPolishSteps;
-  s.polish_damping = kNoisyDamping / s.spacing;
-  s.polish_winding_weight *= cube(1 / (1 + kWeightFall * noise * noise));
+  if (s.polish_steps > 0) s.polish_steps = kFewSteps;
+  s.polish_damping = kFlatPatch / s.spacing;
+  // W eta = 1/2 is wrong at points off the surface, and the more so the farther off they are: in the polish the length whose cube its
+  // weight is falls from h to that over hypot(1, sigma / h). The solve stops so early that less weight would change nothing.
+  s.polish_winding_weight *= cube(1 / std::hypot(noise, 1));
   s.unsure_of_noise = noise;  // a noise of one h makes nearly all unsure
-  if (s.epsilon.typical() > kWideEpsilon * s.spacing) s.cluster_side = s.epsilon.typical();
-  if (noise > kStartsUnderNoise) s.coarse_to_fine = false;
+  if (s.epsilon.typical() > kFirstDistance * s.spacing) s.cluster_side = s.epsilon.typical();
+  // A start from fewer points has lost the walls where noise asks for wider kernels: half of the sides of 95,000 points on walls of 3 h.
+  if (noise > noise_of_clean_widths()) s.coarse_to_fine = false;
   if (options.schedule.empty() && !starts_coarse(s, points)) {
-    const double steps = std::clamp(kStepsPerNoise / noise, kFewestNoisySteps, static_cast<double>(s.schedule.front().count));
+    const double steps = std::clamp(kStepsPerNoise / noise, static_cast<double>(kFewSteps), static_cast<double>(s.schedule.front().count));
     s.schedule_text = std::to_string(static_cast<int>(steps)) + " cg";
     s.schedule = parse_schedule(s.schedule_text);
     if (options.tolerance < 0) s.tolerance = 0;
@@ -149,6 +142,8 @@ double paper_epsilon(const CanonicalCloud& cloud) {
   }
   return kPaperLeafFactor * std::ldexp(2.0, -deepest);
 }
+
+double noise_of_clean_widths() { return hidden_noise(kRefinementWidth); }
 
 Settings choose_settings(const Options& options, const CanonicalCloud& cloud, double spacing, double noise, std::size_t outliers) {
   const bool paper = options.preset == Preset::kPaper;
@@ -181,8 +176,8 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   if (!green && options.epsilon.unit == Length::Unit::kAuto) s.coarsest_epsilon.points = kCoarsestEpsilon * spacing;
   s.refinement_width.points = paper ? 0 : kRefinementWidth * spacing;
   s.polish_steps = paper || contains(s.without, Step::kPolish) ? 0 : kPolishSteps;
-  s.polish_epsilon.points = std::min(s.epsilon.points, kPolishEpsilon * spacing);
-  s.polish_width.points = kPolishWidth * spacing;
+  s.polish_epsilon.points = std::min(s.epsilon.points, kEpsilon / kLevelRatio * spacing);
+  s.polish_width.points = kRefinementWidth / kLevelRatio * spacing;
   s.polish_winding_weight = kPolishWindingWeight * cube(spacing);
 
   require(options.solver != Solver::kDense || green, "the dense solver belongs to the method green");
@@ -193,16 +188,16 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   s.schedule = parse_schedule(s.schedule_text);
   s.coarse_to_fine = !paper && !green && options.schedule.empty() && !contains(s.without, Step::kCoarseStart);
   const bool among_outliers = static_cast<double>(outliers) > kFewOutliers * static_cast<double>(cloud.size());
-  s.continued_schedule = {kContinued};
+  s.continued_schedule = {{kFewSteps, StepKind::kConjugateGradient}};
   if (!among_outliers && !contains(s.without, Step::kMoreSteps)) s.doubtful_schedule = {kMoreSteps};
   s.tolerance = options.tolerance >= 0 ? options.tolerance : paper ? 0 : kTolerance;
-  s.accepted_residual = options.tolerance >= 0           ? options.tolerance
-                        : starts_coarse(s, cloud.size()) ? kAcceptedContinued
-                                                         : std::max(s.tolerance, kAcceptedResidual);
-  s.continued_tolerance = options.tolerance >= 0 ? options.tolerance : kContinuedTolerance;
+  s.accepted_residual = options.tolerance >= 0 ? options.tolerance : kAcceptedResidual;
+  // Starts, and what starts from them, are no better than their sums.
+  s.continued_tolerance = options.tolerance >= 0 ? options.tolerance : kContinuedAccuracy;
   s.doubtful_tolerance = options.tolerance >= 0 ? options.tolerance : kTolerance;
-  s.start_tolerance = std::max(s.tolerance, kStartTolerance);
-  const bool wide = s.epsilon.points > kWideEpsilon * spacing && options.noise.unit == Length::Unit::kAuto;
+  s.start_tolerance = std::max(s.tolerance, kAccuracy);
+  // An epsilon as wide as a scale of fewer points, asked for, is taken to mean noise.
+  const bool wide = s.epsilon.points > kFirstDistance * spacing && options.noise.unit == Length::Unit::kAuto;
   const double scatter = paper || green ? 0 : wide ? hidden_noise(s.epsilon.points / spacing) : noise / spacing;
   if (scatter > 0) follow_noise(scatter, options, cloud.size(), s);
   const bool light = starts_coarse(s, cloud.size()) || among_outliers;
@@ -227,19 +222,20 @@ std::size_t planned_memory(const Settings& settings, std::size_t given, std::siz
   constexpr double kFilled = 0.7;         // as many as a maximal sample of points so far apart has, in squares of that side
   const std::size_t harmonics = settings.method == Method::kGreen ? settings.harmonics.size() : 0;
   const auto unknowns = static_cast<double>(used);
-  const double solve = (kPerUnknown + 48 * static_cast<double>(harmonics)) * unknowns;
+  const double solve = (kPerUnknown + 2 * sizeof(Vec3) * static_cast<double>(harmonics)) * unknowns;
   const double apart = site_distance(used, settings.spacing, settings.noise) / settings.spacing;
   const double sites = apart > 0 ? kFilled * unknowns / (apart * apart) : unknowns;
   const double certificate = kBase * unknowns + kPerSite * sites;
   double bytes = kProgram + kPerGiven * static_cast<double>(given) + std::max(solve, certificate);
-  if (settings.dense) bytes += 9 * unknowns * unknowns * sizeof(double);
+  if (settings.dense) bytes += 3 * unknowns * 3 * unknowns * sizeof(double);
   return whole_bytes(bytes);
 }
 
 void require_memory(std::size_t planned_bytes, const Options& options) {
   if (options.max_memory == 0 || planned_bytes <= options.max_memory) return;
-  throw Unavailable("the plan needs " + std::to_string(planned_bytes >> 20) + " MiB, the limit is " +
-                    std::to_string(options.max_memory >> 20) + " MiB; raise the limit, thin the cloud, or lower the depth of the mesh");
+  throw Unavailable("the plan needs " + std::to_string(mebibytes(planned_bytes)) + " MiB, the limit is " +
+                    std::to_string(mebibytes(options.max_memory)) +
+                    " MiB; raise the limit, thin the cloud, or lower the depth of the mesh");
 }
 
 }  // namespace g3r

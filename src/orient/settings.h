@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -68,6 +69,9 @@ struct Settings {
 /// The noise of options in the cloud's frame, if it is given. Throws InvalidInput below 0.
 [[nodiscard]] std::optional<double> given_noise(const Length& noise, const CanonicalCloud& cloud, double spacing);
 
+/// The noise in spacings that asks for kernels no wider than those of clean clouds.
+[[nodiscard]] double noise_of_clean_widths();
+
 /// `noise`: given_noise() or estimate_noise(); `outliers`: points that find_outliers() took out. Throws InvalidInput for an option out of
 /// range, naming it and the range.
 [[nodiscard]] Settings choose_settings(const Options& options, const CanonicalCloud& cloud, double spacing, double noise,
@@ -76,8 +80,13 @@ struct Settings {
 /// The paper's mollifier for clean input: 0.8 x the leaf side of an octree with at most one point per leaf, at its deepest level.
 [[nodiscard]] double paper_epsilon(const CanonicalCloud& cloud);
 
-/// Width in spacings of the winding gradient that solves end with, and that finer ones start from: narrower is noisy, wider rounds edges.
-inline constexpr double kRefinementWidth = 0.55;
+/// Width in spacings of the kernels of a solve with a start, and of least squares: narrower converges slower, wider blurs thin walls.
+inline constexpr double kEpsilon = 0.4;
+/// Width in spacings of the winding gradient that solves end with, and that finer ones start from: the field of the solution seen through
+/// the kernels of the solve once more, whose variances add. Narrower is noisy, wider rounds edges.
+inline constexpr double kRefinementWidth = std::numbers::sqrt2 * kEpsilon;
+/// From the spacing and the widths of a level of the solve to those of the next finer one.
+inline constexpr double kLevelRatio = 2;
 /// Accuracy of the sums of a solve that has a start: it gives the same normals with 2e-2 as with 1e-3, while one from 0 amplifies errors.
 inline constexpr double kContinuedAccuracy = 2e-2;
 /// Points of a coarse cloud, at least: fewer cost sides on thin parts, lose small open ones, and save little.

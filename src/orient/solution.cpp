@@ -27,10 +27,6 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kFewestApart = 100;  // points that are solved for again without the open surfaces of their cloud
-// Mean winding number of the others at a part, of the 1/2 that its equations ask for, up to which it has been solved for by itself already:
-// more keeps the sides that others gave it.
-constexpr double kAlone = 0.02;
 constexpr double kMinMinority = 1e-3;  // share of the points against most of their facet, from which facets are solved for
 constexpr double kChance = 1.12;       // of the typical spacing, up to which noise alone may have scattered points so far apart
 constexpr int kFacetRounds = 3;        // points on no facet come right after those on one, and facets grow
@@ -292,11 +288,11 @@ double winding_of_others(const Problem& problem, const std::vector<std::uint32_t
   return sum / static_cast<double>(here.size());
 }
 
-// Solves for some points (ascending) without the others, unless these take no part in their equations. An open surface that is one by
-// itself too stays as it is. Returns false if what it took did not converge.
+// Solves for some points (ascending) without the others, unless the sums do not show that these take part in their equations. An open
+// surface that is one by itself too stays as it is. Returns false if what it took did not converge.
 bool solve_apart(const Problem& problem, const std::vector<std::uint32_t>& some, bool is_open, const Options& options, Stages& stages,
                  Stats& stats, Solution& solution) {
-  if (some.size() < kFewestApart || winding_of_others(problem, some, solution.eta, stages) <= kAlone) return true;
+  if (some.size() < kFewestSites || winding_of_others(problem, some, solution.eta, stages) <= kContinuedAccuracy) return true;
   const Solution apart = solve(part_of(problem, some, options), options, stages, stats);
   if (is_open && !apart.open_surfaces.part.empty()) return true;
   for (std::size_t k = 0; k < some.size(); ++k) {

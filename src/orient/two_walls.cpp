@@ -16,7 +16,6 @@ namespace {
 
 constexpr double kThin = 2;                // site spacings between two walls: the field distinguishes walls farther apart
 constexpr double kExact = 0.01;            // site spacings: deviations below are as good as none
-constexpr std::size_t kPoints = 24;        // of the heights that distinguish one wall from two
 constexpr std::size_t kNoisyPoints = 128;  // the same under noise: fewer follow the noise, more the shape
 constexpr double kExcess = -0.2;           // of the kurtosis of walls 1.35 standard deviations apart; rough ground has -0.1 at most
 constexpr double kSure = 3;                // standard errors that it is below 0
@@ -37,7 +36,7 @@ bool on_exact_walls(const PointSet& set, const Sites& sites, const std::vector<s
   const std::vector<Vec3>& points = set.points();
   const Vec3 steps = rounding_steps(points, set.spacing());
   std::vector<double> gain;
-  for_some(set, sites, members, kPoints, [&](std::uint32_t s, const std::vector<std::uint32_t>& index) {
+  for_some(set, sites, members, 2 * kPatchNeighbours, [&](std::uint32_t s, const std::vector<std::uint32_t>& index) {
     const double spacing = sites.spacing()[s];
     const double one = quadratic_residual(points, index.data(), index.size(), sites.axis[s], spacing);
     const TwoLayers two = fit_two_layers(points, index.data(), index.size(), sites.axis[s]);

@@ -3,6 +3,7 @@
 #include "base/median.h"
 #include "base/platform.h"
 #include "base/vector.h"
+#include "base/whole_bytes.h"
 #include "cpu/parallel.h"
 #include "field/oriented_cloud.h"
 #include "field/winding_sampler.h"
@@ -120,8 +121,8 @@ void choose_tiles(MeshFolder& folder) {
     if (folder.plan.worker_memory <= limit) return;
     const bool stuck = count > 64 && largest == before;
     if (count >= folder.cells.cells.size() || stuck) {
-      throw Unavailable("tiles of this mesh need " + std::to_string(folder.plan.worker_memory >> 20U) + " MiB, the limit of the plan is " +
-                        std::to_string(limit >> 20U) + " MiB; make a plan with a higher limit");
+      throw Unavailable("tiles of this mesh need " + std::to_string(mebibytes(folder.plan.worker_memory)) +
+                        " MiB, the limit of the plan is " + std::to_string(mebibytes(limit)) + " MiB; make a plan with a higher limit");
     }
     before = largest;
   }

@@ -1,6 +1,7 @@
 // Two readings of the inputs (extent, then sort), one scan of the sorted points, one solve of the thinned cloud.
 #include "base/platform.h"
 #include "base/stages.h"
+#include "base/whole_bytes.h"
 #include "cpu/parallel.h"
 #include "io/output_file.h"
 #include "io/point_stream.h"
@@ -191,8 +192,8 @@ std::size_t memory_limit(const TileOptions& options) {
 }
 
 [[noreturn]] void refuse_memory(std::size_t limit, std::uint64_t needed) {
-  throw Unavailable("tiles of this cloud need " + std::to_string(memory_for(needed) >> 20U) + " MiB, the limit is " +
-                    std::to_string(limit >> 20U) + " MiB; raise the limit, or thin the cloud");
+  throw Unavailable("tiles of this cloud need " + std::to_string(mebibytes(memory_for(needed))) + " MiB, the limit is " +
+                    std::to_string(mebibytes(limit)) + " MiB; raise the limit, or thin the cloud");
 }
 
 // The thinned cloud has as many points as are useful and the memory allows.
