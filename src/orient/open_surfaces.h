@@ -44,8 +44,8 @@ struct OpenSurfaces {
 ///      d = p_j - p_i, e = d / |d|, r the distance of the sites, f = 1 - flatness: two normals agree if one is the mirror image of the
 ///      other across the plane between the points, as on every arc (Xie, Wang, Hua, Qin, Kaufman, "Piecewise C1 continuous surface
 ///      reconstruction of noisy point clouds via local implicit quadric regression", IEEE Visualization 2003);
-///   3. the direction of the winding gradient of what came out, four site spacings wide, which fills grooves narrower than the sampling
-///      and turns single sites;
+///   3. three times the direction of the winding gradient of what came out, two site spacings wide, which fills grooves narrower than the
+///      sampling and turns single sites;
 ///   4. the sides of each scale, with the directions of the finest: so that only sides differ.
 /// The hypothesis with the least mean Certificate::jump_defect is taken, of equal ones the finest. Where the defect of a site is above
 /// three quarters, in a groove narrower than the sampling for instance, the direction is that of a field four site spacings wide, which
