@@ -18,10 +18,11 @@ using testing::cube_sample;
 using testing::OrientedSample;
 using testing::sphere_sample;
 
-std::vector<std::string> warnings_of(const OrientedSample& sample) {
+std::vector<std::string> warnings_of(const OrientedSample& sample, double noise = 0) {
   CanonicalCloud cloud;
   cloud.set = PointSet(sample.points);
   Stats stats;
+  stats.noise = noise;
   warn_of_sampling(cloud, sample.normals, stats);
   EXPECT_FALSE(stats.doubtful);
   return stats.warnings;
@@ -67,6 +68,13 @@ TEST(Findings, RoundedCoordinatesAreNamedWithTheirAxes) {
   EXPECT_TRUE(one_begins(warnings_of(rounded(sphere, 0.02, 0)), "rounded coordinates: along x, y, z they come in steps of about 0.02"));
   EXPECT_TRUE(one_begins(warnings_of(rounded(sphere, 0.02, 2)), "rounded coordinates: along z they come in steps of about 0.02"));
   EXPECT_TRUE(warnings_of(rounded(sphere, 0.001, 0)).empty());
+}
+
+// What the solve has smoothed over already needs no advice.
+TEST(Findings, RoundingThatCountsAsNoiseNeedsNoAdvice) {
+  const OrientedSample voxels = rounded(sphere_sample(6000, 1, 1), 0.02, 0);
+  EXPECT_NE(warnings_of(voxels, 0.001).front().find("smooth over them with a noise of 0.0058 or more"), std::string::npos);
+  EXPECT_NE(warnings_of(voxels, 0.006).front().find("spacings), which are smoothed over as noise of 0.006"), std::string::npos);
 }
 
 TEST(Findings, OrdinaryCloudsAreNotAccused) {

@@ -100,10 +100,12 @@ void warn_of_sampling(const CanonicalCloud& cloud, const std::vector<Vec3>& norm
     largest = std::max(largest, step);
   }
   if (axes.empty()) return;
+  const double deviation = cloud.frame.length_to_world(largest / std::sqrt(12.0));
   stats.warnings.push_back("rounded coordinates: along " + axes + " they come in steps of about " +
-                           short_number(cloud.frame.length_to_world(largest)) + " (" + short_number(largest / spacing) +
-                           " spacings), which makes terraces: export more digits, or smooth over them with a noise of " +
-                           short_number(cloud.frame.length_to_world(largest / std::sqrt(12.0))) + " or more");
+                           short_number(cloud.frame.length_to_world(largest)) + " (" + short_number(largest / spacing) + " spacings), " +
+                           (stats.noise >= deviation ? "which are smoothed over as noise of " + short_number(stats.noise)
+                                                     : "which makes terraces: export more digits, or smooth over them with a noise of " +
+                                                           short_number(deviation) + " or more"));
 }
 
 void warn_of_topology(const MeshCheck& check, Stats& stats) {
