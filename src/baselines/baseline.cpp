@@ -11,7 +11,7 @@ namespace g3r {
 namespace {
 
 // The width of PGR and AGR in spacings: with it -grad w of a flat patch is that of the published clamp at 0.75 spacings.
-constexpr double kEpsilon = 0.4;
+constexpr double kBaselineWidth = 0.4;
 // The damping of PGR, alpha - 1: the authors advise 0.05 to 1 from many points to few; this is better than both at 50,000 points.
 constexpr double kPgrDamping = 0.2;
 // The damping of AGR: the mean AE_p of five models at 5,000 points is 7.98e-2 (with 0.05), 5.10e-2 (0.2), 3.71e-2 (1), 4.41e-2 (5).
@@ -58,7 +58,7 @@ BaselineSettings choose_baseline(const Options& options, double given_epsilon, d
     s.epsilon = s.widths.narrowest;
     return s;
   }
-  s.epsilon = given_epsilon > 0 ? given_epsilon : kEpsilon * spacing;
+  s.epsilon = given_epsilon > 0 ? given_epsilon : kBaselineWidth * spacing;
   s.schedule = parse_schedule(options.schedule.empty() ? kSchedule : options.schedule);
   s.tolerance = options.tolerance >= 0 ? options.tolerance : kTolerance;
   return s;
