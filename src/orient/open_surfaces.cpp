@@ -24,7 +24,8 @@ namespace {
 
 using vector::dot;
 
-constexpr double kNoiseScale = 2;  // standard deviations of the noise between sites, at least
+constexpr std::size_t kScales = 3;  // that are tried: the rings of a spinning scanner and roofs need the coarsest
+constexpr double kNoiseScale = 2;   // standard deviations of the noise between sites, at least
 // Site distances that are far: longer edges cross gaps, and where sides do not agree a field so wide sees what is around; wider ones turn
 // the rims of small surfaces.
 constexpr double kFar = 4;
@@ -132,17 +133,19 @@ class Search {
     return 2 * sum / static_cast<double>(points.size());
   }
 
-  // Normals of all points from the signs that neighbours agree on: the sides of two scales, the directions of the finest, so that they
+  // Normals of all points from the signs that neighbours agree on: the sides of every scale, the directions of the finest, so that they
   // differ in sides only.
   [[nodiscard]] std::vector<std::vector<Vec3>> hypotheses() const {
     std::vector<std::vector<Vec3>> all{by_agreement(finest_, edges_)};
-    const Sites coarser = place_sites(set_, std::max(kFirstDistance * set_.spacing(), 2 * finest_.distance));
-    if (coarser.size() < kFewestSites) return all;
-    std::vector<Vec3> normals = by_agreement(coarser, edges_of(coarser));
-    for (std::size_t i = 0; i < normals.size(); ++i) {
-      normals[i] = vector::scale(all.front()[i], dot(all.front()[i], normals[i]) < 0 ? -1 : 1);
+    Sites sites = coarser_than(finest_);
+    while (all.size() < kScales && sites.size() >= kFewestSites) {
+      std::vector<Vec3> normals = by_agreement(sites, edges_of(sites));
+      for (std::size_t i = 0; i < normals.size(); ++i) {
+        normals[i] = vector::scale(all.front()[i], dot(all.front()[i], normals[i]) < 0 ? -1 : 1);
+      }
+      all.push_back(std::move(normals));
+      sites = coarser_than(sites);
     }
-    all.push_back(std::move(normals));
     return all;
   }
 
@@ -158,6 +161,10 @@ class Search {
   static std::vector<Vec3> areas_of(const Sites& sites, std::vector<Vec3> normals) {
     for (std::size_t s = 0; s < normals.size(); ++s) normals[s] = vector::scale(normals[s], sites.spacing()[s] * sites.spacing()[s]);
     return normals;
+  }
+
+  [[nodiscard]] Sites coarser_than(const Sites& sites) const {
+    return place_sites(set_, std::max(kFirstDistance * set_.spacing(), 2 * sites.distance));
   }
 
   static double reach_of(const Sites& sites, std::uint32_t a, std::uint32_t b) {
