@@ -37,11 +37,8 @@ class Traversal {
  public:
   Traversal(const Octree& targets, const Octree& sources, double opening, double reach)
       : targets_(targets), sources_(sources), opening_(opening), reach_(reach) {
-    for (const auto& [tree, to] : {std::pair{&targets, &target_centres_}, std::pair{&sources, &source_centres_}}) {
-      std::vector<Vec3>& centres = *to;
-      centres.resize(tree->nodes.size());
-      parallel::for_all(centres.size(), [&](std::size_t i) { centres[i] = tree->nodes[i].centre(); });
-    }
+    find_centres(targets, target_centres_);
+    find_centres(sources, source_centres_);
   }
 
   // Breadth first until the target side has enough subtrees; returns the open pairs grouped by target subtree.
@@ -84,6 +81,11 @@ class Traversal {
   }
 
  private:
+  static void find_centres(const Octree& tree, std::vector<Vec3>& centres) {
+    centres.resize(tree.nodes.size());
+    parallel::for_all(centres.size(), [&](std::size_t i) { centres[i] = tree.nodes[i].centre(); });
+  }
+
   // Decides a pair, or replaces it by smaller pairs. Returns whether it was replaced.
   bool open(const NodePair& pair, Found& found, std::vector<NodePair>& out) const {
     const OctreeNode& t = targets_.nodes[pair.target];
