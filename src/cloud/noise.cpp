@@ -46,9 +46,6 @@ constexpr double kLayerBias = 0.92;
 // A neighbourhood is no larger part of a cloud than one in so many points: larger ones follow its shape.
 constexpr std::size_t kSmallPart = 16;
 
-// 1 over the variance of what rounding to integers leaves, evenly between -1/2 and 1/2.
-constexpr double kRounding = 12;
-
 double share_of(std::size_t some, std::size_t all) { return static_cast<double>(some) / static_cast<double>(all); }
 
 double quantile(std::vector<double> values, double share) {
@@ -175,6 +172,13 @@ bool goes_on(const PointSet& set, const ExactPlane& plane, double scatter) {
   return share_of(static_cast<std::size_t>(held), index.size()) >= kOnPlanes;
 }
 
+// rounding_deviation() of these steps.
+double deviation_of(const Vec3& steps, double spacing) {
+  if (std::min({steps[0], steps[1], steps[2]}) == 0) return 0;
+  const double sigma = std::hypot(steps[0], steps[1], steps[2]) * std::sqrt(kRoundingVariance / 3);
+  return sigma > kLeast * spacing ? sigma : 0;
+}
+
 }  // namespace
 
 Vec3 rounding_steps(const std::vector<Vec3>& points, double spacing) {
@@ -196,21 +200,16 @@ Vec3 rounding_steps(const std::vector<Vec3>& points, double spacing) {
   return steps;
 }
 
-double rounding_deviation(const PointSet& set) {
-  const Vec3 steps = rounding_steps(set.points(), set.spacing());
-  if (std::min({steps[0], steps[1], steps[2]}) == 0) return 0;
-  const double sigma = std::hypot(steps[0], steps[1], steps[2]) / std::sqrt(3 * kRounding);
-  return sigma > kLeast * set.spacing() ? sigma : 0;
-}
+double rounding_deviation(const PointSet& set) { return deviation_of(rounding_steps(set.points(), set.spacing()), set.spacing()); }
 
 double rounding_noise(const PointSet& set) {
-  const double sigma = rounding_deviation(set);
-  if (sigma == 0) return 0;
   const Vec3 steps = rounding_steps(set.points(), set.spacing());
+  const double sigma = deviation_of(steps, set.spacing());
+  if (sigma == 0) return 0;
   std::vector<Vec3> cubes;
   for (const Vec3& p : set.points()) cubes.push_back({p[0] / steps[0], p[1] / steps[1], p[2] / steps[2]});
   const double scatter = Residuals(PointSet(std::move(cubes)), kPatchNeighbours).scatter(0.5);
-  return scatter > kOfNoise / std::sqrt(kRounding) ? sigma : 0;
+  return scatter > kOfNoise * std::sqrt(kRoundingVariance) ? sigma : 0;
 }
 
 double estimate_noise(const PointSet& set) {

@@ -9,6 +9,9 @@
 
 namespace g3r {
 
+/// Variance of what rounding to whole steps leaves, evenly between -1/2 and 1/2 of one: 1/12 squared steps.
+inline constexpr double kRoundingVariance = 1.0 / 12;
+
 /// Standard deviation of the points from their surface in each coordinate; 0 for a clean cloud.
 ///   - Noise lifts the residual of every neighbourhood; curvature, creases and thin parts only that of some. So the flattest 2 % decide. Of
 ///     quadratic height fields through 12 points noise sigma leaves residuals of a chi distribution with 6 degrees of freedom, times a

@@ -2,6 +2,7 @@
 
 #include "base/percent.h"
 #include "base/vector.h"
+#include "cloud/noise.h"
 #include "mesh/constants.h"
 #include "mesh/crossings.h"
 #include "mesh/lines.h"
@@ -100,7 +101,7 @@ void warn_of_sampling(const CanonicalCloud& cloud, const std::vector<Vec3>& norm
     largest = std::max(largest, step);
   }
   if (axes.empty()) return;
-  const double deviation = cloud.frame.length_to_world(largest / std::sqrt(12.0));
+  const double deviation = cloud.frame.length_to_world(largest * std::sqrt(kRoundingVariance));
   stats.warnings.push_back("rounded coordinates: along " + axes + " they come in steps of about " +
                            short_number(cloud.frame.length_to_world(largest)) + " (" + short_number(largest / spacing) + " spacings), " +
                            (stats.noise >= deviation ? "which are smoothed over as noise of " + short_number(stats.noise)
