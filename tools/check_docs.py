@@ -59,8 +59,8 @@ PRIVATE_NAME = re.compile("|".join(PRIVATE_NAMES), re.I)
 
 
 def pages():
-    """Files of the documentation. CHANGELOG.md is a record: its lines stay as they were written."""
-    named = ["README.md", "CONTRIBUTING.md", "SECURITY.md", "bench/README.md", "packaging/README.md"]
+    """Files of the documentation."""
+    named = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "bench/README.md", "packaging/README.md"]
     return [ROOT / name for name in named] + sorted((ROOT / "docs").rglob("*.md"))
 
 
