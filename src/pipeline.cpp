@@ -303,8 +303,8 @@ Attempt attempt(Problem problem, const PointsView& points, const Options& option
 
 // Thin walls and layers of scans that do not fit onto each other look alike from near. But few sides of walls are unsure when they are
 // solved for as what they are, of layers when they are solved for as noise.
-Attempt orient_with_best_noise(const PointsView& points, const Known& known, const Options& options, Stages& stages) {
-  Attempt best = attempt(prepare(points, known, options, stages), points, options, stages);
+Attempt orient_with_best_noise(const PointsView& points, Known known, const Options& options, Stages& stages) {
+  Attempt best = attempt(prepare(points, std::move(known), options, stages), points, options, stages);
   const double doubt = best.oriented.doubt;
   for (const OtherNoise& other : other_noises(best.problem, options, best.oriented)) {
     Attempt tried = attempt(with_noise(best.problem, other.noise, options), points, options, stages);
@@ -314,10 +314,10 @@ Attempt orient_with_best_noise(const PointsView& points, const Known& known, con
   return best;
 }
 
-Orientation orient_in_arena(const PointsView& points, const Known& known, const Options& options, Stages& stages,
+Orientation orient_in_arena(const PointsView& points, Known known, const Options& options, Stages& stages,
                             std::vector<std::uint8_t>* open) {
   require_sound(options.hints, points.count);
-  Attempt best = orient_with_best_noise(points, known, options, stages);
+  Attempt best = orient_with_best_noise(points, std::move(known), options, stages);
   Solution& solution = best.oriented.solution;
   std::vector<float>& confidence = best.oriented.confidence;
   Orientation out;
@@ -325,7 +325,7 @@ Orientation orient_in_arena(const PointsView& points, const Known& known, const 
   fit_noisy_surface(best.problem, stages, solution);
   replace_areas(best.problem, stages, solution);
   apply_hints(best.problem, options, solution, confidence, out.stats, stages.cancel());
-  if (known.wanted.empty()) {  // what surroundings and a part of a cloud look like says nothing of it
+  if (best.problem.known.wanted.empty()) {  // what surroundings and a part of a cloud look like says nothing of it
     warn_of_volume(best.problem, out.stats);
     warn_of_sampling(best.problem.cloud, solution.refinement.normals, out.stats);
   }
@@ -342,13 +342,13 @@ Orientation orient(const PointsView& points, const Options& options, const Monit
   return orient_from(points, {}, options, monitor);
 }
 
-Orientation orient_from(const PointsView& points, const Known& known, const Options& options, const Monitor& monitor,
+Orientation orient_from(const PointsView& points, Known known, const Options& options, const Monitor& monitor,
                         std::vector<std::uint8_t>* open) {
   Stages stages(monitor);
   return parallel::with_threads(options.threads, [&] {
     const gpu::Scope device(options.device, points.count);
     stages.time_device([&device] { return device.seconds(); });
-    Orientation out = orient_in_arena(points, known, options, stages, open);
+    Orientation out = orient_in_arena(points, std::move(known), options, stages, open);
     device.describe(out.stats);
     return out;
   });

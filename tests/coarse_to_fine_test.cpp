@@ -93,13 +93,12 @@ TEST(SolveCoarseToFine, KnowsWhatThinnedPointsStandFor) {
     relative.push_back(thinned ? 4 : 1);  // the square root of kEvery
   }
   const CanonicalCloud cloud = canonical_cloud(points);
-  Known known;
-  known.relative_spacing.resize(cloud.size());
-  for (std::size_t i = 0; i < points.size(); ++i) known.relative_spacing[cloud.point_of[i]] = relative[i];
+  std::vector<double> known(cloud.size());
+  for (std::size_t i = 0; i < points.size(); ++i) known[cloud.point_of[i]] = relative[i];
   const Monitor monitor;
   Stages stages(monitor);
   const Settings settings = choose_settings({}, cloud, cloud.set.spacing(), 0, 0);
-  const auto error_with = [&](const Known& what) {
+  const auto error_with = [&](const std::vector<double>& what) {
     const Solved found = solve_coarse_to_fine(cloud.points(), cloud.morton(), settings, stages, what);
     double sum = 0;  // of 1 - cos
     for (std::size_t i = 0; i < points.size(); ++i) {

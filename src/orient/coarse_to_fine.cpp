@@ -201,8 +201,9 @@ Level solve_level(const LevelCloud& cloud, const Settings& settings, double shar
 }  // namespace
 
 Solved solve_coarse_to_fine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
-                            Stages& stages, const Known& known) {
-  Level level = solve_level({points, morton, known.relative_spacing}, settings, 1, stages, known.gradient);
+                            Stages& stages, const std::vector<double>& relative_spacing,
+                            const std::vector<Vec3>& gradient) {
+  Level level = solve_level({points, morton, relative_spacing}, settings, 1, stages, gradient);
   stages.begin("refine");
   if (settings.refinement_width.typical() == 0) return {std::move(level.result), {}};
   Refinement refinement = refine_normals(*level.field, level.result.eta);

@@ -3,7 +3,6 @@
 
 #include "base/stages.h"
 #include "orient/settings.h"
-#include "orient/start.h"
 #include "solve/iterative_solver.h"
 #include "solve/refine.h"
 
@@ -28,12 +27,13 @@ struct Solved {
 /// winding number, which turns parts that are wrong as a whole; not where most points lie on open surfaces (find_open_surfaces()), of which
 /// the equations are not true. They are undone if a quarter more points are unsure then; not under noise, of which every step makes more of
 /// them unsure, right or wrong.
-/// `known`: of these points; its gradient takes the place of that winding gradient. All kernels of the finest level are as much wider where
-/// points are farther apart by its relative spacing, and the unknowns and equations there count as those of the points that they stand for
+/// `gradient`, `relative_spacing`: what is known of these points (Known), or empty. The gradient takes the place of that winding gradient.
+/// All kernels of the finest level are as much wider where points are farther apart by the relative spacing, and the unknowns and equations there count as those of the points that they stand for
 /// (EnergySystem): a sparse part weighs as much as a dense one of the same area. In kernels of one width single points of sparse parts are
 /// far apart, and their equations say little (docs/evidence/other_inputs.md).
 /// The returned residuals are those of the finest level. Begins the stage "refine" after the solve. Throws like solve_iteratively().
 [[nodiscard]] Solved solve_coarse_to_fine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton,
-                                          const Settings& settings, Stages& stages, const Known& known = {});
+                                          const Settings& settings, Stages& stages, const std::vector<double>& relative_spacing = {},
+                                          const std::vector<Vec3>& gradient = {});
 
 }  // namespace g3r

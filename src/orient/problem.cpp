@@ -34,7 +34,7 @@ std::vector<T> in_canonical_order(const CanonicalCloud& cloud, const std::vector
 
 }  // namespace
 
-Problem prepare(const PointsView& points, const Known& known, const Options& options, Stages& stages) {
+Problem prepare(const PointsView& points, Known known, const Options& options, Stages& stages) {
   Problem problem;
   stages.begin("build");
   problem.cloud = canonical_cloud(points);
@@ -56,8 +56,9 @@ Problem prepare(const PointsView& points, const Known& known, const Options& opt
     outliers_wanted = refit_frame(problem.cloud, problem.outliers);  // far ones may have hidden nearer ones
   }
   const PointSet& set = problem.cloud.set;
-  problem.known = {in_canonical_order(problem.cloud, known.gradient), in_canonical_order(problem.cloud, known.relative_spacing),
-                   in_canonical_order(problem.cloud, known.wanted)};
+  problem.known = {in_canonical_order(problem.cloud, std::exchange(known.gradient, {})),
+                   in_canonical_order(problem.cloud, std::exchange(known.relative_spacing, {})),
+                   in_canonical_order(problem.cloud, std::exchange(known.wanted, {}))};
   problem.spacing = typical_spacing(spacing_before_thinning(set.local_spacing(), problem.known.relative_spacing));
   if (const std::optional<double> given = known_noise(problem.spacing)) noise = given;
   problem.noise = noise ? *noise : estimate_noise(set);

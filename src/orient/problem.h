@@ -33,7 +33,7 @@ struct Problem {
 
 /// Canonical order, outliers, spacing, noise and settings of a cloud; `known`: in the order of `points`. Throws InvalidInput for a cloud or
 /// an option out of range, Cancelled. O(N log N).
-[[nodiscard]] Problem prepare(const PointsView& points, const Known& known, const Options& options, Stages& stages);
+[[nodiscard]] Problem prepare(const PointsView& points, Known known, const Options& options, Stages& stages);
 
 /// The same problem with this noise instead of the estimate.
 [[nodiscard]] Problem with_noise(const Problem& problem, double noise, const Options& options);

@@ -72,8 +72,8 @@ Solution solve_equations(const Problem& problem, const Options& options, Stages&
   const std::vector<Vec3>& points = problem.cloud.points();
   stages.begin("solve");
   if (!s.dense) {
-    const Known known{problem.known.gradient, relative_spacing(problem, options), {}};
-    Solved solved = solve_coarse_to_fine(points, problem.cloud.morton(), s, stages, known);
+    Solved solved =
+        solve_coarse_to_fine(points, problem.cloud.morton(), s, stages, relative_spacing(problem, options), problem.known.gradient);
     record(s, solved.result, stats);
     return {std::move(solved.result.eta), std::move(solved.refinement), {}};
   }

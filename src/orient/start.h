@@ -23,7 +23,7 @@ struct Known {
 
 /// orient(points, options, monitor) with what is known. `open`: unless null, becomes 1 for each point that lies on a surface without an
 /// inside, whose side is a choice of all of them together, and 0 for others. src/pipeline.cpp.
-[[nodiscard]] Orientation orient_from(const PointsView& points, const Known& known, const Options& options, const Monitor& monitor,
+[[nodiscard]] Orientation orient_from(const PointsView& points, Known known, const Options& options, const Monitor& monitor,
                                       std::vector<std::uint8_t>* open = nullptr);
 
 }  // namespace g3r

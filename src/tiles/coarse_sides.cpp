@@ -31,14 +31,14 @@ Thinned read_thinned(const std::string& folder, const Manifest& m) {
 
 std::vector<CoarseNormal> nearest_of(const Thinned& thinned, const TileCloud& cloud) {
   const Neighbours tree(thinned.points);
-  std::vector<CoarseNormal> nearest(cloud.records.size());
+  std::vector<CoarseNormal> nearest(cloud.points.size());
   parallel::for_blocks(nearest.size(), parallel::kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       double squared = HUGE_VAL;
       if (cloud.coarse[i] != kNotCoarse) {
-        nearest[i] = thinned.found[static_cast<std::size_t>(cloud.coarse[i])];
+        nearest[i] = thinned.found[cloud.coarse[i]];
       } else if (cloud.own[i] != 0) {
-        nearest[i] = thinned.found[tree.nearest(cloud.records[i].point, squared, 0)];
+        nearest[i] = thinned.found[tree.nearest(cloud.points[i], squared, 0)];
       }
     }
   });
@@ -51,9 +51,8 @@ std::vector<Vec3> gradient_of(const Thinned& thinned, const TileCloud& cloud, co
     for (std::size_t a = 0; a < 3; ++a) normals[i][a] = thinned.found[i].normal[a];
   }
   const OrientedCloud oriented = oriented_cloud(thinned.points, normals);
-  std::vector<Vec3> targets(cloud.records.size());
-  std::transform(cloud.records.begin(), cloud.records.end(), targets.begin(),
-                 [&](const Record& record) { return oriented.cloud.frame.to_unit(record.point); });
+  std::vector<Vec3> targets(cloud.points.size());
+  parallel::for_all(targets.size(), [&](std::size_t i) { targets[i] = oriented.cloud.frame.to_unit(cloud.points[i]); });
   const FastSum field(oriented.cloud.points(), oriented.cloud.morton(), Widths(kRefinementWidth * oriented.spacing),
                       sum_plan(kContinuedAccuracy, oriented.cloud.size()), cancel);
   return field.winding_gradient_at(oriented.eta, targets, cancel);

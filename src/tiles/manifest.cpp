@@ -4,6 +4,7 @@
 #include "io/output_file.h"
 #include "io/source.h"
 #include "tiles/records.h"
+#include "tiles/tile_cloud.h"
 #include "tiles/whole_number.h"
 
 #include <g3r/io.h>
@@ -67,7 +68,7 @@ Manifest parsed(const json& from) {
 bool is_sound(const Manifest& m) {
   if (m.points > kMostPoints || m.non_finite > m.points || m.level < 0 || m.level > kGridBits || m.tiles.empty()) return false;
   if (m.stride == 0 || (m.stride & (m.stride - 1)) != 0 || m.stride > m.sorted() || !std::isfinite(m.frame.scale)) return false;
-  if (m.coarse_points != (m.sorted() + m.stride - 1) / m.stride) return false;
+  if (m.coarse_points != (m.sorted() + m.stride - 1) / m.stride || m.coarse_points >= kNotCoarse) return false;
   std::uint64_t own = 0;
   std::uint64_t cell = 0;
   for (const Tile& tile : m.tiles) {

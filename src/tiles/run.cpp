@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 namespace g3r::tiles {
 namespace {
@@ -37,28 +38,37 @@ std::map<std::uint32_t, double> signs_of_parts(const TileCloud& cloud, const std
   return votes;
 }
 
-Orientation solve(const TileCloud& cloud, const Known& known, const TileWorker& worker, const Monitor& monitor) {
-  std::vector<Vec3> points(cloud.records.size());
-  for (std::size_t i = 0; i < points.size(); ++i) points[i] = cloud.records[i].point;
+Orientation solve(const TileCloud& cloud, Known known, const TileWorker& worker, const Monitor& monitor) {
   Options options;
   options.threads = worker.threads;
   options.device = worker.device;
   options.without = kStepNames[static_cast<std::size_t>(Step::kAreas)];  // of which a tile says nothing
-  return orient_from(points, known, options, monitor);
+  return orient_from(cloud.points, std::move(known), options, monitor);
+}
+
+// The gradient at the own points on open surfaces.
+std::vector<Vec3> gradient_of_open(const TileCloud& cloud, const CoarseSides& coarse) {
+  std::vector<Vec3> gradient;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    if (cloud.own[i] != 0 && coarse.nearest[i].open != 0) gradient.push_back(coarse.gradient[i]);
+  }
+  return gradient;
 }
 
 // The sides of the own points: of those on an open surface each takes that of the thinned cloud's field, and the confidence there, for the
 // equations say nothing of it and all tiles choose as one; the others turn with their part.
-std::vector<Result> results_of(const TileCloud& cloud, const Orientation& solved, const CoarseSides& coarse) {
+std::vector<Result> results_of(const TileCloud& cloud, const Orientation& solved, const CoarseSides& coarse,
+                               const std::vector<Vec3>& open_gradient) {
   std::map<std::uint32_t, double> signs = signs_of_parts(cloud, solved.normals, coarse);
   std::vector<Result> results;
-  for (std::size_t i = 0; i < cloud.records.size(); ++i) {
+  auto gradient = open_gradient.begin();
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     if (cloud.own[i] == 0) continue;
     const CoarseNormal& there = coarse.nearest[i];
     const auto part = signs.find(cloud.part[i]);
     double turn = part != signs.end() ? part->second : signs[kNoPart];
-    if (there.open != 0) turn = vector::dot(solved.normals[i], coarse.gradient[i]) < 0 ? -1 : 1;
-    Result result{cloud.records[i].index, {}, there.open != 0 ? there.confidence : solved.confidence[i]};
+    if (there.open != 0) turn = vector::dot(solved.normals[i], *gradient++) < 0 ? -1 : 1;
+    Result result{cloud.index[i], {}, there.open != 0 ? there.confidence : solved.confidence[i]};
     for (std::size_t a = 0; a < 3; ++a) result.normal[a] = static_cast<float>(turn * solved.normals[i][a]);
     results.push_back(result);
   }
@@ -68,12 +78,13 @@ std::vector<Result> results_of(const TileCloud& cloud, const Orientation& solved
 
 void solve_tile(const std::string& folder, const Manifest& m, const Cells& cells, std::size_t t, const TileWorker& worker,
                 const Monitor& monitor) {
-  const TileCloud cloud = read_tile_cloud(folder, m, cells, m.tiles[t]);
-  const CoarseSides coarse = parallel::with_threads(worker.threads, [&] { return coarse_sides(folder, m, cloud, monitor.cancel); });
-  const Orientation solved = solve(cloud, {coarse.gradient, cloud.relative_spacing, cloud.own}, worker,
+  TileCloud cloud = read_tile_cloud(folder, m, cells, m.tiles[t]);
+  CoarseSides coarse = parallel::with_threads(worker.threads, [&] { return coarse_sides(folder, m, cloud, monitor.cancel); });
+  const std::vector<Vec3> open_gradient = gradient_of_open(cloud, coarse);
+  const Orientation solved = solve(cloud, {std::move(coarse.gradient), std::move(cloud.relative_spacing), cloud.own}, worker,
                                    named(monitor, "tile " + std::to_string(t + 1) + " of " + std::to_string(m.tiles.size())));
   io::OutputFile out(result_path(folder, t), monitor.cancel);
-  out.write_records(results_of(cloud, solved, coarse));
+  out.write_records(results_of(cloud, solved, coarse, open_gradient));
   out.commit();
 }
 

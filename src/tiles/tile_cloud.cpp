@@ -14,6 +14,15 @@ constexpr std::uint64_t kScanAtOnce = std::uint64_t{1} << 16;  // records
 // Places in a thinned file that fall into [begin, end) of the order.
 std::uint64_t thinned(std::uint64_t place, std::uint64_t stride) { return (place + stride - 1) / stride; }
 
+void reserve(TileCloud& cloud, std::size_t points) {
+  cloud.points.reserve(points);
+  cloud.index.reserve(points);
+  cloud.own.reserve(points);
+  cloud.part.reserve(points);
+  cloud.relative_spacing.reserve(points);
+  cloud.coarse.reserve(points);
+}
+
 }  // namespace
 
 Cells find_cells(const std::string& folder, const Manifest& manifest, Stages& stages) {
@@ -53,12 +62,19 @@ TileCloud read_tile_cloud(const std::string& folder, const Manifest& manifest, c
   const std::vector<std::uint8_t> rings = rings_around(cells, tile.first_cell, tile.last_cell, static_cast<int>(all.size()) - 1);
   const std::vector<std::uint32_t> parts = parts_of_ring(cells, rings);
   TileCloud cloud;
+  std::vector<Record> records;
+  reserve(cloud, static_cast<std::size_t>(count_tile_cloud(cells, manifest.stride, tile)));
   for (std::size_t c = 0; c < rings.size();) {
     std::size_t last = c;  // cells of one ring that follow one another are read at once
     while (last < rings.size() && rings[last] == rings[c]) ++last;
     const std::uint64_t stride = all[rings[c]];
     const std::uint64_t begin = thinned(cells.cells[c].begin, stride);
-    files[rings[c]]->append(begin, thinned(cells.end(last - 1), stride), cloud.records);
+    records.clear();
+    files[rings[c]]->append(begin, thinned(cells.end(last - 1), stride), records);
+    for (const Record& record : records) {
+      cloud.points.push_back(record.point);
+      cloud.index.push_back(record.index);
+    }
     for (; c < last; ++c) {
       const std::uint64_t to = thinned(cells.end(c), stride);
       for (std::uint64_t place = thinned(cells.cells[c].begin, stride); place < to; ++place) {
@@ -66,7 +82,7 @@ TileCloud read_tile_cloud(const std::string& folder, const Manifest& manifest, c
         cloud.own.push_back(c >= tile.first_cell && c < tile.last_cell ? 1 : 0);
         cloud.part.push_back(parts[c]);
         cloud.relative_spacing.push_back(std::sqrt(static_cast<double>(stride)));
-        cloud.coarse.push_back(in_order % manifest.stride == 0 ? in_order / manifest.stride : kNotCoarse);
+        cloud.coarse.push_back(in_order % manifest.stride == 0 ? static_cast<std::uint32_t>(in_order / manifest.stride) : kNotCoarse);
       }
     }
   }

@@ -17,13 +17,14 @@ namespace g3r::tiles {
 
 /// The points of a solve, and what is known of each.
 struct TileCloud {
-  std::vector<Record> records;
+  std::vector<Vec3> points;
+  std::vector<std::uint64_t> index;      ///< in the input
   std::vector<std::uint8_t> own;         ///< 1: the tile solves for it
   std::vector<std::uint32_t> part;       ///< of ring 0, kNoPart beyond; see parts_of_ring()
   std::vector<double> relative_spacing;  ///< square root of the number of points that each one stands for
-  std::vector<std::uint64_t> coarse;     ///< its place in the thinned cloud, kNotCoarse if it is not there
+  std::vector<std::uint32_t> coarse;     ///< its place in the thinned cloud, kNotCoarse if it is not there
 };
-inline constexpr std::uint64_t kNotCoarse = 0xffffffffffffffffULL;
+inline constexpr std::uint32_t kNotCoarse = 0xffffffffU;
 
 /// Scans the sorted points for the cells of manifest.level and stores them. Throws IoError, Cancelled.
 Cells find_cells(const std::string& folder, const Manifest& manifest, Stages& stages);
