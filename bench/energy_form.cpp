@@ -80,7 +80,7 @@ void measure_cloud(const Input& input, Row row, const Arguments& a, std::vector<
   const double h = typical_spacing(local_spacing(cloud.points()));
   const SumPlan plan = sum_plan(kAccuracy, cloud.size());
   for (const double e : a.epsilons) {
-    FastSum sum(cloud.points(), cloud.morton(), Widths(e * h), plan);
+    FastSum sum(cloud.points(), Widths(e * h), plan);
     for (const double l : a.weights) {
       for (const double d : a.dampings) {
         for (const int steps : a.iterations) {
@@ -93,7 +93,7 @@ void measure_cloud(const Input& input, Row row, const Arguments& a, std::vector<
             if (s == 0) {
               score(normalised(eta), cloud, input, row, rows);
             } else {
-              FastSum refining(cloud.points(), cloud.morton(), Widths(s * h), plan);
+              FastSum refining(cloud.points(), Widths(s * h), plan);
               score(refine_normals(refining, eta).normals, cloud, input, row, rows);
             }
           }

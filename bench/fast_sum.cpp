@@ -56,7 +56,7 @@ Seconds median_seconds(const auto& work) {
 
 // Pairs of points summed one by one and pairs of nodes that meet through expansions, per point.
 nlohmann::json pair_counts(const CanonicalCloud& cloud, double width, const SumPlan& plan) {
-  const Octree tree = build_octree(cloud.points(), cloud.morton(), {width}, plan.leaf_points);
+  const Octree tree = build_octree(cloud.points(), morton_codes(cloud.points()), {width}, plan.leaf_points);
   const InteractionLists lists = build_interaction_lists(tree, tree, plan.opening, plan.reach);
   double near = 0;
   for (std::size_t i = 0; i < tree.leaves.size(); ++i) {
@@ -127,7 +127,7 @@ int main(int argc, char** argv) {
     if (cut >= 0) plan.cut = cut;
     if (leaf >= 0) plan.leaf_points = static_cast<std::size_t>(leaf);
     std::unique_ptr<FastSum> sum;
-    const Seconds build = seconds_of([&] { sum = std::make_unique<FastSum>(cloud.points(), cloud.morton(), Widths(epsilon * h), plan); });
+    const Seconds build = seconds_of([&] { sum = std::make_unique<FastSum>(cloud.points(), Widths(epsilon * h), plan); });
     std::vector<Vec3> eta(cloud.size());
     shapes::Random random(1);
     for (Vec3& v : eta) v = random.direction();

@@ -89,9 +89,9 @@ std::vector<FormRun> runs_of(FastSum& sum, const sum_cases::Inputs& in) {
 // A line for every form: `count` things per second on the device and on the processor.
 void compare_forms(const char* what, const sum_cases::Inputs& in, SumPlan plan, const std::shared_ptr<gpu::Execution>& execution,
                    double count) {
-  FastSum on_processor(in.points, sum_cases::codes(in.points), in.widths, plan);
+  FastSum on_processor(in.points, in.widths, plan);
   plan.execution = execution;
-  FastSum on_device(in.points, sum_cases::codes(in.points), in.widths, plan);
+  FastSum on_device(in.points, in.widths, plan);
   const std::vector<FormRun> processor = runs_of(on_processor, in);
   const std::vector<FormRun> device = runs_of(on_device, in);
   for (std::size_t i = 0; i < device.size(); ++i) {

@@ -55,7 +55,7 @@ nlohmann::ordered_json spectra(const std::string& path, std::size_t count) {
   SumPlan plan;
   plan.direct = true;
   plan.double_precision = true;
-  FastSum sum(cloud.points(), cloud.morton(), Widths(kEpsilon * h), plan);
+  FastSum sum(cloud.points(), Widths(kEpsilon * h), plan);
   nlohmann::ordered_json out = {
       {"mesh", path.substr(path.find_last_of('/') + 1)}, {"points", cloud.size()}, {"epsilon_spacings", kEpsilon}};
   GaussSystem pgr(cloud.points(), {{1, 1, 1}}, kEpsilon * h, kLeastDamping, plan, nullptr);

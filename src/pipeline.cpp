@@ -96,16 +96,15 @@ std::vector<Vec3> gradient_at_outliers(const Problem& problem, const std::vector
   const PointSet& set = problem.cloud.set;
   const Widths widths(s.refinement_width.typical());
   if (s.cluster_side == 0) {
-    return FastSum(set.points(), set.morton(), widths, s.sums, stages.cancel()).winding_gradient_at(eta, problem.outliers, stages.cancel());
+    return FastSum(set.points(), widths, s.sums, stages.cancel()).winding_gradient_at(eta, problem.outliers, stages.cancel());
   }
-  const Clusters clusters = cluster_points(set.points(), set.morton(), s.cluster_side);
+  const Clusters clusters = cluster_points(set.points(), s.cluster_side);
   std::vector<Vec3> together(clusters.points.size(), Vec3{0, 0, 0});
   for (std::size_t i = 0; i < eta.size(); ++i) {
     Vec3& sum = together[clusters.cluster_of[i]];
     sum = vector::add(sum, eta[i]);
   }
-  return FastSum(clusters.points, clusters.morton, widths, s.sums, stages.cancel())
-      .winding_gradient_at(together, problem.outliers, stages.cancel());
+  return FastSum(clusters.points, widths, s.sums, stages.cancel()).winding_gradient_at(together, problem.outliers, stages.cancel());
 }
 
 // Outliers follow the field, have no area and deserve no confidence.

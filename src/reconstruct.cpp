@@ -78,9 +78,7 @@ void drop_strays(OrientedCloud& oriented, std::vector<Vec3>& strays, const std::
   CanonicalCloud& cloud = oriented.cloud;
   const std::vector<std::uint8_t> held = mesh::held_points(cloud.points(), directions_of(oriented.eta), cancel);
   std::vector<Vec3> points;
-  std::vector<std::uint64_t> morton;
   points.reserve(held.size());
-  morton.reserve(held.size());
   for (std::size_t i = 0; i < held.size(); ++i) {
     if (held[i] == 0) {
       strays.push_back(cloud.points()[i]);
@@ -88,10 +86,9 @@ void drop_strays(OrientedCloud& oriented, std::vector<Vec3>& strays, const std::
     }
     oriented.eta[points.size()] = oriented.eta[i];
     points.push_back(cloud.points()[i]);
-    morton.push_back(cloud.morton()[i]);
   }
   oriented.eta.resize(points.size());
-  cloud.set = PointSet(std::move(points), std::move(morton));
+  cloud.set = PointSet(std::move(points));
 }
 
 // Takes points back that the surface goes through. Areas follow the spacing.
@@ -119,19 +116,17 @@ void regain_points(OrientedCloud& oriented, std::vector<Vec3>& strays, const std
   }
   if (left.size() == strays.size()) return;
   strays = std::move(left);
-  const MortonOrder order = morton_order(points);
+  const std::vector<std::uint32_t> order = morton_order(points);
   std::vector<Vec3> sorted, sorted_directions;
   std::vector<double> sorted_density;
-  std::vector<std::uint64_t> code;
-  for (std::size_t k = 0; k < order.index.size(); ++k) {
-    const std::uint32_t i = order.index[k];
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const std::uint32_t i = order[k];
     if (!sorted.empty() && sorted.back() == points[i]) continue;  // the input had it more than once
     sorted.push_back(points[i]);
     sorted_directions.push_back(directions[i]);
     sorted_density.push_back(density[i]);
-    code.push_back(order.code[k]);
   }
-  cloud.set = PointSet(std::move(sorted), std::move(code));
+  cloud.set = PointSet(std::move(sorted));
   oriented.eta.resize(cloud.size());
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const double h = cloud.set.smoothed_spacing()[i];

@@ -36,7 +36,7 @@ TEST_P(Adjoint, HoldsToRounding) {
   const double limit = plan.double_precision ? kDoubleDefect : kFloatDefect;
   std::vector<double> widths(local_widths ? cloud.size() : 1);
   for (double& w : widths) w = random.uniform(0.005, 0.02);
-  FastSum sum(cloud.points(), cloud.morton(), Widths(widths), plan);
+  FastSum sum(cloud.points(), Widths(widths), plan);
   const HarmonicValues u = evaluate_harmonics(harmonics_of_degrees(0, 3), cloud.points());
   std::vector<Vec3> a(cloud.size());
   std::vector<Vec3> b(cloud.size());
@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(Plans, Adjoint, testing::Combine(testing::Values(1e-2, 
 TEST(Linearity, SumsOfVectorsAreSumsOfResults) {
   shapes::Random random(3);
   const CanonicalCloud cloud = canonical_cloud(shapes::sphere(kSanitized ? 1000 : 4000).points);
-  FastSum sum(cloud.points(), cloud.morton(), Widths(0.01), sum_plan(1e-5, 1000000));
+  FastSum sum(cloud.points(), Widths(0.01), sum_plan(1e-5, 1000000));
   std::vector<Vec3> a(cloud.size());
   std::vector<Vec3> b(cloud.size());
   std::vector<Vec3> both(cloud.size());

@@ -55,7 +55,7 @@ void expect_adjoint(const std::vector<double>& w, const std::vector<Vec3>& wt, c
 TEST(HardCutoff, SumsOverSourcesBeyondTheWidthOnly) {
   const CanonicalCloud cloud = bumpy_cloud();
   const double width = 0.08;
-  HardCutoffSum sum(cloud.points(), cloud.morton(), width, sum_plan(1e-4, cloud.size()), nullptr);
+  HardCutoffSum sum(cloud.points(), width, sum_plan(1e-4, cloud.size()), nullptr);
   const std::vector<Vec3> eta = random_vectors(cloud.size(), 3);
   const std::vector<double> w = sum.winding(eta);
   const std::vector<Vec3> gradient = sum.winding_gradient(eta);
@@ -84,7 +84,7 @@ TEST(HardCutoff, SumsOverSourcesBeyondTheWidthOnly) {
 
 TEST(HardCutoff, AdjointIsTheAdjoint) {
   const CanonicalCloud cloud = bumpy_cloud();
-  HardCutoffSum sum(cloud.points(), cloud.morton(), 0.05, sum_plan(1e-2, cloud.size()), nullptr);
+  HardCutoffSum sum(cloud.points(), 0.05, sum_plan(1e-2, cloud.size()), nullptr);
   const std::vector<Vec3> eta = random_vectors(cloud.size(), 1);
   const std::vector<double> q = random_values(cloud.size(), 2);
   expect_adjoint(sum.winding(eta), sum.winding_adjoint(q), eta, q);

@@ -33,14 +33,14 @@ double mean(const std::vector<double>& values) {
 }
 
 Tested test(const Surface& s) {
-  const MortonOrder order = morton_order(s.points);
+  const std::vector<std::uint32_t> order = morton_order(s.points);
   std::vector<Vec3> points;
   std::vector<Vec3> normals;
-  for (const std::uint32_t i : order.index) {
+  for (const std::uint32_t i : order) {
     points.push_back(s.points[i]);
     normals.push_back(s.normals[i]);
   }
-  const Sites sites = place_sites(PointSet(points, order.code), 0);
+  const Sites sites = place_sites(PointSet(points), 0);
   const SumPlan sums = sum_plan(1e-3, points.size());
   Tested tested{certify(sites, normals, std::vector<double>(points.size(), 10), sums, nullptr), points};
   EXPECT_EQ(tested.certificate.jump_defect, jump_defects(sites, {normals}, sums, nullptr).front());
@@ -55,10 +55,10 @@ TEST(Certificate, ScalesTheAreasOfEvenSites) {
   for (Vec3& p : s.points) {
     for (double& c : p) c += 0.7 * spacing * random.gaussian();
   }
-  const MortonOrder order = morton_order(s.points);
+  const std::vector<std::uint32_t> order = morton_order(s.points);
   std::vector<Vec3> points;
-  for (const std::uint32_t i : order.index) points.push_back(s.points[i]);
-  const Sites sites = place_sites(PointSet(points, order.code), 1.5 * spacing);
+  for (const std::uint32_t i : order) points.push_back(s.points[i]);
+  const Sites sites = place_sites(PointSet(points), 1.5 * spacing);
   std::vector<Vec3> outward(sites.size());
   for (std::size_t i = 0; i < sites.size(); ++i) outward[i] = vector::normalised(sites.points()[i]);
   const std::vector<double> reach(sites.size(), 10);
@@ -127,10 +127,10 @@ TEST(Certificate, FindsTurnedRegions) {
 TEST(Certificate, FindsTurnedPoints) {
   Surface s = shapes::sphere(8000, 0.8);
   for (std::size_t i = 0; i < s.points.size(); i += 100) s.normals[i] = vector::scale(s.normals[i], -1);
-  const MortonOrder order = morton_order(s.points);
+  const std::vector<std::uint32_t> order = morton_order(s.points);
   const Certificate c = test(s).certificate;
-  for (std::size_t k = 0; k < order.index.size(); ++k) {
-    if (order.index[k] % 100 != 0) continue;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    if (order[k] % 100 != 0) continue;
     EXPECT_LT(c.jump[k], 0);
   }
 }

@@ -17,7 +17,7 @@ namespace {
 TEST(Clusters, PartitionThePoints) {
   const CanonicalCloud cloud = canonical_cloud(shapes::torus(3000, 0.6, 0.25, 1).points);
   const double side = 0.15;
-  const Clusters clusters = cluster_points(cloud.points(), cloud.morton(), side);
+  const Clusters clusters = cluster_points(cloud.points(), side);
   double total = 0;
   for (const double m : clusters.multiplicity) total += m;
   EXPECT_EQ(total, 3000);
@@ -25,7 +25,8 @@ TEST(Clusters, PartitionThePoints) {
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     for (std::size_t a = 0; a < 3; ++a) EXPECT_LE(std::abs(cloud.points()[i][a] - clusters.points[clusters.cluster_of[i]][a]), side);
   }
-  for (std::size_t c = 1; c < clusters.morton.size(); ++c) EXPECT_LT(clusters.morton[c - 1], clusters.morton[c]);
+  const std::vector<std::uint64_t> codes = morton_codes(clusters.points);
+  for (std::size_t c = 1; c < codes.size(); ++c) EXPECT_LT(codes[c - 1], codes[c]);
 }
 
 // Points that stand for more area count for as much in their cell.
@@ -37,7 +38,7 @@ TEST(Clusters, CountTheAreasOfTheirPoints) {
     relative[i] = 1 + static_cast<double>(i % 4);
     all += relative[i] * relative[i];
   }
-  const Clusters clusters = cluster_points(cloud.points(), cloud.morton(), 0.15, relative);
+  const Clusters clusters = cluster_points(cloud.points(), 0.15, relative);
   std::vector<double> areas(clusters.points.size(), 0);
   std::vector<double> counts(areas);
   for (std::size_t i = 0; i < relative.size(); ++i) {
@@ -56,16 +57,14 @@ TEST(Clusters, SystemIsTheFullOneOnConstantVectors) {
   const CanonicalCloud cloud = canonical_cloud(shapes::torus(600, 0.6, 0.25, 1).points);
   const std::vector<double> roots(cloud.size(), std::sqrt(2.0));
   std::vector<Vec3> doubled;
-  std::vector<std::uint64_t> morton;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     doubled.insert(doubled.end(), 2, cloud.points()[i]);
-    morton.insert(morton.end(), 2, cloud.morton()[i]);
   }
   const double width = 0.1;
   const double damping = 0.7;
   const double weight = 0.3;
-  FastSum one_sum(cloud.points(), cloud.morton(), Widths(width), sum_plan(0, cloud.size()));
-  FastSum all_sum(doubled, morton, Widths(width), sum_plan(0, doubled.size()));
+  FastSum one_sum(cloud.points(), Widths(width), sum_plan(0, cloud.size()));
+  FastSum all_sum(doubled, Widths(width), sum_plan(0, doubled.size()));
   EnergySystem clustered(one_sum, damping, weight, roots);
   EnergySystem full(all_sum, damping, weight);
   shapes::Random random(2);

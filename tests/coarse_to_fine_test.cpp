@@ -18,7 +18,7 @@ namespace {
 Solved solved(const CanonicalCloud& cloud, const Settings& settings) {
   const Monitor monitor;
   Stages stages(monitor);
-  return solve_coarse_to_fine(cloud.points(), cloud.morton(), settings, stages);
+  return solve_coarse_to_fine(cloud.points(), settings, stages);
 }
 
 TEST(SolveCoarseToFine, OfFewPointsIsThePlainSolve) {
@@ -99,7 +99,7 @@ TEST(SolveCoarseToFine, KnowsWhatThinnedPointsStandFor) {
   Stages stages(monitor);
   const Settings settings = choose_settings({}, cloud, cloud.set.spacing(), 0, 0);
   const auto error_with = [&](const std::vector<double>& what) {
-    const Solved found = solve_coarse_to_fine(cloud.points(), cloud.morton(), settings, stages, what);
+    const Solved found = solve_coarse_to_fine(cloud.points(), settings, stages, what);
     double sum = 0;  // of 1 - cos
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Vec3& n = found.refinement.normals[cloud.point_of[i]];
@@ -110,7 +110,7 @@ TEST(SolveCoarseToFine, KnowsWhatThinnedPointsStandFor) {
   EXPECT_LT(error_with(known), 0.5 * error_with({}));
 
   // And gradients compare, though kernels are wider: the polish starts from them.
-  const Solved found = solve_coarse_to_fine(cloud.points(), cloud.morton(), settings, stages, known);
+  const Solved found = solve_coarse_to_fine(cloud.points(), settings, stages, known);
   std::vector<double> dense, thinned;
   for (std::size_t i = 0; i < points.size(); ++i) {
     (relative[i] > 1 ? thinned : dense).push_back(found.refinement.strength[cloud.point_of[i]]);

@@ -22,7 +22,7 @@ TEST(DenseSolver, AgreesWithConjugateGradientsAtConvergence) {
   EXPECT_GT(dense.condition_number, 1);
   SumPlan plan = sum_plan(0, cloud.size());
   plan.double_precision = true;
-  FastSum sum(cloud.points(), cloud.morton(), Widths(epsilon), plan);
+  FastSum sum(cloud.points(), Widths(epsilon), plan);
   GreenSystem system(sum, cloud.points(), harmonics);
   const IterativeResult iterative = solve_iteratively(system, {{4000, StepKind::kConjugateGradient}}, 1e-11);
   EXPECT_TRUE(iterative.converged);

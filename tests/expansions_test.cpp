@@ -182,7 +182,7 @@ TEST(InteractionLists, EveryPairOccursExactlyOnce) {
   const CanonicalCloud cloud = canonical_cloud(points);
   for (const double opening : {0.0, 0.4, 0.7}) {
     for (const double width : {0.001, 0.05}) {
-      const Octree tree = build_octree(cloud.points(), cloud.morton(), {width}, 20);
+      const Octree tree = build_octree(cloud.points(), morton_codes(cloud.points()), {width}, 20);
       const InteractionLists lists = build_interaction_lists(tree, tree, opening, 5);
       std::vector<std::size_t> met(tree.nodes.size(), 0);  // sources a node's points meet through its own far pairs
       for (const FarPair& pair : lists.far) met[pair.target] += tree.nodes[pair.source].count();

@@ -100,7 +100,7 @@ TEST(FastSum, NarrowerWidthsMayShareATree) {
   std::vector<double> half = local;
   for (double& w : half) w *= 0.5;
   const double accuracy = 1e-3;
-  const auto fresh = [&](const Widths& widths) { return FastSum(points, codes(points), widths, sum_plan(accuracy, 1000000)); };
+  const auto fresh = [&](const Widths& widths) { return FastSum(points, widths, sum_plan(accuracy, 1000000)); };
   const auto check = [&](FastSum sum, const Widths& widths) {
     std::vector<Vec3> s;
     std::vector<double> w;
@@ -123,7 +123,7 @@ TEST(FastSum, NarrowerWidthsMayShareATree) {
 TEST(FastSum, QueriesSeeTheSameFieldAsThePoints) {
   const std::vector<Vec3> points = unit_points(shapes::torus(4000, 0.6, 0.25, 3).points);
   const std::vector<Vec3> eta = random_vectors(points.size(), 1);
-  const FastSum sum(points, codes(points), Widths(0.01), sum_plan(1e-3, 1000000));
+  const FastSum sum(points, Widths(0.01), sum_plan(1e-3, 1000000));
   Random random(2);
   std::vector<Vec3> queries;
   for (int i = 0; i < 300; ++i) queries.push_back({random.uniform(-1.3, 1.3), random.uniform(-1, 1), random.uniform(-0.5, 0.5)});
@@ -134,7 +134,7 @@ TEST(FastSum, QueriesSeeTheSameFieldAsThePoints) {
 TEST(FastSum, TheFieldsOfSeveralVectorsAreThoseOfEach) {
   const std::vector<Vec3> points = unit_points(shapes::torus(1000, 0.6, 0.25, 3).points);
   const std::vector<std::vector<Vec3>> etas{random_vectors(points.size(), 1), random_vectors(points.size(), 5)};
-  const FastSum sum(points, codes(points), Widths(0.01), sum_plan(2e-2, 1000000));
+  const FastSum sum(points, Widths(0.01), sum_plan(2e-2, 1000000));
   const std::vector<Vec3> queries{{0.1, 0.2, 0.3}, {-0.5, 0.4, 0}, {2.5, 0, 1}, {1e9, 0, 0}};  // two outside the cube, one far
   const std::vector<std::vector<double>> w = sum.windings_at(etas, queries);
   ASSERT_EQ(w.size(), 2U);
@@ -145,7 +145,7 @@ TEST(FastSum, TheFieldsOfSeveralVectorsAreThoseOfEach) {
 TEST(FastSum, AQueryHasTheSameBytesAmongMany) {
   const std::vector<Vec3> points = unit_points(shapes::torus(3000, 0.6, 0.25, 3).points);
   const std::vector<Vec3> eta = random_vectors(points.size(), 1);
-  const FastSum sum(points, codes(points), Widths(0.01), sum_plan(2e-2, 1000000));
+  const FastSum sum(points, Widths(0.01), sum_plan(2e-2, 1000000));
   Random random(2);
   std::vector<Vec3> queries;
   for (int i = 0; i < 140000; ++i) queries.push_back({random.uniform(-1.3, 1.3), random.uniform(-1, 1), random.uniform(-0.5, 0.5)});
@@ -165,7 +165,7 @@ TEST(FastSum, QueriesMayBeFarAway) {
   for (const bool double_precision : {false, true}) {
     SumPlan plan = sum_plan(1e-3, 1000000);
     plan.double_precision = double_precision;
-    const FastSum sum(points, codes(points), Widths(width), plan);
+    const FastSum sum(points, Widths(width), plan);
     for (const double far : {1.01, 2.0, 5.0, 1e2, 1e4, 1e8}) {
       if (kSanitized && far != 5.0 && far != 1e8) continue;
       Random random(2);

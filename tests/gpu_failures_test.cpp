@@ -78,12 +78,12 @@ TEST(GpuFailures, TheProcessorTakesOverWithTheSameBytes) {
   const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
   const std::vector<Vec3> eta = random_vectors(points.size(), 1);
   const SumPlan plan = sum_plan(1e-2, kPoints);
-  const std::vector<double> expected = FastSum(points, codes(points), Widths(0.01), plan).winding(eta);
+  const std::vector<double> expected = FastSum(points, Widths(0.01), plan).winding(eta);
   for (const std::size_t allowed : {std::size_t{0}, std::size_t{1}, std::size_t{9}, std::size_t{20}, kPlenty}) {
     const auto device = std::make_shared<FailingDevice>(allowed);
     SumPlan failing = plan;
     failing.execution = std::make_shared<gpu::Execution>(device, false);
-    FastSum sum(points, codes(points), Widths(0.01), failing);
+    FastSum sum(points, Widths(0.01), failing);
     EXPECT_EQ(sum.winding(eta), expected);
     EXPECT_EQ(failing.execution->failure(), allowed == kPlenty ? "Failing: the kernels do not compile" : "Failing: out of memory");
     EXPECT_EQ(device->alive, 0U) << "buffers of a device that is no longer used";
@@ -97,7 +97,7 @@ TEST(GpuFailures, ARequiredDeviceThatFailsIsUnavailable) {
   SumPlan plan = sum_plan(1e-2, kPoints);
   plan.execution = std::make_shared<gpu::Execution>(device, true);
   {
-    FastSum sum(points, codes(points), Widths(0.01), plan);
+    FastSum sum(points, Widths(0.01), plan);
     try {
       (void)sum.winding(random_vectors(points.size(), 1));
       ADD_FAILURE() << "no error";
@@ -124,7 +124,7 @@ TEST(GpuFailures, WordsThatNameNoDeviceAreInvalid) {
 TEST(GpuFailures, EveryFarPairIsInOneTileAndTilesDoNotMeetATargetTwice) {
   const std::vector<Vec3> points = unit_points(shapes::torus(20000, 0.6, 0.25, 3).points);
   constexpr std::size_t kChunkNodes = 32;
-  const Octree tree = build_octree(points, codes(points), {0.005}, 32);
+  const Octree tree = build_octree(points, morton_codes(points), {0.005}, 32);
   const InteractionLists lists = build_interaction_lists(tree, tree, 0.8, 4);
   const M2lMatrices<float> matrices(lists.offsets, {});
   std::vector<std::uint32_t> matrix_of;

@@ -79,8 +79,8 @@ TEST(Gpu, SumsInDoubleEqualThoseOfTheProcessor) {
   const Inputs in = of_harmonics(0, points, Widths(0.4 * spacing_of(points)));
   expect_equal(in, sum_plan(0, kPoints), 1e-11, "direct");
   const SumPlan plan = sum_plan(1e-6, kPoints);
-  FastSum processor(points, codes(points), in.widths, plan);
-  FastSum device(points, codes(points), in.widths, on_device(plan));
+  FastSum processor(points, in.widths, plan);
+  FastSum device(points, in.widths, on_device(plan));
   std::vector<std::vector<Vec3>> s(2);
   std::vector<std::vector<double>> w(2);
   processor.stokes_winding(in.eta, s[0], w[0]);
@@ -107,7 +107,7 @@ TEST(Gpu, NarrowerWidthsShareATree) {
   const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
   const std::vector<Vec3> eta = random_vectors(points.size(), 1);
   const auto winding = [&](const SumPlan& plan) {
-    const FastSum wide(points, codes(points), Widths(0.03), plan);
+    const FastSum wide(points, Widths(0.03), plan);
     return FastSum(wide, Widths(0.01)).winding(eta);
   };
   EXPECT_LE(relative_error(winding(on_device(sum_plan(1e-3, kPoints))), winding(sum_plan(1e-3, kPoints))), 5e-4);
@@ -119,8 +119,8 @@ TEST(Gpu, QueriesSeeTheSameField) {
   Random random(2);
   std::vector<Vec3> queries;
   for (int i = 0; i < 500; ++i) queries.push_back({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-0.5, 0.5)});
-  const FastSum processor(points, codes(points), Widths(0.01), sum_plan(1e-3, kPoints));
-  const FastSum device(points, codes(points), Widths(0.01), on_device(sum_plan(1e-3, kPoints)));
+  const FastSum processor(points, Widths(0.01), sum_plan(1e-3, kPoints));
+  const FastSum device(points, Widths(0.01), on_device(sum_plan(1e-3, kPoints)));
   EXPECT_LE(relative_error(device.winding_at(eta, queries), processor.winding_at(eta, queries)), 5e-4);
   EXPECT_LE(relative_error(device.winding_gradient_at(eta, queries), processor.winding_gradient_at(eta, queries)), 5e-4);
 }
@@ -129,7 +129,7 @@ double inner(const std::vector<double>& a, const std::vector<double>& b) { retur
 
 // <A x, y> = <x, A^T y> to rounding, relative to |A x| |y|.
 void expect_adjoints(const Inputs& in, const SumPlan& plan, double rounding) {
-  FastSum sum(in.points, codes(in.points), in.widths, on_device(plan));
+  FastSum sum(in.points, in.widths, on_device(plan));
   const std::vector<double> eta = flat(in.eta);
   if (!plan.double_precision) {
     const std::vector<double> forward = sum.green(in.u, in.eta);
@@ -168,7 +168,7 @@ TEST(Gpu, SameBytesFromRunToRun) {
 TEST(Gpu, SumsStopWhenCancelled) {
   const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
   const std::atomic<bool> cancel{true};
-  FastSum sum(points, codes(points), Widths(0.01), on_device(sum_plan(1e-2, kPoints)), &cancel);
+  FastSum sum(points, Widths(0.01), on_device(sum_plan(1e-2, kPoints)), &cancel);
   EXPECT_THROW(sum.winding(random_vectors(points.size(), 1)), Cancelled);
 }
 

@@ -22,7 +22,7 @@ struct Sums {
 };
 
 Sums sums_of(const CanonicalCloud& cloud, double accuracy) {
-  FastSum sum(cloud.points(), cloud.morton(), Widths(0.01), sum_plan(accuracy, 1000000));
+  FastSum sum(cloud.points(), Widths(0.01), sum_plan(accuracy, 1000000));
   std::vector<Vec3> eta(cloud.size());
   shapes::Random random(3);
   for (Vec3& v : eta) v = random.direction();

@@ -259,7 +259,7 @@ TEST(OpenSurfaces, AreTakenOutOfEquationsThatTheyArePartOf) {
 
 // Points in canonical order, with their normals.
 struct Sorted {
-  MortonOrder order;
+  std::vector<std::uint32_t> order;
   PointSet set;
   std::vector<Vec3> normals;
 };
@@ -267,18 +267,18 @@ struct Sorted {
 Sorted sorted_as(const Surface& s, const std::vector<Vec3>& normals) {
   Sorted out{morton_order(s.points), {}, {}};
   std::vector<Vec3> points;
-  for (const std::uint32_t i : out.order.index) {
+  for (const std::uint32_t i : out.order) {
     points.push_back(s.points[i]);
     out.normals.push_back(normals[i]);
   }
-  out.set = PointSet(std::move(points), out.order.code);
+  out.set = PointSet(std::move(points));
   return out;
 }
 
 OpenSurfaces find(const Surface& s, std::vector<Vec3>& normals, double noise = 0) {
   auto [order, set, sorted] = sorted_as(s, normals);
   OpenSurfaces found = find_open_surfaces(set, noise, sum_plan(1e-2, set.size()), sorted);
-  for (std::size_t k = 0; k < sorted.size(); ++k) normals[order.index[k]] = sorted[k];
+  for (std::size_t k = 0; k < sorted.size(); ++k) normals[order[k]] = sorted[k];
   return found;
 }
 
@@ -327,7 +327,7 @@ TEST(CertifiedSides, AreThoseOfTheGivenNormals) {
     const Sorted sorted = sorted_as(of, normals);
     const std::vector<float> in_order = certified_sides(sorted.set, 0, sum_plan(1e-2, sorted.set.size()), sorted.normals);
     std::vector<float> out(in_order.size());
-    for (std::size_t k = 0; k < out.size(); ++k) out[sorted.order.index[k]] = in_order[k];
+    for (std::size_t k = 0; k < out.size(); ++k) out[sorted.order[k]] = in_order[k];
     return out;
   };
   for (const float c : certified(s, s.normals)) EXPECT_GT(c, 0.9F);

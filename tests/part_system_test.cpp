@@ -44,7 +44,7 @@ struct Torus {
 // Of all points they are the equations that were there before: the same steps from the same start.
 TEST(PartSystem, OfAllPointsIsTheWhole) {
   const Torus torus;
-  FastSum sum(torus.cloud.points(), torus.cloud.morton(), Widths(kWidth * torus.h), sum_plan(1e-3, torus.cloud.size()));
+  FastSum sum(torus.cloud.points(), Widths(kWidth * torus.h), sum_plan(1e-3, torus.cloud.size()));
   EnergySystem system(sum, 0, torus.weight);
   std::vector<Vec3> start = torus.areas();
   for (std::size_t i = 0; i < start.size(); i += 3) start[i] = {0, 0, 0};
@@ -67,7 +67,7 @@ TEST(PartSystem, OfAllPointsIsTheWhole) {
 TEST(PartSystem, TurnsAPatchThatIsWrong) {
   const Torus torus;
   const std::vector<Vec3>& points = torus.cloud.points();
-  FastSum sum(points, torus.cloud.morton(), Widths(kWidth * torus.h), sum_plan(1e-3, points.size()));
+  FastSum sum(points, Widths(kWidth * torus.h), sum_plan(1e-3, points.size()));
   EnergySystem system(sum, 0, torus.weight);
   std::vector<Vec3> truth = torus.areas();
   const double factor = 0.5 / median(sum.winding(truth));  // what areas a spacing squared lack
@@ -83,8 +83,7 @@ TEST(PartSystem, TurnsAPatchThatIsWrong) {
   const std::vector<std::uint32_t> some = around_unsure(points, {torus.h}, wrong);
   ASSERT_LT(some.size(), points.size() / 2);
   const std::vector<Vec3> part_points = values_at(some, points);
-  const std::vector<std::uint64_t> part_morton = values_at(some, torus.cloud.morton());
-  FastSum part_sum(part_points, part_morton, Widths(kWidth * torus.h), sum_plan(1e-3, some.size()));
+  FastSum part_sum(part_points, Widths(kWidth * torus.h), sum_plan(1e-3, some.size()));
   EnergySystem part(part_sum, 0, torus.weight);
   constexpr double kTolerance = 2.5e-3;  // of the program; with more steps random samples are fitted
   const std::vector<Vec3> change = solve_for_part(part, residual_at(some, system, start), kSteps, kTolerance, {}).eta;

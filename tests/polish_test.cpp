@@ -53,7 +53,7 @@ TEST(LocalWidths, HideTheNoiseWhereItIsMoreThanTheSpacing) {
 
 TEST(GradientToAreas, HaveTheWindingNumberOfASurfaceWhateverTheGradientsSize) {
   const Ball ball;
-  FastSum sum(ball.cloud.points(), ball.cloud.morton(), Widths(ball.settings.epsilon.typical()), ball.settings.sums);
+  FastSum sum(ball.cloud.points(), Widths(ball.settings.epsilon.typical()), ball.settings.sums);
   const std::vector<double> areas{ball.settings.spacing * ball.settings.spacing};
   std::vector<Vec3> eta = ball.truth, other = ball.truth;
   for (Vec3& v : other) {
@@ -75,7 +75,7 @@ TEST(Polish, BringsDirectionsNearerToTheTruth) {
   const Monitor monitor;
   Stages stages(monitor);
   const std::vector<double>& spacing = ball.cloud.set.smoothed_spacing();
-  const PolishCloud cloud{ball.cloud.points(), ball.cloud.morton(), spacing, point_areas(ball.settings, spacing), {}};
+  const PolishCloud cloud{ball.cloud.points(), spacing, point_areas(ball.settings, spacing), {}};
   const Polished polished = polish(cloud, ball.settings, start, stages);
   EXPECT_EQ(shapes::share_correct(polished.refinement.normals, ball.truth), 1);
   EXPECT_LT(shapes::angle_error(polished.refinement.normals, ball.truth), 0.1 * shapes::angle_error(disturbed, ball.truth));

@@ -35,7 +35,7 @@ TEST(RefineNormals, MakesDirectionsOfTheFieldWhateverTheSizeOfTheVectors) {
     truth[i] = {p[0] / size, p[1] / size, p[2] / size};
   }
   const std::vector<Vec3> disturbed = shapes::disturbed(truth, 0.3);
-  FastSum sum(cloud.points(), cloud.morton(), Widths(0.1), sum_plan(1e-3, cloud.size()));
+  FastSum sum(cloud.points(), Widths(0.1), sum_plan(1e-3, cloud.size()));
   const std::vector<Vec3> normals = refine_normals(sum, disturbed).normals;
   EXPECT_LT(shapes::angle_error(normals, truth), 0.2 * shapes::angle_error(disturbed, truth));
   std::vector<Vec3> larger = disturbed;
@@ -58,7 +58,7 @@ TEST(RefineNormals, StrengthIsTheSameForKernelsOfAnyWidth) {
     eta[i] = cloud.points()[i];
     widths[i] = cloud.points()[i][2] > 0 ? kWide : kNarrow;
   }
-  FastSum sum(cloud.points(), cloud.morton(), Widths(widths), sum_plan(1e-3, cloud.size()));
+  FastSum sum(cloud.points(), Widths(widths), sum_plan(1e-3, cloud.size()));
   const std::vector<double> jumps = refine_normals(sum, eta).strength;
   std::vector<double> wide, narrow;
   for (std::size_t i = 0; i < cloud.size(); ++i) (widths[i] == kWide ? wide : narrow).push_back(jumps[i]);

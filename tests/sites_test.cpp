@@ -15,10 +15,10 @@ namespace g3r {
 namespace {
 
 PointSet in_order(const std::vector<Vec3>& points) {
-  const MortonOrder order = morton_order(points);
+  const std::vector<std::uint32_t> order = morton_order(points);
   std::vector<Vec3> sorted;
-  for (const std::uint32_t i : order.index) sorted.push_back(points[i]);
-  return PointSet(std::move(sorted), order.code);
+  for (const std::uint32_t i : order) sorted.push_back(points[i]);
+  return PointSet(std::move(sorted));
 }
 
 // Lines of a wavy surface, points 0.01 apart along them.
@@ -48,7 +48,8 @@ TEST(Sites, HoldEveryPointWithinTheDistance) {
     const Vec3 d = vector::subtract(cloud.points()[i], sites.points()[sites.site_of[i]]);
     EXPECT_LT(std::sqrt(vector::dot(d, d)), 2 * distance);  // from the first point of the site to its centroid, and to a point
   }
-  EXPECT_TRUE(std::is_sorted(sites.set.morton().begin(), sites.set.morton().end()));
+  const std::vector<std::uint64_t> codes = morton_codes(sites.points());
+  EXPECT_TRUE(std::is_sorted(codes.begin(), codes.end()));
 }
 
 TEST(Sites, AxesAreNormalsAndErrorsFallWithTheSquareOfTheDistance) {

@@ -56,12 +56,6 @@ inline std::vector<Case> clouds(std::size_t n) {
   return out;
 }
 
-inline std::vector<std::uint64_t> codes(const std::vector<Vec3>& points) {
-  std::vector<std::uint64_t> out;
-  for (const Vec3& p : points) out.push_back(morton_code(p));
-  return out;
-}
-
 inline std::vector<Vec3> random_vectors(std::size_t n, std::uint64_t seed) {
   Random random(seed);
   std::vector<Vec3> out(n);
@@ -134,7 +128,7 @@ inline Sums direct_sums(const Inputs& in) {
 }
 
 inline Sums fast_sums(const Inputs& in, const SumPlan& plan) {
-  FastSum sum(in.points, codes(in.points), in.widths, plan);
+  FastSum sum(in.points, in.widths, plan);
   Sums sums;
   sums.green = sum.green(in.u, in.eta);
   sums.green_adjoint = sum.green_adjoint(in.u, in.q);

@@ -73,7 +73,7 @@ std::size_t baseline_memory(const BaselineSettings& settings, double spacing, st
 
 BaselineResult solve_baseline(const CanonicalCloud& cloud, const BaselineSettings& settings, Stages& stages) {
   if (settings.method != Method::kWnnc) return solve_gauss(cloud, settings, stages);
-  WnncResult solved = solve_wnnc(cloud.points(), cloud.morton(), settings.widths, settings.sums, stages);
+  WnncResult solved = solve_wnnc(cloud.points(), settings.widths, settings.sums, stages);
   BaselineResult result{std::move(solved.eta), std::move(solved.normals), std::move(solved.strength), {}, true};
   for (const double residual : solved.residuals) result.iterations.push_back({"wnnc", residual});
   return result;

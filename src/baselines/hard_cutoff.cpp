@@ -22,11 +22,10 @@ SumPlan with_whole_kernel(SumPlan plan) {
 
 }  // namespace
 
-HardCutoffSum::HardCutoffSum(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, double width, const SumPlan& plan,
-                             const std::atomic<bool>* cancel)
+HardCutoffSum::HardCutoffSum(const std::vector<Vec3>& points, double width, const SumPlan& plan, const std::atomic<bool>* cancel)
     : points_(points),
       width_(width),
-      sum_(points, morton, Widths(gaussian_width(width, plan)), with_whole_kernel(plan), cancel),
+      sum_(points, Widths(gaussian_width(width, plan)), with_whole_kernel(plan), cancel),
       near_(near_pairs(points, width, cancel)) {
   for (std::size_t i = 0; i < table_.size(); ++i) {
     const double share = static_cast<double>(i) / kIntervals;

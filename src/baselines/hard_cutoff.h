@@ -21,8 +21,7 @@ namespace g3r {
 class HardCutoffSum {
  public:
   /// As FastSum; 0 < width in the unit of the points.
-  HardCutoffSum(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, double width, const SumPlan& plan,
-                const std::atomic<bool>* cancel);
+  HardCutoffSum(const std::vector<Vec3>& points, double width, const SumPlan& plan, const std::atomic<bool>* cancel);
 
   /// W eta: N values.
   std::vector<double> winding(const std::vector<Vec3>& eta);

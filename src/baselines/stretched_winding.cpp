@@ -31,12 +31,11 @@ StretchedWinding::StretchedWinding(const std::vector<Vec3>& points, const Vec3& 
   epsilon_ = epsilon * std::cbrt(determinant);
   std::vector<Vec3> stretched(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) stretched[i] = multiplied(s, points[i]);
-  MortonOrder order = morton_order(stretched);
-  index_ = std::move(order.index);
+  index_ = morton_order(stretched);
   std::vector<Vec3> sorted(points.size());
   for (std::size_t k = 0; k < points.size(); ++k) sorted[k] = stretched[index_[k]];
   points_ = std::make_unique<const std::vector<Vec3>>(std::move(sorted));
-  sum_ = std::make_unique<FastSum>(*points_, order.code, Widths(epsilon_), plan, cancel);
+  sum_ = std::make_unique<FastSum>(*points_, Widths(epsilon_), plan, cancel);
 }
 
 std::vector<double> StretchedWinding::apply(const std::vector<Vec3>& eta) {

@@ -57,13 +57,12 @@ WnncWidths wnnc_widths(const std::string& name, double spacing) {
   throw InvalidInput("widths of wnnc: '" + name + "' is none of " + known);
 }
 
-WnncResult solve_wnnc(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const WnncWidths& widths,
-                      const SumPlan& plan, Stages& stages) {
+WnncResult solve_wnnc(const std::vector<Vec3>& points, const WnncWidths& widths, const SumPlan& plan, Stages& stages) {
   WnncResult result;
   std::vector<Vec3> eta(points.size(), Vec3{0, 0, 0});
   for (int i = 0; i < kWnncIterations; ++i) {
     const double left = static_cast<double>(kWnncIterations - 1 - i) / (kWnncIterations - 1);
-    HardCutoffSum sum(points, morton, widths.narrowest + left * (widths.widest - widths.narrowest), plan, stages.cancel());
+    HardCutoffSum sum(points, widths.narrowest + left * (widths.widest - widths.narrowest), plan, stages.cancel());
     result.residuals.push_back(descend(sum, eta));
     result.eta = eta;
     result.normals = normalised(eta);

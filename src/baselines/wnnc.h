@@ -40,7 +40,6 @@ struct WnncResult {
 };
 
 /// Points in canonical order with their Morton codes. Four sums per iteration. Throws Cancelled.
-[[nodiscard]] WnncResult solve_wnnc(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const WnncWidths& widths,
-                                    const SumPlan& plan, Stages& stages);
+[[nodiscard]] WnncResult solve_wnnc(const std::vector<Vec3>& points, const WnncWidths& widths, const SumPlan& plan, Stages& stages);
 
 }  // namespace g3r

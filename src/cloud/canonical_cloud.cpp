@@ -160,7 +160,13 @@ std::uint64_t morton_code(const Vec3& unit) {
   return code;
 }
 
-MortonOrder morton_order(const std::vector<Vec3>& unit_points) {
+std::vector<std::uint64_t> morton_codes(const std::vector<Vec3>& unit_points) {
+  std::vector<std::uint64_t> codes(unit_points.size());
+  parallel::for_all(codes.size(), [&](std::size_t i) { codes[i] = morton_code(unit_points[i]); });
+  return codes;
+}
+
+std::vector<std::uint32_t> morton_order(const std::vector<Vec3>& unit_points) {
   const std::size_t n = unit_points.size();
   std::vector<Keyed> items(n);
   parallel::for_blocks(n, parallel::kBlock, [&](std::size_t begin, std::size_t end) {
@@ -179,15 +185,8 @@ MortonOrder morton_order(const std::vector<Vec3>& unit_points) {
     }
     begin = end;
   }
-  MortonOrder order;
-  order.index.resize(n);
-  order.code.resize(n);
-  parallel::for_blocks(n, parallel::kBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      order.index[i] = items[i].index;
-      order.code[i] = items[i].code;
-    }
-  });
+  std::vector<std::uint32_t> order(n);
+  parallel::for_all(n, [&](std::size_t i) { order[i] = items[i].index; });
   return order;
 }
 
@@ -210,23 +209,21 @@ CanonicalCloud canonical_cloud(const PointsView& points) {
   const std::size_t n = input.size();
   std::vector<Vec3> unit(n);
   parallel::for_all(n, [&](std::size_t i) { unit[i] = cloud.frame.to_unit(points[input[i]]); });
-  const MortonOrder order = morton_order(unit);
+  const std::vector<std::uint32_t> order = morton_order(unit);
   std::vector<std::uint32_t> number(n);  // how many distinct ones there are up to a point
-  parallel::for_all(n, [&](std::size_t k) { number[k] = k == 0 || unit[order.index[k]] != unit[order.index[k - 1]] ? 1 : 0; });
+  parallel::for_all(n, [&](std::size_t k) { number[k] = k == 0 || unit[order[k]] != unit[order[k - 1]] ? 1 : 0; });
   std::partial_sum(number.begin(), number.end(), number.begin());
   std::vector<Vec3> kept(number.back());
-  std::vector<std::uint64_t> morton(kept.size());
   cloud.multiplicity.resize(kept.size());
   cloud.point_of.assign(points.count, kNoPoint);
   parallel::for_all(n, [&](std::size_t k) {
     const std::uint32_t place = number[k] - 1;
-    cloud.point_of[input[order.index[k]]] = place;
+    cloud.point_of[input[order[k]]] = place;
     if (k > 0 && number[k - 1] == number[k]) return;
-    kept[place] = unit[order.index[k]];
-    morton[place] = order.code[k];
+    kept[place] = unit[order[k]];
     for (std::size_t same = k; same < n && number[same] == number[k]; ++same) ++cloud.multiplicity[place];
   });
-  cloud.set = PointSet(std::move(kept), std::move(morton));
+  cloud.set = PointSet(std::move(kept));
   if (cloud.size() < kFewestPoints) {
     throw InvalidInput("too few distinct points: " + std::to_string(cloud.size()) + " (the rest are duplicates), at least 4 are needed");
   }
@@ -245,17 +242,17 @@ bool refit_frame(CanonicalCloud& cloud, std::vector<Vec3>& others) {
   std::vector<Vec3> unit(cloud.size());
   for (std::size_t i = 0; i < unit.size(); ++i) unit[i] = inner.to_unit(cloud.points()[i]);
   for (Vec3& p : others) p = inner.to_unit(p);
-  MortonOrder order = morton_order(unit);
+  const std::vector<std::uint32_t> order = morton_order(unit);
   const std::vector<std::uint32_t> multiplicity = cloud.multiplicity;
   std::vector<std::uint32_t> renumbered(cloud.size());
   std::vector<Vec3> sorted(cloud.size());
   for (std::uint32_t k = 0; k < cloud.size(); ++k) {
-    const std::uint32_t i = order.index[k];
+    const std::uint32_t i = order[k];
     sorted[k] = unit[i];
     cloud.multiplicity[k] = multiplicity[i];
     renumbered[i] = k;
   }
-  cloud.set = PointSet(std::move(sorted), std::move(order.code));
+  cloud.set = PointSet(std::move(sorted));
   for (std::uint32_t& p : cloud.point_of) {
     if (p < renumbered.size()) p = renumbered[p];
   }

@@ -30,13 +30,12 @@ inline constexpr std::uint32_t kNoPoint = UINT32_MAX;
 /// input.
 struct CanonicalCloud {
   Frame frame;
-  PointSet set;                             ///< M points in the unit box; Morton codes of 63 bits
+  PointSet set;                             ///< M points in the unit box
   std::vector<std::uint32_t> point_of;      ///< N: input point -> index into points, kNoPoint if not finite
   std::vector<std::uint32_t> multiplicity;  ///< M: number of input points at this place
   std::size_t non_finite = 0;
 
   [[nodiscard]] const std::vector<Vec3>& points() const { return set.points(); }
-  [[nodiscard]] const std::vector<std::uint64_t>& morton() const { return set.morton(); }
   [[nodiscard]] std::size_t size() const { return set.size(); }
 };
 
@@ -47,13 +46,11 @@ inline constexpr int kGridBits = 21;  ///< of an axis in a Morton code: 3 x 21 =
 
 /// Morton code of a point of [-1, 1]^3 on the 2^21 grid: bits x2 y2 z2 x1 y1 z1 x0 y0 z0, x highest. Coordinates outside are clamped.
 [[nodiscard]] std::uint64_t morton_code(const Vec3& unit);
+/// Of N points. O(N).
+[[nodiscard]] std::vector<std::uint64_t> morton_codes(const std::vector<Vec3>& unit_points);
 
-/// Indices that sort points of [-1, 1]^3 canonically, and their codes in that order. O(N).
-struct MortonOrder {
-  std::vector<std::uint32_t> index;
-  std::vector<std::uint64_t> code;
-};
-[[nodiscard]] MortonOrder morton_order(const std::vector<Vec3>& unit_points);
+/// Indices that sort points of [-1, 1]^3 canonically. O(N).
+[[nodiscard]] std::vector<std::uint32_t> morton_order(const std::vector<Vec3>& unit_points);
 
 /// Fits the frame anew, and sorts anew, where the points fill less than half of its longest side because far ones have been taken out: the
 /// grid and the kernels have to resolve what is left. `others`, in the unit frame, move with it. Returns whether it did. O(N).

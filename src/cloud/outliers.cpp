@@ -229,9 +229,7 @@ std::vector<Vec3> remove_points(CanonicalCloud& cloud, const std::vector<std::ui
   std::vector<std::uint32_t> removed_multiplicity;
   std::vector<std::uint32_t> renumbered(cloud.size());
   std::vector<Vec3> points;
-  std::vector<std::uint64_t> morton;
   points.reserve(staying);
-  morton.reserve(staying);
   for (std::uint32_t i = 0; i < renumbered.size(); ++i) {
     if (removed.size() < indices.size() && indices[removed.size()] == i) {
       renumbered[i] = static_cast<std::uint32_t>(staying + removed.size());
@@ -242,9 +240,8 @@ std::vector<Vec3> remove_points(CanonicalCloud& cloud, const std::vector<std::ui
     renumbered[i] = static_cast<std::uint32_t>(points.size());
     cloud.multiplicity[points.size()] = cloud.multiplicity[i];
     points.push_back(cloud.points()[i]);
-    morton.push_back(cloud.morton()[i]);
   }
-  cloud.set = PointSet(std::move(points), std::move(morton));
+  cloud.set = PointSet(std::move(points));
   std::copy(removed_multiplicity.begin(), removed_multiplicity.end(), cloud.multiplicity.begin() + static_cast<std::ptrdiff_t>(staying));
   for (std::uint32_t& p : cloud.point_of) {
     if (p < renumbered.size()) p = renumbered[p];

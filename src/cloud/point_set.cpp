@@ -12,7 +12,6 @@ namespace g3r {
 
 struct PointSet::Known {
   std::vector<Vec3> points;
-  std::vector<std::uint64_t> morton;
   std::mutex making;  // tree, near and local
   std::atomic<bool> has_tree{false}, has_near{false}, has_local{false};
   std::once_flag smoothed_made, spacing_made;
@@ -25,13 +24,9 @@ struct PointSet::Known {
 
 PointSet::PointSet() : known_(std::make_shared<Known>()) {}
 
-PointSet::PointSet(std::vector<Vec3> points, std::vector<std::uint64_t> morton) : PointSet() {
-  known_->points = std::move(points);
-  known_->morton = std::move(morton);
-}
+PointSet::PointSet(std::vector<Vec3> points) : PointSet() { known_->points = std::move(points); }
 
 const std::vector<Vec3>& PointSet::points() const { return known_->points; }
-const std::vector<std::uint64_t>& PointSet::morton() const { return known_->morton; }
 std::size_t PointSet::near_count() const { return std::min(kSpacingNeighbours, size()); }
 
 const Neighbours& PointSet::tree() const {

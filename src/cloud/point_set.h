@@ -17,11 +17,10 @@ namespace g3r {
 class PointSet {
  public:
   PointSet();  ///< no points
-  /// `points`: in the unit frame, as a rule; `morton`: their codes, non-decreasing, or empty where only surroundings are asked for.
-  explicit PointSet(std::vector<Vec3> points, std::vector<std::uint64_t> morton = {});
+  /// `points`: in the unit frame, as a rule.
+  explicit PointSet(std::vector<Vec3> points);
 
-  [[nodiscard]] const std::vector<Vec3>& points() const;           ///< N
-  [[nodiscard]] const std::vector<std::uint64_t>& morton() const;  ///< N codes
+  [[nodiscard]] const std::vector<Vec3>& points() const;  ///< N
   [[nodiscard]] std::size_t size() const { return points().size(); }
 
   /// The k-d tree. O(N log N).

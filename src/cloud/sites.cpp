@@ -154,14 +154,14 @@ void gather(const std::vector<Vec3>& points, const std::vector<Vec3>& seeds, Sit
     ++count[nearest[i]];
   }
   for (std::size_t s = 0; s < seeds.size(); ++s) centroids[s] = vector::scale(centroids[s], 1 / count[s]);
-  MortonOrder order = morton_order(centroids);
+  const std::vector<std::uint32_t> order = morton_order(centroids);
   std::vector<std::uint32_t> rank(seeds.size());
   std::vector<Vec3> sorted(seeds.size());
   for (std::uint32_t s = 0; s < seeds.size(); ++s) {
-    rank[order.index[s]] = s;
-    sorted[s] = centroids[order.index[s]];
+    rank[order[s]] = s;
+    sorted[s] = centroids[order[s]];
   }
-  sites.set = PointSet(std::move(sorted), std::move(order.code));
+  sites.set = PointSet(std::move(sorted));
   sites.site_of.resize(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) sites.site_of[i] = rank[nearest[i]];
 }

@@ -32,7 +32,7 @@ std::vector<Vec3> area_vectors(const PointSet& set, const std::vector<Vec3>& nor
     for (double& c : eta[i]) c *= spacing[i] * spacing[i];
     widths[i] = spacing[i] * kFieldWidth;
   });
-  FastSum sum(set.points(), set.morton(), Widths(std::move(widths)), sum_plan(kFieldAccuracy, set.size()), cancel);
+  FastSum sum(set.points(), Widths(std::move(widths)), sum_plan(kFieldAccuracy, set.size()), cancel);
   std::vector<double> winding = sum.winding(eta);
   if (!surfaces.part.empty()) {
     std::vector<double> closed;

@@ -37,7 +37,7 @@ Field::Field(const PointsView& points, const Orientation& orientation, double wi
   if (!(width >= 0) || !std::isfinite(width)) throw InvalidInput("field: the width must be 0 (automatic) or positive");
   OrientedCloud oriented = oriented_cloud(points, orientation.normals, orientation.areas);
   const double unit_width = width > 0 ? oriented.cloud.frame.length_to_unit(width) : kDefaultWidth * oriented.spacing;
-  FastSum sum(oriented.cloud.points(), oriented.cloud.morton(), Widths(unit_width), sum_plan(kAccuracy, oriented.cloud.size()));
+  FastSum sum(oriented.cloud.points(), Widths(unit_width), sum_plan(kAccuracy, oriented.cloud.size()));
   impl_ = std::unique_ptr<Impl>(new Impl{std::move(oriented), std::move(sum)});
 }
 

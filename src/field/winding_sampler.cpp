@@ -18,8 +18,7 @@ constexpr std::size_t kProbes = 500;
 WindingSampler::WindingSampler(const OrientedCloud& oriented, const std::atomic<bool>* cancel)
     : oriented_(oriented),
       cancel_(cancel),
-      sum_(oriented.cloud.points(), oriented.cloud.morton(), Widths(kFieldWidth * oriented.spacing),
-           sum_plan(kFieldAccuracy, oriented.cloud.size()), cancel) {}
+      sum_(oriented.cloud.points(), Widths(kFieldWidth * oriented.spacing), sum_plan(kFieldAccuracy, oriented.cloud.size()), cancel) {}
 
 void WindingSampler::sample(const std::vector<Vec3>& queries, std::vector<double>& value, std::vector<Vec3>* gradient) const {
   value = sum_.winding_at(oriented_.eta, queries, cancel_);

@@ -29,7 +29,7 @@ class Probed {
   Probed(const Sites& sites, const std::vector<std::vector<Vec3>>& hypotheses, const SumPlan& sums, const std::atomic<bool>* cancel)
       : sites_(sites),
         cancel_(cancel),
-        field_(sites.points(), sites.set.morton(), Widths(kWidth * sites.set.spacing()), sums, cancel),
+        field_(sites.points(), Widths(kWidth * sites.set.spacing()), sums, cancel),
         etas_(hypotheses),
         axis_(sites.axis) {
     for (std::size_t i = 0; i < axis_.size(); ++i) {

@@ -44,7 +44,6 @@ std::vector<T> every(std::size_t step, const std::vector<T>& values) {
 // The points of a level, and how many times as far apart each is as the others, 1 at least; empty: all are equally far apart.
 struct LevelCloud {
   const std::vector<Vec3>& points;
-  const std::vector<std::uint64_t>& morton;
   const std::vector<double>& relative_spacing;
 };
 
@@ -56,7 +55,7 @@ std::vector<double> spacing_of(const LevelCloud& cloud, const Settings& settings
 
 // A sum of kernels of this width.
 FastSum sum_over(const LevelCloud& cloud, const Settings& settings, const KernelWidth& width, const SumPlan& plan, const Stages& stages) {
-  return {cloud.points, cloud.morton, local_widths(width, settings, spacing_of(cloud, settings)), plan, stages.cancel()};
+  return {cloud.points, local_widths(width, settings, spacing_of(cloud, settings)), plan, stages.cancel()};
 }
 
 // A solution and the sum, of width settings.refinement_width, that evaluates its field.
@@ -71,9 +70,8 @@ Level solve_level(const LevelCloud& cloud, const Settings& settings, double shar
 // between its points.
 std::vector<Vec3> coarse_gradient(const LevelCloud& cloud, const Settings& settings, double share, Stages& stages) {
   const std::vector<Vec3> points = every(kTwiceAsFar, cloud.points);
-  const std::vector<std::uint64_t> morton = every(kTwiceAsFar, cloud.morton);
   const std::vector<double> one_width;
-  const Level coarse = solve_level({points, morton, one_width}, coarser(settings), kCoarseShare * share, stages, {});
+  const Level coarse = solve_level({points, one_width}, coarser(settings), kCoarseShare * share, stages, {});
   return coarse.field->winding_gradient_at(coarse.result.eta, cloud.points, stages.cancel());
 }
 
@@ -85,7 +83,7 @@ std::vector<float> confidence_of(const LevelCloud& cloud, const Settings& settin
 // Whether most of the points lie on surfaces without an inside, by the field of some of them.
 bool is_mostly_open(const LevelCloud& cloud, const Settings& settings, const std::vector<Vec3>& normals, const Stages& stages) {
   const std::size_t step = std::max<std::size_t>(1, cloud.points.size() / kFewestCoarsePoints);
-  const PointSet set(every(step, cloud.points), every(step, cloud.morton));
+  const PointSet set(every(step, cloud.points));
   std::vector<Vec3> sides = every(step, normals);
   const OpenSurfaces surfaces = find_open_surfaces(set, settings.noise, settings.sums, sides, stages.cancel());
   const auto closed = std::count(surfaces.part.begin(), surfaces.part.end(), OpenSurfaces::kNone);
@@ -149,9 +147,8 @@ IterativeResult solve_around_unsure(const LevelCloud& cloud, const Settings& set
   };
   const PartResidual right = with_system(cloud, [&](EnergySystem& all) { return residual_at(some, all, all.from_areas(start)); });
   const std::vector<Vec3> points = values_at(some, cloud.points);
-  const std::vector<std::uint64_t> morton = values_at(some, cloud.morton);
   const std::vector<double> relative = values_at(some, cloud.relative_spacing);
-  IterativeResult result = with_system({points, morton, relative}, [&](EnergySystem& part) {
+  IterativeResult result = with_system({points, relative}, [&](EnergySystem& part) {
     IterativeResult change = solve_for_part(part, right, settings.doubtful_schedule, settings.doubtful_tolerance,
                                             [&](int, int, double) { stages.still_going(); });
     change.eta = part.to_areas(std::move(change.eta));
@@ -200,10 +197,9 @@ Level solve_level(const LevelCloud& cloud, const Settings& settings, double shar
 
 }  // namespace
 
-Solved solve_coarse_to_fine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Settings& settings,
-                            Stages& stages, const std::vector<double>& relative_spacing,
-                            const std::vector<Vec3>& gradient) {
-  Level level = solve_level({points, morton, relative_spacing}, settings, 1, stages, gradient);
+Solved solve_coarse_to_fine(const std::vector<Vec3>& points, const Settings& settings, Stages& stages,
+                            const std::vector<double>& relative_spacing, const std::vector<Vec3>& gradient) {
+  Level level = solve_level({points, relative_spacing}, settings, 1, stages, gradient);
   stages.begin("refine");
   if (settings.refinement_width.typical() == 0) return {std::move(level.result), {}};
   Refinement refinement = refine_normals(*level.field, level.result.eta);

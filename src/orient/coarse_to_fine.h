@@ -28,12 +28,11 @@ struct Solved {
 /// the equations are not true. They are undone if a quarter more points are unsure then; not under noise, of which every step makes more of
 /// them unsure, right or wrong.
 /// `gradient`, `relative_spacing`: what is known of these points (Known), or empty. The gradient takes the place of that winding gradient.
-/// All kernels of the finest level are as much wider where points are farther apart by the relative spacing, and the unknowns and equations there count as those of the points that they stand for
-/// (EnergySystem): a sparse part weighs as much as a dense one of the same area. In kernels of one width single points of sparse parts are
-/// far apart, and their equations say little (docs/evidence/other_inputs.md).
-/// The returned residuals are those of the finest level. Begins the stage "refine" after the solve. Throws like solve_iteratively().
-[[nodiscard]] Solved solve_coarse_to_fine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton,
-                                          const Settings& settings, Stages& stages, const std::vector<double>& relative_spacing = {},
-                                          const std::vector<Vec3>& gradient = {});
+/// All kernels of the finest level are as much wider where points are farther apart by the relative spacing, and the unknowns and equations
+/// there count as those of the points that they stand for (EnergySystem): a sparse part weighs as much as a dense one of the same area. In
+/// kernels of one width single points of sparse parts are far apart, and their equations say little (docs/evidence/other_inputs.md). The
+/// returned residuals are those of the finest level. Begins the stage "refine" after the solve. Throws like solve_iteratively().
+[[nodiscard]] Solved solve_coarse_to_fine(const std::vector<Vec3>& points, const Settings& settings, Stages& stages,
+                                          const std::vector<double>& relative_spacing = {}, const std::vector<Vec3>& gradient = {});
 
 }  // namespace g3r

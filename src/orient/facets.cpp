@@ -180,17 +180,15 @@ void choose_facet_sides(const PointSet& set, const Settings& settings, const Fac
   const Subspace subspace(here, values_at(some, areas), values_at(some, turned));
   const std::vector<Vec3> start = subspace.project(values_at(some, eta));
   for (std::size_t k = 0; k < some.size(); ++k) eta[some[k]] = start[k];
-  const auto with_system = [&](const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const std::vector<double>& h,
-                               const auto& work) {
-    FastSum sum(points, morton, local_widths(settings.polish_epsilon, settings, h), settings.first_sums, stages.cancel());
+  const auto with_system = [&](const std::vector<Vec3>& points, const std::vector<double>& h, const auto& work) {
+    FastSum sum(points, local_widths(settings.polish_epsilon, settings, h), settings.first_sums, stages.cancel());
     EnergySystem system(sum, 0, settings.polish_winding_weight);
     return work(system);
   };
-  PartResidual right = with_system(set.points(), set.morton(), spacing, [&](EnergySystem& all) { return residual_at(some, all, eta); });
+  PartResidual right = with_system(set.points(), spacing, [&](EnergySystem& all) { return residual_at(some, all, eta); });
   right.residual = subspace.project(std::move(right.residual));
   const std::vector<Vec3> points = values_at(some, set.points());
-  const std::vector<std::uint64_t> morton = values_at(some, set.morton());
-  const std::vector<Vec3> change = with_system(points, morton, values_at(some, spacing), [&](EnergySystem& free) {
+  const std::vector<Vec3> change = with_system(points, values_at(some, spacing), [&](EnergySystem& free) {
     OnFacets part(free, subspace);
     const auto still_going = [&stages](int, int, double) { stages.still_going(); };
     return solve_for_part(part, right, {kMoreSteps}, settings.doubtful_tolerance, still_going).eta;

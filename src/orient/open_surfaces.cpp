@@ -120,14 +120,12 @@ class Search {
   // Twice the mean of w at the sites of a part, w of that part alone: 1 on a closed surface, 0 on a plane, -1 on one inside out.
   [[nodiscard]] double enclosure(std::uint32_t part, const std::vector<Vec3>& normals) const {
     std::vector<Vec3> points;
-    std::vector<std::uint64_t> morton;
     std::vector<Vec3> eta;
     for (const std::uint32_t s : members_[part]) {
       points.push_back(finest_.points()[s]);
-      morton.push_back(finest_.set.morton()[s]);
       eta.push_back(vector::scale(normals[s], finest_.side(s) * finest_.side(s)));
     }
-    FastSum field(points, morton, Widths(kBetweenSites * finest_.set.spacing()), sum_plan(kContinuedAccuracy, points.size()), cancel_);
+    FastSum field(points, Widths(kBetweenSites * finest_.set.spacing()), sum_plan(kContinuedAccuracy, points.size()), cancel_);
     double sum = 0;
     for (const double w : field.winding(eta)) sum += w;
     return 2 * sum / static_cast<double>(points.size());
@@ -153,7 +151,7 @@ class Search {
   [[nodiscard]] std::vector<Vec3> seen_from_afar(const std::vector<std::vector<Vec3>>& tried, const std::vector<std::size_t>& best) const {
     std::vector<Vec3> chosen(points_.size());
     for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i] = tried[best[part_of_point(i)]][i];
-    const FastSum field(finest_.points(), finest_.set.morton(), Widths(kFar * finest_.set.spacing()), sums_, cancel_);
+    const FastSum field(finest_.points(), Widths(kFar * finest_.set.spacing()), sums_, cancel_);
     return unit_normals(field.winding_gradient_at(areas_of(finest_, at_sites(chosen)), points_, cancel_), chosen).normals;
   }
 
@@ -208,7 +206,7 @@ class Search {
     std::vector<Vec3> normals(count);
     for (std::size_t s = 0; s < count; ++s) normals[s] = vector::scale(sites.axis[s], signs.sign[s]);
     const double spacing = sites.set.spacing();
-    FastSum wide(sites.points(), sites.set.morton(), Widths(kTurnWidth * spacing), sums_, cancel_);
+    FastSum wide(sites.points(), Widths(kTurnWidth * spacing), sums_, cancel_);
     for (int turn = 0; turn < kTurns; ++turn) normals = refine_normals(wide, areas_of(sites, normals)).normals;
     // Directions from a narrower field, where its side is the same.
     const FastSum field(wide, Widths(kBetweenSites * spacing));
@@ -413,8 +411,7 @@ std::vector<std::uint32_t> points_of(const Search& search, const std::vector<std
 void find_among(const std::vector<std::uint32_t>& some, const PointSet& set, double noise, const SumPlan& sums,
                 const std::atomic<bool>* cancel, std::vector<Vec3>& normals, OpenSurfaces& found) {
   std::vector<Vec3> sides = values_at(some, normals);
-  const OpenSurfaces here =
-      find_open_surfaces(PointSet(values_at(some, set.points()), values_at(some, set.morton())), noise, sums, sides, cancel);
+  const OpenSurfaces here = find_open_surfaces(PointSet(values_at(some, set.points())), noise, sums, sides, cancel);
   if (!here.part.empty() && found.part.empty()) {
     found.part.assign(set.size(), OpenSurfaces::kNone);
     found.certainty.assign(set.size(), 1);

@@ -42,7 +42,7 @@ std::vector<double> point_areas(const Settings& settings, const std::vector<doub
 }
 
 Polished polish(PolishCloud cloud, const Settings& settings, Refinement refined, Stages& stages) {
-  FastSum wider(cloud.points, cloud.morton, local_widths(settings.polish_width, settings, cloud.spacing), settings.sums, stages.cancel());
+  FastSum wider(cloud.points, local_widths(settings.polish_width, settings, cloud.spacing), settings.sums, stages.cancel());
   FastSum sum(wider, local_widths(settings.polish_epsilon, settings, cloud.spacing));
   EnergySystem system(sum, settings.polish_damping, settings.polish_winding_weight, cloud.roots);
   std::vector<double>().swap(cloud.spacing);

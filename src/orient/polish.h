@@ -32,7 +32,6 @@ struct Polished {
 /// The points of a polish, in canonical order.
 struct PolishCloud {
   const std::vector<Vec3>& points;
-  const std::vector<std::uint64_t>& morton;
   std::vector<double> spacing;  ///< at each point, which both widths follow; empty: the typical one everywhere
   std::vector<double> areas;    ///< that each point stands for, or one for all
   std::vector<double> roots;    ///< of how much the equations of each point count; empty: ones

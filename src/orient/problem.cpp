@@ -96,14 +96,12 @@ Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, 
   Problem part;
   part.cloud.frame = problem.cloud.frame;
   std::vector<Vec3> points;
-  std::vector<std::uint64_t> morton;
   for (const std::uint32_t i : some) {
     points.push_back(problem.cloud.points()[i]);
-    morton.push_back(problem.cloud.morton()[i]);
     if (!problem.known.gradient.empty()) part.known.gradient.push_back(problem.known.gradient[i]);
     if (!problem.known.relative_spacing.empty()) part.known.relative_spacing.push_back(problem.known.relative_spacing[i]);
   }
-  part.cloud.set = PointSet(std::move(points), std::move(morton));
+  part.cloud.set = PointSet(std::move(points));
   part.spacing = typical_spacing(spacing_before_thinning(part.cloud.set.local_spacing(), part.known.relative_spacing));
   part.noise = problem.noise;
   part.outliers = problem.outliers;  // those of the whole cloud: the part was solved for among them

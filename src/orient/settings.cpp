@@ -135,9 +135,10 @@ std::optional<double> given_noise(const Length& noise, const CanonicalCloud& clo
 
 // Two points share a leaf of level L when their codes agree in the first 3 L bits; neighbours in Morton order share the most.
 double paper_epsilon(const CanonicalCloud& cloud) {
+  const std::vector<std::uint64_t> codes = morton_codes(cloud.points());
   int deepest = 0;
   for (std::size_t i = 1; i < cloud.size(); ++i) {
-    const int common_bits = std::countl_zero(cloud.morton()[i - 1] ^ cloud.morton()[i]) - 1;  // the top bit of a code is unused
+    const int common_bits = std::countl_zero(codes[i - 1] ^ codes[i]) - 1;  // the top bit of a code is unused
     deepest = std::max(deepest, std::min(common_bits / 3 + 1, kGridBits));
   }
   return kPaperLeafFactor * std::ldexp(2.0, -deepest);

@@ -72,8 +72,7 @@ Solution solve_equations(const Problem& problem, const Options& options, Stages&
   const std::vector<Vec3>& points = problem.cloud.points();
   stages.begin("solve");
   if (!s.dense) {
-    Solved solved =
-        solve_coarse_to_fine(points, problem.cloud.morton(), s, stages, relative_spacing(problem, options), problem.known.gradient);
+    Solved solved = solve_coarse_to_fine(points, s, stages, relative_spacing(problem, options), problem.known.gradient);
     record(s, solved.result, stats);
     return {std::move(solved.result.eta), std::move(solved.refinement), {}};
   }
@@ -85,7 +84,7 @@ Solution solve_equations(const Problem& problem, const Options& options, Stages&
   solution.eta = std::move(dense.eta);
   stages.begin("refine");
   if (s.refinement_width.typical() == 0) return solution;
-  FastSum sum(points, problem.cloud.morton(), Widths(s.refinement_width.typical()), s.sums, stages.cancel());
+  FastSum sum(points, Widths(s.refinement_width.typical()), s.sums, stages.cancel());
   solution.refinement = refine_normals(sum, solution.eta);
   return solution;
 }
@@ -114,7 +113,7 @@ void agree_on_facets(const Problem& problem, const std::vector<std::uint8_t>& pr
     const Facets facets = find_facets(set, proven, normals);
     if (minority_share(facets, normals) < kMinMinority) return;
     choose_facet_sides(set, s, facets, eta, normals, stages);
-    FastSum sum(set.points(), set.morton(), local_widths(s.polish_width, s, set.smoothed_spacing()), s.sums, stages.cancel());
+    FastSum sum(set.points(), local_widths(s.polish_width, s, set.smoothed_spacing()), s.sums, stages.cancel());
     const Refinement refined = refine_normals(sum, eta);
     for (std::size_t i = 0; i < set.size(); ++i) {
       if (facets.of[i] == Facets::kNone) normals[i] = refined.normals[i];
@@ -153,7 +152,7 @@ PolishCloud polish_cloud(const Problem& problem, const Options& options) {
   const bool is_exact = problem.is_clean() && runs(problem, Step::kLocalWidths);
   const std::vector<double> relative = is_exact ? problem.known.relative_spacing : relative_spacing(problem, options);
   const std::vector<double> local = is_exact ? set.smoothed_spacing() : times(problem.spacing, relative);
-  return {set.points(), set.morton(), local, point_areas(problem.settings, local), relative};
+  return {set.points(), local, point_areas(problem.settings, local), relative};
 }
 
 Solution solve_on_points(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
@@ -188,14 +187,14 @@ Solution solve_on_points(const Problem& problem, const Options& options, Stages&
 
 Refinement solve_clusters(const Clusters& clusters, const std::vector<double>& spacing, const Settings& s, Stages& stages, Stats& stats) {
   stages.begin("solve");
-  FastSum sum(clusters.points, clusters.morton, local_widths(s.epsilon, s, spacing), s.first_sums, stages.cancel());
+  FastSum sum(clusters.points, local_widths(s.epsilon, s, spacing), s.first_sums, stages.cancel());
   const std::vector<double> roots = clusters.roots();
   EnergySystem system(sum, 0, s.winding_weight, roots);
   IterativeResult result = solve_iteratively(system, s.schedule, s.tolerance, {},
                                              [&](int step, int steps, double) { stages.progress(static_cast<double>(step) / steps); });
   record(s, result, stats);
   stages.begin("refine");
-  FastSum wide(clusters.points, clusters.morton, local_widths(s.refinement_width, s, spacing), s.sums, stages.cancel());
+  FastSum wide(clusters.points, local_widths(s.refinement_width, s, spacing), s.sums, stages.cancel());
   return refine_normals(wide, system.to_areas(std::move(result.eta)));
 }
 
@@ -205,11 +204,11 @@ Solution solve_on_clusters(const Problem& problem, const Options& options, Stage
   const Settings& s = problem.settings;
   const PointSet& set = problem.cloud.set;
   const std::vector<double> relative = relative_spacing(problem, options);
-  const Clusters clusters = cluster_points(set.points(), set.morton(), s.cluster_side, relative);
+  const Clusters clusters = cluster_points(set.points(), s.cluster_side, relative);
   const std::vector<double> spacing = times(problem.spacing, clusters.relative_spacing);
   Refinement first = solve_clusters(clusters, spacing, s, stages, stats);
   const std::vector<double> areas = times(problem.spacing * problem.spacing, clusters.multiplicity);
-  const PolishCloud cloud{clusters.points, clusters.morton, spacing, areas, clusters.roots()};
+  const PolishCloud cloud{clusters.points, spacing, areas, clusters.roots()};
   const Polished polished = polish(cloud, s, std::move(first), stages);
   const std::vector<Vec3>& eta = polished.eta;
   std::vector<std::uint32_t> members(clusters.points.size(), 0);
@@ -221,7 +220,7 @@ Solution solve_on_clusters(const Problem& problem, const Options& options, Stage
     const double area = relative.empty() ? 1 : relative[i] * relative[i];
     for (std::size_t a = 0; a < 3; ++a) solution.eta[i][a] = eta[c][a] * area / clusters.multiplicity[c];
   }
-  const FastSum field(clusters.points, clusters.morton, Widths(s.polish_width.typical()), s.sums, stages.cancel());
+  const FastSum field(clusters.points, Widths(s.polish_width.typical()), s.sums, stages.cancel());
   solution.refinement = unit_normals(field.winding_gradient_at(eta, set.points(), stages.cancel()), solution.eta);
   for (double& jump : solution.refinement.strength) jump *= s.polish_width.typical();
   for (std::size_t i = 0; i < solution.eta.size(); ++i) {  // points by themselves are sparse, and have kernels of their own width
@@ -261,7 +260,7 @@ Solution solve_on_sites(const Problem& problem, const Options& options, Stages& 
     out.open_surfaces.certainty.push_back(solved.open_surfaces.certainty[s]);
     out.open_surfaces.agrees.push_back(solved.open_surfaces.agrees[s]);
   }
-  const FastSum field(sites.points(), sites.set.morton(), Widths(kBetweenSites * coarse.spacing), coarse.settings.sums, stages.cancel());
+  const FastSum field(sites.points(), Widths(kBetweenSites * coarse.spacing), coarse.settings.sums, stages.cancel());
   out.refinement = unit_normals(field.winding_gradient_at(solved.eta, points, stages.cancel()), out.eta);
   return out;
 }
@@ -269,7 +268,6 @@ Solution solve_on_sites(const Problem& problem, const Options& options, Stages& 
 // Mean size of the winding number at some points (ascending) of all the others: how much of the equations there is theirs.
 double winding_of_others(const Problem& problem, const std::vector<std::uint32_t>& some, const std::vector<Vec3>& eta, Stages& stages) {
   std::vector<Vec3> others;
-  std::vector<std::uint64_t> morton;
   std::vector<Vec3> areas;
   std::vector<Vec3> here;
   for (std::uint32_t i = 0, k = 0; i < eta.size(); ++i) {
@@ -279,10 +277,9 @@ double winding_of_others(const Problem& problem, const std::vector<std::uint32_t
       continue;
     }
     others.push_back(problem.cloud.points()[i]);
-    morton.push_back(problem.cloud.morton()[i]);
     areas.push_back(eta[i]);
   }
-  const FastSum field(others, morton, Widths(kBetweenSites * problem.spacing), problem.settings.sums, stages.cancel());
+  const FastSum field(others, Widths(kBetweenSites * problem.spacing), problem.settings.sums, stages.cancel());
   double sum = 0;
   for (const double w : field.winding_at(areas, here, stages.cancel())) sum += std::abs(w);
   return sum / static_cast<double>(here.size());

@@ -74,9 +74,9 @@ void try_out(const std::shared_ptr<Execution>& execution) {
   std::vector<std::vector<Vec3>> s(2);
   std::vector<double> w;
   const Scope processor("cpu", kTrialPoints);  // for the first of the two
-  parallel::with_threads(1, [&] { FastSum(cloud.points(), cloud.morton(), widths, plan).stokes_winding(cloud.points(), s[0], w); });
+  parallel::with_threads(1, [&] { FastSum(cloud.points(), widths, plan).stokes_winding(cloud.points(), s[0], w); });
   plan.execution = execution;
-  parallel::with_threads(1, [&] { FastSum(cloud.points(), cloud.morton(), widths, plan).stokes_winding(cloud.points(), s[1], w); });
+  parallel::with_threads(1, [&] { FastSum(cloud.points(), widths, plan).stokes_winding(cloud.points(), s[1], w); });
   double difference = 0;
   double size = 0;
   for (std::size_t i = 0; i < s[0].size(); ++i) {

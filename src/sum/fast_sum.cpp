@@ -180,20 +180,17 @@ struct FastSum::Impl {
   std::variant<SumEngine<float>, SumEngine<double>> engine;
 
   using Engine = decltype(engine);
-  static Engine make(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Widths& widths, const SumPlan& plan,
-                     const std::atomic<bool>* cancel) {
-    if (plan.double_precision) return Engine(std::in_place_type<SumEngine<double>>, points, morton, widths, plan, cancel);
-    return Engine(std::in_place_type<SumEngine<float>>, points, morton, widths, plan, cancel);
+  static Engine make(const std::vector<Vec3>& points, const Widths& widths, const SumPlan& plan, const std::atomic<bool>* cancel) {
+    if (plan.double_precision) return Engine(std::in_place_type<SumEngine<double>>, points, widths, plan, cancel);
+    return Engine(std::in_place_type<SumEngine<float>>, points, widths, plan, cancel);
   }
 
   // The sources with all lengths times `factor`, a power of two: their order stays.
   [[nodiscard]] Engine shrunk(double factor, const std::atomic<bool>* stop) const {
     const std::vector<Vec3> sources = scaled(*points, factor);
-    std::vector<std::uint64_t> codes(sources.size());
-    std::transform(sources.begin(), sources.end(), codes.begin(), morton_code);
     SumPlan finer = sum_plan(kShellAccuracy, sources.size());
     finer.execution = plan.execution;
-    return make(sources, codes, Widths(factor * width), plan.order < finer.order ? finer : plan, stop);
+    return make(sources, Widths(factor * width), plan.order < finer.order ? finer : plan, stop);
   }
 
   // Sums of `eta` at any targets. Everything is shrunk until the targets are in the cube: one sum for every shell that has some.
@@ -218,8 +215,8 @@ struct FastSum::Impl {
         continue;
       }
       const double factor = std::ldexp(1.0, -shell);
-      const std::vector<std::uint64_t> codes = sort_by_code(targets, factor, index);
-      const auto sum_on = [&](const auto& sources) { in_chunks(sources, eta, targets, factor, index, codes, stop, fast); };
+      sort_canonically(targets, factor, index);
+      const auto sum_on = [&](const auto& sources) { in_chunks(sources, eta, targets, factor, index, stop, fast); };
       if (shell == 0) {
         std::visit(sum_on, engine);
       } else {
@@ -229,33 +226,30 @@ struct FastSum::Impl {
     }
   }
 
-  // Puts the targets of `index`, shrunk, into canonical order. Returns their codes.
-  static std::vector<std::uint64_t> sort_by_code(const std::vector<Vec3>& targets, double factor, std::vector<std::uint32_t>& index) {
+  // Puts the targets of `index`, shrunk, into canonical order.
+  static void sort_canonically(const std::vector<Vec3>& targets, double factor, std::vector<std::uint32_t>& index) {
     std::vector<Vec3> some(index.size());
     parallel::for_all(some.size(), [&](std::size_t i) { some[i] = targets[index[i]]; });
-    MortonOrder order = morton_order(scaled(std::move(some), factor));
-    for (std::uint32_t& i : order.index) i = index[i];
-    index.swap(order.index);
-    return std::move(order.code);
+    std::vector<std::uint32_t> order = morton_order(scaled(std::move(some), factor));
+    for (std::uint32_t& i : order) i = index[i];
+    index.swap(order);
   }
 
   // Sums at targets in canonical order, some of them at a time: a value depends on the place of its target alone.
   template <class Sources, class Fast>
   static void in_chunks(const Sources& sources, const std::vector<Vec3>& eta, const std::vector<Vec3>& targets, double factor,
-                        const std::vector<std::uint32_t>& index, const std::vector<std::uint64_t>& codes, const std::atomic<bool>* stop,
-                        const Fast& fast) {
+                        const std::vector<std::uint32_t>& index, const std::atomic<bool>* stop, const Fast& fast) {
     std::optional<Sources> engine;
     for (std::size_t begin = 0; begin < index.size(); begin += kTargetsAtOnce) {
       const std::size_t end = std::min(index.size(), begin + kTargetsAtOnce);
       const std::vector<std::uint32_t> chunk(index.data() + begin, index.data() + end);
-      const std::vector<std::uint64_t> code(codes.data() + begin, codes.data() + end);
       std::vector<Vec3> some(chunk.size());
       for (std::size_t i = 0; i < some.size(); ++i) some[i] = targets[chunk[i]];
       some = scaled(std::move(some), factor);
       if (engine) {
-        engine->set_targets(some, code);
+        engine->set_targets(some);
       } else {
-        engine.emplace(sources, some, code, stop);
+        engine.emplace(sources, some, stop);
         fill_eta(*engine, eta, 3);
       }
       fast(*engine, chunk, factor);
@@ -263,9 +257,8 @@ struct FastSum::Impl {
   }
 };
 
-FastSum::FastSum(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Widths& widths, const SumPlan& plan,
-                 const std::atomic<bool>* cancel) {
-  impl_.reset(new Impl{&points, widths[0], placed(plan), cancel, Impl::make(points, morton, widths, placed(plan), cancel)});
+FastSum::FastSum(const std::vector<Vec3>& points, const Widths& widths, const SumPlan& plan, const std::atomic<bool>* cancel) {
+  impl_.reset(new Impl{&points, widths[0], placed(plan), cancel, Impl::make(points, widths, placed(plan), cancel)});
 }
 
 FastSum::FastSum(const FastSum& other, const Widths& narrower) {

@@ -1,6 +1,7 @@
 // Sources: Greengard and Rokhlin 1997 for the passes; Dehnen 2002 for the traversal.
 #include "sum/sum_engine.h"
 
+#include "cloud/canonical_cloud.h"
 #include "cpu/parallel.h"
 #include "expansions/expansions.h"
 #include "gpu/execution.h"
@@ -67,13 +68,12 @@ std::array<T, 3> moved(const Vec3& v) {
 }  // namespace
 
 template <class T>
-SumEngine<T>::SumEngine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Widths& widths,
-                        const SumPlan& plan, const std::atomic<bool>* cancel)
+SumEngine<T>::SumEngine(const std::vector<Vec3>& points, const Widths& widths, const SumPlan& plan, const std::atomic<bool>* cancel)
     : plan_(plan), local_widths_(!widths.uniform()), cancel_(cancel), sources_(std::make_shared<Sources>()) {
   set_terms({plan.order, plan.opening, plan.cut});
   Sources& s = *sources_;
   s.count = points.size();
-  s.tree = build_octree(points, morton, widths.values, plan_.leaf_points);
+  s.tree = build_octree(points, morton_codes(points), widths.values, plan_.leaf_points);
   s.places = places_in(s.tree, points);
   for (std::size_t o = 0; o < 8 && !plan_.direct; ++o) {
     const Vec3 shift{o & 4 ? 0.5 : -0.5, o & 2 ? 0.5 : -0.5, o & 1 ? 0.5 : -0.5};
@@ -104,21 +104,20 @@ SumEngine<T>::SumEngine(const SumEngine& other, const Widths& narrower)
 }
 
 template <class T>
-SumEngine<T>::SumEngine(const SumEngine& other, const std::vector<Vec3>& targets, const std::vector<std::uint64_t>& morton,
-                        const std::atomic<bool>* cancel)
+SumEngine<T>::SumEngine(const SumEngine& other, const std::vector<Vec3>& targets, const std::atomic<bool>* cancel)
     : plan_(other.plan_),
       local_widths_(other.local_widths_),
       cancel_(cancel),
       sources_(other.sources_),
       source_widths_(other.source_widths_) {
   set_terms({plan_.order, plan_.opening, plan_.cut});
-  set_targets(targets, morton);
+  set_targets(targets);
 }
 
 template <class T>
-void SumEngine<T>::set_targets(const std::vector<Vec3>& targets, const std::vector<std::uint64_t>& morton) {
+void SumEngine<T>::set_targets(const std::vector<Vec3>& targets) {
   on_device_.reset();
-  target_tree_ = std::make_shared<Octree>(build_query_octree(targets, morton, sources_->tree));
+  target_tree_ = std::make_shared<Octree>(build_query_octree(targets, morton_codes(targets), sources_->tree));
   target_places_ = places_in(*target_tree_, targets);
   interactions_ = std::make_shared<Interactions>();
 }

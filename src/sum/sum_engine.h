@@ -38,14 +38,12 @@ class SumEngine {
   /// cpu::kLanes apart. Called from many threads, once for every target.
   using Take = std::function<void(std::uint32_t first, std::uint32_t count, const double* sums)>;
 
-  /// Points in canonical order with their Morton codes; the sources are also the targets.
-  SumEngine(const std::vector<Vec3>& points, const std::vector<std::uint64_t>& morton, const Widths& widths, const SumPlan& plan,
-            const std::atomic<bool>* cancel);
+  /// Points in canonical order; the sources are also the targets.
+  SumEngine(const std::vector<Vec3>& points, const Widths& widths, const SumPlan& plan, const std::atomic<bool>* cancel);
   /// The same points with widths that are nowhere larger, in the tree and the lists of `other`, whose own targets are its sources.
   SumEngine(const SumEngine& other, const Widths& narrower);
   /// Another set of targets for the sources of `other` (uniform width), canonical order.
-  SumEngine(const SumEngine& other, const std::vector<Vec3>& targets, const std::vector<std::uint64_t>& morton,
-            const std::atomic<bool>* cancel);
+  SumEngine(const SumEngine& other, const std::vector<Vec3>& targets, const std::atomic<bool>* cancel);
 
   /// Of the kernel of this source.
   [[nodiscard]] double source_width(std::size_t source) const {
@@ -53,7 +51,7 @@ class SumEngine {
   }
 
   /// Takes other targets in place of those, canonical order; the values of the sources stay, and so does what was made of them.
-  void set_targets(const std::vector<Vec3>& targets, const std::vector<std::uint64_t>& morton);
+  void set_targets(const std::vector<Vec3>& targets);
 
   /// Makes room for `values` values per source, for the caller to fill: the k-th of source i is value(k)[i].
   void begin_values(std::size_t values);

@@ -53,7 +53,7 @@ std::vector<Vec3> gradient_of(const Thinned& thinned, const TileCloud& cloud, co
   const OrientedCloud oriented = oriented_cloud(thinned.points, normals);
   std::vector<Vec3> targets(cloud.points.size());
   parallel::for_all(targets.size(), [&](std::size_t i) { targets[i] = oriented.cloud.frame.to_unit(cloud.points[i]); });
-  const FastSum field(oriented.cloud.points(), oriented.cloud.morton(), Widths(kRefinementWidth * oriented.spacing),
+  const FastSum field(oriented.cloud.points(), Widths(kRefinementWidth * oriented.spacing),
                       sum_plan(kContinuedAccuracy, oriented.cloud.size()), cancel);
   return field.winding_gradient_at(oriented.eta, targets, cancel);
 }

@@ -60,14 +60,14 @@ OrientedCloud field_sources(const MeshFolder& folder, const Surroundings& around
   std::vector<Vec3> eta;
   for (std::size_t i = 0; i < points.size(); ++i) eta.push_back(vector::scale(near.normals[i], near.spacing[i] * near.spacing[i]));
   for (std::size_t t = 0; t < folder.tiles(); ++t) add_far_nodes(folder, t, around.rings, points, eta);
-  const MortonOrder order = morton_order(points);
+  const std::vector<std::uint32_t> order = morton_order(points);
   OrientedCloud out;
   std::vector<Vec3> sorted;
-  for (const std::uint32_t i : order.index) {
+  for (const std::uint32_t i : order) {
     sorted.push_back(points[i]);
     out.eta.push_back(eta[i]);
   }
-  out.cloud.set = PointSet(std::move(sorted), order.code);
+  out.cloud.set = PointSet(std::move(sorted));
   out.spacing = folder.plan.spacing;
   return out;
 }
