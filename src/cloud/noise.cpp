@@ -7,7 +7,7 @@
 #include "cloud/plane_fit.h"
 #include "cloud/quadratic_patch.h"
 #include "cloud/spacing.h"
-#include "cpu/parallel.h"
+#include "cpu/parallel_sort.h"
 
 #include <algorithm>
 #include <cmath>

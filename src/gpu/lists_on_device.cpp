@@ -1,6 +1,7 @@
 #include "gpu/lists_on_device.h"
 
 #include "cpu/parallel.h"
+#include "cpu/parallel_sort.h"
 
 #include <algorithm>
 #include <limits>

@@ -2,6 +2,7 @@
 
 #include "base/vector.h"
 #include "cpu/parallel.h"
+#include "cpu/parallel_sort.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "mesh/field_contour.h"
 
 #include "base/disjoint_sets.h"
-#include "cpu/parallel.h"
+#include "cpu/parallel_sort.h"
 #include "mesh/constants.h"
 #include "mesh/minimal_edges.h"
 

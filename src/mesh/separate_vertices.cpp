@@ -2,7 +2,7 @@
 
 #include "base/suits_float.h"
 #include "base/vector.h"
-#include "cpu/parallel.h"
+#include "cpu/parallel_sort.h"
 
 #include <algorithm>
 #include <cmath>

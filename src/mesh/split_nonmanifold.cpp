@@ -6,6 +6,7 @@
 
 #include "base/disjoint_sets.h"
 #include "base/vector.h"
+#include "cpu/parallel_sort.h"
 #include "mesh/constants.h"
 #include "mesh/half_edges.h"
 

@@ -3,6 +3,7 @@
 
 #include "base/platform.h"
 #include "cpu/parallel.h"
+#include "cpu/parallel_sort.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,5 @@
-// Loops on oneTBB: the back end of cpu/parallel.h with threads, and the only file that names that library.
-#pragma once
-
-#include <g3r/error.h>
+// Loops on oneTBB: the back end with threads. Beside cpu/parallel_sort.h the only file that names that library.
+#include "cpu/parallel.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +11,6 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 #include <tbb/task_arena.h>
 
 #ifdef __SANITIZE_THREAD__
@@ -21,29 +18,22 @@
 #endif
 
 namespace g3r::parallel {
+namespace {
 
-/// Tell ThreadSanitizer, which cannot see into the threading library, that what threads did before signal() is visible to one that has
-/// called wait() since. One address serves all loops: a loop body can be told before it has read anything.
-inline const char handed_over = 0;
-inline void signal() {
+// Tell ThreadSanitizer, which cannot see into the threading library, that what threads did before signal() is visible to one that has
+// called wait() since. One address serves all loops: a loop body can be told before it has read anything.
 #ifdef __SANITIZE_THREAD__
-  __tsan_release(const_cast<char*>(&handed_over));
+const char handed_over = 0;
+void signal() { __tsan_release(const_cast<char*>(&handed_over)); }
+void wait() { __tsan_acquire(const_cast<char*>(&handed_over)); }
+#else
+void signal() {}
+void wait() {}
 #endif
-}
-inline void wait() {
-#ifdef __SANITIZE_THREAD__
-  __tsan_acquire(const_cast<char*>(&handed_over));
-#endif
-}
 
-inline int thread_count(int threads) {
-  const int cores = tbb::info::default_concurrency();
-  return threads > 0 ? std::min(threads, cores) : cores;
-}
-
-/// Arenas that wait for their next call. oneTBB does not give back all of an arena of several threads, some 7 KiB, so that a process that
-/// calls again and again would grow without end if each call made its own. A call has its arena to itself. Slots instead of a lock: in the
-/// child of a fork nobody would unlock it. Never destroyed: at the end of a process, calls in other threads may still be running.
+// Arenas that wait for their next call. oneTBB does not give back all of an arena of several threads, some 7 KiB, so that a process that
+// calls again and again would grow without end if each call made its own. A call has its arena to itself. Slots instead of a lock: in the
+// child of a fork nobody would unlock it. Never destroyed: at the end of a process, calls in other threads may still be running.
 class IdleArenas {
  public:
   [[nodiscard]] std::unique_ptr<tbb::task_arena> take(int threads) {
@@ -69,13 +59,19 @@ class IdleArenas {
   std::array<std::atomic<tbb::task_arena*>, kCallers> slots_{};
 };
 
-inline IdleArenas& idle_arenas() {
+IdleArenas& idle_arenas() {
   static auto* const arenas = new IdleArenas;
   return *arenas;
 }
 
-template <class Work>
-auto with_threads(int threads, Work&& work) {
+}  // namespace
+
+int thread_count(int threads) {
+  const int cores = tbb::info::default_concurrency();
+  return threads > 0 ? std::min(threads, cores) : cores;
+}
+
+void run_with_threads(int threads, FunctionRef<> work) {
   struct Loan {
     std::unique_ptr<tbb::task_arena> arena;
     explicit Loan(int count) : arena(idle_arenas().take(count)) {}
@@ -84,26 +80,17 @@ auto with_threads(int threads, Work&& work) {
     Loan& operator=(const Loan&) = delete;
   };
   const Loan loan(thread_count(threads));
-  return loan.arena->execute(std::forward<Work>(work));
+  loan.arena->execute([&] { work(); });
 }
 
-template <class Body>
-void for_each(std::size_t count, const Body& body, const std::atomic<bool>* cancel = nullptr) {
+void for_ranges(std::size_t count, FunctionRef<std::size_t, std::size_t> body) {
   signal();
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1), [&](const tbb::blocked_range<std::size_t>& range) {
     wait();
-    for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      if (cancel != nullptr && cancel->load(std::memory_order_relaxed)) throw Cancelled();
-      body(i);
-    }
+    body(range.begin(), range.end());
     signal();
   });
   wait();
-}
-
-template <class Iterator, class Less>
-void sort(Iterator begin, Iterator end, const Less& less) {
-  tbb::parallel_sort(begin, end, less);
 }
 
 }  // namespace g3r::parallel
