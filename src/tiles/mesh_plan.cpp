@@ -32,7 +32,7 @@ constexpr int kVersion = 2;
 constexpr std::size_t kSamples = 32;         // cells, of 64 points or more each, that stand for the cloud
 constexpr int kSampleAround = 1;             // cells around them: 8 spacings or more
 constexpr std::uint64_t kFixed = 72u << 20;  // as of the solves
-constexpr std::uint64_t kPerPoint = 4500;    // bytes of the octree, the sides and the patches around each point (docs/algorithms/tiles.md)
+constexpr std::uint64_t kPerPoint = 1400;    // bytes of the octree, the sides and the patches around each point (docs/algorithms/tiles.md)
 // Times cell_under(): the frame is made for cells of kFinestCell, from a sample of the spacing that errs (scale_for() in plan.cpp).
 constexpr double kLargestCell = 1.15;
 constexpr int kMaxLevel = mesh::kMaxOctreeLevel - 4;  // of the cells: leaves are finer
