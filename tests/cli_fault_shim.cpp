@@ -6,9 +6,14 @@
 //   G3R_FAULT_AT      which of these calls, from 1
 //   G3R_FAULT_DO      an errno to fail with, "short" for half a write, "kill" for SIGKILL in place of the call
 //   G3R_FAULT_MARK    a file that is created when the fault happens
+//
+// And lets clocks jump at every call that reads one:
+//
+//   G3R_FAULT_CLOCK   "set": that of the day goes hours forth and back, as if somebody set it; "asleep": all go on by hours, as after sleep
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/syscall.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <array>
@@ -18,13 +23,16 @@
 #include <cstdarg>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <string>
 
 namespace {
 
 constexpr std::size_t kMaxFiles = 1024;
+constexpr std::time_t kJump = 5 * 3600;  // seconds
 std::array<std::atomic<bool>, kMaxFiles> tracked{};
 std::atomic<long> calls{0};
+std::atomic<long> clock_reads{0};
 
 std::string setting(const char* name) {
   const char* value = std::getenv(name);
@@ -70,6 +78,20 @@ int open_file(int folder, const char* path, int flags, mode_t mode) {
   const auto file = static_cast<int>(syscall(SYS_openat, folder, path, flags, mode));
   track(file, counts && file >= 0);
   return file;
+}
+
+// What a clock is off by at this reading.
+std::time_t jump_of(clockid_t clock) {
+  const std::string how = setting("G3R_FAULT_CLOCK");
+  if (how == "asleep") return kJump * ++clock_reads;
+  return how == "set" && clock == CLOCK_REALTIME ? (++clock_reads % 2 == 0 ? kJump : -kJump) : 0;
+}
+
+timespec read_clock(clockid_t clock) {
+  timespec now{};
+  syscall(SYS_clock_gettime, clock, &now);
+  now.tv_sec += jump_of(clock);
+  return now;
 }
 
 mode_t mode_of(int flags, va_list arguments) { return (flags & O_CREAT) != 0 ? va_arg(arguments, mode_t) : 0; }
@@ -120,6 +142,23 @@ int close(int file) {
   track(file, false);
   const auto result = static_cast<int>(syscall(SYS_close, file));
   return counts && strikes("close") ? fail() : result;
+}
+
+int clock_gettime(clockid_t clock, timespec* now) noexcept {
+  *now = read_clock(clock);
+  return 0;
+}
+
+int gettimeofday(timeval* now, void*) noexcept {
+  const timespec read = read_clock(CLOCK_REALTIME);
+  *now = {read.tv_sec, read.tv_nsec / 1000};
+  return 0;
+}
+
+std::time_t time(std::time_t* now) noexcept {
+  const std::time_t read = read_clock(CLOCK_REALTIME).tv_sec;
+  if (now != nullptr) *now = read;
+  return read;
 }
 
 int rename(const char* from, const char* to) {

@@ -1,19 +1,22 @@
-"""Truths about the g3r program on a machine that is short of something: disk, files, threads, processors, stack, folders, columns. The
-result is right, or there is an error with its reason and its exit code, and nothing half written.
+"""Truths about the g3r program on a machine that is short of something: disk, files, threads, processors, stack, folders, columns. Or
+clocks jump. The result is right, or there is an error with its reason and its exit code, and nothing half written.
 
 Run by ctest with G3R_PROGRAM set to the program and G3R_FAULT_SHIM to the library that makes calls fail.
 """
 
+import ctypes
 import errno
 import fcntl
 import os
 import pty
+import re
 import resource
 import struct
 import subprocess
 import sys
 import tempfile
 import termios
+import time
 import unittest
 
 from cli_support import *
@@ -22,6 +25,7 @@ SHIM = os.path.abspath(os.environ["G3R_FAULT_SHIM"])
 MORE_WRITES_THAN_A_RUN_MAKES = 100
 KIB = 1 << 10
 SOMEBODY = 61234  # a user without any other process
+NO_HUGE_PAGES = 41  # PR_SET_THP_DISABLE of Linux' prctl
 
 
 def limited(what, to):
@@ -147,10 +151,32 @@ class HardMachine(ProgramTest):
         self.assertIn("No space left on device", result.err)
         self.assertEqual(os.listdir(disk), [])
 
-    def terminal_of(self, columns):
+    def test_without_huge_pages(self):
+        libc = ctypes.CDLL(None)
+        if libc.prctl(NO_HUGE_PAGES, 0, 0, 0, 0) != 0:
+            self.skipTest("this system has no such switch")
+        self.assert_right(preexec_fn=lambda: libc.prctl(NO_HUGE_PAGES, 1, 0, 0, 0))
+
+    @unittest.skipIf(is_sanitized(), "a sanitizer must be the first library to be loaded")
+    def test_clocks_that_jump_at_every_look(self):
+        for how in ("set", "asleep"):
+            jumping = {**os.environ, "LD_PRELOAD": SHIM, "G3R_FAULT_CLOCK": how}
+            begin = time.monotonic()
+            self.assert_right(flags=["--report", "r.json"], env=jumping)
+            passed = time.monotonic() - begin
+            seconds = self.json_of("r.json")["seconds"]
+            os.remove(self.path("r.json"))
+            self.assertTrue(all(value >= 0 for value in seconds.values()), seconds)
+            # Durations are those of a clock that nobody can set, but that goes on while a machine sleeps.
+            self.assertEqual(seconds["total"] <= passed, how == "set", seconds)
+            drawn = self.terminal_of(80, jumping)
+            self.assertIn("\x1b[K", drawn)
+            self.assertNotIn("-", "".join(re.findall(r"% *, (.*?) left", drawn)))
+
+    def terminal_of(self, columns, environment=os.environ):
         main, other = pty.openpty()
         fcntl.ioctl(other, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
-        process = self.start("ball.ply", "mesh.ply", stdout=subprocess.DEVNULL, stderr=other, env={**os.environ, "TERM": "xterm"})
+        process = self.start("ball.ply", "mesh.ply", stdout=subprocess.DEVNULL, stderr=other, env={**environment, "TERM": "xterm"})
         os.close(other)
         text = all_of_terminal(main)
         self.assertEqual(process.wait(), OK)

@@ -2,6 +2,7 @@
 // patterns.
 #include "base/platform.h"
 
+#include "base/control_groups.h"
 #include "io/output_file.h"
 #include "io/source.h"
 
@@ -9,6 +10,8 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -131,6 +134,34 @@ TEST(Platform, MemoryIsTold) {
   EXPECT_GT(platform::peak_memory(), std::size_t{1} << 20);
   EXPECT_LT(platform::peak_memory(), std::size_t{1} << 32);
   EXPECT_GT(platform::free_memory(), 1 << 20);
+}
+
+// Both versions of control groups; of all limits around a process the one that leaves least holds, and cached files count as free.
+TEST(Platform, LimitsOfContainersAreSeen) {
+  const TemporaryFolder folder;
+  const auto group = [&](const std::string& name) { std::filesystem::create_directories(folder.file(name)); };
+  group("memory/job/step");
+  group("job/step");
+  const std::string root = folder.file("");
+  EXPECT_TRUE(std::isinf(platform::memory_left_by_groups("4:memory:/job/step\n0::/job/step\n", root)));
+  write_whole(folder.file("memory/job/memory.limit_in_bytes"), "1000000\n");
+  write_whole(folder.file("memory/job/memory.usage_in_bytes"), "600000\n");
+  write_whole(folder.file("memory/job/memory.stat"), "cache 9\ninactive_file 1\ntotal_inactive_file 5000\n");
+  EXPECT_EQ(platform::memory_left_by_groups("5:cpu,memory:/job/step\n0::/\n", root), 405000);
+  EXPECT_TRUE(std::isinf(platform::memory_left_by_groups("5:cpu:/job/step\n", root)));
+  write_whole(folder.file("job/step/memory.max"), "max\n");
+  write_whole(folder.file("job/step/memory.current"), "70000\n");
+  EXPECT_TRUE(std::isinf(platform::memory_left_by_groups("0::/job/step\n", root)));
+  write_whole(folder.file("job/step/memory.max"), "100000\n");
+  write_whole(folder.file("job/step/memory.stat"), "inactive_file 1000\n");
+  EXPECT_EQ(platform::memory_left_by_groups("4:memory:/job\n0::/job/step\n", root), 31000);
+  // A container sees itself as the root, and may be told the name that it has outside.
+  write_whole(folder.file("memory.max"), "500\n");
+  write_whole(folder.file("memory.current"), "600\n");
+  EXPECT_EQ(platform::memory_left_by_groups("0::/\n", root), 0);
+  EXPECT_EQ(platform::memory_left_by_groups("0::/outside/of/it\n", root), 0);
+  for (const char* garbage : {"", "\n", "0\n", "0:memory\n", "4:memory:job\n"})
+    EXPECT_TRUE(std::isinf(platform::memory_left_by_groups(garbage, root))) << garbage;
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ namespace G3R_PUBLIC g3r {
 
 /// How a plan is made.
 struct TileOptions {
-  std::size_t max_memory = 0;   ///< bytes that a worker may take; 0: three quarters of what the machine has free
+  std::size_t max_memory = 0;   ///< bytes that a worker may take; 0: three quarters of what the machine has free and the container leaves
   std::size_t tiles = 0;        ///< their number; 0: as few as the memory allows
   Hints hints;                  ///< as of orient(), but sensor_of_point must be empty
   int threads = 0;              ///< of the sorting and the coarse solve, 0: all cores

@@ -89,7 +89,7 @@ bool sync_folder(const std::string& folder);
 void give_back_freed_blocks();
 /// What small blocks have left free becomes the system's again. Takes milliseconds.
 void give_back_holes();
-/// Memory that nobody uses, in bytes.
+/// Memory that nobody uses and that this process may have, in bytes: in a container, what its limit leaves.
 [[nodiscard]] double free_memory();
 /// The number of this process.
 [[nodiscard]] std::uint64_t process();

@@ -1,8 +1,13 @@
 // Linux, macOS, and what Emscripten offers of POSIX in browsers.
 #include "base/platform.h"
 
+#include "base/control_groups.h"
+
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <new>
 
@@ -179,7 +184,9 @@ double free_memory() {
 #else
   const auto free = static_cast<double>(::sysconf(_SC_AVPHYS_PAGES));
 #endif
-  return free * static_cast<double>(::sysconf(_SC_PAGESIZE));
+  std::ifstream groups("/proc/self/cgroup");  // of Linux; elsewhere there is no such file, and no limit
+  const std::string memberships{std::istreambuf_iterator<char>(groups), {}};
+  return std::min(free * static_cast<double>(::sysconf(_SC_PAGESIZE)), memory_left_by_groups(memberships, "/sys/fs/cgroup"));
 }
 
 std::uint64_t process() { return static_cast<std::uint64_t>(::getpid()); }
