@@ -172,6 +172,20 @@ TEST(Baselines, WnncWidthsAreThePublishedOnes) {
   EXPECT_THROW((void)wnnc_widths("noise", 0.01), InvalidInput);
 }
 
+// A width of a hundredth of the spacing: the kernels vanish at every other point, and so does the solution.
+TEST(Baselines, NoMeshWithoutAreas) {
+  const std::vector<Vec3> points = {{0.3, -1, -0.4}, {-0.1, -0.9, -0.7}, {-0.1, 0.2, -0.1}, {0, -0.9, -0.4}, {0.1, 0.2, -0.2}};
+  Options options;
+  options.method = Method::kPgr;
+  options.epsilon = {Length::Unit::kPercent, 1};
+  try {
+    (void)reconstruct(points, options);
+    FAIL() << "a mesh of nothing";
+  } catch (const InvalidInput& error) {
+    EXPECT_STREQ(error.what(), "no surface found: the orientation gives no point an area");
+  }
+}
+
 TEST(Baselines, OptionsOfOtherMethodsAreRefused) {
   const shapes::Surface s = shapes::sphere(500);
   const auto refused = [&](const Options& options) { EXPECT_THROW((void)orient(s.points, options), InvalidInput); };

@@ -91,9 +91,11 @@ bool may_be_no_cloud(const std::vector<Vec3>& points) {
   return across <= (places.size() <= kNeighbours ? kSliver : kLineRatio) * norm(along);
 }
 
-// Besides: what has no surface, and what is smaller than a cell of the mesh because a far point makes cells of a given depth so large.
+// Besides: what has no surface, what is smaller than a cell of the mesh because a far point makes cells of a given depth so large, and what
+// an earlier method says of few points, which need not enclose anything.
 bool may_be_refused(const Case& tested) {
   if (tested.recipe.has("far") && tested.recipe.has("depth")) return true;
+  if (tested.recipe.has("method")) return true;
   return tested.scene.sides == Sides::kNone || may_be_no_cloud(tested.scene.points);
 }
 
@@ -228,15 +230,16 @@ void check_rigid(const Case& tested, const RunOptions& run, const Reconstruction
   for (Vec3& p : hints.sensors) p = turn(p);
   for (Vec3& p : hints.inside) p = turn(p);
   const Orientation other = orient(points, turned);
-  std::size_t sure = 0, turned_over = 0;
+  std::set<Vec3> sure, turned_over;  // places: points at the same place have one side
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (first.orientation.confidence[i] <= kSure || other.confidence[i] <= kSure) continue;
-    ++sure;
-    turned_over += dot(turn(first.orientation.normals[i]), other.normals[i]) < 0 ? 1 : 0;
+    sure.insert(points[i]);
+    if (dot(turn(first.orientation.normals[i]), other.normals[i]) < 0) turned_over.insert(points[i]);
   }
   const double allowed = std::max(kFewPoints, kFewWrong * static_cast<double>(points.size()));
-  judge.demand(static_cast<double>(turned_over) <= allowed, "rigid",
-               std::to_string(turned_over) + " of " + std::to_string(sure) + " points that are sure before and after change their side");
+  judge.demand(static_cast<double>(turned_over.size()) <= allowed, "rigid",
+               std::to_string(turned_over.size()) + " of " + std::to_string(sure.size()) +
+                   " places that are sure before and after change their side");
 }
 
 bool warns_of_sides(const Stats& stats) {

@@ -2,6 +2,8 @@
 
 #include "field/areas.h"
 
+#include <g3r/error.h>
+
 namespace g3r {
 
 OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& normals, const std::vector<double>& areas) {
@@ -12,6 +14,7 @@ OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& 
     kept.push_back(points[i]);
     input.push_back(i);
   }
+  if (kept.empty()) throw InvalidInput("no surface found: the orientation gives no point an area");
   OrientedCloud out;
   out.cloud = canonical_cloud(PointsView(kept));
   out.eta.assign(out.cloud.size(), Vec3{0, 0, 0});

@@ -16,7 +16,7 @@ struct OrientedCloud {
 };
 
 /// From N points, N unit normals and N areas in squared input units. Points without area are left out. Throws InvalidInput like
-/// canonical_cloud().
+/// canonical_cloud(), and where no point has an area.
 [[nodiscard]] OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& normals, const std::vector<double>& areas);
 /// The same with areas from the spacing of the points: area_vectors(). Duplicates share theirs.
 [[nodiscard]] OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& normals);

@@ -87,7 +87,8 @@ Levels levels_of(const Prepared& prepared, double longest_side, int depth) {
     const double cell = mesh::cell_under(prepared.noise) * h;
     const int level = static_cast<int>(std::ceil(std::log2(out.side / cell)));
     out.rule.finest = std::clamp(level, kBaseLevel, mesh::kMaxOctreeLevel);
-    out.side = std::max(out.side, cell * std::exp2(out.rule.finest));
+    // Leaves are as large as asked for, but where the base level is finer: what few points surround is lost between large ones.
+    if (level >= kBaseLevel) out.side = std::max(out.side, cell * std::exp2(out.rule.finest));
   } else {
     out.rule.finer = 0;
   }
