@@ -1,4 +1,5 @@
 // A mesh in tiles: closed and 2-manifold across their borders, near the surface, the same whoever makes it.
+#include "sanitized.h"
 #include "shapes.h"
 #include "temporary_folder.h"
 #include "tiles/cell_codes.h"
@@ -32,6 +33,7 @@ constexpr double kBall = 0.08;            // radius of a ball in the middle, whe
 constexpr std::size_t kStrays = 150;
 constexpr double kSpacingError = 0.1;  // of random samples: the median over 8 neighbours is a few hundredths above the mean
 constexpr double kFar = 0.05;          // of the radius of the tube: farther from it no vertex is
+constexpr std::size_t kEveryCut = kSanitized ? 61 : 1;  // bytes between the places where a plan is cut
 
 // Points far from the torus and the ball, with normals of all directions, as a scanner leaves them.
 void add_strays(shapes::Surface& surface) {
@@ -228,10 +230,13 @@ TEST_F(TilesMesh, DamagedFilesAreRefused) {
   }
   write_bytes(parts_path, parts);
   const std::string plan = bytes_of(tiles::mesh_plan_path(work));
-  for (std::size_t length = 0; length + 3 < plan.size(); length += 61) {
+  int cuts = 0;
+  for (std::size_t length = 0; length + 3 < plan.size(); length += kEveryCut) {
     write_bytes(tiles::mesh_plan_path(work), plan.substr(0, length));
     EXPECT_THROW((void)merge_mesh(work, folder_->file("none.ply")), InvalidInput) << length;
+    ++cuts;
   }
+  RecordProperty("cuts", cuts);
 }
 
 // A sample of the cloud tells the plan its spacing, which makes the frame such that cells have the size that they have in core.

@@ -18,7 +18,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = pathlib.Path(os.environ.get("G3R_BUILD", ROOT / "build" / "release"))
 TESTS = ["badinputs_read", "badinputs_orient", "io_sweep_test", "io_fault_test", "cli_fault_test", "cli_hard_machine_test",
          "cli_interrupt_test", "cli_replace_test", "cli_memory_test", "allocation_failure_test", "guest_test", "stress_test", "laz_test",
-         "e57_test", "supply_chain_test"]
+         "e57_test", "any_size_test", "tiles_mesh_test", "cli_tiles_test", "platform_test", "supply_chain_test"]
 # Lines of tests that count, and what to say of them.
 PRINTED = [(r"(\d+) \{'pass': (\d+)\}", "{1} of {0} files as declared"), (r"calls that failed: (.*?),?$", "{0}"),
            (r"(stopped after at most \S+ s in \d+ runs)", "{0}"), (r"Ran (\d+) tests? in", "{0} tests"),
