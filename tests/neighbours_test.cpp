@@ -1,5 +1,6 @@
 #include "cloud/neighbours.h"
 
+#include "cpu/parallel.h"
 #include "shapes.h"
 
 #include <gtest/gtest.h>
@@ -12,6 +13,8 @@ namespace g3r {
 namespace {
 
 constexpr std::size_t kCount = 300;
+constexpr std::size_t kBuiltInParts = 20000;
+constexpr std::size_t kNear = 3;
 
 std::vector<Vec3> cube() {
   shapes::Random random(9);
@@ -116,6 +119,17 @@ TEST(Neighbours, AreNoneBeyondTheGivenDistance) {
   EXPECT_EQ(neighbours.nearest({5, 5, 5}, squared, 77), 77U);
   squared = 100;
   EXPECT_EQ(neighbours.nearest({5, 5, 5}, squared, 77), sorted_around({5, 5, 5}, points).front());
+}
+
+// So many points that threads build parts of the tree side by side.
+TEST(Neighbours, AreTheSameForAnyNumberOfThreads) {
+  shapes::Random random(3);
+  std::vector<Vec3> points(kBuiltInParts);
+  for (Vec3& p : points) p = {random.uniform(), random.uniform(), random.uniform()};
+  const auto nearest_of_all = [&](int threads) {
+    return parallel::with_threads(threads, [&] { return Neighbours(points).of_all(kNear); });
+  };
+  EXPECT_EQ(nearest_of_all(4), nearest_of_all(1));
 }
 
 }  // namespace
