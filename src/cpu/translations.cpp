@@ -10,18 +10,11 @@
 
 #include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
-#include <hwy/highway.h>
 
-#include "cpu/wasm_doubles.h"  // NOLINT(llvm-include-order): adds to what stands above
+#include "cpu/lanes.h"  // NOLINT(llvm-include-order): anew for every instruction set
 
 HWY_BEFORE_NAMESPACE();
 namespace g3r::cpu::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-template <class T>
-using Tag = hn::CappedTag<T, kLanes>;
-template <class T>
-using Vec = hn::Vec<Tag<T>>;
 
 // Expansions of one tile: their sums and two operands are to fit the registers.
 #if HWY_ARCH_X86 && HWY_TARGET > HWY_AVX3

@@ -1,4 +1,5 @@
-// Points to multipoles and locals to points, one work-group per leaf. The counterpart of cpu/far_field.cpp; docs/math.md, "Expansions".
+// Points to multipoles and locals to points, one work-group per leaf. The counterpart of cpu/points_to_multipole.cpp and
+// cpu/local_to_points.cpp; docs/math.md, "Expansions".
 //
 // A multipole is made of plain sums of the basis B_b, and its gradients are put together at the end; the value and the gradient of a local
 // are sums of B_b as well, by coefficients that are put together at the beginning. So both are passes of at most four sums over B_b.

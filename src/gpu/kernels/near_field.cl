@@ -1,4 +1,5 @@
-// The near field: exact pair sums, one work-group per target leaf. The counterpart of cpu/near_field.cpp, which explains the kernels.
+// The near field: exact pair sums, one work-group per target leaf. The counterpart of cpu/near_field.cpp; cpu/near_kernels.h explains the
+// kernels.
 //
 // A tile of sources is gathered into local memory; items take a target each and, where a leaf has few, a share of the sources. Sums of a
 // tile are floats; tiles are added up in pairs of floats, which are as good as the doubles of the processor.
