@@ -27,14 +27,14 @@ g3r_together(fair mesh/fair mesh/field_local_fit mesh/field_placement mesh/field
 g3r_together(trim mesh/field_points mesh/self_intersections mesh/separate_vertices mesh/simplify mesh/smooth_rims mesh/smooth_spacing
              mesh/split_nonmanifold mesh/untangle mesh/used_vertices)
 
-g3r_together(parts_of_readers io/cloud_from_table io/columns io/copc io/fixed_records io/gzip io/json io/lzf io/merger io/output_file
-             io/ply_header io/point_stream io/polygons)
+g3r_together(parts_of_readers io/cloud_from_table io/columns io/copc io/fixed_records io/gzip io/json io/lzf io/merger
+             io/number_type io/output_file io/ply_header io/ply_types io/point_stream io/polygons io/rows)
 g3r_together(readers io/las io/point_text io/random_file io/read io/read_gltf io/read_las io/read_npy io/read_obj io/read_off io/read_pcd
              io/read_ply io/read_ptx io/splats)
-g3r_together(splats io/read_spz io/read_xyz io/recognise io/source io/splat_light io/subset io/table io/text io/write
-             io/write_npy io/write_obj)
-g3r_together(writers io/read_stl io/text_columns io/tiles io/write_glb io/write_las io/write_off io/write_pcd io/write_ply io/write_stl
-             io/write_xyz io/xml)
+g3r_together(splats io/read_spz io/read_xyz io/recognise io/source io/splat_light io/splat_view io/subset io/table
+             io/text io/write io/write_npy io/write_obj)
+g3r_together(writers io/column_facts io/column_names io/read_stl io/text_values io/tiles io/utf8 io/write_glb io/write_las io/write_off
+             io/write_pcd io/write_ply io/write_stl io/write_xyz io/xml)
 
 g3r_together(tiles tiles/cells tiles/external_sort tiles/merge tiles/mesh_corners tiles/mesh_parts tiles/mesh_points tiles/mesh_records
              tiles/mesh_region tiles/mesh_run tiles/mesh_patches tiles/mesh_surroundings tiles/parts)

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 
-#include "io/text_columns.h"
+#include "io/column_facts.h"
+#include "io/column_names.h"
+#include "io/text_values.h"
 #include "io_samples.h"
 
 namespace g3r {

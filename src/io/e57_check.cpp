@@ -1,28 +1,18 @@
 // Source: ASTM E2807-11, "Standard Specification for 3D Imaging Data Exchange", and libE57Format, which reads only checked files here.
 #include "io/e57.h"
-
-#include "io/table.h"
+#include "io/e57_pages.h"
+#include "io/number_type.h"
 
 #include <algorithm>
-#include <array>
 
 namespace g3r::io {
 
 namespace {
 
-using namespace std::string_view_literals;
+using namespace e57_pages;
 
-constexpr std::size_t kPage = 1024;           // bytes of a page in the file ("physical")
-constexpr std::size_t kPayload = 1020;        // of them all but a checksum ("logical")
-constexpr std::size_t kAtOnce = 256 * kPage;  // bytes checked at once; memory does not grow with the file
-constexpr std::size_t kFileHeader = 48;
-constexpr std::size_t kVersion = 8;
-constexpr std::size_t kFileLength = 16;
 constexpr std::size_t kXmlAt = 24;
 constexpr std::size_t kXmlLength = 32;
-constexpr std::size_t kPageSize = 40;
-constexpr std::size_t kSectionHeader = 32;
-constexpr std::size_t kDataHeader = 6;  // of a packet of data
 
 // libE57Format walks the tree of elements recursively, looks at all children of a structure when it gets another, and compares every new
 // child of a vector of one type with all others, trees and all.
@@ -32,75 +22,6 @@ constexpr std::size_t kMostEqual = 512;      // numbers or texts in a vector of 
 constexpr std::size_t kMostChildren = 4096;  // of anything else
 constexpr std::size_t kMostElements = 200'000;
 constexpr std::size_t kMostAttributes = 64;  // of an element: they take many times their bytes
-
-// CRC-32C (Castagnoli), reflected.
-std::array<std::uint32_t, 256> crc_table() {
-  constexpr std::uint32_t kPolynomial = 0x82F63B78;
-  std::array<std::uint32_t, 256> table{};
-  for (std::uint32_t byte = 0; byte < table.size(); ++byte) {
-    std::uint32_t crc = byte;
-    for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ ((crc & 1) != 0 ? kPolynomial : 0);
-    table[byte] = crc;
-  }
-  return table;
-}
-
-std::uint32_t crc_of(std::string_view bytes) {
-  static const std::array<std::uint32_t, 256> table = crc_table();
-  std::uint32_t crc = 0xFFFFFFFF;
-  for (const char byte : bytes) crc = crc >> 8 ^ table[(crc ^ static_cast<unsigned char>(byte)) & 0xFF];
-  return ~crc;
-}
-
-std::uint32_t load_big(const char* bytes) {
-  std::uint32_t value = 0;
-  for (int i = 0; i < 4; ++i) value = value << 8 | static_cast<unsigned char>(bytes[i]);
-  return value;
-}
-
-std::uint64_t to_logical(std::uint64_t physical) {
-  return physical / kPage * kPayload + std::min<std::uint64_t>(physical % kPage, kPayload);
-}
-
-std::uint64_t to_physical(std::uint64_t logical) { return logical / kPayload * kPage + logical % kPayload; }
-
-std::uint64_t logical_size(const FileBytes& file) { return file.size() / kPage * kPayload; }
-
-// The bytes of the pages without their checksums; they lie within the file.
-std::string load_logical(FileBytes& file, std::uint64_t offset, std::size_t size) {
-  std::string bytes;
-  bytes.reserve(size);
-  while (bytes.size() < size) {
-    const std::uint64_t at = offset + bytes.size();
-    const std::size_t rest = kPayload - static_cast<std::size_t>(at % kPayload);
-    bytes += file.get(static_cast<std::size_t>(to_physical(at)), std::min(rest, size - bytes.size()));
-  }
-  return bytes;
-}
-
-void check_pages(FileBytes& file) {
-  const Source& source = file.source();
-  if (file.size() < kPage) fail_at_byte(source, file.size(), "truncated: an E57 file has at least one page of 1024 bytes");
-  const std::string header(file.get(0, kFileHeader));
-  const auto length = load<std::uint64_t>(header.data() + kFileLength);
-  if (length != file.size() || length % kPage != 0) {
-    fail_at_byte(source, kFileLength,
-                 "truncated or damaged: the header states " + std::to_string(length) +
-                     " bytes, expected a multiple of 1024 and the size, " + std::to_string(file.size()) + "; get the file again");
-  }
-  const auto major = load<std::uint32_t>(header.data() + kVersion);
-  const auto page = load<std::uint64_t>(header.data() + kPageSize);
-  if (major != 1) fail_at_byte(source, kVersion, "expected E57 version 1, found " + std::to_string(major));
-  if (page != kPage) fail_at_byte(source, kPageSize, "expected pages of 1024 bytes, found " + std::to_string(page));
-  for (std::size_t begin = 0; begin < file.size(); begin += kAtOnce) {
-    const std::string_view pages = file.get(begin, std::min(kAtOnce, file.size() - begin));
-    for (std::size_t at = 0; at < pages.size(); at += kPage) {
-      if (crc_of(pages.substr(at, kPayload)) != load_big(pages.data() + at + kPayload)) {
-        fail_at_byte(source, begin + at, "damaged: these 1024 bytes do not have their checksum; get the file again, or export it anew");
-      }
-    }
-  }
-}
 
 // The structure of the XML, without regard to what it says. Errors of syntax are left to the parser.
 class XmlCheck {
@@ -235,50 +156,6 @@ void check_e57(FileBytes& file) {
                      ", does not lie within the file");
   }
   XmlCheck(source, load_logical(file, at, static_cast<std::size_t>(length)), static_cast<std::size_t>(physical)).run();
-}
-
-std::vector<std::uint64_t> check_e57_packets(FileBytes& file, std::uint64_t section, std::size_t streams) {
-  const Source& source = file.source();
-  const auto place = [](std::uint64_t logical) { return static_cast<std::size_t>(to_physical(logical)); };
-  const std::uint64_t size = logical_size(file);
-  if (section < kFileHeader || section >= size || size - section < kSectionHeader) {
-    fail(source, "truncated or damaged: a scan's points at byte " + std::to_string(to_physical(section)) + " are not in the file");
-  }
-  const std::string header = load_logical(file, section, kSectionHeader);
-  const auto section_length = load<std::uint64_t>(header.data() + 8);
-  std::uint64_t at = to_logical(load<std::uint64_t>(header.data() + 16));
-  if (header.substr(0, 8) != "\1\0\0\0\0\0\0\0"sv || section_length > size - section || at < section + kSectionHeader ||
-      at >= section + section_length) {
-    fail_at_byte(source, place(section), "damaged: expected a section of packed points that lies within the file");
-  }
-  const std::uint64_t end = section + section_length;
-  std::vector<std::uint64_t> bytes(streams);
-  for (bool first = true; at < end; first = false) {
-    enum : char { kIndex, kData, kEmpty };
-    const auto damaged = [&](const std::string& what) { fail_at_byte(source, place(at), "damaged packet of points: " + what); };
-    if (end - at < kDataHeader) damaged("expected at least 6 bytes until the end of its section");
-    const std::string packet = load_logical(file, at, kDataHeader);
-    const std::size_t length = std::size_t{load<std::uint16_t>(packet.data() + 2)} + 1;
-    if (length % 4 != 0 || length < 4 || length > end - at) damaged("length " + std::to_string(length));
-    if (packet[0] < kIndex || packet[0] > kEmpty || (first && packet[0] != kData)) damaged("type " + std::to_string(packet[0]));
-    if (packet[0] == kData) {
-      const std::size_t count = load<std::uint16_t>(packet.data() + 4);
-      if (count != streams || kDataHeader + 2 * count > length) {
-        damaged("expected " + std::to_string(streams) + " streams, one per field, found " + std::to_string(count));
-      }
-      const std::string lengths = load_logical(file, at + kDataHeader, 2 * count);
-      std::size_t sum = kDataHeader + 2 * count;
-      for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t stream = load<std::uint16_t>(lengths.data() + 2 * i);
-        bytes[i] += stream;
-        sum += stream;
-      }
-      if (sum > length || sum + 3 < length) damaged("its streams do not fill it");
-      if (load_logical(file, at + sum, length - sum).find_first_not_of('\0') != std::string::npos) damaged("its end is not zero");
-    }
-    at += length;
-  }
-  return bytes;
 }
 
 }  // namespace g3r::io

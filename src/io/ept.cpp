@@ -67,8 +67,8 @@ void read_schema(const Json& json, Ept& ept) {
     const std::optional<Type> type =
         name == nullptr || kind == nullptr || size == nullptr ? std::nullopt : type_named(kind->text, size->whole().value_or(0));
     if (!type) fail(ept.file, "a dimension of the schema has no name, or a type that is not signed, unsigned or float of 1 to 8 bytes");
-    Dimension dimension{std::string(name->text), *type, number(item, "scale", 1), number(item, "offset", 0)};
-    for (char& c : dimension.name) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;  // Red: red, as in other formats
+    // Red: red, as in other formats
+    Dimension dimension{lower_case(name->text), *type, number(item, "scale", 1), number(item, "offset", 0)};
     for (const Dimension& other : ept.schema) {
       if (other.name == dimension.name) fail(ept.file, "the dimension " + quote(dimension.name) + " is declared twice");
     }

@@ -1,5 +1,9 @@
 #include "io/find_columns.h"
 
+#include "io/column_facts.h"
+#include "io/column_names.h"
+#include "io/text_values.h"
+
 #include <algorithm>
 #include <cstdint>
 #include <iterator>

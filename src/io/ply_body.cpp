@@ -1,5 +1,6 @@
 #include "io/ply_body.h"
 
+#include "io/ply_types.h"
 #include "io/text.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 #include "io/ply_header.h"
 
+#include "io/ply_types.h"
 #include "io/text.h"
 
 #include <algorithm>
@@ -8,17 +9,6 @@
 namespace g3r::io {
 
 namespace {
-
-struct TypeName {
-  std::string_view name;
-  Type type;
-};
-
-constexpr TypeName kTypes[] = {
-    {"char", Type::kInt8},     {"int8", Type::kInt8},       {"uchar", Type::kUint8},    {"uint8", Type::kUint8},
-    {"short", Type::kInt16},   {"int16", Type::kInt16},     {"ushort", Type::kUint16},  {"uint16", Type::kUint16},
-    {"int", Type::kInt32},     {"int32", Type::kInt32},     {"uint", Type::kUint32},    {"uint32", Type::kUint32},
-    {"float", Type::kFloat32}, {"float32", Type::kFloat32}, {"double", Type::kFloat64}, {"float64", Type::kFloat64}};
 
 // The lines of a header. All end with LF (a CR before it is dropped), or all with CR where the first does: only then is the first byte of a
 // binary body certain.
@@ -155,10 +145,9 @@ class HeaderParser {
   }
 
   Type type(std::string_view name) {
-    const auto* found = std::find_if(std::begin(kTypes), std::end(kTypes), [&](const TypeName& t) { return t.name == name; });
-    if (found == std::end(kTypes))
-      fail_here("unknown property type " + quote(name) + ": expected char, uchar, short, ushort, int, uint, float or double");
-    return found->type;
+    const std::optional<Type> found = ply_type_of(name);
+    if (!found) fail_here("unknown property type " + quote(name) + ": expected char, uchar, short, ushort, int, uint, float or double");
+    return *found;
   }
 
   void no_more(Tokens& words) {
@@ -197,29 +186,5 @@ class HeaderParser {
 }  // namespace
 
 PlyHeader read_ply_header(const Source& source) { return HeaderParser(source).parse(); }
-
-const char* ply_type_name(Type type) {
-  switch (type) {
-    case Type::kInt8:
-      return "char";
-    case Type::kUint8:
-      return "uchar";
-    case Type::kInt16:
-      return "short";
-    case Type::kUint16:
-      return "ushort";
-    case Type::kInt32:
-      return "int";
-    case Type::kUint32:
-      return "uint";
-    case Type::kFloat32:
-      return "float";
-    case Type::kInt64:
-    case Type::kUint64:
-    case Type::kFloat64:
-      break;
-  }
-  return "double";
-}
 
 }  // namespace g3r::io

@@ -24,7 +24,4 @@ struct PlyHeader {
 /// Reads and checks a header. Throws InvalidInput.
 PlyHeader read_ply_header(const Source& source);
 
-/// PLY's name of a type: "char" ... "double". 64-bit integers, which PLY lacks, are called "double".
-const char* ply_type_name(Type type);
-
 }  // namespace g3r::io

@@ -1,5 +1,7 @@
 #include "io/point_text.h"
 
+#include "io/text_values.h"
+
 #include <algorithm>
 #include <limits>
 #include <utility>

@@ -2,9 +2,9 @@
 // the columns; a header line may name them; PTS files start with the number of points. What the columns are: find_columns.h.
 #pragma once
 
+#include "io/column_names.h"
 #include "io/table.h"
 #include "io/text.h"
-#include "io/text_columns.h"
 
 #include <cstdint>
 #include <functional>

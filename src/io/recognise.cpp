@@ -3,7 +3,7 @@
 #include "io/gzip.h"
 #include "io/table.h"
 #include "io/text.h"
-#include "io/text_columns.h"
+#include "io/text_values.h"
 
 #include <algorithm>
 #include <array>

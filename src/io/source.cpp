@@ -2,6 +2,8 @@
 
 #include "base/platform.h"
 #include "io/recognise.h"
+#include "io/text.h"
+#include "io/utf8.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -11,27 +13,6 @@
 namespace g3r {
 
 namespace {
-
-// Length of the valid UTF-8 sequence at the start of `text`, 0 if there is none; its code point in `code`.
-std::size_t utf8_length(std::string_view text, unsigned& code) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned>(static_cast<unsigned char>(text[i])); };
-  const unsigned first = byte(0);
-  const std::size_t length = first < 0x80                    ? 1
-                             : first >= 0xC2 && first < 0xE0 ? 2
-                             : first >= 0xE0 && first < 0xF0 ? 3
-                             : first >= 0xF0 && first < 0xF5 ? 4
-                                                             : 0;
-  if (length == 0 || length > text.size()) return 0;
-  constexpr unsigned kMasks[] = {0, 0x7F, 0x1F, 0x0F, 0x07};
-  code = first & kMasks[length];
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(i) & 0xC0) != 0x80) return 0;
-    code = code << 6 | (byte(i) & 0x3F);
-  }
-  constexpr unsigned kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
-  if (code < kLeast[length] || code > 0x10FFFF || (code >= 0xD800 && code < 0xE000)) return 0;
-  return length;
-}
 
 // Characters that move the cursor, change the terminal's state or reverse the reading direction.
 bool is_control(unsigned code) {
@@ -46,7 +27,7 @@ std::string escape_text(const std::string& text) {
   std::string safe;
   for (std::size_t i = 0; i < text.size();) {
     unsigned code = 0;
-    const std::size_t length = utf8_length(std::string_view(text).substr(i), code);
+    const std::size_t length = io::utf8_length(std::string_view(text).substr(i), code);
     if (length != 0 && !is_control(code)) {
       safe.append(text, i, length);
       i += length;
@@ -145,11 +126,7 @@ std::string extension(const std::string& path) {
   const std::string name = slash == std::string::npos ? path : path.substr(slash + 1);
   const std::size_t dot = name.find_last_of('.');
   if (dot == std::string::npos || dot + 1 == name.size()) return "";
-  std::string ext = name.substr(dot + 1);
-  for (char& c : ext) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return ext;
+  return lower_case(std::string_view(name).substr(dot + 1));
 }
 
 }  // namespace io

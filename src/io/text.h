@@ -86,6 +86,9 @@ class Tokens {
 /// The text without blanks at both ends.
 std::string_view trim(std::string_view text);
 
+/// The text with small letters for A to Z.
+std::string lower_case(std::string_view text);
+
 /// Whether the token is a number from its first to its last character. NaN and infinity in the usual spellings count; beyond
 /// double's range it is infinite or zero and `overflow` is set (it is never cleared). No hexadecimal, no decimal comma, no Fortran D.
 bool parse_double(std::string_view token, double& value, bool* overflow = nullptr);

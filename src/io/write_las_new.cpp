@@ -1,6 +1,8 @@
 // LAS of clouds that come from other formats: LAS 1.4, point format 0 or 2, all other properties as extra bytes.
 #include "io/las.h"
 #include "io/las_output.h"
+#include "io/rows.h"
+#include "io/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -84,18 +86,13 @@ std::string new_header(std::uint64_t count, const Box& bounds, bool colored, con
   return text;
 }
 
-std::string lower(std::string text) {
-  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return text;
-}
-
 // Names for extra bytes that are neither those of fields nor twice the same, where needed with a number at the end.
 std::vector<std::string> extra_names(const std::vector<Column>& columns) {
   std::set<std::string> taken(std::begin(kFieldNames), std::end(kFieldNames));
   std::vector<std::string> names;
   for (const Column& column : columns) {
     std::string name = column.property.name.substr(0, kLasNameBytes);
-    for (int number = 2; !taken.insert(lower(name)).second; ++number) {
+    for (int number = 2; !taken.insert(lower_case(name)).second; ++number) {
       const std::string digits = std::to_string(number);
       name = column.property.name.substr(0, kLasNameBytes - 1 - digits.size());
       (name += '_') += digits;

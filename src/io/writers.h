@@ -4,6 +4,7 @@
 #include "io/columns.h"
 #include "io/las_output.h"
 #include "io/output_file.h"
+#include "io/rows.h"
 
 namespace g3r::io {
 

@@ -1,9 +1,10 @@
 // Source: W3C, "Extensible Markup Language (XML) 1.0 (Fifth Edition)", 2008; numbers in brackets are its productions.
 #include "io/xml.h"
 
+#include "io/utf8.h"
+
 #include <algorithm>
 #include <charconv>
-#include <cstdint>
 #include <utility>
 
 namespace g3r::io {
@@ -13,41 +14,16 @@ namespace {
 constexpr std::string_view kBlanks = " \t\r\n";
 constexpr std::string_view kNameEnds = " \t\r\n=/<>\"'&";  // none of these is part of a name
 
-bool is_character(std::uint32_t c) {  // [2]
+bool is_character(unsigned c) {  // [2]
   return c == '\t' || c == '\n' || c == '\r' || (c >= 0x20 && c < 0xD800) || (c >= 0xE000 && c < 0xFFFE) || (c >= 0x10000 && c < 0x110000);
-}
-
-void append_utf8(std::uint32_t c, std::string& text) {
-  const auto put = [&](std::uint32_t byte) { text += static_cast<char>(byte); };
-  if (c < 0x80) {
-    put(c);
-  } else if (c < 0x800) {
-    put(0xC0 | c >> 6);
-  } else if (c < 0x10000) {
-    put(0xE0 | c >> 12);
-    put(0x80 | (c >> 6 & 0x3F));
-  } else {
-    put(0xF0 | c >> 18);
-    put(0x80 | (c >> 12 & 0x3F));
-    put(0x80 | (c >> 6 & 0x3F));
-  }
-  if (c >= 0x80) put(0x80 | (c & 0x3F));
 }
 
 // The place of the first byte that does not belong to a character in UTF-8 that XML allows; npos if there is none.
 std::size_t first_bad_character(std::string_view text) {
-  constexpr std::uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};  // by bytes: shorter spellings only
+  unsigned character = 0;
   for (std::size_t i = 0; i < text.size();) {
-    const auto lead = static_cast<unsigned char>(text[i]);
-    const std::size_t bytes = lead < 0x80 ? 1 : lead >> 5 == 6 ? 2 : lead >> 4 == 14 ? 3 : lead >> 3 == 30 ? 4 : 0;
-    if (bytes == 0 || bytes > text.size() - i) return i;
-    std::uint32_t c = bytes == 1 ? lead : lead & (0xFFU >> (bytes + 1));
-    for (std::size_t k = 1; k < bytes; ++k) {
-      const auto next = static_cast<unsigned char>(text[i + k]);
-      if (next >> 6 != 2) return i;
-      c = c << 6 | (next & 0x3F);
-    }
-    if (c < kLeast[bytes] || !is_character(c)) return i;
+    const std::size_t bytes = utf8_length(text.substr(i), character);
+    if (bytes == 0 || !is_character(character)) return i;
     i += bytes;
   }
   return std::string_view::npos;
@@ -211,10 +187,10 @@ class Parser {
     return out;
   }
 
-  std::uint32_t number(std::string_view digits) const {
+  unsigned number(std::string_view digits) const {
     const int base = digits.starts_with('x') ? 16 : 10;
     if (base == 16) digits.remove_prefix(1);
-    std::uint32_t c = 0;
+    unsigned c = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), c, base);
     if (error != std::errc() || end != digits.data() + digits.size() || !is_character(c)) fail("a number of no character");
     return c;

@@ -1,54 +1,14 @@
-// The columns of a text with one point per line: how a line is cut into values, and what its columns are, by name or by value.
+// What the columns of a text without names hold, inferred from their values.
 #pragma once
 
 #include "io/table.h"
-#include "io/text.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <string>
-#include <string_view>
 #include <vector>
 
 namespace g3r::io {
-
-/// What separates the values of a line: ';' where there is one; ',' if every comma stands between two values ("0,5 0,25" has decimal
-/// commas); else blanks (' ').
-char separator_of(std::string_view line);
-
-/// The values of a line. Between separators that are not blanks a value may stand in double quotes, which are taken off and hide
-/// separators; an empty value after a final separator does not count.
-class Values {
- public:
-  Values(std::string_view line, char separator);
-  bool next(std::string_view& value);
-
- private:
-  Tokens blanks_;
-  std::string_view rest_;
-  char separator_;
-  bool more_;
-};
-
-std::size_t count_values(std::string_view line, char separator);
-
-/// Values of the line that are numbers.
-std::size_t count_numbers(std::string_view line, char separator);
-
-/// Whether the value is no number but begins like one: "0,5", "12:30".
-bool is_like_number(std::string_view value);
-
-/// The names in a header line, one per column: known ones in our spelling, surveyors' (easting, latitude, elevation ...) as x, y and z
-/// where those are not named.
-struct ColumnNames {
-  std::vector<std::string> names;
-  bool axes = false;        ///< x, y and z are among them
-  bool geographic = false;  ///< x or y is a longitude or latitude
-};
-ColumnNames column_names(std::string_view line, char separator);
-
-/// A name that occurred before gets a number: a, a_2.
-void make_distinct(std::vector<std::string>& names);
 
 /// What the values of columns are like, told point by point. Columns with text have NaN in its place.
 class ColumnFacts {

@@ -1,0 +1,102 @@
+#include "io/column_facts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace g3r::io {
+
+namespace {
+
+void name_triple(std::vector<Property>& columns, std::size_t first, const std::array<const char*, 3>& names) {
+  for (std::size_t c = 0; c < 3; ++c) columns[first + c].name = names[c];
+}
+
+}  // namespace
+
+ColumnFacts::ColumnFacts(std::size_t columns)
+    : whole_(columns, true), channel_(columns, true), any_unit_(columns, false), any_other_(columns, false) {}
+
+void ColumnFacts::add(const double* row) {
+  constexpr double kSlack = 0.01;  // Squared lengths of unit normals may be off by this: two decimals are common.
+  const std::size_t columns = whole_.size();
+  for (std::size_t c = 0; c < columns; ++c) {
+    if (!whole_[c]) continue;
+    whole_[c] = row[c] == std::nearbyint(row[c]) && !std::isinf(row[c]);
+    channel_[c] = channel_[c] && whole_[c] && row[c] >= 0 && row[c] <= 255;
+  }
+  for (std::size_t c = 0; c + 3 <= columns; ++c) {
+    if (any_other_[c]) continue;
+    const double square = row[c] * row[c] + row[c + 1] * row[c + 1] + row[c + 2] * row[c + 2];
+    if (std::abs(square - 1) <= kSlack) {
+      any_unit_[c] = true;
+    } else {
+      any_other_[c] = square != 0 && !std::isnan(square);
+    }
+  }
+  if (points_++ > 0) {
+    by_one_ = by_one_ && row[0] == last_ + 1;
+    increase_ = increase_ && row[0] > last_;
+  }
+  last_ = row[0];
+}
+
+bool ColumnFacts::are_colors(std::size_t column) const { return channel_[column] && channel_[column + 1] && channel_[column + 2]; }
+
+bool ColumnFacts::count_points() const {
+  constexpr std::uint64_t kLeast = 10;  // Fewer lines may count by chance.
+  return points_ >= kLeast && by_one_;
+}
+
+Arrangement find_arrangement(const ColumnFacts& facts, const std::vector<TextColumn>& text, const std::function<bool()>& all_differ) {
+  constexpr std::size_t kDescription = 4;
+  if (text.size() < 4 || text[1].any || text[2].any || text[3].any) return Arrangement::kXyz;
+  if (text[0].any && !text[0].all) return Arrangement::kXyz;
+  // Numbers of points beside coordinates that are all whole could not be distinguished from an x.
+  const bool fractions = !facts.are_whole(1) || !facts.are_whole(2) || !facts.are_whole(3);
+  if (text.size() > kDescription && text[kDescription].any &&
+      (text[0].all || (fractions && facts.are_whole(0) && (facts.increase() || all_differ())))) {
+    return Arrangement::kPnezd;
+  }
+  return text[0].all || (fractions && facts.count_points()) ? Arrangement::kNumberedXyz : Arrangement::kXyz;
+}
+
+bool all_differ(std::uint64_t count, const std::function<void(const std::function<void(double)>&)>& for_each_value, std::size_t at_once) {
+  const std::uint64_t parts = count / at_once + 1;
+  std::vector<double> values;
+  for (std::uint64_t part = 0; part < parts; ++part) {
+    values.clear();
+    for_each_value([&](double value) {
+      constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15;  // an odd number: whole numbers next to each other fall into different parts
+      const std::uint64_t bits = bits_as<std::uint64_t>(value + 0.0);  // 0 and -0 are equal
+      if ((bits * kSpread >> 32) % parts == part) values.push_back(value);
+    });
+    std::sort(values.begin(), values.end());
+    if (std::adjacent_find(values.begin(), values.end()) != values.end()) return false;
+  }
+  return true;
+}
+
+void guess_names(std::vector<Property>& columns, const ColumnFacts& facts, std::size_t known) {
+  const std::size_t count = columns.size();
+  bool normals = false;
+  bool colors = false;
+  for (std::size_t c = known; c < count;) {
+    const bool triple = c + 3 <= count;
+    const bool unit = triple && !normals && facts.are_normals(c);
+    if (triple && !unit && !colors && facts.are_colors(c)) {
+      name_triple(columns, c, {"red", "green", "blue"});
+      colors = true;
+      c += 3;
+    } else if (unit || count == known + 3) {  // a triple alone that is no colour: normals of any length
+      name_triple(columns, c, {"nx", "ny", "nz"});
+      normals = true;
+      c += 3;
+    } else {
+      columns[c].name = "scalar_" + std::to_string(c + 1);
+      ++c;
+    }
+  }
+}
+
+}  // namespace g3r::io
