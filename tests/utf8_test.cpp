@@ -15,7 +15,7 @@ TEST(Utf8, EveryCharacterComesBackButSurrogates) {
     io::append_utf8(code, text);
     unsigned read = 0;
     ASSERT_EQ(io::utf8_length(text + "x", read), is_surrogate(code) ? 0 : text.size()) << code;
-    if (!is_surrogate(code)) ASSERT_EQ(read, code);
+    ASSERT_TRUE(is_surrogate(code) || read == code) << code;
   }
 }
 

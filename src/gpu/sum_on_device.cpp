@@ -75,7 +75,7 @@ Buffer& SumOnDevice<T>::room(std::unique_ptr<Buffer>& buffer, std::size_t elemen
 }
 
 template <class T>
-KernelTraits SumOnDevice<T>::traits(const SumRequest<T>& request) const {
+KernelTraits SumOnDevice<T>::traits(const cpu::SumRequest<T>& request) const {
   KernelTraits traits;
   traits.form = request.form;
   traits.batch = request.batch;
@@ -98,7 +98,7 @@ void SumOnDevice<T>::in_slices(std::size_t count, std::size_t slice, const std::
 }
 
 template <class T>
-void SumOnDevice<T>::upward(const SumRequest<T>& request, Program& expansions, Program& translations) {
+void SumOnDevice<T>::upward(const cpu::SumRequest<T>& request, Program& expansions, Program& translations) {
   const KernelTraits t = traits(request);
   const TreeOnDevice& tree = lists_.sources();
   const std::size_t n = coefficient_count(request.order);
@@ -125,7 +125,7 @@ void SumOnDevice<T>::upward(const SumRequest<T>& request, Program& expansions, P
 }
 
 template <class T>
-void SumOnDevice<T>::across(const SumRequest<T>& request, Program& translations) {
+void SumOnDevice<T>::across(const cpu::SumRequest<T>& request, Program& translations) {
   const KernelTraits t = traits(request);
   const std::size_t stride = cpu::padded_count(coefficient_count(request.order));
   const std::size_t moved = most_moved(request.form, request.multipole_channels, t.local_widths);
@@ -145,7 +145,7 @@ void SumOnDevice<T>::across(const SumRequest<T>& request, Program& translations)
 }
 
 template <class T>
-void SumOnDevice<T>::downward(const SumRequest<T>& request, Program& translations) {
+void SumOnDevice<T>::downward(const cpu::SumRequest<T>& request, Program& translations) {
   const KernelTraits t = traits(request);
   const TreeOnDevice& tree = lists_.targets();
   const std::size_t n = coefficient_count(request.order);
@@ -162,7 +162,7 @@ void SumOnDevice<T>::downward(const SumRequest<T>& request, Program& translation
 }
 
 template <class T>
-void SumOnDevice<T>::near(const SumRequest<T>& request) {
+void SumOnDevice<T>::near(const cpu::SumRequest<T>& request) {
   const KernelTraits t = traits(request);
   Program& program = device_.program(near_field_source(t));
   const T width2 = static_cast<T>(uniform_width_ * uniform_width_);
@@ -180,7 +180,7 @@ void SumOnDevice<T>::near(const SumRequest<T>& request) {
 }
 
 template <class T>
-void SumOnDevice<T>::far_to_points(const SumRequest<T>& request, Program& expansions) {
+void SumOnDevice<T>::far_to_points(const cpu::SumRequest<T>& request, Program& expansions) {
   const KernelTraits t = traits(request);
   const std::size_t n = coefficient_count(request.order);
   const T width2 = static_cast<T>(uniform_width_ * uniform_width_);
@@ -195,7 +195,7 @@ void SumOnDevice<T>::far_to_points(const SumRequest<T>& request, Program& expans
 }
 
 template <class T>
-void SumOnDevice<T>::run(const SumRequest<T>& request, const Take& take) {
+void SumOnDevice<T>::run(const cpu::SumRequest<T>& request, const Take& take) {
   const std::size_t value_bytes = request.value_fields * source_stride_ * sizeof(T);
   const std::size_t data_bytes = request.data_fields * target_stride_ * sizeof(T);
   device_.write(room(values_, value_bytes / sizeof(T)), 0, request.values, value_bytes);

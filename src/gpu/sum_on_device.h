@@ -1,8 +1,8 @@
-// The passes of a sum on a device: the counterpart of the loops in sum/sum_engine.cpp, with the same lists, matrices and data.
+// The passes of a sum on a device: the counterpart of sum/sum_passes.cpp, with the same lists, matrices and data.
 // Internal to src/sum and src/gpu.
 #pragma once
 
-#include "cpu/near_field.h"
+#include "cpu/sum_request.h"
 #include "gpu/device.h"
 #include "gpu/kernel_source.h"
 #include "gpu/lists_on_device.h"
@@ -27,25 +27,6 @@ struct PointsOfSum {
   double uniform_width;  ///< without local widths
 };
 
-/// One sum: what, to how many terms, of which values.
-template <class T>
-struct SumRequest {
-  cpu::NearForm form;
-  int batch;    ///< K
-  bool direct;  ///< near field only
-  int order;
-  T reach;  ///< as in cpu::NearTask
-  double kernel_error;
-  const T* values;  ///< of the sources, fields as their places
-  std::size_t value_fields;
-  const T* target_data;  ///< of the targets, fields as their places
-  std::size_t data_fields;
-  std::size_t multipole_channels;
-  std::size_t local_channels;
-  std::size_t out_channels;
-  const std::atomic<bool>* cancel;
-};
-
 /// Points on a device, and memory for their sums, allocated on first use. Throws DeviceError, Cancelled, std::bad_alloc.
 template <class T>
 class SumOnDevice {
@@ -55,15 +36,15 @@ class SumOnDevice {
 
   /// take(first target, count, sums), for all targets: blocks of kLanes x out_channels, without 1/(4 pi).
   using Take = std::function<void(std::size_t first, std::size_t count, const T* sums)>;
-  void run(const SumRequest<T>& request, const Take& take);
+  void run(const cpu::SumRequest<T>& request, const Take& take);
 
  private:
-  [[nodiscard]] KernelTraits traits(const SumRequest<T>& request) const;
-  void upward(const SumRequest<T>& request, Program& expansions, Program& translations);
-  void across(const SumRequest<T>& request, Program& translations);
-  void downward(const SumRequest<T>& request, Program& translations);
-  void near(const SumRequest<T>& request);
-  void far_to_points(const SumRequest<T>& request, Program& expansions);
+  [[nodiscard]] KernelTraits traits(const cpu::SumRequest<T>& request) const;
+  void upward(const cpu::SumRequest<T>& request, Program& expansions, Program& translations);
+  void across(const cpu::SumRequest<T>& request, Program& translations);
+  void downward(const cpu::SumRequest<T>& request, Program& translations);
+  void near(const cpu::SumRequest<T>& request);
+  void far_to_points(const cpu::SumRequest<T>& request, Program& expansions);
   template <class Launch>
   void in_slices(std::size_t count, std::size_t slice, const std::atomic<bool>* cancel, const Launch& launch);
   Buffer& room(std::unique_ptr<Buffer>& buffer, std::size_t elements);
