@@ -27,19 +27,12 @@ struct Sample {
 };
 
 /// A folder of its own, removed at the end.
-class Folder {
+class Folder : public TemporaryFolder {
  public:
-  Folder() = default;
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  [[nodiscard]] std::string path(const std::string& name) const { return path_ + "/" + name; }
+  [[nodiscard]] std::string path(const std::string& name) const { return file(name); }
   [[nodiscard]] std::size_t files() const {
-    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator()));
+    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(file("")), std::filesystem::directory_iterator()));
   }
-
- private:
-  std::string path_ = make_temporary_folder();
 };
 
 inline std::string slurp(const std::string& path) {

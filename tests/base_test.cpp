@@ -1,0 +1,45 @@
+#include "base/disjoint_sets.h"
+#include "base/percent.h"
+#include "base/whole_bytes.h"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace g3r {
+namespace {
+
+TEST(DisjointSets, AreNamedByTheirSmallestMemberWhateverTheOrder) {
+  DisjointSets sets(6), backwards(6);
+  const std::vector<std::pair<std::size_t, std::size_t>> joins{{4, 2}, {5, 4}, {1, 3}, {2, 5}};
+  for (const auto& [a, b] : joins) sets.join(a, b);
+  for (auto join = joins.rbegin(); join != joins.rend(); ++join) backwards.join(join->second, join->first);
+  const std::size_t smallest[] = {0, 1, 2, 1, 2, 2};
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    EXPECT_EQ(sets.find(i), smallest[i]);
+    EXPECT_EQ(backwards.find(i), smallest[i]);
+  }
+  EXPECT_EQ(sets.count(), 3U);
+  EXPECT_EQ(sets.add(), 6U);
+  EXPECT_EQ(sets.find(6), 6U);
+  EXPECT_EQ(sets.count(), 4U);
+}
+
+TEST(Percent, IsWhole) {
+  EXPECT_EQ(percent(0.124), "12 %");
+  EXPECT_EQ(percent(1), "100 %");
+}
+
+TEST(WholeBytes, AreNeverMoreThanASizeHolds) {
+  EXPECT_EQ(whole_bytes(1024.9), 1024U);
+  EXPECT_EQ(whole_bytes(1e30), std::numeric_limits<std::size_t>::max());
+  EXPECT_EQ(whole_bytes(std::numeric_limits<double>::infinity()), std::numeric_limits<std::size_t>::max());
+  EXPECT_EQ(mebibytes((std::uint64_t{1} << 20) - 1), 0U);
+}
+
+}  // namespace
+}  // namespace g3r
