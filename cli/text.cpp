@@ -100,32 +100,4 @@ std::optional<TileWorker> parse_worker(const std::string& text) {
   return good ? std::optional(worker) : std::nullopt;
 }
 
-std::optional<Vec3> parse_vector(const std::string& text) {
-  Vec3 vector{};
-  std::string_view rest = text;
-  for (std::size_t a = 0; a < 3; ++a) {
-    if (a > 0) {
-      if (rest.empty() || rest.front() != ',') return std::nullopt;
-      rest.remove_prefix(1);
-    }
-    const auto parsed = leading_number(rest);
-    if (!parsed) return std::nullopt;
-    vector[a] = parsed->number;
-    rest = parsed->rest;
-  }
-  return rest.empty() ? std::optional(vector) : std::nullopt;
-}
-
-std::optional<Vec3> parse_direction(const std::string& text) {
-  const bool is_signed = !text.empty() && (text.front() == '+' || text.front() == '-');
-  const std::string axis = is_signed ? text.substr(1) : text;
-  if (axis.size() == 1 && axis[0] >= 'x' && axis[0] <= 'z') {
-    Vec3 direction{0, 0, 0};
-    direction[static_cast<std::size_t>(axis[0] - 'x')] = text.front() == '-' ? -1 : 1;
-    return direction;
-  }
-  const auto vector = parse_vector(text);
-  return vector && *vector != Vec3{0, 0, 0} ? vector : std::nullopt;
-}
-
 }  // namespace g3r::cli

@@ -38,10 +38,4 @@ namespace g3r::cli {
 /// "2/8": worker 2 of 8.
 [[nodiscard]] std::optional<TileWorker> parse_worker(const std::string& text);
 
-/// "1,-2.5,3e2": three finite numbers. Empty if it is not that.
-[[nodiscard]] std::optional<Vec3> parse_vector(const std::string& text);
-
-/// The same, or an axis with an optional sign: "z", "+z", "-y". Empty if it is not that.
-[[nodiscard]] std::optional<Vec3> parse_direction(const std::string& text);
-
 }  // namespace g3r::cli

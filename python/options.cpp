@@ -1,5 +1,13 @@
 #include "options.h"
 
+#include <g3r/error.h>
+#include <g3r/names.h>
+
+#include <optional>
+#include <string>
+
+#include <nanobind/stl/string.h>
+
 namespace g3r::python {
 namespace {
 
@@ -12,8 +20,13 @@ std::vector<Vec3> take_places(const nb::dict& from, const char* name) {
 
 Hints read_hints(const nb::dict& from) {
   Hints hints;
-  const std::vector<Vec3> up = take_places(from, "up");
-  if (!up.empty()) hints.up = up.front();
+  if (from.contains("up") && nb::isinstance<nb::str>(from["up"])) {
+    const auto text = nb::cast<std::string>(from["up"]);
+    hints.up = parse_direction(text);
+    if (!hints.up) throw InvalidInput("up must be three numbers or an axis such as '+z' or '-y', not '" + text + "'");
+  } else if (const std::vector<Vec3> up = take_places(from, "up"); !up.empty()) {
+    hints.up = up.front();
+  }
   hints.sensors = take_places(from, "sensors");
   hints.inside = take_places(from, "inside");
   if (from.contains("sensor_of_point")) {

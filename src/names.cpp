@@ -18,4 +18,29 @@ std::optional<Length> parse_length(std::string_view text) {
   return length;
 }
 
+std::optional<Vec3> parse_vector(std::string_view text) {
+  Vec3 vector{};
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (a > 0 && (at == end || *at++ != ',')) return std::nullopt;
+    const auto [rest, error] = std::from_chars(at, end, vector[a]);
+    if (error != std::errc() || !std::isfinite(vector[a])) return std::nullopt;
+    at = rest;
+  }
+  return at == end ? std::optional(vector) : std::nullopt;
+}
+
+std::optional<Vec3> parse_direction(std::string_view text) {
+  const bool is_signed = !text.empty() && (text.front() == '+' || text.front() == '-');
+  const std::string_view axis = text.substr(is_signed ? 1 : 0);
+  if (axis.size() == 1 && axis[0] >= 'x' && axis[0] <= 'z') {
+    Vec3 direction{0, 0, 0};
+    direction[static_cast<std::size_t>(axis[0] - 'x')] = text.front() == '-' ? -1 : 1;
+    return direction;
+  }
+  const std::optional<Vec3> vector = parse_vector(text);
+  return vector && *vector != Vec3{0, 0, 0} ? vector : std::nullopt;
+}
+
 }  // namespace g3r

@@ -22,6 +22,7 @@
 #include "sum/device_scope.h"
 
 #include <g3r/g3r.h>
+#include <g3r/names.h>
 
 #include <algorithm>
 #include <cmath>
@@ -58,6 +59,18 @@ void require_meshable(const PointsView& points) {
   }
   if (largest > kLargestCoordinate) throw InvalidInput("coordinates beyond 1e50 cannot be meshed; scale them down");
   if (extent > 0 && extent < kLeastExtent) throw InvalidInput("an extent below 1e-140 cannot be meshed; scale the coordinates up");
+}
+
+// Refuses before any work what the mesher would refuse after most of it.
+void require_usable(const MeshOptions& options) {
+  if (options.depth != 0 && (options.depth < kLeastMeshDepth || options.depth > kMostMeshDepth)) {
+    throw InvalidInput("depth must be 0 (automatic) or " + std::to_string(kLeastMeshDepth) + " to " + std::to_string(kMostMeshDepth) +
+                       ", not " + std::to_string(options.depth));
+  }
+  if (options.trim == MeshOptions::Trim::kDistance && !(options.trim_distance > 0 && std::isfinite(options.trim_distance))) {
+    throw InvalidInput("the trim distance must be above 0 and finite");
+  }
+  if (!(options.min_component.value_or(0) >= 0)) throw InvalidInput("min_component must be 0 or more");
 }
 
 Mesh mesh_with_poisson(const OrientedCloud& oriented, const std::vector<Vec3>& normals, int depth) {
@@ -213,6 +226,7 @@ std::size_t planned(const Stats& stats, const MeshOptions& chosen) {
 }  // namespace
 
 Stats plan(const PointsView& points, const Options& options, const MeshOptions& mesh_options) {
+  require_usable(mesh_options);
   const MeshOptions chosen = choose(mesh_options, options);
   Stats stats = plan(points, options);
   stats.depth = chosen.depth;
@@ -226,6 +240,7 @@ Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const Me
     throw InvalidInput(std::to_string(points.count) + " points but " + std::to_string(normals.count) + " normals");
   }
   if (options.threads < 0) throw InvalidInput("threads must be 0 (all cores) or positive");
+  require_usable(options);
   require_meshable(points);
   std::vector<Vec3> kept;
   std::vector<Vec3> directions;
@@ -251,6 +266,7 @@ Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const Me
 
 Reconstruction reconstruct(const PointsView& points, const Options& options, const MeshOptions& mesh_options, const Monitor& monitor) {
   if (mesh_options.mesher == Mesher::kPoisson) require_screened_poisson();
+  require_usable(mesh_options);
   require_meshable(points);
   const MeshOptions chosen = choose(mesh_options, options);
   if (options.max_memory > 0) require_memory(plan(points, options, mesh_options).planned_memory_bytes, options);

@@ -1,10 +1,12 @@
-// Names: every value has one word, every word one value.
+// Names: every value has one word, every word one value; lengths and directions as texts; the bounds of options.
 #include <g3r/names.h>
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <set>
 #include <string_view>
+#include <vector>
 
 namespace g3r {
 namespace {
@@ -50,6 +52,37 @@ TEST(ParseLength, RefusesWhatIsNone) {
   for (const char* text : {"", "h", "-1", "1 h", "1hh", "1m", "nan", "inf", "1e999", "+1", "0x1", "auto h", "1\n"}) {
     EXPECT_FALSE(parse_length(text)) << text;
   }
+}
+
+TEST(ParseDirection, TakesAxesAndThreeNumbersThatAreNotAllZero) {
+  EXPECT_EQ(parse_direction("z"), (Vec3{0, 0, 1}));
+  EXPECT_EQ(parse_direction("-y"), (Vec3{0, -1, 0}));
+  EXPECT_EQ(parse_direction("1,-2.5,3e2"), (Vec3{1, -2.5, 300}));
+  for (const char* text : {"", "+", "w", "zz", "+1", "0,0,0", "1,2", "1,2,3,", "1,2,3,4", "1, 2,3", "1,,3", "nan,0,0", "1e999,0,0"}) {
+    EXPECT_FALSE(parse_direction(text)) << text;
+  }
+  EXPECT_EQ(parse_vector("0,0,0"), (Vec3{0, 0, 0}));
+  EXPECT_FALSE(parse_vector("z"));
+}
+
+TEST(MeshOptions, OutOfRangeAreRefusedBeforeAnyWork) {
+  const std::vector<Vec3> tetrahedron{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  Monitor monitor;
+  bool began = false;
+  monitor.progress = [&](std::string_view, double) { return began = true; };
+  std::vector<MeshOptions> bad(6);
+  bad[0].depth = kLeastMeshDepth - 1;
+  bad[1].depth = kMostMeshDepth + 1;
+  bad[2].depth = -1;
+  bad[3].trim = MeshOptions::Trim::kDistance;
+  bad[4].trim = MeshOptions::Trim::kDistance;
+  bad[4].trim_distance = std::numeric_limits<double>::infinity();
+  bad[5].min_component = -1;
+  for (const MeshOptions& options : bad) {
+    EXPECT_THROW((void)reconstruct(tetrahedron, {}, options, monitor), InvalidInput);
+    EXPECT_THROW((void)mesh_oriented(tetrahedron, tetrahedron, options, monitor), InvalidInput);
+  }
+  EXPECT_FALSE(began);
 }
 
 }  // namespace

@@ -61,6 +61,13 @@ def _rows(value: Any, what: str) -> Points:
     return array
 
 
+def whole(name: str, value: Any) -> int:
+    """An integer, 0 or more."""
+    if int(value) != value or value < 0:
+        raise InputError(f"{name} must be an integer, 0 or more, not {value!r}")
+    return int(value)
+
+
 def as_points(value: Any, what: str = "points") -> Points:
     """(n, 3) float32 or float64 with adjacent coordinates; a view of the caller's memory where that is one already."""
     import numpy as np

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 from typing import Any, Dict, Tuple
 
 from ._arrays import _plain
@@ -24,11 +23,9 @@ def _places(value: Any, name: str) -> Any:
 
 
 def _direction(value: Any) -> Any:
+    """A text, which the library reads, or one row."""
     if isinstance(value, str):
-        match = re.fullmatch(r"([+-]?)([xyz])", value)
-        if not match:
-            raise InputError(f"up must be three numbers or an axis such as '+z' or '-y', not {value!r}")
-        value = [(-1.0 if match[1] == "-" else 1.0) * (axis == match[2]) for axis in "xyz"]
+        return value
     rows = _places(value, "up")
     if len(rows) != 1 or not rows.any():
         raise InputError(f"up must be one direction, not {value!r}")

@@ -14,6 +14,7 @@ import os
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Sequence, Union
 
 from . import _g3r
+from ._arrays import whole
 from ._errors import InputError
 from ._hints import HINTS, take_hints
 from ._tile_status import Status, status
@@ -31,12 +32,6 @@ class Merged(NamedTuple):
     confidence_mean: float
     confidence_below_half: float
     """Share, 0 to 1."""
-
-
-def _whole(name: str, value: Any) -> int:
-    if int(value) != value or value < 0:
-        raise InputError(f"{name} must be an integer, 0 or more, not {value!r}")
-    return int(value)
 
 
 def plan(inputs: Union[Path, Sequence[Path]], folder: Path, *, max_memory: int = 0, tiles: int = 0, threads: int = 0,
@@ -58,7 +53,7 @@ def plan(inputs: Union[Path, Sequence[Path]], folder: Path, *, max_memory: int =
     if hints.get("sensor_of_point") is not None or isinstance(hints.get("sensor"), str):
         raise InputError("tiles take no sensors of single points: sensor must be places")
     _, options = take_hints(None, hints)
-    options.update(max_memory=_whole("max_memory", max_memory), tiles=_whole("tiles", tiles), threads=int(threads), device=device)
+    options.update(max_memory=whole("max_memory", max_memory), tiles=whole("tiles", tiles), threads=int(threads), device=device)
     paths = [inputs] if isinstance(inputs, (str, bytes, os.PathLike)) else inputs
     return Status(*_g3r.tiles_plan([os.fsdecode(path) for path in paths], os.fsdecode(folder), options, progress))
 
@@ -70,7 +65,7 @@ def run(folder: Path, *, worker: int = 1, workers: int = 1, threads: int = 0, de
     threads: 0 for all cores. The interpreter lock is released; Ctrl-C works. Two workers that do the same tile do no harm. Raises
     InputError (no plan, a damaged one, a worker that is not 1 to workers), FileError, Cancelled.
     """
-    return Status(*_g3r.tiles_run(os.fsdecode(folder), _whole("worker", worker), _whole("workers", workers), int(threads), device, progress))
+    return Status(*_g3r.tiles_run(os.fsdecode(folder), whole("worker", worker), whole("workers", workers), int(threads), device, progress))
 
 
 def dask_run(folder: Path, client: Any = None, *, threads: int = 0, retries: int = 3, device: str = "auto",
@@ -90,7 +85,7 @@ def dask_run(folder: Path, client: Any = None, *, threads: int = 0, retries: int
     """
     from ._dask import run_tiles
 
-    return run_tiles(os.path.abspath(os.fsdecode(folder)), client, int(threads), _whole("retries", retries), device, progress)
+    return run_tiles(os.path.abspath(os.fsdecode(folder)), client, int(threads), whole("retries", retries), device, progress)
 
 
 def merge(folder: Path, output: Path, *, progress: Optional[Progress] = None) -> Merged:
