@@ -18,7 +18,7 @@
 namespace g3r {
 
 /// A view of a matrix whose points lie in memory one after another: N x 3 row-major, or 3 x N column-major, float or double.
-/// The matrix must outlive the view. For other layouts see points_from().
+/// The matrix must outlive the view. O(1). For other layouts, which do not compile, see points_from().
 template <class Matrix>
 [[nodiscard]] PointsView points_view(const Eigen::PlainObjectBase<Matrix>& matrix) {
   using T = typename Matrix::Scalar;
@@ -31,7 +31,8 @@ template <class Matrix>
 template <class Matrix>
 PointsView points_view(const Eigen::PlainObjectBase<Matrix>&&) = delete;  // the view would outlive the matrix
 
-/// A copy of the rows of any N x 3 matrix expression, for example an Eigen::MatrixXd as libigl has it.
+/// A copy of the rows of any N x 3 matrix expression, for example an Eigen::MatrixXd as libigl has it. O(N). Another number of columns is
+/// an eigen_assert().
 template <class Derived>
 [[nodiscard]] std::vector<Vec3> points_from(const Eigen::MatrixBase<Derived>& matrix) {
   eigen_assert(matrix.cols() == 3);
@@ -43,7 +44,7 @@ template <class Derived>
   return points;
 }
 
-/// Triples as an N x 3 matrix without a copy: normals, vertices, triangles. The vector must outlive the map.
+/// Triples as an N x 3 matrix without a copy: normals, vertices, triangles. The vector must outlive the map. O(1).
 template <class T>
 [[nodiscard]] Eigen::Map<const Eigen::Matrix<T, Eigen::Dynamic, 3, Eigen::RowMajor>> as_matrix(const std::vector<std::array<T, 3>>& rows) {
   return {rows.empty() ? nullptr : rows[0].data(), static_cast<Eigen::Index>(rows.size()), 3};

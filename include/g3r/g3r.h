@@ -155,8 +155,8 @@ struct Orientation {
 };
 
 /// Orients an unoriented cloud of a closed surface. O(N log N) time, O(N) memory.
-/// Throws InvalidInput (fewer than 4 distinct finite points, all on a line, an option out of range), Cancelled,
-/// std::bad_alloc. The result depends neither on the order of the points nor on the number of threads.
+/// Throws InvalidInput (fewer than 4 distinct finite points, all on a line, an option out of range), Unavailable
+/// (Options::device), Cancelled, std::bad_alloc. The result depends neither on the order of the points nor on the number of threads.
 [[nodiscard]] Orientation orient(const PointsView& points, const Options& options = {}, const Monitor& monitor = {});
 
 /// How a surface is made from oriented points.
@@ -202,15 +202,17 @@ struct Reconstruction {
   MeshCheck check;
 };
 
-/// Orients a cloud and meshes it. Throws like orient(), InvalidInput for coordinates beyond 1e50 or an extent below 1e-140, of which areas
-/// and volumes cannot be told, and Unavailable when built without a mesher.
+/// Orients a cloud and meshes it: outward, closed unless trimmed, in input units. O(N log N) time, O(N) memory, of which the mesher takes
+/// most (Stats::planned_memory_bytes). Throws like orient(), InvalidInput for mesh options out of range, InvalidInput for coordinates
+/// beyond 1e50 or an extent below 1e-140, of which areas and volumes cannot be told, and Unavailable when built without a mesher.
 [[nodiscard]] Reconstruction reconstruct(const PointsView& points, const Options& options = {}, const MeshOptions& mesh_options = {},
                                          const Monitor& monitor = {});
 
 /// Meshes points that already have outward normals: N points and N normals (any length but zero).
 /// Points with a non-finite coordinate or a zero normal are left out.
-/// The field mesher takes the areas from the spacing of the points. `dropped` (may be null): what was left out for want of support.
-/// Throws InvalidInput, Cancelled, Unavailable, std::bad_alloc.
+/// The field mesher takes the areas from the spacing of the points. O(N log N) time, O(N) memory. `dropped` (may be null): what was left
+/// out for want of support. Throws InvalidInput (fewer than 4 points left, numbers that differ, an option out of range, no surface found),
+/// Cancelled, Unavailable (without the mesher or device that is asked for), std::bad_alloc.
 [[nodiscard]] Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const MeshOptions& options = {},
                                  const Monitor& monitor = {}, Dropped* dropped = nullptr);
 
@@ -221,13 +223,14 @@ void carry_attributes(Mesh& mesh, const PointsView& points, const std::vector<st
                       const std::vector<float>& confidence);
 
 /// What orient() would begin with, without solving: counts, box, spacing, noise, epsilon, memory plan. Where the result of that leaves many
-/// signs unsure, orient() tries another noise, and its report has the noise and epsilon of what it took.
+/// signs unsure, orient() tries another noise, and its report has the noise and epsilon of what it took. O(N log N). Throws InvalidInput
+/// like orient(), std::bad_alloc.
 [[nodiscard]] Stats plan(const PointsView& points, const Options& options = {});
 
 /// What reconstruct() would do with this cloud: the same, with the mesher's memory in the plan.
 [[nodiscard]] Stats plan(const PointsView& points, const Options& options, const MeshOptions& mesh_options);
 
-/// The report as JSON, schema version 1 (docs/report.md). `mesh` may be null.
+/// The report as JSON, schema version 1 (docs/report.md), in UTF-8. `mesh` may be null.
 [[nodiscard]] std::string report_json(const Stats& stats, const MeshCheck* mesh = nullptr);
 
 /// The winding field w and its gradient, evaluable anywhere:
@@ -242,8 +245,9 @@ class Field {
   Field& operator=(Field&&) noexcept;
 
   /// w at Q query points, finite: Q values. O(N + Q log N) after a build of O(N log N), anywhere up to millions of widths from the points.
+  /// The value at a query depends on that query alone. Throws Cancelled, std::bad_alloc.
   [[nodiscard]] std::vector<double> value(const PointsView& queries, const Monitor& monitor = {}) const;
-  /// Gradient of w at Q query points, in 1 / input units; points inward.
+  /// Gradient of w at Q query points, in 1 / input units: Q vectors, which near the surface point inward. Cost and errors of value().
   [[nodiscard]] std::vector<Vec3> gradient(const PointsView& queries, const Monitor& monitor = {}) const;
 
  private:

@@ -1,5 +1,6 @@
 /* The C interface: for languages that load a shared library. Plain C99; no exception leaves a function, nothing is printed, no state is
- * shared between threads. Arrays are N x 3 doubles, row-major. See g3r.h for what the functions do. */
+ * shared between threads. Arrays are N x 3 doubles, row-major, and stay the caller's. Functions that return a g3r_status return G3R_OK, or
+ * what went wrong, and then g3r_last_error() says it in words. See g3r.h for what they do and cost. */
 #ifndef G3R_C_H
 #define G3R_C_H
 
@@ -33,9 +34,9 @@ typedef enum g3r_unit { G3R_UNIT_AUTO = 0, G3R_UNIT_INPUT = 1, G3R_UNIT_PERCENT 
 
 /* Fill with g3r_options_init() and change what you need; members are only ever added at the end. */
 typedef struct g3r_options {
-  size_t size; /* of this struct, as the caller was compiled */
-  int paper;   /* not 0: the published method */
-  double epsilon;
+  size_t size;    /* of this struct, as the caller was compiled */
+  int paper;      /* not 0: the published method */
+  double epsilon; /* width of the mollifier, > 0 */
   g3r_unit epsilon_unit;
   int degree;          /* of the harmonic polynomials, 0..8; -1: automatic */
   int depth;           /* octree depth of the mesh, 4..12; 0: automatic */

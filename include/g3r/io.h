@@ -59,8 +59,8 @@ struct ReadOptions {
 /// names no file itself, stands for all files of points in it (LAS, LAZ, PLY, PCD, E57, PTX, PTS, XYZ, CSV, NPY, SPZ; of a pattern,
 /// whatever it names), which become one cloud in the order of their names: properties of numbers that any of them has, 0 where one has
 /// not. An ept.json, or the folder that holds one, stands for the cells of its octree.
-/// Throws IoError (not found, read error), InvalidInput (damaged, unknown or unusable; says where and what to do), Cancelled,
-/// std::bad_alloc.
+/// O(file) time and memory. Throws IoError (not found, read error), InvalidInput (damaged, unknown or unusable; says where and what to do),
+/// Cancelled, std::bad_alloc.
 [[nodiscard]] Cloud read_cloud(const std::string& path, const ReadOptions& options = {});
 
 /// The same from bytes in memory; `name` is used in messages.
@@ -68,6 +68,7 @@ struct ReadOptions {
 
 /// Reads a triangle mesh (PLY, OBJ, OFF, STL); polygons are cut into fans. Throws like read_cloud(), and InvalidInput if it has no face.
 [[nodiscard]] Mesh read_mesh(const std::string& path);
+/// The same from bytes in memory; `name` is used in messages.
 [[nodiscard]] Mesh read_mesh_bytes(const void* bytes, std::size_t size, const std::string& name);
 
 struct WriteOptions {
@@ -90,10 +91,10 @@ void write_mesh(const std::string& path, const Mesh& mesh, const WriteOptions& o
 /// work. `for_mesh`: check the extension as a mesh format, else as a point format. Leaves nothing behind.
 void check_output(const std::string& path, const std::vector<std::string>& inputs, bool for_mesh);
 
-/// Writes bytes (a report, a page) whole or not at all.
+/// Writes bytes (a report, a page) whole or not at all; "-" writes to standard output. Throws IoError.
 void write_file(const std::string& path, const std::string& bytes);
 
-/// Text from a file made safe for a terminal: control characters become \xNN.
+/// Text from a file made safe for a terminal: control characters, and bytes that are no UTF-8, become \xNN.
 [[nodiscard]] std::string escape_text(const std::string& text);
 
 }  // namespace g3r

@@ -38,10 +38,10 @@ struct MeshCheck {
   bool closed = false;                   ///< at least one triangle, no boundary edge and every edge shared by exactly two
   bool manifold = false;                 ///< no non-manifold edge or vertex
   long genus = 0;                        ///< sum over components of (2 - Euler characteristic) / 2; 0 unless closed and manifold
-  double volume = 0;                     ///< signed, by the divergence theorem; positive when oriented outward
-  double area = 0;
-  double min_angle = 0;         ///< degrees, the smallest of all triangles; 0 if one has no area
-  double median_min_angle = 0;  ///< degrees, median over the triangles of their smallest angle
+  double volume = 0;                     ///< cubed units of the mesh, signed, by the divergence theorem; positive when oriented outward
+  double area = 0;                       ///< squared units of the mesh
+  double min_angle = 0;                  ///< degrees, the smallest of all triangles; 0 if one has no area
+  double median_min_angle = 0;           ///< degrees, median over the triangles of their smallest angle
   double max_aspect = 0;  ///< largest ratio of longest side to the height on it, 2/sqrt(3) for equilateral ones; infinite without area
   Dropped dropped;        ///< by the mesher; check_mesh() leaves it empty
   std::optional<std::size_t> self_intersections;  ///< count_self_intersections(), where that was asked for; check_mesh() leaves it empty

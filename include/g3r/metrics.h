@@ -13,7 +13,7 @@
 namespace G3R_PUBLIC g3r {
 
 /// Normals against true normals, both N >= 1, of any length. A zero normal counts as wrong, with error 1/2 and an angle of 90 degrees.
-/// Throws InvalidInput for sizes that differ, a value that is not finite, a true normal that is zero.
+/// O(N). Throws InvalidInput for sizes that differ, a value that is not finite, a true normal that is zero.
 struct NormalScore {
   double ae = 0;   ///< AE_p = mean (1 - n . n_true) / 2, in 0..1
   double pco = 0;  ///< share of points with n . n_true > 0, in 0..1
@@ -35,7 +35,7 @@ struct FScore {
 };
 
 /// Mesh against true mesh, both sampled uniformly by area with `samples` points from `seed`. Exact closest points; lengths in mesh units.
-/// Throws InvalidInput for a mesh that sample_mesh() does not take, a distance that is not above 0.
+/// O((F + samples) log F). Throws InvalidInput for a mesh that sample_mesh() does not take, a distance that is not above 0.
 struct MeshScore {
   double chamfer = 0;             ///< CD: mean of the two one-sided mean distances to the other surface
   double ae = 0;                  ///< AE_m: mean (1 - n . n') / 2 over the same closest pairs, both directions

@@ -90,7 +90,7 @@ def read(
     levels: of the octree of COPC or EPT, from the coarsest; None for all.
     threads: of the search for those Gaussian splats, 0 for all cores; the result does not depend on it. Ctrl-C stops it.
 
-    Raises FileMissingError, FileError, InputError (damaged or unknown; says where and what to do).
+    O(file) time and memory. Raises FileMissingError, FileError, InputError (damaged or unknown; says where and what to do).
     """
     sides = None
     if box is not None:

@@ -26,7 +26,10 @@ def show(what: Any, *, normals: Any = None, confidence: Any = None, colors: Any 
 
     what: a `Result`, a `Cloud`, a path, points, or an object with points; with `faces`, the vertices of a mesh.
     mesh: a pair (V, F) to show with the points. true_normals: of a reference; adds a map of the errors. up: "y" or "z".
-    open: True opens the browser; None does so outside notebooks. Returns the `View`, which a notebook displays.
+    normals, true_normals, colors: (n, 3); confidence: (n,), 0 to 1. max_points: of more an evenly strided part is shown, and the page says
+    so. height: of the frame in a notebook, pixels.
+    open: True opens the browser; None does so outside notebooks. Returns the `View`, which a notebook displays. Raises InputError (nothing
+    to show, sizes that differ), ValueError for another `up`.
     """
     if up not in ("y", "z"):
         raise ValueError(f"up must be 'y' or 'z', not {up!r}")

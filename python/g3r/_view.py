@@ -24,14 +24,14 @@ class View:
         self.height = height
 
     def save(self, path: Path) -> None:
-        """Writes the page, or for a name that ends in .png four views as a picture."""
+        """Writes the page, or for a name that ends in .png four views as a picture. Raises OSError."""
         name = os.fsdecode(path)
         data = self.png() if name.lower().endswith(".png") else self.html.encode()
         with open(name, "wb") as file:
             file.write(data)
 
     def png(self, tile: int = 600) -> bytes:
-        """Four views as a PNG file, each `tile` pixels wide and high."""
+        """Four views as a PNG file, each `tile` pixels wide and high, 16 to 2048. Raises InputError."""
         return _g3r.view_png(self._scene, self._z_up, int(tile))
 
     def open(self) -> str:
