@@ -135,6 +135,25 @@ TEST(Hints, PointsThatDoNotAgreeWithTheirPatchHaveLessConfidence) {
   EXPECT_EQ(sides.confidence[7], 0.25F);
 }
 
+// What a scanner has seen it has seen from the front: a point that faces away from it has the wrong side, or the wrong direction.
+TEST(Hints, WhatFacesAwayFromEveryScannerIsDoubted) {
+  Sides above;
+  above.add_sphere({0, 0, 0}, 1, -0.5, 0, true);
+  Sides around = above;
+  above.follow({.sensors = {{0, 0, 1000}}});
+  around.follow({.sensors = {{0, 0, 1000}, {0, 0, -1000}}});
+  for (std::size_t i = 0; i < above.points.size(); ++i) {
+    const double z = above.normals[i][2];
+    if (std::abs(z) < 0.01) continue;  // seen edge-on
+    if (z < 0) {
+      EXPECT_NEAR(above.confidence[i], (1 + z) / 2, 0.01) << z;
+    } else {
+      EXPECT_EQ(above.confidence[i], above.confidence[0]) << z;
+    }
+    EXPECT_EQ(around.confidence[i], around.confidence[0]) << z;
+  }
+}
+
 TEST(Hints, AKnownSideIsTurnedByTwoThirds) {
   for (const double least_z : {-0.5, -0.9}) {
     Sides sides;

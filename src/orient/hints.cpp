@@ -188,6 +188,7 @@ class Following {
       ++all;
     }
     if (all > 0) effect_.agreement = agreed / all;
+    doubt_backs();
   }
 
   // Body of a loop over the pairs of adjacent points of one patch.
@@ -229,6 +230,27 @@ class Following {
     const std::uint32_t of_i = hints_.sensor_of_point[i];
     const std::uint32_t of_j = hints_.sensor_of_point[j];
     return of_i != kNoSensor && of_j != kNoSensor && opposed(hints_.sensors[of_i], i, hints_.sensors[of_j], j);
+  }
+
+  // The largest cosine under which a sensor that may have seen a point sees its front; nothing where none may have.
+  [[nodiscard]] std::optional<double> best_seen(std::uint32_t i) const {
+    if (hints_.sensor_of_point.empty()) {
+      std::optional<double> best;
+      for (const Vec3& sensor : hints_.sensors) best = std::max(best.value_or(-1), seen_from(sensor, points_[i], normal(i)));
+      return best;
+    }
+    const std::uint32_t sensor = hints_.sensor_of_point[i];
+    if (sensor == kNoSensor) return std::nullopt;
+    return seen_from(hints_.sensors[sensor], points_[i], normal(i));
+  }
+
+  // A scanner sees fronts: what faces away from all that may have seen it has the wrong side or the wrong direction, so that the side is a
+  // choice at a horizon, and certainly wrong where it would be seen squarely from behind.
+  void doubt_backs() {
+    for (std::uint32_t i = 0; i < points_.size(); ++i) {
+      const std::optional<double> seen = is_closed(i) ? std::nullopt : best_seen(i);
+      if (seen && *seen < 0) sided_.confidence[i] = std::min(sided_.confidence[i], static_cast<float>((1 + *seen) / 2));
+    }
   }
 
   // Two adjacent points are of one surface, which may be seen from behind beyond its horizon.
