@@ -5,6 +5,7 @@
 
 #include <g3r/error.h>
 
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -17,6 +18,25 @@ constexpr std::size_t kFewestPoints = 4;  // fewer cannot enclose a volume
 constexpr double kLineThickness = 1e-12;  // distance from a line over its length, below which points count as collinear: rounding
 
 bool finite(const Vec3& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }
+
+// Ones in groups of so many bits, each group at three times the place that it would have without gaps.
+constexpr std::uint64_t groups_of(int bits) {
+  std::uint64_t groups = 0;
+  for (int at = 0; at < std::numeric_limits<std::uint64_t>::digits; at += 3 * bits) groups |= ((std::uint64_t{1} << bits) - 1) << at;
+  return groups;
+}
+
+// The bits of v, which are in groups of 2 kBits with gaps of twice that, in groups of one.
+template <int kBits>
+std::uint64_t move_apart(std::uint64_t v) {
+  constexpr std::uint64_t kGroups = groups_of(kBits);
+  v = (v | v << (2 * kBits)) & kGroups;
+  if constexpr (kBits == 1) {
+    return v;
+  } else {
+    return move_apart<kBits / 2>(v);
+  }
+}
 
 struct Keyed {
   std::uint64_t code;
@@ -141,12 +161,8 @@ void require_not_collinear(const std::vector<Vec3>& points) {
 }  // namespace
 
 std::uint64_t spread_bits(std::uint64_t v) {
-  v &= 0x1fffff;
-  v = (v | v << 32) & 0x1f00000000ffffULL;
-  v = (v | v << 16) & 0x1f0000ff0000ffULL;
-  v = (v | v << 8) & 0x100f00f00f00f00fULL;
-  v = (v | v << 4) & 0x10c30c30c30c30c3ULL;
-  return (v | v << 2) & 0x1249249249249249ULL;
+  constexpr std::uint64_t kGrid = (std::uint64_t{1} << kGridBits) - 1;
+  return move_apart<static_cast<int>(std::bit_floor(unsigned{kGridBits}))>(v & kGrid);
 }
 
 std::uint64_t morton_code(const Vec3& unit) {

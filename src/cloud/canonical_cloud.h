@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace g3r {
@@ -39,7 +40,7 @@ struct CanonicalCloud {
   [[nodiscard]] std::size_t size() const { return set.size(); }
 };
 
-inline constexpr int kGridBits = 21;  ///< of an axis in a Morton code: 3 x 21 = 63 bits
+inline constexpr int kGridBits = std::numeric_limits<std::uint64_t>::digits / 3;  ///< of an axis in a Morton code: 3 x 21 = 63 bits
 
 /// The lowest 21 bits, each moved to three times its place: one axis of a Morton code.
 [[nodiscard]] std::uint64_t spread_bits(std::uint64_t v);

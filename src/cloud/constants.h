@@ -28,9 +28,11 @@ inline constexpr std::size_t kPatchNeighbours = 12;
 inline constexpr std::size_t kTwiceAsFar = 4;
 /// Reach in spacings of Gaussian weights over near points: without them CAD models have up to 1.13 times the error.
 inline constexpr double kWeightReach = 1.5;
+/// Monomials of u and v up to a degree: the numbers of a height field.
+constexpr std::size_t terms_of(std::size_t degree) { return (degree + 1) * (degree + 2) / 2; }
 /// Numbers of a plane.
-inline constexpr std::size_t kPlaneTerms = 3;
+inline constexpr std::size_t kPlaneTerms = terms_of(1);
 /// Numbers of a quadratic height field, 1, u, v, u^2, uv, v^2: one point more says how far they are off.
-inline constexpr std::size_t kQuadraticTerms = 6;
+inline constexpr std::size_t kQuadraticTerms = terms_of(2);
 
 }  // namespace g3r

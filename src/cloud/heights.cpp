@@ -11,7 +11,7 @@
 namespace g3r {
 namespace {
 
-constexpr Eigen::Index kColumns = 10;  // the monomials of u and v up to degree 3
+constexpr Eigen::Index kColumns = terms_of(3);
 
 }  // namespace
 
@@ -41,7 +41,7 @@ HeightMoments height_moments(const std::vector<Vec3>& points, const std::uint32_
   moments.mean_square = square / free * h * h;
   const double least = std::numeric_limits<double>::min();
   if (!(square * square >= least) || !(kept.square().sum() >= least)) return {};
-  moments.excess = residual.array().pow(4).sum() / (square * square) * free * (free + 2) - 3 * kept.sum();
+  moments.excess = residual.array().square().square().sum() / (square * square) * free * (free + 2) - 3 * kept.sum();
   moments.excess /= kept.square().sum();
   return moments;
 }

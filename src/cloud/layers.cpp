@@ -2,6 +2,7 @@
 
 #include "cloud/constants.h"
 #include "cloud/exact_plane.h"
+#include "cloud/noise.h"
 #include "cloud/quadratic_patch.h"
 
 #include <Eigen/Cholesky>
@@ -17,13 +18,13 @@ using Eigen::ArrayXd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kRadius = 0.6;     // of the cylinder, in distances of the farthest point
-constexpr double kTail = 1.5;       // deviations of a layer that have to be inside for its own deviation to count
-constexpr Eigen::Index kTerms = 5;  // u, v, u^2, u v, v^2
-constexpr int kSteps = 20;          // of expectation and maximisation, and of points that look for their layer: most change theirs 4 times
+constexpr double kRadius = 0.6;                       // of the cylinder, in distances of the farthest point
+constexpr double kTail = 1.5;                         // deviations of a layer that have to be inside for its own deviation to count
+constexpr Eigen::Index kTerms = kQuadraticTerms - 1;  // u, v, u^2, u v, v^2
+constexpr int kSteps = 20;  // of expectation and maximisation, and of points that look for their layer: most change theirs 4 times
 constexpr Eigen::Index kMostLayers = 3;
-constexpr double kLeastShare = 0.05;  // of the deviation about one layer, that about more: a mixture must not shrink to points
-constexpr int kFewestOnLayer = 4;     // of two layers, on either
+constexpr double kLeastShare = 0.05;             // of the deviation about one layer, that about more: a mixture must not shrink to points
+constexpr int kFewestOnLayer = kPlaneTerms + 1;  // of two layers, on either: fewer say nothing of their distance
 constexpr double kNoShare = std::numeric_limits<double>::min();  // keeps the logarithm of a likelihood finite
 
 struct Heights {
@@ -62,7 +63,7 @@ Mixture fit_mixture(const Heights& h, const Eigen::LDLT<MatrixXd>& normal_equati
   const Eigen::Index n = h.z.size();
   const auto total = static_cast<double>(n);
   Eigen::Array<double, 1, kLayers> offset, share;
-  const double distance = deviation * std::sqrt(12.0 / (kLayers * kLayers - 1));
+  const double distance = deviation / std::sqrt(kRoundingVariance * (kLayers * kLayers - 1));
   for (std::size_t c = 0; c < kLayers; ++c) {
     offset[static_cast<Eigen::Index>(c)] = middle + (static_cast<double>(c) - (kLayers - 1) / 2.0) * distance;
   }

@@ -1,5 +1,6 @@
 #include "cloud/noise.h"
 
+#include "base/bisect.h"
 #include "base/vector.h"
 #include "cloud/constants.h"
 #include "cloud/exact_plane.h"
@@ -71,14 +72,12 @@ void for_some(const PointSet& set, std::size_t places, std::size_t count, Visit 
 // / 2.
 double expected_residual(std::size_t count, double share) {
   const std::size_t half = (count - kQuadraticTerms) / 2;
-  double low = 0, high = 4;
-  for (int bit = 0; bit < std::numeric_limits<double>::digits; ++bit) {
-    const double x = (low + high) / 2, y = static_cast<double>(half) * x * x;
+  return last_that([&](double x) {
+    const double y = static_cast<double>(half) * x * x;
     double term = 1, sum = 1;
     for (std::size_t k = 1; k < half; ++k) sum += term *= y / static_cast<double>(k);
-    (1 - std::exp(-y) * sum < share ? low : high) = x;
-  }
-  return low;
+    return 1 - std::exp(-y) * sum < share;
+  });
 }
 
 // How far the points are from height fields through `count` of them.

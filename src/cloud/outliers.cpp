@@ -1,5 +1,6 @@
 #include "cloud/outliers.h"
 
+#include "base/bisect.h"
 #include "base/vector.h"
 #include "cloud/chance.h"
 #include "cloud/constants.h"
@@ -10,19 +11,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
 namespace g3r {
 namespace {
 
-// Neighbours of a point within which a slab is looked for: more see a surface among more strays, but bends are flat in few.
-constexpr std::array<std::size_t, 3> kSlabNeighbours = {16, 32, 64};
-// Half the thickness of slabs, of the reach of those: what is flat is seen best in thin ones, bends and noise need thick ones.
-constexpr std::array<double, 3> kThickness = {0.05, 0.1, 0.2};
-constexpr double kHeldWhole = 4;            // standard deviations of noise: a ball about a point of the layer holds all of it but its rim
-constexpr std::size_t kFewestPoints = 100;  // below, sparse parts are a matter of chance
-constexpr double kMostOutliers = 0.5;       // of the points: beyond, which of them are the surface is a choice
+// Slabs are looked for among the 16 nearest of a point and twice as many so often, and half as thick as a share of their reach and twice
+// that so often. More neighbours see a surface among more strays, but bends are flat in few; what is flat is seen best in thin slabs, bends
+// and noise need thick ones.
+constexpr std::size_t kScales = 3;
+constexpr double kThinnest = 0.05;
+constexpr std::size_t slab_neighbours(std::size_t scale) { return (kSpacingNeighbours - 1) << scale; }
+constexpr double slab_thickness(std::size_t scale) { return kThinnest * static_cast<double>(std::size_t{1} << scale); }
+constexpr double kHeldWhole = 4;       // standard deviations of noise: a ball about a point of the layer holds all of it but its rim
+constexpr double kMostOutliers = 0.5;  // of the points: beyond, which of them are the surface is a choice
 
 // P(Poisson(mean) < count).
 double chance_of_fewer(std::size_t count, double mean) {
@@ -45,9 +49,9 @@ struct EvenSurface {
   // goes with its cross-section, and by which the `count`-th point is at the median for a mean of count - 1/3. Mean over heights, in
   // standard deviations: high above its layer a ball cuts less out of it.
   [[nodiscard]] double share_beyond(double spacing) const {
-    constexpr double kStep = 0.25, kHighest = 6;
+    constexpr double kStep = 0.25;
     double sum = 0, weights = 0;
-    for (double z = kStep / 2; z < kHighest; z += kStep) {
+    for (double z = kStep / 2; std::exp(-z * z / 2) > std::numeric_limits<double>::epsilon(); z += kStep) {
       const double weight = std::exp(-z * z / 2);
       weights += weight;
       sum += weight * chance_of_fewer(count, (static_cast<double>(count) - 1.0 / 3) * (spacing * spacing - z * z * height * height));
@@ -60,32 +64,25 @@ struct EvenSurface {
 // The least spacing, in medians, that can be an outlier's: of fewer points than kMostOutliers of all, kFalseAlarms are as far apart by
 // chance.
 double least_spacing() {
-  double low = 1, high = 4;
-  for (int bit = 0; bit < 30; ++bit) {
-    const double middle = (low + high) / 2;
-    (EvenSurface().share_beyond(middle) > kFalseAlarms * kMostOutliers ? low : high) = middle;
-  }
-  return high;
+  return last_that([](double spacing) { return EvenSurface().share_beyond(spacing) > kFalseAlarms * kMostOutliers; });
 }
-
-static_assert(kSlabNeighbours.front() < kSpacingNeighbours);
 
 // Whether a slab through a point, and two of kClosest spread over a ball, holds more of those around than chance would put there if they
 // filled space: an a contrario test (Desolneux, Moisan and Morel, "From Gestalt Theory to Image Analysis", 2008).
 class Slabs {
  public:
   Slabs() {
-    constexpr double kTests = kSlabNeighbours.size() * kThickness.size() * kClosest * (kClosest - 1) / 2;
-    for (std::size_t t = 0; t < kThickness.size(); ++t) {
-      const double share = share_of_ball(kThickness[t]);
-      for (std::size_t n = 0; n <= kSlabNeighbours.back(); ++n) least_[t].push_back(proving_number(n, share, kTests));
+    constexpr double kTests = kScales * kScales * kClosest * (kClosest - 1) / 2;
+    for (std::size_t t = 0; t < kScales; ++t) {
+      const double share = share_of_ball(slab_thickness(t));
+      for (std::size_t n = 0; n <= kMost; ++n) least_[t].push_back(proving_number(n, share, kTests));
     }
   }
 
   // `near`: the point and its `count` nearest. Those count that have it among as many nearest of their own, to judge by their spacing: all
   // of a surface's, none of a dense patch beside the point, which is flat from afar.
   [[nodiscard]] bool hold(const PointSet& set, const std::uint32_t* near, std::size_t count) const {
-    std::array<Vec3, kSlabNeighbours.back()> q;
+    std::array<Vec3, kMost> q;
     std::size_t n = 0;
     double reach = 0;
     for (std::size_t k = 1; k <= count; ++k) {
@@ -100,10 +97,10 @@ class Slabs {
       for (std::size_t b = 1; b < a; ++b) {
         const Vec3 m = vector::cross(q[a * apart - 1], q[b * apart - 1]);
         const double most = reach * vector::dot(m, m);  // 0 of points in a line, which every slab along it holds
-        std::array<std::size_t, kThickness.size()> held{};
+        std::array<std::size_t, kScales> held{};
         for (std::size_t k = 0; k < n; ++k) {
           const double d = vector::dot(q[k], m);
-          for (std::size_t t = 0; t < held.size(); ++t) held[t] += d * d <= kThickness[t] * kThickness[t] * most ? 1 : 0;
+          for (std::size_t t = 0; t < held.size(); ++t) held[t] += d * d <= slab_thickness(t) * slab_thickness(t) * most ? 1 : 0;
         }
         for (std::size_t t = 0; t < held.size(); ++t) {
           if (held[t] >= least_[t][n - 2] + 2) return true;  // the two that it goes through
@@ -114,7 +111,8 @@ class Slabs {
   }
 
  private:
-  std::array<std::vector<std::size_t>, kThickness.size()> least_;
+  static constexpr std::size_t kMost = slab_neighbours(kScales - 1);
+  std::array<std::vector<std::size_t>, kScales> least_;
 };
 
 // Points so far apart as outliers may be and on no slab.
@@ -127,11 +125,13 @@ std::vector<std::uint32_t> find_strays(const PointSet& set, const std::vector<do
     std::vector<std::uint32_t> index;
     std::vector<double> squared;
     for (std::size_t i = begin; i < end; ++i) {
-      if (local[i] <= least || slabs.hold(set, near.data() + i * set.near_count(), kSlabNeighbours.front())) continue;
-      stray[i] = std::none_of(kSlabNeighbours.begin() + 1, kSlabNeighbours.end(), [&](std::size_t count) {
-        set.tree().nearest(set.points()[i], count + 1, index, squared);
-        return slabs.hold(set, index.data(), count);
-      });
+      if (local[i] <= least || slabs.hold(set, near.data() + i * set.near_count(), slab_neighbours(0))) continue;
+      bool held = false;
+      for (std::size_t scale = 1; scale < kScales && !held; ++scale) {
+        set.tree().nearest(set.points()[i], slab_neighbours(scale) + 1, index, squared);
+        held = slabs.hold(set, index.data(), slab_neighbours(scale));
+      }
+      stray[i] = held ? 0 : 1;
     }
   });
   std::vector<std::uint32_t> strays;
@@ -197,7 +197,7 @@ PointSet others_than(const PointSet& set, const std::vector<std::uint32_t>& some
 }  // namespace
 
 Outliers find_outliers(const PointSet& set, const std::vector<double>& relative_spacing, std::optional<double> noise) {
-  if (set.size() < kFewestPoints) return {{}, noise};
+  if (set.size() <= slab_neighbours(kScales - 1)) return {{}, noise};
   const std::vector<double> local = spacing_before_thinning(set.local_spacing(), relative_spacing);
   const double typical = typical_spacing(local);
   const std::vector<std::uint32_t> strays = find_strays(set, local, typical);

@@ -16,8 +16,8 @@ inline constexpr double kLeastSpacing = 1e-6;
 /// Nearest others that say how far apart points are: enough to average out random sampling, few enough to stay local.
 inline constexpr std::size_t kClosest = 8;
 
-/// Length of the lists of near points: a point itself and its 16 nearest, enough for both kinds of spacing.
-inline constexpr std::size_t kSpacingNeighbours = 17;
+/// Length of the lists of near points: a point itself and its 16 nearest, twice as many as one spacing takes, to average spacings.
+inline constexpr std::size_t kSpacingNeighbours = 2 * kClosest + 1;
 
 /// h_i = d_k sqrt(pi / k), d_k the distance of point i to its k-th neighbour, k = 8: the square root of the area per point of a surface
 /// sample (docs/math.md, "Spacing"). Fewer than 9 points: k = N - 1. N values in the units of the points, all > 0 for distinct points. O(N
