@@ -101,7 +101,7 @@ struct Course {
 // Area vectors by settings.method.
 IterativeResult solve_for_areas(FastSum& sum, const LevelCloud& cloud, const Settings& settings, Course course) {
   if (settings.method == Method::kGreen) {
-    GreenSystem system(sum, cloud.points, settings.harmonics, settings.constant_weight);
+    GreenSystem system(sum, cloud.points, settings.harmonics);
     return solve_iteratively(system, course.schedule, course.tolerance, std::move(course.start), course.observe);
   }
   EnergySystem system(sum, 0, settings.winding_weight, cloud.relative_spacing);

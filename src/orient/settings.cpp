@@ -1,6 +1,7 @@
 #include "orient/settings.h"
 
 #include "base/whole_bytes.h"
+#include "cloud/chance.h"
 #include "cloud/sites.h"
 #include "orient/open_surfaces.h"
 
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <sstream>
 
@@ -25,11 +27,11 @@ constexpr double kPolishWindingWeight = 70;  // of clean points and little noise
 constexpr double kTolerance =
     2.5e-3;  // of further steps and of least squares too; slats and spokes need this residual; smooth shapes get there in half the steps
 constexpr const char* kEnergySchedule = "45 cg";
-constexpr double kAcceptedResidual = 0.1;  // random points on spheres end at 0.05 after a coarse start, with normals right to 1e-4
+constexpr const char* kGreenSchedule = "20 cg";  // least squares over the harmonics; more cost time, and change sides for better and worse
+constexpr double kAcceptedResidual = 0.1;        // random points on spheres end at 0.05 after a coarse start, with normals right to 1e-4
 // Steps in which what is known reaches the far sides: fewer leave those undecided. More fit what is wrong with the equations: noise, above
 // all in the polish, and after a coarse start, where smooth shapes take 2 to 10, open surfaces and the outliers that are always left.
 constexpr int kFewSteps = 10;
-constexpr double kFewOutliers = 1e-2;  // of the points; clean clouds lose one point, very uneven ones 0.6 %
 // The default on noisy input, sigma in spacings h: the field must not see single points. Kernels of a given number of sigma hide the
 // scatter of points, and blur walls as thin as that; below a spacing fewer points share the scatter, and walls matter more. So the width
 // grows with the square of sigma first and in proportion later, w = A s^2 / hypot(s, 1) for s = sigma / h.
@@ -46,9 +48,6 @@ constexpr double kNoisyPolishWidth = 2.4;     // h
 const double kFlatPatch = std::numbers::inv_sqrtpi / 2;  // 1/h
 // Of the sums. Solves from 0 amplify errors with every step; with a start kContinuedAccuracy does.
 constexpr double kAccuracy = 1e-2;
-// The default for least squares over the harmonics.
-constexpr double kGreenConstantWeight = 2;  // the row u = 1 alone distinguishes inside from outside
-constexpr const char* kGreenSchedule = "20 cg";
 // The polish is one more level on the same points.
 constexpr int kPolishSteps = 5;  // narrow gaps want more, smooth shapes fewer
 // The paper preset.
@@ -89,6 +88,14 @@ double hidden_noise(double width) {
   const double sigmas = width / kNoisyWidth;
   return std::sqrt(sigmas * (sigmas + std::hypot(sigmas, 2)) / 2);
 }
+
+// What the program has of every point that it is given: input, result, and which of the distinct points it is.
+struct Given {
+  Vec3 point, normal;
+  double area;
+  float confidence;
+  std::uint32_t index, multiplicity;
+};
 
 double cube(double x) { return x * x * x; }
 
@@ -163,7 +170,6 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
                                             : parse_harmonics(options.harmonics);
   }
   const bool green = s.method == Method::kGreen;
-  s.constant_weight = paper ? 1 : kGreenConstantWeight;
   s.epsilon.points = kEpsilon * spacing;
   if (paper) s.epsilon.points = std::max(paper_epsilon(cloud), kPaperLeastEpsilon * spacing);
   if (options.epsilon.unit != Length::Unit::kAuto) {
@@ -188,7 +194,8 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   s.schedule_text = !options.schedule.empty() ? options.schedule : paper ? kPaperSchedule : green ? kGreenSchedule : kEnergySchedule;
   s.schedule = parse_schedule(s.schedule_text);
   s.coarse_to_fine = !paper && !green && options.schedule.empty() && !contains(s.without, Step::kCoarseStart);
-  const bool among_outliers = static_cast<double>(outliers) > kFewOutliers * static_cast<double>(cloud.size());
+  // Clean clouds lose one point, very uneven ones 0.6 %.
+  const bool among_outliers = static_cast<double>(outliers) > kFalseAlarms * static_cast<double>(cloud.size());
   s.continued_schedule = {{kFewSteps, StepKind::kConjugateGradient}};
   if (!among_outliers && !contains(s.without, Step::kMoreSteps)) s.doubtful_schedule = {kMoreSteps};
   s.tolerance = options.tolerance >= 0 ? options.tolerance : paper ? 0 : kTolerance;
@@ -216,7 +223,6 @@ bool starts_coarse(const Settings& settings, std::size_t points) {
 
 std::size_t planned_memory(const Settings& settings, std::size_t given, std::size_t used) {
   constexpr double kProgram = 20u << 20;  // code, libraries, thread stacks, matrices, queries
-  constexpr double kPerGiven = 70;        // what the program has of the input, index, result
   constexpr double kPerUnknown = 330;     // while the equations are solved,
   constexpr double kBase = 255;           // or what stays of it while sides are certified,
   constexpr double kPerSite = 445;        // and what each of the sites then takes:
@@ -227,7 +233,7 @@ std::size_t planned_memory(const Settings& settings, std::size_t given, std::siz
   const double apart = site_distance(used, settings.spacing, settings.noise) / settings.spacing;
   const double sites = apart > 0 ? kFilled * unknowns / (apart * apart) : unknowns;
   const double certificate = kBase * unknowns + kPerSite * sites;
-  double bytes = kProgram + kPerGiven * static_cast<double>(given) + std::max(solve, certificate);
+  double bytes = kProgram + static_cast<double>(given * sizeof(Given)) + std::max(solve, certificate);
   if (settings.dense) bytes += 3 * unknowns * 3 * unknowns * sizeof(double);
   return whole_bytes(bytes);
 }

@@ -37,7 +37,6 @@ struct Settings {
   Method method = Method::kEnergy;
   bool dense = false;
   std::vector<Harmonic> harmonics;  ///< green only
-  double constant_weight = 1;       ///< green: weight of the row u = 1
   double winding_weight = 0;        ///< energy: l, length^3
   double spacing = 0;
   double noise = 0;  ///< that the widths are made for, 0 when clean

@@ -15,7 +15,6 @@
 #include "orient/polish.h"
 #include "solve/dense_solver.h"
 #include "solve/energy_system.h"
-#include "solve/green_system.h"
 #include "solve/iterative_solver.h"
 #include "sum/fast_sum.h"
 
@@ -76,7 +75,7 @@ Solution solve_equations(const Problem& problem, const Options& options, Stages&
     record(s, solved.result, stats);
     return {std::move(solved.result.eta), std::move(solved.refinement), {}};
   }
-  const HarmonicValues u = weighted_harmonics(s.harmonics, points, s.constant_weight);
+  const HarmonicValues u = evaluate_harmonics(s.harmonics, points);
   DenseResult dense = solve_dense(points, s.epsilon.typical(), u, options.condition_number, stages.cancel());
   stats.converged = true;
   stats.condition_number = dense.condition_number;

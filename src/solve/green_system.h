@@ -9,22 +9,18 @@
 
 namespace g3r {
 
-/// Harmonics at the points, the constant one times `constant_weight`.
-[[nodiscard]] HarmonicValues weighted_harmonics(const std::vector<Harmonic>& harmonics, const std::vector<Vec3>& points,
-                                                double constant_weight);
-
-/// M = sum_k w_k^2 A[u_k]^T A[u_k], b = sum_k w_k^2 A[u_k]^T u_k / 2. Two sweeps per product, fused over k.
+/// M = sum_k A[u_k]^T A[u_k], b = sum_k A[u_k]^T u_k / 2. Two sweeps per product, fused over k.
 class GreenSystem : public LinearSystem {
  public:
-  /// `constant_weight`: w of u = 1; all other weights are 1. `sum` must outlive the system.
-  GreenSystem(FastSum& sum, const std::vector<Vec3>& points, const std::vector<Harmonic>& harmonics, double constant_weight = 1);
+  /// `sum` must outlive the system.
+  GreenSystem(FastSum& sum, const std::vector<Vec3>& points, const std::vector<Harmonic>& harmonics);
 
   void apply(const std::vector<Vec3>& eta, std::vector<Vec3>& product) override;
   std::vector<Vec3> right_side() override;
 
  private:
   FastSum& sum_;
-  HarmonicValues u_;  // weighted
+  HarmonicValues u_;
 };
 
 }  // namespace g3r
