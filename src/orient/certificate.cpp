@@ -4,6 +4,7 @@
 #include "base/vector.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
+#include "orient/settings.h"
 #include "sum/fast_sum.h"
 
 #include <algorithm>
@@ -20,16 +21,16 @@ constexpr std::size_t kProbes = 4;
 constexpr std::size_t kJumps = 3;  // of them, at which the jump is looked at: farther away the surface bends
 double distance_of(std::size_t probe) { return std::ldexp(1.0, static_cast<int>(probe)); }
 
-constexpr double kWidth = 0.4;  // typical spacings, of the field: single sites are not seen at the nearest probes, walls of a spacing are
 constexpr double kApart = 1.9;  // spacings between a probe and any site, so that the field there knows of no single ones
 
-// The field of the sites with the normals of several hypotheses, at probes on either side of them.
+// The field of the sites with the normals of several hypotheses, at probes on either side of them. It has the width of the equations:
+// single sites are not seen at the nearest probes, walls of a spacing are.
 class Probed {
  public:
   Probed(const Sites& sites, const std::vector<std::vector<Vec3>>& hypotheses, const SumPlan& sums, const std::atomic<bool>* cancel)
       : sites_(sites),
         cancel_(cancel),
-        field_(sites.points(), Widths(kWidth * sites.set.spacing()), sums, cancel),
+        field_(sites.points(), Widths(kEpsilon * sites.set.spacing()), sums, cancel),
         etas_(hypotheses),
         axis_(sites.axis) {
     for (std::size_t i = 0; i < axis_.size(); ++i) {

@@ -17,13 +17,12 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kBlock = parallel::kSmallBlock;  // points among which fits are shared
-constexpr std::size_t kMost = 2000;             // points in a fit: wider ones gain nothing; of more, evenly picked ones, to bound the work
-constexpr double kNarrowest = 4.2;              // first reach over sqrt(s h): 3.6 leaves 5 % more of the error, 4.8 blurs detail
-constexpr double kWider = std::numbers::sqrt2;  // from one reach to the next: twice the area
-constexpr double kNormalWeight = 0.3;           // the normals are those of a smooth field already: less leaves noise, more blurs
-constexpr double kOpposed = 0.05;               // share of points that face the other way from which a fit has another wall too close
-constexpr double kShared = 0.25;                // of the reach: how far a fit serves other points
-constexpr double kNoiseReach = 3;               // spacings, of the fits that do: 4 takes detail for noise
+constexpr double kNarrowest = 4.2;                     // first reach over sqrt(s h): 3.6 leaves 5 % more of the error, 4.8 blurs detail
+constexpr double kWider = std::numbers::sqrt2;         // from one reach to the next: twice the area
+constexpr double kNormalWeight = 0.3;                  // the normals are those of a smooth field already: less leaves noise, more blurs
+constexpr double kOpposed = 0.05;  // share of points that face the other way from which a fit has another wall too close
+constexpr double kShared = 0.25;   // of the reach: how far a fit serves other points
+constexpr double kNoiseReach = 3;  // spacings, of the fits that do: 4 takes detail for noise
 
 struct Fit {
   QuadraticPatch patch;  // relative to the point it was fitted at
@@ -62,7 +61,7 @@ class Fitter {
     Fit best;
     narrower_.clear();
     index_.clear();
-    for (double reach = first_reach(); reach > 0 && index_.size() < std::min(kMost, points_.size()); reach *= kWider) {
+    for (double reach = first_reach(); reach > 0 && index_.size() < std::min(kPlaces, points_.size()); reach *= kWider) {
       if (!gather(i, axis, reach)) break;
       if (members_.size() <= kQuadraticTerms) continue;
       const QuadraticPatch patch = fit_quadratic_patch(members_, 0, reach / 2, kNormalWeight);
@@ -85,11 +84,11 @@ class Fitter {
     double deviation = 0;
   };
 
-  // The points about point i on the side of `axis`; false where too many face the other way.
+  // The points about point i on the side of `axis`, of more than kPlaces evenly picked ones; false where too many face the other way.
   bool gather(std::size_t i, const Vector3d& axis, double reach) {
     const Vector3d centre = to_eigen(points_[i]);
     neighbours_.within(points_[i], std::hypot(reach, kSigmas * noise_), index_);
-    const std::size_t stride = 1 + index_.size() / kMost;
+    const std::size_t stride = 1 + index_.size() / kPlaces;
     members_.clear();
     total_ = 0;
     double opposed = 0;

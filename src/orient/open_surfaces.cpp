@@ -5,6 +5,7 @@
 #include "base/vector.h"
 #include "cloud/constants.h"
 #include "cloud/sites.h"
+#include "cloud/spacing.h"
 #include "cpu/parallel.h"
 #include "orient/certificate.h"
 #include "orient/sign_graph.h"
@@ -31,24 +32,17 @@ constexpr double kNoiseScale = 2;   // standard deviations of the noise between 
 constexpr double kFar = 4;
 // Graph.
 constexpr std::size_t kAdjacent = 10;  // nearest sites that a site is connected with: 12 lead from a thin wall to the next under noise
-constexpr double kDecay = 0.3;         // of the weight with the squared length in site distances
-constexpr double kLeastWeight = 0.02;  // of a site whose surroundings are a ball: it still follows its neighbours
 // Hypothesis.
 constexpr int kTurns = 3;           // rounds of the winding gradient
 constexpr double kTurnWidth = 2;    // site spacings: wider than the grooves that the sampling cannot resolve
-constexpr double kAgreed = 0.5;     // of the jump that a side has to show: less is more against it than for it
-constexpr double kHidden = 0.25;    // of the jump, below which the direction is that from afar; rims of open surfaces show 0.4 and more
+constexpr double kAgreed = 0.5;     // of the jump that a side has to show: less is more against it than for it, and what is around tells
 constexpr double kFarBetter = 0.5;  // of the jump defect as given, up to which a hypothesis is taken where unrest alone does not decide
 // Verdict.
 constexpr double kUnrest = 0.08;      // mean of a part that is open: closed ones have up to 0.06, open ones 0.1 to 0.3
 constexpr double kUnrestNoisy = 0.2;  // the same where noise hides thin walls, whose field is open in places
 constexpr double kNoJump = 0.6;       // mean jump defect of a part whose sides change from site to site, or of two walls
 constexpr double kNoJumpNoisy = 0.8;  // the same under noise
-constexpr double kOneWay = 0.5;       // length of the mean normal of a site and those around it whose points have one side
 constexpr double kEncloses = 0.7;     // enclosure under noise that no bowl up to a half sphere has, so that the part is a closed one
-// Mean jump defect of an open surface up to which its sides agree: 1 where none do.
-constexpr double kSidesAgree = 0.45;
-constexpr std::size_t kRing = 7;  // sites that a side is common to: one and those around it, six in the densest packing
 
 // Places where the unrest of the given normals is that of an open surface, and what to try there.
 class Search {
@@ -176,8 +170,9 @@ class Search {
     if (squared > kFar * kFar * reach * reach) return {a, a, 0};
     const double mirrored = dot(sites.axis[a], sites.axis[b]) -
                             2 * dot(sites.axis[a], d) * dot(sites.axis[b], d) / std::max(squared, std::numeric_limits<double>::min());
-    const double flat = std::max(kLeastWeight, 1 - sites.flatness[a]) * std::max(kLeastWeight, 1 - sites.flatness[b]);
-    return {a, b, flat * std::exp(-kDecay * squared / (reach * reach)) * mirrored};
+    // Sites whose surroundings are a ball still follow their neighbours.
+    const double flat = std::max(kRidge, 1 - sites.flatness[a]) * std::max(kRidge, 1 - sites.flatness[b]);
+    return {a, b, flat * std::exp(-squared / (2 * kWeightReach * kWeightReach * reach * reach)) * mirrored};
   }
 
   // Every pair of near sites once, from the nearest sites of each.
@@ -241,8 +236,8 @@ bool faces_down(const Vec3& sum) {
 }
 
 // Of every site, how far the normals of its points and of those of the sites around it are one direction: the length of their mean (the
-// mean resultant length of directional statistics; Mardia and Jupp, "Directional Statistics", 2000), 1 where all are the same, near 0
-// where they face either way, as in two walls or patches closer together than the sites.
+// mean resultant length of directional statistics; Mardia and Jupp, "Directional Statistics", 2000), the mean cosine between them and it: 1
+// where all are the same, near 0 where they face either way, as in two walls or patches closer together than the sites.
 std::vector<double> concentration(const Search& search, const std::vector<Vec3>& normals) {
   const Sites& sites = search.sites();
   std::vector<Vec3> sum(sites.size(), Vec3{0, 0, 0});
@@ -257,7 +252,7 @@ std::vector<double> concentration(const Search& search, const std::vector<Vec3>&
   for (std::size_t s = 0; s < sites.size(); ++s) {
     Vec3 around{};
     double all = 0;
-    for (std::size_t k = 0; k < std::min(kRing, stride); ++k) {
+    for (std::size_t k = 0; k < std::min(kClosest + 1, stride); ++k) {
       around = vector::add(around, sum[near[s * stride + k]]);
       all += count[near[s * stride + k]];
     }
@@ -356,7 +351,7 @@ void turn_doubtful(const Search& search, const std::vector<std::vector<Vec3>>& t
     const std::vector<double> one_way = concentration(search, normals);
     for (std::uint32_t i = 0; i < normals.size(); ++i) {
       const std::uint32_t p = search.part_of_point(i);
-      if (verdict.is_turned[p] == 0 || one_way[search.sites().site_of[i]] < kOneWay) continue;
+      if (verdict.is_turned[p] == 0 || one_way[search.sites().site_of[i]] < kSameSide) continue;
       if (dot(normals[i], tried[verdict.best[p]][i]) * verdict.enclosure[p] >= 0) continue;
       normals[i] = vector::scale(normals[i], -1);
       is_turned = true;
@@ -381,9 +376,9 @@ OpenSurfaces choose(const Search& search, const std::vector<std::vector<Vec3>>& 
     if (verdict.is_open[p] == 0) continue;
     first[p] = std::min(first[p], i);
     found.part[i] = first[p];
-    found.agrees[i] = verdict.defect[p] < kSidesAgree ? 1 : 0;
+    found.agrees[i] = verdict.defect[p] < 1 - kAgreed ? 1 : 0;
     const double agreed = 1 - verdict.defects[verdict.best[p]][search.sites().site_of[i]];
-    normals[i] = agreed < kHidden ? wide[i] : tried[verdict.best[p]][i];
+    normals[i] = agreed < kAgreed ? wide[i] : tried[verdict.best[p]][i];
     found.certified[i] = static_cast<float>(std::clamp(agreed / kAgreed, 0.0, 1.0));
     sum[p] = vector::add(sum[p], normals[i]);
   }
