@@ -64,6 +64,27 @@ IdleArenas& idle_arenas() {
   return *arenas;
 }
 
+// The body of a loop as oneTBB hands it out: copied into a task, after the range of the task, by one thread, and called by another.
+class LoopTask {
+ public:
+  explicit LoopTask(const FunctionRef<std::size_t, std::size_t>& body) : body_(&body) {}
+  LoopTask(const LoopTask& other) {
+    wait();
+    body_ = other.body_;
+    signal();
+  }
+  LoopTask& operator=(const LoopTask&) = delete;
+  ~LoopTask() = default;
+  void operator()(const tbb::blocked_range<std::size_t>& range) const {
+    wait();
+    (*body_)(range.begin(), range.end());
+    signal();
+  }
+
+ private:
+  const FunctionRef<std::size_t, std::size_t>* body_ = nullptr;
+};
+
 }  // namespace
 
 int thread_count(int threads) {
@@ -85,11 +106,7 @@ void run_with_threads(int threads, FunctionRef<> work) {
 
 void for_ranges(std::size_t count, FunctionRef<std::size_t, std::size_t> body) {
   signal();
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1), [&](const tbb::blocked_range<std::size_t>& range) {
-    wait();
-    body(range.begin(), range.end());
-    signal();
-  });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1), LoopTask(body));
   wait();
 }
 
