@@ -156,7 +156,7 @@ void turn(std::vector<Vec3>& vectors) {
 // it surrounds, and the triangles are turned.
 // `far_share` (may be null): share of the surface farther than mesh::kFarSpacings from every point.
 Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor& monitor, mesh::LeftOut& left_out,
-               std::size_t max_memory = 0, double* far_share = nullptr) {
+               MeshMemory* memory = nullptr, double* far_share = nullptr) {
   for (Vec3& p : left_out.strays) p = oriented.cloud.frame.to_unit(p);
   if (!options.keep_all) {
     std::vector<Vec3> doubtful;
@@ -182,7 +182,7 @@ Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor
     mesh::finish_mesh(mesh, {points, directions, mesh::smooth_spacing(points)}, 0, normalised, left_out);
   } else {
     oriented.cloud.set.release_neighbours();  // the mesher has its own, of the points that it moves
-    mesh = field_mesh(oriented.cloud.points(), std::move(directions), field, normalised, monitor, max_memory, &left_out);
+    mesh = field_mesh(oriented.cloud.points(), std::move(directions), field, normalised, monitor, memory, &left_out);
   }
   left_out.dropped.area /= frame.scale * frame.scale;
   if (mesh.triangles.empty()) throw InvalidInput("no surface found: the oriented points do not enclose a volume");
@@ -282,7 +282,10 @@ Reconstruction reconstruct(const PointsView& points, const Options& options, con
     const gpu::Scope same_device(options.device, points.count);
     OrientedCloud oriented = oriented_cloud(points, out.orientation.normals, out.orientation.areas);
     mesh::LeftOut left_out{outliers_of(points, out.orientation), {}};
-    out.mesh = make_mesh(std::move(oriented), chosen, monitor, left_out, options.max_memory, &far);
+    MeshMemory memory{options.max_memory, 0};
+    out.mesh = make_mesh(std::move(oriented), chosen, monitor, left_out, &memory, &far);
+    std::size_t& planned_bytes = out.orientation.stats.planned_memory_bytes;
+    planned_bytes = std::max(planned_bytes, memory.needed);
     out.check = check_mesh(out.mesh);
     out.check.dropped = left_out.dropped;
     carry_attributes(out.mesh, points, {}, out.orientation.confidence);

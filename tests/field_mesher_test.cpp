@@ -225,8 +225,11 @@ TEST(FieldMesher, CancelStops) {
 TEST(FieldMesher, TheOctreeIsHeldAgainstTheMemoryLimit) {
   const OrientedSample s = sphere_sample(1000, 1, 4);
   const DistanceSampler field([](const Vec3& p) { return norm(p) - 1; }, 0.1);
-  EXPECT_FALSE(field_mesh(s.points, s.normals, field, {}, {}, std::size_t{64} << 20).triangles.empty());
-  EXPECT_THROW((void)field_mesh(s.points, s.normals, field, {}, {}, std::size_t{17} << 20), Unavailable);
+  MeshMemory enough{std::size_t{64} << 20, 0}, less{std::size_t{17} << 20, 0};
+  EXPECT_FALSE(field_mesh(s.points, s.normals, field, {}, {}, &enough).triangles.empty());
+  EXPECT_LE(enough.needed, enough.limit);
+  EXPECT_THROW((void)field_mesh(s.points, s.normals, field, {}, {}, &less), Unavailable);
+  EXPECT_EQ(less.needed, enough.needed);
 }
 
 TEST(FieldMesher, WhatIsFarFromThePointsIsNotAskedOfTheField) {

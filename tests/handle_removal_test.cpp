@@ -23,6 +23,31 @@ const Octree& grid() {
   return octree;
 }
 
+TEST(SomeLeaves, AreNumberedInTheirOrder) {
+  Marks marked(300, 0);
+  for (const std::size_t leaf : {0, 1, 63, 64, 130, 299}) marked[leaf] = 1;
+  const SomeLeaves some(marked);
+  std::uint32_t number = 0;
+  for (std::uint32_t leaf = 0; leaf < marked.size(); ++leaf) {
+    ASSERT_EQ(some.contains(leaf), marked[leaf] != 0);
+    if (marked[leaf] == 0) continue;
+    ASSERT_EQ(some.number(leaf), number++);
+  }
+  EXPECT_EQ(some.count(), number);
+}
+
+// The places of the corners follow from the leaves that have them.
+TEST(Octree, EveryLeafHasItsCornersWhereItEnds) {
+  const Octree octree({0, 0, 0}, 1, {RefineDisc{{0.3, 0.4, 0.2}, {0, 0, 1}, 0.1, 0.05, 6}}, 2);
+  for (std::size_t leaf = 0; leaf < octree.leaf_count(); ++leaf) {
+    const OctreeNode node = octree.leaf(leaf);
+    for (std::uint32_t place = 0; place < 8; ++place) {
+      const std::array<std::uint32_t, 3> grid = octree.corner_grid(octree.corner(leaf, place));
+      for (std::size_t a = 0; a < 3; ++a) ASSERT_EQ(grid[a], node.low[a] + ((place >> a) & 1U) * octree.extent(node));
+    }
+  }
+}
+
 Marks mark(const std::function<bool(const Vec3&)>& inside) {
   Marks out(grid().corner_count());
   for (std::size_t c = 0; c < out.size(); ++c) out[c] = inside(grid().corner_position(c)) && !grid().on_boundary(c) ? 1 : 0;

@@ -31,7 +31,7 @@ void halve(std::vector<Item>& items, std::size_t begin, std::size_t middle, std:
 
 }  // namespace
 
-BoxTree::BoxTree(const std::vector<FloatBox>& boxes) : order_(boxes.size()), boxes_(boxes.size()) {
+BoxTree::BoxTree(std::vector<FloatBox> boxes) : order_(boxes.size()) {
   std::vector<Item> items(boxes.size());
   for (std::uint32_t i = 0; i < items.size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) items[i].twice_centre[k] = boxes[i].low[k] + boxes[i].high[k];
@@ -49,10 +49,11 @@ BoxTree::BoxTree(const std::vector<FloatBox>& boxes) : order_(boxes.size()), box
       for (std::size_t k = subtree << below; k < (subtree + 1) << below; ++k) split(level, k);
     }
   });
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    order_[i] = items[i].box;
-    boxes_[i] = boxes[items[i].box];
-  }
+  for (std::size_t i = 0; i < items.size(); ++i) order_[i] = items[i].box;
+  std::vector<Item>().swap(items);  // not all at once in memory
+  boxes_.reserve(order_.size());
+  for (const std::uint32_t i : order_) boxes_.push_back(boxes[i]);
+  std::vector<FloatBox>().swap(boxes);
   const std::size_t leaves = std::size_t{1} << static_cast<unsigned>(levels_);
   nodes_.resize(2 * leaves - 1);
   for (std::size_t k = 0; k < leaves; ++k) {

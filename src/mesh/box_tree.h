@@ -39,7 +39,7 @@ inline bool meet(const FloatBox& a, const FloatBox& b) {
 class BoxTree {
  public:
   /// O(n log n), on all threads.
-  explicit BoxTree(const std::vector<FloatBox>& boxes);
+  explicit BoxTree(std::vector<FloatBox> boxes);
 
   /// All pairs of boxes that meet, as jobs that can be done at the same time: visit_pairs(job, visit) calls visit(first, second),
   /// first < second their places among the boxes, for the pairs of one job. O(n log n) if few boxes meet many.

@@ -86,7 +86,8 @@ class Collapsing {
     }
   }
 
-  void run(const std::atomic<bool>* cancel) {
+  // Returns which triangles are left.
+  std::vector<std::uint8_t> run(const std::atomic<bool>* cancel) {
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t a = mesh_.triangles[t][k], b = mesh_.triangles[t][(k + 1) % 3];
@@ -101,7 +102,7 @@ class Collapsing {
       const bool forward = cost(a, b) <= cost(b, a);
       if (!collapse(forward ? a : b, forward ? b : a)) collapse(forward ? b : a, forward ? a : b);
     }
-    remove_triangles(mesh_, alive_);
+    return std::move(alive_);
   }
 
  private:
@@ -239,7 +240,8 @@ void coarsen(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<doub
       length[v] = lengths[index[0]];
     }
   });
-  Collapsing(mesh, std::move(length)).run(cancel);
+  const std::vector<std::uint8_t> left = Collapsing(mesh, std::move(length)).run(cancel);
+  remove_triangles(mesh, left);
 }
 
 }  // namespace g3r::mesh

@@ -18,7 +18,7 @@ std::uint64_t mixed(std::uint64_t x) {
 
 }  // namespace
 
-CornerGrouping::CornerGrouping(const OpenEdges& open, std::size_t leaves) : open_(open), group_(leaves, kNone), changed_(leaves, 0) {}
+CornerGrouping::CornerGrouping(const OpenEdges& open) : open_(open), group_(open.around.count(), kNone), changed_(open.around.count(), 0) {}
 
 CornerGroups CornerGrouping::group(const std::vector<std::uint8_t>& proposal, const std::vector<std::uint8_t>& inside,
                                    const std::function<bool(long)>& may_be) {
@@ -29,7 +29,8 @@ CornerGroups CornerGrouping::group(const std::vector<std::uint8_t>& proposal, co
   DisjointSets sets(g.place.size());
   for (std::uint32_t k = 0; k < g.place.size(); ++k) {
     for (const std::uint32_t edge : open_.at_corner.of(g.place[k])) {
-      for (const std::uint32_t leaf : open_.edges[edge].leaf) {
+      for (const std::uint32_t of_octree : open_.edges[edge].leaf) {
+        const std::uint32_t leaf = open_.around.number(of_octree);
         if (group_[leaf] == k) continue;
         if (group_[leaf] == kNone) {
           g.leaves.push_back(leaf);

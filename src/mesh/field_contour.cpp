@@ -31,19 +31,31 @@ struct FaceRecord {
   bool operator<(const FaceRecord& o) const { return face != o.face ? face < o.face : place < o.place; }
 };
 
-// In ascending order.
-std::vector<FaceRecord> face_records(const std::vector<ActiveEdge>& edges) {
-  if (edges.size() >= std::size_t{1} << 30U) throw std::bad_alloc();
+// All at once take more memory than the surface; so many times over all edges take no time beside sorting.
+constexpr std::size_t kGoes = 8;
+
+// Calls on_face(first, last) with the records of every face, in ascending order.
+template <class OnFace>
+void for_each_face(const Octree& octree, const std::vector<ActiveEdge>& edges, const OnFace& on_face) {
   std::vector<FaceRecord> records;
-  records.reserve(4 * edges.size());
-  for (std::uint32_t e = 0; e < edges.size(); ++e) {
-    for (std::uint32_t k = 0; k < 4; ++k) {
-      const std::uint64_t a = edges[e].leaf[k], b = edges[e].leaf[(k + 1U) % 4U];
-      if (a != b) records.push_back({(std::min(a, b) << 32U) | std::max(a, b), 4 * e + k, 0});
+  for (std::size_t go = 0; go < kGoes; ++go) {
+    const std::size_t begin = octree.leaf_count() * go / kGoes,
+                      end = octree.leaf_count() * (go + 1) / kGoes;  // the lower of the two leaves
+    records.clear();
+    for (std::uint32_t e = 0; e < edges.size(); ++e) {
+      for (std::uint32_t k = 0; k < 4; ++k) {
+        const std::uint64_t a = edges[e].leaf[k], b = edges[e].leaf[(k + 1U) % 4U], low = std::min(a, b);
+        if (a != b && low >= begin && low < end) records.push_back({(low << 32U) | std::max(a, b), 4 * e + k, 0});
+      }
+    }
+    parallel::sort(records.begin(), records.end(), std::less<>());
+    for (auto first = records.cbegin(); first != records.cend();) {
+      auto last = first;
+      while (last != records.cend() && last->face == first->face) ++last;
+      on_face(first, last);
+      first = last;
     }
   }
-  parallel::sort(records.begin(), records.end(), std::less<>());
-  return records;
 }
 
 // A face with four or more crossings on its rim.
@@ -105,55 +117,19 @@ class AmbiguousFace {
   bool run_inside_ = false;
 };
 
-// Arcs of all faces; those from `first_multiple` on come from faces with more than one.
 struct Arcs {
-  std::vector<FaceRecord> arcs;
-  std::size_t first_multiple = 0;
+  DisjointSets places;               // those of one patch are together
+  std::vector<FaceRecord> multiple;  // the arcs of faces with more than one
 };
 
 // `complete(leaf)`: whether `edges` has all crossings on the boundary of the leaf; faces between two that are not complete have no arcs.
 template <class Complete>
 Arcs join_arcs(const Octree& octree, const std::vector<ActiveEdge>& edges, const Complete& complete, const InsideTest& centre_inside) {
-  Arcs out;
-  std::vector<FaceRecord>& records = out.arcs;  // arcs take the place of those already looked at
-  records = face_records(edges);
-  std::vector<AmbiguousFace> ambiguous;
-  for (std::size_t i = 0; i < records.size();) {
-    std::size_t j = i;
-    while (j < records.size() && records[j].face == records[i].face) ++j;
-    if (!complete(records[i].face >> 32U) && !complete(records[i].face & 0xffffffffU)) {
-      i = j;
-      continue;
-    }
-    if (j - i == 2) {
-      records[out.first_multiple++] = {records[i].face, records[i].place, records[i + 1].place};
-    } else {
-      ambiguous.emplace_back(
-          octree, edges,
-          std::vector<FaceRecord>(records.begin() + static_cast<std::ptrdiff_t>(i), records.begin() + static_cast<std::ptrdiff_t>(j)));
-    }
-    i = j;
-  }
-  records.resize(out.first_multiple);
-  if (ambiguous.empty()) return out;
-  std::vector<Vec3> centres;
-  centres.reserve(ambiguous.size());
-  for (const AmbiguousFace& face : ambiguous) centres.push_back(face.centre());
-  const std::vector<std::uint8_t> inside = centre_inside(centres);
-  for (std::size_t f = 0; f < ambiguous.size(); ++f) ambiguous[f].join(inside[f] != 0, out.arcs);
-  return out;
-}
-
-// ---- patches: the loops of arcs on the boundary of each leaf ----
-
-// Patch of every (edge, place), 4 per edge; kNone in leaves that are not complete.
-template <class Complete>
-std::vector<std::uint32_t> label_patches(const std::vector<ActiveEdge>& edges, const std::vector<FaceRecord>& arcs,
-                                         const Complete& complete, DualSurface& surface) {
-  DisjointSets groups(edges.size() * 4);
+  if (edges.size() >= std::size_t{1} << 29U) throw std::bad_alloc();  // polygons have twice as many vertices as edges have leaves, at most
+  Arcs out{DisjointSets(edges.size() * 4), {}};
   for (std::uint32_t e = 0; e < edges.size(); ++e) {
     for (std::uint32_t k = 0; k < 4; ++k) {
-      if (edges[e].leaf[k] == edges[e].leaf[(k + 1) % 4]) groups.join(4 * e + k, 4 * e + (k + 1) % 4);
+      if (edges[e].leaf[k] == edges[e].leaf[(k + 1) % 4]) out.places.join(4 * e + k, 4 * e + (k + 1) % 4);
     }
   }
   const auto place_of = [&](std::uint32_t e, std::uint32_t leaf) {
@@ -161,60 +137,83 @@ std::vector<std::uint32_t> label_patches(const std::vector<ActiveEdge>& edges, c
     while (edges[e].leaf[k] != leaf) ++k;
     return 4 * e + k;
   };
-  for (const FaceRecord& arc : arcs) {
+  const auto join = [&](const FaceRecord& arc) {
     for (const std::uint32_t leaf : {static_cast<std::uint32_t>(arc.face >> 32U), static_cast<std::uint32_t>(arc.face)}) {
-      groups.join(place_of(arc.place / 4, leaf), place_of(arc.other / 4, leaf));
+      out.places.join(place_of(arc.place / 4, leaf), place_of(arc.other / 4, leaf));
     }
-  }
+  };
+  std::vector<AmbiguousFace> ambiguous;
+  for_each_face(octree, edges, [&](auto first, auto last) {
+    if (!complete(static_cast<std::uint32_t>(first->face >> 32U)) && !complete(static_cast<std::uint32_t>(first->face))) return;
+    if (last - first == 2) {
+      join({first->face, first->place, (first + 1)->place});
+    } else {
+      ambiguous.emplace_back(octree, edges, std::vector<FaceRecord>(first, last));
+    }
+  });
+  if (ambiguous.empty()) return out;
+  std::vector<Vec3> centres;
+  centres.reserve(ambiguous.size());
+  for (const AmbiguousFace& face : ambiguous) centres.push_back(face.centre());
+  const std::vector<std::uint8_t> inside = centre_inside(centres);
+  for (std::size_t f = 0; f < ambiguous.size(); ++f) ambiguous[f].join(inside[f] != 0, out.multiple);
+  for (const FaceRecord& arc : out.multiple) join(arc);
+  return out;
+}
+
+// ---- patches: the loops of arcs on the boundary of each leaf ----
+
+// Patch of every (edge, place), 4 per edge; kNone in leaves that are not complete. `places`: of Arcs, freed.
+template <class Complete>
+std::vector<std::uint32_t> label_patches(const std::vector<ActiveEdge>& edges, DisjointSets& places, const Complete& complete,
+                                         DualSurface& surface) {
+  const auto is_repeated = [&](std::uint32_t i) { return edges[i / 4].leaf[i % 4] == edges[i / 4].leaf[(i + 3) % 4]; };
   std::vector<std::uint32_t> patch(edges.size() * 4, kNone);
-  std::vector<std::size_t> count;
+  surface.patch_begin.assign(2, 0);
   for (std::uint32_t i = 0; i < patch.size(); ++i) {
     if (!complete(edges[i / 4].leaf[i % 4])) continue;
-    const std::size_t root = groups.find(i);
+    const std::size_t root = places.find(i);
     if (root == i) {
       patch[i] = static_cast<std::uint32_t>(surface.patch_leaf.size());
       surface.patch_leaf.push_back(edges[i / 4].leaf[i % 4]);
-      count.push_back(0);
+      surface.patch_begin.push_back(0);
     } else {
       patch[i] = patch[root];
     }
-    const bool repeated =
-        i % 4 != 0 ? edges[i / 4].leaf[i % 4] == edges[i / 4].leaf[i % 4 - 1] : edges[i / 4].leaf[0] == edges[i / 4].leaf[3];
-    if (!repeated) ++count[patch[i]];
+    if (!is_repeated(i)) ++surface.patch_begin[patch[i] + 2];
   }
-  surface.patch_begin.assign(count.size() + 1, 0);
-  for (std::size_t s = 0; s < count.size(); ++s) surface.patch_begin[s + 1] = surface.patch_begin[s] + count[s];
+  places = DisjointSets(0);
+  // Counted two places on, so that they are the beginnings once all are filled in.
+  for (std::size_t p = 2; p < surface.patch_begin.size(); ++p) surface.patch_begin[p] += surface.patch_begin[p - 1];
   surface.patch_crossings.resize(surface.patch_begin.back());
-  std::vector<std::size_t> fill(surface.patch_begin.begin(), surface.patch_begin.end() - 1);
-  for (std::uint32_t e = 0; e < edges.size(); ++e) {
-    for (std::uint32_t k = 0; k < 4; ++k) {
-      if (patch[4 * e + k] != kNone && edges[e].leaf[k] != edges[e].leaf[(k + 3) % 4])
-        surface.patch_crossings[fill[patch[4 * e + k]]++] = e;
-    }
+  for (std::uint32_t i = 0; i < patch.size(); ++i) {
+    if (patch[i] != kNone && !is_repeated(i)) surface.patch_crossings[surface.patch_begin[patch[i] + 1]++] = i / 4;
   }
+  surface.patch_begin.pop_back();
   return patch;
 }
 
-// Two patches joined by several arcs of one face would share several mesh edges: each of these gets a vertex in its middle.
-std::unordered_map<std::uint32_t, std::uint32_t> split_double_edges(const Arcs& arcs, const std::vector<std::uint32_t>& patch,
-                                                                    DualSurface& surface) {
+// `arcs`: of faces with more than one. Two patches joined by several of one face would share several mesh edges: each of these gets a
+// vertex in its middle.
+std::unordered_map<std::uint32_t, std::uint32_t> split_double_edges(const std::vector<FaceRecord>& arcs,
+                                                                    const std::vector<std::uint32_t>& patch, DualSurface& surface) {
   std::unordered_map<std::uint32_t, std::uint32_t> middle;  // place -> vertex
   const auto pair_of = [&](const FaceRecord& arc) {
     const std::uint64_t a = patch[arc.place], b = patch[arc.place / 4 * 4 + (arc.place + 1) % 4];
     return (std::min(a, b) << 32U) | std::max(a, b);
   };
-  for (std::size_t i = arcs.first_multiple; i < arcs.arcs.size();) {
+  for (std::size_t i = 0; i < arcs.size();) {
     std::size_t j = i;
-    while (j < arcs.arcs.size() && arcs.arcs[j].face == arcs.arcs[i].face) ++j;
+    while (j < arcs.size() && arcs[j].face == arcs[i].face) ++j;
     for (std::size_t k = i; k < j; ++k) {
-      const std::uint64_t pair = pair_of(arcs.arcs[k]);
+      const std::uint64_t pair = pair_of(arcs[k]);
       bool repeated = false;
-      for (std::size_t l = i; l < j; ++l) repeated = repeated || (l != k && pair_of(arcs.arcs[l]) == pair);
+      for (std::size_t l = i; l < j; ++l) repeated = repeated || (l != k && pair_of(arcs[l]) == pair);
       if (!repeated) continue;
       const auto vertex = static_cast<std::uint32_t>(surface.patch_count() + surface.midpoints.size());
       surface.midpoints.push_back(
-          {{static_cast<std::uint32_t>(pair >> 32U), static_cast<std::uint32_t>(pair)}, {arcs.arcs[k].place / 4, arcs.arcs[k].other / 4}});
-      for (const std::uint32_t place : {arcs.arcs[k].place, arcs.arcs[k].other}) middle[place] = vertex;
+          {{static_cast<std::uint32_t>(pair >> 32U), static_cast<std::uint32_t>(pair)}, {arcs[k].place / 4, arcs[k].other / 4}});
+      for (const std::uint32_t place : {arcs[k].place, arcs[k].other}) middle[place] = vertex;
     }
     i = j;
   }
@@ -231,7 +230,8 @@ bool touch_only_here(const Octree& octree, const ActiveEdge& e, std::uint32_t le
 
 void make_polygons(const Octree& octree, const std::vector<ActiveEdge>& edges, const std::vector<std::uint32_t>& patch,
                    const std::unordered_map<std::uint32_t, std::uint32_t>& middle, DualSurface& surface) {
-  surface.polygon_begin.assign(1, 0);
+  surface.polygon_begin.reserve(edges.size() + 1);
+  surface.polygon_begin.push_back(0);
   surface.polygon_vertices.reserve(edges.size() * 4);
   surface.safe_diagonals.reserve(edges.size());
   for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -253,52 +253,66 @@ void make_polygons(const Octree& octree, const std::vector<ActiveEdge>& edges, c
       safe = static_cast<std::uint8_t>(e.inside_low ? (even ? 1 : 0) | (odd ? 2 : 0) : (odd ? 1 : 0) | (even ? 2 : 0));
     }
     surface.safe_diagonals.push_back(safe);
-    surface.polygon_begin.push_back(polygon.size());
+    surface.polygon_begin.push_back(static_cast<std::uint32_t>(polygon.size()));
   }
+}
+
+// The edges that cross.
+std::vector<ActiveEdge> crossing_edges(const Octree& octree, const std::vector<std::uint8_t>& inside, const std::atomic<bool>* cancel) {
+  const auto mixed = [&](std::size_t leaf) {
+    const auto& c = octree.corners(leaf);
+    return std::any_of(c.begin(), c.end(), [&](std::uint32_t k) { return inside[k] != inside[c[0]]; });
+  };
+  const auto keep = [&](const MinimalEdge& e, std::vector<ActiveEdge>& out) {
+    if (inside[e.low] != inside[e.high]) out.push_back({e, inside[e.low] != 0});
+  };
+  return edges::find_edges<ActiveEdge>(octree, edges::mark_nodes(octree, mixed), keep, cancel);
+}
+
+bool any_leaf(std::uint32_t) { return true; }
+
+// Fills in crossings and patches and returns the patch of every (edge, place).
+std::vector<std::uint32_t> make_patches(const std::vector<ActiveEdge>& edges, Arcs& arcs, DualSurface& surface) {
+  std::vector<std::uint32_t> patch = label_patches(edges, arcs.places, any_leaf, surface);
+  surface.crossings.reserve(edges.size());
+  for (const ActiveEdge& e : edges) surface.crossings.push_back(e.inside_low ? Crossing{e.low, e.high} : Crossing{e.high, e.low});
+  return patch;
 }
 
 }  // namespace
 
 DualSurface contour(const Octree& octree, const std::vector<std::uint8_t>& inside, const InsideTest& centre_inside,
                     const std::atomic<bool>* cancel) {
-  const auto mixed = [&](std::size_t leaf) {
-    const auto& c = octree.corners(leaf);
-    return std::any_of(c.begin(), c.end(), [&](std::uint32_t k) { return inside[k] != inside[c[0]]; });
-  };
-  const auto all = [](std::size_t) { return true; };
-  const auto keep = [&](const MinimalEdge& e, std::vector<ActiveEdge>& out) {
-    if (inside[e.low] != inside[e.high]) out.push_back({e, inside[e.low] != 0});
-  };
-  const auto crossing = edges::find_edges<ActiveEdge>(octree, edges::mark_nodes(octree, mixed), keep, cancel);
-  const Arcs arcs = join_arcs(octree, crossing, all, centre_inside);
+  const std::vector<ActiveEdge> edges = crossing_edges(octree, inside, cancel);
+  Arcs arcs = join_arcs(octree, edges, any_leaf, centre_inside);
   DualSurface surface;
-  surface.crossings.reserve(crossing.size());
-  for (const ActiveEdge& e : crossing) surface.crossings.push_back(e.inside_low ? Crossing{e.low, e.high} : Crossing{e.high, e.low});
-  const std::vector<std::uint32_t> patch = label_patches(crossing, arcs.arcs, all, surface);
-  const auto middle = split_double_edges(arcs, patch, surface);
-  make_polygons(octree, crossing, patch, middle, surface);
+  const std::vector<std::uint32_t> patch = make_patches(edges, arcs, surface);
+  make_polygons(octree, edges, patch, split_double_edges(arcs.multiple, patch, surface), surface);
   return surface;
 }
 
-std::vector<MinimalEdge> edges_around(const Octree& octree, const std::vector<std::uint8_t>& leaves, const std::atomic<bool>* cancel) {
-  const auto keep = [](const MinimalEdge& e, std::vector<MinimalEdge>& out) { out.push_back(e); };
-  return edges::find_edges<MinimalEdge>(octree, edges::mark_nodes(octree, [&](std::size_t leaf) { return leaves[leaf] != 0; }), keep,
-                                        cancel);
+DualSurface patches_of(const Octree& octree, const std::vector<std::uint8_t>& inside, const InsideTest& centre_inside,
+                       const std::atomic<bool>* cancel) {
+  const std::vector<ActiveEdge> edges = crossing_edges(octree, inside, cancel);
+  Arcs arcs = join_arcs(octree, edges, any_leaf, centre_inside);
+  DualSurface surface;
+  (void)make_patches(edges, arcs, surface);
+  return surface;
 }
 
 Patches patches_in(const Octree& octree, const std::vector<MinimalEdge>& edges, const std::vector<std::uint32_t>& chosen,
-                   const std::vector<std::uint8_t>& leaves, const std::vector<std::uint8_t>& inside, const InsideTest& centre_inside) {
-  const auto marked = [&](std::size_t leaf) { return leaves[leaf] != 0; };
+                   const LeafTest& wanted, const std::vector<std::uint8_t>& inside, const InsideTest& centre_inside) {
   std::vector<ActiveEdge> crossing;
   std::vector<std::uint32_t> number;
   for (const std::uint32_t k : chosen) {
     const MinimalEdge& e = edges[k];
-    if (inside[e.low] == inside[e.high] || std::none_of(e.leaf.begin(), e.leaf.end(), marked)) continue;
+    if (inside[e.low] == inside[e.high] || std::none_of(e.leaf.begin(), e.leaf.end(), wanted)) continue;
     crossing.push_back({e, inside[e.low] != 0});
     number.push_back(k);
   }
   DualSurface surface;
-  label_patches(crossing, join_arcs(octree, crossing, marked, centre_inside).arcs, marked, surface);
+  Arcs arcs = join_arcs(octree, crossing, wanted, centre_inside);
+  (void)label_patches(crossing, arcs.places, wanted, surface);
   for (std::uint32_t& k : surface.patch_crossings) k = number[k];
   return {std::move(surface.patch_leaf), std::move(surface.patch_begin), std::move(surface.patch_crossings)};
 }

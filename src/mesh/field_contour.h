@@ -33,10 +33,10 @@ struct ArcMiddle {
 struct DualSurface {
   std::vector<Crossing> crossings;              ///< one per polygon
   std::vector<std::uint32_t> patch_leaf;        ///< leaf that holds each patch
-  std::vector<std::size_t> patch_begin;         ///< patches + 1 offsets into patch_crossings
+  std::vector<std::uint32_t> patch_begin;       ///< patches + 1 offsets into patch_crossings
   std::vector<std::uint32_t> patch_crossings;   ///< crossings on the rim of each patch
   std::vector<ArcMiddle> midpoints;             ///< for each further vertex
-  std::vector<std::size_t> polygon_begin;       ///< crossings + 1 offsets into polygon_vertices
+  std::vector<std::uint32_t> polygon_begin;     ///< crossings + 1 offsets into polygon_vertices
   std::vector<std::uint32_t> polygon_vertices;  ///< counter-clockwise seen from outside
   std::vector<std::uint8_t> safe_diagonals;     ///< per polygon of four: bit 0: diagonal 0-2, bit 1: diagonal 1-3 may be used
 
@@ -50,23 +50,23 @@ using InsideTest = std::function<std::vector<std::uint8_t>(const std::vector<Vec
 /// Throws Cancelled.
 [[nodiscard]] DualSurface contour(const Octree& octree, const std::vector<std::uint8_t>& inside, const InsideTest& centre_inside,
                                   const std::atomic<bool>* cancel = nullptr);
+/// The same without midpoints and polygons.
+[[nodiscard]] DualSurface patches_of(const Octree& octree, const std::vector<std::uint8_t>& inside, const InsideTest& centre_inside,
+                                     const std::atomic<bool>* cancel = nullptr);
 
-/// The minimal edges with a marked leaf (one byte per leaf) around them. O(nodes + edges). Throws Cancelled.
-[[nodiscard]] std::vector<MinimalEdge> edges_around(const Octree& octree, const std::vector<std::uint8_t>& leaves,
-                                                    const std::atomic<bool>* cancel = nullptr);
+using LeafTest = std::function<bool(std::uint32_t)>;  ///< whether a leaf is one of some
 
 /// Patches without a surface around them.
 struct Patches {
-  std::vector<std::uint32_t> leaf;  ///< that holds each patch
-  std::vector<std::size_t> begin;   ///< patches + 1 offsets into rim
-  std::vector<std::uint32_t> rim;   ///< edges that cross on the rim of each patch
+  std::vector<std::uint32_t> leaf;   ///< that holds each patch
+  std::vector<std::uint32_t> begin;  ///< patches + 1 offsets into rim
+  std::vector<std::uint32_t> rim;    ///< edges that cross on the rim of each patch
 };
 
-/// The patches of the surface in the marked leaves (one byte per leaf) alone. `chosen`: of `edges`, at least those around marked leaves; in
-/// the order that the edges of rims are to have. O(chosen log chosen), and O(leaves) where many are chosen.
+/// The patches of the surface in the leaves for which wanted(leaf) alone. `chosen`: of `edges`, at least those around such leaves; in the
+/// order that the edges of rims are to have. O(chosen log chosen).
 [[nodiscard]] Patches patches_in(const Octree& octree, const std::vector<MinimalEdge>& edges, const std::vector<std::uint32_t>& chosen,
-                                 const std::vector<std::uint8_t>& leaves, const std::vector<std::uint8_t>& inside,
-                                 const InsideTest& centre_inside);
+                                 const LeafTest& wanted, const std::vector<std::uint8_t>& inside, const InsideTest& centre_inside);
 
 /// Cuts the polygons into triangles; `positions` has one entry per vertex of the surface, `normals` (may be empty) one per patch.
 /// Quadrilaterals are cut along the diagonal that bends less against the normals; other polygons get a vertex at their centre.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace g3r::mesh {
 namespace {
@@ -20,10 +21,11 @@ enum class Way { kBoth, kFill, kCut };
 
 }  // namespace
 
-bool remove_handles(const Octree& octree, const AmbiguousCorners& ambiguous, const std::function<bool(std::uint32_t)>& may_change,
-                    long most_per_handle, const InsideTest& centre_inside, std::vector<std::uint8_t>& inside, DualSurface& surface,
+void remove_handles(const Octree& octree, const AmbiguousCorners& ambiguous, const std::function<bool(std::uint32_t)>& may_change,
+                    long most_per_handle, const InsideTest& centre_inside, std::vector<std::uint8_t>& inside,
                     const std::atomic<bool>* cancel) {
-  if (count_handles(surface) == 0) return false;
+  DualSurface surface = patches_of(octree, inside, centre_inside, cancel);
+  if (count_handles(surface) == 0) return;
   const std::vector<std::vector<float>> smoothed = smooth_sides(octree, ambiguous, inside, 2, cancel);
   const auto sign = [&](const Labelling& labelling, std::uint32_t place) -> std::uint8_t {
     const std::vector<float>& value = labelling.passes == 0 ? ambiguous.value : smoothed[labelling.passes - 1];
@@ -38,8 +40,7 @@ bool remove_handles(const Octree& octree, const AmbiguousCorners& ambiguous, con
     is_ambiguous[c] = 1;
     changing.push_back(k);
   }
-  HandleRemoval removal(octree, is_ambiguous, inside, surface, centre_inside, most_per_handle, cancel);
-  surface = {};
+  HandleRemoval removal(octree, is_ambiguous, inside, std::move(surface), centre_inside, most_per_handle, cancel);
   const std::vector<std::uint8_t> before = inside;
   for (const Labelling& labelling : kLabellings) {
     for (const Way way : {Way::kBoth, Way::kFill, Way::kCut}) {
@@ -54,7 +55,6 @@ bool remove_handles(const Octree& octree, const AmbiguousCorners& ambiguous, con
   }
   // A ring of few points has no handle where it is gone: then it stays.
   if (std::none_of(inside.begin(), inside.end(), [](std::uint8_t side) { return side != 0; })) inside = before;
-  return true;
 }
 
 }  // namespace g3r::mesh

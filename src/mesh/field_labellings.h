@@ -11,11 +11,9 @@
 
 namespace g3r::mesh {
 
-/// Of the ambiguous corners those change for which may_change(corner). `most_per_handle`: of HandleRemoval. `surface` = contour(octree,
-/// inside), which is read, and then freed, as what else is needed takes as much: returns whether, and so whether it has to be made anew.
-/// Throws Cancelled.
-bool remove_handles(const Octree& octree, const AmbiguousCorners& ambiguous, const std::function<bool(std::uint32_t)>& may_change,
-                    long most_per_handle, const InsideTest& centre_inside, std::vector<std::uint8_t>& inside, DualSurface& surface,
+/// Of the ambiguous corners those change for which may_change(corner). `most_per_handle`: of HandleRemoval. Throws Cancelled.
+void remove_handles(const Octree& octree, const AmbiguousCorners& ambiguous, const std::function<bool(std::uint32_t)>& may_change,
+                    long most_per_handle, const InsideTest& centre_inside, std::vector<std::uint8_t>& inside,
                     const std::atomic<bool>* cancel);
 
 }  // namespace g3r::mesh

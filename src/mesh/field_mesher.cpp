@@ -41,11 +41,10 @@ constexpr double kMargin = 1 + 2 * mesh::kBeyond;
 // Peak memory, measured (docs/evidence/meshes.md). If it is planned too small a run is killed, if too large it is refused for nothing.
 constexpr double kBaseBytes = 25 << 20;    // Code, libraries, the stacks of threads, and queries of a sum take so many.
 constexpr double kBytesPerPoint = 340;     // A point takes so many, those of the winding field included.
-constexpr double kBytesPerLeaf = 130;      // A leaf takes so many,
-constexpr double kBytesPerThinLeaf = 360;  // and one of a thin wall or gap so many: most of its corners are ambiguous.
-constexpr double kMoreLeaves = 0.1;        // More are planned before the octree is known, so that no plain shape is refused once it is.
+constexpr double kBytesPerLeaf = 85;       // A leaf takes so many,
+constexpr double kBytesPerThinLeaf = 270;  // and one of a thin wall or gap so many: most of its corners are ambiguous.
 constexpr double kFewLeaves = 4000;        // Clouds of few points have so many beside: 300 on a sphere have 3,300, 1,500 have 2,000.
-constexpr double kPlainLeaves = 8.5;       // A point of a shape without thin walls has 5.7 to 8.6 leaves; what exceeds this is thin.
+constexpr double kPlainLeaves = 8.6;       // A point of a shape without thin walls has 5.7 to 8.6 leaves; what exceeds this is thin.
 // The thickness of the layer that is refined, in cells of the automatic depth.
 constexpr double kThickness = 2 * mesh::kDiscHalf / kFinestCell;
 
@@ -107,22 +106,28 @@ Octree make_octree(const Prepared& prepared, const std::vector<double>& size, co
                 monitor.cancel);
 }
 
-void require_memory_for(std::size_t points, const Octree& octree, int depth, std::size_t max_memory) {
-  const std::size_t needed = memory_for(points, static_cast<double>(octree.leaf_count()), depth);
-  if (max_memory == 0 || needed <= max_memory) return;
-  throw Unavailable("the mesh needs " + std::to_string(needed >> 20U) + " MiB, the limit is " + std::to_string(max_memory >> 20U) +
+void find_memory(std::size_t points, const Octree& octree, int depth, MeshMemory& memory) {
+  memory.needed = memory_for(points, static_cast<double>(octree.leaf_count()), depth);
+  if (memory.limit == 0 || memory.needed <= memory.limit) return;
+  throw Unavailable("the mesh needs " + std::to_string(memory.needed >> 20U) + " MiB, the limit is " + std::to_string(memory.limit >> 20U) +
                     " MiB; raise the limit, lower the depth or thin the cloud");
 }
 
-// Steps 2 to 6: all that they hold but the mesh is gone when its crossings are searched for.
-Mesh raw_mesh(const Prepared& prepared, const std::vector<double>& size, const FieldSampler& sampler, const MeshOptions& options,
-              const Monitor& monitor, std::size_t max_memory) {
+// Polygons, and the places and normals of their vertices.
+struct PlacedSurface {
+  mesh::DualSurface surface;
+  mesh::PlacedVertices vertices;
+};
+
+// Steps 2 to 6: all else that they hold is gone when the polygons are cut into triangles.
+PlacedSurface placed_surface(const Prepared& prepared, const std::vector<double>& size, const FieldSampler& sampler,
+                             const MeshOptions& options, const Monitor& monitor, MeshMemory* memory) {
   const mesh::OrientedPoints& oriented = prepared.points;
   const mesh::LocalFit local(oriented, *prepared.neighbours, prepared.near);
   const vector::Box box = box_of(oriented.positions);
   const Levels levels = levels_of(prepared, box.longest_side(), options.depth);
   const Octree octree = make_octree(prepared, size, levels, box, monitor);
-  require_memory_for(oriented.positions.size(), octree, options.depth, max_memory);
+  if (memory != nullptr) find_memory(oriented.positions.size(), octree, options.depth, *memory);
   report(monitor, Done::kOctree);
   // Every evaluation of the field sums the points anew, so fewer places at once than two a point take longer, and more take memory.
   const mesh::CornerSides side(local, sampler, prepared.typical, {box.centre(), box.longest_side()}, mesh::level_places(oriented.positions),
@@ -135,23 +140,27 @@ Mesh raw_mesh(const Prepared& prepared, const std::vector<double>& size, const F
   report(monitor, Done::kSigns);
 
   const auto centre_inside = [&](const std::vector<Vec3>& centres) { return mesh::sides_by_fit(local, centres); };
-  mesh::DualSurface surface = mesh::contour(octree, inside, centre_inside, monitor.cancel);
   const long most_per_handle = mesh::most_per_handle(prepared.noise, std::ldexp(levels.side, -levels.rule.finest) / prepared.typical);
-  if (mesh::remove_handles(octree, corners.ambiguous, all, most_per_handle, centre_inside, inside, surface, monitor.cancel)) {
-    surface = mesh::contour(octree, inside, centre_inside, monitor.cancel);
-  }
+  mesh::remove_handles(octree, corners.ambiguous, all, most_per_handle, centre_inside, inside, monitor.cancel);
   corners.ambiguous = {};
   mesh::match_values(octree, inside, prepared.typical, value);
   report(monitor, Done::kHandles);
-  mesh::PlacedVertices placed = mesh::place_vertices(octree, surface, value, local, monitor.cancel);
+  PlacedSurface out{mesh::contour(octree, inside, centre_inside, monitor.cancel), {}};
+  out.vertices = mesh::place_vertices(octree, out.surface, value, local, monitor.cancel);
   report(monitor, Done::kVertices);
-  return mesh::triangulate(surface, std::move(placed.positions), placed.normals);
+  return out;
+}
+
+Mesh raw_mesh(const Prepared& prepared, const std::vector<double>& size, const FieldSampler& sampler, const MeshOptions& options,
+              const Monitor& monitor, MeshMemory* memory) {
+  PlacedSurface placed = placed_surface(prepared, size, sampler, options, monitor, memory);
+  return mesh::triangulate(placed.surface, std::move(placed.vertices.positions), placed.vertices.normals);
 }
 
 }  // namespace
 
 std::size_t field_mesh_memory(std::size_t points, double spacing, double noise, double longest_side, int depth) {
-  double leaves = kPlainLeaves + kMoreLeaves;
+  double leaves = kPlainLeaves;
   if (depth == 0 && spacing > 0) {
     const double larger = mesh::cell_under(mesh::noise_seen({noise / spacing, 0})) / kFinestCell;
     leaves /= larger * larger;
@@ -166,7 +175,7 @@ std::size_t field_mesh_memory(std::size_t points, double spacing, double noise, 
 }
 
 Mesh field_mesh(const std::vector<Vec3>& points, std::vector<Vec3> normals, const FieldSampler& sampler, const MeshOptions& options,
-                const Monitor& monitor, std::size_t max_memory, mesh::LeftOut* left_out) {
+                const Monitor& monitor, MeshMemory* memory, mesh::LeftOut* left_out) {
   if (points.size() != normals.size()) throw InvalidInput("points and normals differ in number");
   if (points.size() < 4) throw InvalidInput("a mesh needs at least 4 points");
   if (options.depth != 0 && (options.depth < kLeastMeshDepth || options.depth > kMostMeshDepth))
@@ -179,13 +188,15 @@ Mesh field_mesh(const std::vector<Vec3>& points, std::vector<Vec3> normals, cons
   report(monitor, Done::kNoise);
   mesh::smooth_noise(noise, monitor.cancel, prepared);
   report(monitor, Done::kSmoothing);
-  const std::vector<double> size = mesh::sizes_to_resolve(prepared);
-  Mesh mesh = raw_mesh(prepared, size, sampler, options, monitor, max_memory);
-  mesh::make_fair(mesh, prepared.points.positions, mesh::points_in_lines(prepared.points.positions, prepared.near), monitor.cancel);
-  // A depth that was asked for is the size of triangles that was asked for.
-  if (options.depth == 0) mesh::coarsen(mesh, prepared.points.positions, mesh::lengths_to_carry(prepared, size), monitor.cancel);
+  std::vector<double> size = mesh::sizes_to_resolve(prepared);
+  const std::vector<std::uint8_t> in_lines = mesh::points_in_lines(prepared.points.positions, prepared.near);
+  Mesh mesh = raw_mesh(prepared, size, sampler, options, monitor, memory);
+  size = mesh::lengths_to_carry(prepared, size);
   prepared.neighbours.reset();
   std::vector<std::uint32_t>().swap(prepared.near);  // not only emptied
+  mesh::make_fair(mesh, prepared.points.positions, in_lines, monitor.cancel);
+  // A depth that was asked for is the size of triangles that was asked for.
+  if (options.depth == 0) mesh::coarsen(mesh, prepared.points.positions, size, monitor.cancel);
   mesh::soften_thorns(mesh, mesh::untangle(mesh, monitor.cancel));
   mesh::LeftOut nothing;
   mesh::finish_mesh(mesh, prepared.points, prepared.noise, options, left_out != nullptr ? *left_out : nothing);

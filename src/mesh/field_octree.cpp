@@ -16,7 +16,10 @@ namespace {
 
 constexpr int kKeyBits = kMaxOctreeLevel + 1;  // A corner coordinate is 0 to 2^kMaxOctreeLevel, the last included.
 
-constexpr std::uint32_t kLargestNode = std::numeric_limits<std::int32_t>::max();  // a node's number has 31 bits
+constexpr std::uint32_t kLatticeSide = 3;  // of the corners of eight siblings
+constexpr std::uint32_t kLatticeSize = kLatticeSide * kLatticeSide * kLatticeSide;
+constexpr std::uint32_t kLargestNode = std::numeric_limits<std::int32_t>::max();                    // a node's number has 31 bits,
+constexpr std::uint32_t kMostNodes = std::numeric_limits<std::uint32_t>::max() / kLatticeSize * 8;  // and a corner's place 32
 
 std::uint64_t corner_key(const std::array<std::uint32_t, 3>& c) {
   return (std::uint64_t{c[2]} << (2 * kKeyBits)) | (std::uint64_t{c[1]} << kKeyBits) | c[0];
@@ -91,6 +94,9 @@ Octree::Octree(const Vec3& low, double side, const std::vector<RefineDisc>& requ
                const std::atomic<bool>* cancel)
     : low_(low), unit_(side / static_cast<double>(std::uint32_t{1} << kMaxOctreeLevel)) {
   refine(requests, rule, cancel);
+  nodes_.shrink_to_fit();
+  families_.shrink_to_fit();
+  leaf_nodes_.reserve(nodes_.size() - (nodes_.size() - 1) / 8);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     if (nodes_[i].split != 0) continue;
     nodes_[i].next = static_cast<std::uint32_t>(leaf_nodes_.size()) & kLargestNode;
@@ -117,7 +123,7 @@ void Octree::refine(const std::vector<RefineDisc>& requests, const SplitRule& ru
       for (std::size_t k = front.begin[f]; split_it == Split::kAsRequested && !deeper && k < front.begin[f + 1]; ++k)
         deeper = requests[front.request[k]].level > level;
       if (!deeper) continue;
-      if (nodes_.size() > kLargestNode - 8) throw std::bad_alloc();
+      if (nodes_.size() > kMostNodes - 8) throw std::bad_alloc();
       const std::uint32_t parent = front.node[f];
       const Family children{node(parent).low, static_cast<std::uint8_t>(level + 1)};
       nodes_[parent] = {static_cast<std::uint32_t>(nodes_.size()) & kLargestNode, 1};
@@ -158,22 +164,27 @@ void Octree::refine(const std::vector<RefineDisc>& requests, const SplitRule& ru
 
 void Octree::number_corners() {
   family_corners_.resize(family(static_cast<std::uint32_t>(nodes_.size() - 1)) + 1);
-  CornerTable table(2 * leaf_nodes_.size());
+  std::vector<std::uint64_t> keys;
+  CornerTable table(leaf_nodes_.size());  // grows where there are more
   for (const std::uint32_t leaf : leaf_nodes_) {
     const OctreeNode own = node(leaf);
     for (std::uint32_t c = 0; c < 8; ++c) {
       std::array<std::uint32_t, 3> g{};
       for (std::size_t a = 0; a < 3; ++a) g[a] = own.low[a] + ((c >> a) & 1U) * extent(own);
-      family_corners_[family(leaf)][kLattice[sibling(leaf)] + kLattice[c]] = table.number(corner_key(g), corner_keys_);
+      const std::uint32_t place = kLattice[sibling(leaf)] + kLattice[c];
+      const std::uint32_t corner = table.number(corner_key(g), keys);
+      family_corners_[family(leaf)][place] = corner;
+      if (corner == corner_places_.size()) corner_places_.push_back(static_cast<std::uint32_t>(family(leaf) * kLatticeSize + place));
     }
   }
+  corner_places_.shrink_to_fit();
 }
 
 std::array<std::uint32_t, 3> Octree::corner_grid(std::size_t corner) const {
-  const std::uint64_t key = corner_keys_[corner];
-  const std::uint64_t mask = (std::uint64_t{1} << kKeyBits) - 1;
-  return {static_cast<std::uint32_t>(key & mask), static_cast<std::uint32_t>((key >> kKeyBits) & mask),
-          static_cast<std::uint32_t>(key >> (2 * kKeyBits))};
+  const Family& own = families_[corner_places_[corner] / kLatticeSize];
+  const std::uint32_t place = corner_places_[corner] % kLatticeSize, step = std::uint32_t{1} << (kMaxOctreeLevel - own.level);
+  return {own.low[0] + place % kLatticeSide * step, own.low[1] + place / kLatticeSide % kLatticeSide * step,
+          own.low[2] + place / (kLatticeSide * kLatticeSide) * step};
 }
 
 bool Octree::on_boundary(std::size_t corner) const {

@@ -82,7 +82,7 @@ class Octree {
     for (std::uint32_t place = 0; place < 8; ++place) out[place] = corner(leaf, place);
     return out;
   }
-  [[nodiscard]] std::size_t corner_count() const { return corner_keys_.size(); }
+  [[nodiscard]] std::size_t corner_count() const { return corner_places_.size(); }
   /// Integer coordinates of a corner, in units of the smallest possible cell.
   [[nodiscard]] std::array<std::uint32_t, 3> corner_grid(std::size_t corner) const;
   [[nodiscard]] bool on_boundary(std::size_t corner) const;
@@ -118,7 +118,7 @@ class Octree {
   std::vector<Family> families_;
   std::vector<std::uint32_t> leaf_nodes_;
   std::vector<std::array<std::uint32_t, 27>> family_corners_;  // 108 bytes where its leaves' own would take up to 256
-  std::vector<std::uint64_t> corner_keys_;
+  std::vector<std::uint32_t> corner_places_;                   // of each corner, one of its places among these
 };
 
 }  // namespace g3r::mesh

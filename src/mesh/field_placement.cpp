@@ -51,11 +51,14 @@ bool intersect(const LocalSurface& s, std::initializer_list<int> which, Vector3d
 // What a vertex is on.
 enum class Feature : std::uint8_t { kNone, kCrease, kCorner };
 
+struct OnFeature {
+  Feature feature = Feature::kNone;
+  double moved = 0;  // from where the field alone puts it; fits are made there
+};
 struct Placed {
   Vec3 position{0, 0, 0};
   Vec3 normal{0, 0, 0};
-  Feature feature = Feature::kNone;
-  double moved = 0;  // from where the field alone puts it; fits are made there
+  OnFeature on_feature;
 };
 
 class Placer {
@@ -157,7 +160,7 @@ class Placement {
       fit.distance(x, &active);
       fit.patch[static_cast<std::size_t>(active)].distance(x, &normal);
     }
-    return {array(x), array(normal), feature, (x - start).norm()};
+    return {array(x), array(normal), {feature, (x - start).norm()}};
   }
 
   // In the middle of the line between the ends of its arc. Arcs of one face do not cross, so no two of them share it, as they share the
@@ -185,13 +188,13 @@ class Placement {
 // Leaves reach a little beyond their boxes for features, so that none between two of them, where CAD models like to have them, is missed.
 // If several take the same place their vertices coincide, and triangles have no area. Of such vertices all but one, a corner if there is
 // any, then the one that moved least: those that have to step aside, ascending.
-std::vector<std::uint32_t> taken_twice(const std::vector<Placed>& placed, double apart) {
+std::vector<std::uint32_t> taken_twice(const std::vector<Vec3>& position, const std::vector<OnFeature>& placed, double apart) {
   std::vector<std::uint32_t> on_feature;
   std::vector<Vec3> positions;
   for (std::uint32_t i = 0; i < placed.size(); ++i) {
     if (placed[i].feature == Feature::kNone) continue;
     on_feature.push_back(i);
-    positions.push_back(placed[i].position);
+    positions.push_back(position[i]);
   }
   if (positions.empty()) return {};
   const Neighbours neighbours(positions);
@@ -200,7 +203,7 @@ std::vector<std::uint32_t> taken_twice(const std::vector<Placed>& placed, double
   };
   std::vector<std::uint32_t> losers, close;
   for (const std::uint32_t i : on_feature) {
-    neighbours.within(placed[i].position, apart, close);
+    neighbours.within(position[i], apart, close);
     const auto yields_to = [&](std::uint32_t k) { return on_feature[k] != i && !better(i, on_feature[k]); };
     if (std::any_of(close.begin(), close.end(), yields_to)) losers.push_back(i);
   }
@@ -213,27 +216,27 @@ PlacedVertices place_vertices(const Octree& octree, const DualSurface& surface, 
                               const std::atomic<bool>* cancel, const std::vector<std::uint8_t>& wanted) {
   const std::size_t patches = surface.patch_count();
   const Placement placement(octree, surface, value, local);
-  std::vector<Placed> placed(patches);
+  PlacedVertices out;
+  out.positions.resize(patches + surface.midpoints.size());
+  out.normals.resize(patches);
+  std::vector<OnFeature> on_feature(patches);
   parallel::for_blocks(
       patches, kBlock,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-          if (wanted.empty() || wanted[i] != 0) placed[i] = placement.place(i, true);
+          if (!wanted.empty() && wanted[i] == 0) continue;
+          const Placed placed = placement.place(i, true);
+          out.positions[i] = placed.position;
+          out.normals[i] = placed.normal;
+          on_feature[i] = placed.on_feature;
         }
       },
       cancel);
   const double smallest = octree.unit() * static_cast<double>(std::uint32_t{1} << (kMaxOctreeLevel - octree.depth()));
-  for (const std::uint32_t i : taken_twice(placed, kAtOnePlace * smallest)) {
-    const Vector3d taken = to_eigen(placed[i].position);
-    placed[i] = placement.place(i, false);
-    placed[i].position = array(0.5 * (taken + to_eigen(placed[i].position)));
-  }
-  PlacedVertices out;
-  out.positions.resize(patches + surface.midpoints.size());
-  out.normals.resize(patches);
-  for (std::size_t i = 0; i < patches; ++i) {
-    out.positions[i] = placed[i].position;
-    out.normals[i] = placed[i].normal;
+  for (const std::uint32_t i : taken_twice(out.positions, on_feature, kAtOnePlace * smallest)) {
+    const Placed beside = placement.place(i, false);
+    out.positions[i] = array(0.5 * (to_eigen(out.positions[i]) + to_eigen(beside.position)));
+    out.normals[i] = beside.normal;
   }
   for (std::size_t m = 0; m < surface.midpoints.size(); ++m) out.positions[patches + m] = placement.place(surface.midpoints[m]);
   return out;

@@ -38,30 +38,32 @@ class DifferentValues {
 };
 
 // The patches in the leaves around open edges.
-Patches patches_around(const Octree& octree, const OpenEdges& open, const std::vector<std::uint8_t>& inside, const InsideTest& centre) {
+Patches patches_now(const Octree& octree, const OpenEdges& open, const std::vector<std::uint8_t>& inside, const InsideTest& centre) {
   std::vector<std::uint32_t> crossing;
   for (std::uint32_t k = 0; k < open.edges.size(); ++k) {
     if (inside[open.edges[k].low] != inside[open.edges[k].high]) crossing.push_back(k);
   }
-  return patches_in(octree, open.edges, crossing, open.around, inside, centre);
+  return patches_in(
+      octree, open.edges, crossing, [&](std::uint32_t leaf) { return open.around.contains(leaf); }, inside, centre);
 }
 
 }  // namespace
 
 HandleRemoval::HandleRemoval(const Octree& octree, const std::vector<std::uint8_t>& open, const std::vector<std::uint8_t>& inside,
-                             const DualSurface& surface, InsideTest centre_inside, long most_per_handle, const std::atomic<bool>* cancel)
+                             DualSurface surface, InsideTest centre_inside, long most_per_handle, const std::atomic<bool>* cancel)
     : octree_(octree),
       centre_inside_(std::move(centre_inside)),
       most_per_handle_(most_per_handle),
       cancel_(cancel),
-      open_(open_edges(octree, open, cancel)),
-      grouping_(open_, octree.leaf_count()),
-      surface_(open_, surface, patches_around(octree, open_, inside, centre_inside_)),
-      handles_(count_handles(surface)) {}
+      handles_(count_handles(surface)),
+      elsewhere_(surface_elsewhere(leaves_around(octree, open, cancel), std::move(surface))),
+      open_(open_edges(octree, open, elsewhere_.around, cancel)),
+      surface_(open_, elsewhere_, patches_now(octree, open_, inside, centre_inside_)),
+      grouping_(open_) {}
 
 // In the leaves of the groups.
-Patches HandleRemoval::patches_of(const CornerGroups& groups, const std::vector<std::uint8_t>& inside) const {
-  std::vector<std::uint8_t> marked(octree_.leaf_count(), 0), seen(open_.edges.size(), 0);
+Patches HandleRemoval::patches_around(const CornerGroups& groups, const std::vector<std::uint8_t>& inside) const {
+  std::vector<std::uint8_t> marked(open_.around.count(), 0), seen(open_.edges.size(), 0);
   std::vector<std::uint32_t> crossing;
   for (const std::uint32_t leaf : groups.leaves) {
     marked[leaf] = 1;
@@ -71,7 +73,8 @@ Patches HandleRemoval::patches_of(const CornerGroups& groups, const std::vector<
       crossing.push_back(edge);
     }
   }
-  return patches_in(octree_, open_.edges, crossing, marked, inside, centre_inside_);
+  const auto is_marked = [&](std::uint32_t leaf) { return open_.around.contains(leaf) && marked[open_.around.number(leaf)] != 0; };
+  return patches_in(octree_, open_.edges, crossing, is_marked, inside, centre_inside_);
 }
 
 std::vector<HandleRemoval::Change> HandleRemoval::changes_of(const CornerGroups& groups, const Patches& changed,
@@ -142,7 +145,7 @@ bool HandleRemoval::propose(const std::vector<std::uint8_t>& proposal, std::vect
   if (groups.count() == 0) return false;
   std::vector<std::uint8_t> next = inside;
   for (const std::uint32_t i : groups.place) next[open_.corners[i]] = proposal[open_.corners[i]];
-  const Patches changed = patches_of(groups, next);
+  const Patches changed = patches_around(groups, next);
   const std::vector<Change> change = changes_of(groups, changed, inside, next);
   const std::vector<std::uint8_t> take = choose(groups, changed, change);
   const bool any = std::find(take.begin(), take.end(), 1) != take.end();

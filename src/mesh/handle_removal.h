@@ -24,11 +24,11 @@ inline constexpr long kMostPerHandle = 60;
 /// of the surface around the corners that a proposal may change.
 class HandleRemoval {
  public:
-  /// `open`: 1 for corners that a proposal may change; `surface` = contour(octree, inside). `octree` must outlive this.
+  /// `open`: 1 for corners that a proposal may change; `surface` = patches_of(octree, inside), which is freed as soon as it can be.
+  /// `octree` must outlive this.
   /// O(nodes + crossings + edges near open corners). All members throw Cancelled.
-  HandleRemoval(const Octree& octree, const std::vector<std::uint8_t>& open, const std::vector<std::uint8_t>& inside,
-                const DualSurface& surface, InsideTest centre_inside, long most_per_handle = kMostPerHandle,
-                const std::atomic<bool>* cancel = nullptr);
+  HandleRemoval(const Octree& octree, const std::vector<std::uint8_t>& open, const std::vector<std::uint8_t>& inside, DualSurface surface,
+                InsideTest centre_inside, long most_per_handle = kMostPerHandle, const std::atomic<bool>* cancel = nullptr);
   HandleRemoval(const HandleRemoval&) = delete;  // its parts refer to each other
   HandleRemoval& operator=(const HandleRemoval&) = delete;
 
@@ -39,7 +39,7 @@ class HandleRemoval {
   /// O(corners + edges around the groups that are looked at), and O(patches near open corners) if one could lose a handle.
   bool propose(const std::vector<std::uint8_t>& proposal, std::vector<std::uint8_t>& inside);
 
-  /// Of contour(octree, inside) now.
+  /// Of patches_of(octree, inside) now.
   [[nodiscard]] long handles() const { return handles_; }
 
  private:
@@ -50,7 +50,7 @@ class HandleRemoval {
   };
 
   [[nodiscard]] bool is_worth(long handles, long corners) const { return handles > 0 && corners <= most_per_handle_ * handles; }
-  [[nodiscard]] Patches patches_of(const CornerGroups& groups, const std::vector<std::uint8_t>& inside) const;
+  [[nodiscard]] Patches patches_around(const CornerGroups& groups, const std::vector<std::uint8_t>& inside) const;
   [[nodiscard]] std::vector<Change> changes_of(const CornerGroups& groups, const Patches& changed, const std::vector<std::uint8_t>& from,
                                                const std::vector<std::uint8_t>& to) const;
   [[nodiscard]] bool can_lose(const CornerGroups& groups, const Patches& changed, const std::vector<Change>& change) const;
@@ -61,10 +61,11 @@ class HandleRemoval {
   InsideTest centre_inside_;
   long most_per_handle_;
   const std::atomic<bool>* cancel_;
-  const OpenEdges open_;
-  CornerGrouping grouping_;
-  PatchComponents surface_;
   long handles_;
+  const SurfaceElsewhere elsewhere_;
+  const OpenEdges open_;
+  PatchComponents surface_;
+  CornerGrouping grouping_;
 };
 
 }  // namespace g3r::mesh

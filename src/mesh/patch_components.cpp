@@ -10,7 +10,7 @@ namespace {
 
 // Joins the crossings around each of the patches for which use(leaf). node(crossing): its place among the sets.
 template <class Node, class Use>
-void join_rims(const std::vector<std::uint32_t>& leaf, const std::vector<std::size_t>& begin, const std::vector<std::uint32_t>& rim,
+void join_rims(const std::vector<std::uint32_t>& leaf, const std::vector<std::uint32_t>& begin, const std::vector<std::uint32_t>& rim,
                const Node& node, const Use& use, DisjointSets& sets) {
   for (std::size_t p = 0; p < leaf.size(); ++p) {
     if (!use(leaf[p])) continue;
@@ -54,42 +54,47 @@ long count_handles(const DualSurface& surface) {
   return static_cast<long>(components.count()) - twice / 4;
 }
 
-PatchComponents::PatchComponents(const OpenEdges& open, const DualSurface& surface, Patches patches)
-    : open_(open), patches_(std::move(patches)) {
-  number_parts(surface);
-  join();
-}
-
-// The parts that the surface falls into outside the leaves around open edges, and the edges where they come to these leaves.
-void PatchComponents::number_parts(const DualSurface& surface) {
-  const std::vector<std::uint8_t>& around = open_.around;
+SurfaceElsewhere surface_elsewhere(SomeLeaves around, DualSurface&& freed) {
+  const DualSurface surface = std::move(freed);
+  SurfaceElsewhere out{std::move(around), {}, 0};
   DisjointSets rest(surface.crossings.size());
   join_crossings(
-      surface, [&](std::uint32_t leaf) { return around[leaf] == 0; }, rest);
+      surface, [&](std::uint32_t leaf) { return !out.around.contains(leaf); }, rest);
   std::vector<std::uint8_t> in_these(surface.crossings.size(), 0);
   const auto for_each_crossing = [&](bool these, const auto& use) {
     for (std::size_t p = 0; p < surface.patch_count(); ++p) {
-      if ((around[surface.patch_leaf[p]] != 0) != these) continue;
+      if (out.around.contains(surface.patch_leaf[p]) != these) continue;
       for (std::size_t k = surface.patch_begin[p]; k < surface.patch_begin[p + 1]; ++k) use(surface.patch_crossings[k]);
     }
   };
   for_each_crossing(true, [&](std::uint32_t crossing) { in_these[crossing] = 1; });
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> known;  // crossings between the two, by their corners, and parts
   std::vector<std::uint32_t> number(surface.crossings.size(), kNone);
   for_each_crossing(false, [&](std::uint32_t crossing) {
     if (in_these[crossing] == 0) return;
     std::uint32_t& n = number[rest.find(crossing)];
-    if (n == kNone) n = static_cast<std::uint32_t>(parts_++);
-    known.emplace_back(key(surface.crossings[crossing].inside, surface.crossings[crossing].outside), n);
+    if (n == kNone) n = static_cast<std::uint32_t>(out.parts++);
+    out.crossings.push_back({key(surface.crossings[crossing].inside, surface.crossings[crossing].outside), n});
   });
-  std::sort(known.begin(), known.end());
+  std::sort(out.crossings.begin(), out.crossings.end());
+  return out;
+}
+
+PatchComponents::PatchComponents(const OpenEdges& open, const SurfaceElsewhere& elsewhere, Patches patches)
+    : open_(open), elsewhere_(elsewhere), patches_(std::move(patches)) {
+  number_nodes();
+  join();
+}
+
+// Of the edges where the parts come to the leaves around open edges.
+void PatchComponents::number_nodes() {
+  const std::vector<SurfaceElsewhere::Crossing>& known = elsewhere_.crossings;
   node_.assign(open_.edges.size(), kNone);
   for (const std::uint32_t edge : patches_.rim) {
     const MinimalEdge& e = open_.edges[edge];
-    if (std::all_of(e.leaf.begin(), e.leaf.end(), [&](std::uint32_t leaf) { return around[leaf] != 0; })) continue;
+    if (std::all_of(e.leaf.begin(), e.leaf.end(), [&](std::uint32_t leaf) { return open_.around.contains(leaf); })) continue;
     for (const std::uint64_t k : {key(e.low, e.high), key(e.high, e.low)}) {
-      const auto found = std::lower_bound(known.begin(), known.end(), std::pair{k, std::uint32_t{0}});
-      if (found != known.end() && found->first == k) node_[edge] = found->second;
+      const auto found = std::lower_bound(known.begin(), known.end(), SurfaceElsewhere::Crossing{k, 0});
+      if (found != known.end() && found->corners == k) node_[edge] = found->part;
     }
   }
 }
@@ -97,9 +102,9 @@ void PatchComponents::number_parts(const DualSurface& surface) {
 // Numbers the crossings of the patches and finds their components.
 void PatchComponents::join() {
   for (std::uint32_t& n : node_) {
-    if (n >= parts_) n = kNone;
+    if (n >= elsewhere_.parts) n = kNone;
   }
-  const std::uint32_t nodes = number_edges(patches_.rim, static_cast<std::uint32_t>(parts_), node_);
+  const std::uint32_t nodes = number_edges(patches_.rim, static_cast<std::uint32_t>(elsewhere_.parts), node_);
   DisjointSets sets(nodes);
   join_nodes(patches_, node_, all_leaves, sets);
   component_.resize(nodes);
@@ -115,7 +120,7 @@ void PatchComponents::exchange(const Patches& changed, const LeafTest& taken) {
       if (taken(from.leaf[p]) != those_taken) continue;
       now.leaf.push_back(from.leaf[p]);
       for (std::size_t k = from.begin[p]; k < from.begin[p + 1]; ++k) now.rim.push_back(from.rim[k]);
-      now.begin.push_back(now.rim.size());
+      now.begin.push_back(static_cast<std::uint32_t>(now.rim.size()));
     }
   };
   add(patches_, false);

@@ -12,8 +12,6 @@
 
 namespace g3r::mesh {
 
-using LeafTest = std::function<bool(std::uint32_t)>;  ///< whether a leaf is one of some
-
 /// Twice the Euler characteristic of a patch, half of each of its arcs counted; a patch is a vertex, an arc an edge, a crossing a face.
 [[nodiscard]] inline long twice_characteristic(const Patches& s, std::size_t patch) {
   return 2 - static_cast<long>(s.begin[patch + 1] - s.begin[patch]);
@@ -22,13 +20,25 @@ using LeafTest = std::function<bool(std::uint32_t)>;  ///< whether a leaf is one
 /// Handles of all components together. O(patches + crossings).
 [[nodiscard]] long count_handles(const DualSurface& surface);
 
-/// The patches in the leaves around open edges. Of the surface elsewhere, which never changes, it knows which crossings are connected
-/// through it.
+/// The surface outside the leaves around open edges, which never changes: which of the crossings between the two are connected through it.
+struct SurfaceElsewhere {
+  struct Crossing {
+    std::uint64_t corners = 0;  ///< the one inside first
+    std::uint32_t part = 0;
+    bool operator<(const Crossing& other) const { return corners < other.corners; }
+  };
+  SomeLeaves around;                ///< the leaves
+  std::vector<Crossing> crossings;  ///< ascending
+  std::size_t parts = 0;
+};
+/// `surface`: patches_of() the octree, freed. O(crossings).
+[[nodiscard]] SurfaceElsewhere surface_elsewhere(SomeLeaves around, DualSurface&& surface);
+
+/// The patches in the leaves around open edges.
 class PatchComponents {
  public:
-  /// `surface` = contour(octree, inside), `patches` those of it in the leaves around open edges. `open` must outlive this.
-  /// O(crossings + edges near open corners).
-  PatchComponents(const OpenEdges& open, const DualSurface& surface, Patches patches);
+  /// `open` and `elsewhere` must outlive this. O(edges near open corners).
+  PatchComponents(const OpenEdges& open, const SurfaceElsewhere& elsewhere, Patches patches);
 
   [[nodiscard]] const Patches& patches() const { return patches_; }
   /// Components of the whole surface.
@@ -40,12 +50,12 @@ class PatchComponents {
 
  private:
   friend class TriedExchange;
-  void number_parts(const DualSurface& surface);
+  void number_nodes();
   void join();
 
   const OpenEdges& open_;
+  const SurfaceElsewhere& elsewhere_;
   Patches patches_;
-  std::size_t parts_ = 0;                 // of the surface elsewhere
   std::vector<std::uint32_t> node_;       // of edges: the part it crosses, another number if it crosses between these leaves only, or kNone
   std::vector<std::uint32_t> component_;  // of nodes
   std::size_t count_ = 0;

@@ -135,7 +135,7 @@ std::vector<TrianglePair> self_intersections(const Mesh& mesh) {
     with_area.push_back(f);
     boxes.push_back(box_of(t));
   }
-  const BoxTree tree(std::exchange(boxes, {}));
+  const BoxTree tree(std::move(boxes));
   const std::vector<BoxTree::PairJob> jobs = tree.pair_jobs();
   std::vector<std::vector<TrianglePair>> found(jobs.size());
   parallel::for_each(jobs.size(), [&](std::size_t job) {

@@ -6,6 +6,7 @@
 #include "io/output_file.h"
 #include "io/point_stream.h"
 #include "io/tiles.h"
+#include "mesh/field_mesher.h"
 #include "mesh/field_points.h"
 #include "orient/open_surfaces.h"
 #include "orient/settings.h"
@@ -37,10 +38,8 @@ constexpr std::uint64_t kMostCoarse = 2000000;  // every tile has them all aroun
 constexpr std::uint64_t kCoarseShare = 8;       // one of so many points is in the thinned cloud, if that is enough and not too much
 constexpr std::size_t kFixed = 32u << 20;       // beside that of a solve in core: 131,072 queries of a sum
 constexpr std::size_t kBeside = 40;             // bytes of a point that a tile holds beside its solve: part, coarse side
-constexpr std::size_t kFixedInCore = 25u << 20;  // of a mesh
-constexpr std::size_t kPerPointMeshed = 1458;    // of field_mesh_memory()
-constexpr double kFreeShare = 0.75;              // of the free memory, if no limit is given
-constexpr double kLargest = 1e50;                // coordinates, whose squares and cubes are still numbers
+constexpr double kFreeShare = 0.75;             // of the free memory, if no limit is given
+constexpr double kLargest = 1e50;               // coordinates, whose squares and cubes are still numbers
 constexpr std::size_t kMostTiles = 1000000;
 constexpr std::size_t kMostWarnings = 8;  // of all files together
 
@@ -343,7 +342,7 @@ bool needs_tiles(const std::vector<std::string>& inputs, std::size_t max_memory,
   std::uint64_t points = 0;
   for (const std::string& file : tiles::files_of(inputs)) points += io::open_points(file)->left();
   return max_memory > 0 && points >= tiles::kFewestPoints &&
-         (mesh ? tiles::kFixedInCore + tiles::kPerPointMeshed * points : tiles::in_core(points)) > max_memory;
+         (mesh ? field_mesh_memory(points, 0, 0, 0, 0) : tiles::in_core(points)) > max_memory;
 }
 
 TileStatus tiles_status(const std::string& folder) { return tiles::status_of(folder, tiles::read_manifest(folder)); }
