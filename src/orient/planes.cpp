@@ -14,6 +14,9 @@
 namespace g3r {
 namespace {
 
+// Median breadth of those on curves: rings of a dozen points have 0.31, slices 0.05 to 0.3, facets 0.40 to 0.49.
+constexpr double kCurveBreadth = 0.35;
+
 struct Found {
   Vec3 normal{0, 0, 0};
   double breadth = 0;  // of its nearest points, one more than determine it: more follow the bend of a ring
@@ -28,14 +31,13 @@ Found find_at(const std::vector<Vec3>& points, const std::vector<std::uint32_t>&
 }
 
 // Slices, and scan lines denser along than across, have planes of their own, across the surface: more of the planes are aside of the
-// field's normals than chance has proven, and they hold curves. At most of them the nearest points lie along a line: their median breadth
-// is 0.05 to 0.3, of rings of a dozen points 0.31, of facets 0.40 to 0.49.
+// field's normals than chance has proven, and they hold curves. At most of them the nearest points lie along a line.
 bool are_slices(const std::vector<Found>& found, const std::vector<Vec3>& normals) {
   std::vector<double> aside;
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (found[i].breadth > 0 && std::abs(vector::dot(found[i].normal, normals[i])) <= kSamePatch) aside.push_back(found[i].breadth);
   }
-  return static_cast<double>(aside.size()) > kFalseAlarms * static_cast<double>(found.size()) && median(aside) < kFacetBreadth;
+  return static_cast<double>(aside.size()) > kFalseAlarms * static_cast<double>(found.size()) && median(aside) < kCurveBreadth;
 }
 
 }  // namespace
