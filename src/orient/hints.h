@@ -49,6 +49,8 @@ struct HintEffect {
 /// `seen_from_inside` and by sensors inside them, where the winding number of `eta` is 1/4 and more (outside it is 0, however near or far),
 /// or, if the sensor of each point is known, by two thirds of the votes. `near`: Neighbours::of_all(k), or empty: patches have no pieces;
 /// `spacing`: of the points, for the winding number. O(N log(sensors) + N k), and O(N) for each of at most 500 sensors. Throws Cancelled.
+/// Points of open parts that still face away from all sensors that may have seen them, at a cosine v < 0, have a confidence of (1 + v) / 2
+/// at most.
 [[nodiscard]] HintEffect follow_hints(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near, double spacing,
                                       const Patches& patches, const Hints& hints, const SidedPoints& sided,
                                       const std::atomic<bool>* cancel = nullptr);
