@@ -295,7 +295,7 @@ Attempt attempt(Problem problem, const PointsView& points, const Options& option
   const PointSet& set = out.problem.cloud.set;
   static_cast<void>(set.smoothed_spacing());              // what solve and areas need of the neighbours,
   static_cast<void>(set.spacing());                       // and what the certificate does
-  if (set.size() > kMostSites) set.release_neighbours();  // up to there the certificate takes more than they and the solve do
+  make_room_for_sums(set);
   out.oriented = orient_problem(out.problem, options, stages, out.stats);
   return out;
 }

@@ -88,6 +88,18 @@ TEST(Facets, StayFlatOnSmoothSurfaces) {
   }
 }
 
+TEST(Facets, HaveAWantedPoint) {
+  const Surface box = shapes::plates(1, 1, 20, 5, kSpacing);
+  const PointSet set(box.points);
+  const std::vector<std::uint8_t> proven(box.points.size(), 1);
+  std::vector<std::uint8_t> wanted(box.points.size(), 0);
+  EXPECT_EQ(find_facets(set, proven, box.normals, wanted).count, 0);
+  wanted[0] = 1;
+  const Facets one = find_facets(set, proven, box.normals, wanted);
+  EXPECT_EQ(one.count, 1);
+  EXPECT_EQ(one.of[0], 0);
+}
+
 TEST(Facets, CountPointsOfTheMinoritySign) {
   const Surface box = shapes::plates(1, 1, 20, 5, kSpacing);
   const std::vector<Vec3> turned = partly_turned(box.normals);

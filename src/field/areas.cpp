@@ -24,7 +24,7 @@ std::vector<Vec3> area_vectors(const PointSet& set, const std::vector<Vec3>& nor
   std::vector<double> spacing = set.smoothed_spacing();
   const std::vector<std::uint8_t> held = mesh::held_points(set, normals, cancel);
   const double typical = set.spacing();
-  if (set.size() > kMostSites) set.release_neighbours();  // the sum takes more than they do
+  make_room_for_sums(set);
   std::vector<Vec3> eta = normals;
   std::vector<double> widths(spacing.size());
   parallel::for_all(eta.size(), [&](std::size_t i) {

@@ -104,7 +104,8 @@ std::vector<std::uint8_t> unsure_facets(const Facets& facets, const std::vector<
 
 }  // namespace
 
-Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven, const std::vector<Vec3>& normals) {
+Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven, const std::vector<Vec3>& normals,
+                   const std::vector<std::uint8_t>& wanted) {
   const std::vector<Vec3>& points = set.points();
   const std::vector<double>& spacing = set.smoothed_spacing();
   const std::vector<std::uint32_t>& near = set.near();
@@ -142,6 +143,7 @@ Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven,
       }
     }
     if (members.size() < kQuadraticTerms) continue;
+    if (!wanted.empty() && std::none_of(members.begin(), members.end(), [&](std::uint32_t i) { return wanted[i] != 0; })) continue;
     for (const std::uint32_t i : members) facets.of[i] = static_cast<std::uint32_t>(facets.count);
     ++facets.count;
   }

@@ -443,6 +443,10 @@ std::vector<float> certified_sides(const PointSet& set, double noise, const SumP
   return certified(search, given, normals, noise == 0);
 }
 
+void make_room_for_sums(const PointSet& set) {
+  if (set.size() > kMostSites) set.release_neighbours();
+}
+
 double site_distance(std::size_t points, double spacing, double noise) {
   const double all = std::sqrt(static_cast<double>(points) / static_cast<double>(kMostSites));
   const double least = std::max(kNoiseScale * noise, all > 1 ? kFirstDistance * all * spacing : 0);

@@ -17,6 +17,10 @@ namespace g3r {
 /// Sites of the finest scale of the certificate, at most: more take long and say no more about sides.
 inline constexpr std::size_t kMostSites = 200000;
 
+/// Gives back the neighbours of more points than that: sums that follow take more than these do. Up to there the certificate takes more
+/// than both.
+void make_room_for_sums(const PointSet& set);
+
 /// The least distance of the sites of that scale, of a cloud with this typical spacing and noise; 0: every point is one.
 [[nodiscard]] double site_distance(std::size_t points, double spacing, double noise);
 

@@ -109,8 +109,9 @@ void agree_on_facets(const Problem& problem, const std::vector<std::uint8_t>& pr
   const PointSet& set = problem.cloud.set;
   const Settings& s = problem.settings;
   for (int round = 0; round < kFacetRounds; ++round) {
-    const Facets facets = find_facets(set, proven, normals);
+    const Facets facets = find_facets(set, proven, normals, problem.known.wanted);
     if (minority_share(facets, normals) < kMinMinority) return;
+    make_room_for_sums(set);
     choose_facet_sides(set, s, facets, eta, normals, stages);
     FastSum sum(set.points(), local_widths(s.polish_width, s, set.smoothed_spacing()), s.sums, stages.cancel());
     const Refinement refined = refine_normals(sum, eta);
