@@ -62,30 +62,6 @@ TEST(TwoWalls, AreFoundTwoDeviationsApart) {
   }
 }
 
-// The surroundings of a roof of few points hold the ground below: heights with two peaks, but not two walls.
-TEST(TwoWalls, AFewPointsAboveOthersAreNone) {
-  const double noise = 0.12;
-  const double h = 2 / std::sqrt(static_cast<double>(kPoints));
-  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    shapes::Random random(seed);
-    std::vector<Vec3> points;
-    for (std::size_t i = 0; i < kPoints; ++i) {
-      const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
-      const bool is_roof = std::abs(x) < 0.12 && std::abs(y) < 0.12;
-      points.push_back({x, y, (is_roof ? 6 * h : 0) + noise * h * normal(random)});
-    }
-    const CanonicalCloud cloud = canonical_cloud(PointsView(points));
-    const Sites sites = place_sites(cloud.set, 0);
-    const double middle = cloud.frame.to_unit({0, 0, 3 * h})[2];
-    std::vector<std::uint32_t> roof;
-    for (std::uint32_t s = 0; s < sites.size(); ++s) {
-      if (sites.points()[s][2] > middle) roof.push_back(s);
-    }
-    ASSERT_GT(roof.size(), 50U);
-    EXPECT_FALSE(on_two_walls(cloud.set, sites, roof, noise * cloud.set.spacing())) << seed;
-  }
-}
-
 // Rounding has light tails as well: one terrain of voxels is one surface.
 TEST(TwoWalls, VoxelsAreNone) {
   std::vector<Vec3> points = walls(0, 0.1, 0.15);

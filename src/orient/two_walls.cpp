@@ -18,7 +18,7 @@ constexpr double kThin = 2;                // site spacings between two walls: t
 constexpr double kExact = 0.01;            // site spacings: deviations below are as good as none
 constexpr std::size_t kNoisyPoints = 128;  // the same under noise: fewer follow the noise, more the shape
 constexpr double kExcess = -0.2;           // of the kurtosis of walls 1.35 standard deviations apart; rough ground has -0.1 at most
-constexpr double kSure = 3;                // standard errors that two walls are likelier: parts of few points have no more by chance
+constexpr double kSure = 3;                // standard errors that it is below 0
 
 // Calls visit(site, its `count` nearest points in canonical order).
 template <typename Visit>
@@ -30,14 +30,6 @@ void for_some(const PointSet& set, const Sites& sites, const std::vector<std::ui
     std::sort(index.begin(), index.end());
     visit(members[k], index);
   }
-}
-
-// Of so many points each, as many as the sites have that share none: what overlaps says nothing new. Fewer than 1: they hold other points.
-double separate_places(const Sites& sites, const std::vector<std::uint32_t>& members, std::size_t points) {
-  std::vector<std::uint8_t> is_member(sites.size(), 0);
-  for (const std::uint32_t s : members) is_member[s] = 1;
-  const auto count = std::count_if(sites.site_of.begin(), sites.site_of.end(), [&](std::uint32_t s) { return is_member[s] != 0; });
-  return static_cast<double>(count) / static_cast<double>(points);
 }
 
 bool on_exact_walls(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members) {
@@ -55,22 +47,12 @@ bool on_exact_walls(const PointSet& set, const Sites& sites, const std::vector<s
     const double cost = (rounding > exact ? 2 : 1) * std::numbers::ln2;
     gain.push_back((thin ? std::log(std::max(one, exact) / std::max(two.deviation, exact)) : 0) - cost);
   });
-  double sum = 0;
-  double squares = 0;
-  for (const double g : gain) {
-    sum += g;
-    squares += g * g;
-  }
-  const auto count = static_cast<double>(gain.size());
-  const double error = std::sqrt(std::max(0.0, squares / count - sum * sum / (count * count)) /
-                                 std::min(count, separate_places(sites, members, 2 * kPatchNeighbours)));
-  return median(gain) > kSure * error;
+  return median(gain) > 0;
 }
 
 bool on_noisy_walls(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members) {
   const std::vector<Vec3>& points = set.points();
-  const double places = separate_places(sites, members, kNoisyPoints);
-  if (places < 1) return false;
+  if (points.size() < kNoisyPoints) return false;
   const Vec3 steps = rounding_steps(points, set.spacing());
   std::vector<double> excess;
   std::vector<double> square;
@@ -92,8 +74,7 @@ bool on_noisy_walls(const PointSet& set, const Sites& sites, const std::vector<s
     ++count;
   }
   const double mean = sum / count;
-  const double share = count / static_cast<double>(excess.size());
-  const double error = std::sqrt(std::max(0.0, squares / count - mean * mean) / std::min(count, share * places));
+  const double error = std::sqrt(std::max(0.0, squares / count - mean * mean) / count);
   return mean < kExcess && mean < -kSure * error;
 }
 

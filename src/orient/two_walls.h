@@ -12,17 +12,15 @@ namespace g3r {
 /// Looks at the points around 500 to 1000 of the given sites of one part (all of fewer), by two laws, of which either is enough:
 ///   - Walls that noise does not hide: n points on two walls, each with a label that costs ln 2, have the log likelihood
 ///     -n ln s2 - n ln 2, on one -n ln s1, with s the standard deviations from parallel quadratics less than 2 site spacings apart
-///     (fit_two_layers()), and from one, through 24 points. Two are likelier if they are at half of the places or more, by three standard
-///     errors. Rounding spreads heights evenly, and what is cut in half then has half the deviation without any wall: another ln 2 per
-///     point against two.
+///     (fit_two_layers()), and from one, through 24 points. Two are likelier if they are at half of the places or more. Rounding spreads
+///     heights evenly, and what is cut in half then has half the deviation without any wall: another ln 2 per point against two.
 ///   - Where there is noise, walls that it hides: the mean excess kurtosis of the heights over cubics through 128 points
 ///     (height_moments()), at the flatter half of the places, which says nothing of it. It is 0 for normal noise about one surface, -0.5
 ///     for walls 2 standard deviations apart, -0.2 for 1.35: they are two from there on, if that is three standard errors below 0. Rounding
 ///     to steps q has the fourth cumulant -sum n_a^4 q_a^4 / 120, n the direction of the heights, which is taken off. What else has light
 ///     tails looks like two walls: two scans of one surface that do not fit onto each other, noise that is evenly distributed.
-/// Standard errors are those of as many places as have no points in common; the surroundings of a part of fewer than 128 points hold other
-/// parts, and say nothing under noise. `members`: of the sites, at least one; `noise`: standard deviation, unit of the points; 0: none.
-/// O(log N) per place, and O(N log N) under noise.
+/// `members`: of the sites, at least one; `noise`: standard deviation, unit of the points; 0: none. O(log N) per place, and O(N log N)
+/// under noise.
 [[nodiscard]] bool on_two_walls(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members, double noise);
 
 }  // namespace g3r
