@@ -293,8 +293,8 @@ Attempt attempt(Problem problem, const PointsView& points, const Options& option
   describe(out.problem, points, options, out.stats);
   require_memory(out.stats.planned_memory_bytes, options);
   const PointSet& set = out.problem.cloud.set;
-  static_cast<void>(set.smoothed_spacing());              // what solve and areas need of the neighbours,
-  static_cast<void>(set.spacing());                       // and what the certificate does
+  static_cast<void>(set.smoothed_spacing());  // what solve and areas need of the neighbours,
+  static_cast<void>(set.spacing());           // and what the certificate does
   make_room_for_sums(set);
   out.oriented = orient_problem(out.problem, options, stages, out.stats);
   return out;
