@@ -37,9 +37,9 @@ constexpr std::uint64_t kFewestCoarse = 20000;  // with half as many, fields of 
 constexpr std::uint64_t kMostCoarse = 2000000;  // every tile has them all around it
 constexpr std::uint64_t kCoarseShare = 8;       // one of so many points is in the thinned cloud, if that is enough and not too much
 constexpr std::size_t kFixed = 32u << 20;       // beside that of a solve in core: 131,072 queries of a sum
-constexpr std::size_t kBeside = 40;             // bytes of a point that a tile holds beside its solve: part, coarse side
-constexpr double kFreeShare = 0.75;             // of the free memory, if no limit is given
-constexpr double kLargest = 1e50;               // coordinates, whose squares and cubes are still numbers
+constexpr std::size_t kBeside = 210;  // bytes of a point beside its solve: part, coarse side, and what facets hold if they are solved for
+constexpr double kFreeShare = 0.75;   // of the free memory, if no limit is given
+constexpr double kLargest = 1e50;     // coordinates, whose squares and cubes are still numbers
 constexpr std::size_t kMostTiles = 1000000;
 constexpr std::size_t kMostWarnings = 8;  // of all files together
 
