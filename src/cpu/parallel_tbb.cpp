@@ -68,11 +68,7 @@ IdleArenas& idle_arenas() {
 class LoopTask {
  public:
   explicit LoopTask(const FunctionRef<std::size_t, std::size_t>& body) : body_(&body) {}
-  LoopTask(const LoopTask& other) {
-    wait();
-    body_ = other.body_;
-    signal();
-  }
+  LoopTask(const LoopTask& other) : body_(other.body_in_sight()) { signal(); }
   LoopTask& operator=(const LoopTask&) = delete;
   ~LoopTask() = default;
   void operator()(const tbb::blocked_range<std::size_t>& range) const {
@@ -82,7 +78,13 @@ class LoopTask {
   }
 
  private:
-  const FunctionRef<std::size_t, std::size_t>* body_ = nullptr;
+  // Before anything of the copy is written: its memory may have been that of another task.
+  [[nodiscard]] const FunctionRef<std::size_t, std::size_t>* body_in_sight() const {
+    wait();
+    return body_;
+  }
+
+  const FunctionRef<std::size_t, std::size_t>* body_;
 };
 
 }  // namespace
