@@ -109,8 +109,8 @@ Octree make_octree(const Prepared& prepared, const std::vector<double>& size, co
 void find_memory(std::size_t points, const Octree& octree, int depth, MeshMemory& memory) {
   memory.needed = memory_for(points, static_cast<double>(octree.leaf_count()), depth);
   if (memory.limit == 0 || memory.needed <= memory.limit) return;
-  throw Unavailable("the mesh needs " + std::to_string(memory.needed >> 20U) + " MiB, the limit is " + std::to_string(memory.limit >> 20U) +
-                    " MiB; raise the limit, lower the depth or thin the cloud");
+  throw Unavailable("the mesh needs " + std::to_string(mebibytes(memory.needed)) + " MiB, the limit is " +
+                    std::to_string(mebibytes(memory.limit)) + " MiB; raise the limit, lower the depth or thin the cloud");
 }
 
 // Polygons, and the places and normals of their vertices.

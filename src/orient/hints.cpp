@@ -232,11 +232,15 @@ class Following {
     return of_i != kNoSensor && of_j != kNoSensor && opposed(hints_.sensors[of_i], i, hints_.sensors[of_j], j);
   }
 
-  // The largest cosine under which a sensor that may have seen a point sees its front; nothing where none may have.
+  // The largest cosine under which a sensor that may have seen a point sees its front, or the first that is not below 0; nothing where none
+  // may have seen it.
   [[nodiscard]] std::optional<double> best_seen(std::uint32_t i) const {
     if (hints_.sensor_of_point.empty()) {
       std::optional<double> best;
-      for (const Vec3& sensor : hints_.sensors) best = std::max(best.value_or(-1), seen_from(sensor, points_[i], normal(i)));
+      for (const Vec3& sensor : hints_.sensors) {
+        best = std::max(best.value_or(-1), seen_from(sensor, points_[i], normal(i)));
+        if (*best >= 0) break;
+      }
       return best;
     }
     const std::uint32_t sensor = hints_.sensor_of_point[i];

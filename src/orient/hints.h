@@ -44,13 +44,12 @@ struct HintEffect {
 /// confidence becomes the share of the votes that agree, times `agreed`, and two thirds decide it; elsewhere it takes two thirds to turn a
 /// patch. Then pieces of a patch that are not consistent with the rest of it are turned by two thirds of their own votes: what a gap
 /// separates has no other way to agree. A piece ends too where adjacent points object to each other more than at a horizon, and what hangs
-/// together with it by a few pairs of points only, as in a crevice, is turned by itself. What still faces away from all sensors that may
-/// have seen it, at a cosine v < 0, has a confidence of (1 + v) / 2 at most. Closed parts have one side: they are turned by
-/// `seen_from_inside` and by sensors inside them, where the winding number of `eta` is 1/4 and more (outside it is 0, however near or far),
-/// or, if the sensor of each point is known, by two thirds of the votes. `near`: Neighbours::of_all(k), or empty: patches have no pieces;
-/// `spacing`: of the points, for the winding number. O(N log(sensors) + N k), and O(N) for each of at most 500 sensors. Throws Cancelled.
-/// Points of open parts that still face away from all sensors that may have seen them, at a cosine v < 0, have a confidence of (1 + v) / 2
-/// at most.
+/// together with it by a few pairs of points only, as in a crevice, is turned by itself. What of open parts still faces away from all
+/// sensors that may have seen it, at a cosine v < 0, has a confidence of (1 + v) / 2 at most. Closed parts have one side: they are turned
+/// by `seen_from_inside` and by sensors inside them, where the winding number of `eta` is 1/4 and more (outside it is 0, however near or
+/// far), or, if the sensor of each point is known, by two thirds of the votes. `near`: Neighbours::of_all(k), or empty: patches have no
+/// pieces; `spacing`: of the points, for the winding number. O(N log(sensors) + N k), O(N) for each of at most 500 sensors, and all sensors
+/// for each open point that none of them sees from the front. Throws Cancelled.
 [[nodiscard]] HintEffect follow_hints(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near, double spacing,
                                       const Patches& patches, const Hints& hints, const SidedPoints& sided,
                                       const std::atomic<bool>* cancel = nullptr);
