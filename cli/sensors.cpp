@@ -42,7 +42,7 @@ Options with_sensors(const Settings& settings, const Cloud& cloud) {
 }
 
 void mention_sensors(const Cloud& cloud, const std::vector<Vec3>& normals, Stats& stats) {
-  if (cloud.sensor_positions.empty() || !stats.hints.given.empty()) return;
+  if (cloud.sensor_positions.empty() || !stats.hints.given.empty() || stats.hints.viewpoint) return;
   const std::string named = "the file names " + counted(cloud.sensor_positions.size(), "scanner position");
   const double away = share_facing_away(cloud, normals);
   if (stats.open_share > 0) {

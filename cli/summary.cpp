@@ -1,6 +1,7 @@
 #include "summary.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "exit_code.h"
@@ -78,6 +79,14 @@ void show_details(Console& console, const Stats& stats) {
   if (stats.condition_number > 0) console.say(line("condition", short_number(stats.condition_number, 3)));
 }
 
+// A camera at the origin of its coordinates is found within rounding.
+std::string place_text(const Vec3& place) {
+  std::string text;
+  const double size = std::max({std::abs(place[0]), std::abs(place[1]), std::abs(place[2]), 1.0});
+  for (const double x : place) text += (text.empty() ? "" : ", ") + short_number(std::abs(x) < 1e-9 * size ? 0 : x, 4);
+  return text;
+}
+
 void show_summary(const Settings& settings, Console& console, const Stats& stats, const MeshCheck* mesh) {
   console.say(line("input", input_text(settings, stats)));
   if (stats.spacing > 0) console.say(line("scale", scale_text(stats)));
@@ -86,6 +95,7 @@ void show_summary(const Settings& settings, Console& console, const Stats& stats
     console.say(line("solve", solve_text(stats)));
     console.say(line("normals", "mean confidence " + short_number(stats.confidence_mean, 2) + ", " + percent(stats.confidence_below_half) +
                                     " of the points below 0.5"));
+    if (stats.hints.viewpoint) console.say(line("camera", "at " + place_text(*stats.hints.viewpoint) + ", as the rows of pixels show"));
   }
   if (mesh != nullptr) console.say(line("mesh", mesh_text(*mesh)));
   console.say(line("time", time_text(stats)));

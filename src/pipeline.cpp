@@ -12,6 +12,7 @@
 #include "orient/apply_hints.h"
 #include "orient/confidence.h"
 #include "orient/hints.h"
+#include "orient/one_view.h"
 #include "orient/open_surfaces.h"
 #include "orient/polish.h"
 #include "orient/problem.h"
@@ -227,6 +228,9 @@ Oriented orient_problem(const Problem& problem, const Options& options, Stages& 
   Oriented out;
   out.solution = solve(problem, options, stages, stats);
   solve_open_surfaces_apart(problem, options, stages, stats, out.solution);
+  if (const std::optional<Vec3>& viewpoint = problem.cloud.set.viewpoint()) {
+    open_to_view(*viewpoint, problem.cloud.points(), out.solution.open_surfaces, out.solution.refinement.normals, out.solution.eta);
+  }
   const Refinement& refined = out.solution.refinement;
   if (problem.noise > 0) {
     const Sums around = sums_over(problem.cloud.set.near(), out.solution.eta);

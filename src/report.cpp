@@ -17,6 +17,8 @@ constexpr std::array kStages = {"read", "build", "solve", "refine", "mesh", "wri
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+Json place_json(const Vec3& p) { return {number(p[0]), number(p[1]), number(p[2])}; }
+
 /// The documented stages first, 0 for those that were not run; then whatever else was timed. Stages named twice add up.
 Json seconds_json(const Stats& stats) {
   Json seconds;
@@ -73,12 +75,9 @@ std::string report_json(const Stats& stats, const MeshCheck* mesh) {
                      {"dropped_non_finite", stats.dropped_non_finite},
                      {"outliers", stats.outliers},
                      {"merged_duplicates", stats.merged_duplicates}};
-  report["scales"] = {{"box_centre", {number(stats.box_centre[0]), number(stats.box_centre[1]), number(stats.box_centre[2])}},
-                      {"box_side", number(stats.box_side)},
-                      {"spacing", number(stats.spacing)},
-                      {"noise", number(stats.noise)},
-                      {"epsilon", number(stats.epsilon)},
-                      {"depth", stats.depth}};
+  report["scales"] = {{"box_centre", place_json(stats.box_centre)}, {"box_side", number(stats.box_side)},
+                      {"spacing", number(stats.spacing)},           {"noise", number(stats.noise)},
+                      {"epsilon", number(stats.epsilon)},           {"depth", stats.depth}};
   report["method"] = {{"name", stats.method},
                       {"preset", stats.preset},
                       {"solver", stats.solver},
@@ -97,7 +96,8 @@ std::string report_json(const Stats& stats, const MeshCheck* mesh) {
                      {"settled_share", number(stats.hints.settled_share)},
                      {"turned_share", number(stats.hints.turned_share)},
                      {"agreement", number(stats.hints.agreement)},
-                     {"contradicted_share", number(stats.hints.contradicted_share)}};
+                     {"contradicted_share", number(stats.hints.contradicted_share)},
+                     {"viewpoint", stats.hints.viewpoint ? place_json(*stats.hints.viewpoint) : Json(nullptr)}};
   report["seconds"] = seconds_json(stats);
   report["planned_memory_bytes"] = stats.planned_memory_bytes;
   report["peak_memory_bytes"] = stats.peak_memory_bytes;

@@ -154,6 +154,23 @@ TEST(Hints, WhatFacesAwayFromEveryScannerIsDoubted) {
   }
 }
 
+// Of one view every point is seen from the front: what would be seen squarely from behind is turned, as surely as it is seen squarely.
+TEST(Hints, OfOneViewNothingIsSeenSquarelyFromBehind) {
+  Sides sides;
+  sides.add_sphere({0, 0, 0}, 1, -0.9, 0, true);
+  const std::vector<Vec3> outward = sides.normals;
+  sides.patches.one_view = true;
+  const HintEffect effect = sides.follow({.sensors = {{0, 0, 1000}}});
+  for (std::size_t i = 0; i < sides.points.size(); ++i) {
+    const double z = outward[i][2];
+    if (std::abs(z) < 0.01 || std::abs(z + 0.32) < 0.01) continue;  // edge-on, and at the limit
+    EXPECT_EQ(effect.turned[i] != 0, z < -0.32) << z;
+    EXPECT_EQ(dot(sides.normals[i], outward[i]) < 0, z < -0.32) << z;
+    const double shown = z < -0.32 ? (1 - z) / 2 : z < 0 ? (1 + z) / 2 : 1;
+    EXPECT_NEAR(sides.confidence[i], std::min(shown, 1 / (1 + 0.81)), 0.01) << z;  // and no more than the votes agree
+  }
+}
+
 TEST(Hints, AKnownSideIsTurnedByTwoThirds) {
   for (const double least_z : {-0.5, -0.9}) {
     Sides sides;

@@ -59,8 +59,8 @@ pictures scan-plate "points,no flag" z plate plate
 
 show python3 "$bench/scans.py" frame frame.ply
 mesh frame frame
-mesh seen frame --sensor=0,0,0 --open
-pictures scan-frame "points,no flag,--sensor=0 0 0 --open" y frame frame seen
+mesh seen frame --open
+pictures scan-frame "points,no flag,--open" y frame frame seen
 
 show python3 "$bench/scans.py" arch arch.ply
 mesh arch arch

@@ -41,7 +41,10 @@ struct HintStats {
   double settled_share = 0;        ///< their side was a choice and is one no longer
   double turned_share = 0;         ///< turned by a hint, flip included
   double agreement = 0;            ///< share of the votes on decided parts that agree with the side they got; 0 if none was
-  double contradicted_share = 0;   ///< share of the votes on closed parts that were against their side; 0 up to 1/5, which is usual
+  /// The place from which one camera has seen all points, found from the lines of sight that they lie on (rows and columns of pixels), as
+  /// in depth frames. Every point faces it unless another hint says what it faces. Nothing: no such place shows.
+  std::optional<Vec3> viewpoint{};
+  double contradicted_share = 0;  ///< share of the votes on closed parts that were against their side; 0 up to 1/5, which is usual
 };
 
 }  // namespace g3r

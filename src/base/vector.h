@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace g3r::vector {
 
@@ -23,6 +24,13 @@ inline Vec3 normalised(const Vec3& a) {
   if (largest == 0) return {0, 0, 0};
   const Vec3 b{a[0] / largest, a[1] / largest, a[2] / largest};
   return scale(b, 1 / std::sqrt(dot(b, b)));
+}
+
+/// The mean of one point or more.
+inline Vec3 mean(const std::vector<Vec3>& points) {
+  Vec3 sum{};
+  for (const Vec3& p : points) sum = add(sum, p);
+  return scale(sum, 1 / static_cast<double>(points.size()));
 }
 
 /// An axis-parallel box, empty until it is extended.

@@ -20,6 +20,9 @@ struct Frame {
   [[nodiscard]] Vec3 to_unit(const Vec3& p) const {
     return {(p[0] - centre[0]) * scale, (p[1] - centre[1]) * scale, (p[2] - centre[2]) * scale};
   }
+  [[nodiscard]] Vec3 to_world(const Vec3& p) const {
+    return {p[0] / scale + centre[0], p[1] / scale + centre[1], p[2] / scale + centre[2]};
+  }
   [[nodiscard]] double length_to_unit(double length) const { return length * scale; }
   [[nodiscard]] double length_to_world(double length) const { return length / scale; }
 };

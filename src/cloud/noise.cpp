@@ -8,6 +8,7 @@
 #include "cloud/plane_fit.h"
 #include "cloud/quadratic_patch.h"
 #include "cloud/spacing.h"
+#include "cloud/viewpoint.h"
 #include "cpu/parallel_sort.h"
 
 #include <algorithm>
@@ -57,14 +58,18 @@ double quantile(std::vector<double> values, double share) {
 
 // Calls visit(point, its `count` nearest, their squared distances) for about `places` points, spread along their order.
 template <typename Visit>
-void for_some(const PointSet& set, std::size_t places, std::size_t count, Visit visit) {
+void for_some(const Neighbours& tree, const std::vector<Vec3>& points, std::size_t places, std::size_t count, Visit visit) {
   std::vector<std::uint32_t> index;
   std::vector<double> squared;
-  const std::vector<Vec3>& points = set.points();
   for (std::size_t i = 0; i < points.size(); i += std::max<std::size_t>(1, points.size() / places)) {
-    set.tree().nearest(points[i], count, index, squared);
+    tree.nearest(points[i], count, index, squared);
     visit(points[i], index, squared);
   }
+}
+
+template <typename Visit>
+void for_some(const PointSet& set, std::size_t places, std::size_t count, Visit visit) {
+  for_some(set.tree(), set.points(), places, count, visit);
 }
 
 // The residual at this quantile that noise of standard deviation 1 leaves of `count` points, an even number: x with
@@ -80,15 +85,22 @@ double expected_residual(std::size_t count, double share) {
   });
 }
 
-// How far the points are from height fields through `count` of them.
+// How far the points are from height fields through `count` of them: the nearest, or, of what a camera has seen, the nearest in its image,
+// with heights along the lines of sight.
 class Residuals {
  public:
   Residuals(const PointSet& set, std::size_t count) : count_(count) {
     const std::vector<Vec3>& points = set.points();
-    for_some(set, kPlaces, count, [&](const Vec3&, const auto& index, const auto&) {
-      const Vec3 normal = fit_plane(points, index.data(), index.size()).normal;
+    const auto add = [&](const auto& index, const Vec3& normal) {
       residuals_.push_back(quadratic_residual(points, index.data(), index.size(), normal, set.spacing()));
-    });
+    };
+    if (set.viewpoint()) {
+      const std::vector<Vec3> sights = directions_from(*set.viewpoint(), points);
+      for_some(Neighbours(sights), sights, kPlaces, count, [&](const Vec3& sight, const auto& index, const auto&) { add(index, sight); });
+    } else {
+      for_some(set, kPlaces, count,
+               [&](const Vec3&, const auto& index, const auto&) { add(index, fit_plane(points, index.data(), index.size()).normal); });
+    }
   }
   // The noise that leaves such a residual in this share of the neighbourhoods, while it is small.
   [[nodiscard]] double scatter(double share) const { return quantile(residuals_, share) / expected_residual(count_, share); }
@@ -117,13 +129,14 @@ double layered_noise(const PointSet& set) {
 // The facet that the first of the points is on; none, of breadth 0, where the points may be those of rows: the lines of a raster or a
 // scanner lie in planes across the surface however noisy it is, but in narrow strips of them, or there is another plane among the other
 // points.
-ExactPlane find_facet(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing) {
-  const ExactPlane plane = find_exact_plane(points, index, spacing);
-  if (plane.breadth < kFacetBreadth) return {};
+ExactPlane find_facet(const PointSet& set, const std::vector<std::uint32_t>& index) {
+  const std::vector<Vec3>& points = set.points();
+  const ExactPlane plane = find_exact_plane(points, index, set.spacing());
+  if (plane.breadth < kFacetBreadth || is_along_sight(set, points[index.front()], plane.normal)) return {};
   std::vector<std::uint32_t> others{index.front()};
   std::copy_if(index.begin(), index.end(), std::back_inserter(others),
                [&](std::uint32_t i) { return std::find(plane.points.begin(), plane.points.end(), i) == plane.points.end(); });
-  return find_exact_plane(points, others, spacing).points.empty() ? plane : ExactPlane{};
+  return find_exact_plane(points, others, set.spacing()).points.empty() ? plane : ExactPlane{};
 }
 
 // Whether many of the points lie on exact planes along the surface, and not because rounding has put them there.
@@ -133,7 +146,7 @@ bool on_exact_planes(const PointSet& set) {
   std::size_t looked = 0, on_facets = 0;
   for_some(set, kPlaces, kPlaneNeighbours, [&](const Vec3&, const auto& index, const auto&) {
     ++looked;
-    const ExactPlane facet = find_facet(set.points(), index, set.spacing());
+    const ExactPlane facet = find_facet(set, index);
     if (facet.breadth == 0) return;
     const Vec3 around = fit_plane(set.points(), index.data(), index.size()).normal;
     on_facets += std::abs(vector::dot(facet.normal, around)) > kSameSide ? 1 : 0;
@@ -145,6 +158,7 @@ bool on_exact_planes(const PointSet& set) {
 double scattered_noise(const PointSet& set, const Residuals& residuals) {
   const double spacing = set.spacing();
   const double flattest = residuals.scatter(kFlattest);
+  if (set.viewpoint()) return flattest < kLeast * spacing ? 0 : residuals.scatter(kFlat);  // no walls
   // Shape lifts the residuals of fewer points less, noise as much.
   if (flattest < kLeast * spacing || Residuals(set, kClosest).scatter(kFlattest) < kOfNoise * residuals.scatter(kFlat)) return 0;
   const double filled = flattest / (kSaturation * spacing);
@@ -232,7 +246,8 @@ double facet_scatter(const PointSet& set) {
   for_some(set, kFewPlaces, kPlaneNeighbours, [&](const Vec3&, const auto& index, const auto&) {
     ++looked;
     const LikeliestPlane found = find_likeliest_plane(set.points(), index, set.spacing());
-    if (found.scatter > 0 && goes_on(set, found.plane, found.scatter * set.spacing())) ++counts[found.scatter];
+    if (found.scatter == 0 || is_along_sight(set, set.points()[index.front()], found.plane.normal)) return;
+    if (goes_on(set, found.plane, found.scatter * set.spacing())) ++counts[found.scatter];
   });
   std::size_t most = 0;
   double scatter = 0;

@@ -20,13 +20,19 @@ struct PointSet::Known {
   std::vector<double> local;
   std::vector<double> smoothed;
   double spacing = 0;
+  std::optional<Vec3> viewpoint;
 };
 
 PointSet::PointSet() : known_(std::make_shared<Known>()) {}
 
-PointSet::PointSet(std::vector<Vec3> points) : PointSet() { known_->points = std::move(points); }
+PointSet::PointSet(std::vector<Vec3> points, const std::optional<Vec3>& viewpoint) : PointSet() {
+  known_->points = std::move(points);
+  known_->viewpoint = viewpoint;
+}
 
 const std::vector<Vec3>& PointSet::points() const { return known_->points; }
+const std::optional<Vec3>& PointSet::viewpoint() const { return known_->viewpoint; }
+void PointSet::set_viewpoint(const std::optional<Vec3>& viewpoint) { known_->viewpoint = viewpoint; }
 std::size_t PointSet::near_count() const { return std::min(kSpacingNeighbours, size()); }
 
 const Neighbours& PointSet::tree() const {

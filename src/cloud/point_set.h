@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace g3r {
@@ -18,7 +19,7 @@ class PointSet {
  public:
   PointSet();  ///< no points
   /// `points`: in the unit frame, as a rule.
-  explicit PointSet(std::vector<Vec3> points);
+  explicit PointSet(std::vector<Vec3> points, const std::optional<Vec3>& viewpoint = {});
 
   [[nodiscard]] const std::vector<Vec3>& points() const;  ///< N
   [[nodiscard]] std::size_t size() const { return points().size(); }
@@ -33,6 +34,10 @@ class PointSet {
   [[nodiscard]] const std::vector<double>& local_spacing() const;
   [[nodiscard]] const std::vector<double>& smoothed_spacing() const;
   [[nodiscard]] double spacing() const;
+
+  /// Where a camera has seen the points from, in their frame: nothing unless it has been told (find_viewpoint()).
+  [[nodiscard]] const std::optional<Vec3>& viewpoint() const;
+  void set_viewpoint(const std::optional<Vec3>& viewpoint);
 
   /// Gives back tree(), near() and local_spacing(), a quarter of what a solve takes; references to them end. They are made again when they
   /// are asked for.

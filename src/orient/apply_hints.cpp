@@ -5,6 +5,7 @@
 #include "orient/hints.h"
 
 #include <algorithm>
+
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -46,6 +47,9 @@ Patches patches_of(const OpenSurfaces& surfaces) {
   return patches;
 }
 
+// Whether they say which side is seen, or is outside.
+bool vote(const Hints& hints) { return hints.up || !hints.sensors.empty() || !hints.inside.empty() || hints.seen_from_inside; }
+
 std::vector<std::string> names_of(const Hints& hints) {
   std::vector<std::string> names;
   if (hints.up) names.emplace_back("up");
@@ -66,8 +70,7 @@ void warn(const HintEffect& effect, const Hints& hints, const CanonicalCloud& cl
                              " of whose votes say that they face away from the scanner; they keep their sides");
   }
   if (effect.inside_that_is_outside) {
-    Vec3 place = *effect.inside_that_is_outside;
-    for (std::size_t a = 0; a < 3; ++a) place[a] = place[a] / cloud.frame.scale + cloud.frame.centre[a];
+    const Vec3 place = cloud.frame.to_world(*effect.inside_that_is_outside);
     stats.warnings.push_back("hint inside: " + in_words(place) + " is not inside the closed parts; they keep their sides");
   }
   if (hints.up && !any_open) stats.warnings.emplace_back("hint up: it decides nothing, as no part of the cloud is open");
@@ -77,9 +80,14 @@ void warn(const HintEffect& effect, const Hints& hints, const CanonicalCloud& cl
 
 void apply_hints(const Problem& problem, const Options& options, Solution& solution, std::vector<float>& confidence, Stats& stats,
                  const std::atomic<bool>* cancel) {
-  const Patches patches = patches_of(solution.open_surfaces);
-  const Hints hints = in_frame(options.hints, problem.cloud);
+  Patches patches = patches_of(solution.open_surfaces);
+  patches.one_view = problem.cloud.set.viewpoint().has_value();
+  Hints hints = in_frame(options.hints, problem.cloud);
   stats.hints.given = names_of(hints);
+  if (const std::optional<Vec3>& viewpoint = problem.cloud.set.viewpoint()) {
+    stats.hints.viewpoint = problem.cloud.frame.to_world(*viewpoint);
+    if (!vote(hints)) hints.sensors.push_back(*viewpoint);
+  }
   const HintEffect effect = follow_hints(problem.cloud.points(), problem.cloud.set.near(), problem.spacing, patches, hints,
                                          {solution.refinement.normals, solution.eta, confidence}, cancel);
   const double turned = share(effect.turned);

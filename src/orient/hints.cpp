@@ -72,20 +72,14 @@ class NearestPlace {
   std::vector<double> squared_;
 };
 
-// The mean: it turns with the cloud, lies in the plane of a flat one, and is where a scanner inside, about which points are dense, stands.
-Vec3 middle_of(const std::vector<Vec3>& points) {
-  Vec3 sum{};
-  for (const Vec3& p : points) sum = vector::add(sum, p);
-  return vector::scale(sum, 1 / static_cast<double>(points.size()));
-}
-
 // Votes of single points.
 class Voters {
  public:
   Voters(const std::vector<Vec3>& points, const Hints& hints)
       : points_(points), hints_(hints), viewers_(hints.sensors), sensors_(viewers_), inside_(hints.inside) {
     if (hints.up) up_ = normalised(*hints.up);
-    if (hints.seen_from_inside && hints.sensors.empty()) middle_ = middle_of(points);
+    // It turns with the cloud, lies in the plane of a flat one, and is where a scanner inside, about which points are dense, stands.
+    if (hints.seen_from_inside && hints.sensors.empty()) middle_ = vector::mean(points);
   }
 
   // What a sensor, or the middle that stands for one, says of a point.
@@ -188,7 +182,7 @@ class Following {
       ++all;
     }
     if (all > 0) effect_.agreement = agreed / all;
-    doubt_backs();
+    judge_backs();
   }
 
   // Body of a loop over the pairs of adjacent points of one patch.
@@ -249,11 +243,14 @@ class Following {
   }
 
   // A scanner sees fronts: what faces away from all that may have seen it has the wrong side or the wrong direction, so that the side is a
-  // choice at a horizon, and certainly wrong where it would be seen squarely from behind.
-  void doubt_backs() {
+  // choice at a horizon, and certainly wrong where it would be seen squarely from behind: of one view, that goes over.
+  void judge_backs() {
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
       const std::optional<double> seen = is_closed(i) ? std::nullopt : best_seen(i);
-      if (seen && *seen < 0) sided_.confidence[i] = std::min(sided_.confidence[i], static_cast<float>((1 + *seen) / 2));
+      if (!seen || *seen >= 0) continue;
+      const bool squarely = patches_.one_view && -*seen > std::sqrt(kMostOpposed);
+      if (squarely) effect_.turned[i] ^= 1;
+      sided_.confidence[i] = std::min(sided_.confidence[i], static_cast<float>((1 + (squarely ? -*seen : *seen)) / 2));
     }
   }
 

@@ -3,6 +3,7 @@
 #include "cloud/noise.h"
 #include "cloud/outliers.h"
 #include "cloud/spacing.h"
+#include "cloud/viewpoint.h"
 
 #include <g3r/error.h>
 
@@ -44,7 +45,11 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
     const std::optional<double> given = given_noise(options.noise, problem.cloud, spacing);
     return given || (options.preset != Preset::kPaper && !contains(without, Step::kNoise)) ? given : 0;
   };
-  bool outliers_wanted = options.preset != Preset::kPaper && !is_baseline(options.method) && !contains(without, Step::kOutliers);
+  const bool own_steps = options.preset != Preset::kPaper && !is_baseline(options.method);
+  if (own_steps && known.gradient.empty() && !contains(without, Step::kViewpoint)) {
+    problem.cloud.set.set_viewpoint(find_viewpoint(problem.cloud.set, problem.cloud.frame.to_unit({0, 0, 0})));
+  }
+  bool outliers_wanted = own_steps && !contains(without, Step::kOutliers);
   std::optional<double> noise;
   while (outliers_wanted) {
     const std::vector<double> relative_spacing = in_canonical_order(problem.cloud, known.relative_spacing);
@@ -101,7 +106,7 @@ Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, 
     if (!problem.known.gradient.empty()) part.known.gradient.push_back(problem.known.gradient[i]);
     if (!problem.known.relative_spacing.empty()) part.known.relative_spacing.push_back(problem.known.relative_spacing[i]);
   }
-  part.cloud.set = PointSet(std::move(points));
+  part.cloud.set = PointSet(std::move(points), problem.cloud.set.viewpoint());
   part.spacing = typical_spacing(spacing_before_thinning(part.cloud.set.local_spacing(), part.known.relative_spacing));
   part.noise = problem.noise;
   part.outliers = problem.outliers;  // those of the whole cloud: the part was solved for among them

@@ -10,6 +10,7 @@ namespace g3r {
 
 /// In the order of the run, but for the certificate, which every solve ends with. What each does and is worth: docs/evidence/steps.md.
 enum class Step {
+  kViewpoint,     ///< the place is found from which one camera has seen all points, if one has
   kOutliers,      ///< points far from all others are taken out
   kNoise,         ///< the noise is estimated; without it every cloud is taken for clean
   kSites,         ///< clouds of lines are solved for on sites as far apart as the lines
@@ -29,9 +30,9 @@ enum class Step {
   kCertificate    ///< the confidence of a side is lowered where the field does not certify it
 };
 
-inline constexpr std::array<std::string_view, 17> kStepNames = {
-    "outliers", "noise",  "sites",   "coarse-start", "more-steps",   "polish",     "local-widths", "open-surfaces", "apart",
-    "jets",     "planes", "creases", "facets",       "noise-choice", "noisy-jets", "areas",        "certificate"};
+inline constexpr std::array<std::string_view, 18> kStepNames = {
+    "viewpoint", "outliers", "noise",  "sites",   "coarse-start", "more-steps",   "polish",     "local-widths", "open-surfaces",
+    "apart",     "jets",     "planes", "creases", "facets",       "noise-choice", "noisy-jets", "areas",        "certificate"};
 
 using StepSet = std::bitset<kStepNames.size()>;
 

@@ -1,0 +1,136 @@
+// Truths about the place that a camera has seen a cloud from: found whatever the depths, and only where there is one.
+#include "cloud/viewpoint.h"
+#include "cloud/noise.h"
+
+#include "shapes.h"
+
+#include <g3r/g3r.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace g3r {
+namespace {
+
+using Depth = std::function<double(double, double)>;
+
+// Pixels of a frame of 60 x 45, 53 degrees wide, with the depth along z at the slopes x/z and y/z; seen from `place`, along `turned` z.
+std::vector<Vec3> frame(const Depth& depth, const Vec3& place = {0, 0, 0}, double turn = 0) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 60; ++i) {
+    for (int j = 0; j < 45; ++j) {
+      const double u = (i - 29.5) / 60, v = (j - 22) / 60.0, z = depth(u, v);
+      const Vec3 p{u * z, v * z, z};
+      points.push_back({place[0] + std::cos(turn) * p[0] + std::sin(turn) * p[2], place[1] + p[1],
+                        place[2] - std::sin(turn) * p[0] + std::cos(turn) * p[2]});
+    }
+  }
+  return points;
+}
+
+double waves(double u, double v) { return 2 + 0.2 * std::sin(9 * u) * std::cos(7 * v); }
+
+Depth noisy(double sigma) {
+  return [sigma, random = shapes::Random(5)](double u, double v) mutable { return waves(u, v) + sigma * random.gaussian(); };
+}
+
+// A table before a wall, depth in steps.
+double stepped(double u, double v) {
+  const double z = v < 0.1 ? 2 - 0.3 * u : std::min(2 - 0.3 * u, 0.3 / v);
+  const double steps = 60;
+  return steps / std::round(steps / z);
+}
+
+void expect_found(const std::vector<Vec3>& points, const Vec3& place, const Vec3& origin, const std::string& what) {
+  const std::optional<Vec3> found = find_viewpoint(PointSet(points), origin);
+  ASSERT_TRUE(found) << what;
+  for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR((*found)[a], place[a], 1e-3) << what;
+}
+
+TEST(Viewpoint, IsFoundWhateverTheNoiseOfTheDepths) {
+  for (const double sigma : {0.0, 0.003, 0.03, 0.2}) {
+    expect_found(frame(noisy(sigma)), {0, 0, 0}, {0, 0, 0}, "noise " + std::to_string(sigma));
+    const Vec3 place{3, -1, 0.5};
+    if (sigma > 0.01) expect_found(frame(noisy(sigma), place, 0.7), place, {0, 0, 0}, "elsewhere, noise " + std::to_string(sigma));
+  }
+}
+
+TEST(Viewpoint, IsFoundWhereDepthsAreRounded) { expect_found(frame(stepped), {0, 0, 0}, {0, 0, 0}, "steps"); }
+
+TEST(Viewpoint, IsWhereTheCameraIsAndNotWhereTheOriginIs) {
+  const Vec3 place{3, -1, 0.5};
+  for (const Vec3& origin : {Vec3{0, 0, 0}, Vec3{3, -1, 0}, Vec3{3, -1, -40}, Vec3{0, 0, 100}}) {
+    expect_found(frame(noisy(0.02), place), place, origin, "other origin");
+  }
+}
+
+// No camera has seen these: samples of solids, rasters of terrain, whose rows are in parallel planes, and directions on a grid from inside.
+TEST(Viewpoint, IsNotFoundWhereThereIsNone) {
+  shapes::Random random(3);
+  const auto none = [](const std::vector<Vec3>& points, const Vec3& origin, const std::string& what) {
+    EXPECT_FALSE(find_viewpoint(PointSet(points), origin)) << what;
+  };
+  none(shapes::sphere(3000).points, {0, 0, -5}, "sphere");
+  none(shapes::plates(3, 1, 0.2, 0.3, 0.05).points, {0, 0, 5}, "plates");
+  std::vector<Vec3> raster;
+  std::vector<Vec3> around;
+  for (int i = 0; i < 60; ++i) {
+    for (int j = 0; j < 60; ++j) {
+      raster.push_back({0.1 * i, 0.1 * j, 0.5 * waves(0.02 * i, 0.03 * j) + 0.02 * random.gaussian()});
+      const double a = 0.1 * i, b = 0.04 * (j - 30), r = 2 + 0.1 * random.gaussian();
+      around.push_back({r * std::cos(a) * std::cos(b), r * std::sin(a) * std::cos(b), r * std::sin(b)});
+    }
+  }
+  for (const Vec3& origin : {Vec3{0, 0, 0}, Vec3{3, 3, 9}, Vec3{3, 3, 1e6}, Vec3{-20, 3, 1}}) none(raster, origin, "raster");
+  none(around, {0, 0, 0}, "all around");
+}
+
+TEST(Viewpoint, PlanesOfRowsAreAlongTheSight) {
+  const PointSet set(frame(noisy(0.02)), Vec3{0, 0, 0});
+  EXPECT_TRUE(is_along_sight(set, {0.5, 0.2, 2}, {0, 10 / std::sqrt(101), -1 / std::sqrt(101)}));
+  EXPECT_FALSE(is_along_sight(set, {0.5, 0.2, 2}, {0, 0, 1}));
+  EXPECT_FALSE(is_along_sight(PointSet(set.points()), {0.5, 0.2, 2}, {0, 10 / std::sqrt(101), -1 / std::sqrt(101)}));
+}
+
+// Rows of noisy pixels are exact planes, but no facets: the noise is seen, and is that of the depths.
+// Of more than a spacing, 0.03, the fits follow some.
+TEST(Viewpoint, NoiseAlongTheSightIsFound) {
+  for (const double sigma : {0.01, 0.02, 0.03}) {
+    EXPECT_NEAR(estimate_noise(PointSet(frame(noisy(sigma)), Vec3{0, 0, 0})) / sigma, 0.8, 0.2) << sigma;
+  }
+}
+
+// The report says where the camera stood, in the coordinates of the caller, and all points face it without a hint, under noise too.
+TEST(Viewpoint, EveryPointFacesTheCamera) {
+  for (const double sigma : {0.0, 0.02, 0.08}) {
+    std::vector<Vec3> points = frame(noisy(sigma), {0, 0, 0});
+    for (Vec3& p : points) p = {10 * p[0], 10 * p[1], 10 * p[2]};  // other units
+    const Orientation seen = orient(points);
+    ASSERT_TRUE(seen.stats.hints.viewpoint) << sigma;
+    EXPECT_LT(std::hypot((*seen.stats.hints.viewpoint)[0], (*seen.stats.hints.viewpoint)[1], (*seen.stats.hints.viewpoint)[2]), 1e-9);
+    EXPECT_EQ(seen.stats.open_share, 1) << sigma;
+    EXPECT_EQ(seen.stats.undecided_share, 0) << sigma;
+    EXPECT_TRUE(seen.stats.consistent) << sigma;
+    std::size_t away = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3& n = seen.normals[i];
+      away += n[0] * points[i][0] + n[1] * points[i][1] + n[2] * points[i][2] > 0 ? 1 : 0;
+    }
+    EXPECT_LT(away, points.size() / 100) << sigma;
+    Options options;
+    options.hints.flip = true;
+    const Orientation flipped = orient(points, options);
+    for (std::size_t i = 0; i < points.size(); i += 50) EXPECT_EQ(flipped.normals[i][2], -seen.normals[i][2]);
+    options.hints.flip = false;
+    options.without = "viewpoint";
+    EXPECT_FALSE(orient(points, options).stats.hints.viewpoint);
+  }
+}
+
+}  // namespace
+}  // namespace g3r
