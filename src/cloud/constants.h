@@ -18,7 +18,7 @@ inline constexpr double kSigmas = 2.5;
 /// On the squares of the unknowns of a fit, relative: points on a line leave some of them open. Above rounding, and far below what moves a
 /// fit.
 inline constexpr double kRidge = 1e-9;
-/// Places of a cloud that are looked at where a median or a quantile of all is asked for: fewer leave it to chance.
+/// Places of a cloud that stand for all where a median or a quantile of all is wanted: of fewer it would vary with the choice.
 inline constexpr std::size_t kPlaces = 2000;
 /// The same where each costs a hundred times as much.
 inline constexpr std::size_t kFewPlaces = 500;

@@ -20,7 +20,7 @@ inline constexpr double kMostStrays = 1.0 / 3;
 ///     0.35 of the way between them and twice what is usual (the 90 % quantile over the points of such distances, for noise and detail), or
 ///     their normals are mirror images as they are round bends and across creases; or
 ///   - if its spacing is more than twice that of these 8 (geometric mean): it is alone.
-/// Strays are taken out and their neighbours are looked at again, until all are held. Random points that find_outliers() left among those
+/// Strays are taken out and their neighbours are tested again, until all are held. Random points that find_outliers() left among those
 /// of a surface: 93 to 99 % of those farther than 1.5 spacings from it; points of clean and noisy surfaces: 0 to 0.1 %, of very uneven ones
 /// under as many outliers 2 %. Fewer than 100 points have none, and if they were more than a third of the points the cloud is something
 /// else, and all are held. `normals`: unit. O(N log N), once more for points near strays. Throws Cancelled.

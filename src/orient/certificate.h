@@ -12,7 +12,7 @@
 namespace g3r {
 
 /// What the winding field w of normals n_i with the areas of their sites says at every site p_i, by probes p_i +- d m_i at d = 1, 2 and 4
-/// spacings, m_i the axis of the site on the side of n_i: normals that lie in the surface do not choose where they are looked at
+/// spacings, m_i the axis of the site on the side of n_i: normals that lie in the surface do not choose their own probes
 /// (docs/math.md, "Certificate"):
 ///   - `jump`, the largest over d of w(p_i - d m_i) - w(p_i + d m_i): 1 wherever the sides around p_i agree, on closed surfaces and on open
 ///     ones (Gauss's jump relation of the double layer), about 0 or less where they do not;

@@ -40,7 +40,7 @@ struct OpenSurfaces {
 /// too, but with area vectors that lie in it or change their side from place to place. The field of the result shows it: beside a closed
 /// surface it is 0 or 1, beside an open one it is not (Certificate::unrest). So every connected part of the cloud is tested, and where its
 /// unrest is above 0.08 or its jump defect above 0.6 (0.8 under noise), and its points do not lie on two walls close together
-/// (on_two_walls()), it is looked at without the closed parts and other hypotheses are tried, from the finest scale on which
+/// (on_two_walls()), it is tested without the closed parts, and other hypotheses are tried, from the finest scale on which
 /// the samples are a surface (scan lines are one only across their gaps) and two with sites twice as far apart each:
 ///   1. sites an even distance apart, with the planes of their surroundings (place_sites());
 ///   2. signs by agreement of neighbours (agree_on_signs()), weights w_ij = f_i f_j exp(-0.3 |d|^2 / r^2) (n_i . n_j - 2 (n_i . e)(n_j .

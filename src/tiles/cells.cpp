@@ -11,8 +11,8 @@ namespace {
 
 // Points in a cell, on average, at least: 8 to 16 spacings across on a surface. Larger cells make halos wider than they need be.
 constexpr std::uint64_t kCellPoints = 64;
-// Width of a halo in cells: 8 to 16 spacings. Points beside a border err no more than elsewhere (docs/math.md), under noise too, where
-// kernels are as wide as that; 2 are no more accurate for a third more work.
+// Width of a halo in cells: 8 to 16 spacings. Points beside a border err no more than elsewhere (docs/evidence/any_size.md), under noise
+// too, where kernels are as wide as that; 2 are no more accurate for a third more work.
 constexpr std::int64_t kHaloCells = 1;
 
 void sort_unique(std::vector<std::uint64_t>& codes) {
