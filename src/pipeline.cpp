@@ -54,7 +54,7 @@ void describe(const Problem& problem, const PointsView& points, const Options& o
   stats.box_centre = cloud.frame.centre;
   stats.box_side = kBoxSide / cloud.frame.scale;
   stats.spacing = cloud.frame.length_to_world(problem.spacing);
-  stats.noise = cloud.frame.length_to_world(problem.noise);
+  stats.noise = cloud.frame.length_to_world(std::max(problem.noise, problem.view_noise));
   stats.epsilon = cloud.frame.length_to_world(settings.epsilon.typical());
   stats.preset = name_of(options.preset);
   stats.method = name_of(settings.method);
@@ -251,7 +251,8 @@ Oriented orient_problem(const Problem& problem, const Options& options, Stages& 
 
 bool may_try_noises(const Problem& problem, const Options& options) {
   const bool on_points = problem.line_distance == 0;  // sites have a noise of their own
-  return on_points && problem.settings.method == Method::kEnergy && options.preset != Preset::kPaper &&
+  const bool sides_known = problem.cloud.set.viewpoint().has_value();
+  return on_points && !sides_known && problem.settings.method == Method::kEnergy && options.preset != Preset::kPaper &&
          options.epsilon.unit == Length::Unit::kAuto && options.noise.unit == Length::Unit::kAuto && options.schedule.empty() &&
          !contains(problem.settings.without, Step::kNoise) && !contains(problem.settings.without, Step::kNoiseChoice);
 }

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -130,6 +131,54 @@ TEST(Viewpoint, EveryPointFacesTheCamera) {
     options.without = "viewpoint";
     EXPECT_FALSE(orient(points, options).stats.hints.viewpoint);
   }
+}
+
+// A box of 8 x 6 x 4 with a pillar, as a scanner in it sees them, on a grid of angles, with noise along the lines of sight.
+std::vector<Vec3> panorama(double sigma) {
+  shapes::Random random(11);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 180; ++i) {
+    for (int j = -30; j <= 30; ++j) {
+      const double a = 2 * std::numbers::pi * i / 180, e = 0.03 * j;
+      const Vec3 d{std::cos(a) * std::cos(e), std::sin(a) * std::cos(e), std::sin(e)};
+      double range = HUGE_VAL;
+      const Vec3 low{-3, -2, -1.5}, high{5, 4, 2.5};
+      for (std::size_t k = 0; k < 3; ++k) range = std::min(range, d[k] == 0 ? range : (d[k] > 0 ? high[k] : low[k]) / d[k]);
+      if (d[0] > 0 && std::abs(d[1]) < 0.15 * d[0]) range = std::min(range, 2 / d[0]);  // its front
+      range += sigma * random.gaussian();
+      points.push_back({range * d[0], range * d[1], range * d[2]});
+    }
+  }
+  return points;
+}
+
+// What one scanner has seen all around it faces the scanner, under noise as well, if the caller says where it stood.
+TEST(Viewpoint, APanoramaFacesTheScannerThatIsNamed) {
+  for (const double sigma : {0.0, 0.02, 0.06}) {
+    const std::vector<Vec3> points = panorama(sigma);
+    EXPECT_FALSE(find_viewpoint(PointSet(points), {0, 0, 0})) << sigma;  // it may be a star-shaped body
+    EXPECT_TRUE(may_be_seen_from(PointSet(points), {0, 0, 0})) << sigma;
+    Options options;
+    options.hints.sensors = {{0, 0, 0}};
+    const Orientation seen = orient(points, options);
+    EXPECT_TRUE(seen.stats.consistent) << sigma;
+    EXPECT_GE(seen.stats.noise, sigma / 2) << sigma;
+    EXPECT_LE(seen.stats.noise, 1.2 * sigma) << sigma;
+    std::size_t away = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3& n = seen.normals[i];
+      away += n[0] * points[i][0] + n[1] * points[i][1] + n[2] * points[i][2] > 0 ? 1 : 0;
+    }
+    EXPECT_LT(away, points.size() / 200) << sigma;
+    EXPECT_GT(seen.stats.confidence_mean, 0.8) << sigma;
+  }
+}
+
+// A scanner beside a solid cannot have seen what lies behind its front.
+TEST(Viewpoint, ASolidIsNotSeenFromOnePlace) {
+  const std::vector<Vec3> sphere = shapes::sphere(4000).points;
+  for (const Vec3& place : {Vec3{0, 0, -1.5}, Vec3{3, 1, 2}, Vec3{0, 0, 1e4}}) EXPECT_FALSE(may_be_seen_from(PointSet(sphere), place));
+  EXPECT_FALSE(may_be_seen_from(PointSet(shapes::plates(2, 2, 0.2, 0.5, 0.05).points), {0.3, 0.1, 5}));
 }
 
 }  // namespace

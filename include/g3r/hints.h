@@ -41,8 +41,9 @@ struct HintStats {
   double settled_share = 0;        ///< their side was a choice and is one no longer
   double turned_share = 0;         ///< turned by a hint, flip included
   double agreement = 0;            ///< share of the votes on decided parts that agree with the side they got; 0 if none was
-  /// The place from which one camera has seen all points, found from the lines of sight that they lie on (rows and columns of pixels), as
-  /// in depth frames. Every point faces it unless another hint says what it faces. Nothing: no such place shows.
+  /// The place from which one camera or scanner has seen all points: of depth frames, as the lines of sight show (rows and columns of
+  /// pixels), or a single sensor that was given, where nothing hides anything from there. Every point faces it unless another hint says
+  /// what it faces.
   std::optional<Vec3> viewpoint{};
   double contradicted_share = 0;  ///< share of the votes on closed parts that were against their side; 0 up to 1/5, which is usual
 };

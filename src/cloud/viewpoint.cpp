@@ -5,6 +5,7 @@
 #include "cloud/chance.h"
 #include "cloud/constants.h"
 #include "cloud/exact_plane.h"
+#include "cloud/spacing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -230,6 +231,31 @@ std::optional<Vec3> find_viewpoint(const PointSet& set, const Vec3& origin) {
   if (most == 0) return std::nullopt;
   const Vec3 opposite = vector::subtract(vector::scale(vector::mean(set.points()), 2), place);
   return search.support(opposite) > 0 ? std::nullopt : std::optional(place);
+}
+
+bool may_be_seen_from(const PointSet& set, const Vec3& place) {
+  if (set.size() < kFewestPoints) return false;
+  const std::vector<Vec3> sights = directions_from(place, set.points());
+  const Neighbours tree(sights);
+  std::vector<std::uint32_t> index;
+  std::vector<double> squared;
+  const auto nearest = [&](std::uint32_t i) {
+    std::vector<std::uint32_t> two;
+    tree.nearest(sights[i], 2, two, squared);
+    return std::sqrt(squared.back());
+  };
+  std::size_t looked = 0;
+  std::size_t too_near = 0;
+  for (std::uint32_t i = 0; i < set.size(); i += std::max<std::uint32_t>(1, static_cast<std::uint32_t>(set.size() / kFewPlaces))) {
+    tree.nearest(sights[i], kClosest + 1, index, squared);
+    std::vector<double> around;
+    for (const std::uint32_t k : index) {
+      if (k != i) around.push_back(nearest(k));
+    }
+    ++looked;
+    too_near += nearest(i) < median(around) / 2 ? 1 : 0;
+  }
+  return static_cast<double>(too_near) <= kFalseAlarms * static_cast<double>(looked);
 }
 
 bool is_along_sight(const PointSet& set, const Vec3& point, const Vec3& normal) {

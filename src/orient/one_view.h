@@ -9,9 +9,9 @@
 
 namespace g3r {
 
-/// A camera sees the front of every point, so that nothing it has seen is closed: what the equations took for closed parts, most often thick
-/// noise, becomes one open surface, and its points are turned to face the camera. Where n . v is 0, v the direction from the point to the
-/// camera, the side is a choice: it is certified to (1 + |n . v|) / 2. `normals` (unit) and `eta` are changed. O(N).
+/// A camera sees the front of every point, so that nothing it has seen is closed: what the equations took for closed parts, most often
+/// thick noise, becomes one open surface, and its points are turned to face the camera. Where n . v is 0, v the direction from the point to
+/// the camera, the side is a choice: it is certified to (1 + |n . v|) / 2. `normals` (unit) and `eta` are changed. O(N).
 void open_to_view(const Vec3& viewpoint, const std::vector<Vec3>& points, OpenSurfaces& surfaces, std::vector<Vec3>& normals,
                   std::vector<Vec3>& eta);
 

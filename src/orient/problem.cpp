@@ -7,6 +7,7 @@
 
 #include <g3r/error.h>
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -21,6 +22,16 @@ void choose_scales_and_scatter(Problem& problem, const Options& options) {
   choose_scales(problem, options);
   const bool fits_planes = problem.settings.polish_steps > 0 && !contains(problem.settings.without, Step::kPlanes);
   if (fits_planes) problem.scatter = facet_scatter(problem.cloud.set);
+}
+
+// The place that all points have been seen from: the only one that the caller knows, if it may be so, or one that the points show.
+void find_one_view(CanonicalCloud& cloud, const Hints& hints) {
+  const bool one = hints.sensors.size() == 1 && std::count(hints.sensor_of_point.begin(), hints.sensor_of_point.end(), kNoSensor) == 0;
+  if (one && may_be_seen_from(cloud.set, cloud.frame.to_unit(hints.sensors.front()))) {
+    cloud.set.set_viewpoint(cloud.frame.to_unit(hints.sensors.front()));
+  } else {
+    cloud.set.set_viewpoint(find_viewpoint(cloud.set, cloud.frame.to_unit({0, 0, 0})));
+  }
 }
 
 // Of the points of a cloud, from the caller's order; of duplicates the last counts, and outliers have none.
@@ -46,9 +57,7 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
     return given || (options.preset != Preset::kPaper && !contains(without, Step::kNoise)) ? given : 0;
   };
   const bool own_steps = options.preset != Preset::kPaper && !is_baseline(options.method);
-  if (own_steps && known.gradient.empty() && !contains(without, Step::kViewpoint)) {
-    problem.cloud.set.set_viewpoint(find_viewpoint(problem.cloud.set, problem.cloud.frame.to_unit({0, 0, 0})));
-  }
+  if (own_steps && known.gradient.empty() && !contains(without, Step::kViewpoint)) find_one_view(problem.cloud, options.hints);
   bool outliers_wanted = own_steps && !contains(without, Step::kOutliers);
   std::optional<double> noise;
   while (outliers_wanted) {
@@ -66,7 +75,7 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
                    in_canonical_order(problem.cloud, std::exchange(known.wanted, {}))};
   problem.spacing = typical_spacing(spacing_before_thinning(set.local_spacing(), problem.known.relative_spacing));
   if (const std::optional<double> given = known_noise(problem.spacing)) noise = given;
-  problem.noise = noise ? *noise : estimate_noise(set);
+  (set.viewpoint() ? problem.view_noise : problem.noise) = noise ? *noise : estimate_noise(set);
   if (options.method == Method::kAuto && options.preset != Preset::kPaper && !contains(without, Step::kSites)) {
     problem.line_distance = surface_distance(set);
   }
@@ -109,6 +118,7 @@ Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, 
   part.cloud.set = PointSet(std::move(points), problem.cloud.set.viewpoint());
   part.spacing = typical_spacing(spacing_before_thinning(part.cloud.set.local_spacing(), part.known.relative_spacing));
   part.noise = problem.noise;
+  part.view_noise = problem.view_noise;
   part.outliers = problem.outliers;  // those of the whole cloud: the part was solved for among them
   Options same = options;
   if (options.epsilon.unit == Length::Unit::kPercent) {  // of the whole cloud's box

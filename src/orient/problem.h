@@ -20,10 +20,11 @@ struct Problem {
   CanonicalCloud cloud;
   std::vector<Vec3> outliers;  ///< taken out of the cloud; their indices follow those of its points
   double spacing = 0;          ///< typical_spacing()
-  double noise = 0;            ///< given_noise() or estimate_noise()
-  double scatter = 0;          ///< facet_scatter(), where planes are fitted
-  double line_distance = 0;    ///< surface_distance(): 0, or the distance of the sites that are solved for where the samples are lines
-  Known known;                 ///< of the points of the cloud, in its order
+  double noise = 0;          ///< given_noise() or estimate_noise(); 0 of one view, whose sides are known, so that no kernel has to be wide
+  double view_noise = 0;     ///< the noise of one view, which its directions follow alone
+  double scatter = 0;        ///< facet_scatter(), where planes are fitted
+  double line_distance = 0;  ///< surface_distance(): 0, or the distance of the sites that are solved for where the samples are lines
+  Known known;               ///< of the points of the cloud, in its order
   Settings settings;
 
   /// Whether the points are exact, so that steps follow the local spacing and prove directions from the points alone.

@@ -338,10 +338,11 @@ void solve_open_surfaces_apart(const Problem& problem, const Options& options, S
 }
 
 void fit_noisy_surface(const Problem& problem, Stages& stages, Solution& solution) {
-  if (problem.baseline || problem.noise == 0 || problem.settings.polish_steps == 0 || !runs(problem, Step::kNoisyJets)) return;
-  fit_noisy_jets(problem.cloud.set, problem.noise, problem.known.wanted, solution.refinement.normals, stages.cancel());
+  const double noise = std::max(problem.noise, problem.view_noise);
+  if (problem.baseline || noise == 0 || problem.settings.polish_steps == 0 || !runs(problem, Step::kNoisyJets)) return;
+  fit_noisy_jets(problem.cloud.set, noise, problem.known.wanted, solution.refinement.normals, stages.cancel());
   std::vector<std::uint8_t> none(problem.cloud.size(), 0);
-  if (problem.scatter > 0 && runs(problem, Step::kPlanes))
+  if (problem.noise > 0 && problem.scatter > 0 && runs(problem, Step::kPlanes))
     fit_planes(problem.cloud.set, problem.scatter, none, solution.refinement.normals);
 }
 
