@@ -12,8 +12,8 @@
 #include "orient/apply_hints.h"
 #include "orient/confidence.h"
 #include "orient/hints.h"
-#include "orient/one_view.h"
 #include "orient/open_surfaces.h"
+#include "orient/open_to_views.h"
 #include "orient/polish.h"
 #include "orient/problem.h"
 #include "orient/solution.h"
@@ -228,8 +228,8 @@ Oriented orient_problem(const Problem& problem, const Options& options, Stages& 
   Oriented out;
   out.solution = solve(problem, options, stages, stats);
   solve_open_surfaces_apart(problem, options, stages, stats, out.solution);
-  if (const std::optional<Vec3>& viewpoint = problem.cloud.set.viewpoint()) {
-    open_to_view(*viewpoint, problem.cloud.points(), out.solution.open_surfaces, out.solution.refinement.normals, out.solution.eta);
+  if (const Views& views = problem.cloud.set.views(); views.known()) {
+    open_to_views(views, problem.cloud.points(), out.solution.open_surfaces, out.solution.refinement.normals, out.solution.eta);
   }
   const Refinement& refined = out.solution.refinement;
   if (problem.noise > 0) {
@@ -251,7 +251,7 @@ Oriented orient_problem(const Problem& problem, const Options& options, Stages& 
 
 bool may_try_noises(const Problem& problem, const Options& options) {
   const bool on_points = problem.line_distance == 0;  // sites have a noise of their own
-  const bool sides_known = problem.cloud.set.viewpoint().has_value();
+  const bool sides_known = problem.cloud.set.views().known();
   return on_points && !sides_known && problem.settings.method == Method::kEnergy && options.preset != Preset::kPaper &&
          options.epsilon.unit == Length::Unit::kAuto && options.noise.unit == Length::Unit::kAuto && options.schedule.empty() &&
          !contains(problem.settings.without, Step::kNoise) && !contains(problem.settings.without, Step::kNoiseChoice);

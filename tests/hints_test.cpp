@@ -159,7 +159,7 @@ TEST(Hints, OfOneViewNothingIsSeenSquarelyFromBehind) {
   Sides sides;
   sides.add_sphere({0, 0, 0}, 1, -0.9, 0, true);
   const std::vector<Vec3> outward = sides.normals;
-  sides.patches.one_view = true;
+  sides.patches.seen = true;
   const HintEffect effect = sides.follow({.sensors = {{0, 0, 1000}}});
   for (std::size_t i = 0; i < sides.points.size(); ++i) {
     const double z = outward[i][2];

@@ -268,9 +268,7 @@ bool refit_frame(CanonicalCloud& cloud, std::vector<Vec3>& others) {
     cloud.multiplicity[k] = multiplicity[i];
     renumbered[i] = k;
   }
-  std::optional<Vec3> viewpoint = cloud.set.viewpoint();
-  if (viewpoint) viewpoint = inner.to_unit(*viewpoint);
-  cloud.set = PointSet(std::move(sorted), viewpoint);
+  cloud.set = PointSet(std::move(sorted));
   for (std::uint32_t& p : cloud.point_of) {
     if (p < renumbered.size()) p = renumbered[p];
   }

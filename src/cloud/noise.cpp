@@ -94,8 +94,8 @@ class Residuals {
     const auto add = [&](const auto& index, const Vec3& normal) {
       residuals_.push_back(quadratic_residual(points, index.data(), index.size(), normal, set.spacing()));
     };
-    if (set.viewpoint()) {
-      const std::vector<Vec3> sights = directions_from(*set.viewpoint(), points);
+    if (set.views().is_one()) {
+      const std::vector<Vec3> sights = directions_from(set.views().places.front(), points);
       for_some(Neighbours(sights), sights, kPlaces, count, [&](const Vec3& sight, const auto& index, const auto&) { add(index, sight); });
     } else {
       for_some(set, kPlaces, count,
@@ -132,7 +132,7 @@ double layered_noise(const PointSet& set) {
 ExactPlane find_facet(const PointSet& set, const std::vector<std::uint32_t>& index) {
   const std::vector<Vec3>& points = set.points();
   const ExactPlane plane = find_exact_plane(points, index, set.spacing());
-  if (plane.breadth < kFacetBreadth || is_along_sight(set, points[index.front()], plane.normal)) return {};
+  if (plane.breadth < kFacetBreadth || is_along_sight(set, index.front(), plane.normal)) return {};
   std::vector<std::uint32_t> others{index.front()};
   std::copy_if(index.begin(), index.end(), std::back_inserter(others),
                [&](std::uint32_t i) { return std::find(plane.points.begin(), plane.points.end(), i) == plane.points.end(); });
@@ -158,7 +158,7 @@ bool on_exact_planes(const PointSet& set) {
 double scattered_noise(const PointSet& set, const Residuals& residuals) {
   const double spacing = set.spacing();
   const double flattest = residuals.scatter(kFlattest);
-  if (set.viewpoint()) return flattest < kLeast * spacing ? 0 : residuals.scatter(kFlat);  // no walls
+  if (set.views().is_one()) return flattest < kLeast * spacing ? 0 : residuals.scatter(kFlat);  // no walls
   // Shape lifts the residuals of fewer points less, noise as much.
   if (flattest < kLeast * spacing || Residuals(set, kClosest).scatter(kFlattest) < kOfNoise * residuals.scatter(kFlat)) return 0;
   const double filled = flattest / (kSaturation * spacing);
@@ -246,7 +246,7 @@ double facet_scatter(const PointSet& set) {
   for_some(set, kFewPlaces, kPlaneNeighbours, [&](const Vec3&, const auto& index, const auto&) {
     ++looked;
     const LikeliestPlane found = find_likeliest_plane(set.points(), index, set.spacing());
-    if (found.scatter == 0 || is_along_sight(set, set.points()[index.front()], found.plane.normal)) return;
+    if (found.scatter == 0 || is_along_sight(set, index.front(), found.plane.normal)) return;
     if (goes_on(set, found.plane, found.scatter * set.spacing())) ++counts[found.scatter];
   });
   std::size_t most = 0;

@@ -191,7 +191,7 @@ PointSet others_than(const PointSet& set, const std::vector<std::uint32_t>& some
       others.push_back(set.points()[i]);
     }
   }
-  return PointSet(std::move(others), set.viewpoint());
+  return PointSet(std::move(others));
 }
 
 }  // namespace
@@ -241,7 +241,7 @@ std::vector<Vec3> remove_points(CanonicalCloud& cloud, const std::vector<std::ui
     cloud.multiplicity[points.size()] = cloud.multiplicity[i];
     points.push_back(cloud.points()[i]);
   }
-  cloud.set = PointSet(std::move(points), cloud.set.viewpoint());
+  cloud.set = PointSet(std::move(points));
   std::copy(removed_multiplicity.begin(), removed_multiplicity.end(), cloud.multiplicity.begin() + static_cast<std::ptrdiff_t>(staying));
   for (std::uint32_t& p : cloud.point_of) {
     if (p < renumbered.size()) p = renumbered[p];

@@ -20,19 +20,19 @@ struct PointSet::Known {
   std::vector<double> local;
   std::vector<double> smoothed;
   double spacing = 0;
-  std::optional<Vec3> viewpoint;
+  Views views;
 };
 
 PointSet::PointSet() : known_(std::make_shared<Known>()) {}
 
-PointSet::PointSet(std::vector<Vec3> points, const std::optional<Vec3>& viewpoint) : PointSet() {
+PointSet::PointSet(std::vector<Vec3> points, Views views) : PointSet() {
   known_->points = std::move(points);
-  known_->viewpoint = viewpoint;
+  known_->views = std::move(views);
 }
 
 const std::vector<Vec3>& PointSet::points() const { return known_->points; }
-const std::optional<Vec3>& PointSet::viewpoint() const { return known_->viewpoint; }
-void PointSet::set_viewpoint(const std::optional<Vec3>& viewpoint) { known_->viewpoint = viewpoint; }
+const Views& PointSet::views() const { return known_->views; }
+void PointSet::set_views(Views views) { known_->views = std::move(views); }
 std::size_t PointSet::near_count() const { return std::min(kSpacingNeighbours, size()); }
 
 const Neighbours& PointSet::tree() const {

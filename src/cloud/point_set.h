@@ -8,10 +8,19 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <vector>
 
 namespace g3r {
+
+/// Where sensors have seen points from, each from the front and with nothing before it.
+struct Views {
+  std::vector<Vec3> places;             ///< empty: not known
+  std::vector<std::uint32_t> of_point;  ///< N indices into `places`; empty: all points have been seen from the first
+
+  [[nodiscard]] bool known() const { return !places.empty(); }
+  [[nodiscard]] bool is_one() const { return known() && of_point.empty(); }
+  [[nodiscard]] const Vec3& place_of(std::size_t point) const { return places[of_point.empty() ? 0 : of_point[point]]; }
+};
 
 /// Distinct points in canonical order, and what is known of their surroundings: each made on first use and handed on as one thing.
 /// Copies share it. Not to be asked from within a parallel loop for what has not been made.
@@ -19,7 +28,7 @@ class PointSet {
  public:
   PointSet();  ///< no points
   /// `points`: in the unit frame, as a rule.
-  explicit PointSet(std::vector<Vec3> points, const std::optional<Vec3>& viewpoint = {});
+  explicit PointSet(std::vector<Vec3> points, Views views = {});
 
   [[nodiscard]] const std::vector<Vec3>& points() const;  ///< N
   [[nodiscard]] std::size_t size() const { return points().size(); }
@@ -35,9 +44,9 @@ class PointSet {
   [[nodiscard]] const std::vector<double>& smoothed_spacing() const;
   [[nodiscard]] double spacing() const;
 
-  /// Where a camera has seen the points from, in their frame: nothing unless it has been told (find_viewpoint()).
-  [[nodiscard]] const std::optional<Vec3>& viewpoint() const;
-  void set_viewpoint(const std::optional<Vec3>& viewpoint);
+  /// Not known unless they have been told, in the frame of the points.
+  [[nodiscard]] const Views& views() const;
+  void set_views(Views views);
 
   /// Gives back tree(), near() and local_spacing(), a quarter of what a solve takes; references to them end. They are made again when they
   /// are asked for.

@@ -233,9 +233,9 @@ std::optional<Vec3> find_viewpoint(const PointSet& set, const Vec3& origin) {
   return search.support(opposite) > 0 ? std::nullopt : std::optional(place);
 }
 
-bool may_be_seen_from(const PointSet& set, const Vec3& place) {
-  if (set.size() < kFewestPoints) return false;
-  const std::vector<Vec3> sights = directions_from(place, set.points());
+bool may_be_seen_from(const std::vector<Vec3>& points, const Vec3& place) {
+  if (points.size() < kFewestPoints) return false;
+  const std::vector<Vec3> sights = directions_from(place, points);
   const Neighbours tree(sights);
   std::vector<std::uint32_t> index;
   std::vector<double> squared;
@@ -246,7 +246,7 @@ bool may_be_seen_from(const PointSet& set, const Vec3& place) {
   };
   std::size_t looked = 0;
   std::size_t too_near = 0;
-  for (std::uint32_t i = 0; i < set.size(); i += std::max<std::uint32_t>(1, static_cast<std::uint32_t>(set.size() / kFewPlaces))) {
+  for (std::uint32_t i = 0; i < points.size(); i += std::max<std::uint32_t>(1, static_cast<std::uint32_t>(points.size() / kFewPlaces))) {
     tree.nearest(sights[i], kClosest + 1, index, squared);
     std::vector<double> around;
     for (const std::uint32_t k : index) {
@@ -258,8 +258,17 @@ bool may_be_seen_from(const PointSet& set, const Vec3& place) {
   return static_cast<double>(too_near) <= kFalseAlarms * static_cast<double>(looked);
 }
 
-bool is_along_sight(const PointSet& set, const Vec3& point, const Vec3& normal) {
-  return set.viewpoint() && is_along(*set.viewpoint(), point, normal);
+bool may_be_seen(const std::vector<Vec3>& points, const Views& views) {
+  std::vector<std::vector<Vec3>> seen(views.places.size());
+  for (std::size_t i = 0; i < points.size(); ++i) seen[views.of_point.empty() ? 0 : views.of_point[i]].push_back(points[i]);
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    if (!may_be_seen_from(seen[k], views.places[k])) return false;
+  }
+  return true;
+}
+
+bool is_along_sight(const PointSet& set, std::size_t point, const Vec3& normal) {
+  return set.views().known() && is_along(set.views().place_of(point), set.points()[point], normal);
 }
 
 }  // namespace g3r

@@ -5,6 +5,7 @@
 
 #include <g3r/points.h>
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -25,16 +26,19 @@ namespace g3r {
 /// Nothing for fewer than 192 points. Looks at about 500 places, in O(log N) each: 5 ms; O(N log N) where the first two are so.
 [[nodiscard]] std::optional<Vec3> find_viewpoint(const PointSet& set, const Vec3& origin);
 
-/// Whether one scanner at this place may have seen all points: its lines of sight are as far apart as those around, all but one in 50 at
-/// least half as far as the median of the 8 nearest. Where what is in front hides nothing of what is behind, as about a solid, a sixth are
-/// nearer. Not so for points that have been thinned at random. False for fewer than 192 points. O(N log N).
-[[nodiscard]] bool may_be_seen_from(const PointSet& set, const Vec3& place);
+/// Whether one scanner at this place may have seen all these points: its lines of sight are as far apart as those around, all but one in 50
+/// at least half as far as the median of the 8 nearest. Where what is in front hides nothing of what is behind, as about a solid, a sixth
+/// are nearer. Not so for points that have been thinned at random. False for fewer than 192 points. O(N log N).
+[[nodiscard]] bool may_be_seen_from(const std::vector<Vec3>& points, const Vec3& place);
+
+/// The same of several: each at its place, of at least 192 points.
+[[nodiscard]] bool may_be_seen(const std::vector<Vec3>& points, const Views& views);
 
 /// Unit vectors from a place to points.
 [[nodiscard]] std::vector<Vec3> directions_from(const Vec3& place, const std::vector<Vec3>& points);
 
-/// Whether a plane through a point of the set holds the line of sight to it, from PointSet::viewpoint(), to the precision of exact planes:
-/// those of rows of pixels do, a surface that is seen does not.
-[[nodiscard]] bool is_along_sight(const PointSet& set, const Vec3& point, const Vec3& normal);
+/// Whether a plane through a point of the set holds the line of sight to it, from where PointSet::views() says, to the precision of exact
+/// planes: those of rows of pixels do, a surface that is seen does not.
+[[nodiscard]] bool is_along_sight(const PointSet& set, std::size_t point, const Vec3& normal);
 
 }  // namespace g3r

@@ -81,12 +81,12 @@ void warn(const HintEffect& effect, const Hints& hints, const CanonicalCloud& cl
 void apply_hints(const Problem& problem, const Options& options, Solution& solution, std::vector<float>& confidence, Stats& stats,
                  const std::atomic<bool>* cancel) {
   Patches patches = patches_of(solution.open_surfaces);
-  patches.one_view = problem.cloud.set.viewpoint().has_value();
+  patches.seen = problem.cloud.set.views().known();
   Hints hints = in_frame(options.hints, problem.cloud);
   stats.hints.given = names_of(hints);
-  if (const std::optional<Vec3>& viewpoint = problem.cloud.set.viewpoint()) {
-    stats.hints.viewpoint = problem.cloud.frame.to_world(*viewpoint);
-    if (!vote(hints)) hints.sensors.push_back(*viewpoint);
+  if (const Views& views = problem.cloud.set.views(); views.is_one()) {
+    stats.hints.viewpoint = problem.cloud.frame.to_world(views.places.front());
+    if (!vote(hints)) hints.sensors = views.places;
   }
   const HintEffect effect = follow_hints(problem.cloud.points(), problem.cloud.set.near(), problem.spacing, patches, hints,
                                          {solution.refinement.normals, solution.eta, confidence}, cancel);

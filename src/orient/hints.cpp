@@ -243,12 +243,13 @@ class Following {
   }
 
   // A scanner sees fronts: what faces away from all that may have seen it has the wrong side or the wrong direction, so that the side is a
-  // choice at a horizon, and certainly wrong where it would be seen squarely from behind: of one view, that goes over.
+  // choice at a horizon, and certainly wrong where it would be seen squarely from behind: where all have been seen, that goes
+  // over.
   void judge_backs() {
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
       const std::optional<double> seen = is_closed(i) ? std::nullopt : best_seen(i);
       if (!seen || *seen >= 0) continue;
-      const bool squarely = patches_.one_view && -*seen > std::sqrt(kMostOpposed);
+      const bool squarely = patches_.seen && -*seen > std::sqrt(kMostOpposed);
       if (squarely) effect_.turned[i] ^= 1;
       sided_.confidence[i] = std::min(sided_.confidence[i], static_cast<float>((1 + (squarely ? -*seen : *seen)) / 2));
     }

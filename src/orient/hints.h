@@ -18,7 +18,7 @@ struct Patches {
   std::vector<std::uint32_t> of;        ///< N: number of the patch a point belongs to, or kNone: it lies on a closed part; empty: all do
   std::vector<std::uint8_t> is_choice;  ///< N: not 0 where nothing tells the side of the patch; empty: nowhere
   std::vector<float> agreed;            ///< N, 0..1: how far the side of a point is that of its patch; empty: everywhere
-  bool one_view = false;                ///< one sensor has seen all points, each from the front
+  bool seen = false;                    ///< sensors that are known have seen all points, each from the front
 };
 
 /// Points with their sides, in canonical order.
@@ -46,12 +46,12 @@ struct HintEffect {
 /// patch. Then pieces of a patch that are not consistent with the rest of it are turned by two thirds of their own votes: what a gap
 /// separates has no other way to agree. A piece ends too where adjacent points object to each other more than at a horizon, and what hangs
 /// together with it by a few pairs of points only, as in a crevice, is turned by itself. What of open parts still faces away from all
-/// sensors that may have seen it, at a cosine v < 0, has a confidence of (1 + v) / 2 at most; of one view, what would be seen squarely from
-/// behind is turned, with (1 - v) / 2. Closed parts have one side: they are turned
-/// by `seen_from_inside` and by sensors inside them, where the winding number of `eta` is 1/4 and more (outside it is 0, however near or
-/// far), or, if the sensor of each point is known, by two thirds of the votes. `near`: Neighbours::of_all(k), or empty: patches have no
-/// pieces; `spacing`: of the points, for the winding number. O(N log(sensors) + N k), O(N) for each of at most 500 sensors, and all sensors
-/// for each open point that none of them sees from the front. Throws Cancelled.
+/// sensors that may have seen it, at a cosine v < 0, has a confidence of (1 + v) / 2 at most; where all
+/// points have been `seen`, what would be seen squarely from behind is turned, with (1 - v) / 2. Closed parts have one side: they are
+/// turned by `seen_from_inside` and by sensors inside them, where the winding number of `eta` is 1/4 and more (outside it is 0, however
+/// near or far), or, if the sensor of each point is known, by two thirds of the votes. `near`: Neighbours::of_all(k), or empty: patches
+/// have no pieces; `spacing`: of the points, for the winding number. O(N log(sensors) + N k), O(N) for each of at most 500 sensors, and all
+/// sensors for each open point that none of them sees from the front. Throws Cancelled.
 [[nodiscard]] HintEffect follow_hints(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near, double spacing,
                                       const Patches& patches, const Hints& hints, const SidedPoints& sided,
                                       const std::atomic<bool>* cancel = nullptr);

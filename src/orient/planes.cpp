@@ -55,7 +55,7 @@ void fit_planes(const PointSet& set, double scatter, std::vector<std::uint8_t>& 
       if (proven[i] != 0) continue;
       tree.nearest(points[i], kPlaneNeighbours, index, squared);
       found[i] = find_at(points, index, spacing[i], scatter, normals[i]);
-      if (is_along_sight(set, points[i], found[i].normal)) found[i] = {};
+      if (is_along_sight(set, i, found[i].normal)) found[i] = {};
     }
   });
   if (are_slices(found, normals)) return;

@@ -4,6 +4,7 @@
 #include "cloud/outliers.h"
 #include "cloud/spacing.h"
 #include "cloud/viewpoint.h"
+#include "solve/part_system.h"
 
 #include <g3r/error.h>
 
@@ -24,16 +25,6 @@ void choose_scales_and_scatter(Problem& problem, const Options& options) {
   if (fits_planes) problem.scatter = facet_scatter(problem.cloud.set);
 }
 
-// The place that all points have been seen from: the only one that the caller knows, if it may be so, or one that the points show.
-void find_one_view(CanonicalCloud& cloud, const Hints& hints) {
-  const bool one = hints.sensors.size() == 1 && std::count(hints.sensor_of_point.begin(), hints.sensor_of_point.end(), kNoSensor) == 0;
-  if (one && may_be_seen_from(cloud.set, cloud.frame.to_unit(hints.sensors.front()))) {
-    cloud.set.set_viewpoint(cloud.frame.to_unit(hints.sensors.front()));
-  } else {
-    cloud.set.set_viewpoint(find_viewpoint(cloud.set, cloud.frame.to_unit({0, 0, 0})));
-  }
-}
-
 // Of the points of a cloud, from the caller's order; of duplicates the last counts, and outliers have none.
 template <class T>
 std::vector<T> in_canonical_order(const CanonicalCloud& cloud, const std::vector<T>& values) {
@@ -42,6 +33,18 @@ std::vector<T> in_canonical_order(const CanonicalCloud& cloud, const std::vector
     if (cloud.point_of[i] < out.size()) out[cloud.point_of[i]] = values[i];
   }
   return out;
+}
+
+// Where the caller says that the points have been seen from, if it says so of each and nothing hides anything; or the place that they show.
+Views find_views(const CanonicalCloud& cloud, const Hints& hints) {
+  Views views;
+  for (const Vec3& sensor : hints.sensors) views.places.push_back(cloud.frame.to_unit(sensor));
+  if (views.places.size() > 1) views.of_point = in_canonical_order(cloud, hints.sensor_of_point);
+  const bool some = std::count(views.of_point.begin(), views.of_point.end(), kNoSensor) > 0;
+  const bool each = views.places.size() == 1 || (!views.of_point.empty() && !some);
+  if (each && may_be_seen(cloud.points(), views)) return views;
+  const std::optional<Vec3> shown = find_viewpoint(cloud.set, cloud.frame.to_unit({0, 0, 0}));
+  return shown ? Views{{*shown}, {}} : Views{};
 }
 
 }  // namespace
@@ -57,7 +60,6 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
     return given || (options.preset != Preset::kPaper && !contains(without, Step::kNoise)) ? given : 0;
   };
   const bool own_steps = options.preset != Preset::kPaper && !is_baseline(options.method);
-  if (own_steps && known.gradient.empty() && !contains(without, Step::kViewpoint)) find_one_view(problem.cloud, options.hints);
   bool outliers_wanted = own_steps && !contains(without, Step::kOutliers);
   std::optional<double> noise;
   while (outliers_wanted) {
@@ -69,13 +71,20 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
     problem.outliers.insert(problem.outliers.begin(), removed.begin(), removed.end());
     outliers_wanted = refit_frame(problem.cloud, problem.outliers);  // far ones may have hidden nearer ones
   }
+  if (own_steps && known.gradient.empty() && !contains(without, Step::kViewpoint)) {
+    problem.cloud.set.set_views(find_views(problem.cloud, options.hints));
+  }
   const PointSet& set = problem.cloud.set;
   problem.known = {in_canonical_order(problem.cloud, std::exchange(known.gradient, {})),
                    in_canonical_order(problem.cloud, std::exchange(known.relative_spacing, {})),
                    in_canonical_order(problem.cloud, std::exchange(known.wanted, {}))};
   problem.spacing = typical_spacing(spacing_before_thinning(set.local_spacing(), problem.known.relative_spacing));
-  if (const std::optional<double> given = known_noise(problem.spacing)) noise = given;
-  (set.viewpoint() ? problem.view_noise : problem.noise) = noise ? *noise : estimate_noise(set);
+  const std::optional<double> given = known_noise(problem.spacing);
+  if (set.views().known()) {
+    problem.view_noise = given ? *given : estimate_noise(set);
+  } else {
+    problem.noise = given ? *given : noise ? *noise : estimate_noise(set);
+  }
   if (options.method == Method::kAuto && options.preset != Preset::kPaper && !contains(without, Step::kSites)) {
     problem.line_distance = surface_distance(set);
   }
@@ -115,7 +124,9 @@ Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, 
     if (!problem.known.gradient.empty()) part.known.gradient.push_back(problem.known.gradient[i]);
     if (!problem.known.relative_spacing.empty()) part.known.relative_spacing.push_back(problem.known.relative_spacing[i]);
   }
-  part.cloud.set = PointSet(std::move(points), problem.cloud.set.viewpoint());
+  Views views = problem.cloud.set.views();
+  if (!views.of_point.empty()) views.of_point = values_at(some, views.of_point);
+  part.cloud.set = PointSet(std::move(points), std::move(views));
   part.spacing = typical_spacing(spacing_before_thinning(part.cloud.set.local_spacing(), part.known.relative_spacing));
   part.noise = problem.noise;
   part.view_noise = problem.view_noise;

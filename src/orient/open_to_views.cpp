@@ -1,4 +1,4 @@
-#include "orient/one_view.h"
+#include "orient/open_to_views.h"
 
 #include "base/vector.h"
 
@@ -8,8 +8,8 @@
 
 namespace g3r {
 
-void open_to_view(const Vec3& viewpoint, const std::vector<Vec3>& points, OpenSurfaces& surfaces, std::vector<Vec3>& normals,
-                  std::vector<Vec3>& eta) {
+void open_to_views(const Views& views, const std::vector<Vec3>& points, OpenSurfaces& surfaces, std::vector<Vec3>& normals,
+                   std::vector<Vec3>& eta) {
   const std::size_t n = points.size();
   surfaces.part.resize(n, OpenSurfaces::kNone);
   surfaces.certainty.resize(n, 1);
@@ -19,7 +19,7 @@ void open_to_view(const Vec3& viewpoint, const std::vector<Vec3>& points, OpenSu
   for (std::uint32_t i = 0; i < n; ++i) {
     if (surfaces.part[i] != OpenSurfaces::kNone) continue;
     if (part == OpenSurfaces::kNone) part = i;
-    const double cosine = vector::dot(normals[i], vector::normalised(vector::subtract(viewpoint, points[i])));
+    const double cosine = vector::dot(normals[i], vector::normalised(vector::subtract(views.place_of(i), points[i])));
     if (cosine < 0) {
       normals[i] = vector::scale(normals[i], -1);
       eta[i] = vector::scale(eta[i], -1);
