@@ -20,8 +20,6 @@ namespace {
 // The points and strays around a place that are counted, so many and twice as many: fewer are often on a surface by chance, and around
 // more it is bent.
 constexpr std::array<std::size_t, 2> kAround{2 * kFitPoints, 4 * kFitPoints};
-// Standard deviations of noise up to which a point is on the surface: 87 % are. With none, noise keeps most of them away.
-constexpr double kHeight = 1.5;
 
 // The surface of some points where it goes through a place, and how thick a layer of points it has.
 struct Passing {
@@ -64,7 +62,7 @@ std::vector<Vec3> normals_of_regained(const std::vector<Vec3>& points, const std
   for (bool found = points.size() > kFitPoints; found && !open.empty();) {
     Prepared prepared;
     prepare(positions, directions, 0, prepared);
-    const double height = kHeight * prepared.typical * noise_seen(estimate_noise(prepared.points, *prepared.neighbours));
+    const double noise = prepared.typical * noise_seen(estimate_noise(prepared.points, *prepared.neighbours));
     const LocalFit local(prepared.points, *prepared.neighbours, prepared.near);
     parallel::for_blocks(
         open.size(), kBlock,
@@ -72,7 +70,7 @@ std::vector<Vec3> normals_of_regained(const std::vector<Vec3>& points, const std
           for (std::size_t k = begin; k < end; ++k) {
             const Vec3& place = strays[open[k]];
             Passing passing{local.fit(to_eigen(place), kGap), 0};
-            passing.thickness = kDiscHalf * passing.surface.spacing + height;
+            passing.thickness = kDiscHalf * passing.surface.spacing + noise;
             if (is_among_its_points(passing, place, around, all)) out[open[k]] = passing.normal_at(place);
           }
         },
