@@ -35,16 +35,6 @@ std::vector<std::uint32_t> nearest_of(const std::vector<Vec3>& points, const std
 
 double anywhere(std::size_t) { return std::numeric_limits<double>::max(); }
 
-std::vector<Vec3> centres_of(const Mesh& mesh) {
-  std::vector<Vec3> centres;
-  centres.reserve(mesh.triangles.size());
-  for (const auto& t : mesh.triangles) {
-    const Vec3 sum = vector::add(mesh.vertices[t[0]], vector::add(mesh.vertices[t[1]], mesh.vertices[t[2]]));
-    centres.push_back(vector::scale(sum, 1.0 / 3));
-  }
-  return centres;
-}
-
 }  // namespace
 
 void Support::add(const Support& other) {
