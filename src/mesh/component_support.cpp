@@ -16,6 +16,9 @@
 namespace g3r::mesh {
 namespace {
 
+// The distance in spacings up to which a stray is beside a point: the parts that strays make are no farther from them. With less, outliers
+// that fill space leave parts.
+constexpr double kBesideSpacings = 3;
 // The squared noise in squared spacings for which as many points more are asked for: noise makes spheres of 1.7 standard deviations.
 constexpr double kLeastPerNoise = 4;
 
@@ -73,7 +76,7 @@ void add_points(const Mesh& mesh, const std::vector<std::uint32_t>& component, c
   const std::vector<std::uint32_t> beside = nearest_of(points, strays, anywhere);
   for (std::size_t k = 0; k < strays.size(); ++k) {
     const Vec3 d = vector::subtract(strays[k], points[beside[k]]);
-    if (held_by[beside[k]] == kNone || std::sqrt(vector::dot(d, d)) > kGap * (spacing[beside[k]] + scatter)) continue;
+    if (held_by[beside[k]] == kNone || std::sqrt(vector::dot(d, d)) > kBesideSpacings * spacing[beside[k]]) continue;
     ++support[component[held_by[beside[k]]]].strays;
   }
 }

@@ -32,8 +32,7 @@ void add_points(const Mesh& mesh, const std::vector<std::uint32_t>& component, c
 
 /// Marks (1) the components that stay. The one with most area near points always does. Of the others go, and are added to `dropped`,
 /// spurious ones (MeshOptions::min_component), those that fewer points hold than least_points_of_a_part(strays), and those that fewer
-/// points hold than strays are as near to points of them as these to their surface, as in a cloud that fills space; and those beyond
-/// MeshOptions::keep_largest.
+/// points hold than strays are within 3 spacings of them, as in a cloud that fills space; and those beyond MeshOptions::keep_largest.
 [[nodiscard]] std::vector<std::uint8_t> kept_components(const std::vector<Support>& support, const MeshOptions& options, std::size_t strays,
                                                         Dropped& dropped);
 
