@@ -107,8 +107,8 @@ TEST(HeldPoints, NothingIsLeftOfNothing) {
 // held points: the more strays there are, the more of them look like a part by chance.
 TEST(HeldPoints, ChanceGrowsWithTheStrays) {
   EXPECT_EQ(mesh::least_points_of_a_part(0), 0);
-  EXPECT_NEAR(mesh::least_points_of_a_part(16), 1 + std::log2(1600) / 2, 1e-12);
-  EXPECT_NEAR(mesh::least_points_of_a_part(12000), 1 + std::log2(1.2e6) / 2, 1e-12);
+  EXPECT_NEAR(mesh::least_points_of_a_part(16), 1 + std::log2(800) / 2, 1e-12);
+  EXPECT_NEAR(mesh::least_points_of_a_part(12000), 1 + std::log2(6e5) / 2, 1e-12);
 }
 
 // reconstruct: a ball among outliers and a bead beside it come out as two parts, and the report says what was left out; --keep-all keeps

@@ -59,6 +59,22 @@ TEST(RegainedPoints, SurfaceComesBack) {
   }
 }
 
+// regained points: noise of half a spacing keeps few of them away.
+TEST(RegainedPoints, NoisySurfaceComesBack) {
+  const Surface sphere = shapes::ellipsoid(kPoints, 1, 1, 1);
+  shapes::Random random(9);
+  std::vector<Vec3> points, normals, strays;
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    const Vec3 moved = vector::scale(sphere.points[i], 1 + 0.5 * kSpacing * random.gaussian());
+    const bool is_lost = i % 2 == 0 || sphere.points[i][2] > std::cos(3 * kSpacing);
+    (is_lost ? strays : points).push_back(moved);
+    if (!is_lost) normals.push_back(sphere.normals[i]);
+  }
+  const std::vector<Vec3> found = mesh::normals_of_regained(points, normals, strays);
+  const auto back = std::count_if(found.begin(), found.end(), [](const Vec3& n) { return norm(n) > 0; });
+  EXPECT_GE(back, static_cast<std::ptrdiff_t>(8 * strays.size() / 10));  // 0.3 spacings and a standard deviation: 89 %
+}
+
 // regained points: outliers that fill a solid, and some of which were taken for points, grow no surface.
 TEST(RegainedPoints, OutliersGrowNoSurface) {
   Surface sphere = shapes::ellipsoid(kPoints, 1, 1, 1);

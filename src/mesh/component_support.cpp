@@ -16,7 +16,8 @@
 namespace g3r::mesh {
 namespace {
 
-// The distance in spacings up to which a stray is beside a point: the parts that strays make are no farther from them.
+// The distance in spacings up to which a stray is beside a point: the parts that strays make are no farther from them. With less, outliers
+// that fill space leave parts.
 constexpr double kBesideSpacings = 3;
 // The squared noise in squared spacings for which as many points more are asked for: noise makes spheres of 1.7 standard deviations.
 constexpr double kLeastPerNoise = 4;
@@ -36,16 +37,6 @@ std::vector<std::uint32_t> nearest_of(const std::vector<Vec3>& points, const std
 }
 
 double anywhere(std::size_t) { return std::numeric_limits<double>::max(); }
-
-std::vector<Vec3> centres_of(const Mesh& mesh) {
-  std::vector<Vec3> centres;
-  centres.reserve(mesh.triangles.size());
-  for (const auto& t : mesh.triangles) {
-    const Vec3 sum = vector::add(mesh.vertices[t[0]], vector::add(mesh.vertices[t[1]], mesh.vertices[t[2]]));
-    centres.push_back(vector::scale(sum, 1.0 / 3));
-  }
-  return centres;
-}
 
 }  // namespace
 

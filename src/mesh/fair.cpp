@@ -5,6 +5,7 @@
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
 #include "mesh/constants.h"
+#include "mesh/mesh_parts.h"
 #include "mesh/self_intersections.h"
 
 #include <g3r/error.h>
@@ -172,11 +173,7 @@ void minimise(Energy& energy, const std::vector<Pin>& pins, std::vector<Vec3>& a
 
 // Where the marked points meet the surface.
 std::vector<Pin> pin(const Mesh& mesh, const std::vector<Vec3>& points, const std::vector<std::uint8_t>& marked) {
-  std::vector<Vec3> centres;
-  centres.reserve(mesh.triangles.size());
-  for (const auto& t : mesh.triangles) {
-    centres.push_back(scale(add(mesh.vertices[t[0]], add(mesh.vertices[t[1]], mesh.vertices[t[2]])), 1.0 / 3));
-  }
+  const std::vector<Vec3> centres = centres_of(mesh);
   const Neighbours neighbours(centres);
   std::vector<Pin> pins;
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -1,6 +1,7 @@
 #include "mesh/held_points.h"
 
 #include "base/vector.h"
+#include "cloud/chance.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
 #include "mesh/constants.h"
@@ -20,10 +21,9 @@ using vector::dot;
 constexpr double kSlope = 0.35;
 // The quantile of the heights that is the usual one: up to a tenth of the points may be strays, and do not change it.
 constexpr double kUsual = 0.9;
-// One stray in so many seems to be held by the one next to it, measured 1 in 4 to 1 in 50; and the clouds in which chance may make a part
-// of strays once. They decide how many points a part needs: with less, strays become parts, with more, small parts are lost.
+// One stray in so many seems to be held by the one next to it, measured 1 in 4 to 1 in 50. It decides how many points a part needs: with
+// less, strays become parts, with more, small parts are lost.
 constexpr double kLooksLikeSurface = 4;
-constexpr double kRare = 100;
 
 // How two points see each other.
 struct Look {
@@ -213,7 +213,7 @@ std::vector<std::uint8_t> held_points(const std::vector<Vec3>& points, const std
 }
 
 double least_points_of_a_part(std::size_t strays) {
-  return strays == 0 ? 0 : 1 + std::log(kRare * static_cast<double>(strays)) / std::log(kLooksLikeSurface);
+  return strays == 0 ? 0 : 1 + std::log(static_cast<double>(strays) / kFalseAlarms) / std::log(kLooksLikeSurface);
 }
 
 }  // namespace g3r::mesh

@@ -41,7 +41,7 @@ struct CloudHeights {
                                                     const CloudHeights& cloud, const std::atomic<bool>* cancel);
 
 /// The least number of points of a part that is not a cluster of outliers by chance: of m random points one next to the other, about one in
-/// 4^(m - 1) looks like a surface, so that among `strays` of them 1 + log_4(100 strays) are met once in a hundred clouds. 0 without strays.
+/// 4^(m - 1) looks like a surface, so that among `strays` of them 1 + log_4(50 strays) are met in one of fifty clouds. 0 without strays.
 [[nodiscard]] double least_points_of_a_part(std::size_t strays);
 
 }  // namespace g3r::mesh

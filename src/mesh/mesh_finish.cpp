@@ -1,7 +1,6 @@
 #include "mesh/mesh_finish.h"
 
 #include "base/median.h"
-#include "base/vector.h"
 #include "mesh/component_support.h"
 #include "mesh/distance_to_points.h"
 #include "mesh/mesh_parts.h"
@@ -10,8 +9,6 @@
 #include "mesh/trim.h"
 
 #include <g3r/error.h>
-
-#include <cmath>
 
 namespace g3r::mesh {
 namespace {
@@ -32,19 +29,12 @@ void drop_components(Mesh& mesh, const std::vector<Vec3>& points, const std::vec
 
 double far_share(const Mesh& mesh, const std::vector<Vec3>& points, double spacings) {
   const std::vector<double> spacing = smooth_spacing(points);
-  std::vector<Vec3> centres;
-  std::vector<double> area;
-  for (const auto& t : mesh.triangles) {
-    const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-    centres.push_back({(a[0] + b[0] + c[0]) / 3, (a[1] + b[1] + c[1]) / 3, (a[2] + b[2] + c[2]) / 3});
-    const Vec3 n = vector::cross(vector::subtract(b, a), vector::subtract(c, a));
-    area.push_back(std::sqrt(vector::dot(n, n)));
-  }
-  const std::vector<double> distance = distance_to_points(centres, points, [&](std::uint32_t i) { return spacings * spacing[i]; });
+  const std::vector<double> distance = distance_to_points(centres_of(mesh), points, [&](std::uint32_t i) { return spacings * spacing[i]; });
   double far = 0, total = 0;
-  for (std::size_t t = 0; t < area.size(); ++t) {
-    total += area[t];
-    if (distance[t] > 1) far += area[t];
+  for (std::size_t t = 0; t < distance.size(); ++t) {
+    const double area = area_of(mesh, mesh.triangles[t]);
+    total += area;
+    if (distance[t] > 1) far += area;
   }
   return total > 0 ? far / total : 0;
 }

@@ -1,6 +1,7 @@
 #include "mesh/mesh_parts.h"
 
 #include "base/disjoint_sets.h"
+#include "base/vector.h"
 #include "mesh/constants.h"
 
 #include <algorithm>
@@ -113,13 +114,21 @@ Components find_components(const Mesh& mesh) {
   return components;
 }
 
+Vec3 centre_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
+  return vector::scale(vector::add(mesh.vertices[t[0]], vector::add(mesh.vertices[t[1]], mesh.vertices[t[2]])), 1.0 / 3);
+}
+
+std::vector<Vec3> centres_of(const Mesh& mesh) {
+  std::vector<Vec3> centres;
+  centres.reserve(mesh.triangles.size());
+  for (const auto& t : mesh.triangles) centres.push_back(centre_of(mesh, t));
+  return centres;
+}
+
 double area_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
-  std::array<double, 3> e{}, f{};
-  for (std::size_t a = 0; a < 3; ++a) {
-    e[a] = mesh.vertices[t[1]][a] - mesh.vertices[t[0]][a];
-    f[a] = mesh.vertices[t[2]][a] - mesh.vertices[t[0]][a];
-  }
-  return 0.5 * std::hypot(e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]);
+  const Vec3& a = mesh.vertices[t[0]];
+  const Vec3 n = vector::cross(vector::subtract(mesh.vertices[t[1]], a), vector::subtract(mesh.vertices[t[2]], a));
+  return 0.5 * std::hypot(n[0], n[1], n[2]);
 }
 
 void remove_components(Mesh& mesh, const Components& components, const std::vector<std::uint8_t>& keep) {

@@ -17,6 +17,9 @@ struct Components {
 };
 [[nodiscard]] Components find_components(const Mesh& mesh);
 
+[[nodiscard]] Vec3 centre_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle);
+/// Of every triangle.
+[[nodiscard]] std::vector<Vec3> centres_of(const Mesh& mesh);
 [[nodiscard]] double area_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle);
 
 /// Removes the components of which keep[component] == 0, and vertices that are no longer used. Order is kept, so a closed manifold stays

@@ -28,10 +28,6 @@ constexpr double kLeastCut = 0.1;
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-Vec3 centre_of(const Mesh& mesh, const Triangle& t) {
-  return vector::scale(vector::add(mesh.vertices[t[0]], vector::add(mesh.vertices[t[1]], mesh.vertices[t[2]])), 1.0 / 3);
-}
-
 // How far from each point surface may be, in its own units. Farther than four spacings of the cloud nobody measured anything; where it is
 // sparse, but a surface, the gaps between its points are no holes.
 std::vector<double> limits_of(const std::vector<double>& spacing, const MeshOptions& options) {
