@@ -227,8 +227,8 @@ void ListsOnDevice<T>::prepare_far(const M2lMatrices<T>& matrices, int order, co
     pairs_ = upload(device_, tiled.pairs);
   }
   if (!up_.data) {
-    up_ = upload_shifts(device_, shifts.child_to_parent, coefficients);
     down_ = upload_shifts(device_, shifts.parent_to_child, coefficients);
+    up_ = upload_shifts(device_, shifts.child_to_parent, coefficients);  // the last: tells that both are there
   }
   if (matrices_.count(order) == 0) {
     const std::size_t n = coefficient_count(order);

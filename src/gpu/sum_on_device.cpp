@@ -195,15 +195,15 @@ void SumOnDevice<T>::far_to_points(const cpu::SumRequest<T>& request, Program& e
 }
 
 template <class T>
-void SumOnDevice<T>::run(const cpu::SumRequest<T>& request, const Take& take) {
-  const std::size_t value_bytes = request.value_fields * source_stride_ * sizeof(T);
-  const std::size_t data_bytes = request.data_fields * target_stride_ * sizeof(T);
-  device_.write(room(values_, value_bytes / sizeof(T)), 0, request.values, value_bytes);
-  device_.write(room(target_data_, data_bytes / sizeof(T)), 0, request.target_data, data_bytes);
-  const std::size_t targets = target_tree_.nodes.front().count();
-  const std::size_t block = request.out_channels * cpu::kLanes;
-  const std::size_t elements = (targets + cpu::kLanes - 1) / cpu::kLanes * block;
-  room(out_, elements);
+const Buffer& SumOnDevice<T>::values(const cpu::SumRequest<T>& request) {
+  return room(values_, request.value_fields * source_stride_);
+}
+
+template <class T>
+const Buffer& SumOnDevice<T>::sums_there(const cpu::SumRequest<T>& request) {
+  const std::size_t data_elements = request.data_fields * target_stride_;
+  device_.write(room(target_data_, data_elements), 0, request.target_data, data_elements * sizeof(T));
+  room(out_, (target_tree_.nodes.front().count() + cpu::kLanes - 1) / cpu::kLanes * request.out_channels * cpu::kLanes);
   near(request);
   if (!request.direct) {
     Program& expansions = device_.program(expansions_source(traits(request)));
@@ -213,8 +213,18 @@ void SumOnDevice<T>::run(const cpu::SumRequest<T>& request, const Take& take) {
     downward(request, translations);
     far_to_points(request, expansions);
   }
+  return *out_;
+}
+
+template <class T>
+void SumOnDevice<T>::run(const cpu::SumRequest<T>& request, const Take& take) {
+  device_.write(values(request), 0, request.values, request.value_fields * source_stride_ * sizeof(T));
+  const Buffer& sums = sums_there(request);
+  const std::size_t targets = target_tree_.nodes.front().count();
+  const std::size_t block = request.out_channels * cpu::kLanes;
+  const std::size_t elements = (targets + cpu::kLanes - 1) / cpu::kLanes * block;
   device_.finish();  // what fails, fails before anything is taken
-  device_.read(*out_, elements * sizeof(T), block * sizeof(T), [&](std::size_t offset, const unsigned char* data, std::size_t bytes) {
+  device_.read(sums, elements * sizeof(T), block * sizeof(T), [&](std::size_t offset, const unsigned char* data, std::size_t bytes) {
     const std::size_t first_block = offset / (block * sizeof(T));
     const auto* const sums = reinterpret_cast<const T*>(data);
     parallel::for_blocks(bytes / (block * sizeof(T)), kTakenBlocks, [&](std::size_t begin, std::size_t end) {

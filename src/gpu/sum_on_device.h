@@ -38,6 +38,11 @@ class SumOnDevice {
   using Take = std::function<void(std::size_t first, std::size_t count, const T* sums)>;
   void run(const cpu::SumRequest<T>& request, const Take& take);
 
+  /// The same with values that are on the device (their fields source_stride() apart), and sums that stay there until the next ones.
+  [[nodiscard]] const Buffer& values(const cpu::SumRequest<T>& request);
+  [[nodiscard]] std::size_t source_stride() const { return source_stride_; }
+  const Buffer& sums_there(const cpu::SumRequest<T>& request);
+
  private:
   [[nodiscard]] KernelTraits traits(const cpu::SumRequest<T>& request) const;
   void upward(const cpu::SumRequest<T>& request, Program& expansions, Program& translations);
