@@ -1,5 +1,6 @@
 // What surrounds the kernels, without any device: failing devices, the cache of kernels, the tiles of far pairs.
 #include "cloud/canonical_cloud.h"
+#include "cpu/parallel.h"
 #include "gpu/device.h"
 #include "gpu/drivers.h"
 #include "gpu/execution.h"
@@ -221,6 +222,9 @@ TEST(GpuFailures, EveryFarPairIsInOneTileAndTilesDoNotMeetATargetTwice) {
   std::vector<std::uint32_t> matrix_of;
   for (std::size_t i = 0; i < lists.offsets.size(); ++i) matrix_of.push_back(static_cast<std::uint32_t>(matrices.index(i)));
   const gpu::TiledPairs tiled = gpu::tile_pairs(lists, tree.nodes.size(), kChunkNodes, matrix_of);
+  const gpu::TiledPairs by_one =
+      parallel::with_threads(1, [&] { return gpu::tile_pairs(lists, tree.nodes.size(), kChunkNodes, matrix_of); });
+  EXPECT_TRUE(by_one.tiles == tiled.tiles && by_one.pairs == tiled.pairs && by_one.chunk_tiles == tiled.chunk_tiles);
   ASSERT_EQ(tiled.pairs.size(), lists.far.size());
   ASSERT_EQ(tiled.chunk_tiles.size(), (tree.nodes.size() + kChunkNodes - 1) / kChunkNodes + 1);
   std::set<std::pair<std::uint32_t, std::uint32_t>> expected;

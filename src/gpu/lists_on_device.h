@@ -1,6 +1,7 @@
 // Trees, interaction lists and translation matrices on a device: what all sums over them share. Internal to src/sum and src/gpu.
 #pragma once
 
+#include "cpu/aligned_vector.h"
 #include "cpu/translations.h"
 #include "expansions/m2l_matrices.h"
 #include "gpu/device.h"
@@ -49,9 +50,9 @@ struct Shifts {
 
 /// Pairs of a chunk of targets that share a matrix, in tiles whose targets differ.
 struct TiledPairs {
-  std::vector<std::uint32_t> chunk_tiles;           ///< of every chunk, and the total
-  std::vector<std::array<std::uint32_t, 4>> tiles;  ///< matrix, first pair, pairs, kPositive or 0
-  std::vector<std::array<std::uint32_t, 4>> pairs;  ///< target, source, mirror image | kPositive, 0
+  std::vector<std::uint32_t> chunk_tiles;           ///< before every chunk, and all
+  UnsetVector<std::array<std::uint32_t, 4>> tiles;  ///< matrix, first pair, pairs, kPositive or 0
+  UnsetVector<std::array<std::uint32_t, 4>> pairs;  ///< target, source, mirror image | kPositive, 0
 };
 inline constexpr std::size_t kMostTilePairs = 16;  ///< more share no more, for the matrix is in a cache by then
 inline constexpr std::uint32_t kPositive = 8;      ///< Offset::positive()
