@@ -183,6 +183,23 @@ TEST(GpuFailures, ASolveCopiesVectorsOnceAndDotProductsFromThenOn) {
   EXPECT_LE(read_back, kPoints * sizeof(Vec3) + 2 * dots);
 }
 
+TEST(GpuFailures, SourcesAreCopiedOnceForAllTargets) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(20'000, 0.6, 0.25, 3).points);
+  const std::vector<Vec3> eta = random_vectors(points.size(), 1);
+  const auto written = [&](std::size_t targets) {
+    const auto device = std::make_shared<FailingDevice>(kPlenty, kPlenty);
+    SumPlan plan = sum_plan(1e-2, points.size());
+    plan.execution = std::make_shared<gpu::Execution>(device, true);
+    shapes::Random random(2);
+    std::vector<Vec3> queries(targets);
+    for (Vec3& q : queries) q = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+    (void)FastSum(points, Widths(0.01), plan).winding_at(eta, queries);
+    return device->written;
+  };
+  constexpr std::size_t kAtOnce = 1 << 17;  // targets of FastSum
+  EXPECT_LE(written(kAtOnce + 9) - written(kAtOnce), points.size() * 3 * sizeof(float)) << "places or values twice";
+}
+
 TEST(GpuFailures, ARequiredDeviceThatFailsIsUnavailable) {
   const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
   const auto device = std::make_shared<FailingDevice>(std::size_t{5});

@@ -129,6 +129,23 @@ TEST(Gpu, QueriesSeeTheSameField) {
   EXPECT_LE(relative_error(device.winding_gradient_at(eta, queries), processor.winding_gradient_at(eta, queries)), 5e-4);
 }
 
+TEST(Gpu, QueriesInPartsSeeTheFieldOfTheirOwnDensity) {
+  if (kSanitized) GTEST_SKIP() << "takes minutes";
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  const std::vector<std::vector<Vec3>> etas{random_vectors(points.size(), 1), random_vectors(points.size(), 2)};
+  Random random(2);
+  std::vector<Vec3> queries(140'000);  // FastSum takes 131,072 at a time
+  for (Vec3& q : queries) q = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-0.5, 0.5)};
+  const FastSum processor(points, Widths(0.01), sum_plan(1e-2, kPoints));
+  const FastSum device(points, Widths(0.01), on_device(sum_plan(1e-2, kPoints)));
+  const std::vector<std::vector<double>> expected = processor.windings_at(etas, queries);
+  const std::vector<std::vector<double>> there = device.windings_at(etas, queries);
+  for (std::size_t h = 0; h < etas.size(); ++h) {
+    EXPECT_LE(relative_error(there[h], expected[h]), 5e-3);
+    EXPECT_LE(relative_error(device.winding_at(etas[h], queries), expected[h]), 5e-3);
+  }
+}
+
 double inner(const std::vector<double>& a, const std::vector<double>& b) { return std::inner_product(a.begin(), a.end(), b.begin(), 0.0); }
 
 // <A x, y> = <x, A^T y> to rounding, relative to |A x| |y|.

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 namespace g3r::gpu {
 namespace {
@@ -219,11 +220,12 @@ TiledPairs tile_pairs(const InteractionLists& lists, std::size_t nodes, std::siz
 }
 
 template <class T>
-ListsOnDevice<T>::ListsOnDevice(Device& device, const Octree& targets, const Octree& sources, const InteractionLists& lists)
+ListsOnDevice<T>::ListsOnDevice(Device& device, const Octree& targets, const Octree& sources,
+                                std::shared_ptr<const TreeOnDevice> source_tree, const InteractionLists& lists)
     : device_(device),
       lists_(lists),
       target_nodes_(targets.nodes.size()),
-      source_tree_(device, sources),
+      source_tree_(std::move(source_tree)),
       chunk_nodes_(chunk_nodes_for(target_nodes_, device.info().software)) {
   if (&targets != &sources) target_tree_ = std::make_unique<TreeOnDevice>(device, targets);
   std::vector<std::uint32_t> begin;

@@ -65,10 +65,12 @@ inline constexpr std::uint32_t kPositive = 8;      ///< Offset::positive()
 template <class T>
 class ListsOnDevice {
  public:
-  ListsOnDevice(Device& device, const Octree& targets, const Octree& sources, const InteractionLists& lists);
+  /// `source_tree`: `sources` on the device.
+  ListsOnDevice(Device& device, const Octree& targets, const Octree& sources, std::shared_ptr<const TreeOnDevice> source_tree,
+                const InteractionLists& lists);
 
-  [[nodiscard]] const TreeOnDevice& targets() const { return target_tree_ ? *target_tree_ : source_tree_; }
-  [[nodiscard]] const TreeOnDevice& sources() const { return source_tree_; }
+  [[nodiscard]] const TreeOnDevice& targets() const { return target_tree_ ? *target_tree_ : *source_tree_; }
+  [[nodiscard]] const TreeOnDevice& sources() const { return *source_tree_; }
   [[nodiscard]] const Buffer& near_begin() const { return *near_begin_; }
   [[nodiscard]] const Buffer& near_leaves() const { return *near_leaves_; }
   /// Points of the leaves before each one of near_leaves(), and of all.
@@ -91,7 +93,7 @@ class ListsOnDevice {
   Device& device_;
   const InteractionLists& lists_;
   std::size_t target_nodes_;
-  TreeOnDevice source_tree_;
+  std::shared_ptr<const TreeOnDevice> source_tree_;
   std::unique_ptr<TreeOnDevice> target_tree_;  // null: the sources' tree
   std::unique_ptr<Buffer> near_begin_, near_leaves_, near_points_, near_order_;
   std::size_t chunk_nodes_;

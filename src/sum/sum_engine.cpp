@@ -50,13 +50,14 @@ M2lTerms terms_for(cpu::NearForm form, int batch, const SumPlan& plan) {
 
 template <class T>
 void SumEngine<T>::set_targets(const std::vector<Vec3>& targets) {
-  on_device_.reset();
+  has_targets_there_ = false;
   geometry_.set_targets(targets);
 }
 
 template <class T>
 void SumEngine<T>::begin_values(std::size_t values) {
   passes_.forget_multipoles();
+  if (on_device_) on_device_->forget_values();
   value_count_ = values;
   if (values_.size() < values * geometry_.source_stride()) {
     values_ = AlignedVector<T>();  // not twice in memory
@@ -76,17 +77,24 @@ gpu::SumOnDevice<T>& SumEngine<T>::prepare_device(const M2lTerms& terms) {
   gpu::Device& device = plan.execution->device();
   const typename SumGeometry<T>::Sources& sources = geometry_.sources();
   const Octree& targets = geometry_.target_tree();
+  std::shared_ptr<gpu::TreeOnDevice>& tree = geometry_.tree_on_device();
+  if (!tree) tree = std::make_shared<gpu::TreeOnDevice>(device, sources.tree);
   std::shared_ptr<gpu::ListsOnDevice<T>>& lists = geometry_.lists_on_device();
-  if (!lists) lists = std::make_shared<gpu::ListsOnDevice<T>>(device, targets, sources.tree, geometry_.lists());
+  if (!lists) lists = std::make_shared<gpu::ListsOnDevice<T>>(device, targets, sources.tree, tree, geometry_.lists());
   if (!plan.direct) {
     lists->prepare_far(geometry_.matrices(terms), terms.order, {sources.child_to_parent, sources.parent_to_child},
                        coefficient_count(plan.order));
   }
   if (!on_device_) {
-    const gpu::PointsOfSum<T> points{sources.places.data(),     geometry_.squared_widths(),
-                                     geometry_.source_stride(), geometry_.has_own_targets() ? geometry_.target_places().data() : nullptr,
-                                     geometry_.target_stride(), geometry_.uniform_width()};
-    on_device_ = std::make_shared<gpu::SumOnDevice<T>>(device, *lists, targets, sources.tree, points);
+    on_device_ =
+        std::make_shared<gpu::SumOnDevice<T>>(device, gpu::SourcesOfSum<T>{sources.tree, sources.places.data(), geometry_.source_stride(),
+                                                                           geometry_.squared_widths(), geometry_.uniform_width()});
+    has_targets_there_ = false;
+  }
+  if (!has_targets_there_) {
+    const T* const places = geometry_.has_own_targets() ? geometry_.target_places().data() : nullptr;
+    on_device_->set_targets(lists, {targets, places, geometry_.target_stride()});
+    has_targets_there_ = true;
   }
   return *on_device_;
 }
@@ -123,6 +131,7 @@ bool SumEngine<T>::run_on_device(const cpu::SumRequest<T>& request, const M2lTer
   } catch (const gpu::DeviceError& error) {
     on_device_.reset();
     geometry_.lists_on_device().reset();
+    geometry_.tree_on_device().reset();
     execution->fail(error.what());
     if (taken) throw Unavailable(execution->failure() + ", while its results were read; --device cpu does without it");
     return false;

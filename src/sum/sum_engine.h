@@ -71,6 +71,7 @@ class SumEngine {
   AlignedVector<T> target_values_;  // the same of the targets
   SumPasses<T> passes_;
   std::shared_ptr<gpu::SumOnDevice<T>> on_device_;  // made when it is needed
+  bool has_targets_there_ = false;                  // those of the geometry
 };
 
 extern template class SumEngine<float>;
