@@ -6,6 +6,7 @@
 #include "sanitized.h"
 #include "shapes.h"
 #include "solve/energy_system.h"
+#include "solve/green_system.h"
 #include "solve/iterative_solver.h"
 #include "sum/device_scope.h"
 #include "sum/fast_sum.h"
@@ -235,6 +236,33 @@ TEST(Gpu, ProductsOfVectorsThatStayThereEqualThoseOfTheProcessor) {
   if (kSanitized) return;
   const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
   expect_same_product(points, sum_plan(1e-6, kPoints), random_roots(kPoints), kRoundingDouble, kRoundingDouble, "double");
+}
+
+TEST(Gpu, ProductsOfGreensIdentityThatStayThereEqualThoseOfTheProcessor) {
+  if (!execution()->device().info().doubles) GTEST_SKIP() << "the device has no doubles";
+  const auto expect_same = [](const std::vector<Vec3>& points, const std::vector<Harmonic>& harmonics, double accuracy, double rounding) {
+    FastSum processor(points, Widths(0.4 * spacing_of(points)), sum_plan(accuracy, points.size()));
+    FastSum device(points, Widths(0.4 * spacing_of(points)), on_device(sum_plan(accuracy, points.size())));
+    GreenSystem reference(processor, points, harmonics);
+    GreenSystem system(device, points, harmonics);
+    EXPECT_EQ(reference.vectors_elsewhere(), nullptr);
+    const std::unique_ptr<SolveVectors> vectors = system.vectors_elsewhere();
+    ASSERT_NE(vectors, nullptr);
+    const std::vector<Vec3> x = random_vectors(points.size(), 1);
+    const std::vector<Vec3> there = product_there(*vectors, x);
+    EXPECT_LE(relative_error(there, product_of(system, x)), rounding) << harmonics.size();
+    EXPECT_LE(relative_error(there, product_of(reference, x)), 0.5 * accuracy) << harmonics.size();
+    EXPECT_EQ(product_there(*vectors, x), there) << "not the same bytes";
+  };
+  for (const Case& c : clouds(kPoints)) {
+    if (kSanitized && c.name != "needle") continue;
+    for (const double accuracy : {1e-2, 1e-4}) expect_same(c.points, harmonics_of_degrees(0, 2), accuracy, kRoundingFloat);
+  }
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  const std::vector<Harmonic> many = harmonics_of_degrees(0, 3);
+  for (const std::size_t count : {5UL, 16UL}) {  // a batch of 9 that is not full, and two
+    expect_same(points, {many.begin(), many.begin() + static_cast<std::ptrdiff_t>(count)}, 1e-2, kRoundingFloat);
+  }
 }
 
 TEST(Gpu, VectorsThatStayThereDotAndCombineToRounding) {

@@ -65,7 +65,8 @@ TEST(Nvrtc, VectorsOfASolveCompileForEveryArchitecture) {
   for (const int architecture : architectures()) {
     for (const bool doubles : {false, true}) {
       expect_kernels(gpu::vectors_source(doubles, false), architecture,
-                     {"combine", "dot_of_blocks", "fill_vectors", "take_stokes_winding", "add_winding_adjoint"});
+                     {"combine", "dot_of_blocks", "fill_vectors", "take_stokes_winding", "add_winding_adjoint", "fill_green", "take_green",
+                      "add_green_adjoint"});
     }
   }
 }

@@ -18,6 +18,8 @@ namespace g3r::gpu {
 
 /// Kernels count in 32 bits. Throws DeviceError where that is not enough.
 [[nodiscard]] std::uint32_t narrow(std::size_t value);
+/// Of small numbers.
+[[nodiscard]] inline int as_int(std::size_t value) { return static_cast<int>(value); }
 
 /// A tree, node by node in its own order, and leaf by leaf. Centres are (x, y, z, level) in units of 2^-21, exact.
 struct TreeOnDevice {

@@ -19,8 +19,6 @@ constexpr std::size_t kMostSlots = 4;            // pairs of a tile at a time
 constexpr std::size_t kTakenBlocks = 64;         // of results, that a thread takes at a time
 constexpr std::size_t kMostPoints = 32;          // of a tile of points_to_multipoles()
 
-int as_int(std::size_t value) { return static_cast<int>(value); }
-
 // Parts of points_to_multipoles(): UP_PARTS there.
 std::size_t up_parts(cpu::NearForm form, int batch, bool local_widths) {
   if (form == cpu::NearForm::kGreen || form == cpu::NearForm::kGreenAdjoint) return static_cast<std::size_t>(batch);
@@ -206,9 +204,12 @@ const Buffer& SumOnDevice<T>::values(const cpu::SumRequest<T>& request) {
 }
 
 template <class T>
+const Buffer& SumOnDevice<T>::target_data(const cpu::SumRequest<T>& request) {
+  return room(target_data_, request.data_fields * target_stride_);
+}
+
+template <class T>
 const Buffer& SumOnDevice<T>::sums_there(const cpu::SumRequest<T>& request) {
-  const std::size_t data_elements = request.data_fields * target_stride_;
-  device_.write(room(target_data_, data_elements), 0, request.target_data, data_elements * sizeof(T));
   room(out_, (target_tree_->nodes.front().count() + cpu::kLanes - 1) / cpu::kLanes * request.out_channels * cpu::kLanes);
   near(request);
   if (!request.direct) {
@@ -230,6 +231,7 @@ template <class T>
 void SumOnDevice<T>::run(const cpu::SumRequest<T>& request, const Take& take) {
   if (!has_values_) device_.write(values(request), 0, request.values, request.value_fields * source_stride_ * sizeof(T));
   has_values_ = true;
+  device_.write(target_data(request), 0, request.target_data, request.data_fields * target_stride_ * sizeof(T));
   const Buffer& sums = sums_there(request);
   const std::size_t targets = target_tree_->nodes.front().count();
   const std::size_t block = request.out_channels * cpu::kLanes;

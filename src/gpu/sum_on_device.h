@@ -51,9 +51,10 @@ class SumOnDevice {
   using Take = std::function<void(std::size_t first, std::size_t count, const T* sums)>;
   void run(const cpu::SumRequest<T>& request, const Take& take);
 
-  /// The same with values that are on the device (their fields source_stride() apart), and sums that stay there until the next ones.
+  /// Room for what a sum takes of the sources and of the targets, for the caller to fill.
   [[nodiscard]] const Buffer& values(const cpu::SumRequest<T>& request);
-  [[nodiscard]] std::size_t source_stride() const { return source_stride_; }
+  [[nodiscard]] const Buffer& target_data(const cpu::SumRequest<T>& request);
+  /// The same sums, which stay on the device until the next ones.
   const Buffer& sums_there(const cpu::SumRequest<T>& request);
 
  private:

@@ -1,5 +1,6 @@
 #include "gpu/vectors_on_device.h"
 
+#include "cpu/parallel.h"
 #include "gpu/kernel_source.h"
 #include "gpu/lists_on_device.h"
 
@@ -76,6 +77,41 @@ template <class T>
 void VectorsOnDevice<T>::add_winding_adjoint(const Buffer& sums, double weight, double damping, std::size_t x, std::size_t product) {
   const Buffer& roots = roots_ ? *roots_ : *of_block_;
   launch("add_winding_adjoint", points_, {narrow(points_), sums, weight, damping, roots, roots_ ? 1 : 0, *vectors_[x], *vectors_[product]});
+}
+
+template <class T>
+void VectorsOnDevice<T>::set_harmonics(std::size_t count, const std::vector<double>& value, const std::vector<Vec3>& gradient) {
+  std::vector<T> field(points_);
+  harmonics_ = device_.allocate(count * points_ * sizeof(T));
+  gradients_ = device_.allocate(3 * count * points_ * sizeof(T));
+  const auto write_field = [&](const Buffer& to, std::size_t number, const auto& at) {
+    parallel::for_all(points_, [&](std::size_t i) { field[i] = static_cast<T>(at(i)); });
+    device_.write(to, number * points_ * sizeof(T), field.data(), points_ * sizeof(T));
+  };
+  for (std::size_t k = 0; k < count; ++k) {
+    write_field(*harmonics_, k, [&](std::size_t i) { return value[i * count + k]; });
+    for (std::size_t a = 0; a < 3; ++a) write_field(*gradients_, 3 * k + a, [&](std::size_t i) { return gradient[i * count + k][a]; });
+  }
+}
+
+template <class T>
+void VectorsOnDevice<T>::fill_green(std::size_t x, const Batch& b, std::size_t stride, const Buffer& values) {
+  launch(
+      "fill_green", stride,
+      {narrow(points_), narrow(stride), *vectors_[x], *harmonics_, *gradients_, as_int(b.first), as_int(b.count), as_int(b.batch), values});
+}
+
+template <class T>
+void VectorsOnDevice<T>::take_green(const Buffer& sums, const Batch& b, std::size_t stride, const Buffer& values,
+                                    const Buffer& of_targets) {
+  launch("take_green", stride,
+         {narrow(points_), narrow(stride), sums, *harmonics_, as_int(b.first), as_int(b.count), as_int(b.batch), values, of_targets});
+}
+
+template <class T>
+void VectorsOnDevice<T>::add_green_adjoint(const Buffer& sums, const Batch& b, std::size_t product) {
+  launch("add_green_adjoint", points_,
+         {narrow(points_), sums, *gradients_, as_int(b.first), as_int(b.count), as_int(b.batch), *vectors_[product]});
 }
 
 template class VectorsOnDevice<float>;

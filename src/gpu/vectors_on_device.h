@@ -1,5 +1,5 @@
 // The vectors of an iterative solve on a device: what the solver does with them, and what is between two sums of a product with its matrix
-// (solve/energy_system.h). Internal to src/sum and src/gpu.
+// (solve/energy_system.h, solve/green_system.h). Internal to src/sum and src/gpu.
 #pragma once
 
 #include "gpu/device.h"
@@ -34,6 +34,19 @@ class VectorsOnDevice {
   /// `sums`: of the adjoint. product = D (product + weight W^T) + damping x
   void add_winding_adjoint(const Buffer& sums, double weight, double damping, std::size_t x, std::size_t product);
 
+  /// Harmonics for the products below, K of them: N x K values and gradients, row-major. 4 K numbers of T a point.
+  void set_harmonics(std::size_t count, const std::vector<double>& value, const std::vector<Vec3>& gradient);
+  /// Some of them, for a kernel of `batch`.
+  struct Batch {
+    std::size_t first, count, batch;
+  };
+  /// Values of the sources for A[u_k] x.
+  void fill_green(std::size_t x, const Batch& batch, std::size_t stride, const Buffer& values);
+  /// `sums`: A[u_k] x. Values of sources and targets for the adjoint.
+  void take_green(const Buffer& sums, const Batch& batch, std::size_t stride, const Buffer& values, const Buffer& of_targets);
+  /// `sums`: of the adjoint. product += sum_k A[u_k]^T A[u_k] x; product = for the first batch.
+  void add_green_adjoint(const Buffer& sums, const Batch& batch, std::size_t product);
+
  private:
   void launch(const char* kernel, std::size_t items, const std::vector<Argument>& arguments);
 
@@ -42,6 +55,7 @@ class VectorsOnDevice {
   std::vector<std::unique_ptr<Buffer>> vectors_;
   std::unique_ptr<Buffer> roots_;  // null: ones
   std::unique_ptr<Buffer> of_block_;
+  std::unique_ptr<Buffer> harmonics_, gradients_;  // fields of N: K, and 3 K
 };
 
 extern template class VectorsOnDevice<float>;

@@ -100,12 +100,12 @@ gpu::SumOnDevice<T>& SumEngine<T>::prepare_device(const M2lTerms& terms) {
 }
 
 template <class T>
-const gpu::Buffer& SumEngine<T>::run_there(cpu::NearForm form, std::size_t values, std::size_t out_channels,
-                                           const std::function<void(const gpu::Buffer&, std::size_t)>& fill) {
-  const M2lTerms terms = terms_for(form, 1, geometry_.plan());
-  const cpu::SumRequest<T> request = request_for(form, 1, values, out_channels, terms);
+const gpu::Buffer& SumEngine<T>::run_there(cpu::NearForm form, int batch, std::size_t values, std::size_t out_channels,
+                                           const std::function<void(const gpu::Buffer&, const gpu::Buffer&)>& fill) {
+  const M2lTerms terms = terms_for(form, batch, geometry_.plan());
+  const cpu::SumRequest<T> request = request_for(form, batch, values, out_channels, terms);
   gpu::SumOnDevice<T>& there = prepare_device(terms);
-  fill(there.values(request), there.source_stride());
+  fill(there.values(request), there.target_data(request));
   return there.sums_there(request);
 }
 

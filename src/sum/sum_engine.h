@@ -51,10 +51,11 @@ class SumEngine {
 
   /// The device that sums run on, null where that is the processor.
   [[nodiscard]] std::shared_ptr<gpu::Execution> execution() const;
-  /// Runs a form of `values` values per source on that device: fill(values, their stride) puts them there, and the sums stay there until
-  /// the next ones. Callers hold the device's lock. Throws DeviceError.
-  const gpu::Buffer& run_there(cpu::NearForm form, std::size_t values, std::size_t out_channels,
-                               const std::function<void(const gpu::Buffer&, std::size_t)>& fill);
+  /// Runs a form of `values` values per source on that device, where the sums stay until the next ones. fill(values, those of the targets)
+  /// puts them there, fields source_stride() apart. Callers hold the device's lock. Throws DeviceError.
+  const gpu::Buffer& run_there(cpu::NearForm form, int batch, std::size_t values, std::size_t out_channels,
+                               const std::function<void(const gpu::Buffer&, const gpu::Buffer&)>& fill);
+  [[nodiscard]] std::size_t source_stride() const { return geometry_.source_stride(); }
 
  private:
   [[nodiscard]] cpu::SumRequest<T> request_for(cpu::NearForm form, int batch, std::size_t values, std::size_t out_channels,

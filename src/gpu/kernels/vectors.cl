@@ -1,5 +1,6 @@
 // The vectors of a solve: three doubles for every point, point after point. What is done with them between the sums, and what the sums take
-// and give (blocks x channels x BLOCK, without 1/(4 pi)). The counterpart of solve/energy_system.cpp and solve/iterative_solver.cpp.
+// and give (blocks x channels x BLOCK, without 1/(4 pi)). The counterpart of solve/iterative_solver.cpp and of the
+// products of solve/energy_system.cpp and solve/green_system.cpp.
 //
 // The program says: DOT_BLOCK, INV_4_PI. With `rooted` 0 every root is 1, and `roots` is not read.
 #ifdef __OPENCL_VERSION__
@@ -67,5 +68,54 @@ KERNEL add_winding_adjoint(uint points, const GLOBAL real* sums, double weight, 
   for (int a = 0; a < 3; ++a) {
     const size_t k = 3 * (size_t)i + (size_t)a;
     product[k] = root * (product[k] - weight * INV_4_PI * SUM_AT(sums, i, 3, a)) + damping * x[k];
+  }
+}
+
+// A batch of harmonics: u and its gradient are fields of N, the first of them of this batch; the last `batch` - `count` are 0.
+// values: x, and of every harmonic grad u . x and u, 0 past the last point.
+KERNEL fill_green(uint points, uint stride, const GLOBAL double* x, const GLOBAL real* u, const GLOBAL real* gradient, int first, int count,
+                  int batch, GLOBAL real* values) {
+  const uint i = INDEX;
+  if (i >= stride) return;
+  double v[3] = {0, 0, 0};
+  for (int a = 0; a < 3 && i < points; ++a) v[a] = x[3 * (size_t)i + (size_t)a];
+  for (int a = 0; a < 3; ++a) values[(size_t)a * stride + i] = (real)v[a];
+  for (int k = 0; k < batch; ++k) {
+    real monopole = 0;
+    real dipole = 0;
+    if (k < count && i < points) {
+      const GLOBAL real* g = gradient + 3 * (size_t)(first + k) * points + i;
+      monopole = (real)(g[0] * v[0] + g[points] * v[1] + g[2 * (size_t)points] * v[2]);
+      dipole = u[(size_t)(first + k) * points + i];
+    }
+    values[(size_t)(3 + 2 * k) * stride + i] = monopole;
+    values[(size_t)(4 + 2 * k) * stride + i] = dipole;
+  }
+}
+
+// sums: A[u] x, `batch` channels. values: the same, and of_targets: u; 0 past the last point.
+KERNEL take_green(uint points, uint stride, const GLOBAL real* sums, const GLOBAL real* u, int first, int count, int batch,
+                  GLOBAL real* values, GLOBAL real* of_targets) {
+  const uint i = INDEX;
+  if (i >= stride) return;
+  for (int k = 0; k < batch; ++k) {
+    const int is_one = k < count && i < points;
+    values[(size_t)k * stride + i] = is_one ? (real)(INV_4_PI * SUM_AT(sums, i, batch, k)) : (real)0;
+    of_targets[(size_t)k * stride + i] = is_one ? u[(size_t)(first + k) * points + i] : (real)0;
+  }
+}
+
+// sums: of the adjoint, with the sign of the kernel. product_i += A^T, or = for the first batch.
+KERNEL add_green_adjoint(uint points, const GLOBAL real* sums, const GLOBAL real* gradient, int first, int count, int batch,
+                         GLOBAL double* product) {
+  const uint i = INDEX;
+  if (i >= points) return;
+  for (int a = 0; a < 3; ++a) {
+    double sum = -SUM_AT(sums, i, batch + 3, batch + a);
+    for (int k = 0; k < count; ++k) {
+      sum += SUM_AT(sums, i, batch + 3, k) * (double)gradient[(3 * (size_t)(first + k) + (size_t)a) * points + i];
+    }
+    const size_t at = 3 * (size_t)i + (size_t)a;
+    product[at] = (first == 0 ? 0 : product[at]) + INV_4_PI * sum;
   }
 }
