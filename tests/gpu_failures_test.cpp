@@ -163,6 +163,21 @@ TEST(GpuFailures, ASolveThatLosesItsVectorsStartsAgainWithTheSameBytes) {
   }
 }
 
+TEST(GpuFailures, ASolveOnARequiredDeviceThatFailsIsUnavailable) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  SumPlan plan = sum_plan(1e-2, kPoints);
+  plan.execution = std::make_shared<gpu::Execution>(std::make_shared<FailingDevice>(kPlenty, std::size_t{70}), true);
+  FastSum sum(points, Widths(0.01), plan);
+  EnergySystem energy(sum, 1, 1e-3);
+  WithRightSide system(energy, random_vectors(points.size(), 1));
+  try {
+    (void)solve_iteratively(system, kFiveSteps, 0);
+    ADD_FAILURE() << "no error";
+  } catch (const Unavailable& error) {
+    EXPECT_NE(std::string(error.what()).find("Failing: the device was lost"), std::string::npos) << error.what();
+  }
+}
+
 TEST(GpuFailures, ASolveCopiesVectorsOnceAndDotProductsFromThenOn) {
   const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
   const auto copied = [&](int steps) {
