@@ -1,9 +1,12 @@
 // The sums, and orientation, on a device beside the processor. One JSON object per line on standard output.
 //   g3r_bench_gpu [--device gpu:0] [--points N,N,...] [--accuracy A] [--threads T] [--orient N,N,...]
-// pairs: near field alone, of every form; sums: whole sums, points per second; orient: seconds. Medians of wall clock times of three runs
-// after one that compiles and allocates. kernels: seconds of every kernel in one more run, in which each launch waits for its end.
+// pairs: near field alone, of every form; sums: whole sums, points per second; steps: seconds of one step of conjugate gradients, with
+// vectors on the device, in memory, and on the processor; orient: seconds. Medians of wall clock times of three runs after one that
+// compiles and allocates. kernels: seconds of every kernel in one more run, in which each launch waits for its end.
 #include "cloud/canonical_cloud.h"
 #include "cpu/parallel.h"
+#include "solve/energy_system.h"
+#include "solve/iterative_solver.h"
 #include "sum/device_scope.h"
 #include "sum/fast_sum.h"
 #include "sum_cases.h"
@@ -117,6 +120,28 @@ sum_cases::Inputs inputs(std::size_t n, std::vector<Vec3>& points) {
   return {points, Widths(kEpsilon * h)};
 }
 
+double seconds_of_step(LinearSystem& system) {
+  constexpr int kSteps = 10;
+  return median_seconds([&] { (void)solve_iteratively(system, {{kSteps, StepKind::kConjugateGradient}}, 0); }) / kSteps;
+}
+
+// Copies of vectors and the right side are part of the ten steps.
+void compare_steps(const sum_cases::Inputs& in, SumPlan plan, const std::shared_ptr<gpu::Execution>& execution) {
+  const double weight = std::pow(in.widths[0], 3);
+  FastSum on_processor(in.points, in.widths, plan);
+  plan.execution = execution;
+  FastSum on_device(in.points, in.widths, plan);
+  EnergySystem processor(on_processor, 0, weight);
+  EnergySystem device(on_device, 0, weight);
+  sum_cases::InMemory in_memory(device);
+  std::cout << nlohmann::ordered_json{{"measured", "steps"},
+                                      {"points", in.points.size()},
+                                      {"device_seconds", seconds_of_step(device)},
+                                      {"vectors_in_memory_seconds", seconds_of_step(in_memory)},
+                                      {"cpu_seconds", seconds_of_step(processor)}}
+            << std::endl;
+}
+
 nlohmann::ordered_json stages_of(const Orientation& orientation) {
   nlohmann::ordered_json stages;
   for (const auto& [stage, seconds] : orientation.stats.seconds) stages[stage] = seconds;
@@ -162,7 +187,9 @@ int main(int argc, char** argv) {
       direct.kernel_error = sum_plan(arguments.accuracy, 1'000'000).kernel_error;
       compare_forms("pairs", inputs(kPairPoints, points), direct, execution, static_cast<double>(kPairPoints * kPairPoints));
       for (const std::size_t n : arguments.points) {
-        compare_forms("sums", inputs(n, points), sum_plan(arguments.accuracy, n), execution, static_cast<double>(n));
+        const sum_cases::Inputs in = inputs(n, points);
+        compare_forms("sums", in, sum_plan(arguments.accuracy, n), execution, static_cast<double>(n));
+        compare_steps(in, sum_plan(arguments.accuracy, n), execution);
       }
     });
     for (const std::size_t n : arguments.orient) measure_orient(n, arguments);

@@ -1,12 +1,16 @@
 // What surrounds the kernels, without any device: failing devices, the cache of kernels, the tiles of far pairs.
 #include "cloud/canonical_cloud.h"
+#include "cpu/parallel.h"
 #include "gpu/device.h"
 #include "gpu/drivers.h"
 #include "gpu/execution.h"
 #include "gpu/kernel_cache.h"
+#include "gpu/kernel_source.h"
 #include "gpu/library.h"
 #include "gpu/lists_on_device.h"
 #include "shapes.h"
+#include "solve/energy_system.h"
+#include "solve/iterative_solver.h"
 #include "sum/device_scope.h"
 #include "sum/fast_sum.h"
 #include "sum_cases.h"
@@ -17,6 +21,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -29,10 +34,15 @@ namespace {
 
 using namespace sum_cases;  // NOLINT(google-build-using-namespace)
 
-// A device of host memory that gives `allowed` buffers and cannot compile. Counts what is not freed.
+// A device that gives `allowed` buffers and starts `launches` kernels before it fails; with 0 it cannot compile. It computes nothing, and
+// every double that is read is 1. Counts what is not freed, and the bytes of copies.
 class FailingDevice : public gpu::Device {
  public:
-  explicit FailingDevice(std::size_t allowed) : Device(described()), left_(allowed) {}
+  explicit FailingDevice(std::size_t allowed, std::size_t launches = 0)
+      : Device(described(launches > 0)), left_(allowed), launches_(launches), compiles_(launches > 0) {}
+  ~FailingDevice() override { forget(); }
+  FailingDevice(const FailingDevice&) = delete;
+  FailingDevice& operator=(const FailingDevice&) = delete;
 
   std::unique_ptr<gpu::Buffer> allocate(std::size_t bytes) override {
     if (left_ == 0) throw gpu::DeviceError("out of memory");
@@ -42,15 +52,32 @@ class FailingDevice : public gpu::Device {
   void finish() override {}
 
   std::size_t alive = 0;
+  std::size_t written = 0;
+  std::size_t read_back = 0;
 
  protected:
   std::unique_ptr<gpu::Staging> make_staging(std::size_t bytes) override { return std::make_unique<HostMemory>(bytes); }
-  void start_write(const gpu::Buffer&, std::size_t, gpu::Staging&, std::size_t) override {}
-  void start_read(const gpu::Buffer&, std::size_t, gpu::Staging&, std::size_t) override { ADD_FAILURE() << "nothing was computed"; }
-  void start(gpu::Kernel&, std::size_t, std::size_t, const std::vector<gpu::Argument>&, std::size_t) override {}
-  std::unique_ptr<gpu::Program> compile(const std::string&) override { throw gpu::DeviceError("the kernels do not compile"); }
+  void start_write(const gpu::Buffer&, std::size_t, gpu::Staging&, std::size_t bytes) override { written += bytes; }
+  void start_read(const gpu::Buffer&, std::size_t, gpu::Staging& staging, std::size_t bytes) override {
+    EXPECT_TRUE(compiles_) << "nothing was computed";
+    const double one = 1;
+    for (std::size_t k = 0; k + sizeof one <= bytes; k += sizeof one) std::memcpy(staging.data() + k, &one, sizeof one);
+    read_back += bytes;
+  }
+  void start(gpu::Kernel&, std::size_t, std::size_t, const std::vector<gpu::Argument>&, std::size_t) override {
+    if (launches_ == 0) throw gpu::DeviceError("the device was lost");
+    --launches_;
+  }
+  std::unique_ptr<gpu::Program> compile(const std::string&) override {
+    if (!compiles_) throw gpu::DeviceError("the kernels do not compile");
+    return std::make_unique<NoProgram>();
+  }
 
  private:
+  struct NoProgram : gpu::Program {
+    gpu::Kernel nothing{"nothing"};
+    gpu::Kernel& kernel(const std::string&) override { return nothing; }
+  };
   struct Counted : gpu::Buffer {
     std::size_t& count;
     Counted(std::size_t bytes, std::size_t& c) : Buffer(bytes), count(c) { ++count; }
@@ -63,12 +90,15 @@ class FailingDevice : public gpu::Device {
     explicit HostMemory(std::size_t size) : bytes(size) { data_ = bytes.data(); }
     void wait() override {}
   };
-  static gpu::DeviceInfo described() {
+  static gpu::DeviceInfo described(bool doubles) {
     gpu::DeviceInfo info;
     info.name = "Failing";
+    info.doubles = doubles;
     return info;
   }
   std::size_t left_;
+  std::size_t launches_;
+  bool compiles_;
 };
 
 constexpr std::size_t kPoints = 3000;
@@ -89,6 +119,100 @@ TEST(GpuFailures, TheProcessorTakesOverWithTheSameBytes) {
     EXPECT_EQ(device->alive, 0U) << "buffers of a device that is no longer used";
     EXPECT_EQ(sum.winding(eta), expected);
   }
+}
+
+// A system with another right side, which no device has computed.
+class WithRightSide : public LinearSystem {
+ public:
+  WithRightSide(LinearSystem& system, std::vector<Vec3> right) : system_(system), right_(std::move(right)) {}
+  void apply(const std::vector<Vec3>& x, std::vector<Vec3>& product) override { system_.apply(x, product); }
+  std::vector<Vec3> right_side() override { return right_; }
+  std::unique_ptr<SolveVectors> vectors_elsewhere() override { return system_.vectors_elsewhere(); }
+
+ private:
+  LinearSystem& system_;
+  std::vector<Vec3> right_;
+};
+
+const std::vector<Steps> kFiveSteps{{5, StepKind::kConjugateGradient}};
+
+TEST(GpuFailures, ASolveThatLosesItsVectorsStartsAgainWithTheSameBytes) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  const std::vector<Vec3> right = random_vectors(points.size(), 1);
+  const SumPlan plan = sum_plan(1e-2, kPoints);
+  FastSum processor(points, Widths(0.01), plan);
+  EnergySystem reference(processor, 1, 1e-3);
+  WithRightSide known(reference, right);
+  const IterativeResult expected = solve_iteratively(known, kFiveSteps, 0);
+  // Of buffers: none, some of the vectors, all but not the trees, some of the sums. Of launches: in the first product, in the third.
+  for (const auto& [allowed, launches] :
+       {std::pair<std::size_t, std::size_t>{0, kPlenty}, {3, kPlenty}, {7, kPlenty}, {25, kPlenty}, {kPlenty, 5}, {kPlenty, 70}}) {
+    const auto device = std::make_shared<FailingDevice>(allowed, launches);
+    SumPlan failing = plan;
+    failing.execution = std::make_shared<gpu::Execution>(device, false);
+    {
+      FastSum sum(points, Widths(0.01), failing);
+      EnergySystem energy(sum, 1, 1e-3);
+      WithRightSide system(energy, right);
+      const IterativeResult result = solve_iteratively(system, kFiveSteps, 0);
+      EXPECT_EQ(result.eta, expected.eta) << allowed << ' ' << launches;
+      EXPECT_EQ(result.residuals, expected.residuals);
+      EXPECT_FALSE(failing.execution->failure().empty());
+    }
+    EXPECT_EQ(device->alive, 0U);
+  }
+}
+
+TEST(GpuFailures, ASolveOnARequiredDeviceThatFailsIsUnavailable) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  SumPlan plan = sum_plan(1e-2, kPoints);
+  plan.execution = std::make_shared<gpu::Execution>(std::make_shared<FailingDevice>(kPlenty, std::size_t{70}), true);
+  FastSum sum(points, Widths(0.01), plan);
+  EnergySystem energy(sum, 1, 1e-3);
+  WithRightSide system(energy, random_vectors(points.size(), 1));
+  try {
+    (void)solve_iteratively(system, kFiveSteps, 0);
+    ADD_FAILURE() << "no error";
+  } catch (const Unavailable& error) {
+    EXPECT_NE(std::string(error.what()).find("Failing: the device was lost"), std::string::npos) << error.what();
+  }
+}
+
+TEST(GpuFailures, ASolveCopiesVectorsOnceAndDotProductsFromThenOn) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  const auto copied = [&](int steps) {
+    const auto device = std::make_shared<FailingDevice>(kPlenty, kPlenty);
+    SumPlan plan = sum_plan(1e-2, kPoints);
+    plan.execution = std::make_shared<gpu::Execution>(device, true);
+    FastSum sum(points, Widths(0.01), plan);
+    EnergySystem energy(sum, 1, 1e-3);
+    WithRightSide system(energy, random_vectors(points.size(), 1));
+    EXPECT_EQ(solve_iteratively(system, {{steps, StepKind::kConjugateGradient}}, 0).residuals.size(), static_cast<std::size_t>(steps));
+    return std::pair(device->written, device->read_back);
+  };
+  const auto [written, read_back] = copied(1);
+  const auto [written_by_more, read_by_more] = copied(4);
+  const std::size_t dots = 2 * ((3 * kPoints + gpu::kDotBlock - 1) / gpu::kDotBlock) * sizeof(double);  // of a step
+  EXPECT_EQ(written_by_more, written);
+  EXPECT_EQ(read_by_more, read_back + 3 * dots);
+  EXPECT_LE(read_back, kPoints * sizeof(Vec3) + 2 * dots);
+}
+
+TEST(GpuFailures, SourcesAreCopiedOnceForAllTargets) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(20'000, 0.6, 0.25, 3).points);
+  const std::vector<Vec3> eta = random_vectors(points.size(), 1);
+  const auto written = [&](std::size_t targets) {
+    const auto device = std::make_shared<FailingDevice>(kPlenty, kPlenty);
+    SumPlan plan = sum_plan(1e-2, points.size());
+    plan.execution = std::make_shared<gpu::Execution>(device, true);
+    shapes::Random random(2);
+    std::vector<Vec3> queries(targets);
+    for (Vec3& q : queries) q = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+    (void)FastSum(points, Widths(0.01), plan).winding_at(eta, queries);
+    return device->written;
+  };
+  constexpr std::size_t kAtOnce = 1 << 17;  // targets of FastSum
+  EXPECT_LE(written(kAtOnce + 9) - written(kAtOnce), points.size() * 3 * sizeof(float)) << "places or values twice";
 }
 
 TEST(GpuFailures, ARequiredDeviceThatFailsIsUnavailable) {
@@ -130,6 +254,9 @@ TEST(GpuFailures, EveryFarPairIsInOneTileAndTilesDoNotMeetATargetTwice) {
   std::vector<std::uint32_t> matrix_of;
   for (std::size_t i = 0; i < lists.offsets.size(); ++i) matrix_of.push_back(static_cast<std::uint32_t>(matrices.index(i)));
   const gpu::TiledPairs tiled = gpu::tile_pairs(lists, tree.nodes.size(), kChunkNodes, matrix_of);
+  const gpu::TiledPairs by_one =
+      parallel::with_threads(1, [&] { return gpu::tile_pairs(lists, tree.nodes.size(), kChunkNodes, matrix_of); });
+  EXPECT_TRUE(by_one.tiles == tiled.tiles && by_one.pairs == tiled.pairs && by_one.chunk_tiles == tiled.chunk_tiles);
   ASSERT_EQ(tiled.pairs.size(), lists.far.size());
   ASSERT_EQ(tiled.chunk_tiles.size(), (tree.nodes.size() + kChunkNodes - 1) / kChunkNodes + 1);
   std::set<std::pair<std::uint32_t, std::uint32_t>> expected;

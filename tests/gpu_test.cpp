@@ -5,6 +5,9 @@
 #include "gpu/execution.h"
 #include "sanitized.h"
 #include "shapes.h"
+#include "solve/energy_system.h"
+#include "solve/green_system.h"
+#include "solve/iterative_solver.h"
 #include "sum/device_scope.h"
 #include "sum/fast_sum.h"
 #include "sum_cases.h"
@@ -14,7 +17,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 #include <cstdio>
+#include <limits>
 #include <numeric>
 
 namespace g3r {
@@ -125,6 +130,23 @@ TEST(Gpu, QueriesSeeTheSameField) {
   EXPECT_LE(relative_error(device.winding_gradient_at(eta, queries), processor.winding_gradient_at(eta, queries)), 5e-4);
 }
 
+TEST(Gpu, QueriesInPartsSeeTheFieldOfTheirOwnDensity) {
+  if (kSanitized) GTEST_SKIP() << "takes minutes";
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  const std::vector<std::vector<Vec3>> etas{random_vectors(points.size(), 1), random_vectors(points.size(), 2)};
+  Random random(2);
+  std::vector<Vec3> queries(140'000);  // FastSum takes 131,072 at a time
+  for (Vec3& q : queries) q = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-0.5, 0.5)};
+  const FastSum processor(points, Widths(0.01), sum_plan(1e-2, kPoints));
+  const FastSum device(points, Widths(0.01), on_device(sum_plan(1e-2, kPoints)));
+  const std::vector<std::vector<double>> expected = processor.windings_at(etas, queries);
+  const std::vector<std::vector<double>> there = device.windings_at(etas, queries);
+  for (std::size_t h = 0; h < etas.size(); ++h) {
+    EXPECT_LE(relative_error(there[h], expected[h]), 5e-3);
+    EXPECT_LE(relative_error(device.winding_at(etas[h], queries), expected[h]), 5e-3);
+  }
+}
+
 double inner(const std::vector<double>& a, const std::vector<double>& b) { return std::inner_product(a.begin(), a.end(), b.begin(), 0.0); }
 
 // <A x, y> = <x, A^T y> to rounding, relative to |A x| |y|.
@@ -165,11 +187,142 @@ TEST(Gpu, SameBytesFromRunToRun) {
   EXPECT_EQ(first.gradient, second.gradient);
 }
 
+constexpr double kDamping = 2;
+constexpr double kWeight = 1e-3;  // of W: it and S count alike in spacings of these clouds
+
+// sqrt(m) of points that stand for up to nine.
+std::vector<double> random_roots(std::size_t n) {
+  Random random(6);
+  std::vector<double> roots(n);
+  for (double& r : roots) r = random.uniform(1, 3);
+  return roots;
+}
+
+std::vector<Vec3> product_there(SolveVectors& vectors, const std::vector<Vec3>& x) {
+  vectors.set(SolveVector::kDirection, x);
+  vectors.multiply(SolveVector::kDirection, SolveVector::kProduct);
+  return vectors.take(SolveVector::kProduct);
+}
+
+// M x of one plan with vectors on the device, with its sums but vectors in memory, and on the processor.
+void expect_same_product(const std::vector<Vec3>& points, const SumPlan& plan, const std::vector<double>& roots, double accuracy,
+                         double rounding, const std::string& what) {
+  FastSum processor(points, Widths(0.4 * spacing_of(points)), plan);
+  FastSum device(points, Widths(0.4 * spacing_of(points)), on_device(plan));
+  EnergySystem reference(processor, kDamping, kWeight, roots);
+  EnergySystem system(device, kDamping, kWeight, roots);
+  EXPECT_EQ(reference.vectors_elsewhere(), nullptr);
+  const std::unique_ptr<SolveVectors> vectors = system.vectors_elsewhere();
+  ASSERT_NE(vectors, nullptr) << what;
+  const std::vector<Vec3> x = random_vectors(points.size(), 1);
+  const std::vector<Vec3> there = product_there(*vectors, x);
+  EXPECT_LE(relative_error(there, product_of(system, x)), rounding) << what;
+  EXPECT_LE(relative_error(there, product_of(reference, x)), 0.5 * accuracy) << what;
+}
+
+TEST(Gpu, ProductsOfVectorsThatStayThereEqualThoseOfTheProcessor) {
+  if (!execution()->device().info().doubles) GTEST_SKIP() << "the device has no doubles";
+  for (const Case& c : clouds(kPoints)) {
+    if (kSanitized && c.name != "needle") continue;
+    for (const double accuracy : {2e-2, 1e-2, 1e-3, 1e-4}) {
+      const bool rooted = accuracy == 1e-2 || accuracy == 1e-4;
+      expect_same_product(c.points, sum_plan(accuracy, kPoints), rooted ? random_roots(kPoints) : std::vector<double>{}, accuracy,
+                          kRoundingFloat, c.name);
+    }
+  }
+  for (const std::size_t n : {1UL, 2UL, 9UL, 700UL}) {
+    expect_same_product(unit_points(shapes::sphere(n).points), sum_plan(1e-4, n), {}, 1e-4, kRoundingFloat, "n=" + std::to_string(n));
+  }
+  if (kSanitized) return;
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  expect_same_product(points, sum_plan(1e-6, kPoints), random_roots(kPoints), kRoundingDouble, kRoundingDouble, "double");
+}
+
+TEST(Gpu, ProductsOfGreensIdentityThatStayThereEqualThoseOfTheProcessor) {
+  if (!execution()->device().info().doubles) GTEST_SKIP() << "the device has no doubles";
+  const auto expect_same = [](const std::vector<Vec3>& points, const std::vector<Harmonic>& harmonics, double accuracy, double rounding) {
+    FastSum processor(points, Widths(0.4 * spacing_of(points)), sum_plan(accuracy, points.size()));
+    FastSum device(points, Widths(0.4 * spacing_of(points)), on_device(sum_plan(accuracy, points.size())));
+    GreenSystem reference(processor, points, harmonics);
+    GreenSystem system(device, points, harmonics);
+    EXPECT_EQ(reference.vectors_elsewhere(), nullptr);
+    const std::unique_ptr<SolveVectors> vectors = system.vectors_elsewhere();
+    ASSERT_NE(vectors, nullptr);
+    const std::vector<Vec3> x = random_vectors(points.size(), 1);
+    const std::vector<Vec3> there = product_there(*vectors, x);
+    EXPECT_LE(relative_error(there, product_of(system, x)), rounding) << harmonics.size();
+    EXPECT_LE(relative_error(there, product_of(reference, x)), 0.5 * accuracy) << harmonics.size();
+    EXPECT_EQ(product_there(*vectors, x), there) << "not the same bytes";
+  };
+  for (const Case& c : clouds(kPoints)) {
+    if (kSanitized && c.name != "needle") continue;
+    for (const double accuracy : {1e-2, 1e-4}) expect_same(c.points, harmonics_of_degrees(0, 2), accuracy, kRoundingFloat);
+  }
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  const std::vector<Harmonic> many = harmonics_of_degrees(0, 3);
+  for (const std::size_t count : {5UL, 16UL}) {  // a batch of 9 that is not full, and two
+    expect_same(points, {many.begin(), many.begin() + static_cast<std::ptrdiff_t>(count)}, 1e-2, kRoundingFloat);
+  }
+}
+
+TEST(Gpu, VectorsThatStayThereDotAndCombineToRounding) {
+  if (!execution()->device().info().doubles) GTEST_SKIP() << "the device has no doubles";
+  using enum SolveVector;
+  for (const std::size_t n : {1UL, 2UL, 9UL, 1365UL, 1366UL, 5000UL}) {  // a block of the dot product is 1365 points and a third
+    const std::vector<Vec3> points = unit_points(shapes::torus(n, 0.6, 0.25, 3).points);
+    FastSum sum(points, Widths(0.01), on_device(sum_plan(1e-2, n)));
+    const std::unique_ptr<SolveVectors> vectors = sum.energy_vectors(kDamping, kWeight, {});
+    ASSERT_NE(vectors, nullptr);
+    const std::vector<Vec3> x = random_vectors(n, 1);
+    const std::vector<Vec3> y = random_vectors(n, 2);
+    const std::vector<double> a = flat(x);
+    const std::vector<double> b = flat(y);
+    vectors->set(kSolution, x);
+    vectors->set(kResidual, y);
+    EXPECT_NEAR(vectors->dot(kSolution, kResidual), std::inner_product(a.begin(), a.end(), b.begin(), 0.0),
+                kRoundingDouble * static_cast<double>(n));
+    vectors->set(kProduct, std::vector<Vec3>(n, Vec3{std::numeric_limits<double>::quiet_NaN(), HUGE_VAL, -HUGE_VAL}));
+    vectors->copy(kResidual, kProduct);
+    EXPECT_EQ(vectors->take(kProduct), y) << "what a vector was before a copy counts";
+    vectors->combine(kResidual, 0.5, -3, kSolution);
+    std::vector<double> expected(3 * n);
+    for (std::size_t i = 0; i < expected.size(); ++i) expected[i] = 0.5 * b[i] - 3 * a[i];
+    EXPECT_LE(relative_error(flat(vectors->take(kResidual)), expected), 1e-15) << n;
+  }
+}
+
+TEST(Gpu, SolvesWithVectorsThatStayThereAreThoseInMemory) {
+  if (!execution()->device().info().doubles) GTEST_SKIP() << "the device has no doubles";
+  constexpr double kAfterSteps = 1e-5;  // conjugate gradients carry the rounding of a product on
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  const std::vector<double> roots = random_roots(kPoints);
+  FastSum sum(points, Widths(0.4 * spacing_of(points)), on_device(sum_plan(1e-3, kPoints)));
+  EnergySystem system(sum, kDamping, kWeight, roots);
+  InMemory in_memory(system);
+  for (const std::vector<Vec3>& start : {std::vector<Vec3>{}, random_vectors(kPoints, 1)}) {
+    for (const double tolerance : {0.0, 0.2}) {
+      const std::vector<Steps> schedule = parse_schedule("2 sd 6 cg");
+      int told = 0;
+      const IterativeResult expected = solve_iteratively(in_memory, schedule, tolerance, start);
+      const IterativeResult there = solve_iteratively(system, schedule, tolerance, start, [&](int, int, double) { ++told; });
+      EXPECT_EQ(there.kinds, expected.kinds);
+      EXPECT_EQ(there.converged, expected.converged);
+      EXPECT_EQ(static_cast<std::size_t>(told), there.residuals.size());
+      EXPECT_LE(relative_error(there.residuals, expected.residuals), kAfterSteps);
+      EXPECT_LE(relative_error(there.eta, expected.eta), kAfterSteps);
+      EXPECT_EQ(solve_iteratively(system, schedule, tolerance, start).eta, there.eta) << "not the same bytes";
+    }
+  }
+}
+
 TEST(Gpu, SumsStopWhenCancelled) {
   const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
   const std::atomic<bool> cancel{true};
   FastSum sum(points, Widths(0.01), on_device(sum_plan(1e-2, kPoints)), &cancel);
   EXPECT_THROW(sum.winding(random_vectors(points.size(), 1)), Cancelled);
+  if (!execution()->device().info().doubles) return;
+  const std::unique_ptr<SolveVectors> vectors = sum.energy_vectors(kDamping, kWeight, {});
+  EXPECT_THROW((void)product_there(*vectors, random_vectors(points.size(), 1)), Cancelled);
 }
 
 TEST(Gpu, OrientationsAndMeshesEqualThoseOfTheProcessor) {

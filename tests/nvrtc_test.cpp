@@ -61,6 +61,16 @@ TEST(Nvrtc, EveryKernelCompilesForEveryArchitecture) {
   }
 }
 
+TEST(Nvrtc, VectorsOfASolveCompileForEveryArchitecture) {
+  for (const int architecture : architectures()) {
+    for (const bool doubles : {false, true}) {
+      expect_kernels(gpu::vectors_source(doubles, false), architecture,
+                     {"combine", "dot_of_blocks", "fill_vectors", "take_stokes_winding", "add_winding_adjoint", "fill_green", "take_green",
+                      "add_green_adjoint"});
+    }
+  }
+}
+
 TEST(Nvrtc, WhatDoesNotCompileIsSaidInALine) {
   try {
     (void)gpu::compile_ptx("this is no kernel\n", gpu::nvrtc_architectures().front());

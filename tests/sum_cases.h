@@ -4,6 +4,7 @@
 #include "cloud/canonical_cloud.h"
 #include "shapes.h"
 #include "solve/harmonics.h"
+#include "solve/linear_system.h"
 #include "sum/direct_sum.h"
 #include "sum/fast_sum.h"
 
@@ -144,5 +145,16 @@ inline double worst_error(const Sums& sums, const Sums& truth) {
                                  relative_error(sums.winding_adjoint, truth.winding_adjoint)});
   return truth.gradient.empty() ? worst : std::max(worst, relative_error(sums.gradient, truth.gradient));
 }
+
+// Hides where the vectors of a system could be.
+class InMemory : public LinearSystem {
+ public:
+  explicit InMemory(LinearSystem& system) : system_(system) {}
+  void apply(const std::vector<Vec3>& x, std::vector<Vec3>& product) override { system_.apply(x, product); }
+  std::vector<Vec3> right_side() override { return system_.right_side(); }
+
+ private:
+  LinearSystem& system_;
+};
 
 }  // namespace g3r::sum_cases

@@ -1,6 +1,7 @@
 #include "gpu/kernel_source.h"
 
 #include "kernels/kernel_polynomials.h"
+#include "kernels/kernels.h"
 
 #include <array>
 #include <cstdio>
@@ -12,6 +13,7 @@ extern const std::string_view dialect_cl;
 extern const std::string_view near_field_cl;
 extern const std::string_view expansions_cl;
 extern const std::string_view translations_cl;
+extern const std::string_view vectors_cl;
 }  // namespace kernels
 
 namespace {
@@ -19,6 +21,7 @@ namespace {
 // GPUs: two full leaves of targets, or one and its sources in shares; large enough to hide the way to memory, small enough for many groups.
 constexpr std::size_t kNearGroup = 128;
 constexpr std::size_t kFarGroup = 32;
+constexpr std::size_t kVectorsGroup = 128;
 constexpr std::size_t kSoftwareGroup = 16;
 // Sources of the near field in local memory at a time: one per item; processors rather have few turns, within their cache.
 constexpr std::size_t kTile = 128;
@@ -83,5 +86,13 @@ std::string near_field_source(const KernelTraits& traits) {
 std::string expansions_source(const KernelTraits& traits) { return source(traits, far_group(traits), {}, kernels::expansions_cl); }
 
 std::string translations_source(const KernelTraits& traits) { return source(traits, far_group(traits), {}, kernels::translations_cl); }
+
+std::string vectors_source(bool doubles, bool software) {
+  return define("REAL_IS_DOUBLE", doubles ? 1 : 0) + define("LANES", 1) + define("GROUP", vectors_group(software)) +
+         std::string(kernels::dialect_cl) + define("DOT_BLOCK", kDotBlock) + "#define INV_4_PI " + literal(kInv4Pi) + '\n' +
+         std::string(kernels::vectors_cl);
+}
+
+std::size_t vectors_group(bool software) { return software ? kSoftwareGroup : kVectorsGroup; }
 
 }  // namespace g3r::gpu

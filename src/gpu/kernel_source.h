@@ -29,4 +29,10 @@ struct KernelTraits {
 /// multipoles_to_parents(), multipoles_to_locals(), locals_to_children()
 [[nodiscard]] std::string translations_source(const KernelTraits& traits);
 
+/// The vectors of a solve, beside sums in double or float, and the items of a work-group of their kernels.
+[[nodiscard]] std::string vectors_source(bool doubles, bool software);
+[[nodiscard]] std::size_t vectors_group(bool software);
+/// Doubles that a work-group of dot_of_blocks() adds up.
+inline constexpr std::size_t kDotBlock = 4096;  // 700 groups of a million points, and little to read back
+
 }  // namespace g3r::gpu

@@ -4,8 +4,11 @@
 #include "cpu/parallel_sort.h"
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 namespace g3r::gpu {
 namespace {
@@ -19,6 +22,7 @@ constexpr std::size_t kMirrors = 8;
 constexpr std::size_t kGroupsWanted = 8192;
 constexpr std::size_t kMostChunkNodes = 4;
 constexpr std::size_t kSoftwareChunkNodes = 32;
+constexpr std::size_t kChunkBlock = 64;  // chunks that a thread tiles at a time: some thousand pairs
 
 std::size_t chunk_nodes_for(std::size_t nodes, bool software) {
   return software ? kSoftwareChunkNodes : std::clamp(nodes / kGroupsWanted, std::size_t{1}, kMostChunkNodes);
@@ -97,40 +101,61 @@ MatricesOnDevice upload_matrices(Device& device, const std::vector<Offset>& offs
   return out;
 }
 
-// The tiles of one chunk, whose pairs ascend by offset and so by matrix. Numbers of tiles and pairs from 0.
-TiledPairs tile_chunk(const InteractionLists& lists, const std::vector<NumberedPair>& pairs, const std::vector<std::uint32_t>& matrix_of) {
-  TiledPairs out;
-  for (const auto& [pair, number] : pairs) {
-    const Offset& offset = lists.offsets[number];
-    const std::uint32_t target = pair.target;
-    const std::uint32_t matrix = matrix_of[number];
+// The pairs of every chunk, ascending by offset and so by matrix: chunk c has those from begin[c] on.
+struct PairsOfChunks {
+  std::vector<std::uint32_t> begin;
+  UnsetVector<NumberedPair> pairs;
+};
+
+PairsOfChunks pairs_of_chunks(const InteractionLists& lists, std::size_t nodes, std::size_t chunk_nodes) {
+  const auto for_pairs = [&](const auto& use) {
+    parallel::for_each(lists.far_begin.size() - 1, [&](std::size_t part) {
+      auto pair = lists.far.begin() + static_cast<std::ptrdiff_t>(lists.far_begin[part]);
+      for (std::size_t r = lists.run_begin[part]; r < lists.run_begin[part + 1]; ++r) {
+        for (std::uint32_t k = 0; k < lists.runs[r].pairs; ++k, ++pair) use(pair->target / chunk_nodes, *pair, lists.runs[r].offset);
+      }
+    });
+  };
+  const std::size_t chunks = (nodes + chunk_nodes - 1) / chunk_nodes;
+  std::vector<std::atomic<std::uint32_t>> next(chunks);
+  for_pairs([&](std::size_t c, const FarPair&, std::uint32_t) { next[c].fetch_add(1, std::memory_order_relaxed); });
+  PairsOfChunks out;
+  out.begin.assign(1, 0);
+  for (std::atomic<std::uint32_t>& n : next) {
+    out.begin.push_back(out.begin.back() + n.load());
+    n = out.begin[out.begin.size() - 2];
+  }
+  out.pairs.resize(lists.far.size());
+  for_pairs([&](std::size_t c, const FarPair& pair, std::uint32_t offset) {
+    out.pairs[next[c].fetch_add(1, std::memory_order_relaxed)] = {pair, offset};
+  });
+  const auto place = [](const NumberedPair& p) { return std::tuple(p.offset, p.pair.target, p.pair.source); };
+  parallel::for_all(chunks, [&](std::size_t c) {  // into an order that no thread has a part in
+    std::sort(out.pairs.begin() + out.begin[c], out.pairs.begin() + out.begin[c + 1],
+              [&](const NumberedPair& a, const NumberedPair& b) { return place(a) < place(b); });
+  });
+  return out;
+}
+
+// The tiles of pairs [begin, end) of one chunk at the end of `tiles`, and the pairs into their places of `tiled`.
+void tile_chunk(const InteractionLists& lists, const NumberedPair* begin, const NumberedPair* end,
+                const std::vector<std::uint32_t>& matrix_of, std::uint32_t first_pair, Uint4* tiled, std::vector<Uint4>& tiles) {
+  const std::size_t of_others = tiles.size();
+  std::uint32_t done = first_pair;
+  for (const NumberedPair* p = begin; p != end; ++p, ++tiled, ++done) {
+    const Offset& offset = lists.offsets[p->offset];
+    const std::uint32_t target = p->pair.target;
+    const std::uint32_t matrix = matrix_of[p->offset];
     const std::uint32_t flags = offset.mirror() | (offset.positive() ? kPositive : 0);
     const auto joins = [&](const Uint4& tile) {
       if (tile[0] != matrix || tile[2] == kMostTilePairs) return false;
       if (tile[3] != (flags & kPositive)) return false;
-      return std::none_of(out.pairs.end() - tile[2], out.pairs.end(), [&](const Uint4& other) { return other[0] == target; });
+      return std::none_of(tiled - tile[2], tiled, [&](const Uint4& other) { return other[0] == target; });
     };
-    if (out.tiles.empty() || !joins(out.tiles.back())) {
-      out.tiles.push_back({matrix, static_cast<std::uint32_t>(out.pairs.size()), 0, flags & kPositive});
-    }
-    ++out.tiles.back()[2];
-    out.pairs.push_back({target, pair.source, flags, 0});
+    if (tiles.size() == of_others || !joins(tiles.back())) tiles.push_back({matrix, done, 0, flags & kPositive});
+    ++tiles.back()[2];
+    *tiled = {target, p->pair.source, flags, 0};
   }
-  return out;
-}
-
-// The pairs of every chunk, ascending by offset.
-std::vector<std::vector<NumberedPair>> pairs_of_chunks(const InteractionLists& lists, std::size_t nodes, std::size_t chunk_nodes) {
-  std::vector<std::vector<NumberedPair>> of_chunk((nodes + chunk_nodes - 1) / chunk_nodes);
-  auto pair = lists.far.begin();
-  for (const FarRun& run : lists.runs) {
-    for (std::uint32_t k = 0; k < run.pairs; ++k, ++pair) of_chunk[pair->target / chunk_nodes].push_back({*pair, run.offset});
-  }
-  parallel::for_each(of_chunk.size(), [&](std::size_t c) {
-    std::stable_sort(of_chunk[c].begin(), of_chunk[c].end(),
-                     [](const NumberedPair& a, const NumberedPair& b) { return a.offset < b.offset; });
-  });
-  return of_chunk;
 }
 
 }  // namespace
@@ -168,32 +193,39 @@ TreeOnDevice::TreeOnDevice(Device& device, const Octree& tree) {
 
 TiledPairs tile_pairs(const InteractionLists& lists, std::size_t nodes, std::size_t chunk_nodes,
                       const std::vector<std::uint32_t>& matrix_of) {
-  const std::vector<std::vector<NumberedPair>> of_chunk = pairs_of_chunks(lists, nodes, chunk_nodes);
-  std::vector<TiledPairs> parts(of_chunk.size());
-  parallel::for_each(parts.size(), [&](std::size_t c) { parts[c] = tile_chunk(lists, of_chunk[c], matrix_of); });
+  (void)narrow(lists.far.size());
+  const PairsOfChunks of_chunks = pairs_of_chunks(lists, nodes, chunk_nodes);
+  const std::size_t chunks = of_chunks.begin.size() - 1;
   TiledPairs out;
-  out.chunk_tiles.push_back(0);
-  out.pairs.reserve(lists.far.size());
-  for (TiledPairs& part : parts) {
-    const std::uint32_t first_pair = narrow(out.pairs.size());
-    for (Uint4 tile : part.tiles) {
-      tile[1] += first_pair;
-      out.tiles.push_back(tile);
+  out.pairs.resize(lists.far.size());
+  out.chunk_tiles.resize(chunks + 1);
+  std::vector<std::vector<Uint4>> tiles_of((chunks + kChunkBlock - 1) / kChunkBlock);
+  parallel::for_blocks(chunks, kChunkBlock, [&](std::size_t begin, std::size_t end) {
+    std::vector<Uint4>& tiles = tiles_of[begin / kChunkBlock];
+    for (std::size_t c = begin; c < end; ++c) {
+      const NumberedPair* const pairs = of_chunks.pairs.data();
+      tile_chunk(lists, pairs + of_chunks.begin[c], pairs + of_chunks.begin[c + 1], matrix_of, of_chunks.begin[c],
+                 out.pairs.data() + of_chunks.begin[c], tiles);
+      out.chunk_tiles[c + 1] = static_cast<std::uint32_t>(tiles.size());  // of the block, so far
     }
-    out.chunk_tiles.push_back(narrow(out.tiles.size()));
-    out.pairs.insert(out.pairs.end(), part.pairs.begin(), part.pairs.end());
-    part = {};
-  }
-  (void)narrow(out.pairs.size());
+  });
+  std::vector<std::uint32_t> first(1, 0);
+  for (const std::vector<Uint4>& tiles : tiles_of) first.push_back(first.back() + static_cast<std::uint32_t>(tiles.size()));
+  out.tiles.resize(first.back());
+  parallel::for_each(tiles_of.size(), [&](std::size_t b) {
+    std::copy(tiles_of[b].begin(), tiles_of[b].end(), out.tiles.begin() + first[b]);
+    for (std::size_t c = b * kChunkBlock; c < std::min(chunks, (b + 1) * kChunkBlock); ++c) out.chunk_tiles[c + 1] += first[b];
+  });
   return out;
 }
 
 template <class T>
-ListsOnDevice<T>::ListsOnDevice(Device& device, const Octree& targets, const Octree& sources, const InteractionLists& lists)
+ListsOnDevice<T>::ListsOnDevice(Device& device, const Octree& targets, const Octree& sources,
+                                std::shared_ptr<const TreeOnDevice> source_tree, const InteractionLists& lists)
     : device_(device),
       lists_(lists),
       target_nodes_(targets.nodes.size()),
-      source_tree_(device, sources),
+      source_tree_(std::move(source_tree)),
       chunk_nodes_(chunk_nodes_for(target_nodes_, device.info().software)) {
   if (&targets != &sources) target_tree_ = std::make_unique<TreeOnDevice>(device, targets);
   std::vector<std::uint32_t> begin;
@@ -227,8 +259,8 @@ void ListsOnDevice<T>::prepare_far(const M2lMatrices<T>& matrices, int order, co
     pairs_ = upload(device_, tiled.pairs);
   }
   if (!up_.data) {
-    up_ = upload_shifts(device_, shifts.child_to_parent, coefficients);
     down_ = upload_shifts(device_, shifts.parent_to_child, coefficients);
+    up_ = upload_shifts(device_, shifts.child_to_parent, coefficients);  // the last: tells that both are there
   }
   if (matrices_.count(order) == 0) {
     const std::size_t n = coefficient_count(order);

@@ -1,6 +1,7 @@
 // Trees, interaction lists and translation matrices on a device: what all sums over them share. Internal to src/sum and src/gpu.
 #pragma once
 
+#include "cpu/aligned_vector.h"
 #include "cpu/translations.h"
 #include "expansions/m2l_matrices.h"
 #include "gpu/device.h"
@@ -17,6 +18,8 @@ namespace g3r::gpu {
 
 /// Kernels count in 32 bits. Throws DeviceError where that is not enough.
 [[nodiscard]] std::uint32_t narrow(std::size_t value);
+/// Of small numbers.
+[[nodiscard]] inline int as_int(std::size_t value) { return static_cast<int>(value); }
 
 /// A tree, node by node in its own order, and leaf by leaf. Centres are (x, y, z, level) in units of 2^-21, exact.
 struct TreeOnDevice {
@@ -49,9 +52,9 @@ struct Shifts {
 
 /// Pairs of a chunk of targets that share a matrix, in tiles whose targets differ.
 struct TiledPairs {
-  std::vector<std::uint32_t> chunk_tiles;           ///< of every chunk, and the total
-  std::vector<std::array<std::uint32_t, 4>> tiles;  ///< matrix, first pair, pairs, kPositive or 0
-  std::vector<std::array<std::uint32_t, 4>> pairs;  ///< target, source, mirror image | kPositive, 0
+  std::vector<std::uint32_t> chunk_tiles;           ///< before every chunk, and all
+  UnsetVector<std::array<std::uint32_t, 4>> tiles;  ///< matrix, first pair, pairs, kPositive or 0
+  UnsetVector<std::array<std::uint32_t, 4>> pairs;  ///< target, source, mirror image | kPositive, 0
 };
 inline constexpr std::size_t kMostTilePairs = 16;  ///< more share no more, for the matrix is in a cache by then
 inline constexpr std::uint32_t kPositive = 8;      ///< Offset::positive()
@@ -64,10 +67,12 @@ inline constexpr std::uint32_t kPositive = 8;      ///< Offset::positive()
 template <class T>
 class ListsOnDevice {
  public:
-  ListsOnDevice(Device& device, const Octree& targets, const Octree& sources, const InteractionLists& lists);
+  /// `source_tree`: `sources` on the device.
+  ListsOnDevice(Device& device, const Octree& targets, const Octree& sources, std::shared_ptr<const TreeOnDevice> source_tree,
+                const InteractionLists& lists);
 
-  [[nodiscard]] const TreeOnDevice& targets() const { return target_tree_ ? *target_tree_ : source_tree_; }
-  [[nodiscard]] const TreeOnDevice& sources() const { return source_tree_; }
+  [[nodiscard]] const TreeOnDevice& targets() const { return target_tree_ ? *target_tree_ : *source_tree_; }
+  [[nodiscard]] const TreeOnDevice& sources() const { return *source_tree_; }
   [[nodiscard]] const Buffer& near_begin() const { return *near_begin_; }
   [[nodiscard]] const Buffer& near_leaves() const { return *near_leaves_; }
   /// Points of the leaves before each one of near_leaves(), and of all.
@@ -90,7 +95,7 @@ class ListsOnDevice {
   Device& device_;
   const InteractionLists& lists_;
   std::size_t target_nodes_;
-  TreeOnDevice source_tree_;
+  std::shared_ptr<const TreeOnDevice> source_tree_;
   std::unique_ptr<TreeOnDevice> target_tree_;  // null: the sources' tree
   std::unique_ptr<Buffer> near_begin_, near_leaves_, near_points_, near_order_;
   std::size_t chunk_nodes_;

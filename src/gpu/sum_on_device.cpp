@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace g3r::gpu {
 namespace {
@@ -17,8 +18,6 @@ constexpr std::size_t kSharedBytes = 32u << 10;  // of local memory, which every
 constexpr std::size_t kMostSlots = 4;            // pairs of a tile at a time
 constexpr std::size_t kTakenBlocks = 64;         // of results, that a thread takes at a time
 constexpr std::size_t kMostPoints = 32;          // of a tile of points_to_multipoles()
-
-int as_int(std::size_t value) { return static_cast<int>(value); }
 
 // Parts of points_to_multipoles(): UP_PARTS there.
 std::size_t up_parts(cpu::NearForm form, int batch, bool local_widths) {
@@ -44,24 +43,27 @@ std::size_t that_fit(std::size_t most, std::size_t least, std::size_t fixed, std
 }  // namespace
 
 template <class T>
-SumOnDevice<T>::SumOnDevice(Device& device, const ListsOnDevice<T>& lists, const Octree& targets, const Octree& sources,
-                            const PointsOfSum<T>& points)
+SumOnDevice<T>::SumOnDevice(Device& device, const SourcesOfSum<T>& sources)
     : device_(device),
-      lists_(lists),
-      target_tree_(targets),
-      source_tree_(sources),
-      local_widths_(points.source_width_squared != nullptr),
-      source_stride_(points.source_stride),
-      target_stride_(points.target_stride),
-      uniform_width_(points.uniform_width) {
+      source_tree_(sources.tree),
+      local_widths_(sources.squared_width != nullptr),
+      source_stride_(sources.stride),
+      uniform_width_(sources.uniform_width) {
   const std::size_t bytes = 3 * source_stride_ * sizeof(T);
   const std::size_t of_widths = local_widths_ ? source_stride_ * sizeof(T) : 0;
   sources_ = device.allocate(bytes + of_widths);
-  device.write(*sources_, 0, points.sources, bytes);
-  device.write(*sources_, bytes, points.source_width_squared, of_widths);
-  if (points.targets == nullptr) return;
-  targets_ = device.allocate(3 * target_stride_ * sizeof(T));
-  device.write(*targets_, 0, points.targets, targets_->bytes());
+  device.write(*sources_, 0, sources.places, bytes);
+  device.write(*sources_, bytes, sources.squared_width, of_widths);
+}
+
+template <class T>
+void SumOnDevice<T>::set_targets(std::shared_ptr<const ListsOnDevice<T>> lists, const TargetsOfSum<T>& targets) {
+  lists_ = std::move(lists);
+  target_tree_ = &targets.tree;
+  target_stride_ = targets.stride;
+  if (targets.places == nullptr) return;
+  const std::size_t elements = 3 * target_stride_;
+  device_.write(room(targets_, elements), 0, targets.places, elements * sizeof(T));
 }
 
 template <class T>
@@ -100,7 +102,7 @@ void SumOnDevice<T>::in_slices(std::size_t count, std::size_t slice, const std::
 template <class T>
 void SumOnDevice<T>::upward(const cpu::SumRequest<T>& request, Program& expansions, Program& translations) {
   const KernelTraits t = traits(request);
-  const TreeOnDevice& tree = lists_.sources();
+  const TreeOnDevice& tree = lists_->sources();
   const std::size_t n = coefficient_count(request.order);
   const std::size_t stride = cpu::padded_count(n);
   const std::size_t parts = up_parts(request.form, request.batch, t.local_widths);
@@ -113,7 +115,7 @@ void SumOnDevice<T>::upward(const cpu::SumRequest<T>& request, Program& expansio
                     request.order, as_int(stride), as_int(points), multipoles},
                    (points * (n + 7) + 7 * n) * sizeof(T));
   });
-  const MatricesOnDevice& shifts = lists_.child_to_parent();
+  const MatricesOnDevice& shifts = lists_->child_to_parent();
   const std::size_t apart = shifts.groups->bytes() / sizeof(std::array<std::uint32_t, 4>) / 8;
   for (std::size_t level = source_tree_.levels(); level-- > 0;) {
     const std::size_t first = source_tree_.level_begin[level];
@@ -129,16 +131,16 @@ void SumOnDevice<T>::across(const cpu::SumRequest<T>& request, Program& translat
   const KernelTraits t = traits(request);
   const std::size_t stride = cpu::padded_count(coefficient_count(request.order));
   const std::size_t moved = most_moved(request.form, request.multipole_channels, t.local_widths);
-  const std::size_t nodes = target_tree_.nodes.size();
-  const MatricesOnDevice& matrices = lists_.matrices(request.order);
+  const std::size_t nodes = target_tree_->nodes.size();
+  const MatricesOnDevice& matrices = lists_->matrices(request.order);
   Buffer& locals = room(locals_, nodes * request.local_channels * stride);
   const std::size_t each = packed_slot(moved, stride);
   const std::size_t slots = that_fit(kMostSlots, 1, 0, each, sizeof(T));
   const std::size_t slice = std::max<std::size_t>(1, (device_.info().software ? kSoftwareSlice : kSlice) / 8);
-  in_slices(lists_.chunks(), slice, request.cancel, [&](std::size_t first, std::size_t number) {
+  in_slices(lists_->chunks(), slice, request.cancel, [&](std::size_t first, std::size_t number) {
     device_.launch(translations.kernel("multipoles_to_locals"), number, far_group(t),
-                   {as_int(first), as_int(lists_.chunk_nodes()), as_int(nodes), lists_.chunk_tiles(), lists_.tiles(), lists_.pairs(),
-                    *lists_.sources().centres, *lists_.targets().centres, *matrices.signs, *matrices.data, *matrices.groups,
+                   {as_int(first), as_int(lists_->chunk_nodes()), as_int(nodes), lists_->chunk_tiles(), lists_->tiles(), lists_->pairs(),
+                    *lists_->sources().centres, *lists_->targets().centres, *matrices.signs, *matrices.data, *matrices.groups,
                     *matrices.shapes, as_int(stride), as_int(slots), *multipoles_, locals},
                    slots * each * sizeof(T));
   });
@@ -147,14 +149,14 @@ void SumOnDevice<T>::across(const cpu::SumRequest<T>& request, Program& translat
 template <class T>
 void SumOnDevice<T>::downward(const cpu::SumRequest<T>& request, Program& translations) {
   const KernelTraits t = traits(request);
-  const TreeOnDevice& tree = lists_.targets();
+  const TreeOnDevice& tree = lists_->targets();
   const std::size_t n = coefficient_count(request.order);
   const std::size_t stride = cpu::padded_count(n);
-  const MatricesOnDevice& shifts = lists_.parent_to_child();
+  const MatricesOnDevice& shifts = lists_->parent_to_child();
   const std::size_t apart = shifts.groups->bytes() / sizeof(std::array<std::uint32_t, 4>) / 8;
-  for (std::size_t level = 1; level < target_tree_.levels(); ++level) {
-    const std::size_t first = target_tree_.level_begin[level];
-    device_.launch(translations.kernel("locals_to_children"), target_tree_.level_begin[level + 1] - first, far_group(t),
+  for (std::size_t level = 1; level < target_tree_->levels(); ++level) {
+    const std::size_t first = target_tree_->level_begin[level];
+    device_.launch(translations.kernel("locals_to_children"), target_tree_->level_begin[level + 1] - first, far_group(t),
                    {as_int(first), *tree.parents, *tree.octants, *tree.centres, *shifts.data, *shifts.groups, as_int(apart), as_int(n),
                     as_int(stride), *locals_},
                    request.local_channels * stride * sizeof(T));
@@ -169,13 +171,13 @@ void SumOnDevice<T>::near(const cpu::SumRequest<T>& request) {
   const T inverse_width = static_cast<T>(1 / uniform_width_);
   const T reach2 = request.reach * request.reach;
   const std::size_t slice = device_.info().software ? kSoftwareSlice : kSlice;
-  in_slices(target_tree_.leaves.size(), slice, request.cancel, [&](std::size_t first, std::size_t number) {
-    device_.launch(
-        program.kernel("near_field"), number, near_group(t),
-        {as_int(first), lists_.near_order(), lists_.near_begin(), lists_.near_leaves(), lists_.near_points(), *lists_.targets().leaf_points,
-         *lists_.targets().leaf_centres, *lists_.sources().leaf_points, *lists_.sources().leaf_centres, *sources_, *values_,
-         narrow(source_stride_), target_geometry(), *target_data_, narrow(target_stride_), width2, inverse_width, reach2, *out_},
-        0);
+  in_slices(target_tree_->leaves.size(), slice, request.cancel, [&](std::size_t first, std::size_t number) {
+    device_.launch(program.kernel("near_field"), number, near_group(t),
+                   {as_int(first), lists_->near_order(), lists_->near_begin(), lists_->near_leaves(), lists_->near_points(),
+                    *lists_->targets().leaf_points, *lists_->targets().leaf_centres, *lists_->sources().leaf_points,
+                    *lists_->sources().leaf_centres, *sources_, *values_, narrow(source_stride_), target_geometry(), *target_data_,
+                    narrow(target_stride_), width2, inverse_width, reach2, *out_},
+                   0);
   });
 }
 
@@ -185,36 +187,57 @@ void SumOnDevice<T>::far_to_points(const cpu::SumRequest<T>& request, Program& e
   const std::size_t n = coefficient_count(request.order);
   const T width2 = static_cast<T>(uniform_width_ * uniform_width_);
   const std::size_t slice = device_.info().software ? kSoftwareSlice : kSlice;
-  in_slices(target_tree_.leaves.size(), slice, request.cancel, [&](std::size_t first, std::size_t number) {
+  in_slices(target_tree_->leaves.size(), slice, request.cancel, [&](std::size_t first, std::size_t number) {
     device_.launch(
         expansions.kernel("locals_to_points"), number, far_group(t),
-        {as_int(first), *lists_.targets().leaf_points, *lists_.targets().leaf_nodes, *lists_.targets().leaf_centres, target_geometry(),
+        {as_int(first), *lists_->targets().leaf_points, *lists_->targets().leaf_nodes, *lists_->targets().leaf_centres, target_geometry(),
          *target_data_, narrow(target_stride_), request.order, as_int(cpu::padded_count(n)), width2, *locals_, *out_},
         7 * n * sizeof(T));
   });
 }
 
 template <class T>
-void SumOnDevice<T>::run(const cpu::SumRequest<T>& request, const Take& take) {
-  const std::size_t value_bytes = request.value_fields * source_stride_ * sizeof(T);
-  const std::size_t data_bytes = request.data_fields * target_stride_ * sizeof(T);
-  device_.write(room(values_, value_bytes / sizeof(T)), 0, request.values, value_bytes);
-  device_.write(room(target_data_, data_bytes / sizeof(T)), 0, request.target_data, data_bytes);
-  const std::size_t targets = target_tree_.nodes.front().count();
-  const std::size_t block = request.out_channels * cpu::kLanes;
-  const std::size_t elements = (targets + cpu::kLanes - 1) / cpu::kLanes * block;
-  room(out_, elements);
+const Buffer& SumOnDevice<T>::values(const cpu::SumRequest<T>& request) {
+  forget_values();
+  multipoles_of_.reset();
+  return room(values_, request.value_fields * source_stride_);
+}
+
+template <class T>
+const Buffer& SumOnDevice<T>::target_data(const cpu::SumRequest<T>& request) {
+  return room(target_data_, request.data_fields * target_stride_);
+}
+
+template <class T>
+const Buffer& SumOnDevice<T>::sums_there(const cpu::SumRequest<T>& request) {
+  room(out_, (target_tree_->nodes.front().count() + cpu::kLanes - 1) / cpu::kLanes * request.out_channels * cpu::kLanes);
   near(request);
   if (!request.direct) {
     Program& expansions = device_.program(expansions_source(traits(request)));
     Program& translations = device_.program(translations_source(traits(request)));
-    upward(request, expansions, translations);
+    if (multipoles_of_ != request.form) {
+      multipoles_of_.reset();
+      upward(request, expansions, translations);
+      multipoles_of_ = request.form;
+    }
     across(request, translations);
     downward(request, translations);
     far_to_points(request, expansions);
   }
+  return *out_;
+}
+
+template <class T>
+void SumOnDevice<T>::run(const cpu::SumRequest<T>& request, const Take& take) {
+  if (!has_values_) device_.write(values(request), 0, request.values, request.value_fields * source_stride_ * sizeof(T));
+  has_values_ = true;
+  device_.write(target_data(request), 0, request.target_data, request.data_fields * target_stride_ * sizeof(T));
+  const Buffer& sums = sums_there(request);
+  const std::size_t targets = target_tree_->nodes.front().count();
+  const std::size_t block = request.out_channels * cpu::kLanes;
+  const std::size_t elements = (targets + cpu::kLanes - 1) / cpu::kLanes * block;
   device_.finish();  // what fails, fails before anything is taken
-  device_.read(*out_, elements * sizeof(T), block * sizeof(T), [&](std::size_t offset, const unsigned char* data, std::size_t bytes) {
+  device_.read(sums, elements * sizeof(T), block * sizeof(T), [&](std::size_t offset, const unsigned char* data, std::size_t bytes) {
     const std::size_t first_block = offset / (block * sizeof(T));
     const auto* const sums = reinterpret_cast<const T*>(data);
     parallel::for_blocks(bytes / (block * sizeof(T)), kTakenBlocks, [&](std::size_t begin, std::size_t end) {

@@ -12,31 +12,50 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace g3r::gpu {
 
-/// Where sources and targets are: x, y and z relative to the centre of their leaf, one field after the other.
+/// Sources: x, y and z relative to the centre of their leaf, one field after the other.
 template <class T>
-struct PointsOfSum {
-  const T* sources;
-  const T* source_width_squared;  ///< with local widths, and the targets' too
-  std::size_t source_stride;      ///< from one field to the next
-  const T* targets;               ///< null: the sources
-  std::size_t target_stride;
-  double uniform_width;  ///< without local widths
+struct SourcesOfSum {
+  const Octree& tree;
+  const T* places;
+  std::size_t stride;      ///< from one field to the next
+  const T* squared_width;  ///< with local widths, those of the targets too; null without
+  double uniform_width;    ///< without local widths
+};
+
+/// Targets, in the same way.
+template <class T>
+struct TargetsOfSum {
+  const Octree& tree;
+  const T* places;  ///< null: the sources
+  std::size_t stride;
 };
 
 /// Points on a device, and memory for their sums, allocated on first use. Throws DeviceError, Cancelled, std::bad_alloc.
 template <class T>
 class SumOnDevice {
  public:
-  /// The device and the lists must outlive it, as must the trees.
-  SumOnDevice(Device& device, const ListsOnDevice<T>& lists, const Octree& targets, const Octree& sources, const PointsOfSum<T>& points);
+  /// The device and the tree of the sources must outlive it.
+  SumOnDevice(Device& device, const SourcesOfSum<T>& sources);
+
+  /// Takes targets, in place of others; values of the sources stay, and so do their multipoles. The tree must outlive the sums.
+  void set_targets(std::shared_ptr<const ListsOnDevice<T>> lists, const TargetsOfSum<T>& targets);
+  /// The values of the sources are to change.
+  void forget_values() { has_values_ = false; }
 
   /// take(first target, count, sums), for all targets: blocks of kLanes x out_channels, without 1/(4 pi).
   using Take = std::function<void(std::size_t first, std::size_t count, const T* sums)>;
   void run(const cpu::SumRequest<T>& request, const Take& take);
+
+  /// Room for what a sum takes of the sources and of the targets, for the caller to fill.
+  [[nodiscard]] const Buffer& values(const cpu::SumRequest<T>& request);
+  [[nodiscard]] const Buffer& target_data(const cpu::SumRequest<T>& request);
+  /// The same sums, which stay on the device until the next ones.
+  const Buffer& sums_there(const cpu::SumRequest<T>& request);
 
  private:
   [[nodiscard]] KernelTraits traits(const cpu::SumRequest<T>& request) const;
@@ -52,14 +71,16 @@ class SumOnDevice {
   [[nodiscard]] const Buffer& target_geometry() const { return targets_ ? *targets_ : *sources_; }
 
   Device& device_;
-  const ListsOnDevice<T>& lists_;
-  const Octree& target_tree_;
+  std::shared_ptr<const ListsOnDevice<T>> lists_;
   const Octree& source_tree_;
+  const Octree* target_tree_ = nullptr;
   bool local_widths_;
   std::size_t source_stride_;
-  std::size_t target_stride_;
+  std::size_t target_stride_ = 0;
   double uniform_width_;
-  std::unique_ptr<Buffer> sources_, targets_;  // null: the sources
+  bool has_values_ = false;                     // those of the engine
+  std::optional<cpu::NearForm> multipoles_of_;  // the form for which they are those of the values
+  std::unique_ptr<Buffer> sources_, targets_;   // null: the sources
   std::unique_ptr<Buffer> values_, target_data_, multipoles_, locals_, out_;
 };
 

@@ -23,6 +23,7 @@ class EnergySystem : public LinearSystem {
 
   void apply(const std::vector<Vec3>& x, std::vector<Vec3>& product) override;
   std::vector<Vec3> right_side() override;
+  std::unique_ptr<SolveVectors> vectors_elsewhere() override { return sum_.energy_vectors(damping_, winding_weight_, root_); }
 
   /// eta = D x and x = D^-1 eta
   [[nodiscard]] std::vector<Vec3> to_areas(std::vector<Vec3> x) const;

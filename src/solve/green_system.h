@@ -17,6 +17,7 @@ class GreenSystem : public LinearSystem {
 
   void apply(const std::vector<Vec3>& eta, std::vector<Vec3>& product) override;
   std::vector<Vec3> right_side() override;
+  std::unique_ptr<SolveVectors> vectors_elsewhere() override { return sum_.green_vectors(u_); }
 
  private:
   FastSum& sum_;

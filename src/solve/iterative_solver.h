@@ -31,7 +31,8 @@ struct IterativeResult {
 
 /// Follows the schedule until the relative residual falls to `tolerance` (0: never stop early).
 /// `start`: eta to begin with, or empty for 0. `after_step(step, steps, residual)` may throw to stop.
-/// Sources: Hestenes and Stiefel 1952. One product with M per step; reductions in fixed order.
+/// Sources: Hestenes and Stiefel 1952. One product with M per step; reductions in fixed order. The vectors are where the products are made;
+/// should they be lost there, all steps are done again, with vectors in memory.
 [[nodiscard]] IterativeResult solve_iteratively(LinearSystem& system, const std::vector<Steps>& schedule, double tolerance,
                                                 std::vector<Vec3> start = {}, const std::function<void(int, int, double)>& after_step = {});
 

@@ -18,6 +18,7 @@ class PartSystem : public LinearSystem {
   PartSystem(LinearSystem& part, const std::vector<Vec3>& residual) : part_(part), residual_(residual) {}
   void apply(const std::vector<Vec3>& x, std::vector<Vec3>& product) override { part_.apply(x, product); }
   std::vector<Vec3> right_side() override { return residual_; }
+  std::unique_ptr<SolveVectors> vectors_elsewhere() override { return part_.vectors_elsewhere(); }
 
  private:
   LinearSystem& part_;

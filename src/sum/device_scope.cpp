@@ -1,5 +1,6 @@
 #include "sum/device_scope.h"
 
+#include "base/vector.h"
 #include "cloud/canonical_cloud.h"
 #include "cpu/parallel.h"
 #include "sum/fast_sum.h"
@@ -66,6 +67,42 @@ std::vector<Vec3> trial_points() {
   return out;
 }
 
+// |a - b| <= kTrialAccuracy |b|
+bool agree(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double difference = 0;
+  double size = 0;
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      difference += (a[i][k] - b[i][k]) * (a[i][k] - b[i][k]);
+      size += b[i][k] * b[i][k];
+    }
+  }
+  return difference <= kTrialAccuracy * kTrialAccuracy * size;
+}
+
+// A product with the energy's matrix, and every other thing that a solve does with its vectors: x + p = (p + M p) / (p . M p), x = 0.
+// `solve` on the device, `sum` on the processor.
+void try_solve(SolveVectors& solve, FastSum& sum, const std::vector<Vec3>& p) {
+  using enum SolveVector;
+  std::vector<Vec3> expected;
+  std::vector<double> w;
+  sum.stokes_winding(p, expected, w);
+  sum.add_winding_adjoint(w, 1, expected);
+  double dot = 0;
+  for (std::size_t i = 0; i < p.size(); ++i) dot += vector::dot(p[i], expected[i]);
+  for (std::size_t i = 0; i < p.size(); ++i) expected[i] = vector::scale(vector::add(p[i], expected[i]), 1 / dot);
+  try {
+    solve.set(kDirection, p);
+    solve.multiply(kDirection, kProduct);
+    const double dot_there = solve.dot(kDirection, kProduct);
+    solve.copy(kProduct, kSolution);
+    solve.combine(kSolution, 1 / dot_there, 1 / dot_there, kDirection);
+    if (!agree(solve.take(kSolution), expected)) throw DeviceError("its solves are wrong; a newer driver may help");
+  } catch (const VectorsLost& lost) {
+    throw DeviceError(lost.what());
+  }
+}
+
 // Drivers have bugs: every pass of a small sum has to agree with the processor before a device is trusted.
 void try_out(const std::shared_ptr<Execution>& execution) {
   const CanonicalCloud cloud = canonical_cloud(trial_points());
@@ -74,18 +111,16 @@ void try_out(const std::shared_ptr<Execution>& execution) {
   std::vector<std::vector<Vec3>> s(2);
   std::vector<double> w;
   const Scope processor("cpu", kTrialPoints);  // for the first of the two
-  parallel::with_threads(1, [&] { FastSum(cloud.points(), widths, plan).stokes_winding(cloud.points(), s[0], w); });
-  plan.execution = execution;
-  parallel::with_threads(1, [&] { FastSum(cloud.points(), widths, plan).stokes_winding(cloud.points(), s[1], w); });
-  double difference = 0;
-  double size = 0;
-  for (std::size_t i = 0; i < s[0].size(); ++i) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      difference += (s[1][i][a] - s[0][i][a]) * (s[1][i][a] - s[0][i][a]);
-      size += s[0][i][a] * s[0][i][a];
-    }
-  }
-  if (!(difference <= kTrialAccuracy * kTrialAccuracy * size)) throw DeviceError("its sums are wrong; a newer driver may help");
+  parallel::with_threads(1, [&] {
+    FastSum here(cloud.points(), widths, plan);
+    plan.execution = execution;
+    FastSum there(cloud.points(), widths, plan);
+    here.stokes_winding(cloud.points(), s[0], w);
+    there.stokes_winding(cloud.points(), s[1], w);
+    if (!agree(s[1], s[0])) throw DeviceError("its sums are wrong; a newer driver may help");
+    const std::unique_ptr<SolveVectors> solve = there.energy_vectors(0, 1, {});
+    if (solve != nullptr) try_solve(*solve, here, cloud.points());
+  });
 }
 
 }  // namespace

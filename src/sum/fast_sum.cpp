@@ -2,6 +2,7 @@
 
 #include "cloud/canonical_cloud.h"
 #include "sum/device_scope.h"
+#include "sum/solve_on_device.h"
 #include "sum/sum_operators.h"
 #include "sum/target_shells.h"
 
@@ -151,6 +152,15 @@ std::vector<Vec3> FastSum::winding_adjoint(const std::vector<double>& q) {
 void FastSum::add_winding_adjoint(const std::vector<double>& q, double weight, std::vector<Vec3>& out) {
   const auto add = [&](std::size_t p, std::size_t a, double value) { out[p][a] += weight * value; };
   std::visit([&](auto& engine) { winding_adjoint_into(engine, q, add); }, impl_->engine);
+}
+
+std::unique_ptr<SolveVectors> FastSum::energy_vectors(double damping, double winding_weight, const std::vector<double>& roots) {
+  const EnergyTerms terms{damping, winding_weight, roots};
+  return std::visit([&](auto& engine) { return g3r::energy_vectors(engine, size(), terms); }, impl_->engine);
+}
+
+std::unique_ptr<SolveVectors> FastSum::green_vectors(const HarmonicValues& u) {
+  return std::visit([&](auto& engine) { return g3r::green_vectors(engine, size(), u); }, impl_->engine);
 }
 
 std::vector<double> FastSum::winding(const std::vector<Vec3>& eta) {

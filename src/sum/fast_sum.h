@@ -3,6 +3,7 @@
 
 #include "sum/direct_sum.h"
 #include "sum/harmonic_values.h"
+#include "sum/solve_vectors.h"
 #include "sum/sum_plan.h"
 
 #include <g3r/points.h>
@@ -46,6 +47,11 @@ class FastSum {
   std::vector<Vec3> winding_adjoint(const std::vector<double>& q);
   /// out += weight W^T q
   void add_winding_adjoint(const std::vector<double>& q, double weight, std::vector<Vec3>& out);
+  /// The vectors of a solve with M = D (S_e + l W^T D^2 W) D + d I, D = diag(roots) (solve/energy_system.h), where the sums run; null where
+  /// that is the processor. `roots`: N, or empty for ones. The sum must outlive them.
+  [[nodiscard]] std::unique_ptr<SolveVectors> energy_vectors(double damping, double winding_weight, const std::vector<double>& roots);
+  /// The same with M = sum_k A[u_k]^T A[u_k].
+  [[nodiscard]] std::unique_ptr<SolveVectors> green_vectors(const HarmonicValues& u);
   /// W eta: N values.
   std::vector<double> winding(const std::vector<Vec3>& eta);
   /// -grad w at the points: N vectors, along the outward normals.

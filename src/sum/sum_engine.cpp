@@ -50,13 +50,14 @@ M2lTerms terms_for(cpu::NearForm form, int batch, const SumPlan& plan) {
 
 template <class T>
 void SumEngine<T>::set_targets(const std::vector<Vec3>& targets) {
-  on_device_.reset();
+  has_targets_there_ = false;
   geometry_.set_targets(targets);
 }
 
 template <class T>
 void SumEngine<T>::begin_values(std::size_t values) {
   passes_.forget_multipoles();
+  if (on_device_) on_device_->forget_values();
   value_count_ = values;
   if (values_.size() < values * geometry_.source_stride()) {
     values_ = AlignedVector<T>();  // not twice in memory
@@ -65,10 +66,53 @@ void SumEngine<T>::begin_values(std::size_t values) {
 }
 
 template <class T>
-bool SumEngine<T>::run_on_device(const cpu::SumRequest<T>& request, const M2lTerms& terms, const TakeSums& take) {
+std::shared_ptr<gpu::Execution> SumEngine<T>::execution() const {
+  const std::shared_ptr<gpu::Execution>& execution = geometry_.plan().execution;
+  return execution && execution->usable(sizeof(T) == sizeof(double)) ? execution : nullptr;
+}
+
+template <class T>
+gpu::SumOnDevice<T>& SumEngine<T>::prepare_device(const M2lTerms& terms) {
   const SumPlan& plan = geometry_.plan();
-  if (!plan.execution || !plan.execution->usable(sizeof(T) == sizeof(double))) return false;
   gpu::Device& device = plan.execution->device();
+  const typename SumGeometry<T>::Sources& sources = geometry_.sources();
+  const Octree& targets = geometry_.target_tree();
+  std::shared_ptr<gpu::TreeOnDevice>& tree = geometry_.tree_on_device();
+  if (!tree) tree = std::make_shared<gpu::TreeOnDevice>(device, sources.tree);
+  std::shared_ptr<gpu::ListsOnDevice<T>>& lists = geometry_.lists_on_device();
+  if (!lists) lists = std::make_shared<gpu::ListsOnDevice<T>>(device, targets, sources.tree, tree, geometry_.lists());
+  if (!plan.direct) {
+    lists->prepare_far(geometry_.matrices(terms), terms.order, {sources.child_to_parent, sources.parent_to_child},
+                       coefficient_count(plan.order));
+  }
+  if (!on_device_) {
+    on_device_ =
+        std::make_shared<gpu::SumOnDevice<T>>(device, gpu::SourcesOfSum<T>{sources.tree, sources.places.data(), geometry_.source_stride(),
+                                                                           geometry_.squared_widths(), geometry_.uniform_width()});
+    has_targets_there_ = false;
+  }
+  if (!has_targets_there_) {
+    const T* const places = geometry_.has_own_targets() ? geometry_.target_places().data() : nullptr;
+    on_device_->set_targets(lists, {targets, places, geometry_.target_stride()});
+    has_targets_there_ = true;
+  }
+  return *on_device_;
+}
+
+template <class T>
+const gpu::Buffer& SumEngine<T>::run_there(cpu::NearForm form, int batch, std::size_t values, std::size_t out_channels,
+                                           const std::function<void(const gpu::Buffer&, const gpu::Buffer&)>& fill) {
+  const M2lTerms terms = terms_for(form, batch, geometry_.plan());
+  const cpu::SumRequest<T> request = request_for(form, batch, values, out_channels, terms);
+  gpu::SumOnDevice<T>& there = prepare_device(terms);
+  fill(there.values(request), there.target_data(request));
+  return there.sums_there(request);
+}
+
+template <class T>
+bool SumEngine<T>::run_on_device(const cpu::SumRequest<T>& request, const M2lTerms& terms, const TakeSums& take) {
+  const std::shared_ptr<gpu::Execution> execution = this->execution();
+  if (!execution) return false;
   std::atomic<bool> taken = false;
   const auto take_some = [&](std::size_t first, std::size_t count, const T* sums) {
     taken = true;
@@ -78,55 +122,49 @@ bool SumEngine<T>::run_on_device(const cpu::SumRequest<T>& request, const M2lTer
       take(static_cast<std::uint32_t>(first + done), static_cast<std::uint32_t>(std::min(cpu::kLanes, count - done)), block.data());
     }
   };
-  const typename SumGeometry<T>::Sources& sources = geometry_.sources();
-  const Octree& targets = geometry_.target_tree();
-  std::shared_ptr<gpu::ListsOnDevice<T>>& lists = geometry_.lists_on_device();
   try {
-    const std::unique_lock lock = device.lock();
-    if (!lists) lists = std::make_shared<gpu::ListsOnDevice<T>>(device, targets, sources.tree, geometry_.lists());
-    if (!plan.direct) {
-      lists->prepare_far(geometry_.matrices(terms), terms.order, {sources.child_to_parent, sources.parent_to_child},
-                         coefficient_count(plan.order));
-    }
-    if (!on_device_) {
-      const gpu::PointsOfSum<T> points{sources.places.data(),     geometry_.squared_widths(),
-                                       geometry_.source_stride(), geometry_.has_own_targets() ? geometry_.target_places().data() : nullptr,
-                                       geometry_.target_stride(), geometry_.uniform_width()};
-      on_device_ = std::make_shared<gpu::SumOnDevice<T>>(device, *lists, targets, sources.tree, points);
-    }
+    const std::unique_lock lock = execution->device().lock();
+    gpu::SumOnDevice<T>& there = prepare_device(terms);
     const auto start = std::chrono::steady_clock::now();
-    on_device_->run(request, take_some);
-    plan.execution->add_seconds(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    there.run(request, take_some);
+    execution->add_seconds(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   } catch (const gpu::DeviceError& error) {
     on_device_.reset();
-    lists.reset();
-    plan.execution->fail(error.what());
-    if (taken) throw Unavailable(plan.execution->failure() + ", while its results were read; --device cpu does without it");
+    geometry_.lists_on_device().reset();
+    geometry_.tree_on_device().reset();
+    execution->fail(error.what());
+    if (taken) throw Unavailable(execution->failure() + ", while its results were read; --device cpu does without it");
     return false;
   }
   return true;
 }
 
 template <class T>
-void SumEngine<T>::run(cpu::NearForm form, int batch, std::size_t out_channels, const TakeSums& take) {
+cpu::SumRequest<T> SumEngine<T>::request_for(cpu::NearForm form, int batch, std::size_t values, std::size_t out_channels,
+                                             const M2lTerms& terms) const {
   const SumPlan& plan = geometry_.plan();
-  const M2lTerms terms = terms_for(form, batch, plan);
   const std::size_t channels = multipole_channels(form, batch, geometry_.local_widths());
   const bool stokes = form == cpu::NearForm::kStokesWinding;
-  const cpu::SumRequest<T> request{.form = form,
-                                   .batch = batch,
-                                   .direct = plan.direct,
-                                   .order = terms.order,
-                                   .reach = static_cast<T>(std::min(plan.reach, kMollifierReach<T>)),
-                                   .kernel_error = plan.kernel_error,
-                                   .values = values_.data(),
-                                   .value_fields = value_count_,
-                                   .target_data = target_values_.data(),
-                                   .data_fields = target_fields(form, batch),
-                                   .multipole_channels = channels,
-                                   .local_channels = channels + (stokes ? 1 : 0),
-                                   .out_channels = out_channels,
-                                   .cancel = cancel_};
+  return {.form = form,
+          .batch = batch,
+          .direct = plan.direct,
+          .order = terms.order,
+          .reach = static_cast<T>(std::min(plan.reach, kMollifierReach<T>)),
+          .kernel_error = plan.kernel_error,
+          .values = values_.data(),
+          .value_fields = values,
+          .target_data = target_values_.data(),
+          .data_fields = target_fields(form, batch),
+          .multipole_channels = channels,
+          .local_channels = channels + (stokes ? 1 : 0),
+          .out_channels = out_channels,
+          .cancel = cancel_};
+}
+
+template <class T>
+void SumEngine<T>::run(cpu::NearForm form, int batch, std::size_t out_channels, const TakeSums& take) {
+  const M2lTerms terms = terms_for(form, batch, geometry_.plan());
+  const cpu::SumRequest<T> request = request_for(form, batch, value_count_, out_channels, terms);
   if (!run_on_device(request, terms, take)) passes_.run(geometry_, request, terms, take);
 }
 

@@ -8,10 +8,13 @@
 
 #include <atomic>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <vector>
 
 namespace g3r::gpu {
+class Buffer;
+class Execution;
 template <class T>
 class SumOnDevice;
 }  // namespace g3r::gpu
@@ -46,9 +49,21 @@ class SumEngine {
   /// Runs a form over the values; sums are without 1/(4 pi).
   void run(cpu::NearForm form, int batch, std::size_t out_channels, const TakeSums& take);
 
+  /// The device that sums run on, null where that is the processor.
+  [[nodiscard]] std::shared_ptr<gpu::Execution> execution() const;
+  /// Runs a form of `values` values per source on that device, where the sums stay until the next ones. fill(values, those of the targets)
+  /// puts them there, fields source_stride() apart. Callers hold the device's lock. Throws DeviceError.
+  const gpu::Buffer& run_there(cpu::NearForm form, int batch, std::size_t values, std::size_t out_channels,
+                               const std::function<void(const gpu::Buffer&, const gpu::Buffer&)>& fill);
+  [[nodiscard]] std::size_t source_stride() const { return geometry_.source_stride(); }
+
  private:
+  [[nodiscard]] cpu::SumRequest<T> request_for(cpu::NearForm form, int batch, std::size_t values, std::size_t out_channels,
+                                               const M2lTerms& terms) const;
   // False if there is no device, or it failed, and the processor has to do it.
   bool run_on_device(const cpu::SumRequest<T>& request, const M2lTerms& terms, const TakeSums& take);
+  // What sums with these terms need there, uploaded unless it is there.
+  gpu::SumOnDevice<T>& prepare_device(const M2lTerms& terms);
 
   SumGeometry<T> geometry_;
   const std::atomic<bool>* cancel_;
@@ -57,6 +72,7 @@ class SumEngine {
   AlignedVector<T> target_values_;  // the same of the targets
   SumPasses<T> passes_;
   std::shared_ptr<gpu::SumOnDevice<T>> on_device_;  // made when it is needed
+  bool has_targets_there_ = false;                  // those of the geometry
 };
 
 extern template class SumEngine<float>;

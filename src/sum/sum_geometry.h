@@ -18,6 +18,7 @@
 #include <vector>
 
 namespace g3r::gpu {
+struct TreeOnDevice;
 template <class T>
 class ListsOnDevice;
 }  // namespace g3r::gpu
@@ -37,6 +38,7 @@ class SumGeometry {
     Places places;
     std::array<StoredTranslation<T>, 8> child_to_parent;  ///< M2M by octant
     std::array<StoredTranslation<T>, 8> parent_to_child;  ///< L2L by octant
+    std::shared_ptr<gpu::TreeOnDevice> tree_on_device;
   };
 
   /// Points in canonical order; the sources are also the targets.
@@ -72,7 +74,8 @@ class SumGeometry {
   /// asked at other targets need none of their own.
   const InteractionLists& lists();
   const M2lMatrices<T>& matrices(const M2lTerms& terms);
-  /// The lists on the plan's device, for the caller to make when it needs them.
+  /// The tree of the sources and the lists on the plan's device, for the caller to make when it needs them.
+  std::shared_ptr<gpu::TreeOnDevice>& tree_on_device() { return sources_->tree_on_device; }
   std::shared_ptr<gpu::ListsOnDevice<T>>& lists_on_device() { return interactions_->on_device; }
 
  private:
