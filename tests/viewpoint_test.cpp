@@ -138,20 +138,23 @@ TEST(Viewpoint, EveryPointFacesTheCamera) {
   }
 }
 
-// A box of 8 x 6 x 4 with a pillar, as a scanner in it sees them, on a grid of angles, with noise along the lines of sight.
-std::vector<Vec3> panorama(double sigma) {
+// A box of 8 x 6 x 4 with a pillar, as a scanner at this place in it sees them, on a grid of angles, with noise along the lines of sight.
+std::vector<Vec3> panorama(double sigma, const Vec3& place = {0, 0, 0}) {
   shapes::Random random(11);
+  const Vec3 low{-3, -2, -1.5}, high{5, 4, 2.5};
   std::vector<Vec3> points;
   for (int i = 0; i < 180; ++i) {
     for (int j = -30; j <= 30; ++j) {
       const double a = 2 * std::numbers::pi * i / 180, e = 0.03 * j;
       const Vec3 d{std::cos(a) * std::cos(e), std::sin(a) * std::cos(e), std::sin(e)};
       double range = HUGE_VAL;
-      const Vec3 low{-3, -2, -1.5}, high{5, 4, 2.5};
-      for (std::size_t k = 0; k < 3; ++k) range = std::min(range, d[k] == 0 ? range : (d[k] > 0 ? high[k] : low[k]) / d[k]);
-      if (d[0] > 0 && std::abs(d[1]) < 0.15 * d[0]) range = std::min(range, 2 / d[0]);  // its front
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (d[k] != 0) range = std::min(range, ((d[k] > 0 ? high[k] : low[k]) - place[k]) / d[k]);
+      }
+      const double to_pillar = (2 - place[0]) / d[0];  // a square of 0.6 whose front is at x = 2
+      if (to_pillar > 0 && std::abs(place[1] + to_pillar * d[1]) < 0.3) range = std::min(range, to_pillar);
       range += sigma * random.gaussian();
-      points.push_back({range * d[0], range * d[1], range * d[2]});
+      points.push_back({place[0] + range * d[0], place[1] + range * d[1], place[2] + range * d[2]});
     }
   }
   return points;
@@ -173,6 +176,32 @@ TEST(Viewpoint, APanoramaFacesTheScannerThatIsNamed) {
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Vec3& n = seen.normals[i];
       away += n[0] * points[i][0] + n[1] * points[i][1] + n[2] * points[i][2] > 0 ? 1 : 0;
+    }
+    EXPECT_LT(away, points.size() / 200) << sigma;
+    EXPECT_GT(seen.stats.confidence_mean, 0.8) << sigma;
+  }
+}
+
+// Of two scans every point faces its own scanner, although the noise makes closed walls of what both have seen.
+TEST(Viewpoint, EveryPointOfSeveralScansFacesItsScanner) {
+  for (const double sigma : {0.01, 0.04}) {
+    Options options;
+    options.hints.sensors = {{0, 0, 0}, {1, -1.5, 0.4}};
+    std::vector<Vec3> points;
+    for (std::uint32_t scan = 0; scan < 2; ++scan) {
+      for (const Vec3& p : panorama(sigma, options.hints.sensors[scan])) {
+        points.push_back(p);
+        options.hints.sensor_of_point.push_back(scan);
+      }
+    }
+    const Orientation seen = orient(points, options);
+    EXPECT_TRUE(seen.stats.consistent) << sigma;
+    EXPECT_FALSE(seen.stats.hints.viewpoint) << sigma;  // there are two
+    std::size_t away = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3& n = seen.normals[i];
+      const Vec3& scanner = options.hints.sensors[options.hints.sensor_of_point[i]];
+      away += n[0] * (points[i][0] - scanner[0]) + n[1] * (points[i][1] - scanner[1]) + n[2] * (points[i][2] - scanner[2]) > 0 ? 1 : 0;
     }
     EXPECT_LT(away, points.size() / 200) << sigma;
     EXPECT_GT(seen.stats.confidence_mean, 0.8) << sigma;
