@@ -22,7 +22,7 @@ constexpr int kMostPlanes = 3;
 // any place on the axis, 2 of sqrt(N) rows; frames whose depths are in coarse steps have a sixth or more.
 constexpr double kFewestRows = 0.1;
 // Points whose nearest are a part of the cloud: as for the estimates of noise.
-constexpr std::size_t kFewestPoints = 192;
+constexpr std::size_t kFewestSeen = 192;
 
 double length(const Vec3& a) { return std::sqrt(vector::dot(a, a)); }
 
@@ -219,7 +219,7 @@ std::vector<Vec3> directions_from(const Vec3& place, const std::vector<Vec3>& po
 }
 
 std::optional<Vec3> find_viewpoint(const PointSet& set, const Vec3& origin) {
-  if (set.size() < kFewestPoints) return std::nullopt;
+  if (set.size() < kFewestSeen) return std::nullopt;
   const ViewpointSearch search(set);
   Vec3 place = origin;
   std::size_t most = search.support(place);
@@ -234,7 +234,7 @@ std::optional<Vec3> find_viewpoint(const PointSet& set, const Vec3& origin) {
 }
 
 bool may_be_seen_from(const std::vector<Vec3>& points, const Vec3& place) {
-  if (points.size() < kFewestPoints) return false;
+  if (points.size() < kFewestSeen) return false;
   const std::vector<Vec3> sights = directions_from(place, points);
   const Neighbours tree(sights);
   std::vector<std::uint32_t> index;
