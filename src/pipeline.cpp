@@ -32,8 +32,6 @@
 namespace g3r {
 namespace {
 
-// Of the unsure share under the estimated noise, that under another one up to which that is taken: chance changes it by less.
-constexpr double kFarLess = 0.55;
 // Times the estimate, the scatter that speaks against it; times the scatter, the noise that is tried: kernels have to hide all of it.
 constexpr double kAboveScatter = 1.4;
 // The same for more noise than the points speak for: noise hides thin walls and all doubt about them.
@@ -259,7 +257,7 @@ bool may_try_noises(const Problem& problem, const Options& options) {
 
 struct OtherNoise {
   double noise = 0;
-  double most_doubt = 0;  // of the doubt with the estimate, up to which it is taken
+  double most_doubt = 0.5;  // of the doubt with the estimate, up to which it is taken: chance does not halve it
 };
 
 // What to try where the sides of many points are unsure. No noise: few points on much shape look noisy, but not rounded. More: what
@@ -275,11 +273,11 @@ std::vector<OtherNoise> other_noises(const Problem& problem, const Options& opti
   const double unsure = found.doubt - found.agreed;
   std::vector<OtherNoise> noises;
   const double rounding = rounding_deviation(set);
-  if (rounding > problem.noise) noises.push_back({rounding, kFarLess});
+  if (rounding > problem.noise) noises.push_back({rounding});
   if (kAboveScatter * scatter <= least && unsure < kDoubtful) return noises;
-  if (set.size() <= kFewPoints && problem.noise > rounding_noise(set)) noises.push_back({0, kFarLess});
+  if (set.size() <= kFewPoints && problem.noise > rounding_noise(set)) noises.push_back({0});
   if (scatter > kAboveScatter * problem.noise) {
-    noises.push_back({std::max(kAboveScatter * scatter, least), kFarLess});
+    noises.push_back({std::max(kAboveScatter * scatter, least)});
   } else if (problem.noise > 0 && unsure >= kDoubtful) {
     noises.push_back({kAboveScatter * problem.noise, kHardlyAny});
   }

@@ -44,7 +44,9 @@ struct ExactPlane {
 /// Spacings: points that scatter less are exact. Above the rounding of files and of a box far larger than the spacing; noise that matters
 /// is far above.
 inline constexpr double kExactScatter = 0.001;
-inline constexpr double kFacetBreadth = 0.4;  ///< of the points on a facet; the rows of a raster lie in narrow strips of planes across it
+/// Breadth of points that a surface holds all around: the rows of a raster lie in narrow strips of planes across it, and lines are as broad
+/// as their noise over their length.
+inline constexpr double kFacetBreadth = 0.5;
 
 struct LikeliestPlane {
   ExactPlane plane;

@@ -23,8 +23,7 @@ constexpr double kTail = 1.5;                         // deviations of a layer t
 constexpr Eigen::Index kTerms = kQuadraticTerms - 1;  // u, v, u^2, u v, v^2
 constexpr int kSteps = 20;  // of expectation and maximisation, and of points that look for their layer: most change theirs 4 times
 constexpr Eigen::Index kMostLayers = 3;
-constexpr double kLeastShare = 0.05;             // of the deviation about one layer, that about more: a mixture must not shrink to points
-constexpr int kFewestOnLayer = kPlaneTerms + 1;  // of two layers, on either: fewer say nothing of their distance
+constexpr int kFewestOnLayer = kPlaneTerms + 1;                  // of two layers, on either: fewer say nothing of their distance
 constexpr double kNoShare = std::numeric_limits<double>::min();  // keeps the logarithm of a likelihood finite
 
 struct Heights {
@@ -93,7 +92,7 @@ Mixture fit_mixture(const Heights& h, const Eigen::LDLT<MatrixXd>& normal_equati
     }
     if (counted <= 0) break;
     const double freedom = 1 - static_cast<double>(kTerms + kLayers) / total;
-    sigma = std::max(std::sqrt(squares / (counted * freedom)), kLeastShare * deviation);
+    sigma = std::max(std::sqrt(squares / (counted * freedom)), kRidge * deviation);  // a mixture must not shrink to points
   }
   return {sigma, -2 * likelihood + 2 * static_cast<double>(kLayers - 1) * std::log(total)};
 }

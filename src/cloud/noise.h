@@ -9,8 +9,11 @@
 
 namespace g3r {
 
-/// Variance of what rounding to whole steps leaves, evenly between -1/2 and 1/2 of one: 1/12 squared steps.
-inline constexpr double kRoundingVariance = 1.0 / 12;
+/// Mean of the n-th power, n even, of what rounding to whole steps leaves, evenly between -1/2 and 1/2 of one: 1/12 and 1/80 of 2 and 4.
+constexpr double rounding_moment(int n) { return 1.0 / ((n + 1) * (1 << n)); }
+inline constexpr double kRoundingVariance = rounding_moment(2);
+/// The fourth cumulant of the same, which that of a normal distribution is above by 1/120.
+inline constexpr double kRoundingCumulant = rounding_moment(4) - 3 * kRoundingVariance * kRoundingVariance;
 
 /// Standard deviation of the points from their surface in each coordinate; 0 for a clean cloud.
 ///   - Noise lifts the residual of every neighbourhood; curvature, creases and thin parts only that of some. So the flattest 2 % decide. Of
@@ -18,7 +21,7 @@ inline constexpr double kRoundingVariance = 1.0 / 12;
 ///     scatter x h that is sigma while that is small, and fills the balls in the end: 1 / x^2 = (h / sigma)^2 + 1 / 0.57^2.
 ///   - Noise is as large in small neighbourhoods as in larger ones, shape is not. Where the flattest 2 % of 8 points scatter half as much
 ///     or less than the flattest 10 % of 12 points, that is shape: thin walls, wires, detail (measured: up to 0.48; noise 0.56 and more).
-///   - Noise leaves no exact planes behind. Where 40 % of the points are on one (find_exact_plane(), breadth 0.4) and no second one, the
+///   - Noise leaves no exact planes behind. Where 40 % of the points are on one (find_exact_plane(), breadth 0.5) and no second one, the
 ///     cloud is clean, unless its coordinates are rounded to steps of 0.04 h or more, which puts noise on planes.
 ///   - Against two or three layers of a smooth surface there is layered_deviation() of 256 neighbours, its 10 % quantile; the lesser of the
 ///     two counts. It needs the layers to be smooth as far as that. Noise above h fills such neighbourhoods as well, so every fourth point

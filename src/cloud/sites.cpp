@@ -4,6 +4,7 @@
 #include "base/vector.h"
 #include "cloud/canonical_cloud.h"
 #include "cloud/constants.h"
+#include "cloud/exact_plane.h"
 #include "cpu/parallel.h"
 
 #include <Eigen/Eigenvalues>
@@ -18,9 +19,8 @@
 namespace g3r {
 namespace {
 
-constexpr double kReach = 2.5;           // distances: the plane of a site sees its neighbours and theirs, about 20 sites
-constexpr double kSurfaceBreadth = 0.5;  // median breadth of a surface sample; lines have that of their noise over their length
-constexpr double kIsolated = 1.5;        // times the spacing around a site, its own: more is that of a stray
+constexpr double kReach = 2.5;     // distances: the plane of a site sees its neighbours and theirs, about 20 sites
+constexpr double kIsolated = 1.5;  // times the spacing around a site, its own: more is that of a stray
 
 // Cells of the size of the distance: whoever is nearer than that lies in the same or an adjacent one.
 class Grid {
@@ -218,7 +218,7 @@ double surface_distance(const PointSet& set) {
       Planes planes(set, distance);
       for (std::size_t k = begin; k < end; ++k) breadth[k] = planes.at(points[k * step]).breadth;
     });
-    if (median(breadth) < kSurfaceBreadth) continue;
+    if (median(breadth) < kFacetBreadth) continue;
     return distance == 0 || taken_points(points, distance).size() >= kFewestSites ? distance : 0;
   }
   return 0;

@@ -18,6 +18,9 @@ inline constexpr std::size_t kFewestSites = 30;
 /// Width in spacings of the sites of their field where there are none: narrower shows single ones.
 inline constexpr double kBetweenSites = 0.7;
 
+/// Spacings of the sites: walls and grooves farther apart than that are distinct in their field.
+inline constexpr double kResolved = 2;
+
 struct Sites {
   double distance = 0;                 ///< least distance between the points that sites begin with; 0: every point is a site
   PointSet set;                        ///< M centroids of the points of each site; the square of side() is the area of a site

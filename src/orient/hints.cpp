@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <string>
@@ -22,17 +23,13 @@ using vector::dot;
 using vector::normalised;
 using vector::subtract;
 
-// Votes per point of a patch below which it is seen edge-on: noise would vote.
-constexpr double kFewestVotes = 0.02;
 // Of the votes, a majority that noise, hidden and grazing points do not make; less against a side is no contradiction.
 constexpr double kMostOf = 2.0 / 3;
 // Winding number of a closed part about a place inside it, at least: a street, half of it open, has about 1/2.
 constexpr double kInsideWinding = 0.25;
-// Cosine of two adjacent normals from which the side of one follows from the other: across gaps it is by chance.
-constexpr double kConsistent = 0.8;
-// Cosines a and -b under which one place sees two points with normals at that angle multiply to sin^2 of half of it at most: where they
-// object more, the points are on surfaces of their own.
-constexpr double kMostOpposed = (1 - kConsistent) / 2;
+// Cosines a and -b under which one place sees two points of one smooth patch multiply to sin^2 of half the angle between their normals at
+// most: where they object more, the points are on surfaces of their own.
+constexpr double kMostOpposed = (1 - kSamePatch) / 2;
 // Of the cloud's extent along every axis, what closed parts span that surround the scanner.
 constexpr double kSpan = 0.5;
 
@@ -46,7 +43,8 @@ struct Votes {
     against += std::max(-vote, 0.0);
   }
   [[nodiscard]] double total() const { return in_favour + against; }
-  [[nodiscard]] bool count() const { return total() > kFewestVotes * static_cast<double>(points); }
+  // Seen edge-on, rounding alone votes.
+  [[nodiscard]] bool count() const { return total() > std::numeric_limits<float>::epsilon() * static_cast<double>(points); }
   [[nodiscard]] double share_against() const { return total() > 0 ? against / total() : 0; }
 };
 
@@ -207,7 +205,7 @@ class Following {
   [[nodiscard]] bool consistent(std::uint32_t i, std::uint32_t j) const {
     const Vec3 d = normalised(subtract(points_[j], points_[i]));
     const Vec3 n = normal(j);
-    return dot(normal(i), subtract(n, vector::scale(d, 2 * dot(n, d)))) > kConsistent;
+    return dot(normal(i), subtract(n, vector::scale(d, 2 * dot(n, d)))) > kSamePatch;
   }
 
   // Whether a sensor has seen the front of the one point and the back of the other, further from edge-on than a horizon is.

@@ -41,7 +41,7 @@ struct HintEffect {
 /// votes are for, a vote of point p being
 ///   sensor s:  n . (s - p) / |s - p|      up u:  n . u / |u|      inside q:  - n . (q - p) / |q - p|
 /// so that a point counts by how squarely it is seen, and not by how near it is; `seen_from_inside` without sensors votes like a sensor in
-/// the median of the points. A patch whose votes are a fiftieth of its points or less keeps its side. Where the side was a choice the
+/// the mean of the points. A patch that is seen edge-on but for rounding keeps its side. Where the side was a choice the
 /// confidence becomes the share of the votes that agree, times `agreed`, and two thirds decide it; elsewhere it takes two thirds to turn a
 /// patch. Then pieces of a patch that are not consistent with the rest of it are turned by two thirds of their own votes: what a gap
 /// separates has no other way to agree. A piece ends too where adjacent points object to each other more than at a horizon, and what hangs

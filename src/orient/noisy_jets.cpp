@@ -1,5 +1,6 @@
 #include "orient/noisy_jets.h"
 
+#include "cloud/chance.h"
 #include "cloud/constants.h"
 #include "cloud/quadratic_patch.h"
 #include "cloud/spacing.h"
@@ -20,9 +21,8 @@ constexpr std::size_t kBlock = parallel::kSmallBlock;  // points among which fit
 constexpr double kNarrowest = 4.2;                     // first reach over sqrt(s h): 3.6 leaves 5 % more of the error, 4.8 blurs detail
 constexpr double kWider = std::numbers::sqrt2;         // from one reach to the next: twice the area
 constexpr double kNormalWeight = 0.3;                  // the normals are those of a smooth field already: less leaves noise, more blurs
-constexpr double kOpposed = 0.05;  // share of points that face the other way from which a fit has another wall too close
-constexpr double kShared = 0.25;   // of the reach: how far a fit serves other points
-constexpr double kNoiseReach = 3;  // spacings, of the fits that do: 4 takes detail for noise
+constexpr double kShared = 0.25;                       // of the reach: how far a fit serves other points
+constexpr double kNoiseReach = 3;                      // spacings, of the fits that do: 4 takes detail for noise
 
 struct Fit {
   QuadraticPatch patch;  // relative to the point it was fitted at
@@ -84,7 +84,8 @@ class Fitter {
     double deviation = 0;
   };
 
-  // The points about point i on the side of `axis`, of more than kPlaces evenly picked ones; false where too many face the other way.
+  // The points about point i on the side of `axis`, of more than kPlaces evenly picked ones; false where more face the other way than do by
+  // chance: another wall is too close.
   bool gather(std::size_t i, const Vector3d& axis, double reach) {
     const Vector3d centre = to_eigen(points_[i]);
     neighbours_.within(points_[i], std::hypot(reach, kSigmas * noise_), index_);
@@ -106,7 +107,7 @@ class Fitter {
         opposed += weight;
       }
     }
-    return opposed <= kOpposed * (opposed + total_);
+    return opposed <= kFalseAlarms * (opposed + total_);
   }
 
   const std::vector<Vec3>& points_;

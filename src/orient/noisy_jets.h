@@ -23,7 +23,7 @@ namespace g3r {
 /// s is the noise of the cloud or, where that is less, that of the place: of 256 points in a row the median misfit, at every 16th, of a
 /// quadratic height field to the points within 3 h.
 ///
-/// Where more than 5 % of the points about the fit face the other way, a wall is as thin as the noise, and the side of a normal says more
+/// Where more than 2 % of the points about the fit face the other way, a wall is as thin as the noise, and the side of a normal says more
 /// than its direction: n_i stays, as it does where the fitted normal is more than 60 degrees off. Sides are kept but for normals that were
 /// all but in the surface.
 ///

@@ -33,10 +33,7 @@ constexpr double kFar = 4;
 // Graph.
 constexpr std::size_t kAdjacent = 10;  // nearest sites that a site is connected with: 12 lead from a thin wall to the next under noise
 // Hypothesis.
-constexpr int kTurns = 3;           // rounds of the winding gradient
-constexpr double kTurnWidth = 2;    // site spacings: wider than the grooves that the sampling cannot resolve
-constexpr double kAgreed = 0.5;     // of the jump that a side has to show: less is more against it than for it, and what is around tells
-constexpr double kFarBetter = 0.5;  // of the jump defect as given, up to which a hypothesis is taken where unrest alone does not decide
+constexpr int kTurns = 3;  // rounds of the winding gradient
 // Verdict.
 constexpr double kUnrest = 0.08;      // mean of a part that is open: closed ones have up to 0.06, open ones 0.1 to 0.3
 constexpr double kUnrestNoisy = 0.2;  // the same where noise hides thin walls, whose field is open in places
@@ -201,7 +198,7 @@ class Search {
     std::vector<Vec3> normals(count);
     for (std::size_t s = 0; s < count; ++s) normals[s] = vector::scale(sites.axis[s], signs.sign[s]);
     const double spacing = sites.set.spacing();
-    FastSum wide(sites.points(), Widths(kTurnWidth * spacing), sums_, cancel_);
+    FastSum wide(sites.points(), Widths(kResolved * spacing), sums_, cancel_);
     for (int turn = 0; turn < kTurns; ++turn) normals = refine_normals(wide, areas_of(sites, normals)).normals;
     // Directions from a narrower field, where its side is the same.
     const FastSum field(wide, Widths(kBetweenSites * spacing));
@@ -309,7 +306,7 @@ Verdict suspect(const Search& search, const std::vector<double>& unrest, const s
   return verdict;
 }
 
-// The best hypothesis of every part. Where unrest alone does not decide it has to be far better than what was given; else nothing is
+// The best hypothesis of every part. Where unrest alone does not decide it has to halve the defect of what was given; else nothing is
 // certain, if the part is not at rest either.
 void choose(const Search& search, const std::vector<std::vector<Vec3>>& tried, const std::vector<double>& unrest,
             const std::vector<double>& defect, double noise, Verdict& verdict) {
@@ -331,7 +328,7 @@ void choose(const Search& search, const std::vector<std::vector<Vec3>>& tried, c
   const double most_unrest = search.sites().distance > 0 ? kUnrestNoisy : kUnrest;
   for (std::size_t p = 0; p < unrest.size(); ++p) {
     if (verdict.is_open[p] == 0) continue;
-    const bool is_better = unrest[p] > most_unrest || verdict.defect[p] <= kFarBetter * defect[p];
+    const bool is_better = unrest[p] > most_unrest || 2 * verdict.defect[p] <= defect[p];
     // Noise makes one wall of two: what encloses nearly everything is a closed surface whose thin parts it hides.
     const bool is_enclosed = noise > 0 && std::abs(verdict.enclosure[p]) >= kEncloses;
     if (is_better && !is_enclosed) continue;
@@ -376,10 +373,11 @@ OpenSurfaces choose(const Search& search, const std::vector<std::vector<Vec3>>& 
     if (verdict.is_open[p] == 0) continue;
     first[p] = std::min(first[p], i);
     found.part[i] = first[p];
-    found.agrees[i] = verdict.defect[p] < 1 - kAgreed ? 1 : 0;
+    found.agrees[i] = verdict.defect[p] < kUndecided ? 1 : 0;
     const double agreed = 1 - verdict.defects[verdict.best[p]][search.sites().site_of[i]];
-    normals[i] = agreed < kAgreed ? wide[i] : tried[verdict.best[p]][i];
-    found.certified[i] = static_cast<float>(std::clamp(agreed / kAgreed, 0.0, 1.0));
+    // A side that shows less than half of the jump has more against it than for it, and what is around tells.
+    normals[i] = agreed < kUndecided ? wide[i] : tried[verdict.best[p]][i];
+    found.certified[i] = static_cast<float>(std::clamp(agreed / kUndecided, 0.0, 1.0));
     sum[p] = vector::add(sum[p], normals[i]);
   }
   for (std::uint32_t i = 0; i < normals.size(); ++i) {

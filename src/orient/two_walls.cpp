@@ -14,11 +14,9 @@
 namespace g3r {
 namespace {
 
-constexpr double kThin = 2;                // site spacings between two walls: the field distinguishes walls farther apart
 constexpr double kExact = 0.01;            // site spacings: deviations below are as good as none
 constexpr std::size_t kNoisyPoints = 128;  // the same under noise: fewer follow the noise, more the shape
 constexpr double kExcess = -0.2;           // of the kurtosis of walls 1.35 standard deviations apart; rough ground has -0.1 at most
-constexpr double kSure = 3;                // standard errors that it is below 0
 
 // Calls visit(site, its `count` nearest points in canonical order).
 template <typename Visit>
@@ -41,7 +39,7 @@ bool on_exact_walls(const PointSet& set, const Sites& sites, const std::vector<s
     const double one = quadratic_residual(points, index.data(), index.size(), sites.axis[s], spacing);
     const TwoLayers two = fit_two_layers(points, index.data(), index.size(), sites.axis[s]);
     const double exact = kExact * spacing;
-    const bool thin = two.gap > 0 && two.gap < kThin * spacing;
+    const bool thin = two.gap > 0 && two.gap < kResolved * spacing;
     double rounding = 0;
     for (std::size_t a = 0; a < 3; ++a) rounding += std::abs(sites.axis[s][a]) * steps[a];
     const double cost = (rounding > exact ? 2 : 1) * std::numbers::ln2;
@@ -58,10 +56,10 @@ bool on_noisy_walls(const PointSet& set, const Sites& sites, const std::vector<s
   std::vector<double> square;
   for_some(set, sites, members, kNoisyPoints, [&](std::uint32_t s, const std::vector<std::uint32_t>& index) {
     const HeightMoments m = height_moments(points, index.data(), index.size(), sites.axis[s], sites.spacing()[s]);
-    double rounding = 0;
-    for (std::size_t a = 0; a < 3; ++a) rounding += std::pow(sites.axis[s][a] * steps[a], 4) / 120;
+    double rounding = 0;  // fourth cumulant
+    for (std::size_t a = 0; a < 3; ++a) rounding += kRoundingCumulant * std::pow(sites.axis[s][a] * steps[a], 4);
     square.push_back(m.mean_square);
-    excess.push_back(m.excess + (m.mean_square > 0 ? rounding / (m.mean_square * m.mean_square) : 0));
+    excess.push_back(m.excess - (m.mean_square > 0 ? rounding / (m.mean_square * m.mean_square) : 0));
   });
   const double flat = median(square);
   double sum = 0;
@@ -75,7 +73,7 @@ bool on_noisy_walls(const PointSet& set, const Sites& sites, const std::vector<s
   }
   const double mean = sum / count;
   const double error = std::sqrt(std::max(0.0, squares / count - mean * mean) / count);
-  return mean < kExcess && mean < -kSure * error;
+  return mean < kExcess && mean < -kSigmas * error;
 }
 
 }  // namespace
