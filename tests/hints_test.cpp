@@ -163,10 +163,10 @@ TEST(Hints, OfOneViewNothingIsSeenSquarelyFromBehind) {
   const HintEffect effect = sides.follow({.sensors = {{0, 0, 1000}}});
   for (std::size_t i = 0; i < sides.points.size(); ++i) {
     const double z = outward[i][2];
-    if (std::abs(z) < 0.01 || std::abs(z + 0.32) < 0.01) continue;  // edge-on, and at the limit
-    EXPECT_EQ(effect.turned[i] != 0, z < -0.32) << z;
-    EXPECT_EQ(dot(sides.normals[i], outward[i]) < 0, z < -0.32) << z;
-    const double shown = z < -0.32 ? (1 - z) / 2 : z < 0 ? (1 + z) / 2 : 1;
+    if (std::abs(z) < 0.01 || std::abs(z + 0.2236) < 0.01) continue;  // edge-on, and at the limit
+    EXPECT_EQ(effect.turned[i] != 0, z < -0.2236) << z;
+    EXPECT_EQ(dot(sides.normals[i], outward[i]) < 0, z < -0.2236) << z;
+    const double shown = z < -0.2236 ? (1 - z) / 2 : z < 0 ? (1 + z) / 2 : 1;
     EXPECT_NEAR(sides.confidence[i], std::min(shown, 1 / (1 + 0.81)), 0.01) << z;  // and no more than the votes agree
   }
 }
