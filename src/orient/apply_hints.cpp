@@ -5,7 +5,6 @@
 #include "orient/hints.h"
 
 #include <algorithm>
-
 #include <cmath>
 #include <cstdio>
 #include <string>

@@ -241,8 +241,7 @@ class Following {
   }
 
   // A scanner sees fronts: what faces away from all that may have seen it has the wrong side or the wrong direction, so that the side is a
-  // choice at a horizon, and certainly wrong where it would be seen squarely from behind: where all have been seen, that goes
-  // over.
+  // choice at a horizon, and certainly wrong where it would be seen squarely from behind. Where all have been seen, that is turned.
   void judge_backs() {
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
       const std::optional<double> seen = is_closed(i) ? std::nullopt : best_seen(i);

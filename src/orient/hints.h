@@ -41,17 +41,17 @@ struct HintEffect {
 /// votes are for, a vote of point p being
 ///   sensor s:  n . (s - p) / |s - p|      up u:  n . u / |u|      inside q:  - n . (q - p) / |q - p|
 /// so that a point counts by how squarely it is seen, and not by how near it is; `seen_from_inside` without sensors votes like a sensor in
-/// the mean of the points. A patch that is seen edge-on but for rounding keeps its side. Where the side was a choice the
-/// confidence becomes the share of the votes that agree, times `agreed`, and two thirds decide it; elsewhere it takes two thirds to turn a
-/// patch. Then pieces of a patch that are not consistent with the rest of it are turned by two thirds of their own votes: what a gap
-/// separates has no other way to agree. A piece ends too where adjacent points object to each other more than at a horizon, and what hangs
-/// together with it by a few pairs of points only, as in a crevice, is turned by itself. What of open parts still faces away from all
-/// sensors that may have seen it, at a cosine v < 0, has a confidence of (1 + v) / 2 at most; where all
-/// points have been `seen`, what would be seen squarely from behind is turned, with (1 - v) / 2. Closed parts have one side: they are
-/// turned by `seen_from_inside` and by sensors inside them, where the winding number of `eta` is 1/4 and more (outside it is 0, however
-/// near or far), or, if the sensor of each point is known, by two thirds of the votes. `near`: Neighbours::of_all(k), or empty: patches
-/// have no pieces; `spacing`: of the points, for the winding number. O(N log(sensors) + N k), O(N) for each of at most 500 sensors, and all
-/// sensors for each open point that none of them sees from the front. Throws Cancelled.
+/// the mean of the points. A patch that is seen edge-on but for rounding keeps its side. Where the side was a choice the confidence becomes
+/// the share of the votes that agree, times `agreed`, and two thirds decide it; elsewhere it takes two thirds to turn a patch. Then pieces
+/// of a patch that are not consistent with the rest of it are turned by two thirds of their own votes: what a gap separates has no other
+/// way to agree. A piece ends too where adjacent points object to each other more than at a horizon, and what hangs together with it by a
+/// few pairs of points only, as in a crevice, is turned by itself. What of open parts still faces away from all sensors that may have seen
+/// it, at a cosine v < 0, has a confidence of (1 + v) / 2 at most; where all points have been `seen`, what would be seen squarely from
+/// behind is turned, with (1 - v) / 2. Closed parts have one side: they are turned by `seen_from_inside` and by sensors inside them, where
+/// the winding number of `eta` is 1/4 and more (outside it is 0, however near or far), or, if the sensor of each point is known, by two
+/// thirds of the votes. `near`: Neighbours::of_all(k), or empty: patches have no pieces; `spacing`: of the points, for the winding number.
+/// O(N log(sensors) + N k), O(N) for each of at most 500 sensors, and all sensors for each open point that none of them sees from the
+/// front. Throws Cancelled.
 [[nodiscard]] HintEffect follow_hints(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near, double spacing,
                                       const Patches& patches, const Hints& hints, const SidedPoints& sided,
                                       const std::atomic<bool>* cancel = nullptr);

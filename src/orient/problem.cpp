@@ -39,10 +39,11 @@ std::vector<T> in_canonical_order(const CanonicalCloud& cloud, const std::vector
 Views find_views(const CanonicalCloud& cloud, const Hints& hints) {
   Views views;
   for (const Vec3& sensor : hints.sensors) views.places.push_back(cloud.frame.to_unit(sensor));
-  if (views.places.size() > 1) views.of_point = in_canonical_order(cloud, hints.sensor_of_point);
-  const bool some = std::count(views.of_point.begin(), views.of_point.end(), kNoSensor) > 0;
-  const bool each = views.places.size() == 1 || (!views.of_point.empty() && !some);
-  if (each && may_be_seen(cloud.points(), views)) return views;
+  views.of_point = in_canonical_order(cloud, hints.sensor_of_point);
+  const bool named = views.places.size() == 1 || !views.of_point.empty();
+  const bool each = std::count(views.of_point.begin(), views.of_point.end(), kNoSensor) == 0;
+  if (views.places.size() == 1) views.of_point.clear();
+  if (named && each && may_be_seen(cloud.points(), views)) return views;
   const std::optional<Vec3> shown = find_viewpoint(cloud.set, cloud.frame.to_unit({0, 0, 0}));
   return shown ? Views{{*shown}, {}} : Views{};
 }
