@@ -58,18 +58,14 @@ double quantile(std::vector<double> values, double share) {
 
 // Calls visit(point, its `count` nearest, their squared distances) for about `places` points, spread along their order.
 template <typename Visit>
-void for_some(const Neighbours& tree, const std::vector<Vec3>& points, std::size_t places, std::size_t count, Visit visit) {
+void for_some(const PointSet& set, std::size_t places, std::size_t count, Visit visit) {
   std::vector<std::uint32_t> index;
   std::vector<double> squared;
+  const std::vector<Vec3>& points = set.points();
   for (std::size_t i = 0; i < points.size(); i += std::max<std::size_t>(1, points.size() / places)) {
-    tree.nearest(points[i], count, index, squared);
+    set.tree().nearest(points[i], count, index, squared);
     visit(points[i], index, squared);
   }
-}
-
-template <typename Visit>
-void for_some(const PointSet& set, std::size_t places, std::size_t count, Visit visit) {
-  for_some(set.tree(), set.points(), places, count, visit);
 }
 
 // The residual at this quantile that noise of standard deviation 1 leaves of `count` points, an even number: x with
@@ -85,22 +81,15 @@ double expected_residual(std::size_t count, double share) {
   });
 }
 
-// How far the points are from height fields through `count` of them: the nearest, or, of what a camera has seen, the nearest in its image,
-// with heights along the lines of sight.
+// How far the points are from height fields through `count` of them.
 class Residuals {
  public:
   Residuals(const PointSet& set, std::size_t count) : count_(count) {
     const std::vector<Vec3>& points = set.points();
-    const auto add = [&](const auto& index, const Vec3& normal) {
+    for_some(set, kPlaces, count, [&](const Vec3&, const auto& index, const auto&) {
+      const Vec3 normal = fit_plane(points, index.data(), index.size()).normal;
       residuals_.push_back(quadratic_residual(points, index.data(), index.size(), normal, set.spacing()));
-    };
-    if (set.views().is_one()) {
-      const std::vector<Vec3> sights = directions_from(set.views().places.front(), points);
-      for_some(Neighbours(sights), sights, kPlaces, count, [&](const Vec3& sight, const auto& index, const auto&) { add(index, sight); });
-    } else {
-      for_some(set, kPlaces, count,
-               [&](const Vec3&, const auto& index, const auto&) { add(index, fit_plane(points, index.data(), index.size()).normal); });
-    }
+    });
   }
   // The noise that leaves such a residual in this share of the neighbourhoods, while it is small.
   [[nodiscard]] double scatter(double share) const { return quantile(residuals_, share) / expected_residual(count_, share); }
@@ -158,7 +147,6 @@ bool on_exact_planes(const PointSet& set) {
 double scattered_noise(const PointSet& set, const Residuals& residuals) {
   const double spacing = set.spacing();
   const double flattest = residuals.scatter(kFlattest);
-  if (set.views().is_one()) return flattest < kLeast * spacing ? 0 : residuals.scatter(kFlat);  // no walls
   // Shape lifts the residuals of fewer points less, noise as much.
   if (flattest < kLeast * spacing || Residuals(set, kClosest).scatter(kFlattest) < kOfNoise * residuals.scatter(kFlat)) return 0;
   const double filled = flattest / (kSaturation * spacing);

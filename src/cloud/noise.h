@@ -26,8 +26,6 @@ inline constexpr double kRoundingCumulant = rounding_moment(4) - 3 * kRoundingVa
 ///   - Against two or three layers of a smooth surface there is layered_deviation() of 256 neighbours, its 10 % quantile; the lesser of the
 ///     two counts. It needs the layers to be smooth as far as that. Noise above h fills such neighbourhoods as well, so every fourth point
 ///     is taken then, as often as needed.
-///   - Of what one camera has seen (PointSet::views()), neighbours are those in its image and heights are along the lines of sight: the
-///     flattest 2 % of 12 points say whether there is noise, the flattest 10 % how much.
 ///   - Less than 0.04 h is none.
 ///   - Rounding leaves noise as well: rounding_noise().
 /// Within about 15 % of the truth on smooth shapes from 0.1 to 3 h and on walls of 3 sigma (docs/evidence/noise.md). Same units as the

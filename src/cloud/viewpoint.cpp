@@ -38,6 +38,14 @@ std::vector<std::uint32_t> without(const std::vector<std::uint32_t>& index, cons
   return others;
 }
 
+// Unit vectors from a place.
+std::vector<Vec3> directions_from(const Vec3& place, const std::vector<Vec3>& points) {
+  std::vector<Vec3> directions;
+  directions.reserve(points.size());
+  for (const Vec3& p : points) directions.push_back(vector::normalised(vector::subtract(p, place)));
+  return directions;
+}
+
 class ViewpointSearch {
  public:
   explicit ViewpointSearch(const PointSet& set) : points_(set.points()), within_(kExactScatter * set.spacing()) {
@@ -210,13 +218,6 @@ class ViewpointSearch {
 };
 
 }  // namespace
-
-std::vector<Vec3> directions_from(const Vec3& place, const std::vector<Vec3>& points) {
-  std::vector<Vec3> directions;
-  directions.reserve(points.size());
-  for (const Vec3& p : points) directions.push_back(vector::normalised(vector::subtract(p, place)));
-  return directions;
-}
 
 std::optional<Vec3> find_viewpoint(const PointSet& set, const Vec3& origin) {
   if (set.size() < kFewestSeen) return std::nullopt;

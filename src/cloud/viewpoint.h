@@ -34,9 +34,6 @@ namespace g3r {
 /// The same of several: each at its place, of at least 192 points.
 [[nodiscard]] bool may_be_seen(const std::vector<Vec3>& points, const Views& views);
 
-/// Unit vectors from a place to points.
-[[nodiscard]] std::vector<Vec3> directions_from(const Vec3& place, const std::vector<Vec3>& points);
-
 /// Whether a plane through a point of the set holds the line of sight to it, from where PointSet::views() says, to the precision of exact
 /// planes: those of rows of pixels do, a surface that is seen does not.
 [[nodiscard]] bool is_along_sight(const PointSet& set, std::size_t point, const Vec3& normal);

@@ -82,7 +82,7 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
   problem.spacing = typical_spacing(spacing_before_thinning(set.local_spacing(), problem.known.relative_spacing));
   const std::optional<double> given = known_noise(problem.spacing);
   if (set.views().known()) {
-    problem.view_noise = given ? *given : estimate_noise(set);
+    problem.view_noise = given ? *given : largest_scatter(set);
   } else {
     problem.noise = given ? *given : noise ? *noise : estimate_noise(set);
   }
