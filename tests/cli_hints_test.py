@@ -29,13 +29,15 @@ class Hints(ProgramTest):
                     points.append(p)
         return points
 
-    def depth_frame(self):
-        """A ball before a wall as a camera at the origin sees them: one open surface on the other, with a gap in depth between them."""
+    def depth_frame(self, jitter=0):
+        """A ball before a wall as a camera at the origin sees them: one open surface on the other, with a gap in depth between them. With
+        a jitter, of pixels, no rows and columns show where it stood."""
+        random_ = random.Random(3)
         points = []
         step = 2 if is_sanitized() else 1
         for u in range(-40, 41, step):
             for v in range(-30, 31, step):
-                ray = (u / 66, v / 66, 1.0)
+                ray = ((u + jitter * random_.uniform(-1, 1)) / 66, (v + jitter * random_.uniform(-1, 1)) / 66, 1.0)
                 a, b = sum(c * c for c in ray), 2 * ray[2]
                 discriminant = b * b - a * (4 - 0.16)
                 depth = (b - math.sqrt(discriminant)) / a if discriminant > 0 else 3.0
@@ -87,7 +89,7 @@ class Hints(ProgramTest):
         self.assertNotIn("hint", self.expect(OK, "orient", "ball.ply", "out.ply", "--inside", "0,0,0.5", "--sensor", "0,0,5").err)
 
     def test_the_file_may_say_where_the_scanner_stood(self):
-        points = self.depth_frame()
+        points = self.depth_frame(jitter=0.05)
         header = ("VERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH %d\nHEIGHT 1\nVIEWPOINT 1 2 3 1 0 0 0\n"
                   "POINTS %d\nDATA ascii\n" % (len(points), len(points)))
         with open(self.path("frame.pcd"), "w") as file:
