@@ -24,6 +24,8 @@ inline constexpr std::size_t kPlaces = 2000;
 inline constexpr std::size_t kFewPlaces = 500;
 /// Nearest points that say what a surface is like at a place: fewer follow the noise or the sampling, more reach across walls.
 inline constexpr std::size_t kPatchNeighbours = 12;
+/// A neighbourhood is no larger part of a cloud than one in so many points: larger ones follow its shape.
+inline constexpr std::size_t kSmallPart = 16;
 /// So many times as many points of a surface reach twice as far.
 inline constexpr std::size_t kTwiceAsFar = 4;
 /// Reach in spacings of Gaussian weights over near points: without them CAD models have up to 1.13 times the error.

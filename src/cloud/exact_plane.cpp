@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 namespace g3r {
@@ -125,6 +126,13 @@ ExactPlane find_exact_plane(const std::vector<Vec3>& points, const std::vector<s
   if (best.held < proof(around.count, kExactScatter)) return {};
   const Held held = fit_to_held(points, index, around, best.normal, {0, 0, 0}, kExactScatter);
   return held.fit.breadth < kLineBreadth ? ExactPlane{} : held.plane();
+}
+
+std::vector<std::uint32_t> beside_plane(const std::vector<std::uint32_t>& index, const std::vector<std::uint32_t>& held) {
+  std::vector<std::uint32_t> others{index.front()};
+  std::copy_if(index.begin() + 1, index.end(), std::back_inserter(others),
+               [&](std::uint32_t i) { return std::find(held.begin(), held.end(), i) == held.end(); });
+  return others;
 }
 
 ExactPlane find_scattered_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing, double scatter,

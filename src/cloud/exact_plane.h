@@ -31,8 +31,11 @@ struct ExactPlane {
 [[nodiscard]] ExactPlane find_exact_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing,
                                           const Vec3* towards = nullptr);
 
-/// The same among points that scatter by `scatter` (standard deviation, above 0) about their surfaces. The plane has to hold, to within 2.5
-/// `scatter`, so many points that points which fill the ball of the 33 would give as many to any of the 55 candidates by chance
+/// The first of the points, through which planes are looked for, and those of the others that a plane (ExactPlane::points) does not hold.
+[[nodiscard]] std::vector<std::uint32_t> beside_plane(const std::vector<std::uint32_t>& index, const std::vector<std::uint32_t>& held);
+
+/// find_exact_plane() among points that scatter by `scatter` (standard deviation, above 0) about their surfaces. The plane has to hold, to
+/// within 2.5 `scatter`, so many points that points which fill the ball of the 33 would give as many to any of the 55 candidates by chance
 /// kFalseAlarms times (binomial law: detection a contrario, Desolneux, Moisan, Morel, "Meaningful alignments", International Journal of
 /// Computer Vision 2000): 8 of 33 for a scatter of 0.01 spacings, 10 for 0.04, 13 for 0.08; from 0.15 on that is more than half of them,
 /// and there is none. It is fitted anew to what it holds for as long as that becomes more, and must not be the plane of a bend: a quadratic

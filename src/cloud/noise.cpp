@@ -45,8 +45,6 @@ constexpr std::size_t kFewestLevels = 5;
 constexpr std::size_t kLayerNeighbours = 256;
 // What the quantile kFlat of them says on smooth surfaces, over the noise.
 constexpr double kLayerBias = 0.92;
-// A neighbourhood is no larger part of a cloud than one in so many points: larger ones follow its shape.
-constexpr std::size_t kSmallPart = 16;
 
 double share_of(std::size_t some, std::size_t all) { return static_cast<double>(some) / static_cast<double>(all); }
 
@@ -122,10 +120,7 @@ ExactPlane find_facet(const PointSet& set, const std::vector<std::uint32_t>& ind
   const std::vector<Vec3>& points = set.points();
   const ExactPlane plane = find_exact_plane(points, index, set.spacing());
   if (plane.breadth < kFacetBreadth || is_along_sight(set, index.front(), plane.normal)) return {};
-  std::vector<std::uint32_t> others{index.front()};
-  std::copy_if(index.begin(), index.end(), std::back_inserter(others),
-               [&](std::uint32_t i) { return std::find(plane.points.begin(), plane.points.end(), i) == plane.points.end(); });
-  return find_exact_plane(points, others, set.spacing()).points.empty() ? plane : ExactPlane{};
+  return find_exact_plane(points, beside_plane(index, plane.points), set.spacing()).points.empty() ? plane : ExactPlane{};
 }
 
 // Whether many of the points lie on exact planes along the surface, and not because rounding has put them there.

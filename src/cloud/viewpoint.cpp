@@ -21,21 +21,13 @@ constexpr int kMostPlanes = 3;
 // Of the places that could show it, those whose rows are in sight: planes through the axis of a camera hold its middle row and column from
 // any place on the axis, 2 of sqrt(N) rows; frames whose depths are in coarse steps have a sixth or more.
 constexpr double kFewestRows = 0.1;
-// Points whose nearest are a part of the cloud: as for the estimates of noise.
-constexpr std::size_t kFewestSeen = 192;
+// Points whose neighbourhoods are small parts of the cloud.
+constexpr std::size_t kFewestSeen = kSmallPart * kPatchNeighbours;
 
 double length(const Vec3& a) { return std::sqrt(vector::dot(a, a)); }
 
 bool is_along(const Vec3& viewpoint, const Vec3& point, const Vec3& normal) {
   return std::abs(vector::dot(normal, vector::normalised(vector::subtract(viewpoint, point)))) <= kExactScatter;
-}
-
-// The first of the points, and those that are none of the others named.
-std::vector<std::uint32_t> without(const std::vector<std::uint32_t>& index, const std::vector<std::uint32_t>& those) {
-  std::vector<std::uint32_t> others{index.front()};
-  std::copy_if(index.begin() + 1, index.end(), std::back_inserter(others),
-               [&](std::uint32_t i) { return std::find(those.begin(), those.end(), i) == those.end(); });
-  return others;
 }
 
 // Unit vectors from a place.
@@ -58,7 +50,7 @@ class ViewpointSearch {
       for (int k = 0; k < kMostPlanes; ++k) {
         ExactPlane plane = find_exact_plane(points_, index, set.spacing());
         if (plane.points.empty()) break;
-        index = without(index, plane.points);
+        index = beside_plane(index, plane.points);
         place.planes.push_back(std::move(plane));
       }
       places_.push_back(std::move(place));
@@ -165,7 +157,7 @@ class ViewpointSearch {
     for (const ExactPlane& plane : place.planes) {
       if (is_along(candidate, point_of(place), plane.normal)) continue;
       on_facet = true;
-      index = without(index, plane.points);
+      index = beside_plane(index, plane.points);
     }
     if (index.size() <= kPlaneTerms) return Answer::kSilent;
     const std::size_t proof = proving_number(index.size() - 2, kExactScatter, kPlaneNeighbours) + 2;
@@ -174,7 +166,7 @@ class ViewpointSearch {
     if (hides_another(index, sight)) return Answer::kNo;
     const std::vector<std::uint32_t> row = most_in_sight(index, sight);
     if (row.size() < proof) return Answer::kNo;
-    return on_facet || most_in_sight(without(index, row), sight).size() >= proof ? Answer::kYes : Answer::kNo;
+    return on_facet || most_in_sight(beside_plane(index, row), sight).size() >= proof ? Answer::kYes : Answer::kNo;
   }
 
   [[nodiscard]] bool hides_another(const std::vector<std::uint32_t>& index, const Vec3& sight) const {
