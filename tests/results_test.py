@@ -27,6 +27,12 @@ class Results(unittest.TestCase):
             with self.subTest(name):
                 self.assertGreater(len(table(results).splitlines()), 4)
 
+    def test_the_tables_of_models_have_every_model(self):
+        results = summary.Results()
+        for table, rows in (("models-50k", results.of("default", "clean", 50000)), ("mesh-models", results.meshes["default", "clean", 50000])):
+            said = [line.split("|")[1].strip() for line in summary.TABLES[table](results).splitlines() if line.startswith("|")]
+            self.assertEqual(said[2:], sorted(rows), table)
+
     def test_every_row_says_its_commit_and_a_table_all_of_its_own(self):
         results = summary.Results()
         rows = [row for table in results.files.values() for kind in summary.LISTS for row in table[kind]]
