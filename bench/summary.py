@@ -32,6 +32,7 @@ NAMES = {  # of the methods, as the tables show them, in this order
     "pgr": "PGR",
 }
 SHORT = {"default": "g3r", "wnnc": "wnnc", "wnnc;widths=clean": "wnnc preset", "agr": "agr", "paper": "paper", "pgr": "pgr"}
+WORST = 10  # models that a table of models has: what fails is among them, and docs/results has all
 POISSON = ";mesher=poisson;depth=10"
 
 
@@ -160,11 +161,17 @@ def noise_table(results):
     return of_commit(groups) + table_text(["noise", "method", "models", "AE_p mean", "median", "PCO mean", "lowest (model)"], rows)
 
 
+def worst_models(group, score):
+    """The WORST models by a score, which is larger where it is worse; of equal ones the first by name."""
+    return sorted(sorted(group), key=lambda model: -score(model))[:WORST]
+
+
 def model_table(results, points):
-    """One row per model, AE_p/PCO of every method."""
+    """AE_p/PCO of every method on the models of which the default has the largest AE_p."""
     groups = [(SHORT[method], results.of(method, "clean", points)) for method in NAMES]
     columns = [(title, group) for title, group in groups if group]
-    models = sorted(set().union(*(group for _, group in columns)))
+    default = results.of("default", "clean", points)
+    models = worst_models(default, lambda model: default[model][1][0])
 
     def cell(group, model):
         if model not in group:
@@ -178,8 +185,8 @@ def model_table(results, points):
 
 def mesh_pairs(results):
     """(title, field mesher, screened Poisson) of every input that both were measured on."""
-    for title, method, kind in (("true normals", "true", "clean"), ("normals of g3r", "default", "clean"),
-                                ("normals of g3r, noise of 0.5 %", "default", "noise:0.5")):
+    for title, method, kind in (("true", "true", "clean"), ("g3r", "default", "clean"),
+                                ("g3r, noise 0.5 %", "default", "noise:0.5")):
         field, poisson = (results.meshes.get((name, kind, 50000), {}) for name in (method, method + POISSON))
         if field and poisson:
             yield title, field, poisson
@@ -197,14 +204,15 @@ def mesh_table(results):
                          f"{statistics.mean(ours) / statistics.mean(theirs):.2f}",
                          f"{statistics.median(ours):.3f} / {statistics.median(theirs):.3f}",
                          f"{field[worst][1][index] / poisson[worst][1][index]:.2f} ({worst})"])
-    head = ["points and normals", "score", "mean", "ratio", "median", "worst ratio (model)"]
+    head = ["normals", "score", "mean", "ratio", "median", "worst ratio (model)"]
     return of_commit(groups) + table_text(head, rows)
 
 
 def mesh_models(results):
-    title, field, poisson = next(pair for pair in mesh_pairs(results) if pair[0] == "normals of g3r")
+    """Of the models of which the field mesher has the largest AE_m."""
+    title, field, poisson = next(pair for pair in mesh_pairs(results) if pair[0] == "g3r")
     rows = []
-    for model in sorted(set(field) & set(poisson)):
+    for model in worst_models(set(field) & set(poisson), lambda model: field[model][1][1]):
         ours, theirs = field[model][1], poisson[model][1]
         pairs = [f"{unit * ours[i]:.3f}/{unit * theirs[i]:.3f}" for i, unit in ((0, 1e3), (1, 100), (2, 100))]
         counts = ["/".join("?" if group[i] is None else str(int(group[i])) for group in (ours, theirs)) for i in (3, 4, 5)]

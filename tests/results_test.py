@@ -27,6 +27,15 @@ class Results(unittest.TestCase):
             with self.subTest(name):
                 self.assertGreater(len(table(results).splitlines()), 4)
 
+    def test_the_tables_of_models_have_the_worst_ones_first(self):
+        results = summary.Results()
+        for table, rows, score in (("models-50k", results.of("default", "clean", 50000), 0),
+                                   ("mesh-models", results.meshes["default", "clean", 50000], 1)):
+            said = [line.split("|")[1].strip() for line in summary.TABLES[table](results).splitlines() if line.startswith("|")][2:]
+            errors = [rows[model][1][score] for model in said]
+            self.assertEqual(len(said), summary.WORST, table)
+            self.assertEqual(errors, sorted((scores[score] for _, scores in rows.values()), reverse=True)[:summary.WORST], table)
+
     def test_every_row_says_its_commit_and_a_table_all_of_its_own(self):
         results = summary.Results()
         rows = [row for table in results.files.values() for kind in summary.LISTS for row in table[kind]]

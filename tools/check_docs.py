@@ -13,8 +13,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 COLUMNS = 140  # as in .clang-format
 # References whose tables have one long line per entry; a line of a table cannot be broken.
-WIDE_TABLES = {"docs/formats.md", "docs/parameters.md", "docs/report.md", "SECURITY.md", "bench/README.md", "packaging/README.md",
-               "docs/python.md"}
+WIDE_TABLES = {"docs/formats.md", "docs/parameters.md", "bench/README.md", "packaging/README.md", "docs/python.md"}
 # What each stands for is in docs/glossary.md.
 PRIVATE_WORDS = {
     r"told (from|apart)": "distinguished",

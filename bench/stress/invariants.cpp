@@ -248,8 +248,7 @@ bool warns_of_sides(const Stats& stats) {
                      [](const std::string& w) { return w.find("non-finite") == std::string::npos && w.find("hint") == std::string::npos; });
 }
 
-// Whether another side of the surface is too near for the samples, or the noise, to distinguish them: bench/README.md, "Reading the
-// tables".
+// Whether another side of the surface is too near for the samples, or the noise, to distinguish them: docs/glossary.md, "thin".
 bool is_thin(const Scene& scene, std::size_t point, double deviation) {
   std::vector<double> squared;
   for (const Vec3& p : scene.points) {

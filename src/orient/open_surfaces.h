@@ -43,8 +43,8 @@ struct OpenSurfaces {
 /// (on_two_walls()), it is tested without the closed parts, and other hypotheses are tried, from the finest scale on which
 /// the samples are a surface (scan lines are one only across their gaps) and two with sites twice as far apart each:
 ///   1. sites an even distance apart, with the planes of their surroundings (place_sites());
-///   2. signs by agreement of neighbours (agree_on_signs()), weights w_ij = f_i f_j exp(-0.3 |d|^2 / r^2) (n_i . n_j - 2 (n_i . e)(n_j .
-///   e)),
+///   2. signs by agreement of neighbours (agree_on_signs()), weights
+///        w_ij = f_i f_j exp(-|d|^2 / (2 (1.5 r)^2)) (n_i . n_j - 2 (n_i . e)(n_j . e)),
 ///      d = p_j - p_i, e = d / |d|, r the distance of the sites, f = 1 - flatness: two normals agree if one is the mirror image of the
 ///      other across the plane between the points, as on every arc (Xie, Wang, Hua, Qin, Kaufman, "Piecewise C1 continuous surface
 ///      reconstruction of noisy point clouds via local implicit quadric regression", IEEE Visualization 2003);
@@ -61,10 +61,10 @@ struct OpenSurfaces {
 /// one side, if the mean defect of the hypothesis is less than that of the solution. Where the solution stays as it is, J = max(0, jump of
 /// its site) certifies a side: where walls are too close for the sampling the field does not jump from 0 to 1, whatever the sides. J is the
 /// largest jump, and 1 - scaled_defect where sites are thinned for noise, which makes layers of single wrong patches. Under noise it counts
-/// R times, R the length of the mean of the normals of the points of the site and the six around it: two walls closer together than 4 sigma
-/// are one site or two neighbours, and which normal is whose is chance. Points that face the other way than the mean of their site have 0,
-/// and all points of a cloud of fewer than 30. `noise`: standard deviation; `normals`: N unit vectors, in: the solution, out: changed on
-/// open surfaces. O(N log N).
+/// R times, R the length of the mean of the normals of the points of the site and the eight around it: two walls closer together than 4
+/// sigma are one site or two neighbours, and which normal is whose is chance. Points that face the other way than the mean of their site
+/// have 0, and all points of a cloud of fewer than 30. `noise`: standard deviation; `normals`: N unit vectors, in: the solution, out:
+/// changed on open surfaces. O(N log N).
 [[nodiscard]] OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan& sums, std::vector<Vec3>& normals,
                                               const std::atomic<bool>* cancel = nullptr);
 
