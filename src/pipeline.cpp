@@ -222,13 +222,19 @@ struct Oriented {
   double agreed = 0;  // share of the wanted points that lie on open surfaces whose sides agree: these could face either way, but together
 };
 
-Oriented orient_problem(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
-  Oriented out;
-  out.solution = solve(problem, options, stages, stats);
-  solve_open_surfaces_apart(problem, options, stages, stats, out.solution);
+Solution solve_problem(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
+  Solution solution = solve(problem, options, stages, stats);
+  solve_open_surfaces_apart(problem, options, stages, stats, solution);
   if (const Views& views = problem.cloud.set.views(); views.known()) {
-    open_to_views(views, problem.cloud.points(), out.solution.open_surfaces, out.solution.refinement.normals, out.solution.eta);
+    open_to_views(views, problem.cloud.points(), solution.open_surfaces, solution.refinement.normals, solution.eta);
   }
+  return solution;
+}
+
+// How certain the sides are, and what there is to say of it.
+Oriented assess(const Problem& problem, Solution solution, Stats& stats) {
+  Oriented out;
+  out.solution = std::move(solution);
   const Refinement& refined = out.solution.refinement;
   if (problem.noise > 0) {
     const Sums around = sums_over(problem.cloud.set.near(), out.solution.eta);
@@ -288,18 +294,21 @@ std::vector<OtherNoise> other_noises(const Problem& problem, const Options& opti
 struct Attempt {
   Problem problem;
   Oriented oriented;
+  Stats solved;  // before the sides were assessed
   Stats stats;
 };
 
 Attempt attempt(Problem problem, const PointsView& points, const Options& options, Stages& stages) {
-  Attempt out{std::move(problem), {}, {}};
-  describe(out.problem, points, options, out.stats);
-  require_memory(out.stats.planned_memory_bytes, options);
+  Attempt out{std::move(problem), {}, {}, {}};
+  describe(out.problem, points, options, out.solved);
+  require_memory(out.solved.planned_memory_bytes, options);
   const PointSet& set = out.problem.cloud.set;
   static_cast<void>(set.smoothed_spacing());  // what solve and areas need of the neighbours,
   static_cast<void>(set.spacing());           // and what the certificate does
   make_room_for_sums(set);
-  out.oriented = orient_problem(out.problem, options, stages, out.stats);
+  Solution solution = solve_problem(out.problem, options, stages, out.solved);
+  out.stats = out.solved;
+  out.oriented = assess(out.problem, std::move(solution), out.stats);
   return out;
 }
 
@@ -320,6 +329,10 @@ Orientation orient_in_arena(const PointsView& points, Known known, const Options
                             std::vector<std::uint8_t>* open) {
   require_sound(options.hints, points.count);
   Attempt best = orient_with_best_noise(points, std::move(known), options, stages);
+  if (polish_projected(best.problem, options, stages, best.oriented.solution)) {
+    best.stats = best.solved;
+    best.oriented = assess(best.problem, std::move(best.oriented.solution), best.stats);
+  }
   Solution& solution = best.oriented.solution;
   std::vector<float>& confidence = best.oriented.confidence;
   Orientation out;

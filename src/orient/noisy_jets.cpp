@@ -5,6 +5,7 @@
 #include "cloud/quadratic_patch.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
+#include "orient/same_side.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +19,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kBlock = parallel::kSmallBlock;  // points among which fits are shared
-constexpr double kNarrowest = 4.2;                     // first reach over sqrt(s h): 3.6 leaves 5 % more of the error, 4.8 blurs detail
 constexpr double kWider = std::numbers::sqrt2;         // from one reach to the next: twice the area
 constexpr double kNormalWeight = 0.3;                  // the normals are those of a smooth field already: less leaves noise, more blurs
 constexpr double kShared = 0.25;                       // of the reach: how far a fit serves other points
@@ -33,10 +33,10 @@ struct Fit {
 class Fitter {
  public:
   Fitter(const std::vector<Vec3>& points, const Neighbours& neighbours, const std::vector<Vec3>& normals, double noise, double spacing)
-      : points_(points), neighbours_(neighbours), normals_(normals), noise_(noise), spacing_(spacing) {}
+      : points_(points), normals_(normals), noise_(noise), spacing_(spacing), side_(points, neighbours, normals) {}
 
   [[nodiscard]] double noise() const { return noise_; }
-  [[nodiscard]] double first_reach() const { return kNarrowest * std::sqrt(noise_ * spacing_); }
+  [[nodiscard]] double first_reach() const { return kNarrowestReach * std::sqrt(noise_ * spacing_); }
 
   // From now on, fits with the noise of points [begin, end) where it is less than the cloud's: what is more may be detail. One of as many
   // points as are near one tells.
@@ -44,8 +44,8 @@ class Fitter {
     scatter_.clear();
     for (std::size_t i = begin; i < end; i += kSpacingNeighbours) {
       const double reach = kNoiseReach * spacing_;
-      if (!gather(i, to_eigen(normals_[i]), reach) || members_.empty()) continue;
-      const double found = residual(fit_quadratic_patch(members_, 0, reach / 2, 0), members_);
+      if (!gather(i, to_eigen(normals_[i]), reach) || side_.members().empty()) continue;
+      const double found = residual(fit_quadratic_patch(side_.members(), 0, reach / 2, 0), side_.members());
       if (std::isfinite(found)) scatter_.push_back(found);
     }
     if (scatter_.empty()) return;
@@ -60,18 +60,19 @@ class Fitter {
     Vector3d axis = normal;
     Fit best;
     narrower_.clear();
-    index_.clear();
-    for (double reach = first_reach(); reach > 0 && index_.size() < std::min(kPlaces, points_.size()); reach *= kWider) {
+    bool is_widest = false;
+    for (double reach = first_reach(); reach > 0 && !is_widest; reach *= kWider) {
       if (!gather(i, axis, reach)) break;
-      if (members_.size() <= kQuadraticTerms) continue;
-      const QuadraticPatch patch = fit_quadratic_patch(members_, 0, reach / 2, kNormalWeight);
+      is_widest = side_.seen() >= std::min(kPlaces, points_.size());
+      if (side_.members().size() <= kQuadraticTerms) continue;
+      const QuadraticPatch patch = fit_quadratic_patch(side_.members(), 0, reach / 2, kNormalWeight);
       Vector3d fitted;
       (void)patch.distance(Vector3d::Zero(), &fitted);
       if (fitted.dot(normal) <= kSameSide) continue;
       const bool agrees =
           std::all_of(narrower_.begin(), narrower_.end(), [&](const Estimate& e) { return (e.normal - fitted).norm() <= e.deviation; });
       if (!agrees) break;
-      narrower_.push_back({fitted, noise_ * std::sqrt(6 / total_) / reach});
+      narrower_.push_back({fitted, noise_ * std::sqrt(6 / side_.weight()) / reach});
       best = {patch, reach};
       axis = fitted;
     }
@@ -84,40 +85,14 @@ class Fitter {
     double deviation = 0;
   };
 
-  // The points about point i on the side of `axis`, of more than kPlaces evenly picked ones; false where more face the other way than do by
-  // chance: another wall is too close.
-  bool gather(std::size_t i, const Vector3d& axis, double reach) {
-    const Vector3d centre = to_eigen(points_[i]);
-    neighbours_.within(points_[i], std::hypot(reach, kSigmas * noise_), index_);
-    const std::size_t stride = 1 + index_.size() / kPlaces;
-    members_.clear();
-    total_ = 0;
-    double opposed = 0;
-    for (std::size_t k = 0; k < index_.size(); k += stride) {
-      const Vector3d d = to_eigen(points_[index_[k]]) - centre;
-      const double height = axis.dot(d);
-      const double weight = 1 - (d.squaredNorm() - height * height) / (reach * reach);
-      if (weight <= 0) continue;
-      const Vector3d n = to_eigen(normals_[index_[k]]);
-      const double cosine = n.dot(axis);
-      if (cosine > kSameSide) {
-        members_.push_back({d, n, weight, 0});
-        total_ += weight;
-      } else if (cosine <= 0) {
-        opposed += weight;
-      }
-    }
-    return opposed <= kFalseAlarms * (opposed + total_);
-  }
+  // False where more of the points around point i face the other way than do by chance: another wall is too close.
+  bool gather(std::size_t i, const Vector3d& axis, double reach) { return side_.gather(i, axis, reach, kSigmas * noise_) <= kFalseAlarms; }
 
   const std::vector<Vec3>& points_;
-  const Neighbours& neighbours_;
   const std::vector<Vec3>& normals_;
   double noise_;
   const double spacing_;
-  std::vector<std::uint32_t> index_;
-  std::vector<FitPoint> members_;
-  double total_ = 0;  // weight of the members
+  SameSide side_;
   std::vector<Estimate> narrower_;
   std::vector<double> scatter_;
 };

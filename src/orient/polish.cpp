@@ -56,7 +56,8 @@ Polished polish(PolishCloud cloud, const Settings& settings, Refinement refined,
   const std::vector<Steps> schedule{{settings.polish_steps, StepKind::kConjugateGradient}};
   const auto still_going = [&stages](int, int, double) { stages.still_going(); };
   Polished polished;
-  polished.eta = system.to_areas(solve_iteratively(system, schedule, 0, system.from_areas(std::move(start)), still_going).eta);
+  polished.eta =
+      system.to_areas(solve_iteratively(system, schedule, settings.polish_tolerance, system.from_areas(std::move(start)), still_going).eta);
   polished.refinement = refine_normals(wider, polished.eta);
   return polished;
 }

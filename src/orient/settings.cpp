@@ -4,6 +4,7 @@
 #include "cloud/chance.h"
 #include "cloud/sites.h"
 #include "orient/open_surfaces.h"
+#include "orient/projection.h"
 
 #include <g3r/error.h>
 
@@ -103,23 +104,28 @@ void require(bool good, const std::string& message) {
   if (!good) throw InvalidInput(message);
 }
 
+// Widths and weights of the polish for noise of this many spacings.
+void polish_under_noise(double noise, Settings& s) {
+  const double patch = std::pow(noise, kNoisyPolishPower) * s.spacing;
+  s.polish_epsilon = {s.polish_epsilon.points, kNoisyPolishEpsilon * patch, 1 - kNoisyPolishPower};
+  s.polish_width = {s.polish_width.points, kNoisyPolishWidth * patch, 1 - kNoisyPolishPower};
+  s.polish_damping = kFlatPatch / s.spacing;
+  // W eta = 1/2 is wrong at points off the surface, and the more so the farther off they are: the length whose cube its weight is falls
+  // from h to that over hypot(1, sigma / h). The solve stops so early that less weight would change nothing.
+  s.polish_winding_weight = kPolishWindingWeight * cube(s.spacing / std::hypot(noise, 1));
+}
+
 // Widths, steps and the polish of the default for noise of this many spacings.
 void follow_noise(double noise, const Options& options, std::size_t points, Settings& s) {
   const double width = noisy_width(noise) * s.spacing;
-  const double patch = std::pow(noise, kNoisyPolishPower) * s.spacing;
   s.noise = noise * s.spacing;
   s.refinement_width.noise = width;
   if (options.epsilon.unit == Length::Unit::kAuto) {
     s.epsilon.noise = width;
     s.coarsest_epsilon.noise = width;
   }
-  s.polish_epsilon = {s.polish_epsilon.points, kNoisyPolishEpsilon * patch, 1 - kNoisyPolishPower};
-  s.polish_width = {s.polish_width.points, kNoisyPolishWidth * patch, 1 - kNoisyPolishPower};
+  polish_under_noise(noise, s);
   if (s.polish_steps > 0) s.polish_steps = kFewSteps;
-  s.polish_damping = kFlatPatch / s.spacing;
-  // W eta = 1/2 is wrong at points off the surface, and the more so the farther off they are: in the polish the length whose cube its
-  // weight is falls from h to that over hypot(1, sigma / h). The solve stops so early that less weight would change nothing.
-  s.polish_winding_weight *= cube(1 / std::hypot(noise, 1));
   s.unsure_of_noise = noise;  // a noise of one h makes nearly all unsure
   if (s.epsilon.typical() > kFirstDistance * s.spacing) s.cluster_side = s.epsilon.typical();
   // A start from fewer points has lost the walls where noise asks for wider kernels: half of the sides of 95,000 points on walls of 3 h.
@@ -214,6 +220,13 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   s.first_sums = sum_plan(s.accuracy, cloud.size());
   const bool continued = options.accuracy == -1 && s.method == Method::kEnergy;
   s.sums = sum_plan(continued ? kContinuedAccuracy : s.accuracy, cloud.size());
+  return s;
+}
+
+Settings after_projection(const Settings& settings) {
+  Settings s = settings;
+  polish_under_noise(projected_noise(s.noise, s.spacing) / s.spacing, s);
+  s.polish_tolerance = s.continued_tolerance;
   return s;
 }
 

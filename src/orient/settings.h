@@ -47,6 +47,7 @@ struct Settings {
   bool coarse_to_fine = false;            ///< start from a solution on fewer points
   int polish_steps = 0;                   ///< conjugate gradients of polish(); 0: no polish
   KernelWidth polish_epsilon;             ///< of polish()
+  double polish_tolerance = 0;            ///< relative residual at which they end earlier
   double polish_damping = 0;              ///< of polish()
   double polish_winding_weight = 0;       ///< of polish()
   KernelWidth polish_width;               ///< of the refinement that ends polish()
@@ -92,6 +93,9 @@ inline constexpr double kContinuedAccuracy = 2e-2;
 inline constexpr std::size_t kFewestCoarsePoints = 10000;
 /// Where sides are unsure, around them or around facets, at most: 20 to 40 are enough as a rule.
 inline constexpr Steps kMoreSteps{60, StepKind::kConjugateGradient};
+/// The same with a polish for noisy points that project_points() has moved onto the surface: for the noise that this leaves.
+[[nodiscard]] Settings after_projection(const Settings& settings);
+
 /// Whether solve_coarse_to_fine() begins with fewer points.
 [[nodiscard]] bool starts_coarse(const Settings& settings, std::size_t points);
 

@@ -2,6 +2,7 @@
 
 #include "base/vector.h"
 #include "baselines/baseline.h"
+#include "cloud/canonical_cloud.h"
 #include "cloud/clusters.h"
 #include "cloud/sites.h"
 #include "cloud/spacing.h"
@@ -13,9 +14,11 @@
 #include "orient/noisy_jets.h"
 #include "orient/planes.h"
 #include "orient/polish.h"
+#include "orient/projection.h"
 #include "solve/dense_solver.h"
 #include "solve/energy_system.h"
 #include "solve/iterative_solver.h"
+#include "solve/part_system.h"
 #include "sum/fast_sum.h"
 
 #include <algorithm>
@@ -26,9 +29,9 @@
 namespace g3r {
 namespace {
 
-constexpr double kMinMinority = 1e-3;  // share of the points against most of their facet, from which facets are solved for
+constexpr double kMinMinority = 1e-3;  // share of the points on a doubtful side, from which facets or projected points are solved for
 constexpr double kChance = 1.12;       // of the typical spacing, up to which noise alone may have scattered points so far apart
-constexpr int kFacetRounds = 3;        // points on no facet come right after those on one, and facets grow
+constexpr int kMostRounds = 3;         // of facets, as points on none come right after those on one; and of projections
 
 bool runs(const Problem& problem, Step step) { return !contains(problem.settings.without, step); }
 
@@ -92,6 +95,17 @@ bool has_open_part(const OpenSurfaces& surfaces) {
   return std::any_of(surfaces.part.begin(), surfaces.part.end(), [](std::uint32_t part) { return part != OpenSurfaces::kNone; });
 }
 
+// The points whose sides come from the equations, ascending: not those on open surfaces, nor on others whose field is not at rest.
+std::vector<std::uint32_t> solved_points(const Solution& solution) {
+  const OpenSurfaces& surfaces = solution.open_surfaces;
+  std::vector<std::uint32_t> some;
+  for (std::uint32_t i = 0; i < solution.eta.size(); ++i) {
+    const bool is_solved = surfaces.part.empty() || (surfaces.part[i] == OpenSurfaces::kNone && surfaces.certainty[i] > kUndecided);
+    if (is_solved) some.push_back(i);
+  }
+  return some;
+}
+
 // Points on open surfaces get area vectors along the normals found for them.
 void set_open_areas(const OpenSurfaces& surfaces, const PointSet& set, const std::vector<Vec3>& normals, std::vector<Vec3>& eta) {
   const std::vector<double>& spacing = set.local_spacing();
@@ -108,7 +122,7 @@ void agree_on_facets(const Problem& problem, const std::vector<std::uint8_t>& pr
                      std::vector<Vec3>& normals, Stages& stages) {
   const PointSet& set = problem.cloud.set;
   const Settings& s = problem.settings;
-  for (int round = 0; round < kFacetRounds; ++round) {
+  for (int round = 0; round < kMostRounds; ++round) {
     const Facets facets = find_facets(set, proven, normals, problem.known.wanted);
     if (minority_share(facets, normals) < kMinMinority) return;
     make_room_for_sums(set);
@@ -163,18 +177,19 @@ Solution solve_on_points(const Problem& problem, const Options& options, Stages&
   if (s.polish_steps == 0) return solution;
   std::vector<Vec3>().swap(solution.eta);  // the polish starts from the refinement
   Polished polished = polish(polish_cloud(problem, options), s, std::move(solution.refinement), stages);
-  std::vector<Vec3>& normals = polished.refinement.normals;
+  solution = {std::move(polished.eta), std::move(polished.refinement), {}};
+  std::vector<Vec3>& normals = solution.refinement.normals;
   const auto find_open = [&](std::vector<Vec3>& sides) {
     if (!runs(problem, Step::kOpenSurfaces)) return OpenSurfaces{};
     return find_open_surfaces(set, problem.noise, s.sums, sides, stages.cancel());
   };
   OpenSurfaces surfaces = find_open(normals);
   if (has_open_part(surfaces)) {
-    set_open_areas(surfaces, set, normals, polished.eta);
+    set_open_areas(surfaces, set, normals, solution.eta);
     if (problem.is_clean()) fit_directions(problem, normals);
   } else if (problem.is_clean()) {
     const std::vector<Vec3> before = normals;
-    fit_surface(problem, polished.eta, normals, stages);
+    fit_surface(problem, solution.eta, normals, stages);
     // Facets and creases may have found other sides, which the certificate has not seen.
     if (!surfaces.part.empty()) {
       surfaces = find_open(normals);
@@ -182,7 +197,8 @@ Solution solve_on_points(const Problem& problem, const Options& options, Stages&
       surfaces.certified = certified_sides(set, problem.noise, s.sums, normals, stages.cancel());
     }
   }
-  return {std::move(polished.eta), std::move(polished.refinement), std::move(surfaces)};
+  solution.open_surfaces = std::move(surfaces);
+  return solution;
 }
 
 Refinement solve_clusters(const Clusters& clusters, const std::vector<double>& spacing, const Settings& s, Stages& stages, Stats& stats) {
@@ -335,6 +351,51 @@ void solve_open_surfaces_apart(const Problem& problem, const Options& options, S
     converged &= solve_apart(problem, parts[OpenSurfaces::kNone], false, options, stages, stats, solution);
   }
   stats.converged = converged;
+}
+
+bool polish_projected(const Problem& problem, const Options& options, Stages& stages, Solution& solution) {
+  const Settings& given = problem.settings;
+  const double left = projected_noise(problem.noise, problem.spacing);
+  const bool halves_variance = 2 * left * left <= problem.noise * problem.noise;
+  const bool on_points = !problem.baseline && problem.line_distance == 0 && given.polish_steps > 0;
+  if (!on_points || !halves_variance || problem.noise == 0 || !runs(problem, Step::kProjection)) return false;
+  const std::vector<std::uint32_t> some = solved_points(solution);
+  if (some.size() < kFewestSites) return false;
+  const bool are_all = some.size() == problem.cloud.size();
+  const PointSet set = are_all ? problem.cloud.set : PointSet(values_at(some, problem.cloud.points()));
+  const std::vector<double> relative = values_at(some, relative_spacing(problem, options));
+  const std::vector<double> spacing = times(problem.spacing, relative.empty() ? std::vector<double>{1} : relative);
+  const Settings s = after_projection(given);
+  std::vector<Vec3> normals = values_at(some, solution.refinement.normals);
+  std::vector<double> strength = values_at(some, solution.refinement.strength);
+  bool is_settled = false;
+  for (int round = 0; round < kMostRounds && !is_settled; ++round) {
+    const std::vector<Vec3> moved = project_points(set.points(), set.tree(), normals, problem.noise, spacing, stages.cancel());
+    const std::vector<std::uint32_t> order = morton_order(moved);  // that sums ask for
+    const std::vector<Vec3> points = values_at(order, moved);
+    const std::vector<double> roots = values_at(order, relative);
+    const std::vector<double> local = times(problem.spacing, roots);
+    Refinement start{values_at(order, normals), values_at(order, strength)};
+    const Polished polished = polish({points, local, point_areas(s, local), roots}, s, std::move(start), stages);
+    std::size_t turned = 0;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      const std::uint32_t i = order[k];
+      turned += vector::dot(normals[i], polished.refinement.normals[k]) < 0 ? 1 : 0;
+      normals[i] = polished.refinement.normals[k];
+      strength[i] = polished.refinement.strength[k];
+      solution.eta[some[i]] = polished.eta[k];
+    }
+    is_settled = static_cast<double>(turned) < kMinMinority * static_cast<double>(order.size());
+  }
+  for (std::size_t k = 0; k < some.size(); ++k) {
+    solution.refinement.normals[some[k]] = normals[k];
+    solution.refinement.strength[some[k]] = strength[k];
+  }
+  std::vector<float>& certified = solution.open_surfaces.certified;
+  if (certified.empty()) return true;
+  const std::vector<float> shown = certified_sides(set, problem.noise, s.sums, normals, stages.cancel());
+  for (std::size_t k = 0; k < some.size(); ++k) certified[some[k]] = shown[k];
+  return true;
 }
 
 void fit_noisy_surface(const Problem& problem, Stages& stages, Solution& solution) {

@@ -25,14 +25,15 @@ enum class Step {
   kCreases,       ///< and from the facets beside a crease
   kFacets,        ///< the points of a facet take one side
   kNoiseChoice,   ///< other noises are tried where many sides are unsure
+  kProjection,    ///< noisy points are moved onto their surface, and polished there
   kNoisyJets,     ///< directions of noisy clouds from wide quadratics
   kAreas,         ///< areas from the density of the points instead of the solution
   kCertificate    ///< the confidence of a side is lowered where the field does not certify it
 };
 
-inline constexpr std::array<std::string_view, 18> kStepNames = {
-    "viewpoint", "outliers", "noise",  "sites",   "coarse-start", "more-steps",   "polish",     "local-widths", "open-surfaces",
-    "apart",     "jets",     "planes", "creases", "facets",       "noise-choice", "noisy-jets", "areas",        "certificate"};
+inline constexpr std::array<std::string_view, 19> kStepNames = {
+    "viewpoint", "outliers", "noise",   "sites",  "coarse-start", "more-steps", "polish",     "local-widths", "open-surfaces", "apart",
+    "jets",      "planes",   "creases", "facets", "noise-choice", "projection", "noisy-jets", "areas",        "certificate"};
 
 using StepSet = std::bitset<kStepNames.size()>;
 
