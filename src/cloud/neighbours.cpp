@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "base/vector.h"
 #include "cpu/parallel.h"
@@ -12,6 +13,7 @@ namespace g3r {
 namespace {
 
 constexpr std::size_t kLeaf = 16;       // points per leaf: fewer make more nodes, more are looked at in vain; a matter of speed only
+constexpr std::size_t kMany = 128;      // nearest points, from which sorting them at last is faster than keeping them sorted
 constexpr std::size_t kApart = 1 << 9;  // leaves from which halves are built side by side: fewer take less time than handing them out
 
 bool is_before(double squared, std::uint32_t point, double other_squared, std::uint32_t other) {
@@ -46,7 +48,38 @@ class Nearest {
   std::size_t size_ = 0;
 };
 
-// The same among the points that have a mark.
+// The same of many, in any order: the farther half of twice as many is taken out together.
+class ManyNearest {
+ public:
+  explicit ManyNearest(std::size_t k) : k_(k) { found_.reserve(2 * k); }
+  [[nodiscard]] double reach() const { return reach_; }
+  void add(double squared, std::uint32_t point) {
+    found_.emplace_back(squared, point);
+    if (found_.size() == 2 * k_) keep_nearest();
+  }
+  void sort_into(std::uint32_t* index, double* squared) {
+    if (found_.size() > k_) keep_nearest();
+    std::sort(found_.begin(), found_.end());
+    for (const auto& [distance, point] : found_) {
+      *index++ = point;
+      *squared++ = distance;
+    }
+  }
+
+ private:
+  void keep_nearest() {
+    const auto last = found_.begin() + static_cast<std::ptrdiff_t>(k_ - 1);
+    std::nth_element(found_.begin(), last, found_.end());
+    reach_ = last->first;
+    found_.resize(k_);
+  }
+
+  std::size_t k_;
+  double reach_ = HUGE_VAL;
+  std::vector<std::pair<double, std::uint32_t>> found_;  // those as far by their index
+};
+
+// The nearest among the points that have a mark.
 class NearestMarked : public Nearest {
  public:
   NearestMarked(std::size_t k, const std::vector<std::uint8_t>& marks, std::uint32_t* index, double* squared)
@@ -210,6 +243,12 @@ void Neighbours::nearest(const Vec3& x, std::size_t k, std::vector<std::uint32_t
   k = std::min(k, tree_->points.size());
   index.resize(k);
   squared.resize(k);
+  if (k >= kMany) {
+    ManyNearest found(k);
+    tree_->search(x, found);
+    found.sort_into(index.data(), squared.data());
+    return;
+  }
   Nearest found(k, index.data(), squared.data());
   tree_->search(x, found);
 }
