@@ -119,6 +119,7 @@ void add_outliers(const Problem& problem, Stages& stages, Solution& solution, st
 // The solve is for normals; the lengths of its vectors vary with the sample. Earlier methods keep theirs.
 void replace_areas(const Problem& problem, Stages& stages, Solution& solution) {
   if (problem.settings.method != Method::kEnergy || contains(problem.settings.without, Step::kAreas)) return;
+  std::vector<Vec3>().swap(solution.eta);  // the most memory under noise is taken here
   solution.eta = area_vectors(problem.cloud.set, solution.refinement.normals, solution.open_surfaces, stages.cancel());
 }
 
@@ -324,13 +325,13 @@ Orientation orient_in_arena(const PointsView& points, Known known, const Options
   std::vector<float>& confidence = best.oriented.confidence;
   Orientation out;
   out.stats = std::move(best.stats);
+  const bool is_whole = best.problem.known.wanted.empty();   // what surroundings and a part of a cloud look like says nothing of it
+  std::vector<double>().swap(solution.refinement.strength);  // the confidence has it
   fit_noisy_surface(best.problem, stages, solution);
+  if (is_whole) warn_of_sampling(best.problem.cloud, solution.refinement.normals, out.stats);  // while neighbours are known
   replace_areas(best.problem, stages, solution);
   apply_hints(best.problem, options, solution, confidence, out.stats, stages.cancel());
-  if (best.problem.known.wanted.empty()) {  // what surroundings and a part of a cloud look like says nothing of it
-    warn_of_volume(best.problem, out.stats);
-    warn_of_sampling(best.problem.cloud, solution.refinement.normals, out.stats);
-  }
+  if (is_whole) warn_of_volume(best.problem, out.stats);
   add_outliers(best.problem, stages, solution, confidence);
   if (open != nullptr) *open = open_points(best.problem.cloud, solution.open_surfaces);
   hand_out(best.problem.cloud, solution.eta, solution.refinement.normals, confidence, out);
