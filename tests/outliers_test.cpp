@@ -139,19 +139,18 @@ TEST(Outliers, RemovedPointsAreNumberedAfterTheOthers) {
 }
 
 TEST(Outliers, WhatHasBeenFoundOutAboutTheOthersIsKept) {
-  shapes::Surface sphere = shapes::sphere(4000, 1);
-  shapes::scatter(sphere, 0.01);
-  shapes::Random random(7);
-  for (int i = 0; i < 50; ++i) sphere.points.push_back({random.uniform(2, 5), random.uniform(2, 5), random.uniform(2, 5)});
-  CanonicalCloud cloud = canonical_cloud(sphere.points);
+  std::vector<Vec3> points = shapes::torus(kPoints, 0.6, 0.25, 1).points;
+  shapes::Random random(3);
+  for (std::size_t i = 0; i < kPoints / 20; ++i) points.push_back({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+  CanonicalCloud cloud = canonical_cloud(points);
   const Outliers found = find_outliers(cloud.set);
-  ASSERT_GE(found.indices.size(), 40U);
   ASSERT_EQ(found.others.size(), cloud.size() - found.indices.size());
-  (void)remove_points(cloud, found.indices, found.others);
+  ASSERT_LT(found.others.size(), cloud.size());
+  static_cast<void>(remove_points(cloud, found.indices, found.others));
   EXPECT_EQ(&cloud.set.near(), &found.others.near());
-  CanonicalCloud other = canonical_cloud(sphere.points);
-  (void)remove_points(other, {0}, found.others);  // of other points it knows nothing
-  EXPECT_EQ(other.size(), sphere.points.size() - 1);
+  CanonicalCloud another = canonical_cloud(points);
+  static_cast<void>(remove_points(another, {0}, found.others));  // which says nothing of these
+  EXPECT_EQ(another.size(), points.size() - 1);
 }
 
 // A scanner that saw nothing says (0, 0, 0), which at UTM coordinates is a million sizes of the object away: what is left must be resolved
