@@ -117,9 +117,12 @@ void add_outliers(const Problem& problem, Stages& stages, Solution& solution, st
 }
 
 // The solve is for normals; the lengths of its vectors vary with the sample. Earlier methods keep theirs.
+bool replaces_areas(const Problem& problem) {
+  return problem.settings.method == Method::kEnergy && !contains(problem.settings.without, Step::kAreas);
+}
+
 void replace_areas(const Problem& problem, Stages& stages, Solution& solution) {
-  if (problem.settings.method != Method::kEnergy || contains(problem.settings.without, Step::kAreas)) return;
-  std::vector<Vec3>().swap(solution.eta);  // the most memory under noise is taken here
+  if (!replaces_areas(problem)) return;
   solution.eta = area_vectors(problem.cloud.set, solution.refinement.normals, solution.open_surfaces, stages.cancel());
 }
 
@@ -238,6 +241,8 @@ Oriented orient_problem(const Problem& problem, const Options& options, Stages& 
     const std::vector<double> areas = point_areas(problem.settings, problem.cloud.set.smoothed_spacing());
     out.confidence = side_confidence(out.solution.eta, refined.normals, refined.strength, areas);
   }
+  std::vector<double>().swap(out.solution.refinement.strength);  // the confidence has them
+  if (replaces_areas(problem)) std::vector<Vec3>().swap(out.solution.eta);
   const OpenSurfaces& surfaces = out.solution.open_surfaces;
   add_open_surfaces(surfaces, out.confidence, stats);
   const auto is_open = [&](std::size_t i) { return stats.open_share > 0 && surfaces.part[i] != OpenSurfaces::kNone; };
@@ -326,7 +331,6 @@ Orientation orient_in_arena(const PointsView& points, Known known, const Options
   Orientation out;
   out.stats = std::move(best.stats);
   const bool is_whole = best.problem.known.wanted.empty();   // what surroundings and a part of a cloud look like says nothing of it
-  std::vector<double>().swap(solution.refinement.strength);  // the confidence has it
   fit_noisy_surface(best.problem, stages, solution);
   if (is_whole) warn_of_sampling(best.problem.cloud, solution.refinement.normals, out.stats);  // while neighbours are known
   replace_areas(best.problem, stages, solution);
