@@ -23,12 +23,13 @@ bool is_before(double squared, std::uint32_t point, double other_squared, std::u
 // The k nearest points so far, nearest first, those as far by their index.
 class Nearest {
  public:
-  Nearest(std::size_t k, std::uint32_t* index, double* squared) : k_(k), index_(index), squared_(squared) {}
+  Nearest(std::size_t k, std::uint32_t* index, double* squared)
+      : k_(k), index_(index), squared_(squared), reach_(k > 0 ? HUGE_VAL : -1) {}
   [[nodiscard]] std::size_t size() const { return size_; }
-  [[nodiscard]] double reach() const { return size_ < k_ ? HUGE_VAL : squared_[k_ - 1]; }
+  [[nodiscard]] double reach() const { return reach_; }
   void add(double squared, std::uint32_t point) {
     if (size_ == k_) {
-      if (k_ == 0 || !is_before(squared, point, squared_[k_ - 1], index_[k_ - 1])) return;
+      if (!is_before(squared, point, squared_[k_ - 1], index_[k_ - 1])) return;
     } else {
       ++size_;
     }
@@ -39,6 +40,7 @@ class Nearest {
     }
     squared_[at] = squared;
     index_[at] = point;
+    if (size_ == k_) reach_ = squared_[k_ - 1];
   }
 
  private:
@@ -46,6 +48,7 @@ class Nearest {
   std::uint32_t* index_;
   double* squared_;
   std::size_t size_ = 0;
+  double reach_;
 };
 
 // The same of many, in any order: the farther half of twice as many is taken out together.
@@ -218,10 +221,19 @@ struct Neighbours::Tree {
   template <class Found>
   void look(const Node& node, const Vec3& x, Vec3& off, Found& found) const {
     if (node.leaves() < 2) {
+      // Those near enough are picked without branches: to guess wrong at every other point takes longer than its distance.
+      std::array<double, kLeaf> squared;
+      std::array<std::uint32_t, kLeaf> index;
+      std::size_t count = 0;
+      const double reach = found.reach();
       for (std::size_t i = node.begin * kLeaf; i < end_of(node); ++i) {
         const Vec3 d = vector::subtract(points[order[i]], x);
-        const double squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-        if (squared <= found.reach()) found.add(squared, order[i]);
+        squared[count] = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        index[count] = order[i];
+        count += squared[count] <= reach ? 1 : 0;
+      }
+      for (std::size_t k = 0; k < count; ++k) {
+        if (squared[k] <= found.reach()) found.add(squared[k], index[k]);
       }
       return;
     }
