@@ -330,7 +330,7 @@ Orientation orient_in_arena(const PointsView& points, Known known, const Options
   std::vector<float>& confidence = best.oriented.confidence;
   Orientation out;
   out.stats = std::move(best.stats);
-  const bool is_whole = best.problem.known.wanted.empty();   // what surroundings and a part of a cloud look like says nothing of it
+  const bool is_whole = best.problem.known.wanted.empty();  // what surroundings and a part of a cloud look like says nothing of it
   fit_noisy_surface(best.problem, stages, solution);
   if (is_whole) warn_of_sampling(best.problem.cloud, solution.refinement.normals, out.stats);  // while neighbours are known
   replace_areas(best.problem, stages, solution);

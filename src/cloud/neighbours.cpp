@@ -23,8 +23,7 @@ bool is_before(double squared, std::uint32_t point, double other_squared, std::u
 // The k nearest points so far, nearest first, those as far by their index.
 class Nearest {
  public:
-  Nearest(std::size_t k, std::uint32_t* index, double* squared)
-      : k_(k), index_(index), squared_(squared), reach_(k > 0 ? HUGE_VAL : -1) {}
+  Nearest(std::size_t k, std::uint32_t* index, double* squared) : k_(k), index_(index), squared_(squared), reach_(k > 0 ? HUGE_VAL : -1) {}
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] double reach() const { return reach_; }
   void add(double squared, std::uint32_t point) {
