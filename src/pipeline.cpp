@@ -117,8 +117,12 @@ void add_outliers(const Problem& problem, Stages& stages, Solution& solution, st
 }
 
 // The solve is for normals; the lengths of its vectors vary with the sample. Earlier methods keep theirs.
+bool replaces_areas(const Problem& problem) {
+  return problem.settings.method == Method::kEnergy && !contains(problem.settings.without, Step::kAreas);
+}
+
 void replace_areas(const Problem& problem, Stages& stages, Solution& solution) {
-  if (problem.settings.method != Method::kEnergy || contains(problem.settings.without, Step::kAreas)) return;
+  if (!replaces_areas(problem)) return;
   solution.eta = area_vectors(problem.cloud.set, solution.refinement.normals, solution.open_surfaces, stages.cancel());
 }
 
@@ -243,6 +247,8 @@ Oriented assess(const Problem& problem, Solution solution, Stats& stats) {
     const std::vector<double> areas = point_areas(problem.settings, problem.cloud.set.smoothed_spacing());
     out.confidence = side_confidence(out.solution.eta, refined.normals, refined.strength, areas);
   }
+  std::vector<double>().swap(out.solution.refinement.strength);  // the confidence has them
+  if (replaces_areas(problem)) std::vector<Vec3>().swap(out.solution.eta);
   const OpenSurfaces& surfaces = out.solution.open_surfaces;
   add_open_surfaces(surfaces, out.confidence, stats);
   const auto is_open = [&](std::size_t i) { return stats.open_share > 0 && surfaces.part[i] != OpenSurfaces::kNone; };
@@ -337,13 +343,12 @@ Orientation orient_in_arena(const PointsView& points, Known known, const Options
   std::vector<float>& confidence = best.oriented.confidence;
   Orientation out;
   out.stats = std::move(best.stats);
+  const bool is_whole = best.problem.known.wanted.empty();  // what surroundings and a part of a cloud look like says nothing of it
   fit_noisy_surface(best.problem, stages, solution);
+  if (is_whole) warn_of_sampling(best.problem.cloud, solution.refinement.normals, out.stats);  // while neighbours are known
   replace_areas(best.problem, stages, solution);
   apply_hints(best.problem, options, solution, confidence, out.stats, stages.cancel());
-  if (best.problem.known.wanted.empty()) {  // what surroundings and a part of a cloud look like says nothing of it
-    warn_of_volume(best.problem, out.stats);
-    warn_of_sampling(best.problem.cloud, solution.refinement.normals, out.stats);
-  }
+  if (is_whole) warn_of_volume(best.problem, out.stats);
   add_outliers(best.problem, stages, solution, confidence);
   if (open != nullptr) *open = open_points(best.problem.cloud, solution.open_surfaces);
   hand_out(best.problem.cloud, solution.eta, solution.refinement.normals, confidence, out);

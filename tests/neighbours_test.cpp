@@ -85,8 +85,10 @@ TEST(Neighbours, OfManyAndOfTheMarkedAreThoseOfALookAtAllPoints) {
   for (int trial = 0; trial < 10; ++trial) {
     const Vec3 x{random.uniform(-0.5, 1.5), random.uniform(), random.uniform(-1e-3, 1e-3)};
     std::vector<std::uint32_t> index = sorted_around(x, points);
-    neighbours.nearest(x, 40, found, squared);
-    EXPECT_EQ(found, std::vector<std::uint32_t>(index.begin(), index.begin() + 40));
+    for (const int k : {40, 300}) {
+      neighbours.nearest(x, static_cast<std::size_t>(k), found, squared);
+      EXPECT_EQ(found, std::vector<std::uint32_t>(index.begin(), index.begin() + k));
+    }
     index.erase(std::remove_if(index.begin(), index.end(), [&](std::uint32_t i) { return marks[i] == 0; }), index.end());
     neighbours.nearest_marked(x, 9, marks, found, squared);
     EXPECT_EQ(found, std::vector<std::uint32_t>(index.begin(), index.begin() + 9));
@@ -105,8 +107,10 @@ TEST(Neighbours, AsFarAsOneAnotherAreInTheOrderOfTheirIndices) {
     std::iota(index.begin(), index.end(), 0U);
     std::stable_sort(index.begin(), index.end(),
                      [&](std::uint32_t i, std::uint32_t j) { return squared_distance(x, grid[i]) < squared_distance(x, grid[j]); });
-    neighbours.nearest(x, 22, found, squared);
-    EXPECT_EQ(found, std::vector<std::uint32_t>(index.begin(), index.begin() + 22));
+    for (const int k : {22, 200}) {
+      neighbours.nearest(x, static_cast<std::size_t>(k), found, squared);
+      EXPECT_EQ(found, std::vector<std::uint32_t>(index.begin(), index.begin() + k));
+    }
     double nearest = 100;
     EXPECT_EQ(neighbours.nearest(x, nearest, 0), index.front());
   }

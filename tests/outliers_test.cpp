@@ -138,6 +138,21 @@ TEST(Outliers, RemovedPointsAreNumberedAfterTheOthers) {
   }
 }
 
+TEST(Outliers, WhatHasBeenFoundOutAboutTheOthersIsKept) {
+  std::vector<Vec3> points = shapes::torus(kPoints, 0.6, 0.25, 1).points;
+  shapes::Random random(3);
+  for (std::size_t i = 0; i < kPoints / 20; ++i) points.push_back({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+  CanonicalCloud cloud = canonical_cloud(points);
+  const Outliers found = find_outliers(cloud.set);
+  ASSERT_EQ(found.others.size(), cloud.size() - found.indices.size());
+  ASSERT_LT(found.others.size(), cloud.size());
+  static_cast<void>(remove_points(cloud, found.indices, found.others));
+  EXPECT_EQ(&cloud.set.near(), &found.others.near());
+  CanonicalCloud another = canonical_cloud(points);
+  static_cast<void>(remove_points(another, {0}, found.others));  // which says nothing of these
+  EXPECT_EQ(another.size(), points.size() - 1);
+}
+
 // A scanner that saw nothing says (0, 0, 0), which at UTM coordinates is a million sizes of the object away: what is left must be resolved
 // as if it had never been there.
 TEST(Outliers, FarStrayPointsChangeNothing) {

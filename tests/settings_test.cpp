@@ -129,6 +129,15 @@ TEST(PlannedMemory, HasASiteOfTheCertificateForEveryPointOnlyWithoutNoise) {
   EXPECT_LT(static_cast<double>(planned_memory(s, 100'000, 100'000)), 0.8 * static_cast<double>(clean));
 }
 
+TEST(PlannedMemory, OfClustersIsThatOfTheCertificate) {
+  Settings s;
+  s.spacing = 0.001;
+  s.noise = 4 * s.spacing;
+  const std::size_t points = planned_memory(s, 1'000'000, 1'000'000);
+  s.cluster_side = 8 * s.spacing;
+  EXPECT_LT(planned_memory(s, 1'000'000, 1'000'000), points);
+}
+
 TEST(PlannedMemory, GrowsWithEveryPointAndIsHeldToTheLimit) {
   Settings s;
   s.spacing = 0.01;

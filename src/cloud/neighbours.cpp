@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "base/vector.h"
 #include "cpu/parallel.h"
@@ -12,6 +13,7 @@ namespace g3r {
 namespace {
 
 constexpr std::size_t kLeaf = 16;       // points per leaf: fewer make more nodes, more are looked at in vain; a matter of speed only
+constexpr std::size_t kMany = 128;      // nearest points, from which sorting them at last is faster than keeping them sorted
 constexpr std::size_t kApart = 1 << 9;  // leaves from which halves are built side by side: fewer take less time than handing them out
 
 bool is_before(double squared, std::uint32_t point, double other_squared, std::uint32_t other) {
@@ -21,12 +23,12 @@ bool is_before(double squared, std::uint32_t point, double other_squared, std::u
 // The k nearest points so far, nearest first, those as far by their index.
 class Nearest {
  public:
-  Nearest(std::size_t k, std::uint32_t* index, double* squared) : k_(k), index_(index), squared_(squared) {}
+  Nearest(std::size_t k, std::uint32_t* index, double* squared) : k_(k), index_(index), squared_(squared), reach_(k > 0 ? HUGE_VAL : -1) {}
   [[nodiscard]] std::size_t size() const { return size_; }
-  [[nodiscard]] double reach() const { return size_ < k_ ? HUGE_VAL : squared_[k_ - 1]; }
+  [[nodiscard]] double reach() const { return reach_; }
   void add(double squared, std::uint32_t point) {
     if (size_ == k_) {
-      if (k_ == 0 || !is_before(squared, point, squared_[k_ - 1], index_[k_ - 1])) return;
+      if (!is_before(squared, point, squared_[k_ - 1], index_[k_ - 1])) return;
     } else {
       ++size_;
     }
@@ -37,6 +39,7 @@ class Nearest {
     }
     squared_[at] = squared;
     index_[at] = point;
+    if (size_ == k_) reach_ = squared_[k_ - 1];
   }
 
  private:
@@ -44,9 +47,41 @@ class Nearest {
   std::uint32_t* index_;
   double* squared_;
   std::size_t size_ = 0;
+  double reach_;
 };
 
-// The same among the points that have a mark.
+// The same of many, in any order: the farther half of twice as many is taken out together.
+class ManyNearest {
+ public:
+  explicit ManyNearest(std::size_t k) : k_(k) { found_.reserve(2 * k); }
+  [[nodiscard]] double reach() const { return reach_; }
+  void add(double squared, std::uint32_t point) {
+    found_.emplace_back(squared, point);
+    if (found_.size() == 2 * k_) keep_nearest();
+  }
+  void sort_into(std::uint32_t* index, double* squared) {
+    if (found_.size() > k_) keep_nearest();
+    std::sort(found_.begin(), found_.end());
+    for (const auto& [distance, point] : found_) {
+      *index++ = point;
+      *squared++ = distance;
+    }
+  }
+
+ private:
+  void keep_nearest() {
+    const auto last = found_.begin() + static_cast<std::ptrdiff_t>(k_ - 1);
+    std::nth_element(found_.begin(), last, found_.end());
+    reach_ = last->first;
+    found_.resize(k_);
+  }
+
+  std::size_t k_;
+  double reach_ = HUGE_VAL;
+  std::vector<std::pair<double, std::uint32_t>> found_;  // those as far by their index
+};
+
+// The nearest among the points that have a mark.
 class NearestMarked : public Nearest {
  public:
   NearestMarked(std::size_t k, const std::vector<std::uint8_t>& marks, std::uint32_t* index, double* squared)
@@ -185,10 +220,19 @@ struct Neighbours::Tree {
   template <class Found>
   void look(const Node& node, const Vec3& x, Vec3& off, Found& found) const {
     if (node.leaves() < 2) {
+      // Those near enough are picked without branches: to guess wrong at every other point takes longer than its distance.
+      std::array<double, kLeaf> squared;
+      std::array<std::uint32_t, kLeaf> index;
+      std::size_t count = 0;
+      const double reach = found.reach();
       for (std::size_t i = node.begin * kLeaf; i < end_of(node); ++i) {
         const Vec3 d = vector::subtract(points[order[i]], x);
-        const double squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-        if (squared <= found.reach()) found.add(squared, order[i]);
+        squared[count] = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        index[count] = order[i];
+        count += squared[count] <= reach ? 1 : 0;
+      }
+      for (std::size_t k = 0; k < count; ++k) {
+        if (squared[k] <= found.reach()) found.add(squared[k], index[k]);
       }
       return;
     }
@@ -210,6 +254,12 @@ void Neighbours::nearest(const Vec3& x, std::size_t k, std::vector<std::uint32_t
   k = std::min(k, tree_->points.size());
   index.resize(k);
   squared.resize(k);
+  if (k >= kMany) {
+    ManyNearest found(k);
+    tree_->search(x, found);
+    found.sort_into(index.data(), squared.data());
+    return;
+  }
   Nearest found(k, index.data(), squared.data());
   tree_->search(x, found);
 }

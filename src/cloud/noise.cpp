@@ -9,6 +9,7 @@
 #include "cloud/quadratic_patch.h"
 #include "cloud/spacing.h"
 #include "cloud/viewpoint.h"
+#include "cpu/parallel.h"
 #include "cpu/parallel_sort.h"
 
 #include <algorithm>
@@ -46,6 +47,8 @@ constexpr std::size_t kLayerNeighbours = 256;
 // What the quantile kFlat of them says on smooth surfaces, over the noise.
 constexpr double kLayerBias = 0.92;
 
+constexpr std::size_t kPlacesOfABlock = 16;  // looked at by one thread; any value gives the same
+
 double share_of(std::size_t some, std::size_t all) { return static_cast<double>(some) / static_cast<double>(all); }
 
 double quantile(std::vector<double> values, double share) {
@@ -54,16 +57,22 @@ double quantile(std::vector<double> values, double share) {
   return *at;
 }
 
-// Calls visit(point, its `count` nearest, their squared distances) for about `places` points, spread along their order.
-template <typename Visit>
-void for_some(const PointSet& set, std::size_t places, std::size_t count, Visit visit) {
-  std::vector<std::uint32_t> index;
-  std::vector<double> squared;
+// value(point, its `count` nearest, their squared distances) of about `places` points, spread along their order, in that order.
+template <typename Value>
+std::vector<double> at_some(const PointSet& set, std::size_t places, std::size_t count, const Value& value) {
   const std::vector<Vec3>& points = set.points();
-  for (std::size_t i = 0; i < points.size(); i += std::max<std::size_t>(1, points.size() / places)) {
-    set.tree().nearest(points[i], count, index, squared);
-    visit(points[i], index, squared);
-  }
+  const Neighbours& tree = set.tree();
+  const std::size_t step = std::max<std::size_t>(1, points.size() / places);
+  std::vector<double> values((points.size() + step - 1) / step);
+  parallel::for_blocks(values.size(), kPlacesOfABlock, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> index;
+    std::vector<double> squared;
+    for (std::size_t k = begin; k < end; ++k) {
+      tree.nearest(points[k * step], count, index, squared);
+      values[k] = value(points[k * step], index, squared);
+    }
+  });
+  return values;
 }
 
 // The residual at this quantile that noise of standard deviation 1 leaves of `count` points, an even number: x with
@@ -84,9 +93,10 @@ class Residuals {
  public:
   Residuals(const PointSet& set, std::size_t count) : count_(count) {
     const std::vector<Vec3>& points = set.points();
-    for_some(set, kPlaces, count, [&](const Vec3&, const auto& index, const auto&) {
+    const double spacing = set.spacing();
+    residuals_ = at_some(set, kPlaces, count, [&](const Vec3&, const auto& index, const auto&) {
       const Vec3 normal = fit_plane(points, index.data(), index.size()).normal;
-      residuals_.push_back(quadratic_residual(points, index.data(), index.size(), normal, set.spacing()));
+      return quadratic_residual(points, index.data(), index.size(), normal, spacing);
     });
   }
   // The noise that leaves such a residual in this share of the neighbourhoods, while it is small.
@@ -101,12 +111,11 @@ class Residuals {
 double layered_noise(const PointSet& set) {
   const std::vector<Vec3>& points = set.points();
   const double spacing = set.spacing();
-  std::vector<double> sigma;
-  for_some(set, kFewPlaces, kLayerNeighbours, [&](const Vec3& point, const auto& index, const auto&) {
+  std::vector<double> sigma = at_some(set, kFewPlaces, kLayerNeighbours, [&](const Vec3& point, const auto& index, const auto&) {
     const Vec3 normal = fit_plane(points, index.data(), index.size()).normal;
-    sigma.push_back(layered_deviation(points, index.data(), index.size(), point, normal));
+    return layered_deviation(points, index.data(), index.size(), point, normal);
   });
-  const double found = quantile(sigma, kFlat) / kLayerBias;
+  const double found = quantile(std::move(sigma), kFlat) / kLayerBias;
   if (found < spacing || points.size() < kTwiceAsFar * kSmallPart * kLayerNeighbours) return found;
   std::vector<Vec3> thinned;
   for (std::size_t i = 0; i < points.size(); i += kTwiceAsFar) thinned.push_back(points[i]);
@@ -127,15 +136,13 @@ ExactPlane find_facet(const PointSet& set, const std::vector<std::uint32_t>& ind
 bool on_exact_planes(const PointSet& set) {
   const Vec3 steps = rounding_steps(set.points(), set.spacing());
   if (std::max({steps[0], steps[1], steps[2]}) > 0) return false;
-  std::size_t looked = 0, on_facets = 0;
-  for_some(set, kPlaces, kPlaneNeighbours, [&](const Vec3&, const auto& index, const auto&) {
-    ++looked;
+  const std::vector<double> on_facet = at_some(set, kPlaces, kPlaneNeighbours, [&](const Vec3&, const auto& index, const auto&) {
     const ExactPlane facet = find_facet(set, index);
-    if (facet.breadth == 0) return;
+    if (facet.breadth == 0) return 0.0;
     const Vec3 around = fit_plane(set.points(), index.data(), index.size()).normal;
-    on_facets += std::abs(vector::dot(facet.normal, around)) > kSameSide ? 1 : 0;
+    return std::abs(vector::dot(facet.normal, around)) > kSameSide ? 1.0 : 0.0;
   });
-  return share_of(on_facets, looked) >= kOnPlanes;
+  return share_of(static_cast<std::size_t>(std::count(on_facet.begin(), on_facet.end(), 1.0)), on_facet.size()) >= kOnPlanes;
 }
 
 // By the flattest neighbourhoods, 0 where these or exact planes show that there is none.
@@ -224,14 +231,16 @@ double largest_scatter(const PointSet& set) {
 
 double facet_scatter(const PointSet& set) {
   if (set.size() < kSmallPart * kPatchNeighbours) return 0;
-  std::map<double, std::size_t> counts;  // by scatter, in steps of 2
-  std::size_t looked = 0;
-  for_some(set, kFewPlaces, kPlaneNeighbours, [&](const Vec3&, const auto& index, const auto&) {
-    ++looked;
-    const LikeliestPlane found = find_likeliest_plane(set.points(), index, set.spacing());
-    if (found.scatter == 0 || is_along_sight(set, index.front(), found.plane.normal)) return;
-    if (goes_on(set, found.plane, found.scatter * set.spacing())) ++counts[found.scatter];
+  const double spacing = set.spacing();
+  const std::vector<double> scatters = at_some(set, kFewPlaces, kPlaneNeighbours, [&](const Vec3&, const auto& index, const auto&) {
+    const LikeliestPlane found = find_likeliest_plane(set.points(), index, spacing);
+    if (found.scatter == 0 || is_along_sight(set, index.front(), found.plane.normal)) return 0.0;
+    return goes_on(set, found.plane, found.scatter * spacing) ? found.scatter : 0.0;
   });
+  std::map<double, std::size_t> counts;  // in steps of 2
+  for (const double s : scatters) {
+    if (s > 0) ++counts[s];
+  }
   std::size_t most = 0;
   double scatter = 0;
   for (auto step = counts.begin(); step != counts.end(); ++step) {
@@ -242,17 +251,17 @@ double facet_scatter(const PointSet& set) {
     most = both;
     scatter = adjacent && next->second > step->second ? next->first : step->first;
   }
-  return share_of(most, looked) < kOnPlanes || scatter <= kExactScatter ? 0 : scatter * set.spacing();
+  return share_of(most, scatters.size()) < kOnPlanes || scatter <= kExactScatter ? 0 : scatter * spacing;
 }
 
 double dimension(const PointSet& set) {
   if (set.size() < kSmallPart * kPatchNeighbours) return 2;
   const std::size_t far = std::min(kTwiceAsFar * kLayerNeighbours, set.size() / kSmallPart);
-  std::vector<double> found;
-  for_some(set, kFewPlaces, far, [&](const Vec3&, const auto&, const std::vector<double>& squared) {
+  std::vector<double> found = at_some(set, kFewPlaces, far, [&](const Vec3&, const auto&, const std::vector<double>& squared) {
     const double ratio = squared.back() / squared[far / kTwiceAsFar];
-    if (ratio > 1) found.push_back(2 * std::log(kTwiceAsFar) / std::log(ratio));
+    return ratio > 1 ? 2 * std::log(kTwiceAsFar) / std::log(ratio) : 0.0;
   });
+  found.erase(std::remove(found.begin(), found.end(), 0.0), found.end());
   return found.empty() ? 2 : quantile(std::move(found), 0.5);
 }
 

@@ -197,7 +197,7 @@ PointSet others_than(const PointSet& set, const std::vector<std::uint32_t>& some
 }  // namespace
 
 Outliers find_outliers(const PointSet& set, const std::vector<double>& relative_spacing, std::optional<double> noise) {
-  if (set.size() <= slab_neighbours(kScales - 1)) return {{}, noise};
+  if (set.size() <= slab_neighbours(kScales - 1)) return {{}, noise, {}};
   const std::vector<double> local = spacing_before_thinning(set.local_spacing(), relative_spacing);
   const double typical = typical_spacing(local);
   const std::vector<std::uint32_t> strays = find_strays(set, local, typical);
@@ -205,24 +205,25 @@ Outliers find_outliers(const PointSet& set, const std::vector<double>& relative_
   for (const std::uint32_t i : strays) spacing.push_back(local[i] / typical);
   std::vector<std::uint32_t> chosen = choose(strays, spacing, {}, set.size());
   const auto too_many = [&] { return static_cast<double>(chosen.size()) > kMostOutliers * static_cast<double>(set.size()); };
-  if (chosen.empty() || too_many()) return {{}, noise};
+  if (chosen.empty() || too_many()) return {{}, noise, {}};
   double h = set.spacing();
+  PointSet others;
   if (!noise) {
-    const PointSet others = others_than(set, chosen);
+    others = others_than(set, chosen);
     noise = estimate_noise(others);
     h = others.spacing();
   }
   const double sigma = *noise / h;
   const auto count = static_cast<std::size_t>(std::numbers::pi * std::pow(kHeldWhole * sigma, 2));
-  if (count <= kClosest) return {chosen, noise};
+  if (count <= kClosest) return {chosen, noise, others};
   if (count >= set.size()) return {};
   const EvenSurface layer{count, sigma * std::sqrt(std::numbers::pi / static_cast<double>(count))};
   chosen = choose(strays, wide_spacing(set, strays, relative_spacing, count), layer, set.size());
   if (too_many()) chosen.clear();
-  return {chosen, noise};
+  return {chosen, noise, {}};
 }
 
-std::vector<Vec3> remove_points(CanonicalCloud& cloud, const std::vector<std::uint32_t>& indices) {
+std::vector<Vec3> remove_points(CanonicalCloud& cloud, const std::vector<std::uint32_t>& indices, const PointSet& others) {
   if (indices.empty()) return {};
   const std::size_t staying = cloud.size() - indices.size();
   std::vector<Vec3> removed;
@@ -241,7 +242,7 @@ std::vector<Vec3> remove_points(CanonicalCloud& cloud, const std::vector<std::ui
     cloud.multiplicity[points.size()] = cloud.multiplicity[i];
     points.push_back(cloud.points()[i]);
   }
-  cloud.set = PointSet(std::move(points));
+  cloud.set = others.points() == points ? others : PointSet(std::move(points));
   std::copy(removed_multiplicity.begin(), removed_multiplicity.end(), cloud.multiplicity.begin() + static_cast<std::ptrdiff_t>(staying));
   for (std::uint32_t& p : cloud.point_of) {
     if (p < renumbered.size()) p = renumbered[p];

@@ -14,6 +14,7 @@ namespace g3r {
 struct Outliers {
   std::vector<std::uint32_t> indices;  ///< ascending
   std::optional<double> noise;         ///< that of the other points, where it is known
+  PointSet others;                     ///< the points without them, where those have been looked at already; else none
 };
 
 /// The points that are not on a surface:
@@ -31,7 +32,7 @@ struct Outliers {
                                      std::optional<double> noise = std::nullopt);
 
 /// Takes the points with these indices out of the cloud and returns them. point_of and multiplicity number them after those that stay, and
-/// before those taken out earlier.
-std::vector<Vec3> remove_points(CanonicalCloud& cloud, const std::vector<std::uint32_t>& indices);
+/// before those taken out earlier. `others`: Outliers::others, whose neighbours are then known.
+std::vector<Vec3> remove_points(CanonicalCloud& cloud, const std::vector<std::uint32_t>& indices, const PointSet& others = {});
 
 }  // namespace g3r

@@ -26,13 +26,12 @@ std::vector<Vec3> area_vectors(const PointSet& set, const std::vector<Vec3>& nor
   const double typical = set.spacing();
   make_room_for_sums(set);
   std::vector<Vec3> eta = normals;
-  std::vector<double> widths(spacing.size());
   parallel::for_all(eta.size(), [&](std::size_t i) {
     if (held[i] == 0) spacing[i] = std::min(spacing[i], typical);  // the emptiness around a stray is not its surface
     for (double& c : eta[i]) c *= spacing[i] * spacing[i];
-    widths[i] = spacing[i] * kFieldWidth;
+    spacing[i] *= kFieldWidth;
   });
-  FastSum sum(set.points(), Widths(std::move(widths)), sum_plan(kFieldAccuracy, set.size()), cancel);
+  FastSum sum(set.points(), Widths(std::move(spacing)), sum_plan(kFieldAccuracy, set.size()), cancel);
   std::vector<double> winding = sum.winding(eta);
   if (!surfaces.part.empty()) {
     std::vector<double> closed;

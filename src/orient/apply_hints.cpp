@@ -87,8 +87,11 @@ void apply_hints(const Problem& problem, const Options& options, Solution& solut
     stats.hints.viewpoint = problem.cloud.frame.to_world(views.places.front());
     if (!vote(hints)) hints.sensors = views.places;
   }
-  const HintEffect effect = follow_hints(problem.cloud.points(), problem.cloud.set.near(), problem.spacing, patches, hints,
-                                         {solution.refinement.normals, solution.eta, confidence}, cancel);
+  HintEffect effect;
+  if (vote(hints) || hints.flip) {
+    effect = follow_hints(problem.cloud.points(), problem.cloud.set.near(), problem.spacing, patches, hints,
+                          {solution.refinement.normals, solution.eta, confidence}, cancel);
+  }
   const double turned = share(effect.turned);
   stats.hints.turned_share = hints.flip ? 1 - turned : turned;
   stats.hints.settled_share = share(effect.decided);

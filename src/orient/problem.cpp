@@ -68,7 +68,7 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
     Outliers found = find_outliers(problem.cloud.set, relative_spacing, known_noise(problem.cloud.set.spacing()));
     noise = found.noise;
     if (found.indices.empty()) break;
-    std::vector<Vec3> removed = remove_points(problem.cloud, found.indices);
+    std::vector<Vec3> removed = remove_points(problem.cloud, found.indices, found.others);
     problem.outliers.insert(problem.outliers.begin(), removed.begin(), removed.end());
     outliers_wanted = refit_frame(problem.cloud, problem.outliers);  // far ones may have hidden nearer ones
   }

@@ -50,8 +50,8 @@ class SumPasses<T>::Run {
         stride_(cpu::padded_count(coefficients_)) {}
 
   void near_only();
-  void upward(AlignedVector<T>& multipoles);
-  void to_targets(AlignedVector<T>& multipoles);
+  void upward(UnsetVector<T>& multipoles);
+  void to_targets(UnsetVector<T>& multipoles);
 
  private:
   // Moves between a node and its parent, by the node's octant.
@@ -114,10 +114,10 @@ cpu::LeafTask<T> SumPasses<T>::Run::leaf_task(double half_side) const {
 
 // P2M at the leaves, M2M level by level.
 template <class T>
-void SumPasses<T>::Run::upward(AlignedVector<T>& multipoles) {
+void SumPasses<T>::Run::upward(UnsetVector<T>& multipoles) {
   const std::size_t channels = request_.multipole_channels;
   if (multipoles.size() < source_tree_.nodes.size() * channels * stride_) {
-    multipoles = AlignedVector<T>();  // not twice in memory
+    multipoles = UnsetVector<T>();  // not twice in memory
     multipoles.resize(source_tree_.nodes.size() * channels * stride_);
   }
   multipoles_ = multipoles.data();
@@ -373,7 +373,7 @@ void SumPasses<T>::Run::near_only() {
 }
 
 template <class T>
-void SumPasses<T>::Run::to_targets(AlignedVector<T>& multipoles) {
+void SumPasses<T>::Run::to_targets(UnsetVector<T>& multipoles) {
   multipoles_ = multipoles.data();
   AlignedVector<T> above = locals_above();
   parallel::for_each(

@@ -30,7 +30,7 @@ class SumPasses {
 
  private:
   class Run;
-  AlignedVector<T> multipoles_;
+  UnsetVector<T> multipoles_;                   // passes write all of them
   std::optional<cpu::NearForm> multipoles_of_;  // the form for which they are those of the values
 };
 
