@@ -99,8 +99,8 @@ void denoise(OrientedPoints& points, const Neighbours& neighbours, const Noise& 
         Neighbourhood near(points, neighbours);
         for (std::size_t i = begin; i < end; ++i) {
           const double h = points.spacing[i], position = noise.position * typical / h;
-          // Normals that are far better than positions would leave these without a say: slopes weigh no more against heights than heights do
-          // against slopes in a fit to clean points. Without noise of the normals the ratio is infinite.
+          // Normals that are far better than positions would leave these without a say: slopes weigh no more against heights than heights
+          // do against slopes in a fit to clean points. Without noise of the normals the ratio is infinite.
           const double ratio = position / noise.normal;
           const double normal_weight = std::clamp(ratio * ratio, kSlopeWeight, 1 / kSlopeWeight);
           const QuadraticPatch patch = fit_quadratic_patch(near.gather(i, smoothing_width(position)), 0, h, normal_weight);

@@ -20,9 +20,9 @@ struct Noise {
 /// their square in time.
 [[nodiscard]] double smoothing_width(double position);
 
-/// Moves every point along the normal onto a quadratic fit of smoothing_width(), and takes over the normal of the fit. The noise is a length,
-/// the same everywhere: where points are far apart it is little of their spacing, and there is detail to lose. `neighbours`: of a copy of
-/// the positions, `typical`: as of estimate_noise(). O(N) fits over up to 200 points. Throws Cancelled.
+/// Moves every point along the normal onto a quadratic fit of smoothing_width(), and takes over the normal of the fit. The noise is a
+/// length, the same everywhere: where points are far apart it is little of their spacing, and there is detail to lose. `neighbours`: of a
+/// copy of the positions, `typical`: as of estimate_noise(). O(N) fits over up to 200 points. Throws Cancelled.
 void denoise(OrientedPoints& points, const Neighbours& neighbours, const Noise& noise, double typical,
              const std::atomic<bool>* cancel = nullptr);
 
