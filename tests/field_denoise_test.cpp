@@ -59,9 +59,9 @@ TEST(Denoise, BringsPointsOfAPlaneBackToItAndLeavesThoseOnIt) {
 }
 
 // Under one noise, a spacing of dense points and a quarter of that of sparse ones, the dense ones come to their plane, and the sparse ones
-// keep a wave of ten of their spacings.
+// keep a wave of six of their spacings.
 TEST(Denoise, KeepsTheDetailOfSparsePointsUnderTheNoiseOfDenseOnes) {
-  constexpr double kNoise = kStep, kSparse = 4 * kStep, kHeight = 3 * kStep, kWave = 2 * M_PI / (10 * kSparse);
+  constexpr double kNoise = kStep, kSparse = 4 * kStep, kHeight = 3 * kStep, kWave = 2 * M_PI / (6 * kSparse);
   constexpr int kSparseSide = 30;
   OrientedPoints points = square(kNoise);
   shapes::Random random(12);
