@@ -61,7 +61,7 @@ class Neighbourhood {
 
 }  // namespace
 
-Noise estimate_noise(const OrientedPoints& points, const Neighbours& neighbours) {
+Noise estimate_noise(const OrientedPoints& points, const Neighbours& neighbours, double typical) {
   const std::size_t n = points.positions.size(), count = std::min(n, kSample);
   std::vector<double> position(count), normal(count);
   parallel::for_blocks(count, kBlock, [&](std::size_t begin, std::size_t end) {
@@ -82,7 +82,7 @@ Noise estimate_noise(const OrientedPoints& points, const Neighbours& neighbours)
       }
       // About three of the degrees of freedom go into the height, positions being a third of the data.
       const double effective = total * total / squares;
-      position[s] = std::sqrt(height / total * effective / std::max(effective - 3, 1.0));
+      position[s] = h / typical * std::sqrt(height / total * effective / std::max(effective - 3, 1.0));
       normal[s] = std::sqrt(slope / total);
     }
   });
@@ -91,19 +91,19 @@ Noise estimate_noise(const OrientedPoints& points, const Neighbours& neighbours)
 
 double smoothing_width(double position) { return std::min(kWidthFloor + 2 * position, kFarSpacings); }
 
-void denoise(OrientedPoints& points, const Neighbours& neighbours, const Noise& noise, const std::atomic<bool>* cancel) {
-  const double width = smoothing_width(noise.position);
-  // Normals that are far better than positions would leave these without a say: slopes weigh no more against heights than heights do
-  // against slopes in a fit to clean points. Without noise of the normals the ratio is infinite.
-  const double ratio = noise.position / noise.normal;
-  const double normal_weight = std::clamp(ratio * ratio, kSlopeWeight, 1 / kSlopeWeight);
+void denoise(OrientedPoints& points, const Neighbours& neighbours, const Noise& noise, double typical, const std::atomic<bool>* cancel) {
   std::vector<Vec3> positions(points.positions.size()), normals(points.positions.size());
   parallel::for_blocks(
       positions.size(), kBlock,
       [&](std::size_t begin, std::size_t end) {
         Neighbourhood near(points, neighbours);
         for (std::size_t i = begin; i < end; ++i) {
-          const QuadraticPatch patch = fit_quadratic_patch(near.gather(i, width), 0, points.spacing[i], normal_weight);
+          const double h = points.spacing[i], position = noise.position * typical / h;
+          // Normals that are far better than positions would leave these without a say: slopes weigh no more against heights than heights
+          // do against slopes in a fit to clean points. Without noise of the normals the ratio is infinite.
+          const double ratio = position / noise.normal;
+          const double normal_weight = std::clamp(ratio * ratio, kSlopeWeight, 1 / kSlopeWeight);
+          const QuadraticPatch patch = fit_quadratic_patch(near.gather(i, smoothing_width(position)), 0, h, normal_weight);
           Vector3d x = to_eigen(points.positions[i]), g;
           for (int step = 0; step < 3; ++step) {
             const double f = patch.distance(x, &g);

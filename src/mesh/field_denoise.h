@@ -8,20 +8,22 @@
 namespace g3r::mesh {
 
 struct Noise {
-  double position = 0;  ///< standard deviation along the normal, in spacings; median over the cloud
+  double position = 0;  ///< standard deviation along the normal, in typical spacings; median over the cloud
   double normal = 0;    ///< root mean square deviation of the normals, in radians; median over the cloud
 };
 
-/// `neighbours`: of the positions. From the misfit of quadratic height fields to about 48 neighbours, at 4,000 points evenly spread over
-/// the indices.
-[[nodiscard]] Noise estimate_noise(const OrientedPoints& points, const Neighbours& neighbours);
+/// `neighbours`: of the positions, `typical`: spacing of the cloud. From the misfit of quadratic height fields to about 48 neighbours, at
+/// 4,000 points evenly spread over the indices.
+[[nodiscard]] Noise estimate_noise(const OrientedPoints& points, const Neighbours& neighbours, double typical);
 
-/// The width in spacings of the fits that points move onto under a noise: narrower ones leave noise; wider ones round detail and cost their
-/// square in time.
+/// The width of the fits that points move onto under a noise, both in spacings: narrower ones leave noise; wider ones round detail and cost
+/// their square in time.
 [[nodiscard]] double smoothing_width(double position);
 
-/// Moves every point along the normal onto a quadratic fit of smoothing_width(), and takes over the normal of the fit.
-/// `neighbours`: of a copy of the positions. O(N) fits over up to 200 points. Throws Cancelled.
-void denoise(OrientedPoints& points, const Neighbours& neighbours, const Noise& noise, const std::atomic<bool>* cancel = nullptr);
+/// Moves every point along the normal onto a quadratic fit of smoothing_width(), and takes over the normal of the fit. The noise is a
+/// length, the same everywhere: where points are far apart it is little of their spacing, and there is detail to lose. `neighbours`: of a
+/// copy of the positions, `typical`: as of estimate_noise(). O(N) fits over up to 200 points. Throws Cancelled.
+void denoise(OrientedPoints& points, const Neighbours& neighbours, const Noise& noise, double typical,
+             const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace g3r::mesh

@@ -183,7 +183,7 @@ Mesh field_mesh(const std::vector<Vec3>& points, std::vector<Vec3> normals, cons
   report(monitor, Done::kNothing);
   Prepared prepared;
   mesh::prepare(points, std::move(normals), 0, prepared);
-  mesh::Noise noise = mesh::estimate_noise(prepared.points, *prepared.neighbours);
+  mesh::Noise noise = mesh::estimate_noise(prepared.points, *prepared.neighbours, prepared.typical);
   if (options.noise.unit != Length::Unit::kAuto) noise.position = options.noise.value / prepared.typical;
   report(monitor, Done::kNoise);
   mesh::smooth_noise(noise, monitor.cancel, prepared);

@@ -52,7 +52,7 @@ double noise_seen(const Noise& noise) { return noise.position > kNoisy ? noise.p
 void smooth_noise(const Noise& noise, const std::atomic<bool>* cancel, Prepared& prepared) {
   prepared.noise = noise_seen(noise);
   if (prepared.noise == 0) return;
-  denoise(prepared.points, *prepared.neighbours, noise, cancel);
+  denoise(prepared.points, *prepared.neighbours, noise, prepared.typical, cancel);
   find_neighbours(prepared);
 }
 

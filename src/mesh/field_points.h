@@ -38,7 +38,7 @@ void find_neighbours(Prepared& prepared);
 /// InvalidInput (a normal is zero, all points are at one place).
 void prepare(const std::vector<Vec3>& points, std::vector<Vec3> normals, double typical, Prepared& prepared);
 
-/// Of the positions, in spacings; 0 where it is too little to tell.
+/// Of the positions, in typical spacings; 0 where it is too little to tell.
 [[nodiscard]] double noise_seen(const Noise& noise);
 
 /// Moves points that scatter more than a fit bears. Throws Cancelled.

@@ -60,15 +60,15 @@ void sample_cloud(const std::string& folder, const Manifest& m, const Cells& cel
     mesh::Prepared prepared;
     mesh::prepare(raw.positions, raw.normals, 0, prepared);
     spacing.push_back(median(prepared.points.spacing));
-    const mesh::Noise noise = mesh::estimate_noise(prepared.points, *prepared.neighbours);
-    position.push_back(noise.position);
+    const mesh::Noise noise = mesh::estimate_noise(prepared.points, *prepared.neighbours, prepared.typical);
+    position.push_back(noise.position * prepared.typical);
     normal.push_back(noise.normal);
     const mesh::CloudHeights heights = mesh::cloud_heights(prepared.points.positions, prepared.points.normals);
     usual.push_back(heights.usual);
     strays.push_back(heights.stray_share);
   }
   plan.spacing = median(std::move(spacing));
-  plan.noise = {median(std::move(position)), median(std::move(normal))};
+  plan.noise = {median(std::move(position)) / plan.spacing, median(std::move(normal))};
   plan.heights = {median(std::move(usual)), median(std::move(strays))};
 }
 
