@@ -9,8 +9,6 @@ namespace g3r::mesh {
 
 /// No point, vertex, triangle or leaf.
 inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-/// The items of a parallel block: smaller blocks cost more to start than to do, larger ones leave threads idle at the end.
-inline constexpr std::size_t kBlock = 256;
 /// The tasks that a walk through a tree is cut into, whatever the number of threads, so that their order is always the same: fewer leave
 /// threads idle.
 inline constexpr std::size_t kTasks = 256;
@@ -26,6 +24,8 @@ inline constexpr double kSamePatch = 0.85;
 inline constexpr std::size_t kPatchPoints = 3;
 /// The places, evenly from all, at which properties of a whole cloud are taken: medians and shares of so many are good to 2 %.
 inline constexpr std::size_t kSample = 4000;
+/// The fewest points that enclose a volume.
+inline constexpr std::size_t kFewestMeshPoints = 4;
 /// The points of a cloud, or pairs of them, below which nothing is said of what is rare in it: it would be a matter of chance.
 inline constexpr std::size_t kFewestPoints = 100;
 /// The share of a length up to which it is rounding.

@@ -221,7 +221,7 @@ PlacedVertices place_vertices(const Octree& octree, const DualSurface& surface, 
   out.normals.resize(patches);
   std::vector<OnFeature> on_feature(patches);
   parallel::for_blocks(
-      patches, kBlock,
+      patches, parallel::kSmallBlock,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
           if (!wanted.empty() && wanted[i] == 0) continue;
