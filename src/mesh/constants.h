@@ -40,6 +40,11 @@ inline constexpr double kGap = 1.4;
 inline constexpr double kDiscHalf = 0.3;
 /// The spacings beyond which surface without a point is a guess.
 inline constexpr double kFarSpacings = 4;
+/// The share of a length (the side of a leaf or the spacing, which differ little, or an edge) up to which two places are one. A vertex on a
+/// crease may leave its leaf by so much: with none, a crease between two leaves is in neither. Nearer ones of two leaves would coincide,
+/// and one steps aside. A point is on the joined surface up to it: patches may cross where they do not meet. And surface crosses no edge
+/// nearer to an end than this: triangles would be slivers.
+inline constexpr double kAtOnePlace = 0.05;
 /// The cosine below which two directions are rather square to each other, 73 degrees, and the sine below which they are rather parallel, 17
 /// degrees: sharp edges of a fit turn less, and surfaces that meet in a crease turn more.
 inline constexpr double kSlant = 0.3;

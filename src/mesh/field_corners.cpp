@@ -12,12 +12,8 @@ namespace {
 
 // The distance in spacings from the nearest point within which the fitted surface gives the side: farther away it bends off by itself.
 constexpr double kLocalReach = 1.8;
-// |w - level| from which the field overrules the fitted surface: with 0.4 the sword has 44 handles instead of 5 (docs/evidence/meshes.md).
-constexpr double kFieldSure = 0.2;
 // The corners of which more than the side is in memory at the same time.
 constexpr std::size_t kCornersAtOnce = 512 * parallel::kSmallBlock;
-// The distance in spacings from the surface at which a corner counts whose sign was changed to remove a handle: vertices are placed by it.
-constexpr double kFlipped = 0.1;
 
 }  // namespace
 
@@ -136,7 +132,7 @@ std::vector<std::uint8_t> sides_by_fit(const LocalFit& local, const std::vector<
 void match_values(const Octree& octree, const std::vector<std::uint8_t>& inside, double typical, std::vector<float>& value) {
   for (std::size_t c = 0; c < inside.size(); ++c) {
     if ((value[c] > 0) != (inside[c] != 0) && !octree.on_boundary(c))
-      value[c] = static_cast<float>((inside[c] != 0 ? kFlipped : -kFlipped) * typical);
+      value[c] = static_cast<float>((inside[c] != 0 ? kAtOnePlace : -kAtOnePlace) * typical);
   }
 }
 

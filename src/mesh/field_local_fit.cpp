@@ -16,8 +16,6 @@ using Eigen::Vector3d;
 
 // Weights are about exp(-t) for t up to this and 0 beyond; it is a power of two, for bell().
 constexpr double kFaint = 16;
-// Spacings from all tangent planes from which curvature cannot change the side of a place, so that nothing is fitted: half of the time.
-constexpr double kClear = 0.2;
 // A factor larger than what rounding can make of a squared distance: without it the search might miss a point as near.
 constexpr double kWider = 1 + kRounding;
 // About exp(-t), 0 at kFaint.
@@ -75,12 +73,12 @@ std::uint32_t LocalFit::nearest(const Vector3d& x, double reach, double& squared
   return found;
 }
 
-// Is x well on one side of the tangent planes of all points next to point i, and do these belong to one patch? Then their mean plane is fit
-// enough to say which.
+// Is x farther from the tangent planes of all points next to point i than surface curves away from them, all on one side, and do these
+// belong to one patch? Then their mean plane is fit enough to say which side: half of the time.
 bool LocalFit::clear_of(std::uint32_t i, const Vector3d& x, double scale, QuadraticPatch& plane) const {
   const Vector3d axis = to_eigen(points_.normals[i]), p0 = to_eigen(points_.positions[i]);
   const bool outside = axis.dot(x - p0) > 0;
-  const double first = (x - p0).squaredNorm(), clear = kClear * points_.spacing[i];
+  const double first = (x - p0).squaredNorm(), clear = kDiscHalf * points_.spacing[i];
   Vector3d mean_p = Vector3d::Zero(), mean_n = Vector3d::Zero();
   double total = 0;
   for (std::size_t k = 0; k < std::min(kFitPoints, count_); ++k) {

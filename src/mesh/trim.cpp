@@ -24,9 +24,6 @@
 namespace g3r::mesh {
 namespace {
 
-// The share of an edge that a cut leaves on both sides at least: with less, triangles at rims are slivers.
-constexpr double kLeastCut = 0.1;
-
 using Triangle = std::array<std::uint32_t, 3>;
 
 // How far from each point surface may be, in its own units. Farther than four spacings of the cloud nobody measured anything; where it is
@@ -145,7 +142,7 @@ void cut_off(Mesh& mesh, const std::vector<double>& past, const std::vector<std:
   const auto cut = [&](std::uint32_t in, std::uint32_t out) {
     const auto [place, is_new] = made.try_emplace(pair_key(in, out), static_cast<std::uint32_t>(mesh.vertices.size()));
     if (is_new) {
-      const double t = std::clamp(past[in] / (past[in] - past[out]), kLeastCut, 1 - kLeastCut);
+      const double t = std::clamp(past[in] / (past[in] - past[out]), kAtOnePlace, 1 - kAtOnePlace);
       mesh.vertices.push_back(vector::add(vector::scale(mesh.vertices[in], 1 - t), vector::scale(mesh.vertices[out], t)));
     }
     return place->second;
