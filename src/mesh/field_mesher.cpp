@@ -134,7 +134,7 @@ Mesh raw_mesh(const Prepared& prepared, const std::vector<double>& size, const F
   return mesh::triangulate(placed.surface, std::move(placed.vertices.positions), placed.vertices.normals);
 }
 
-void check(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const MeshOptions& options) {
+void check_input(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const MeshOptions& options) {
   if (points.size() != normals.size()) throw InvalidInput("points and normals differ in number");
   if (points.size() < mesh::kFewestMeshPoints) throw InvalidInput("a mesh needs at least 4 points");
   if (options.depth != 0 && (options.depth < kLeastMeshDepth || options.depth > kMostMeshDepth))
@@ -145,7 +145,7 @@ void check(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, co
 
 Mesh field_mesh(const std::vector<Vec3>& points, std::vector<Vec3> normals, const FieldSampler& sampler, const MeshOptions& options,
                 const Monitor& monitor, MeshMemory* memory, mesh::LeftOut* left_out) {
-  check(points, normals, options);
+  check_input(points, normals, options);
   report(monitor, Done::kNothing);
   Prepared prepared;
   mesh::prepare(points, std::move(normals), 0, prepared);

@@ -18,8 +18,8 @@ using vector::scale;
 using vector::subtract;
 
 // The steps of conjugate gradients at most, and the share of the first residual that is enough: what is left moves no vertex visibly.
-constexpr int kSteps = 300;
-constexpr double kTolerance = 1e-4;
+constexpr int kGradientSteps = 300;
+constexpr double kResidualShare = 1e-4;
 
 double product(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return parallel::sum_blocks(a.size(), parallel::kSmallBlock, 0.0, [&](std::size_t begin, std::size_t end) {
@@ -101,8 +101,8 @@ void LeastSquaresMesh::minimise(const std::vector<Anchor>& anchors, std::vector<
   for (Vec3& r : residual) r = scale(r, -1);
   std::vector<Vec3> direction = residual;
   double squared = product(residual, residual);
-  if (!enough) enough = kTolerance * kTolerance * squared;
-  for (int step = 0; step < kSteps && squared > *enough; ++step) {
+  if (!enough) enough = kResidualShare * kResidualShare * squared;
+  for (int step = 0; step < kGradientSteps && squared > *enough; ++step) {
     if (cancel != nullptr && cancel->load()) throw Cancelled();
     gradient(direction, anchors, false, image);
     const double alpha = squared / product(direction, image);
