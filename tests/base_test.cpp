@@ -1,4 +1,7 @@
+#include "base/degrees.h"
 #include "base/disjoint_sets.h"
+#include "base/hash.h"
+#include "base/pair_key.h"
 #include "base/percent.h"
 #include "base/whole_bytes.h"
 
@@ -7,6 +10,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <numbers>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -39,6 +44,26 @@ TEST(WholeBytes, AreNeverMoreThanASizeHolds) {
   EXPECT_EQ(whole_bytes(1e30), std::numeric_limits<std::size_t>::max());
   EXPECT_EQ(whole_bytes(std::numeric_limits<double>::infinity()), std::numeric_limits<std::size_t>::max());
   EXPECT_EQ(mebibytes((std::uint64_t{1} << 20) - 1), 0U);
+}
+
+TEST(Degrees, OfAQuarterTurnAreNinety) { EXPECT_DOUBLE_EQ(degrees(std::numbers::pi / 2), 90); }
+
+TEST(PairKey, SortsByTheFirstThenTheSecondAndGivesBothBack) {
+  constexpr std::uint32_t kLargest = std::numeric_limits<std::uint32_t>::max();
+  EXPECT_LT(pair_key(1, kLargest), pair_key(2, 0));
+  EXPECT_LT(pair_key(2, 0), pair_key(2, 1));
+  EXPECT_EQ(first_of(pair_key(kLargest, 7)), kLargest);
+  EXPECT_EQ(second_of(pair_key(kLargest, 7)), 7U);
+  EXPECT_EQ(unordered_pair_key(9, 4), unordered_pair_key(4, 9));
+  EXPECT_NE(pair_key(9, 4), pair_key(4, 9));
+}
+
+// The first output of splitmix64 seeded with 0 is that of its authors.
+TEST(Hash, IsThatOfItsAuthorsAndSpreadsNeighbours) {
+  EXPECT_EQ(mixed(0), 0xE220A8397B1DCDAFU);
+  std::set<std::uint64_t> top;
+  for (std::uint64_t i = 0; i < 1024; ++i) top.insert(mixed(i) >> 60U);
+  EXPECT_EQ(top.size(), 16U);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "field_shapes.h"
 #include "mesh/field_mesher.h"
+#include "mesh/quadric.h"
 #include "mesh_topology.h"
 
 namespace {
@@ -101,6 +102,17 @@ TEST(Coarsen, CornersAndEdgesOfACubeStay) {
   EXPECT_EQ(t.genus, 0);
   EXPECT_LT(cube.triangles.size(), before / 2);
   EXPECT_NEAR(t.volume, n * n * n, 1e-9);
+}
+
+TEST(Quadric, IsTheWeightedSumOfSquaredDistancesFromItsPlanes) {
+  mesh::Quadric quadric, other;
+  quadric.add_plane({0.6, 0.8, 0}, 0.25, 2);
+  other.add_plane({0, -0.28, 0.96}, -1, 3);
+  quadric.add(other);
+  const Vec3 p{0.5, -2, 4};
+  const double first = 0.6 * p[0] + 0.8 * p[1] + 0.25, second = -0.28 * p[1] + 0.96 * p[2] - 1;
+  EXPECT_NEAR(quadric.squared_distances(p), 2 * first * first + 3 * second * second, 1e-12);
+  EXPECT_EQ(quadric.weight, 5);
 }
 
 }  // namespace

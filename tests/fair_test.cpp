@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "cloud/neighbours.h"
 #include "field_shapes.h"
 #include "mesh/field_mesher.h"
+#include "mesh/least_squares_mesh.h"
 #include "mesh/lines.h"
 #include "mesh_topology.h"
 
@@ -96,6 +98,53 @@ TEST(Fair, ThornsGo) {
   const std::vector<Vec3> before = mesh.vertices;
   mesh::make_fair(mesh, sphere.points, std::vector<std::uint8_t>(sphere.points.size(), 0));
   EXPECT_EQ(mesh.vertices, before);
+}
+
+// A square grid in the plane, z = 0 but where it is moved.
+Mesh grid(std::uint32_t side) {
+  Mesh mesh;
+  for (std::uint32_t y = 0; y < side; ++y) {
+    for (std::uint32_t x = 0; x < side; ++x) mesh.vertices.push_back({double(x), double(y), 0});
+  }
+  for (std::uint32_t y = 0; y + 1 < side; ++y) {
+    for (std::uint32_t x = 0; x + 1 < side; ++x) {
+      const std::uint32_t v = side * y + x;
+      mesh.triangles.push_back({v, v + 1, v + side});
+      mesh.triangles.push_back({v + 1, v + side + 1, v + side});
+    }
+  }
+  return mesh;
+}
+
+TEST(VertexRings, HaveEveryNeighbourOnceAscending) {
+  const mesh::VertexRings rings = mesh::vertex_rings(grid(3));
+  const auto middle = rings.of(4);
+  EXPECT_EQ(std::vector<std::uint32_t>(middle.begin(), middle.end()), (std::vector<std::uint32_t>{1, 2, 3, 5, 6, 7}));
+  EXPECT_EQ(rings.of(0).size(), 2U);
+}
+
+// Each Laplacian is 0 in a plane. An anchor above it pulls its vertex up, no farther than to itself, and the others stay.
+TEST(LeastSquaresMesh, IsFlatWithoutAnchorsAndMovesTowardsThem) {
+  constexpr std::uint32_t side = 7, middle = side * side / 2;
+  const Mesh flat = grid(side);
+  const mesh::VertexRings rings = mesh::vertex_rings(flat);
+  std::vector<std::uint8_t> free(flat.vertices.size(), 0);
+  for (std::uint32_t v = 0; v < free.size(); ++v) {
+    const std::uint32_t x = v % side, y = v / side;
+    free[v] = x > 1 && y > 1 && x + 2 < side && y + 2 < side ? 1 : 0;
+  }
+  std::vector<Vec3> at = flat.vertices;
+  at[middle] = {3.3, 2.9, 1};
+  std::optional<double> enough;
+  mesh::LeastSquaresMesh(rings, free).minimise({}, at, enough, nullptr);
+  for (std::size_t v = 0; v < at.size(); ++v) {
+    for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(at[v][a], flat.vertices[v][a], 1e-3);
+  }
+  const mesh::Anchor above{{middle, middle + 1, middle + side}, {1, 0, 0}, {3, 3, 1}};
+  mesh::LeastSquaresMesh(rings, free).minimise({above}, at, enough, nullptr);
+  EXPECT_GT(at[middle][2], 0.1);
+  EXPECT_LT(at[middle][2], 1);
+  EXPECT_EQ(at[0], flat.vertices[0]);
 }
 
 }  // namespace

@@ -125,6 +125,27 @@ TEST(LocalFit, ASurfaceOnBothSidesOfAnotherIsJoinedToNone) {
   }
 }
 
+// Points of two sides of a cube, seen from beside their edge: two patches and the edge between them.
+TEST(LocalSurface, JoinsTheSidesOfAnEdgeAndLeavesOutAPointThatIsOfNeither) {
+  std::vector<FitPoint> points;
+  for (const double u : {-0.3, -0.1, 0.1, 0.3}) {
+    for (const double v : {-0.1, -0.2}) {
+      points.push_back({{u, v, 0}, {0, 0, 1}, 1});
+      points.push_back({{u, 0, v}, {0, 1, 0}, 1});
+    }
+  }
+  points.back() = {{0.1, -0.1, 0.01}, {1, 0, 0}, 1};
+  const Eigen::Vector3d x(0, 0.02, 0.01);
+  const LocalSurface surface = surface_through(points, 0.2, x);
+  ASSERT_EQ(surface.count, 2);
+  EXPECT_EQ(surface.joint[0], Joint::kConvex);
+  EXPECT_FALSE(surface.walls);
+  EXPECT_LT(points.back().patch, 0);
+  EXPECT_NEAR(surface.distance(x), 0.02, 1e-6);
+  std::vector<FitPoint> none;
+  EXPECT_EQ(surface_through(none, 0.2, x).count, 0);
+}
+
 TEST(WallThickness, IsTheDistanceOfWallsThatFaceApart) {
   OrientedPoints points;
   add_square(points, 0, -1);

@@ -7,8 +7,9 @@
 
 namespace g3r {
 
+inline constexpr std::uint64_t kMebibyte = std::uint64_t{1} << 20U;
 /// Whole mebibytes in so many bytes.
-inline std::uint64_t mebibytes(std::uint64_t bytes) { return bytes >> 20U; }
+inline std::uint64_t mebibytes(std::uint64_t bytes) { return bytes / kMebibyte; }
 
 /// The number of bytes as a size, the largest one where it is more: sizes have 32 bits in a browser. Not negative.
 inline std::size_t whole_bytes(double bytes) {

@@ -1,5 +1,7 @@
 #include "io/column_facts.h"
 
+#include "base/hash.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -67,9 +69,8 @@ bool all_differ(std::uint64_t count, const std::function<void(const std::functio
   for (std::uint64_t part = 0; part < parts; ++part) {
     values.clear();
     for_each_value([&](double value) {
-      constexpr std::uint64_t kSpread = 0x9E3779B97F4A7C15;  // an odd number: whole numbers next to each other fall into different parts
       const std::uint64_t bits = bits_as<std::uint64_t>(value + 0.0);  // 0 and -0 are equal
-      if ((bits * kSpread >> 32) % parts == part) values.push_back(value);
+      if ((bits * kGolden >> 32) % parts == part) values.push_back(value);
     });
     std::sort(values.begin(), values.end());
     if (std::adjacent_find(values.begin(), values.end()) != values.end()) return false;

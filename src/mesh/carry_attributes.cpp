@@ -33,7 +33,7 @@ void carry_attributes(Mesh& mesh, const PointsView& points, const std::vector<st
   const Neighbours neighbours(finite);
   mesh.colors.resize(colors.empty() ? 0 : mesh.vertices.size());
   mesh.confidence.resize(confidence.empty() ? 0 : mesh.vertices.size());
-  parallel::for_blocks(mesh.vertices.size(), mesh::kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(mesh.vertices.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> index;
     std::vector<double> squared;
     for (std::size_t v = begin; v < end; ++v) {

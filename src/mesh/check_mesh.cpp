@@ -3,6 +3,7 @@
 // The three half-edges of all triangles are sorted by their end points; equal neighbours are the triangles that meet at one edge.
 // Two union-find passes over them give the components (triangles joined by edges) and the fans (corners joined by edges
 // around their vertex): a vertex with more than one fan is a bow-tie.
+#include "base/degrees.h"
 #include "base/disjoint_sets.h"
 #include "base/median.h"
 #include "base/vector.h"
@@ -14,7 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 namespace g3r {
@@ -24,8 +24,6 @@ namespace {
 using vector::cross;
 using vector::dot;
 using vector::subtract;
-
-constexpr double kDegrees = 180 * std::numbers::inv_pi;
 
 /// Counts edges and vertices, joins triangles and corners across edges, and fills in the topological fields.
 class Topology {
@@ -108,7 +106,7 @@ void measure_shape(const Mesh& mesh, MeshCheck& check) {
     std::sort(edge.begin(), edge.end(), [](const Vec3& s, const Vec3& u) { return dot(s, s) < dot(u, u); });
     const Vec3 n = cross(edge[1], edge[2]);
     const double twice_area = std::sqrt(dot(n, n));
-    angles.push_back(std::atan2(twice_area, std::fabs(dot(edge[1], edge[2]))) * kDegrees);
+    angles.push_back(degrees(std::atan2(twice_area, std::fabs(dot(edge[1], edge[2])))));
     const double aspect = twice_area > 0 ? dot(edge[2], edge[2]) / twice_area : HUGE_VAL;
     check.max_aspect = std::max(check.max_aspect, aspect);
   }

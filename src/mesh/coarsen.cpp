@@ -1,10 +1,11 @@
 #include "mesh/coarsen.h"
 
 #include "base/vector.h"
-#include "cloud/neighbours.h"
 #include "cpu/parallel.h"
 #include "mesh/constants.h"
+#include "mesh/distance_to_points.h"
 #include "mesh/mesh_parts.h"
+#include "mesh/quadric.h"
 
 #include <g3r/error.h>
 
@@ -30,35 +31,6 @@ constexpr double kTolerance = 0.003;
 // The cosine of the most that triangles around a vertex differ by from their mean, 5 degrees, before and after: surface that bends more
 // has its vertices for that.
 constexpr double kTurn = 0.996;
-// The longest edge over the length: twice the shortest, as in a leaf's diagonals.
-constexpr double kLongest = 2;
-
-// The sum of the squared distances from planes, weighted by area: x' A x + 2 b' x + c.
-struct Quadric {
-  std::array<double, 6> a{};  // xx, xy, xz, yy, yz, zz
-  Vec3 b{0, 0, 0};
-  double c = 0;
-  double weight = 0;
-
-  void add(const Quadric& other) {
-    for (std::size_t k = 0; k < a.size(); ++k) a[k] += other.a[k];
-    b = vector::add(b, other.b);
-    c += other.c;
-    weight += other.weight;
-  }
-  void add_plane(const Vec3& n, double d, double w) {
-    a = {a[0] + w * n[0] * n[0], a[1] + w * n[0] * n[1], a[2] + w * n[0] * n[2],
-         a[3] + w * n[1] * n[1], a[4] + w * n[1] * n[2], a[5] + w * n[2] * n[2]};
-    b = vector::add(b, vector::scale(n, w * d));
-    c += w * d * d;
-    weight += w;
-  }
-  [[nodiscard]] double at(const Vec3& p) const {
-    const double square =
-        a[0] * p[0] * p[0] + a[3] * p[1] * p[1] + a[5] * p[2] * p[2] + 2 * (a[1] * p[0] * p[1] + a[2] * p[0] * p[2] + a[4] * p[1] * p[2]);
-    return std::max(0.0, square + 2 * dot(b, p) + c);
-  }
-};
 
 // A mesh whose edges are collapsed.
 class Collapsing {
@@ -95,7 +67,7 @@ class Collapsing {
       }
     }
     for (std::size_t count = 0; !queue_.empty(); ++count) {
-      if (count % kBlock == 0 && cancel != nullptr && cancel->load()) throw Cancelled();
+      if (count % parallel::kSmallBlock == 0 && cancel != nullptr && cancel->load()) throw Cancelled();
       const auto [squared, a, b] = queue_.top();
       queue_.pop();
       if (first_[a] == kNone || first_[b] == kNone || squared != squared_length(a, b)) continue;
@@ -126,7 +98,8 @@ class Collapsing {
   [[nodiscard]] double cost(std::uint32_t from, std::uint32_t to) const {
     Quadric both = quadric_[from];
     both.add(quadric_[to]);
-    return both.weight > 0 ? both.at(subtract(mesh_.vertices[to], origin_)) / both.weight : std::numeric_limits<double>::infinity();
+    return both.weight > 0 ? both.squared_distances(subtract(mesh_.vertices[to], origin_)) / both.weight
+                           : std::numeric_limits<double>::infinity();
   }
 
   void ring_of(std::uint32_t v, std::vector<std::uint32_t>& out) const {
@@ -150,7 +123,7 @@ class Collapsing {
   }
 
   [[nodiscard]] bool keeps_shape(std::uint32_t from, std::uint32_t to) const {
-    const double limit = std::min(length_[from], length_[to]);
+    const double limit = std::min(length_[from], length_[to]), longest = 2 * limit;  // as in a leaf's diagonals
     if (cost(from, to) > kTolerance * kTolerance * limit * limit) return false;
     Vec3 mean{0, 0, 0};
     for (std::uint32_t corner = first_[from]; corner != kNone; corner = next_[corner]) {
@@ -165,7 +138,7 @@ class Collapsing {
       if (std::find(t.begin(), t.end(), to) != t.end()) continue;
       if (!(dot(mean, vector::normalised(normal_of(t, from, to))) >= kTurn)) return false;
       for (const std::uint32_t v : t) {
-        if (v != from && squared_length(v, to) > kLongest * kLongest * limit * limit) return false;
+        if (v != from && squared_length(v, to) > longest * longest) return false;
       }
     }
     return true;
@@ -207,7 +180,7 @@ std::vector<double> lengths_to_carry(const Prepared& prepared, const std::vector
   const std::vector<double>& spacing = prepared.points.spacing;
   const std::size_t n = positions.size(), stride = prepared.near.size() / n;
   std::vector<double> lengths(n, 0);
-  parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(n, parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (size[i] >= spacing[i]) continue;
       std::size_t count = 0;
@@ -230,16 +203,8 @@ std::vector<double> lengths_to_carry(const Prepared& prepared, const std::vector
 
 void coarsen(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>& lengths, const std::atomic<bool>* cancel) {
   if (mesh.triangles.empty() || std::all_of(lengths.begin(), lengths.end(), [](double l) { return l == 0; })) return;
-  const Neighbours neighbours(points);
   std::vector<double> length(mesh.vertices.size(), 0);
-  parallel::for_blocks(length.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> index;
-    std::vector<double> squared;
-    for (std::size_t v = begin; v < end; ++v) {
-      neighbours.nearest(mesh.vertices[v], 1, index, squared);
-      length[v] = lengths[index[0]];
-    }
-  });
+  for_each_nearest(mesh.vertices, points, [&](std::size_t v, std::uint32_t point, double) { length[v] = lengths[point]; });
   const std::vector<std::uint8_t> left = Collapsing(mesh, std::move(length)).run(cancel);
   remove_triangles(mesh, left);
 }

@@ -19,15 +19,13 @@ namespace {
 // The distance in spacings up to which a stray is beside a point: the parts that strays make are no farther from them. With less, outliers
 // that fill space leave parts.
 constexpr double kBesideSpacings = 3;
-// The squared noise in squared spacings for which as many points more are asked for: noise makes spheres of 1.7 standard deviations.
-constexpr double kLeastPerNoise = 4;
 
 // For every place the nearest of some points within its squared reach, or kNone.
 template <class Reach>
 std::vector<std::uint32_t> nearest_of(const std::vector<Vec3>& points, const std::vector<Vec3>& places, const Reach& reach) {
   const Neighbours neighbours(points);
   std::vector<std::uint32_t> out(places.size());
-  parallel::for_blocks(places.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(places.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       double squared = reach(i);
       out[i] = neighbours.nearest(places[i], squared, kNone);
@@ -53,6 +51,7 @@ void add_areas(const Mesh& mesh, const std::vector<std::uint32_t>& component, co
                const std::vector<double>& spacing, double scatter, std::vector<Support>& support) {
   const std::vector<Vec3> centres = centres_of(mesh);
   const std::vector<std::uint32_t> nearest = nearest_of(points, centres, anywhere);
+  const double widened = 2 * scatter;  // what points stand for, as noise makes spheres of 1.7 standard deviations
   for (std::size_t t = 0; t < centres.size(); ++t) {
     const double h2 = spacing[nearest[t]] * spacing[nearest[t]];
     const double area = area_of(mesh, mesh.triangles[t]);
@@ -61,7 +60,7 @@ void add_areas(const Mesh& mesh, const std::vector<std::uint32_t>& component, co
     of.area += area;
     of.near_area += vector::dot(d, d) <= kFarSpacings * kFarSpacings * h2 ? area : 0;
     of.stands_for += area / h2;
-    of.stands_for_under_noise += area / (h2 + kLeastPerNoise * scatter * scatter);
+    of.stands_for_under_noise += area / (h2 + widened * widened);
   }
 }
 

@@ -9,8 +9,6 @@ namespace g3r::mesh {
 
 /// No point, vertex, triangle or leaf.
 inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-/// The items of a parallel block: smaller blocks cost more to start than to do, larger ones leave threads idle at the end.
-inline constexpr std::size_t kBlock = 256;
 /// The tasks that a walk through a tree is cut into, whatever the number of threads, so that their order is always the same: fewer leave
 /// threads idle.
 inline constexpr std::size_t kTasks = 256;
@@ -26,6 +24,8 @@ inline constexpr double kSamePatch = 0.85;
 inline constexpr std::size_t kPatchPoints = 3;
 /// The places, evenly from all, at which properties of a whole cloud are taken: medians and shares of so many are good to 2 %.
 inline constexpr std::size_t kSample = 4000;
+/// The fewest points that enclose a volume.
+inline constexpr std::size_t kFewestMeshPoints = 4;
 /// The points of a cloud, or pairs of them, below which nothing is said of what is rare in it: it would be a matter of chance.
 inline constexpr std::size_t kFewestPoints = 100;
 /// The share of a length up to which it is rounding.
@@ -40,6 +40,11 @@ inline constexpr double kGap = 1.4;
 inline constexpr double kDiscHalf = 0.3;
 /// The spacings beyond which surface without a point is a guess.
 inline constexpr double kFarSpacings = 4;
+/// The share of a length (the side of a leaf or the spacing, which differ little, or an edge) up to which two places are one. A vertex on a
+/// crease may leave its leaf by so much: with none, a crease between two leaves is in neither. Nearer ones of two leaves would coincide,
+/// and one steps aside. A point is on the joined surface up to it: patches may cross where they do not meet. And surface crosses no edge
+/// nearer to an end than this: triangles would be slivers.
+inline constexpr double kAtOnePlace = 0.05;
 /// The cosine below which two directions are rather square to each other, 73 degrees, and the sine below which they are rather parallel, 17
 /// degrees: sharp edges of a fit turn less, and surfaces that meet in a crease turn more.
 inline constexpr double kSlant = 0.3;

@@ -1,23 +1,12 @@
 #include "mesh/corner_groups.h"
 
 #include "base/disjoint_sets.h"
+#include "base/hash.h"
 #include "mesh/constants.h"
 
 #include <algorithm>
 
 namespace g3r::mesh {
-namespace {
-
-// Mixes the bits of a number well (splitmix64).
-std::uint64_t mixed(std::uint64_t x) {
-  x += 0x9E3779B97F4A7C15U;
-  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9U;
-  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBU;
-  return x ^ (x >> 31U);
-}
-
-}  // namespace
-
 CornerGrouping::CornerGrouping(const OpenEdges& open) : open_(open), group_(open.around.count(), kNone), changed_(open.around.count(), 0) {}
 
 CornerGroups CornerGrouping::group(const std::vector<std::uint8_t>& proposal, const std::vector<std::uint8_t>& inside,

@@ -1,5 +1,6 @@
 #include "mesh/crossings.h"
 
+#include "base/degrees.h"
 #include "base/median.h"
 #include "base/vector.h"
 #include "cpu/parallel.h"
@@ -9,7 +10,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 
 namespace g3r::mesh {
 namespace {
@@ -90,7 +90,7 @@ double crossing_at(const PointSet& set, const std::vector<Vec3>& normals, std::s
   if (static_cast<double>(explained) < kExplained * static_cast<double>(look.around.size())) return 0;
   const bool both =
       goes_on(points, normals, look.around, place, a, u, spacing) && goes_on(points, normals, look.around, place, b, v, spacing);
-  return both ? std::acos(std::min(1.0, std::fabs(dot(a, b)))) * 180 / std::numbers::pi : 0;
+  return both ? degrees(std::acos(std::min(1.0, std::fabs(dot(a, b))))) : 0;
 }
 
 }  // namespace
@@ -102,7 +102,7 @@ Crossings find_crossings(const PointSet& set, const std::vector<Vec3>& normals) 
   (void)set.tree();  // made before threads ask for them
   (void)set.near();
   (void)set.smoothed_spacing();
-  parallel::for_blocks(angles.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(angles.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
     Look look;
     for (std::size_t k = begin; k < end; ++k) angles[k] = crossing_at(set, normals, k * every, look);
   });

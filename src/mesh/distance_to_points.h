@@ -1,4 +1,4 @@
-// How far places are from a cloud, in units of its own.
+// The points nearest to places, and how far they are, in units of their own.
 #pragma once
 
 #include "cloud/neighbours.h"
@@ -14,19 +14,25 @@
 
 namespace g3r::mesh {
 
-/// Distance of each place to the nearest point, in units of `unit(nearest point)`.
-template <class Unit>
-std::vector<double> distance_to_points(const std::vector<Vec3>& places, const std::vector<Vec3>& points, const Unit& unit) {
+/// Calls use(i, point, squared distance) for each place i with the point nearest to it, in parallel. O((places + points) log points).
+template <class Use>
+void for_each_nearest(const std::vector<Vec3>& places, const std::vector<Vec3>& points, const Use& use) {
   const Neighbours neighbours(points);
-  std::vector<double> out(places.size());
-  parallel::for_blocks(places.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(places.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> index;
     std::vector<double> squared;
     for (std::size_t i = begin; i < end; ++i) {
       neighbours.nearest(places[i], 1, index, squared);
-      out[i] = std::sqrt(squared[0]) / unit(index[0]);
+      use(i, index[0], squared[0]);
     }
   });
+}
+
+/// Distance of each place to the nearest point, in units of `unit(nearest point)`.
+template <class Unit>
+std::vector<double> distance_to_points(const std::vector<Vec3>& places, const std::vector<Vec3>& points, const Unit& unit) {
+  std::vector<double> out(places.size());
+  for_each_nearest(places, points, [&](std::size_t i, std::uint32_t point, double squared) { out[i] = std::sqrt(squared) / unit(point); });
   return out;
 }
 

@@ -5,10 +5,10 @@
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
 #include "mesh/constants.h"
+#include "mesh/distance_to_points.h"
+#include "mesh/least_squares_mesh.h"
 #include "mesh/mesh_parts.h"
 #include "mesh/self_intersections.h"
-
-#include <g3r/error.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,18 +25,7 @@ using vector::scale;
 using vector::subtract;
 
 // Rounds of finding where the points meet the surface, which moves in each.
-constexpr int kRounds = 3;
-// Conjugate gradients in each: so many steps at most, or until the residual is this share of that of the surface as it was. What is left
-// moves no vertex visibly.
-constexpr int kSteps = 300;
-constexpr double kTolerance = 1e-4;
-
-// A point, and where the surface should meet it.
-struct Pin {
-  std::array<std::uint32_t, 3> vertex{};
-  std::array<double, 3> weight{};
-  Vec3 place{};
-};
+constexpr int kMeetings = 3;
 
 // Barycentric coordinates of the point of a triangle that is nearest to p. Ericson, "Real-time collision detection", 5.1.5.
 std::array<double, 3> nearest_in(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -57,172 +46,51 @@ std::array<double, 3> nearest_in(const Vec3& p, const Vec3& a, const Vec3& b, co
   return {va / all, vb / all, vc / all};
 }
 
-// The vertices of the mesh around each one, once each.
-struct Rings {
-  std::vector<std::uint32_t> begin, vertex;
-};
-
-Rings rings_of(const Mesh& mesh) {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> sides;
-  sides.reserve(6 * mesh.triangles.size());
-  for (const auto& t : mesh.triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      sides.emplace_back(t[k], t[(k + 1) % 3]);
-      sides.emplace_back(t[(k + 1) % 3], t[k]);
-    }
-  }
-  std::sort(sides.begin(), sides.end());
-  sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
-  Rings rings;
-  rings.begin.assign(mesh.vertices.size() + 1, 0);
-  for (const auto& [from, to] : sides) {
-    ++rings.begin[from + 1];
-    rings.vertex.push_back(to);
-  }
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) rings.begin[v + 1] += rings.begin[v];
-  return rings;
-}
-
-// The quadratic energy of displacements of the free vertices.
-class Energy {
- public:
-  Energy(const Rings& rings, const std::vector<std::uint8_t>& free) : rings_(rings), free_(free) {
-    counts_.resize(free.size(), 0);
-    inverse_.resize(free.size(), 0);
-    for (std::uint32_t v = 0; v < free.size(); ++v) {
-      bool near = free[v] != 0;
-      for (std::uint32_t k = rings.begin[v]; k < rings.begin[v + 1]; ++k) near = near || free[rings.vertex[k]] != 0;
-      counts_[v] = near ? 1 : 0;
-      inverse_[v] = 1.0 / std::max(1U, rings.begin[v + 1] - rings.begin[v]);
-    }
-  }
-
-  // Half the gradient at the positions, 0 at the vertices that stay. `home`: subtract the places of the pins.
-  void gradient(const std::vector<Vec3>& at, const std::vector<Pin>& pins, bool home, std::vector<Vec3>& out) {
-    const std::size_t n = at.size();
-    shares_.resize(n, Vec3{0, 0, 0});
-    out.resize(n, Vec3{0, 0, 0});
-    parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) {
-        if (counts_[v] != 0) shares_[v] = scale(subtract(at[v], mean(at, v)), inverse_[v]);
-      }
-    });
-    parallel::for_blocks(n, kBlock, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) {
-        if (free_[v] == 0) continue;
-        out[v] = scale(shares_[v], rings_.begin[v + 1] - rings_.begin[v]);
-        for (std::uint32_t k = rings_.begin[v]; k < rings_.begin[v + 1]; ++k) out[v] = subtract(out[v], shares_[rings_.vertex[k]]);
-      }
-    });
-    // The distance of a point from the surface weighs half as much as the Laplacian of a vertex: less smooths, and leaves the points.
-    for (const Pin& pin : pins) {
-      Vec3 miss = home ? scale(pin.place, -1) : Vec3{0, 0, 0};
-      for (std::size_t k = 0; k < 3; ++k) miss = add(miss, scale(at[pin.vertex[k]], pin.weight[k]));
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (free_[pin.vertex[k]] != 0) out[pin.vertex[k]] = add(out[pin.vertex[k]], scale(miss, 0.5 * pin.weight[k]));
-      }
-    }
-  }
-
- private:
-  [[nodiscard]] Vec3 mean(const std::vector<Vec3>& at, std::size_t v) const {
-    Vec3 sum{0, 0, 0};
-    for (std::uint32_t k = rings_.begin[v]; k < rings_.begin[v + 1]; ++k) sum = add(sum, at[rings_.vertex[k]]);
-    return scale(sum, inverse_[v]);
-  }
-
-  const Rings& rings_;
-  const std::vector<std::uint8_t>& free_;
-  std::vector<std::uint8_t> counts_;  // vertices whose Laplacian is part of the energy
-  std::vector<double> inverse_;       // of the number of neighbours of each vertex
-  std::vector<Vec3> shares_;          // of each neighbour, in the Laplacian of a vertex; 0 where that does not count
-};
-
-double product(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  return parallel::sum_blocks(a.size(), kBlock, 0.0, [&](std::size_t begin, std::size_t end) {
-    double sum = 0;
-    for (std::size_t i = begin; i < end; ++i) sum += dot(a[i], b[i]);
-    return sum;
-  });
-}
-
-// Conjugate gradients from where the vertices are, until the squared residual is at most `enough`; if that is nothing yet, it follows from
-// the first.
-void minimise(Energy& energy, const std::vector<Pin>& pins, std::vector<Vec3>& at, std::optional<double>& enough,
-              const std::atomic<bool>* cancel) {
-  std::vector<Vec3> residual, image;
-  energy.gradient(at, pins, true, residual);
-  for (Vec3& r : residual) r = scale(r, -1);
-  std::vector<Vec3> direction = residual;
-  double squared = product(residual, residual);
-  if (!enough) enough = kTolerance * kTolerance * squared;
-  for (int step = 0; step < kSteps && squared > *enough; ++step) {
-    if (cancel != nullptr && cancel->load()) throw Cancelled();
-    energy.gradient(direction, pins, false, image);
-    const double alpha = squared / product(direction, image);
-    if (!std::isfinite(alpha)) return;
-    parallel::for_all(at.size(), [&](std::size_t v) {
-      at[v] = add(at[v], scale(direction[v], alpha));
-      residual[v] = subtract(residual[v], scale(image[v], alpha));
-    });
-    const double now = product(residual, residual);
-    parallel::for_all(at.size(), [&](std::size_t v) { direction[v] = add(residual[v], scale(direction[v], now / squared)); });
-    squared = now;
-  }
-}
-
 // Where the marked points meet the surface.
-std::vector<Pin> pin(const Mesh& mesh, const std::vector<Vec3>& points, const std::vector<std::uint8_t>& marked) {
+std::vector<Anchor> anchors_on(const Mesh& mesh, const std::vector<Vec3>& points, const std::vector<std::uint8_t>& marked) {
   const std::vector<Vec3> centres = centres_of(mesh);
   const Neighbours neighbours(centres);
-  std::vector<Pin> pins;
+  std::vector<Anchor> anchors;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (marked[i] != 0) pins.push_back({{}, {}, points[i]});
+    if (marked[i] != 0) anchors.push_back({{}, {}, points[i]});
   }
-  parallel::for_blocks(pins.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(anchors.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> index;
     std::vector<double> squared;
     for (std::size_t i = begin; i < end; ++i) {
-      neighbours.nearest(pins[i].place, kFitPoints, index, squared);  // of long triangles the centres are far
+      neighbours.nearest(anchors[i].point, kFitPoints, index, squared);  // of long triangles the centres are far
       double best = std::numeric_limits<double>::infinity();
       for (const std::uint32_t t : index) {
         const auto& v = mesh.triangles[t];
         const std::array<Vec3, 3> corner{mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]]};
-        const std::array<double, 3> weight = nearest_in(pins[i].place, corner[0], corner[1], corner[2]);
-        Vec3 d = scale(pins[i].place, -1);
+        const std::array<double, 3> weight = nearest_in(anchors[i].point, corner[0], corner[1], corner[2]);
+        Vec3 d = scale(anchors[i].point, -1);
         for (std::size_t k = 0; k < 3; ++k) d = add(d, scale(corner[k], weight[k]));
         if (dot(d, d) >= best) continue;
         best = dot(d, d);
-        pins[i].vertex = v;
-        pins[i].weight = weight;
+        anchors[i].vertex = v;
+        anchors[i].weight = weight;
       }
     }
   });
-  return pins;
+  return anchors;
 }
 
 // The free vertices to which one of the marked points is the nearest.
 std::vector<std::uint8_t> vertices_at(const Mesh& mesh, const std::vector<Vec3>& points, const std::vector<std::uint8_t>& marked) {
-  const Neighbours neighbours(points);
   std::vector<std::uint8_t> free(mesh.vertices.size(), 0);
-  parallel::for_blocks(free.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> index;
-    std::vector<double> squared;
-    for (std::size_t v = begin; v < end; ++v) {
-      neighbours.nearest(mesh.vertices[v], 1, index, squared);
-      free[v] = marked[index[0]];
-    }
-  });
+  for_each_nearest(mesh.vertices, points, [&](std::size_t v, std::uint32_t point, double) { free[v] = marked[point]; });
   return free;
 }
 
 // Connected regions of free vertices.
 class Regions {
  public:
-  Regions(const Rings& rings, const std::vector<std::uint8_t>& free) : free_(free), sets_(free.size()) {
+  Regions(const VertexRings& rings, const std::vector<std::uint8_t>& free) : free_(free), sets_(free.size()) {
     for (std::uint32_t v = 0; v < free.size(); ++v) {
-      for (std::uint32_t k = rings.begin[v]; free[v] != 0 && k < rings.begin[v + 1]; ++k) {
-        if (free[rings.vertex[k]] != 0) sets_.join(v, rings.vertex[k]);
+      if (free[v] == 0) continue;
+      for (const std::uint32_t other : rings.of(v)) {
+        if (free[other] != 0) sets_.join(v, other);
       }
     }
   }
@@ -253,7 +121,7 @@ class Regions {
 };
 
 // The vertices of triangles that intersect are free no more, and some rings around them.
-void hold_around(const Mesh& mesh, const std::vector<TrianglePair>& pairs, const Rings& rings, std::vector<std::uint8_t>& free) {
+void hold_around(const Mesh& mesh, const std::vector<TrianglePair>& pairs, const VertexRings& rings, std::vector<std::uint8_t>& free) {
   std::vector<std::uint32_t> front, next;
   for (const TrianglePair& pair : pairs) {
     for (const std::uint32_t f : pair) front.insert(front.end(), mesh.triangles[f].begin(), mesh.triangles[f].end());
@@ -262,7 +130,8 @@ void hold_around(const Mesh& mesh, const std::vector<TrianglePair>& pairs, const
     next.clear();
     for (const std::uint32_t v : front) {
       free[v] = 0;
-      next.insert(next.end(), rings.vertex.begin() + rings.begin[v], rings.vertex.begin() + rings.begin[v + 1]);
+      const auto around = rings.of(v);
+      next.insert(next.end(), around.begin(), around.end());
     }
     std::sort(next.begin(), next.end());
     next.erase(std::unique(next.begin(), next.end()), next.end());
@@ -274,14 +143,15 @@ void hold_around(const Mesh& mesh, const std::vector<TrianglePair>& pairs, const
 void make_fair(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<std::uint8_t>& in_lines, const std::atomic<bool>* cancel) {
   if (mesh.triangles.empty() || std::none_of(in_lines.begin(), in_lines.end(), [](std::uint8_t m) { return m != 0; })) return;
   std::vector<std::uint8_t> free = vertices_at(mesh, points, in_lines);
-  const Rings rings = rings_of(mesh);
+  const VertexRings rings = vertex_rings(mesh);
   const std::vector<Vec3> home = mesh.vertices;
   const std::vector<TrianglePair> before = self_intersections(mesh);
   std::optional<double> enough;
   // Each attempt holds what crossed in the one before, and the rings around it; after as many as there are rings it stays.
   for (int attempt = 1;; ++attempt) {
-    Energy energy(rings, free);
-    for (int round = 0; round < kRounds; ++round) minimise(energy, pin(mesh, points, in_lines), mesh.vertices, enough, cancel);
+    LeastSquaresMesh surface(rings, free);
+    for (int meeting = 0; meeting < kMeetings; ++meeting)
+      surface.minimise(anchors_on(mesh, points, in_lines), mesh.vertices, enough, cancel);
     const std::vector<TrianglePair> after = self_intersections(mesh);
     if (after.size() <= before.size()) return;
     if (attempt > kRings) {

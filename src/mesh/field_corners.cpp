@@ -12,15 +12,8 @@ namespace {
 
 // The distance in spacings from the nearest point within which the fitted surface gives the side: farther away it bends off by itself.
 constexpr double kLocalReach = 1.8;
-// |w - level| from which the field overrules the fitted surface: with 0.4 the sword has 44 handles instead of 5 (docs/evidence/meshes.md).
-constexpr double kFieldSure = 0.2;
 // The corners of which more than the side is in memory at the same time.
-constexpr std::size_t kCornersAtOnce = std::size_t{1} << 17;
-// The value of an ambiguous corner is 2 (w - level) and, of the fitted surface, this at most, so that the two weigh alike where the field
-// is sure. It has that from kDiscHalf spacings away on, as the surface curves by no more.
-constexpr double kFitSay = 2 * kFieldSure;
-// The distance in spacings from the surface at which a corner counts whose sign was changed to remove a handle: vertices are placed by it.
-constexpr double kFlipped = 0.1;
+constexpr std::size_t kCornersAtOnce = 512 * parallel::kSmallBlock;
 
 }  // namespace
 
@@ -50,7 +43,7 @@ Corners CornerSides::of(const Octree& octree, const std::function<bool(std::uint
   for (std::size_t first = 0; first < corners.value.size(); first += kCornersAtOnce) {
     places.resize(std::min(corners.value.size() - first, kCornersAtOnce));
     parallel::for_blocks(
-        places.size(), kBlock,
+        places.size(), parallel::kSmallBlock,
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) {
             if (wanted(static_cast<std::uint32_t>(first + i))) {
@@ -93,7 +86,9 @@ CornerSides::Place CornerSides::fit_at(const Vec3& at) const {
   if (fit.simple) return place;
   place.kind = Place::kAmbiguous;
   place.unjoined = fit.unjoined;
-  place.signed_value = static_cast<float>(kFitSay * std::clamp(value / (kDiscHalf * fit.spacing), -1.0, 1.0));
+  // The field adds 2 (w - level). The fit adds so much that the two weigh alike where the field is sure, and all of it from kDiscHalf
+  // spacings away on, as the surface curves by no more.
+  place.signed_value = static_cast<float>(2 * kFieldSure * std::clamp(value / (kDiscHalf * fit.spacing), -1.0, 1.0));
   for (std::size_t a = 0; a < 3; ++a) place.axis[a] = static_cast<float>(fit.patch[0].frame(2, static_cast<Eigen::Index>(a)));
   return place;
 }
@@ -124,7 +119,7 @@ bool CornerSides::is_beyond(const Vec3& x) const {
 
 std::vector<std::uint8_t> sides_by_fit(const LocalFit& local, const std::vector<Vec3>& places) {
   std::vector<std::uint8_t> inside(places.size());
-  parallel::for_blocks(places.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(places.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector3d x(places[i][0], places[i][1], places[i][2]);
       const LocalSurface fit = local.fit(x, kLocalReach, nullptr, LocalFit::Detail::kSide);
@@ -137,7 +132,7 @@ std::vector<std::uint8_t> sides_by_fit(const LocalFit& local, const std::vector<
 void match_values(const Octree& octree, const std::vector<std::uint8_t>& inside, double typical, std::vector<float>& value) {
   for (std::size_t c = 0; c < inside.size(); ++c) {
     if ((value[c] > 0) != (inside[c] != 0) && !octree.on_boundary(c))
-      value[c] = static_cast<float>((inside[c] != 0 ? kFlipped : -kFlipped) * typical);
+      value[c] = static_cast<float>((inside[c] != 0 ? kAtOnePlace : -kAtOnePlace) * typical);
   }
 }
 

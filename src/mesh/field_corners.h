@@ -20,6 +20,10 @@ namespace g3r::mesh {
 /// The distance from the cube of the points, of its side, beyond which all is outside: fast sums end there, and single ones are slow.
 inline constexpr double kBeyond = 0.05;
 
+/// |w - level| from which the field overrules the fitted surface: with 0.4 the sword has 44 handles instead of 5
+/// (docs/evidence/meshes.md).
+inline constexpr double kFieldSure = 0.2;
+
 /// The corners of an octree.
 struct Corners {
   std::vector<float> value;    ///< of each: positive inside, about minus the distance to the surface
@@ -69,7 +73,7 @@ class CornerSides {
 /// By the fitted surface alone; outside where there is none: what is asked where signs can be joined in two ways.
 [[nodiscard]] std::vector<std::uint8_t> sides_by_fit(const LocalFit& local, const std::vector<Vec3>& places);
 
-/// Where handles were removed `inside` is not the sign of the values: they become small ones of that side.
+/// Where handles were removed `inside` is not the sign of the values: they become small ones of that side, as vertices are placed by them.
 void match_values(const Octree& octree, const std::vector<std::uint8_t>& inside, double typical, std::vector<float>& value);
 
 }  // namespace g3r::mesh

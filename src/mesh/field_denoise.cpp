@@ -16,8 +16,6 @@ using Eigen::Vector3d;
 // The width in spacings of the fits that points move onto, at no noise: with 0.7, at 50,000 points, smooth models have a CD 2 to 4 %
 // larger.
 constexpr double kWidthFloor = 0.8;
-// The width of the fits that estimate the noise, in spacings: they have about 40 points, so that noise of a spacing does not bend them.
-constexpr double kEstimateWidth = 1.8;
 
 // The points near point i that face the same way, weighed by their distance along the surface.
 class Neighbourhood {
@@ -64,12 +62,14 @@ class Neighbourhood {
 Noise estimate_noise(const OrientedPoints& points, const Neighbours& neighbours, double typical) {
   const std::size_t n = points.positions.size(), count = std::min(n, kSample);
   std::vector<double> position(count), normal(count);
-  parallel::for_blocks(count, kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(count, parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
+    // As wide as under noise of half a spacing: fits to about 40 points, so that noise of a spacing does not bend them.
+    const double width = smoothing_width(0.5);
     Neighbourhood near(points, neighbours);
     for (std::size_t s = begin; s < end; ++s) {
       const auto i = static_cast<std::size_t>(std::uint64_t{s} * n / count);
       const double h = points.spacing[i];
-      const std::vector<FitPoint>& members = near.gather(i, kEstimateWidth);
+      const std::vector<FitPoint>& members = near.gather(i, width);
       const QuadraticPatch patch = fit_quadratic_patch(members, 0, h, kSlopeWeight);
       double height = 0, slope = 0, total = 0, squares = 0;
       for (const FitPoint& m : members) {
@@ -94,7 +94,7 @@ double smoothing_width(double position) { return std::min(kWidthFloor + 2 * posi
 void denoise(OrientedPoints& points, const Neighbours& neighbours, const Noise& noise, double typical, const std::atomic<bool>* cancel) {
   std::vector<Vec3> positions(points.positions.size()), normals(points.positions.size());
   parallel::for_blocks(
-      positions.size(), kBlock,
+      positions.size(), parallel::kSmallBlock,
       [&](std::size_t begin, std::size_t end) {
         Neighbourhood near(points, neighbours);
         for (std::size_t i = begin; i < end; ++i) {

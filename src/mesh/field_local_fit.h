@@ -1,17 +1,14 @@
-// The surface near a place, fitted to the oriented points around it: one to three smooth patches, joined by sharp creases.
+// The surface near any place of an oriented cloud: which points take part in its fit (mesh/local_surface.h), and with what weights.
 //
-// Each patch is a quadratic height field fitted to positions and normals together (Hermite data); points are assigned to patches by
-// their normals, and patches are joined by intersection or union as in Ohtake et al., "Multi-level partition of unity implicits",
-// SIGGRAPH 2003, and Fleishman et al., "Robust moving least-squares fitting with sharp features", SIGGRAPH 2005.
+// Moving least squares: Levin, "Mesh-independent surface interpolation", 2003. A point at distance d from the place has a weight
+// of about exp((e^2 - d^2) / (2 (0.7 h)^2)), e being the distance of the nearest point and h the spacing there.
 #pragma once
 
 #include "cloud/neighbours.h"
-#include "cloud/quadratic_patch.h"
+#include "mesh/local_surface.h"
 
 #include <g3r/points.h>
 
-#include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -26,33 +23,6 @@ struct OrientedPoints {
   std::vector<Vec3> normals;
   std::vector<double> spacing;
 };
-
-/// How two patches bound the solid between them.
-enum class Joint : signed char {
-  kNone,    ///< they do not meet here
-  kConvex,  ///< inside = inside of both
-  kConcave  ///< inside = inside of either
-};
-
-/// The patches of one place: a corner has three.
-inline constexpr int kMostPatches = 3;
-
-/// The surface around one place.
-struct LocalSurface {
-  int count = 0;  ///< number of patches, 0 if there is no point near; patch 0 is the nearest
-  std::array<QuadraticPatch, kMostPatches> patch;
-  bool walls = false;                       ///< two of the patches face away from each other or each other
-  std::array<Joint, kMostPatches> joint{};  ///< of patches a < b at a + b - 1
-  double spacing = 0;                       ///< local spacing h
-  bool unjoined = false;  ///< two patches have the place on different sides, and whether they meet in a crease the points do not say
-  bool simple = false;    ///< one patch, every point near belongs to it, and it has the place on the same side as their tangent planes
-
-  /// Signed distance to the joined patches, positive outside; which patch it belongs to (may be null).
-  double distance(const Eigen::Vector3d& x, int* active = nullptr) const;
-};
-
-/// The weight of squared slopes against squared heights in spacings: normals double the data, so that three points are enough for a fit.
-inline constexpr double kSlopeWeight = 0.25;
 
 /// About the standard deviation in spacings of the weights of a fit to clean points: with 1 the dragon's CD is 0.29 instead of 0.24
 /// (docs/evidence/meshes.md).

@@ -3,19 +3,13 @@
 
 #include "mesh/field_sampler.h"
 #include "mesh/mesh_finish.h"
+#include "mesh/mesh_memory.h"
 
 #include <g3r/g3r.h>
 
-#include <cstddef>
 #include <vector>
 
 namespace g3r {
-
-/// The memory that field_mesh() and the rest of reconstruct() take, in bytes.
-struct MeshMemory {
-  std::size_t limit = 0;   ///< 0: none; looked at once the octree shows what is needed
-  std::size_t needed = 0;  ///< as the octree shows
-};
 
 /// Meshes N points with N outward normals (any length but zero) whose winding field `sampler` evaluates; finite, at least 4 points.
 /// Closed and 2-manifold unless trimmed; the same bytes for any number of threads. An empty mesh if the field has no inside.
@@ -25,10 +19,5 @@ struct MeshMemory {
 [[nodiscard]] Mesh field_mesh(const std::vector<Vec3>& points, std::vector<Vec3> normals, const FieldSampler& sampler,
                               const MeshOptions& options = {}, const Monitor& monitor = {}, MeshMemory* memory = nullptr,
                               mesh::LeftOut* left_out = nullptr);
-
-/// MeshMemory::needed as far as it is known before the normals: of N points of a typical spacing and noise in a box with this longest side
-/// (same units), 0 where they are not known; depth 0: automatic. With walls and gaps of less than about 0.7 spacings it is up to 5 times as
-/// much.
-[[nodiscard]] std::size_t field_mesh_memory(std::size_t points, double spacing, double noise, double longest_side, int depth);
 
 }  // namespace g3r

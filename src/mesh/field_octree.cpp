@@ -1,5 +1,6 @@
 #include "mesh/field_octree.h"
 
+#include "base/hash.h"
 #include "cpu/parallel.h"
 #include "mesh/constants.h"
 
@@ -16,10 +17,8 @@ namespace {
 
 constexpr int kKeyBits = kMaxOctreeLevel + 1;  // A corner coordinate is 0 to 2^kMaxOctreeLevel, the last included.
 
-constexpr std::uint32_t kLatticeSide = 3;  // of the corners of eight siblings
-constexpr std::uint32_t kLatticeSize = kLatticeSide * kLatticeSide * kLatticeSide;
-constexpr std::uint32_t kLargestNode = std::numeric_limits<std::int32_t>::max();                    // a node's number has 31 bits,
-constexpr std::uint32_t kMostNodes = std::numeric_limits<std::uint32_t>::max() / kLatticeSize * 8;  // and a corner's place 32
+constexpr std::uint32_t kLargestNode = std::numeric_limits<std::int32_t>::max();                           // a node's number has 31 bits,
+constexpr std::uint32_t kMostNodes = std::numeric_limits<std::uint32_t>::max() / kLatticeSize * kOctants;  // and a corner's place 32
 
 std::uint64_t corner_key(const std::array<std::uint32_t, 3>& c) {
   return (std::uint64_t{c[2]} << (2 * kKeyBits)) | (std::uint64_t{c[1]} << kKeyBits) | c[0];
@@ -53,7 +52,7 @@ class CornerTable {
   static constexpr std::uint32_t kFree = std::numeric_limits<std::uint32_t>::max();
 
   // Fibonacci hashing: the top bits of a product are well mixed.
-  [[nodiscard]] std::size_t place(std::uint64_t key) const { return static_cast<std::size_t>((key * 0x9E3779B97F4A7C15U) >> shift_); }
+  [[nodiscard]] std::size_t place(std::uint64_t key) const { return static_cast<std::size_t>((key * kGolden) >> shift_); }
   void resize(std::size_t size) {
     slot_.assign(size, kFree);
     shift_ = std::numeric_limits<std::uint64_t>::digits - std::countr_zero(size);
@@ -96,7 +95,7 @@ Octree::Octree(const Vec3& low, double side, const std::vector<RefineDisc>& requ
   refine(requests, rule, cancel);
   nodes_.shrink_to_fit();
   families_.shrink_to_fit();
-  leaf_nodes_.reserve(nodes_.size() - (nodes_.size() - 1) / 8);
+  leaf_nodes_.reserve(nodes_.size() - (nodes_.size() - 1) / kOctants);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     if (nodes_[i].split != 0) continue;
     nodes_[i].next = static_cast<std::uint32_t>(leaf_nodes_.size()) & kLargestNode;
@@ -123,31 +122,31 @@ void Octree::refine(const std::vector<RefineDisc>& requests, const SplitRule& ru
       for (std::size_t k = front.begin[f]; split_it == Split::kAsRequested && !deeper && k < front.begin[f + 1]; ++k)
         deeper = requests[front.request[k]].level > level;
       if (!deeper) continue;
-      if (nodes_.size() > kMostNodes - 8) throw std::bad_alloc();
+      if (nodes_.size() > kMostNodes - kOctants) throw std::bad_alloc();
       const std::uint32_t parent = front.node[f];
       const Family children{node(parent).low, static_cast<std::uint8_t>(level + 1)};
       nodes_[parent] = {static_cast<std::uint32_t>(nodes_.size()) & kLargestNode, 1};
       if (parent == 0) families_.clear();
       families_.push_back(children);
-      nodes_.resize(nodes_.size() + 8, {0, 0});
+      nodes_.resize(nodes_.size() + kOctants, {0, 0});
       split.push_back(f);
     }
     // Hand each request to the children it touches: count, then fill, so that the order does not depend on the threads.
     Frontier next;
-    const std::size_t children = split.size() * 8;
+    const std::size_t children = split.size() * kOctants;
     next.node.resize(children);
     std::vector<std::vector<std::uint32_t>> lists(children);
-    parallel::for_blocks(split.size(), kBlock, [&](std::size_t first, std::size_t last) {
+    parallel::for_blocks(split.size(), parallel::kSmallBlock, [&](std::size_t first, std::size_t last) {
       for (std::size_t s = first; s < last; ++s) {
         const std::uint32_t base = next_of(front.node[split[s]]);
-        for (std::uint32_t c = 0; c < 8; ++c) {
+        for (std::uint32_t c = 0; c < kOctants; ++c) {
           const OctreeNode child = node(base + c);
           const Vec3 low = world(child.low[0], child.low[1], child.low[2]);
           const double side = unit_ * extent(child);
-          next.node[8 * s + c] = base + c;
+          next.node[kOctants * s + c] = base + c;
           for (std::size_t k = front.begin[split[s]]; k < front.begin[split[s] + 1]; ++k) {
             const RefineDisc& r = requests[front.request[k]];
-            if (r.level > level + 1 && touches(r, low, side)) lists[8 * s + c].push_back(front.request[k]);
+            if (r.level > level + 1 && touches(r, low, side)) lists[kOctants * s + c].push_back(front.request[k]);
           }
         }
       }
@@ -168,10 +167,10 @@ void Octree::number_corners() {
   CornerTable table(leaf_nodes_.size());  // grows where there are more
   for (const std::uint32_t leaf : leaf_nodes_) {
     const OctreeNode own = node(leaf);
-    for (std::uint32_t c = 0; c < 8; ++c) {
+    for (std::uint32_t c = 0; c < kOctants; ++c) {
       std::array<std::uint32_t, 3> g{};
       for (std::size_t a = 0; a < 3; ++a) g[a] = own.low[a] + ((c >> a) & 1U) * extent(own);
-      const std::uint32_t place = kLattice[sibling(leaf)] + kLattice[c];
+      const std::uint32_t place = kLatticePlace[sibling(leaf)] + kLatticePlace[c];
       const std::uint32_t corner = table.number(corner_key(g), keys);
       family_corners_[family(leaf)][place] = corner;
       if (corner == corner_places_.size()) corner_places_.push_back(static_cast<std::uint32_t>(family(leaf) * kLatticeSize + place));

@@ -9,9 +9,22 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <tuple>
 #include <vector>
 
 namespace g3r::mesh {
+
+/// The children of a split node, and the corners of each: one for each combination of lower and upper along three axes.
+inline constexpr std::uint32_t kOctants = 1U << std::tuple_size_v<Vec3>;
+/// The quadrants around an edge, and so the leaves.
+inline constexpr std::uint32_t kQuadrants = kOctants / 2;
+/// Eight siblings have 27 corners, on a lattice of 3 x 3 x 3.
+inline constexpr std::uint32_t kLatticeSide = 3, kLatticeSize = kLatticeSide * kLatticeSide * kLatticeSide;
+/// Place on this lattice of the corner of the first sibling at the upper end of the axes whose bits are set; the place of a corner of
+/// another sibling is the sum of its own and that of the sibling.
+constexpr std::uint32_t lattice_place(std::uint32_t bits) {
+  return (bits & 1U) + kLatticeSide * (((bits >> 1U) & 1U) + kLatticeSide * (bits >> 2U));
+}
 
 /// Deepest level: corner coordinates fit in 21 bits, so that three of them fit in a 64-bit key.
 inline constexpr int kMaxOctreeLevel = 20;
@@ -35,9 +48,12 @@ struct OctreeNode {
 
 /// An edge of a leaf that no smaller leaf's edge subdivides.
 struct MinimalEdge {
-  std::uint32_t low = 0, high = 0;      ///< corners
-  std::array<std::uint32_t, 4> leaf{};  ///< around it, in order; a leaf twice as large may fill two adjacent places
-  std::uint8_t axis = 0;                ///< direction
+  std::uint32_t low = 0, high = 0;               ///< corners
+  std::array<std::uint32_t, kQuadrants> leaf{};  ///< around it, in order; a leaf twice as large may fill two adjacent places
+  std::uint8_t axis = 0;                         ///< direction
+
+  /// Whether the k-th leaf fills the place before it too.
+  [[nodiscard]] bool is_repeated(std::size_t k) const { return leaf[k] == leaf[(k + kQuadrants - 1) % kQuadrants]; }
 };
 
 /// Whether a node is split.
@@ -74,12 +90,12 @@ class Octree {
   /// Number of a leaf's corner, bit a of `place` set = upper along axis a.
   [[nodiscard]] std::uint32_t corner(std::size_t leaf, std::uint32_t place) const {
     const std::uint32_t node = leaf_nodes_[leaf];
-    return family_corners_[family(node)][kLattice[sibling(node)] + kLattice[place]];
+    return family_corners_[family(node)][kLatticePlace[sibling(node)] + kLatticePlace[place]];
   }
   /// All eight of them.
-  [[nodiscard]] std::array<std::uint32_t, 8> corners(std::size_t leaf) const {
-    std::array<std::uint32_t, 8> out{};
-    for (std::uint32_t place = 0; place < 8; ++place) out[place] = corner(leaf, place);
+  [[nodiscard]] std::array<std::uint32_t, kOctants> corners(std::size_t leaf) const {
+    std::array<std::uint32_t, kOctants> out{};
+    for (std::uint32_t place = 0; place < kOctants; ++place) out[place] = corner(leaf, place);
     return out;
   }
   [[nodiscard]] std::size_t corner_count() const { return corner_places_.size(); }
@@ -95,10 +111,14 @@ class Octree {
   [[nodiscard]] int depth() const { return depth_; }
 
  private:
-  // Eight siblings have 27 corners, on a lattice of 3 x 3 x 3: the corner of a sibling is at the sum of the places of their bits.
-  static constexpr std::array<std::uint32_t, 8> kLattice{0, 1, 3, 4, 9, 10, 12, 13};
-  static std::size_t family(std::uint32_t node) { return node == 0 ? 0 : (node - 1) / 8; }
-  static std::uint32_t sibling(std::uint32_t node) { return node == 0 ? 0 : (node - 1) % 8; }
+  // lattice_place() of each combination of bits.
+  static constexpr std::array<std::uint32_t, kOctants> kLatticePlace = [] {
+    std::array<std::uint32_t, kOctants> out{};
+    for (std::uint32_t bits = 0; bits < kOctants; ++bits) out[bits] = lattice_place(bits);
+    return out;
+  }();
+  static std::size_t family(std::uint32_t node) { return node == 0 ? 0 : (node - 1) / kOctants; }
+  static std::uint32_t sibling(std::uint32_t node) { return node == 0 ? 0 : (node - 1) % kOctants; }
   void refine(const std::vector<RefineDisc>& requests, const SplitRule& rule, const std::atomic<bool>* cancel);
   void number_corners();
 
@@ -117,8 +137,8 @@ class Octree {
   std::vector<Node> nodes_;
   std::vector<Family> families_;
   std::vector<std::uint32_t> leaf_nodes_;
-  std::vector<std::array<std::uint32_t, 27>> family_corners_;  // 108 bytes where its leaves' own would take up to 256
-  std::vector<std::uint32_t> corner_places_;                   // of each corner, one of its places among these
+  std::vector<std::array<std::uint32_t, kLatticeSize>> family_corners_;  // 108 bytes where its leaves' own would take up to 256
+  std::vector<std::uint32_t> corner_places_;                             // of each corner, one of its places among these
 };
 
 }  // namespace g3r::mesh

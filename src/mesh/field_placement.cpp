@@ -20,10 +20,6 @@ using Eigen::Vector3d;
 
 // The share of its leaf's side that a vertex may leave the leaf by: with more, triangles fold over each other.
 constexpr double kReach = 0.3;
-// The distance, in sides of a leaf or in spacings, which differ little, up to which two places are one. A vertex on a crease may leave its
-// leaf by so much: with none, a crease between two leaves is in neither. Nearer ones of two leaves would coincide, and one steps aside. And
-// a point is on the joined surface up to it: patches may cross where they do not meet. No crossing is nearer to a corner than this.
-constexpr double kAtOnePlace = 0.05;
 // Steps towards a surface or an intersection: each squares the error, so that fewer suffice but where patches bend.
 constexpr int kNewtonSteps = 5;
 
@@ -221,7 +217,7 @@ PlacedVertices place_vertices(const Octree& octree, const DualSurface& surface, 
   out.normals.resize(patches);
   std::vector<OnFeature> on_feature(patches);
   parallel::for_blocks(
-      patches, kBlock,
+      patches, parallel::kSmallBlock,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
           if (!wanted.empty() && wanted[i] == 0) continue;

@@ -74,7 +74,7 @@ std::vector<double> sizes_to_resolve(const Prepared& prepared) {
 
 RefineDisc disc_around(const Vec3& position, const Vec3& normal, double spacing, double size, const LevelRule& rule) {
   const int spread = static_cast<int>(std::lround(std::log2(rule.typical / size)));
-  const int wanted = rule.finest + std::clamp(spread, -kMaxSpread, std::min(rule.finer, kMaxSpread));
+  const int wanted = rule.finest + std::clamp(spread, -kMaxSpread, rule.deepens ? kMaxSpread : 0);
   const double reach = std::min(spacing, rule.typical * std::exp2(kMaxSpread));  // its leaves are no larger
   return {position, normal, kGap * reach, kDiscHalf * reach, std::clamp(wanted, kBaseLevel, kMaxOctreeLevel)};
 }

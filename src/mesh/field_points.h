@@ -57,9 +57,9 @@ void smooth_noise(const Noise& noise, const std::atomic<bool>* cancel, Prepared&
 
 /// Levels of leaves around points.
 struct LevelRule {
-  double typical = 0;  ///< spacing,
-  int finest = 0;      ///< and the level whose cells have the side that was asked for, or less
-  int finer = 4;       ///< levels that dense sampling and walls may add
+  double typical = 0;   ///< spacing,
+  int finest = 0;       ///< and the level whose cells have the side that was asked for, or less
+  bool deepens = true;  ///< dense sampling and walls may add levels
 };
 /// The disc around a point that leaves resolve. `size`: of sizes_to_resolve().
 [[nodiscard]] RefineDisc disc_around(const Vec3& position, const Vec3& normal, double spacing, double size, const LevelRule& rule);

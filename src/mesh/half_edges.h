@@ -49,7 +49,7 @@ void for_each_edge(const Mesh& mesh, const Group& group) {
     const HalfEdge half_edge = half_edge_at(corner);
     half_edges[first[half_edge.low + 1]++] = half_edge;
   }
-  parallel::for_blocks(mesh.vertices.size(), mesh::kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(mesh.vertices.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       std::sort(half_edges.begin() + static_cast<std::ptrdiff_t>(first[v]), half_edges.begin() + static_cast<std::ptrdiff_t>(first[v + 1]),
                 [](const HalfEdge& a, const HalfEdge& b) { return a.high != b.high ? a.high < b.high : a.corner < b.corner; });

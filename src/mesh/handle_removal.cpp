@@ -86,10 +86,11 @@ std::vector<HandleRemoval::Change> HandleRemoval::changes_of(const CornerGroups&
   for (std::size_t p = 0; p < now.leaf.size(); ++p) {
     const std::uint32_t g = grouping_.at(now.leaf[p]);
     if (g == kNone) continue;
-    change[g].twice -= twice_characteristic(now, p);
+    change[g].twice_chi -= twice_characteristic(now, p);
     components.add(g, surface_.of(p));
   }
-  for (std::size_t p = 0; p < changed.leaf.size(); ++p) change[grouping_.at(changed.leaf[p])].twice += twice_characteristic(changed, p);
+  for (std::size_t p = 0; p < changed.leaf.size(); ++p) change[grouping_.at(changed.leaf[p])].twice_chi += twice_characteristic(changed, p);
+  // Crossings are the faces.
   const auto crosses = [](const MinimalEdge& e, const std::vector<std::uint8_t>& inside) {
     return inside[e.low] != inside[e.high] ? 1 : 0;
   };
@@ -98,11 +99,11 @@ std::vector<HandleRemoval::Change> HandleRemoval::changes_of(const CornerGroups&
     for (const std::uint32_t edge : open_.at_corner.of(groups.place[k])) {
       const MinimalEdge& e = open_.edges[edge];
       const bool counted = e.high == corner && from[e.low] != to[e.low];  // with the other end
-      if (!counted) change[groups.of[k]].twice += 2 * (crosses(e, to) - crosses(e, from));
+      if (!counted) change[groups.of[k]].twice_chi += 2 * (crosses(e, to) - crosses(e, from));
     }
   }
   const std::vector<long> before = components.count();
-  for (std::size_t g = 0; g < change.size(); ++g) change[g].before = before[g];
+  for (std::size_t g = 0; g < change.size(); ++g) change[g].components = before[g];
   return change;
 }
 
@@ -111,7 +112,7 @@ bool HandleRemoval::can_lose(const CornerGroups& groups, const Patches& changed,
   std::vector<long> least(change.size(), 0);  // components afterwards
   for (const std::uint32_t leaf : changed.leaf) least[grouping_.at(leaf)] = 1;
   for (std::size_t g = 0; g < change.size(); ++g) {
-    if (is_worth(change[g].twice / 4 + change[g].before - least[g], groups.size[g])) return true;
+    if (is_worth(change[g].handles_lost(least[g]), groups.size[g])) return true;
   }
   return false;
 }
@@ -132,7 +133,7 @@ std::vector<std::uint8_t> HandleRemoval::choose(const CornerGroups& groups, cons
     steady = true;
     for (std::size_t g = 0; g < take.size(); ++g) {
       if (take[g] == 0) continue;
-      take[g] = is_worth(change[g].twice / 4 - (after[g] - change[g].before), groups.size[g]) ? 1 : 0;
+      take[g] = is_worth(change[g].handles_lost(after[g]), groups.size[g]) ? 1 : 0;
       steady = steady && take[g] != 0;
     }
   }
@@ -153,11 +154,11 @@ bool HandleRemoval::propose(const std::vector<std::uint8_t>& proposal, std::vect
     for (std::size_t k = 0; k < groups.place.size(); ++k) {
       if (take[groups.of[k]] != 0) inside[open_.corners[groups.place[k]]] = proposal[open_.corners[groups.place[k]]];
     }
-    // Handles are components less half the Euler characteristic.
-    long four_times = -4 * static_cast<long>(surface_.count());
-    for (std::size_t g = 0; g < take.size(); ++g) four_times -= take[g] != 0 ? change[g].twice : 0;
+    long twice_chi = 0;
+    for (std::size_t g = 0; g < take.size(); ++g) twice_chi += take[g] != 0 ? change[g].twice_chi : 0;
+    const auto components = static_cast<long>(surface_.count());
     surface_.exchange(changed, [&](std::uint32_t leaf) { return grouping_.at(leaf) != kNone && take[grouping_.at(leaf)] != 0; });
-    handles_ += (four_times + 4 * static_cast<long>(surface_.count())) / 4;
+    handles_ += handles_of(static_cast<long>(surface_.count()) - components, twice_chi);
   }
   grouping_.end(groups, take);
   return any;

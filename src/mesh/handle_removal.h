@@ -1,5 +1,8 @@
 // Handles that hang on a few ambiguous octree corners: find them by the Euler characteristic, flip those corners.
 //
+// A closed surface with V vertices, E edges, F faces and C components has C - (V - E + F) / 2 handles. A proposal to flip some corners
+// changes V, E and F only in the leaves around them, and C is counted by a union-find over the patches there and the rest of the surface.
+//
 // Related: Bischoff, Kobbelt, "Isosurface reconstruction with topology control", Pacific Graphics 2002; Wood, Hoppe, Desbrun, Schroeder,
 // "Removing excess topology from isosurfaces", TOG 2004. Here the candidates are other labellings of the same corners, so that no handle is
 // cut where nothing is ambiguous.
@@ -45,8 +48,11 @@ class HandleRemoval {
  private:
   // What a group changes if it takes the proposal.
   struct Change {
-    long twice = 0;   // twice the change of the Euler characteristic: 4 for a handle less or a component more
-    long before = 0;  // components of the surface that pass through its leaves now
+    long twice_chi = 0;   // twice the change of the Euler characteristic
+    long components = 0;  // of the surface that pass through its leaves now
+
+    // Handles lost if so many components pass through the leaves afterwards.
+    [[nodiscard]] long handles_lost(long after) const { return -handles_of(after - components, twice_chi); }
   };
 
   [[nodiscard]] bool is_worth(long handles, long corners) const { return handles > 0 && corners <= most_per_handle_ * handles; }

@@ -92,7 +92,7 @@ class Search {
         }
       }
     };
-    parallel::for_blocks(doubtful_.size(), kBlock, look_from, cancel_);
+    parallel::for_blocks(doubtful_.size(), parallel::kSmallBlock, look_from, cancel_);
   }
 
   [[nodiscard]] const Neighbours& tree() {
@@ -120,7 +120,7 @@ class Search {
 
   [[nodiscard]] double usual_height() const {
     std::vector<double> heights(rings_.size());
-    parallel::for_blocks(rings_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    parallel::for_blocks(rings_.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         std::array<double, kRing> height{};
         for (std::size_t m = 0; m < kRing; ++m) height[m] = look_at(static_cast<std::uint32_t>(i), rings_[i].near[m]).height;
@@ -148,7 +148,7 @@ class Search {
   void take_strays() {
     std::vector<std::uint8_t> stray(doubtful_.size(), 0);
     parallel::for_blocks(
-        doubtful_.size(), kBlock,
+        doubtful_.size(), parallel::kSmallBlock,
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t k = begin; k < end; ++k) stray[k] = is_stray(doubtful_[k]) ? 1 : 0;
         },

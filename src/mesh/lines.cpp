@@ -40,7 +40,7 @@ Eigen::Matrix3d spread_around(const std::vector<Vec3>& points, const std::vector
 
 std::vector<std::uint8_t> points_along_curves(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near) {
   std::vector<std::uint8_t> out(points.size(), 0);
-  parallel::for_blocks(out.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(out.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector3d variance =
           Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread_around(points, near, i), Eigen::EigenvaluesOnly).eigenvalues();
@@ -70,7 +70,7 @@ std::vector<double> spacing_across_lines(const std::vector<Vec3>& points, const 
   const std::vector<std::uint32_t> near = neighbours.of_all(kFitPoints);
   const std::vector<std::uint8_t> in_lines = points_in_lines(points, near);
   std::vector<double> out = spacing;
-  parallel::for_blocks(out.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(out.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> index;
     std::vector<double> squared;
     for (std::size_t i = begin; i < end; ++i) {

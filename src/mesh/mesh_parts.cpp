@@ -3,6 +3,7 @@
 #include "base/disjoint_sets.h"
 #include "base/vector.h"
 #include "mesh/constants.h"
+#include "mesh/half_edges.h"
 
 #include <algorithm>
 #include <array>
@@ -37,27 +38,12 @@ bool keep_triangles(Mesh& mesh, const std::vector<std::uint8_t>& keep) {
 // belong together if their triangles share an edge at it.
 void split_fans(Mesh& mesh, std::vector<std::uint32_t>& source) {
   DisjointSets corners(mesh.triangles.size() * 3);
-  struct Half {
-    std::uint64_t edge;
-    std::uint32_t corner;  // of its smaller vertex
-    std::uint32_t other;   // of its larger vertex
-  };
-  std::vector<Half> halves;
-  halves.reserve(mesh.triangles.size() * 3);
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      std::uint32_t a = 3 * t + k, b = 3 * t + (k + 1) % 3;
-      if (mesh.triangles[a / 3][a % 3] > mesh.triangles[b / 3][b % 3]) std::swap(a, b);
-      halves.push_back({(std::uint64_t{mesh.triangles[a / 3][a % 3]} << 32U) | mesh.triangles[b / 3][b % 3], a, b});
+  for_each_edge(mesh, [&](const HalfEdge* half_edges, std::size_t count) {
+    for (std::size_t i = 1; i < count; ++i) {
+      for (const std::uint32_t v : {half_edges->low, half_edges->high})
+        corners.join(corner_at(mesh, half_edges[0], v), corner_at(mesh, half_edges[i], v));
     }
-  }
-  std::sort(halves.begin(), halves.end(),
-            [](const Half& x, const Half& y) { return x.edge != y.edge ? x.edge < y.edge : x.corner < y.corner; });
-  for (std::size_t i = 1; i < halves.size(); ++i) {
-    if (halves[i].edge != halves[i - 1].edge) continue;
-    corners.join(halves[i].corner, halves[i - 1].corner);
-    corners.join(halves[i].other, halves[i - 1].other);
-  }
+  });
   std::vector<std::uint32_t> number(mesh.triangles.size() * 3, kNone);
   const std::vector<std::array<std::uint32_t, 3>> old = mesh.triangles;
   source.clear();

@@ -25,8 +25,9 @@ enum class Kind : std::uint8_t { kCell, kFace, kEdge };
 
 struct Task {
   Kind kind = Kind::kCell;
-  std::uint8_t axis = 0;                // normal of the face, direction of the edge
-  std::array<std::uint32_t, 4> node{};  // cell: 1; face: lower, upper; edge: quadrant bit 0 = upper along axis+1, bit 1 = along axis+2
+  std::uint8_t axis = 0;  // normal of the face, direction of the edge
+  // Of a cell: one; of a face: lower, upper; of an edge: bit 0 of the quadrant = upper along axis+1, bit 1 = along axis+2.
+  std::array<std::uint32_t, kQuadrants> node{};
 };
 
 // Marks the nodes above the leaves for which marked(leaf) is not 0.
@@ -37,7 +38,7 @@ std::vector<std::uint8_t> mark_nodes(const Octree& octree, const Marked& marked)
     if (!octree.is_split(i)) {
       out[i] = marked(static_cast<std::size_t>(octree.next_of(i))) ? 1 : 0;
     } else {
-      for (std::size_t c = 0; c < 8; ++c) out[i] |= out[octree.next_of(i) + c];
+      for (std::size_t c = 0; c < kOctants; ++c) out[i] |= out[octree.next_of(i) + c];
     }
   }
   return out;
@@ -79,16 +80,16 @@ class Traversal {
   void expand_cell(const Task& task, const OnTask& on_task) const {
     const std::uint32_t n = task.node[0];
     if (!internal(n)) return;
-    for (std::uint32_t c = 0; c < 8; ++c) on_task(Task{Kind::kCell, 0, {child(n, c)}});
+    for (std::uint32_t c = 0; c < kOctants; ++c) on_task(Task{Kind::kCell, 0, {child(n, c)}});
     for (std::uint32_t d = 0; d < 3; ++d) {
       const std::uint32_t u = (d + 1) % 3, v = (d + 2) % 3;
-      for (std::uint32_t q = 0; q < 4; ++q) {
+      for (std::uint32_t q = 0; q < kQuadrants; ++q) {
         const std::uint32_t bits = ((q & 1U) << u) | ((q >> 1U) << v);
         on_task(Task{Kind::kFace, static_cast<std::uint8_t>(d), {child(n, bits), child(n, bits | (1U << d))}});
       }
       for (std::uint32_t k = 0; k < 2; ++k) {
         Task edge{Kind::kEdge, static_cast<std::uint8_t>(d), {}};
-        for (std::uint32_t q = 0; q < 4; ++q) edge.node[q] = child(n, (k << d) | ((q & 1U) << u) | ((q >> 1U) << v));
+        for (std::uint32_t q = 0; q < kQuadrants; ++q) edge.node[q] = child(n, (k << d) | ((q & 1U) << u) | ((q >> 1U) << v));
         on_task(edge);
       }
     }
@@ -99,7 +100,7 @@ class Traversal {
     const std::array<std::uint32_t, 2> side{task.node[0], task.node[1]};
     if (!internal(side[0]) && !internal(side[1])) return;
     const std::uint32_t d = task.axis, u = (d + 1) % 3, v = (d + 2) % 3;
-    for (std::uint32_t q = 0; q < 4; ++q) {
+    for (std::uint32_t q = 0; q < kQuadrants; ++q) {
       const std::uint32_t bits = ((q & 1U) << u) | ((q >> 1U) << v);
       on_task(Task{Kind::kFace, task.axis, {child(side[0], bits | (1U << d)), child(side[1], bits)}});
     }
@@ -107,7 +108,7 @@ class Traversal {
       const std::uint32_t e1 = (along + 1) % 3, e2 = (along + 2) % 3;
       for (std::uint32_t k = 0; k < 2; ++k) {
         Task edge{Kind::kEdge, static_cast<std::uint8_t>(along), {}};
-        for (std::uint32_t q = 0; q < 4; ++q) {
+        for (std::uint32_t q = 0; q < kQuadrants; ++q) {
           const std::uint32_t b1 = q & 1U, b2 = q >> 1U;
           const bool upper = (e1 == d ? b1 : b2) == 1;    // which of the two sides of the face
           const std::uint32_t other = e1 == d ? b2 : b1;  // half within the face
@@ -127,13 +128,13 @@ class Traversal {
     if (internal(task.node[0]) || internal(task.node[1]) || internal(task.node[2]) || internal(task.node[3])) {
       for (std::uint32_t k = 0; k < 2; ++k) {
         Task half{Kind::kEdge, task.axis, {}};
-        for (std::uint32_t q = 0; q < 4; ++q) half.node[q] = child(task.node[q], bits_of(q) | (k << d));
+        for (std::uint32_t q = 0; q < kQuadrants; ++q) half.node[q] = child(task.node[q], bits_of(q) | (k << d));
         on_task(half);
       }
       return;
     }
     std::uint32_t smallest = 0;
-    for (std::uint32_t q = 1; q < 4; ++q) {
+    for (std::uint32_t q = 1; q < kQuadrants; ++q) {
       if (octree_.level_of(task.node[q]) > octree_.level_of(task.node[smallest])) smallest = q;
     }
     const std::uint32_t leaf = octree_.next_of(task.node[smallest]);
@@ -141,7 +142,7 @@ class Traversal {
     edge.low = octree_.corner(leaf, bits_of(smallest));
     edge.high = octree_.corner(leaf, bits_of(smallest) | (1U << d));
     edge.axis = task.axis;
-    for (std::size_t k = 0; k < 4; ++k) edge.leaf[k] = octree_.next_of(task.node[quadrant(k)]);
+    for (std::size_t k = 0; k < kQuadrants; ++k) edge.leaf[k] = octree_.next_of(task.node[quadrant(k)]);
     on_edge(edge);
   }
 

@@ -71,8 +71,8 @@ OpenEdges open_edges(const Octree& octree, const std::vector<std::uint8_t>& open
     }
   });
   out.around_leaf = list_edges(out.around.count(), out.edges, [&](const MinimalEdge& e, const auto& use) {
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (out.around.contains(e.leaf[k]) && e.leaf[k] != e.leaf[(k + 3) % 4]) use(out.around.number(e.leaf[k]));
+    for (std::size_t k = 0; k < kQuadrants; ++k) {
+      if (out.around.contains(e.leaf[k]) && !e.is_repeated(k)) use(out.around.number(e.leaf[k]));
     }
   });
   return out;

@@ -1,5 +1,6 @@
 #include "mesh/patch_components.h"
 
+#include "base/pair_key.h"
 #include "mesh/constants.h"
 
 #include <algorithm>
@@ -32,8 +33,6 @@ void join_nodes(const Patches& s, const std::vector<std::uint32_t>& node, const 
       s.leaf, s.begin, s.rim, [&](std::uint32_t edge) { return node[edge]; }, use, sets);
 }
 
-std::uint64_t key(std::uint32_t inside, std::uint32_t outside) { return std::uint64_t{inside} << 32U | outside; }
-
 // Numbers the edges that have no node, from `nodes` on; returns how many nodes there are then.
 std::uint32_t number_edges(const std::vector<std::uint32_t>& edges, std::uint32_t nodes, std::vector<std::uint32_t>& node) {
   for (const std::uint32_t edge : edges) {
@@ -51,7 +50,7 @@ long count_handles(const DualSurface& surface) {
   join_crossings(surface, all_leaves, components);
   const long twice =
       2 * static_cast<long>(surface.patch_count() + surface.crossings.size()) - static_cast<long>(surface.patch_crossings.size());
-  return static_cast<long>(components.count()) - twice / 4;
+  return handles_of(static_cast<long>(components.count()), twice);
 }
 
 SurfaceElsewhere surface_elsewhere(SomeLeaves around, DualSurface&& freed) {
@@ -73,7 +72,7 @@ SurfaceElsewhere surface_elsewhere(SomeLeaves around, DualSurface&& freed) {
     if (in_these[crossing] == 0) return;
     std::uint32_t& n = number[rest.find(crossing)];
     if (n == kNone) n = static_cast<std::uint32_t>(out.parts++);
-    out.crossings.push_back({key(surface.crossings[crossing].inside, surface.crossings[crossing].outside), n});
+    out.crossings.push_back({pair_key(surface.crossings[crossing].inside, surface.crossings[crossing].outside), n});
   });
   std::sort(out.crossings.begin(), out.crossings.end());
   return out;
@@ -92,7 +91,7 @@ void PatchComponents::number_nodes() {
   for (const std::uint32_t edge : patches_.rim) {
     const MinimalEdge& e = open_.edges[edge];
     if (std::all_of(e.leaf.begin(), e.leaf.end(), [&](std::uint32_t leaf) { return open_.around.contains(leaf); })) continue;
-    for (const std::uint64_t k : {key(e.low, e.high), key(e.high, e.low)}) {
+    for (const std::uint64_t k : {pair_key(e.low, e.high), pair_key(e.high, e.low)}) {
       const auto found = std::lower_bound(known.begin(), known.end(), SurfaceElsewhere::Crossing{k, 0});
       if (found != known.end() && found->corners == k) node_[edge] = found->part;
     }

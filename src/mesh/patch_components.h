@@ -17,6 +17,10 @@ namespace g3r::mesh {
   return 2 - static_cast<long>(s.begin[patch + 1] - s.begin[patch]);
 }
 
+/// Handles of so many components of closed surface with twice their Euler characteristic chi: genus = components - chi / 2. Of changes of
+/// both it is the change of the handles.
+[[nodiscard]] constexpr long handles_of(long components, long twice_chi) { return components - twice_chi / 2 / 2; }
+
 /// Handles of all components together. O(patches + crossings).
 [[nodiscard]] long count_handles(const DualSurface& surface);
 

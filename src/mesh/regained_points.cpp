@@ -65,7 +65,7 @@ std::vector<Vec3> normals_of_regained(const std::vector<Vec3>& points, const std
     const double noise = prepared.typical * noise_seen(estimate_noise(prepared.points, *prepared.neighbours, prepared.typical));
     const LocalFit local(prepared.points, *prepared.neighbours, prepared.near);
     parallel::for_blocks(
-        open.size(), kBlock,
+        open.size(), parallel::kSmallBlock,
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t k = begin; k < end; ++k) {
             const Vec3& place = strays[open[k]];

@@ -14,10 +14,10 @@ namespace {
 // of the surface, and must not count.
 constexpr double kAcross = 0.25;
 
-// The leaves around a corner: 8 at most, each with the corner's place in it.
+// The leaves around a corner, each with the corner's place in it.
 struct Around {
-  std::array<std::uint32_t, 8> leaf{};
-  std::array<std::uint8_t, 8> place{};
+  std::array<std::uint32_t, kOctants> leaf{};
+  std::array<std::uint8_t, kOctants> place{};
   std::uint8_t count = 0;
 };
 
@@ -25,7 +25,7 @@ struct Around {
 std::vector<Around> leaves_around(const Octree& octree, const std::vector<std::uint32_t>& number, std::size_t ambiguous) {
   std::vector<Around> out(ambiguous);
   for (std::uint32_t leaf = 0; leaf < octree.leaf_count(); ++leaf) {
-    for (std::uint8_t place = 0; place < 8; ++place) {
+    for (std::uint8_t place = 0; place < kOctants; ++place) {
       const std::uint32_t k = number[octree.corner(leaf, place)];
       if (k == kNone) continue;
       Around& a = out[k];
@@ -36,21 +36,18 @@ std::vector<Around> leaves_around(const Octree& octree, const std::vector<std::u
   return out;
 }
 
-// Weights of the corners around one, by how far they are along the patch with normal n: at 13 + x + 3 (y + 3 z) for the corner (x, y, z)
-// leaf sides away, each -1, 0 or 1.
-std::array<double, 27> weights(const std::array<float, 3>& n) {
-  std::array<double, 27> out{};
+// Weights of the corners around one, by how far they are along the patch with normal n: at the middle + x + 3 (y + 3 z) for the corner
+// (x, y, z) leaf sides away, each -1, 0 or 1.
+std::array<double, kLatticeSize> weights(const std::array<float, 3>& n) {
+  std::array<double, kLatticeSize> out{};
   for (std::size_t i = 0; i <= out.size() / 2; ++i) {
-    const std::size_t y = i / 3 % 3, z = i / 3 / 3;
+    const std::size_t y = i / kLatticeSide % kLatticeSide, z = i / kLatticeSide / kLatticeSide;
     const double across =
-        n[0] * (static_cast<double>(i % 3) - 1) + n[1] * (static_cast<double>(y) - 1) + n[2] * (static_cast<double>(z) - 1);
+        n[0] * (static_cast<double>(i % kLatticeSide) - 1) + n[1] * (static_cast<double>(y) - 1) + n[2] * (static_cast<double>(z) - 1);
     out[i] = out[out.size() - 1 - i] = std::exp(-across * across / (2 * kAcross * kAcross));
   }
   return out;
 }
-
-// Of a place of a leaf among the weights.
-std::size_t grid_of(std::uint32_t place) { return (place & 1U) + 3 * (((place >> 1U) & 1U) + 3 * (place >> 2U)); }
 
 }  // namespace
 
@@ -61,13 +58,13 @@ std::vector<std::vector<float>> smooth_sides(const Octree& octree, const Ambiguo
   const std::vector<Around> around = leaves_around(octree, number, ambiguous.corner.size());
   const auto average = [&](std::size_t k, const std::vector<float>& side) {
     const Around& a = around[k];
-    const std::array<double, 27> along = weights(ambiguous.axis[k]);
+    const std::array<double, kLatticeSize> along = weights(ambiguous.axis[k]);
     double sum = 0, total = 0;
     for (std::size_t i = 0; i < a.count; ++i) {
-      for (std::uint32_t other = 0; other < 8; ++other) {
+      for (std::uint32_t other = 0; other < kOctants; ++other) {
         if (other == a.place[i]) continue;
         const std::uint32_t c = octree.corner(a.leaf[i], other);
-        const double weight = along[along.size() / 2 + grid_of(other) - grid_of(a.place[i])];
+        const double weight = along[along.size() / 2 + lattice_place(other) - lattice_place(a.place[i])];
         sum += weight * (number[c] != kNone ? static_cast<double>(side[number[c]]) : inside[c] != 0 ? 1.0 : -1.0);
         total += weight;
       }
@@ -81,7 +78,7 @@ std::vector<std::vector<float>> smooth_sides(const Octree& octree, const Ambiguo
   for (std::size_t t = 0; t < times; ++t) {
     const std::vector<float>& value = t == 0 ? ambiguous.value : out[t - 1];
     parallel::for_blocks(
-        around.size(), kBlock,
+        around.size(), parallel::kSmallBlock,
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t k = begin; k < end; ++k) out[t][k] = average(k, value);
         },

@@ -2,6 +2,7 @@
 
 #include "base/vector.h"
 #include "mesh/constants.h"
+#include "mesh/half_edges.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,21 +30,10 @@ Vec3 normal_of(const std::vector<Vec3>& at, const std::array<std::uint32_t, 3>& 
 
 // Edges with one triangle, as it runs along them.
 std::vector<RimEdge> boundary_of(const Mesh& mesh) {
-  std::vector<std::array<std::uint32_t, 3>> sides;  // low, high, whether from high to low
-  sides.reserve(3 * mesh.triangles.size());
-  for (const auto& t : mesh.triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
-      sides.push_back({std::min(a, b), std::max(a, b), a > b ? 1U : 0U});
-    }
-  }
-  std::sort(sides.begin(), sides.end());
   std::vector<RimEdge> out;
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    const auto same = [&](std::size_t j) { return sides[j][0] == sides[i][0] && sides[j][1] == sides[i][1]; };
-    if ((i > 0 && same(i - 1)) || (i + 1 < sides.size() && same(i + 1))) continue;
-    out.emplace_back(sides[i][sides[i][2]], sides[i][1 - sides[i][2]]);
-  }
+  for_each_edge(mesh, [&](const HalfEdge* half_edges, std::size_t count) {
+    if (count == 1) out.emplace_back(vertex_of(mesh, half_edges->corner), vertex_of(mesh, next_corner(half_edges->corner)));
+  });
   return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/disjoint_sets.h"
 #include "base/median.h"
+#include "base/pair_key.h"
 #include "base/vector.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
@@ -22,9 +23,6 @@
 
 namespace g3r::mesh {
 namespace {
-
-// The share of an edge that a cut leaves on both sides at least: with less, triangles at rims are slivers.
-constexpr double kLeastCut = 0.1;
 
 using Triangle = std::array<std::uint32_t, 3>;
 
@@ -63,7 +61,7 @@ std::vector<std::uint8_t> within(const Mesh& mesh, const std::vector<Vec3>& poin
     if (longest_side(corner) <= small) continue;
     for (std::size_t k = 0; k < 3; ++k) places.push_back(vector::scale(vector::add(corner[k], corner[(k + 1) % 3]), 0.5));
     places.push_back(centre_of(mesh, v));
-    asker.insert(asker.end(), 4, t);
+    asker.resize(places.size(), t);
   }
   const std::vector<double> distance = distance_to_points(places, points, [&](std::uint32_t i) { return limits[i]; });
   for (std::size_t k = 0; k < places.size(); ++k) {
@@ -94,7 +92,7 @@ std::vector<double> past_rims(const Mesh& mesh, const OrientedPoints& points) {
   const std::vector<Vec3> normals = normals_of(mesh);
   const Neighbours neighbours(points.positions);
   std::vector<double> past(mesh.vertices.size());
-  parallel::for_blocks(past.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(past.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> near;
     std::vector<double> squared;
     for (std::size_t v = begin; v < end; ++v) {
@@ -142,9 +140,9 @@ void flood(const Mesh& mesh, const std::vector<double>& past, std::vector<std::u
 void cut_off(Mesh& mesh, const std::vector<double>& past, const std::vector<std::uint8_t>& off, std::vector<std::uint8_t>& keep) {
   std::unordered_map<std::uint64_t, std::uint32_t> made;
   const auto cut = [&](std::uint32_t in, std::uint32_t out) {
-    const auto [place, is_new] = made.try_emplace((std::uint64_t{in} << 32U) | out, static_cast<std::uint32_t>(mesh.vertices.size()));
+    const auto [place, is_new] = made.try_emplace(pair_key(in, out), static_cast<std::uint32_t>(mesh.vertices.size()));
     if (is_new) {
-      const double t = std::clamp(past[in] / (past[in] - past[out]), kLeastCut, 1 - kLeastCut);
+      const double t = std::clamp(past[in] / (past[in] - past[out]), kAtOnePlace, 1 - kAtOnePlace);
       mesh.vertices.push_back(vector::add(vector::scale(mesh.vertices[in], 1 - t), vector::scale(mesh.vertices[out], t)));
     }
     return place->second;

@@ -24,8 +24,6 @@ constexpr int kRounds = 12;
 constexpr int kFirstLater = 4;
 // The cosine between normals below which two triangles fold back, at a dihedral angle of less than 60 degrees: creases are duller.
 constexpr double kFold = -0.5;
-// Rounds of moving vertices of folds: what still folds after them is a blade, and would become shorter.
-constexpr int kSofteningRounds = 3;
 
 // Marks the corners of all triangles that have a marked corner.
 void grow(const Mesh& mesh, std::vector<std::uint8_t>& marked) {
@@ -136,7 +134,8 @@ void soften_thorns(Mesh& mesh, std::size_t crossings) {
   Part part = part_of(mesh, near);
   std::vector<Vec3>& at = part.mesh.vertices;
   const std::vector<Vec3> home = at;
-  for (int round = 0; round < kSofteningRounds; ++round) {
+  // As many rounds as rings feel them: what still folds after them is a blade, and would become shorter.
+  for (int round = 0; round < kRings; ++round) {
     smooth(part, move);
     std::fill(move.begin(), move.end(), std::uint8_t{0});
     mark_thorns(part, move);

@@ -1,5 +1,6 @@
 // Pass 2.
 #include "base/median.h"
+#include "base/pair_key.h"
 #include "base/vector.h"
 #include "field/winding_sampler.h"
 #include "io/output_file.h"
@@ -107,7 +108,7 @@ std::vector<CornerValue> worth_saying(const Surroundings& around, const std::vec
   for (std::uint32_t c = 0; c < said.size(); ++c) {
     if (said[c] == 0 || owned[c] == 0) continue;
     const std::uint64_t name = corner_name(octree.corner_grid(c));
-    out.push_back({{static_cast<std::uint32_t>(name), static_cast<std::uint32_t>(name >> 32U)}, value[c]});
+    out.push_back({{second_of(name), first_of(name)}, value[c]});
   }
   std::sort(out.begin(), out.end(), [](const CornerValue& a, const CornerValue& b) { return a.whole_key() < b.whole_key(); });
   return out;

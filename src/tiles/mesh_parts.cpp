@@ -2,6 +2,7 @@
 #include "base/disjoint_sets.h"
 #include "io/output_file.h"
 #include "mesh/field_points.h"
+#include "mesh/half_edges.h"
 #include "mesh/untangle.h"
 #include "tiles/mesh_passes.h"
 #include "tiles/parts.h"
@@ -74,24 +75,11 @@ std::vector<mesh::Support> support_of(const MeshFolder& folder, std::size_t tile
 // Marks what other tiles see too: vertices of theirs, and those at the rim of this tile's triangles.
 std::vector<std::uint8_t> shared_vertices(const TileSurface& surface) {
   const Mesh& mesh = surface.mesh;
-  std::vector<std::uint64_t> sides;
-  sides.reserve(3 * mesh.triangles.size());
-  for (const auto& t : mesh.triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint64_t a = t[k];
-      const std::uint64_t b = t[(k + 1) % 3];
-      sides.push_back(std::min(a, b) << 32U | std::max(a, b));
-    }
-  }
-  std::sort(sides.begin(), sides.end());
   std::vector<std::uint8_t> shared(mesh.vertices.size(), 0);
   for (std::size_t f = 0; f < surface.foreign.size(); ++f) shared[surface.own + f] = 1;
-  for (std::size_t i = 0; i < sides.size();) {
-    std::size_t end = i + 1;
-    while (end < sides.size() && sides[end] == sides[i]) ++end;
-    if (end - i != 2) shared[sides[i] >> 32U] = shared[sides[i] & 0xffffffffU] = 1;
-    i = end;
-  }
+  for_each_edge(mesh, [&](const HalfEdge* half_edges, std::size_t count) {
+    if (count != 2) shared[half_edges->low] = shared[half_edges->high] = 1;
+  });
   return shared;
 }
 

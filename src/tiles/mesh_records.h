@@ -1,6 +1,7 @@
 // What the files of a meshed work folder hold, and how they are read.
 #pragma once
 
+#include "base/pair_key.h"
 #include "tiles/mesh_plan.h"
 #include "tiles/records.h"
 
@@ -38,7 +39,7 @@ static_assert(sizeof(FarNode) == 48);
 struct CornerValue {
   std::array<std::uint32_t, 2> key;  ///< low, high half
   float value;
-  [[nodiscard]] std::uint64_t whole_key() const { return std::uint64_t{key[1]} << 32U | key[0]; }
+  [[nodiscard]] std::uint64_t whole_key() const { return pair_key(key[1], key[0]); }
 };
 static_assert(sizeof(CornerValue) == 12);
 

@@ -1,5 +1,6 @@
 #include "tiles/spacing_sample.h"
 
+#include "base/hash.h"
 #include "base/median.h"
 #include "mesh/smooth_spacing.h"
 
@@ -12,19 +13,11 @@ namespace {
 constexpr std::size_t kMost = std::size_t{1} << 17U;  // points kept; with 10,000 the folds of a statue look like thick patches
 constexpr std::size_t kFewest = 100;                  // that tell a spacing
 
-// splitmix64 (Steele, Lea, Flood 2014).
-std::uint64_t hash(std::uint64_t x) {
-  x += 0x9E3779B97F4A7C15U;
-  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9U;
-  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBU;
-  return x ^ (x >> 31U);
-}
-
 }  // namespace
 
 void SpacingSample::add(const Vec3& point) {
   const auto stays = [this](std::uint64_t h) { return halvings_ == 0 || h >> (64U - static_cast<unsigned>(halvings_)) == 0; };
-  const std::uint64_t h = hash(count_++);
+  const std::uint64_t h = mixed(count_++);
   if (!stays(h)) return;
   kept_.emplace_back(h, point);
   if (kept_.size() <= kMost) return;
