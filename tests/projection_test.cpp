@@ -24,7 +24,7 @@ using shapes::Surface;
 constexpr double kSpacing = 0.02;
 
 // Random points of a square of side 1.8 at height z that faces up or down, one for each square of side kSpacing.
-Surface sheet(double z, double up, std::uint64_t seed) {
+Surface square(double z, double up, std::uint64_t seed) {
   shapes::Random random(seed);
   Surface s;
   const auto count = static_cast<std::size_t>(1.8 * 1.8 / (kSpacing * kSpacing));
@@ -76,7 +76,7 @@ TEST(Projection, NoiseIsThatOfTheEquivalentKernel) {
 
 TEST(Projection, LeavesTheNoiseOfTheFormulaOnAPlane) {
   for (const double sigma : {0.8, 1.6}) {
-    Surface s = sheet(0, 1, 5);
+    Surface s = square(0, 1, 5);
     shapes::scatter(s, sigma * kSpacing);
     const double left = deviation(projected(s, sigma * kSpacing), 0, s.points.size(), 0);
     EXPECT_NEAR(left / projected_noise(sigma * kSpacing, kSpacing), 1, 0.2) << sigma;
@@ -99,8 +99,8 @@ TEST(Projection, DoesNotShrinkASphere) {
 // The noise of each wall reaches into the other: of 4 sigma between them half are left to each.
 TEST(Projection, KeepsThePointsOfTwoWallsApart) {
   const double sigma = 0.8 * kSpacing;
-  const Surface lower = sheet(0, -1, 5);
-  Surface s = shapes::join(lower, sheet(4 * sigma, 1, 6));
+  const Surface lower = square(0, -1, 5);
+  Surface s = shapes::join(lower, square(4 * sigma, 1, 6));
   shapes::scatter(s, sigma);
   const std::vector<Vec3> moved = projected(s, sigma);
   const std::size_t half = lower.points.size();
@@ -109,7 +109,7 @@ TEST(Projection, KeepsThePointsOfTwoWallsApart) {
 }
 
 TEST(Projection, DoesNotAskWhichSideAWallFaces) {
-  Surface s = sheet(0, 1, 5);
+  Surface s = square(0, 1, 5);
   shapes::scatter(s, 0.8 * kSpacing);
   const std::vector<Vec3> moved = projected(s, 0.8 * kSpacing);
   for (Vec3& n : s.normals) n = {0, 0, -1};
@@ -120,14 +120,14 @@ TEST(Projection, DoesNotAskWhichSideAWallFaces) {
 }
 
 TEST(Projection, LeavesPointsOnAPlaneAndFewOnesWhereTheyAre) {
-  const Surface s = sheet(0.3, 1, 5);
+  const Surface s = square(0.3, 1, 5);
   for (const Vec3& p : projected(s, 0.5 * kSpacing)) EXPECT_NEAR(p[2], 0.3, 1e-12);
   const PointSet few({{0, 0, 0}, {1, 0, 0.1}, {0, 1, 0}});
   EXPECT_EQ(project_points(few.points(), few.tree(), {3, {0, 0, 1}}, 0.1, {1}), few.points());
 }
 
 TEST(Projection, IsTheSameWithAnyNumberOfThreadsAndStopsWhenAsked) {
-  Surface s = sheet(0, 1, 5);
+  Surface s = square(0, 1, 5);
   shapes::scatter(s, 0.8 * kSpacing);
   const auto with = [&](int threads) { return parallel::with_threads(threads, [&] { return projected(s, 0.8 * kSpacing); }); };
   EXPECT_EQ(with(1), with(0));
