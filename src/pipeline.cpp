@@ -247,8 +247,6 @@ Oriented assess(const Problem& problem, Solution solution, Stats& stats) {
     const std::vector<double> areas = point_areas(problem.settings, problem.cloud.set.smoothed_spacing());
     out.confidence = side_confidence(out.solution.eta, refined.normals, refined.strength, areas);
   }
-  std::vector<double>().swap(out.solution.refinement.strength);  // the confidence has them
-  if (replaces_areas(problem)) std::vector<Vec3>().swap(out.solution.eta);
   const OpenSurfaces& surfaces = out.solution.open_surfaces;
   add_open_surfaces(surfaces, out.confidence, stats);
   const auto is_open = [&](std::size_t i) { return stats.open_share > 0 && surfaces.part[i] != OpenSurfaces::kNone; };
@@ -257,6 +255,12 @@ Oriented assess(const Problem& problem, Solution solution, Stats& stats) {
   if (!contains(problem.settings.without, Step::kCertificate)) certify_sides(out.solution.open_surfaces, out.confidence);
   judge(out.solution.open_surfaces, out.confidence, stats);
   return out;
+}
+
+// Gives up the memory of what the confidence has of a solution.
+void release(const Problem& problem, Solution& solution) {
+  std::vector<double>().swap(solution.refinement.strength);
+  if (replaces_areas(problem)) std::vector<Vec3>().swap(solution.eta);
 }
 
 bool may_try_noises(const Problem& problem, const Options& options) {
@@ -315,6 +319,7 @@ Attempt attempt(Problem problem, const PointsView& points, const Options& option
   Solution solution = solve_problem(out.problem, options, stages, out.solved);
   out.stats = out.solved;
   out.oriented = assess(out.problem, std::move(solution), out.stats);
+  if (!is_projected(out.problem)) release(out.problem, out.oriented.solution);
   return out;
 }
 
@@ -339,6 +344,7 @@ Orientation orient_in_arena(const PointsView& points, Known known, const Options
     best.stats = best.solved;
     best.oriented = assess(best.problem, std::move(best.oriented.solution), best.stats);
   }
+  release(best.problem, best.oriented.solution);
   Solution& solution = best.oriented.solution;
   std::vector<float>& confidence = best.oriented.confidence;
   Orientation out;

@@ -12,8 +12,8 @@
 namespace g3r {
 
 /// Reach R of the fits, in proportion to sqrt(sigma h) for noise sigma and points h apart: noise turns all of them by the same angle then,
-/// as it turns one by about sigma h / R^2. Half the area of the first reach of fit_noisy_jets(), as heights ask for fewer points than slopes;
-/// from 0.8 to 1.2 of it the errors are within 1 %.
+/// as it turns one by about sigma h / R^2. Half the area of the first reach of fit_noisy_jets(), as heights ask for fewer points than
+/// slopes; from 0.8 to 1.2 of it the errors are within 1 %.
 [[nodiscard]] double projection_reach(double noise, double spacing);
 
 /// Standard deviation of the height at the centre of a quadratic fitted with weights 1 - r^2 / R^2 within the reach R to points that lie h
@@ -29,7 +29,6 @@ namespace g3r {
 /// rather than leave [-1, 1]^3. `normals`: unit vectors, whose sides may be wrong, wall by wall; `spacing`: h at every point, or one for
 /// all; `noise` > 0. In the order of `points`. Throws Cancelled. O(N) for as many points within the reach.
 [[nodiscard]] std::vector<Vec3> project_points(const std::vector<Vec3>& points, const Neighbours& tree, const std::vector<Vec3>& normals,
-                                               double noise, const std::vector<double>& spacing,
-                                               const std::atomic<bool>* cancel = nullptr);
+                                               double noise, const std::vector<double>& spacing, const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace g3r

@@ -238,7 +238,8 @@ std::size_t planned_memory(const Settings& settings, std::size_t given, std::siz
   constexpr double kProgram = 20u << 20;  // code, libraries, thread stacks, matrices, queries
   constexpr double kPerUnknown = 330;     // while the equations are solved,
   constexpr double kBase = 255;           // or what stays of it while sides are certified,
-  constexpr double kPerSite = 445;        // and what each of the sites then takes:
+  constexpr double kPerSite = 445;        // and what each of the sites then takes;
+  constexpr double kMoved = 40;           // under noise, besides, points that are moved onto their surface
   constexpr double kFilled = 0.7;         // as many as a maximal sample of points so far apart has, in squares of that side
   const std::size_t harmonics = settings.method == Method::kGreen ? settings.harmonics.size() : 0;
   const auto unknowns = static_cast<double>(used);
@@ -246,7 +247,7 @@ std::size_t planned_memory(const Settings& settings, std::size_t given, std::siz
   const double solve = settings.cluster_side > 0 ? 0 : (kPerUnknown + 2 * sizeof(Vec3) * static_cast<double>(harmonics)) * unknowns;
   const double apart = site_distance(used, settings.spacing, settings.noise) / settings.spacing;
   const double sites = apart > 0 ? kFilled * unknowns / (apart * apart) : unknowns;
-  const double certificate = kBase * unknowns + kPerSite * sites;
+  const double certificate = (kBase + (settings.noise > 0 ? kMoved : 0)) * unknowns + kPerSite * sites;
   double bytes = kProgram + static_cast<double>(given * sizeof(Given)) + std::max(solve, certificate);
   if (settings.dense) bytes += 3 * unknowns * 3 * unknowns * sizeof(double);
   return whole_bytes(bytes);

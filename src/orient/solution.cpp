@@ -214,6 +214,57 @@ Refinement solve_clusters(const Clusters& clusters, const std::vector<double>& s
   return refine_normals(wide, system.to_areas(std::move(result.eta)));
 }
 
+// Points, how many times as far apart as is typical each is (empty: all are typical), and their clusters.
+struct Clustered {
+  const std::vector<Vec3>& points;
+  const std::vector<double>& relative_spacing;
+  const Clusters& clusters;
+};
+
+// The polish of clusters from their refinement; area vectors and refinement of every point.
+Solution polish_clusters(const Clustered& of, const Settings& s, Refinement start, Stages& stages) {
+  const Clusters& clusters = of.clusters;
+  const std::vector<double> spacing = times(s.spacing, clusters.relative_spacing);
+  const std::vector<double> areas = times(s.spacing * s.spacing, clusters.multiplicity);
+  const Polished polished = polish({clusters.points, spacing, areas, clusters.roots()}, s, std::move(start), stages);
+  const std::vector<Vec3>& eta = polished.eta;
+  std::vector<std::uint32_t> members(clusters.points.size(), 0);
+  for (const std::uint32_t c : clusters.cluster_of) ++members[c];
+  Solution solution;
+  solution.eta.resize(of.points.size());
+  for (std::size_t i = 0; i < solution.eta.size(); ++i) {
+    const std::uint32_t c = clusters.cluster_of[i];
+    const double area = of.relative_spacing.empty() ? 1 : of.relative_spacing[i] * of.relative_spacing[i];
+    for (std::size_t a = 0; a < 3; ++a) solution.eta[i][a] = eta[c][a] * area / clusters.multiplicity[c];
+  }
+  const FastSum field(clusters.points, Widths(s.polish_width.typical()), s.sums, stages.cancel());
+  solution.refinement = unit_normals(field.winding_gradient_at(eta, of.points, stages.cancel()), solution.eta);
+  for (double& jump : solution.refinement.strength) jump *= s.polish_width.typical();
+  for (std::size_t i = 0; i < solution.eta.size(); ++i) {  // points by themselves are sparse, and have kernels of their own width
+    const std::uint32_t c = clusters.cluster_of[i];
+    if (members[c] > 1) continue;
+    solution.refinement.normals[i] = polished.refinement.normals[c];
+    solution.refinement.strength[i] = polished.refinement.strength[c];
+  }
+  return solution;
+}
+
+// Of every cluster the mean of its points' normals, each as long as the field jumps there: short where they face either way.
+Refinement mean_of_clusters(const Clusters& clusters, const Refinement& points) {
+  Refinement mean{std::vector<Vec3>(clusters.points.size(), Vec3{0, 0, 0}), std::vector<double>(clusters.points.size(), 0)};
+  std::vector<double> members(clusters.points.size(), 0);
+  for (std::size_t i = 0; i < clusters.cluster_of.size(); ++i) {
+    const std::uint32_t c = clusters.cluster_of[i];
+    mean.normals[c] = vector::add(mean.normals[c], vector::scale(points.normals[i], points.strength[i]));
+    ++members[c];
+  }
+  for (std::size_t c = 0; c < members.size(); ++c) {
+    mean.strength[c] = std::sqrt(vector::dot(mean.normals[c], mean.normals[c])) / members[c];
+    mean.normals[c] = vector::normalised(mean.normals[c]);
+  }
+  return mean;
+}
+
 // Where the kernels are so wide that they see groups of points: the same equations on one point per group, whose area vectors are equal
 // but for the areas that they stand for. The refinement is evaluated at every point.
 Solution solve_on_clusters(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
@@ -223,28 +274,7 @@ Solution solve_on_clusters(const Problem& problem, const Options& options, Stage
   const Clusters clusters = cluster_points(set.points(), s.cluster_side, relative);
   const std::vector<double> spacing = times(problem.spacing, clusters.relative_spacing);
   Refinement first = solve_clusters(clusters, spacing, s, stages, stats);
-  const std::vector<double> areas = times(problem.spacing * problem.spacing, clusters.multiplicity);
-  const PolishCloud cloud{clusters.points, spacing, areas, clusters.roots()};
-  const Polished polished = polish(cloud, s, std::move(first), stages);
-  const std::vector<Vec3>& eta = polished.eta;
-  std::vector<std::uint32_t> members(clusters.points.size(), 0);
-  for (const std::uint32_t c : clusters.cluster_of) ++members[c];
-  Solution solution;
-  solution.eta.resize(problem.cloud.size());
-  for (std::size_t i = 0; i < solution.eta.size(); ++i) {
-    const std::uint32_t c = clusters.cluster_of[i];
-    const double area = relative.empty() ? 1 : relative[i] * relative[i];
-    for (std::size_t a = 0; a < 3; ++a) solution.eta[i][a] = eta[c][a] * area / clusters.multiplicity[c];
-  }
-  const FastSum field(clusters.points, Widths(s.polish_width.typical()), s.sums, stages.cancel());
-  solution.refinement = unit_normals(field.winding_gradient_at(eta, set.points(), stages.cancel()), solution.eta);
-  for (double& jump : solution.refinement.strength) jump *= s.polish_width.typical();
-  for (std::size_t i = 0; i < solution.eta.size(); ++i) {  // points by themselves are sparse, and have kernels of their own width
-    const std::uint32_t c = clusters.cluster_of[i];
-    if (members[c] > 1) continue;
-    solution.refinement.normals[i] = polished.refinement.normals[c];
-    solution.refinement.strength[i] = polished.refinement.strength[c];
-  }
+  Solution solution = polish_clusters({set.points(), relative, clusters}, s, std::move(first), stages);
   if (!runs(problem, Step::kOpenSurfaces)) return solution;
   solution.open_surfaces = find_open_surfaces(problem.cloud.set, problem.noise, s.sums, solution.refinement.normals, stages.cancel());
   if (!solution.open_surfaces.part.empty())
@@ -353,47 +383,51 @@ void solve_open_surfaces_apart(const Problem& problem, const Options& options, S
   stats.converged = converged;
 }
 
-bool polish_projected(const Problem& problem, const Options& options, Stages& stages, Solution& solution) {
-  const Settings& given = problem.settings;
+bool is_projected(const Problem& problem) {
   const double left = projected_noise(problem.noise, problem.spacing);
   const bool halves_variance = 2 * left * left <= problem.noise * problem.noise;
-  const bool on_points = !problem.baseline && problem.line_distance == 0 && given.polish_steps > 0;
-  if (!on_points || !halves_variance || problem.noise == 0 || !runs(problem, Step::kProjection)) return false;
+  const bool on_points = !problem.baseline && problem.line_distance == 0 && problem.settings.polish_steps > 0;
+  return problem.noise > 0 && on_points && halves_variance && runs(problem, Step::kProjection);
+}
+
+bool polish_projected(const Problem& problem, const Options& options, Stages& stages, Solution& solution) {
+  if (!is_projected(problem)) return false;
   const std::vector<std::uint32_t> some = solved_points(solution);
   if (some.size() < kFewestSites) return false;
   const bool are_all = some.size() == problem.cloud.size();
   const PointSet set = are_all ? problem.cloud.set : PointSet(values_at(some, problem.cloud.points()));
   const std::vector<double> relative = values_at(some, relative_spacing(problem, options));
   const std::vector<double> spacing = times(problem.spacing, relative.empty() ? std::vector<double>{1} : relative);
-  const Settings s = after_projection(given);
-  std::vector<Vec3> normals = values_at(some, solution.refinement.normals);
-  std::vector<double> strength = values_at(some, solution.refinement.strength);
-  bool is_settled = false;
-  for (int round = 0; round < kMostRounds && !is_settled; ++round) {
-    const std::vector<Vec3> moved = project_points(set.points(), set.tree(), normals, problem.noise, spacing, stages.cancel());
-    const std::vector<std::uint32_t> order = morton_order(moved);  // that sums ask for
-    const std::vector<Vec3> points = values_at(order, moved);
-    const std::vector<double> roots = values_at(order, relative);
-    const std::vector<double> local = times(problem.spacing, roots);
-    Refinement start{values_at(order, normals), values_at(order, strength)};
-    const Polished polished = polish({points, local, point_areas(s, local), roots}, s, std::move(start), stages);
+  const Settings s = after_projection(problem.settings);
+  Refinement refined{values_at(some, solution.refinement.normals), values_at(some, solution.refinement.strength)};
+  bool has_converged = false;
+  for (int round = 0; round < kMostRounds && !has_converged; ++round) {
+    std::vector<Vec3> points = project_points(set.points(), set.tree(), refined.normals, problem.noise, spacing, stages.cancel());
+    make_room_for_sums(set);
+    const std::vector<std::uint32_t> order = morton_order(points);  // that clusters and sums ask for
+    points = values_at(order, points);
+    const std::vector<double> here = values_at(order, relative);
+    // Kernels of width e see what is within 2 e as one.
+    const Clusters clusters = cluster_points(points, 2 * s.polish_epsilon.typical(), here);
+    Refinement start = mean_of_clusters(clusters, {values_at(order, refined.normals), values_at(order, refined.strength)});
+    const Solution polished = polish_clusters({points, here, clusters}, s, std::move(start), stages);
     std::size_t turned = 0;
     for (std::size_t k = 0; k < order.size(); ++k) {
       const std::uint32_t i = order[k];
-      turned += vector::dot(normals[i], polished.refinement.normals[k]) < 0 ? 1 : 0;
-      normals[i] = polished.refinement.normals[k];
-      strength[i] = polished.refinement.strength[k];
+      turned += vector::dot(refined.normals[i], polished.refinement.normals[k]) < 0 ? 1 : 0;
+      refined.normals[i] = polished.refinement.normals[k];
+      refined.strength[i] = polished.refinement.strength[k];
       solution.eta[some[i]] = polished.eta[k];
     }
-    is_settled = static_cast<double>(turned) < kMinMinority * static_cast<double>(order.size());
+    has_converged = static_cast<double>(turned) < kMinMinority * static_cast<double>(order.size());
   }
   for (std::size_t k = 0; k < some.size(); ++k) {
-    solution.refinement.normals[some[k]] = normals[k];
-    solution.refinement.strength[some[k]] = strength[k];
+    solution.refinement.normals[some[k]] = refined.normals[k];
+    solution.refinement.strength[some[k]] = refined.strength[k];
   }
   std::vector<float>& certified = solution.open_surfaces.certified;
   if (certified.empty()) return true;
-  const std::vector<float> shown = certified_sides(set, problem.noise, s.sums, normals, stages.cancel());
+  const std::vector<float> shown = certified_sides(set, problem.noise, s.sums, refined.normals, stages.cancel());
   for (std::size_t k = 0; k < some.size(); ++k) certified[some[k]] = shown[k];
   return true;
 }
