@@ -12,6 +12,12 @@
 
 namespace g3r {
 
+/// The values times `factor`.
+inline std::vector<double> scaled(double factor, std::vector<double> values) {
+  for (double& v : values) v *= factor;
+  return values;
+}
+
 /// `width` at the local `spacing`; the typical one everywhere if that is empty.
 [[nodiscard]] Widths local_widths(const KernelWidth& width, const Settings& settings, const std::vector<double>& spacing);
 

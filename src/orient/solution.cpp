@@ -6,6 +6,7 @@
 #include "cloud/clusters.h"
 #include "cloud/sites.h"
 #include "cloud/spacing.h"
+#include "orient/clustered_polish.h"
 #include "orient/coarse_to_fine.h"
 #include "orient/confidence.h"
 #include "orient/creases.h"
@@ -61,11 +62,6 @@ std::vector<double> relative_spacing(const Problem& problem, const Options& opti
   for (double& h : relative) h = std::max(1.0, h / typical);
   for (std::size_t i = 0; i < thinned.size(); ++i) relative[i] *= thinned[i];
   return relative;
-}
-
-std::vector<double> times(double factor, std::vector<double> values) {
-  for (double& v : values) v *= factor;
-  return values;
 }
 
 // Area vectors, and their refinement unless its width is 0.
@@ -165,7 +161,7 @@ PolishCloud polish_cloud(const Problem& problem, const Options& options) {
   const PointSet& set = problem.cloud.set;
   const bool is_exact = problem.is_clean() && runs(problem, Step::kLocalWidths);
   const std::vector<double> relative = is_exact ? problem.known.relative_spacing : relative_spacing(problem, options);
-  const std::vector<double> local = is_exact ? set.smoothed_spacing() : times(problem.spacing, relative);
+  const std::vector<double> local = is_exact ? set.smoothed_spacing() : scaled(problem.spacing, relative);
   return {set.points(), local, point_areas(problem.settings, local), relative};
 }
 
@@ -214,57 +210,6 @@ Refinement solve_clusters(const Clusters& clusters, const std::vector<double>& s
   return refine_normals(wide, system.to_areas(std::move(result.eta)));
 }
 
-// Points, how many times as far apart as is typical each is (empty: all are typical), and their clusters.
-struct Clustered {
-  const std::vector<Vec3>& points;
-  const std::vector<double>& relative_spacing;
-  const Clusters& clusters;
-};
-
-// The polish of clusters from their refinement; area vectors and refinement of every point.
-Solution polish_clusters(const Clustered& of, const Settings& s, Refinement start, Stages& stages) {
-  const Clusters& clusters = of.clusters;
-  const std::vector<double> spacing = times(s.spacing, clusters.relative_spacing);
-  const std::vector<double> areas = times(s.spacing * s.spacing, clusters.multiplicity);
-  const Polished polished = polish({clusters.points, spacing, areas, clusters.roots()}, s, std::move(start), stages);
-  const std::vector<Vec3>& eta = polished.eta;
-  std::vector<std::uint32_t> members(clusters.points.size(), 0);
-  for (const std::uint32_t c : clusters.cluster_of) ++members[c];
-  Solution solution;
-  solution.eta.resize(of.points.size());
-  for (std::size_t i = 0; i < solution.eta.size(); ++i) {
-    const std::uint32_t c = clusters.cluster_of[i];
-    const double area = of.relative_spacing.empty() ? 1 : of.relative_spacing[i] * of.relative_spacing[i];
-    for (std::size_t a = 0; a < 3; ++a) solution.eta[i][a] = eta[c][a] * area / clusters.multiplicity[c];
-  }
-  const FastSum field(clusters.points, Widths(s.polish_width.typical()), s.sums, stages.cancel());
-  solution.refinement = unit_normals(field.winding_gradient_at(eta, of.points, stages.cancel()), solution.eta);
-  for (double& jump : solution.refinement.strength) jump *= s.polish_width.typical();
-  for (std::size_t i = 0; i < solution.eta.size(); ++i) {  // points by themselves are sparse, and have kernels of their own width
-    const std::uint32_t c = clusters.cluster_of[i];
-    if (members[c] > 1) continue;
-    solution.refinement.normals[i] = polished.refinement.normals[c];
-    solution.refinement.strength[i] = polished.refinement.strength[c];
-  }
-  return solution;
-}
-
-// Of every cluster the mean of its points' normals, each as long as the field jumps there: short where they face either way.
-Refinement mean_of_clusters(const Clusters& clusters, const Refinement& points) {
-  Refinement mean{std::vector<Vec3>(clusters.points.size(), Vec3{0, 0, 0}), std::vector<double>(clusters.points.size(), 0)};
-  std::vector<double> members(clusters.points.size(), 0);
-  for (std::size_t i = 0; i < clusters.cluster_of.size(); ++i) {
-    const std::uint32_t c = clusters.cluster_of[i];
-    mean.normals[c] = vector::add(mean.normals[c], vector::scale(points.normals[i], points.strength[i]));
-    ++members[c];
-  }
-  for (std::size_t c = 0; c < members.size(); ++c) {
-    mean.strength[c] = std::sqrt(vector::dot(mean.normals[c], mean.normals[c])) / members[c];
-    mean.normals[c] = vector::normalised(mean.normals[c]);
-  }
-  return mean;
-}
-
 // Where the kernels are so wide that they see groups of points: the same equations on one point per group, whose area vectors are equal
 // but for the areas that they stand for. The refinement is evaluated at every point.
 Solution solve_on_clusters(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
@@ -272,9 +217,10 @@ Solution solve_on_clusters(const Problem& problem, const Options& options, Stage
   const PointSet& set = problem.cloud.set;
   const std::vector<double> relative = relative_spacing(problem, options);
   const Clusters clusters = cluster_points(set.points(), s.cluster_side, relative);
-  const std::vector<double> spacing = times(problem.spacing, clusters.relative_spacing);
+  const std::vector<double> spacing = scaled(problem.spacing, clusters.relative_spacing);
   Refinement first = solve_clusters(clusters, spacing, s, stages, stats);
-  Solution solution = polish_clusters({set.points(), relative, clusters}, s, std::move(first), stages);
+  Polished polished = polish_clusters({set.points(), relative, clusters}, s, std::move(first), stages);
+  Solution solution{std::move(polished.eta), std::move(polished.refinement), {}};
   if (!runs(problem, Step::kOpenSurfaces)) return solution;
   solution.open_surfaces = find_open_surfaces(problem.cloud.set, problem.noise, s.sums, solution.refinement.normals, stages.cancel());
   if (!solution.open_surfaces.part.empty())
@@ -397,7 +343,7 @@ bool polish_projected(const Problem& problem, const Options& options, Stages& st
   const bool are_all = some.size() == problem.cloud.size();
   const PointSet set = are_all ? problem.cloud.set : PointSet(values_at(some, problem.cloud.points()));
   const std::vector<double> relative = values_at(some, relative_spacing(problem, options));
-  const std::vector<double> spacing = times(problem.spacing, relative.empty() ? std::vector<double>{1} : relative);
+  const std::vector<double> spacing = scaled(problem.spacing, relative.empty() ? std::vector<double>{1} : relative);
   const Settings s = after_projection(problem.settings);
   Refinement refined{values_at(some, solution.refinement.normals), values_at(some, solution.refinement.strength)};
   bool has_converged = false;
@@ -410,7 +356,7 @@ bool polish_projected(const Problem& problem, const Options& options, Stages& st
     // Kernels of width e see what is within 2 e as one.
     const Clusters clusters = cluster_points(points, 2 * s.polish_epsilon.typical(), here);
     Refinement start = mean_of_clusters(clusters, {values_at(order, refined.normals), values_at(order, refined.strength)});
-    const Solution polished = polish_clusters({points, here, clusters}, s, std::move(start), stages);
+    const Polished polished = polish_clusters({points, here, clusters}, s, std::move(start), stages);
     std::size_t turned = 0;
     for (std::size_t k = 0; k < order.size(); ++k) {
       const std::uint32_t i = order[k];
