@@ -16,6 +16,7 @@
 #include "orient/open_to_views.h"
 #include "orient/polish.h"
 #include "orient/problem.h"
+#include "orient/projection.h"
 #include "orient/solution.h"
 #include "orient/start.h"
 #include "solve/refine.h"
@@ -38,6 +39,9 @@ constexpr double kAboveScatter = 1.4;
 constexpr double kHardlyAny = 0.2;
 // Points up to which shape looks like noise, so that none is tried too: with more it costs time and is never taken.
 constexpr std::size_t kFewPoints = 2500;
+// Noise that kernels are made for, from one try of narrower ones to the next: the kernels, which follow its square, by sqrt(2).
+const double kNarrower = std::exp2(-0.25);
+constexpr int kMostNarrower = 3;  // tries: kernels almost a third as wide; in narrower ones single points show
 // Dimension from which points fill a volume: cubes and balls have 2.57 and more, surfaces under noise of 2 h at most 2.45.
 constexpr double kVolume = 2.55;
 
@@ -323,10 +327,43 @@ Attempt attempt(Problem problem, const PointsView& points, const Options& option
   return out;
 }
 
+// Kernels that hide the noise take walls closer together than they are wide for one: then points lie farther from the surface that is
+// found than noise carries them. Where that is so, narrower kernels are tried until it is not (the discrepancy principle of Morozov, "On
+// the solution of functional equations by the method of regularization", 1966); if they do not get there before points come to lie farther
+// away again, it was shape, creases for example, and the first ones stay; as they do where they are as narrow as those of clean clouds.
+Attempt separate_walls(Attempt found, const PointsView& points, const Options& options, Stages& stages) {
+  const double noise = found.problem.noise;
+  const double spacing = found.problem.spacing;
+  const bool is_open = found.stats.open_share > 0;  // and has no walls
+  if (noise == 0 || is_open || found.oriented.doubt < kDoubtful || !may_try_noises(found.problem, options)) return found;
+  const auto misfit = [&](const Attempt& a) {
+    return projection_misfit(a.problem.cloud.set, a.oriented.solution.refinement.normals, noise, spacing);
+  };
+  double hidden = noise;
+  double before = misfit(found);
+  for (int i = 0; i < kMostNarrower && before > 1; ++i) {
+    hidden *= kNarrower;
+    if (hidden <= noise_of_clean_widths() * spacing) break;
+    Attempt tried = attempt(with_noise(found.problem, hidden, options), points, options, stages);
+    const double after = misfit(tried);
+    if (after >= before || tried.stats.open_share > 0) break;
+    if (after <= 1) {
+      tried.solved.noise = found.solved.noise;
+      tried.stats.noise = found.stats.noise;
+      return tried;
+    }
+    before = after;
+  }
+  return found;
+}
+
 // Thin walls and layers of scans that do not fit onto each other look alike from near. But few sides of walls are unsure when they are
 // solved for as what they are, of layers when they are solved for as noise.
 Attempt orient_with_best_noise(const PointsView& points, Known known, const Options& options, Stages& stages) {
   Attempt best = attempt(prepare(points, std::move(known), options, stages), points, options, stages);
+  const double estimate = best.problem.noise;
+  best = separate_walls(std::move(best), points, options, stages);
+  if (best.problem.noise < estimate) return best;
   const double doubt = best.oriented.doubt;
   for (const OtherNoise& other : other_noises(best.problem, options, best.oriented)) {
     Attempt tried = attempt(with_noise(best.problem, other.noise, options), points, options, stages);

@@ -1,6 +1,8 @@
 #include "orient/projection.h"
 
+#include "base/median.h"
 #include "cloud/constants.h"
+#include "cloud/quadratic_patch.h"
 #include "cpu/parallel.h"
 #include "orient/noisy_jets.h"
 #include "orient/same_side.h"
@@ -45,6 +47,22 @@ std::vector<Vec3> project_points(const std::vector<Vec3>& points, const Neighbou
   };
   parallel::for_blocks(points.size(), parallel::kSmallBlock, project_block, cancel);
   return out;
+}
+
+double projection_misfit(const PointSet& set, const std::vector<Vec3>& normals, double noise, double spacing) {
+  const double reach = projection_reach(noise, spacing);
+  const std::size_t stride = 1 + set.size() / kPlaces;
+  constexpr double kNone = -1;
+  std::vector<double> residuals((set.size() + stride - 1) / stride, kNone);
+  parallel::for_all(residuals.size(), [&](std::size_t k) {
+    const std::size_t i = k * stride;
+    SameSide side(set.points(), set.tree(), normals);
+    side.gather(i, to_eigen(normals[i]), reach, kSigmas * noise);
+    if (side.members().size() < 2 * kQuadraticTerms) return;
+    residuals[k] = residual(fit_quadratic_patch(side.members(), 0, reach / 2, 0), side.members());
+  });
+  std::erase_if(residuals, [](double r) { return !(r >= 0); });
+  return residuals.empty() ? 1 : median(residuals) / noise;
 }
 
 }  // namespace g3r

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cloud/neighbours.h"
+#include "cloud/point_set.h"
 
 #include <g3r/points.h>
 
@@ -30,5 +31,10 @@ namespace g3r {
 /// all; `noise` > 0. In the order of `points`. Throws Cancelled. O(N) for as many points within the reach.
 [[nodiscard]] std::vector<Vec3> project_points(const std::vector<Vec3>& points, const Neighbours& tree, const std::vector<Vec3>& normals,
                                                double noise, const std::vector<double>& spacing, const std::atomic<bool>* cancel = nullptr);
+
+/// How far points lie from their wall, in proportion to `noise`: the median, over at most 2000 of them, of the residual of such a
+/// quadratic, 1 or a little less where the normals are right; more where two walls are taken for one, and at creases. As the others, but at
+/// `spacing` everywhere; 1 if no point has enough others on its side.
+[[nodiscard]] double projection_misfit(const PointSet& set, const std::vector<Vec3>& normals, double noise, double spacing);
 
 }  // namespace g3r
