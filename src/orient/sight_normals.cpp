@@ -10,8 +10,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 namespace g3r {
 namespace {
@@ -19,8 +22,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr std::size_t kAround = 2 * kPatchNeighbours;  // noise of a spacing and more leaves fewer without a direction
-constexpr int kRounds = 4;                             // of weights: from all points around to those of one surface
+constexpr std::size_t kSightNeighbours = 2 * kPatchNeighbours;  // noise of a spacing and more leaves fewer without a direction
+constexpr int kSightRounds = 4;                                 // of weights: from all points around to those of one surface
 
 // What one sensor has seen.
 class Seen {
@@ -41,7 +44,7 @@ class Seen {
     std::vector<std::uint32_t> index;
     std::vector<double> squared;
     for (std::size_t k = begin; k < end; ++k) {
-      tree.nearest(sight_[k], kAround, index, squared);
+      tree.nearest(sight_[k], kSightNeighbours, index, squared);
       const Plane plane = fit_plane(index, squared);
       const double size = plane.m.norm();
       if (!(size > 0)) continue;
@@ -69,7 +72,7 @@ class Seen {
     const double reach = squared.back() * (1 + 1 / static_cast<double>(index.size()));
     std::vector<double> likely(index.size(), 1);
     Plane plane;
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kSightRounds; ++round) {
       Matrix3d normal_matrix = Matrix3d::Zero();
       Vector3d right = Vector3d::Zero();
       double total = 0;
