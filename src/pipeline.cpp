@@ -231,6 +231,7 @@ struct Oriented {
 };
 
 Solution solve_problem(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
+  if (is_seen_in_noise(problem)) return solve_by_sight(problem, stages, stats);
   Solution solution = solve(problem, options, stages, stats);
   solve_open_surfaces_apart(problem, options, stages, stats, solution);
   if (const Views& views = problem.cloud.set.views(); views.known()) {

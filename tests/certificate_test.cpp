@@ -43,8 +43,34 @@ Tested test(const Surface& s) {
   const Sites sites = place_sites(PointSet(points), 0);
   const SumPlan sums = sum_plan(1e-3, points.size());
   Tested tested{certify(sites, normals, std::vector<double>(points.size(), 10), sums, nullptr), points};
-  EXPECT_EQ(tested.certificate.jump_defect, jump_defects(sites, {normals}, sums, nullptr).front());
+  EXPECT_EQ(tested.certificate.jump_defect, jump_defects(sites, {normals}, sums, nullptr).all.front());
   return tested;
+}
+
+// A grid of 40 x 40 in so many layers, 4.3 steps apart.
+Surface layers(int count) {
+  Surface s;
+  for (int k = 0; k < count; ++k) {
+    for (int i = 0; i < 40; ++i) {
+      for (int j = 0; j < 40; ++j) {
+        s.points.push_back({(i - 19.5) / 40, (j - 19.5) / 40, k * 4.3 / 40});
+        s.normals.push_back({0, 0, 1});
+      }
+    }
+  }
+  return s;
+}
+
+// What is four spacings beside one layer is beside the next, whose jump is none of the first's.
+TEST(Certificate, OwnDefectsLeaveOutWhatIsBehindAnotherSurface) {
+  for (const int count : {1, 2}) {
+    const Surface s = layers(count);
+    const Sites sites = place_sites(PointSet(s.points), 0);
+    const JumpDefects defects = jump_defects(sites, {s.normals}, sum_plan(1e-3, s.points.size()), nullptr);
+    const double ratio = mean(defects.own.front()) / mean(defects.all.front());
+    EXPECT_GT(ratio, count == 1 ? 1 - 1e-9 : 0);
+    EXPECT_LT(ratio, count == 1 ? 1 + 1e-9 : 0.9);
+  }
 }
 
 // Sites lie evenly, so that their areas are too large, by as much for all: what is left after scaling is small, and turned sides are not.

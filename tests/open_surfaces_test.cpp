@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 namespace g3r {
 namespace {
@@ -93,6 +94,38 @@ TEST(OpenSurfaces, TerrainFacesUp) {
     for (const double a : s.areas) true_area += a;
     EXPECT_NEAR(area / true_area, 1, 0.1);
   }
+}
+
+// A wavy cloth of 3 x 4 folded into layers that lie `gap` above each other.
+Surface folded_cloth(std::size_t count, int layers, double gap) {
+  constexpr double kWide = 3;
+  constexpr double kPhase = 5.15;
+  shapes::Random random(7);
+  const double bend = std::numbers::pi * gap / 2;
+  Surface s;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double along = random.uniform(0, layers * kWide + (layers - 1) * bend);
+    const int k = std::min(layers - 1, static_cast<int>(along / (kWide + bend)));
+    const double q = along - k * (kWide + bend);
+    const double way = k % 2 == 0 ? 1 : -1;
+    const double angle = std::max(0.0, q - kWide) / (gap / 2);
+    const double x = (way > 0 ? 0 : kWide) + way * (std::min(q, kWide) + gap / 2 * std::sin(angle));
+    const double y = random.uniform(0, 4);
+    const double along_x = 0.4 * std::cos(2 * x + kPhase) * std::cos(1.3 * y);
+    const double along_y = -0.26 * std::sin(2 * x + kPhase) * std::sin(1.3 * y);
+    s.points.push_back({x, y, 0.2 * std::sin(2 * x + kPhase) * std::cos(1.3 * y) + k * gap + gap / 2 * (1 - std::cos(angle))});
+    const double up = way * std::cos(angle);
+    s.normals.push_back(vector::normalised({-way * std::sin(angle) - along_x * up, -along_y * up, up}));
+  }
+  return s;
+}
+
+// Coarser scales take layers five spacings apart for one, and beyond the next layer the field says nothing of their sides.
+TEST(OpenSurfaces, FoldedClothHasOneSide) {
+  const Surface s = folded_cloth(12000, 3, 0.25);
+  const Orientation o = orient(s.points);
+  const double share = shapes::share_correct(o.normals, s.normals);
+  EXPECT_GT(std::max(share, 1 - share), 0.95);
 }
 
 TEST(OpenSurfaces, NoiseIsNoObstacle) {

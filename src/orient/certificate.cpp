@@ -78,18 +78,46 @@ void add_defects(const std::vector<double>& w, double factor, std::vector<double
   for (std::size_t i = 0; i < count; ++i) defect[i] += std::abs(1 - factor * (w[i] - w[count + i])) / static_cast<double>(kJumps);
 }
 
+// Which of the probes so many spacings beside the sites are nearer to their own than to another surface: no site is half as far.
+std::vector<std::uint8_t> are_own(const Sites& sites, const std::vector<Vec3>& probes, double distance) {
+  const std::size_t count = sites.size();
+  const Neighbours& tree = sites.set.tree();
+  std::vector<std::uint8_t> own(probes.size());
+  parallel::for_blocks(probes.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const double apart = distance / 2 * sites.spacing()[k % count];
+      double squared = apart * apart;
+      own[k] = tree.nearest(probes[k], squared, UINT32_MAX) == UINT32_MAX ? 1 : 0;
+    }
+  });
+  return own;
+}
+
 }  // namespace
 
-std::vector<std::vector<double>> jump_defects(const Sites& sites, const std::vector<std::vector<Vec3>>& hypotheses, const SumPlan& sums,
-                                              const std::atomic<bool>* cancel) {
-  std::vector<std::vector<double>> defects(hypotheses.size(), std::vector<double>(sites.size(), 0));
-  if (hypotheses.empty()) return defects;
+JumpDefects jump_defects(const Sites& sites, const std::vector<std::vector<Vec3>>& hypotheses, const SumPlan& sums,
+                         const std::atomic<bool>* cancel) {
+  const std::size_t count = sites.size();
+  const std::vector<std::vector<double>> none(hypotheses.size(), std::vector<double>(count, 0));
+  JumpDefects out{none, none};
+  if (hypotheses.empty()) return out;
   const Probed probed(sites, hypotheses, sums, cancel);
+  std::vector<double> looked(count, 0);
   for (std::size_t d = 0; d < kJumps; ++d) {
-    const std::vector<std::vector<double>> w = probed.windings(probed.at(distance_of(d)));
-    for (std::size_t h = 0; h < w.size(); ++h) add_defects(w[h], 1, defects[h]);
+    const std::vector<Vec3> probes = probed.at(distance_of(d));
+    const std::vector<std::uint8_t> own = are_own(sites, probes, distance_of(d));
+    const std::vector<std::vector<double>> w = probed.windings(probes);
+    for (std::size_t h = 0; h < w.size(); ++h) add_defects(w[h], 1, out.all[h]);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (own[i] == 0 || own[count + i] == 0) continue;
+      ++looked[i];
+      for (std::size_t h = 0; h < w.size(); ++h) out.own[h][i] += std::abs(1 - (w[h][i] - w[h][count + i]));
+    }
   }
-  return defects;
+  for (std::vector<double>& defect : out.own) {
+    for (std::size_t i = 0; i < count; ++i) defect[i] = looked[i] > 0 ? defect[i] / looked[i] : -1;
+  }
+  return out;
 }
 
 Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const std::vector<double>& reach, const SumPlan& sums,

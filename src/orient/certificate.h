@@ -34,8 +34,15 @@ struct Certificate {
 [[nodiscard]] Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const std::vector<double>& reach,
                                   const SumPlan& sums, const std::atomic<bool>* cancel);
 
-/// Certificate::jump_defect alone of each of several hypotheses, the normals that they have: six evaluations of the field of each.
-[[nodiscard]] std::vector<std::vector<double>> jump_defects(const Sites& sites, const std::vector<std::vector<Vec3>>& hypotheses,
-                                                            const SumPlan& sums, const std::atomic<bool>* cancel);
+/// Certificate::jump_defect alone, of each of several hypotheses.
+struct JumpDefects {
+  std::vector<std::vector<double>> all;
+  /// Over the distances alone at which both probes of a site are nearer to it than to another surface: no site is half as far from them.
+  /// Beyond the next surface the field is that one's, and its jump says nothing of the sides here. Negative where there is none.
+  std::vector<std::vector<double>> own;
+};
+/// `hypotheses`: the normals that they have; six evaluations of the field of each.
+[[nodiscard]] JumpDefects jump_defects(const Sites& sites, const std::vector<std::vector<Vec3>>& hypotheses, const SumPlan& sums,
+                                       const std::atomic<bool>* cancel);
 
 }  // namespace g3r

@@ -100,7 +100,7 @@ class Search {
     return certify(finest_, at_sites(normals), reach_, sums_, cancel_);
   }
 
-  [[nodiscard]] std::vector<std::vector<double>> jump_defects(const std::vector<std::vector<Vec3>>& hypotheses) const {
+  [[nodiscard]] JumpDefects jump_defects(const std::vector<std::vector<Vec3>>& hypotheses) const {
     std::vector<std::vector<Vec3>> normals;
     for (const std::vector<Vec3>& hypothesis : hypotheses) normals.push_back(at_sites(hypothesis));
     return g3r::jump_defects(finest_, normals, sums_, cancel_);
@@ -310,15 +310,19 @@ Verdict suspect(const Search& search, const std::vector<double>& unrest, const s
 // certain, if the part is not at rest either.
 void choose(const Search& search, const std::vector<std::vector<Vec3>>& tried, const std::vector<double>& unrest,
             const std::vector<double>& defect, double noise, Verdict& verdict) {
-  verdict.defects = search.jump_defects(tried);
+  JumpDefects defects = search.jump_defects(tried);
+  std::vector<double> least(unrest.size(), HUGE_VAL);
   for (std::size_t h = 0; h < tried.size(); ++h) {
-    const std::vector<double> here = search.mean_of_parts(verdict.defects[h]);
-    for (std::size_t p = 0; p < here.size(); ++p) {
-      if (here[p] >= verdict.defect[p]) continue;
-      verdict.defect[p] = here[p];
+    const std::vector<double> all = search.mean_of_parts(defects.all[h]);
+    const std::vector<double> own = search.mean_of_parts(defects.own[h]);
+    for (std::size_t p = 0; p < all.size(); ++p) {
+      if (all[p] + own[p] >= least[p]) continue;
+      least[p] = all[p] + own[p];
+      verdict.defect[p] = all[p];
       verdict.best[p] = h;
     }
   }
+  verdict.defects = std::move(defects.all);
   for (std::size_t h = 0; h < tried.size(); ++h) {
     const std::vector<Vec3> at_sites = search.at_sites(tried[h]);
     for (std::uint32_t p = 0; p < unrest.size(); ++p) {

@@ -51,12 +51,13 @@ struct OpenSurfaces {
 ///   3. three times the direction of the winding gradient of what came out, two site spacings wide, which fills grooves narrower than the
 ///      sampling and turns single sites;
 ///   4. the sides of each scale, with the directions of the finest: so that only sides differ.
-/// The hypothesis with the least mean Certificate::jump_defect is taken, of equal ones the finest. Where the defect of a site is above a
-/// half, in a groove narrower than the sampling for instance, the direction is that of a field four site spacings wide, which sees what is
-/// around, and the side of a point is not certified in full. The outside of a part is the side on which the mean of w
-/// at the part, of its own field, is positive: e / 2, with e = 1 on a closed surface, 0.62 on half a sphere, 0 on a plane. Where |e| is
-/// below 1/2 either side could be it, and the one that faces up (+z; if the part is level, +y, then +x) is taken. Under noise a part with
-/// |e| above 0.7 is closed: noise makes one wall of two, and what is left encloses nearly everything. Where it is
+/// The hypothesis with the least mean of JumpDefects::all + own is taken, of equal ones the finest: where layers are close to each other,
+/// so that a probe of one is behind the next, what no other surface disturbs counts twice. Where the defect of a site is above a half, in a
+/// groove narrower than the sampling for instance, the direction is that of a field four site spacings wide, which sees what is around, and
+/// the side of a point is not certified in full. The outside of a part is the side on which the mean of w at the part, of its own field, is
+/// positive: e / 2, with e = 1 on a closed surface, 0.62 on half a sphere, 0 on a plane. Where |e| is below 1/2 either side could be it,
+/// and the one that faces up (+z; if the part is level, +y, then +x) is taken. Under noise a part with |e| above 0.7 is closed: noise makes
+/// one wall of two, and what is left encloses nearly everything. Where it is
 /// neither at rest nor shown to be open, its sides are those of the best hypothesis where the normals of a site and those around it have
 /// one side, if the mean defect of the hypothesis is less than that of the solution. Where the solution stays as it is, J = max(0, jump of
 /// its site) certifies a side: where walls are too close for the sampling the field does not jump from 0 to 1, whatever the sides. J is the

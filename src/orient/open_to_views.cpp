@@ -1,10 +1,12 @@
 #include "orient/open_to_views.h"
 
 #include "base/vector.h"
+#include "orient/sight_normals.h"
 
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 namespace g3r {
 
@@ -29,6 +31,29 @@ void open_to_views(const Views& views, const std::vector<Vec3>& points, OpenSurf
     surfaces.certified[i] = static_cast<float>((1 + std::abs(cosine)) / 2);
     surfaces.agrees[i] = 1;
   }
+}
+
+bool is_seen_in_noise(const Problem& problem) {
+  const bool is_ours = problem.settings.method == Method::kEnergy && problem.line_distance == 0 && problem.settings.polish_steps > 0;
+  return is_ours && problem.cloud.set.views().known() && problem.view_noise > noise_of_clean_widths() * problem.spacing;
+}
+
+Solution solve_by_sight(const Problem& problem, Stages& stages, Stats& stats) {
+  stages.begin("solve");
+  const PointSet& set = problem.cloud.set;
+  SightNormals seen = normals_by_sight(set, problem.view_noise, stages.cancel());
+  Solution out;
+  out.refinement.normals = std::move(seen.normals);
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    const double h = set.local_spacing()[i];
+    out.eta.push_back(vector::scale(out.refinement.normals[i], h * h));
+  }
+  out.open_surfaces.part.assign(set.size(), 0);
+  out.open_surfaces.certainty.assign(set.size(), 1);
+  out.open_surfaces.certified = std::move(seen.certified);
+  out.open_surfaces.agrees.assign(set.size(), 1);
+  stats.converged = true;
+  return out;
 }
 
 }  // namespace g3r

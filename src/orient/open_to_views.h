@@ -1,8 +1,8 @@
 // Sides of what sensors have seen from known places.
 #pragma once
 
-#include "cloud/point_set.h"
-#include "orient/open_surfaces.h"
+#include "orient/problem.h"
+#include "orient/solution.h"
 
 #include <g3r/points.h>
 
@@ -15,5 +15,13 @@ namespace g3r {
 /// to its sensor, the side is a choice: it is certified to (1 + |n . v|) / 2. `normals` (unit) and `eta` are changed. O(N).
 void open_to_views(const Views& views, const std::vector<Vec3>& points, OpenSurfaces& surfaces, std::vector<Vec3>& normals,
                    std::vector<Vec3>& eta);
+
+/// Whether solve_by_sight() is for this problem: its points have been seen from known places, with more noise than the equations' own
+/// kernels hide.
+[[nodiscard]] bool is_seen_in_noise(const Problem& problem);
+
+/// Where sides are known and noise hides the directions, the equations have nothing to add: directions come from the lines of sight
+/// (normals_by_sight()), and everything is one open surface that faces its sensors.
+[[nodiscard]] Solution solve_by_sight(const Problem& problem, Stages& stages, Stats& stats);
 
 }  // namespace g3r

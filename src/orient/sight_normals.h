@@ -1,0 +1,28 @@
+// Directions and sides of noisy points from the lines of sight that they were seen along.
+#pragma once
+
+#include "cloud/point_set.h"
+
+#include <g3r/points.h>
+
+#include <atomic>
+#include <vector>
+
+namespace g3r {
+
+struct SightNormals {
+  std::vector<Vec3> normals;     ///< N unit vectors that face the sensor of their point
+  std::vector<float> certified;  ///< N, 1/2..1: the chance that the surface faces the sensor on the side that its normal has
+};
+
+/// A sensor measures depth: noise moves a point along its line of sight, and which line that is it leaves as it was. So the neighbours of
+/// a point are those with the nearest lines of sight, whatever their depth, and a plane n . p = c seen from 0 is linear in them:
+///   1 / rho_j = m . d_j,   m = n / c,   p_j = rho_j d_j
+/// of which least squares have no bias, as those in space have where noise is as large as the spacing. Weights are 1 - r^2 / R^2
+/// (Epanechnikov) in the angle, times (1 - (e / 5 sigma)^2)^2 (Tukey's biweight) of the residual e along the sight, in four rounds: what is
+/// in front of an edge does not count behind it. The surface faces the sensor, as m . d > 0. The normal has a standard deviation s from the
+/// residuals, and is edge-on at an angle a: Phi(a / s) is certified. `set`: Views are known, of at least 24 points each; `noise`: standard
+/// deviation, above 0. O(N log N). Throws Cancelled.
+[[nodiscard]] SightNormals normals_by_sight(const PointSet& set, double noise, const std::atomic<bool>* cancel = nullptr);
+
+}  // namespace g3r
