@@ -18,7 +18,8 @@ constexpr const char* kPageGroup = "Page and picture";
 constexpr const char* kCommandGroup = "Commands";
 
 constexpr const char* kTilesHelp =
-    "If it would need more, for example 8G: work in tiles, on disk beside OUT (.ply; orient: .las, .laz too), or refuse";
+    "If it would need more, for example 8G: work in tiles, on disk beside OUT (.ply; orient: .las, .laz too), or refuse "
+    "(default: refuse beyond what the container leaves)";
 constexpr const char* kRefuseHelp = "Refuse before the solve if it would need more, for example 8G";
 
 void add_reconstruct(CLI::App& app, Settings& s) {

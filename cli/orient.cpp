@@ -14,7 +14,7 @@ int run_orient(const Settings& settings, Session& session) {
   if (const std::optional<int> code = orient_in_tiles(settings, session)) return *code;
   Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, session.cancellable(settings.read_options)); });
   std::vector<Vec3>().swap(cloud.normals);  // of no use here, and the new ones take as much
-  Orientation result = orient(cloud.positions, with_sensors(settings, cloud), session.monitor());
+  Orientation result = orient(cloud.positions, run_options(settings, cloud), session.monitor());
   session.stage("write", [&] {
     for (const std::string& output : settings.outputs()) {
       write_cloud(output, cloud, &result.normals, &result.confidence, session.cancellable(settings.write_options));

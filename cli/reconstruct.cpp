@@ -14,7 +14,7 @@ int run_reconstruct(const Settings& settings, Session& session) {
   if (const std::optional<int> code = reconstruct_in_tiles(settings, session)) return *code;
   Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, session.cancellable(settings.read_options)); });
   std::vector<Vec3>().swap(cloud.normals);  // of no use here, and the new ones take as much
-  Reconstruction result = reconstruct(cloud.positions, with_sensors(settings, cloud), settings.mesh_options, session.monitor());
+  Reconstruction result = reconstruct(cloud.positions, run_options(settings, cloud), settings.mesh_options, session.monitor());
   if (!cloud.colors.empty()) {
     session.stage("carry", [&] { carry_attributes(result.mesh, cloud.positions, cloud.colors, result.orientation.confidence); });
   }

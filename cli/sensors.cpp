@@ -1,6 +1,10 @@
 #include "sensors.h"
 
+#include "base/control_groups.h"
+
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "text.h"
 
@@ -30,8 +34,10 @@ double share_facing_away(const Cloud& cloud, const std::vector<Vec3>& normals) {
 
 }  // namespace
 
-Options with_sensors(const Settings& settings, const Cloud& cloud) {
+Options run_options(const Settings& settings, const Cloud& cloud) {
   Options options = settings.options;
+  const double left = platform::container_memory();  // of the points that are read already, so that there is some to spare
+  if (options.max_memory == 0 && std::isfinite(left)) options.max_memory = std::max<std::size_t>(1, static_cast<std::size_t>(left));
   if (!settings.sensors_of_file) return options;
   if (cloud.sensor_positions.empty()) {
     throw InvalidInput(escape_text(settings.input) + " does not say where the scanner stood: --sensor X,Y,Z does");

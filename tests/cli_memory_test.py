@@ -15,6 +15,27 @@ from cli_support import *
 LOADER_FAILED = 127  # not even the program's own code fits
 LOADER_STEP = 4 << 20  # bytes of address space, in which the least that the program and its libraries need is looked for
 COUNT = thinned(3000)
+IN_CONTAINER = 20000  # points that take more than the program itself
+GROUP_LIMITS = ("memory.limit_in_bytes", "memory.max")  # of the two versions of control groups
+
+
+def group_of_limited_memory():
+    """The folder of a new control group of Linux, inside that of this process, whose memory can be limited; None where that cannot be."""
+    try:
+        with open("/proc/self/cgroup") as lines:
+            memberships = [line.rstrip("\n").split(":", 2) for line in lines]
+        for _, controllers, group in memberships:
+            first = "memory" in controllers.split(",")
+            if not first and controllers != "":
+                continue
+            folder = "/sys/fs/cgroup" + ("/memory" if first else "") + group.rstrip("/") + "/g3r_test_%d" % os.getpid()
+            os.mkdir(folder)
+            if os.path.exists(os.path.join(folder, GROUP_LIMITS[0 if first else 1])):
+                return folder
+            os.rmdir(folder)
+    except OSError:
+        pass
+    return None
 
 
 class Memory(ProgramTest):
@@ -86,6 +107,39 @@ class Memory(ProgramTest):
                     if result.code == OK:
                         os.remove(self.path("out.ply"))
         self.assertEqual(set(codes), {OK, OUT_OF_MEMORY})
+
+    @unittest.skipIf(is_sanitized(), "a sanitizer needs the memory")
+    def test_in_a_container_what_does_not_fit_is_refused_and_nothing_is_killed(self):
+        group = group_of_limited_memory()
+        if group is None:
+            self.skipTest("no control group can be made here")
+        self.addCleanup(os.rmdir, group)
+        [limit_file] = [name for name in GROUP_LIMITS if os.path.exists(os.path.join(group, name))]
+
+        def enter():
+            with open(os.path.join(group, "cgroup.procs"), "w") as processes:
+                processes.write(str(os.getpid()))
+
+        # Long: clouds as wide one way as another take more than planned, for sums at probes outside their box.
+        write_points(self.path("ball.ply"), [(4 * x, 2 * y, z) for x, y, z in sphere(IN_CONTAINER)])
+        plans = [json.loads(self.expect(OK, *arguments, "--report", "-").out)["planned_memory_bytes"]
+                 for arguments in (["orient", "ball.ply", "out.ply"], ["info", "ball.ply"])]
+        os.remove(self.path("out.ply"))
+        codes = set()
+        for percent in (50, 70, 90, 100, 110, 130):
+            for plan, command in zip(plans, (["orient"], [])):
+                with self.subTest(percent=percent, command=command):
+                    with open(os.path.join(group, limit_file), "w") as limit:
+                        limit.write(str(plan * percent // 100))
+                    result = self.run_g3r(*command, "ball.ply", "out.ply", "--threads", "1", "--device", "cpu", preexec_fn=enter)
+                    codes.add(result.code)
+                    self.assertIn(result.code, (OK, UNAVAILABLE), result.err)
+                    if result.code == OK:
+                        os.remove(self.path("out.ply"))
+                    else:
+                        self.assertIn("the plan needs", result.err)
+                    self.assertEqual(os.listdir(self.folder), ["ball.ply"])
+        self.assertEqual(codes, {OK, UNAVAILABLE})
 
 
 if __name__ == "__main__":

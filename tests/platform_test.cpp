@@ -144,8 +144,10 @@ TEST(Platform, LimitsOfContainersAreSeen) {
   group("job/step");
   const std::string root = folder.file("");
   EXPECT_TRUE(std::isinf(platform::memory_left_by_groups("4:memory:/job/step\n0::/job/step\n", root)));
-  write_whole(folder.file("memory/job/memory.limit_in_bytes"), "1000000\n");
+  write_whole(folder.file("memory/job/memory.limit_in_bytes"), "9223372036854771712\n");  // none
   write_whole(folder.file("memory/job/memory.usage_in_bytes"), "600000\n");
+  EXPECT_TRUE(std::isinf(platform::memory_left_by_groups("4:memory:/job\n", root)));
+  write_whole(folder.file("memory/job/memory.limit_in_bytes"), "1000000\n");
   write_whole(folder.file("memory/job/memory.stat"), "cache 9\ninactive_file 1\ntotal_inactive_file 5000\n");
   EXPECT_EQ(platform::memory_left_by_groups("5:cpu,memory:/job/step\n0::/\n", root), 405000);
   EXPECT_TRUE(std::isinf(platform::memory_left_by_groups("5:cpu:/job/step\n", root)));

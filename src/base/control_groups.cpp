@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -11,6 +12,7 @@ namespace g3r::platform {
 namespace {
 
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+constexpr double kNoLimit = 0x1p62;  // bytes: the first version has no word for it, and says the largest number that is whole pages
 
 // How the files of one version of control groups are called.
 struct Names {
@@ -43,7 +45,7 @@ double cached_pages(const std::string& folder, const std::string& word) {
 double left_in(const std::string& folder, const Names& names) {
   const std::optional<double> limit = number_in(folder + names.limit);
   const std::optional<double> used = number_in(folder + names.used);
-  if (!limit || !used) return kUnlimited;
+  if (!limit || !used || *limit >= kNoLimit) return kUnlimited;
   return std::max(0.0, *limit - *used + cached_pages(folder, names.cached));
 }
 
@@ -69,6 +71,12 @@ double memory_left_by_groups(const std::string& memberships, const std::string& 
     if (controllers.find(",memory,") != std::string::npos) left = std::min(left, left_along(group, root, kFirst));
   }
   return left;
+}
+
+double container_memory() {
+  std::ifstream groups("/proc/self/cgroup");
+  const std::string memberships{std::istreambuf_iterator<char>(groups), {}};
+  return memory_left_by_groups(memberships, "/sys/fs/cgroup");
 }
 
 }  // namespace g3r::platform

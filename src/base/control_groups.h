@@ -10,4 +10,7 @@ namespace g3r::platform {
 /// the names may be those outside: a group that is not seen has no limit here, and the root is that of the container.
 [[nodiscard]] double memory_left_by_groups(const std::string& memberships, const std::string& root);
 
+/// The same of this process; infinite on systems without control groups.
+[[nodiscard]] double container_memory();
+
 }  // namespace g3r::platform

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <new>
 
@@ -184,9 +182,7 @@ double free_memory() {
 #else
   const auto free = static_cast<double>(::sysconf(_SC_AVPHYS_PAGES));
 #endif
-  std::ifstream groups("/proc/self/cgroup");  // of Linux; elsewhere there is no such file, and no limit
-  const std::string memberships{std::istreambuf_iterator<char>(groups), {}};
-  return std::min(free * static_cast<double>(::sysconf(_SC_PAGESIZE)), memory_left_by_groups(memberships, "/sys/fs/cgroup"));
+  return std::min(free * static_cast<double>(::sysconf(_SC_PAGESIZE)), container_memory());
 }
 
 std::uint64_t process() { return static_cast<std::uint64_t>(::getpid()); }
