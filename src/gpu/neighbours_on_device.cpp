@@ -10,7 +10,7 @@
 namespace g3r::gpu {
 namespace {
 
-constexpr std::size_t kCopyBlock = 1u << 18;  // bytes that a thread copies at a time
+constexpr std::size_t kTakenBytes = 1u << 18;  // bytes that a thread copies at a time
 
 }  // namespace
 
@@ -29,7 +29,7 @@ std::vector<std::uint32_t> nearest_of_all(Device& device, const SearchTree& tree
   auto* const bytes = reinterpret_cast<unsigned char*>(out.data());
   device.finish();
   device.read(*there, there->bytes(), sizeof(std::uint32_t), [&](std::size_t offset, const unsigned char* data, std::size_t some) {
-    parallel::for_blocks(some, kCopyBlock,
+    parallel::for_blocks(some, kTakenBytes,
                          [&](std::size_t begin, std::size_t end) { std::memcpy(bytes + offset + begin, data + begin, end - begin); });
   });
   return out;
