@@ -1,9 +1,11 @@
 // The sums, and orientation, on a device beside the processor. One JSON object per line on standard output.
 //   g3r_bench_gpu [--device gpu:0] [--points N,N,...] [--accuracy A] [--threads T] [--orient N,N,...]
 // pairs: near field alone, of every form; sums: whole sums, points per second; steps: seconds of one step of conjugate gradients, with
-// vectors on the device, in memory, and on the processor; orient: seconds. Medians of wall clock times of three runs after one that
-// compiles and allocates. kernels: seconds of every kernel in one more run, in which each launch waits for its end.
+// vectors on the device, in memory, and on the processor; memory: bytes on the device in these steps; neighbours: the 17 nearest of every
+// point; orient: seconds. Medians of wall clock times of three runs after one that compiles and allocates. kernels: seconds of every kernel
+// in one more run, in which each launch waits for its end.
 #include "cloud/canonical_cloud.h"
+#include "cloud/neighbours.h"
 #include "cpu/parallel.h"
 #include "solve/energy_system.h"
 #include "solve/iterative_solver.h"
@@ -142,6 +144,24 @@ void compare_steps(const sum_cases::Inputs& in, SumPlan plan, const std::shared_
             << std::endl;
 }
 
+// The nearest points of every point, those of PointSet::near().
+void compare_neighbours(const std::vector<Vec3>& points, const std::shared_ptr<gpu::Execution>& execution) {
+  constexpr std::size_t kNearest = 17;
+  const Neighbours tree(points);
+  const auto find = [&] { (void)tree.of_all(kNearest); };
+  const double cpu_seconds = median_seconds(find);
+  const gpu::Placed there(execution);
+  const double device_seconds = median_seconds(find);
+  execution->device().time_kernels();
+  find();
+  std::cout << nlohmann::ordered_json{{"measured", "neighbours"},
+                                      {"points", points.size()},
+                                      {"device_seconds", device_seconds},
+                                      {"cpu_seconds", cpu_seconds},
+                                      {"kernels", execution->device().take_kernel_seconds()}}
+            << std::endl;
+}
+
 nlohmann::ordered_json stages_of(const Orientation& orientation) {
   nlohmann::ordered_json stages;
   for (const auto& [stage, seconds] : orientation.stats.seconds) stages[stage] = seconds;
@@ -189,7 +209,11 @@ int main(int argc, char** argv) {
       for (const std::size_t n : arguments.points) {
         const sum_cases::Inputs in = inputs(n, points);
         compare_forms("sums", in, sum_plan(arguments.accuracy, n), execution, static_cast<double>(n));
+        (void)execution->device().take_most_memory();
         compare_steps(in, sum_plan(arguments.accuracy, n), execution);
+        std::cout << nlohmann::ordered_json{{"measured", "memory"}, {"points", n}, {"bytes", execution->device().take_most_memory()}}
+                  << std::endl;
+        compare_neighbours(points, execution);
       }
     });
     for (const std::size_t n : arguments.orient) measure_orient(n, arguments);

@@ -133,13 +133,13 @@ nb::tuple mesh_points(const PointsArray& array, const PointsArray& normals, cons
   return give_mesh(std::move(mesh));
 }
 
-Field make_field(const PointsArray& array, const Rows<double>& normals, const Values<double>& areas, double width) {
+Field make_field(const PointsArray& array, const Rows<double>& normals, const Values<double>& areas, double width, const Text& device) {
   Orientation orientation;
   orientation.normals = copy_rows<double>(normals);
   orientation.areas = copy_values<double>(areas);
   const PointsView points = points_view(array);
   const nb::gil_scoped_release release;
-  return Field(points, orientation, width);
+  return Field(points, orientation, width, device);
 }
 
 auto field_value(const Field& field, const PointsArray& queries) {
@@ -332,7 +332,7 @@ void bind(nb::module_& m) {
   m.def("mesh", &mesh_points, nb::arg("points"), nb::arg("normals"), nb::arg("options"), nb::arg("progress").none());
   m.def("devices", &devices);
   m.def("build_info", &module_build_info);
-  m.def("field", &make_field, nb::arg("points"), nb::arg("normals"), nb::arg("areas"), nb::arg("width"));
+  m.def("field", &make_field, nb::arg("points"), nb::arg("normals"), nb::arg("areas"), nb::arg("width"), nb::arg("device"));
   m.def("read_cloud", &read_points, nb::arg("path"), nb::arg("min_opacity"), nb::arg("all_splats"), nb::arg("box").none(),
         nb::arg("levels"), nb::arg("threads"));
   m.def("write_cloud", &write_points, nb::arg("path"), nb::arg("source").none(), nb::arg("positions").none(), nb::arg("normals").none(),

@@ -43,7 +43,7 @@ g3r_together(tiles tiles/cells tiles/external_sort tiles/merge tiles/mesh_corner
 g3r_together(plans tiles/mesh_merge tiles/plan tiles/point_writer tiles/run tiles/patches_file tiles/spacing_sample tiles/tile_cloud)
 g3r_together(pictures view/page view/scene view/png view/canvas view/picture view/pack)
 g3r_together(devices gpu/cuda gpu/device gpu/drivers gpu/execution gpu/kernel_cache gpu/kernel_source gpu/lists_on_device
-             gpu/sum_on_device)
+             gpu/neighbours_on_device gpu/sum_on_device)
 
 # With nlohmann's JSON.
 g3r_together(documents report io/ept io/file_lists tiles/manifest)

@@ -99,7 +99,9 @@ TEST(CudaDriver, WhatIsTooLongForOneCopyGoesInParts) {
 TEST(CudaDriver, FailuresAreErrorsInOneLine) {
   {
     const std::shared_ptr<gpu::Device> device = gpu::open_cuda(gpu::cuda_devices().at(0));
-    EXPECT_EQ(complaint([&] { (void)device->allocate(std::size_t{1} << 40); }), "cannot allocate on the device: out of memory");
+    EXPECT_THROW((void)device->allocate(std::size_t{1} << 40), gpu::OutOfMemory);
+    EXPECT_EQ(complaint([&] { (void)device->allocate(std::size_t{1} << 40); }),
+              "cannot allocate on the device: out of memory, 1048576 MB more than the 0 MB in use of 1024 MB");
     EXPECT_NE(complaint([&] { (void)device->program("no kernel"); }).find("cannot compile for the device: "), std::string::npos);
     EXPECT_NE(complaint([&] { (void)device->program(kSource).kernel("other"); }), "none");
     const auto buffer = device->allocate(16);

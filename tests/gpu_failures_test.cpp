@@ -35,27 +35,28 @@ namespace {
 using namespace sum_cases;  // NOLINT(google-build-using-namespace)
 
 // A device that gives `allowed` buffers and starts `launches` kernels before it fails; with 0 it cannot compile. It computes nothing, and
-// every double that is read is 1. Counts what is not freed, and the bytes of copies.
+// every double that is read is 1. Counts what is not freed, launches, and the bytes of copies.
 class FailingDevice : public gpu::Device {
  public:
-  explicit FailingDevice(std::size_t allowed, std::size_t launches = 0)
-      : Device(described(launches > 0)), left_(allowed), launches_(launches), compiles_(launches > 0) {}
+  explicit FailingDevice(std::size_t allowed, std::size_t launches = 0, std::size_t memory = 0)
+      : Device(described(launches > 0, memory)), left_(allowed), launches_(launches), compiles_(launches > 0) {}
   ~FailingDevice() override { forget(); }
   FailingDevice(const FailingDevice&) = delete;
   FailingDevice& operator=(const FailingDevice&) = delete;
 
-  std::unique_ptr<gpu::Buffer> allocate(std::size_t bytes) override {
-    if (left_ == 0) throw gpu::DeviceError("out of memory");
-    --left_;
-    return std::make_unique<Counted>(bytes, alive);
-  }
   void finish() override {}
 
   std::size_t alive = 0;
+  std::size_t launched = 0;
   std::size_t written = 0;
   std::size_t read_back = 0;
 
  protected:
+  std::unique_ptr<gpu::Buffer> make_buffer(std::size_t bytes) override {
+    if (left_ == 0) throw gpu::DeviceError("out of memory");
+    --left_;
+    return std::make_unique<Counted>(bytes, alive);
+  }
   std::unique_ptr<gpu::Staging> make_staging(std::size_t bytes) override { return std::make_unique<HostMemory>(bytes); }
   void start_write(const gpu::Buffer&, std::size_t, gpu::Staging&, std::size_t bytes) override { written += bytes; }
   void start_read(const gpu::Buffer&, std::size_t, gpu::Staging& staging, std::size_t bytes) override {
@@ -67,6 +68,7 @@ class FailingDevice : public gpu::Device {
   void start(gpu::Kernel&, std::size_t, std::size_t, const std::vector<gpu::Argument>&, std::size_t) override {
     if (launches_ == 0) throw gpu::DeviceError("the device was lost");
     --launches_;
+    ++launched;
   }
   std::unique_ptr<gpu::Program> compile(const std::string&) override {
     if (!compiles_) throw gpu::DeviceError("the kernels do not compile");
@@ -90,10 +92,11 @@ class FailingDevice : public gpu::Device {
     explicit HostMemory(std::size_t size) : bytes(size) { data_ = bytes.data(); }
     void wait() override {}
   };
-  static gpu::DeviceInfo described(bool doubles) {
+  static gpu::DeviceInfo described(bool doubles, std::size_t memory) {
     gpu::DeviceInfo info;
     info.name = "Failing";
     info.doubles = doubles;
+    info.memory = memory;
     return info;
   }
   std::size_t left_;
@@ -278,6 +281,81 @@ TEST(GpuFailures, EveryFarPairIsInOneTileAndTilesDoNotMeetATargetTwice) {
   EXPECT_EQ(tiled.chunk_tiles.back(), tiled.tiles.size());
   EXPECT_EQ(found, expected);
   EXPECT_LT(tiled.tiles.size(), tiled.pairs.size() / 2) << "tiles do not share matrices";
+}
+
+TEST(GpuFailures, PartsOfATreeHaveItsLeavesOnceAndAllThatIsAboveThem) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(20000, 0.6, 0.25, 3).points);
+  constexpr std::size_t kChunkNodes = 4;
+  constexpr std::size_t kParts = 3;
+  const Octree tree = build_octree(points, morton_codes(points), {0.005}, 32);
+  const InteractionLists lists = build_interaction_lists(tree, tree, 0.8, 4);
+  const M2lMatrices<float> matrices(lists.offsets, {});
+  std::vector<std::uint32_t> matrix_of;
+  for (std::size_t i = 0; i < lists.offsets.size(); ++i) matrix_of.push_back(static_cast<std::uint32_t>(matrices.index(i)));
+  std::vector<std::uint32_t> leaves;
+  std::vector<int> found(tree.nodes.size());
+  for (std::size_t p = 0; p < kParts; ++p) {
+    const std::size_t first = tree.leaves.size() * p / kParts;
+    const gpu::PartOfTree part = gpu::part_of_tree(tree, first, tree.leaves.size() * (p + 1) / kParts);
+    std::vector<std::uint32_t> whole(part.tree.nodes.size());  // their numbers in the tree
+    for (std::uint32_t i = 0; i < part.number.size(); ++i) {
+      if (part.number[i] == gpu::kNotInPart) continue;
+      whole[part.number[i]] = i;
+      ++found[i];
+    }
+    EXPECT_TRUE(std::is_sorted(whole.begin(), whole.end()));
+    ASSERT_EQ(part.tree.levels(), tree.levels());
+    for (std::uint32_t i = 0; i < whole.size(); ++i) {
+      EXPECT_EQ(whole[part.tree.nodes[i].parent], tree.nodes[whole[i]].parent);
+      EXPECT_EQ(part.tree.nodes[i].begin, tree.nodes[whole[i]].begin);
+      const auto level = static_cast<std::size_t>(part.tree.nodes[i].level);
+      EXPECT_TRUE(i >= part.tree.level_begin[level] && i < part.tree.level_begin[level + 1]);
+    }
+    for (const std::uint32_t leaf : part.tree.leaves) leaves.push_back(whole[leaf]);
+    std::set<std::pair<std::uint32_t, std::uint32_t>> expected;
+    for (const FarPair& pair : lists.far) {
+      if (part.number[pair.target] != gpu::kNotInPart) expected.emplace(pair.target, pair.source);
+    }
+    std::set<std::pair<std::uint32_t, std::uint32_t>> tiled;
+    const gpu::TiledPairs pairs = gpu::tile_pairs(lists, whole.size(), kChunkNodes, matrix_of, part.number);
+    for (const auto& pair : pairs.pairs) tiled.emplace(whole[pair[0]], pair[1]);
+    EXPECT_EQ(tiled, expected);
+    EXPECT_EQ(pairs.pairs.size(), expected.size());
+  }
+  EXPECT_EQ(leaves, tree.leaves);
+  for (const int times : found) EXPECT_GE(times, 1);
+}
+
+TEST(GpuFailures, ADeviceThatHoldsTooLittleEvenInPartsIsNotUsed) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(20'000, 0.6, 0.25, 3).points);
+  const std::vector<Vec3> eta = random_vectors(points.size(), 1);
+  const SumPlan plan = sum_plan(1e-2, points.size());
+  const auto sum_with = [&](std::size_t memory, bool required, std::shared_ptr<FailingDevice>& device, std::string& failure) {
+    device = std::make_shared<FailingDevice>(kPlenty, kPlenty, memory);
+    SumPlan there = plan;
+    there.execution = std::make_shared<gpu::Execution>(device, required);
+    FastSum sum(points, Widths(0.01), there);
+    std::vector<Vec3> s;
+    std::vector<double> w;
+    sum.stokes_winding(eta, s, w);
+    failure = there.execution->failure();
+    return w;
+  };
+  std::shared_ptr<FailingDevice> device;
+  std::string failure;
+  (void)sum_with(0, true, device, failure);
+  const std::size_t whole = device->take_most_memory();
+  const std::size_t launches = device->launched;
+  (void)sum_with(whole * 4 / 5, true, device, failure);
+  EXPECT_LE(device->take_most_memory(), whole * 4 / 5);
+  EXPECT_GT(device->launched, launches) << "not in parts";
+  EXPECT_EQ(device->alive, 0U);
+  const std::vector<double> expected = FastSum(points, Widths(0.01), plan).winding(eta);
+  const std::vector<double> taken_over = sum_with(whole / 4, false, device, failure);
+  EXPECT_LE(relative_error(taken_over, expected), 1e-2);
+  EXPECT_NE(failure.find("Failing: cannot allocate on the device: out of memory"), std::string::npos) << failure;
+  EXPECT_EQ(device->alive, 0U);
+  EXPECT_THROW((void)sum_with(whole / 4, true, device, failure), Unavailable);
 }
 
 TEST(GpuFailures, TheCacheGivesBackWhatIsWholeAndNothingElse) {

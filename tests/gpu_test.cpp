@@ -1,5 +1,6 @@
 // Sums on a device against those of the processor: every form over shapes, sizes and tolerances; adjoints to rounding; the same bytes from
 // run to run. Skipped (77) where there is no device; a software OpenCL such as PoCL will do.
+#include "cloud/neighbours.h"
 #include "cpu/parallel.h"
 #include "gpu/device.h"
 #include "gpu/execution.h"
@@ -21,6 +22,7 @@
 #include <cstdio>
 #include <limits>
 #include <numeric>
+#include <thread>
 
 namespace g3r {
 namespace {
@@ -313,6 +315,118 @@ TEST(Gpu, SolvesWithVectorsThatStayThereAreThoseInMemory) {
       EXPECT_EQ(solve_iteratively(system, schedule, tolerance, start).eta, there.eta) << "not the same bytes";
     }
   }
+}
+
+// The first device as if it had less memory.
+std::shared_ptr<gpu::Execution> with_memory(std::size_t bytes) {
+  gpu::DeviceInfo info = gpu::list_devices().at(0);
+  info.memory = bytes;
+  return std::make_shared<gpu::Execution>(gpu::open_device(info), true);
+}
+
+// `work` with 100 % of the memory that it takes on the device, and less.
+template <class Work>
+void expect_same_with_less_memory(const std::vector<double>& shares, const Work& work) {
+  gpu::Device& device = execution()->device();
+  (void)device.take_most_memory();
+  const auto expected = work(execution());
+  const auto most = static_cast<double>(device.take_most_memory());
+  for (const double share : shares) {
+    const std::shared_ptr<gpu::Execution> smaller = with_memory(static_cast<std::size_t>(share * most));
+    EXPECT_EQ(work(smaller), expected) << share;
+    EXPECT_EQ(smaller->failure(), "");
+  }
+}
+
+TEST(Gpu, TargetsThatDoNotFitAreSummedInPartsWithTheSameBytes) {
+  constexpr std::size_t kMany = 20'000;
+  for (const bool local_widths : {false, true}) {
+    if (kSanitized && local_widths) continue;
+    const std::vector<Vec3> points = unit_points(shapes::torus(kMany, 0.6, 0.25, 3).points);
+    Random random(5);
+    std::vector<double> widths(local_widths ? kMany : 1);
+    for (double& w : widths) w = random.uniform(0.3, 0.4) * spacing_of(points);
+    const std::vector<Vec3> eta = random_vectors(kMany, 1);
+    expect_same_with_less_memory({1, 0.85, 0.75}, [&](const std::shared_ptr<gpu::Execution>& where) {
+      SumPlan plan = sum_plan(1e-2, kMany);
+      plan.execution = where;
+      FastSum sum(points, local_widths ? Widths(widths) : Widths(widths[0]), plan);
+      std::vector<Vec3> s;
+      std::vector<double> w;
+      sum.stokes_winding(eta, s, w);
+      std::vector<double> all = flat(s);
+      for (const std::vector<double>& more : {w, flat(sum.winding_adjoint(w))}) all.insert(all.end(), more.begin(), more.end());
+      return all;
+    });
+  }
+}
+
+TEST(Gpu, QueriesThatDoNotFitAreSummedInPartsWithTheSameBytes) {
+  constexpr std::size_t kMany = 20'000;
+  const std::vector<Vec3> points = unit_points(shapes::torus(kMany, 0.6, 0.25, 3).points);
+  const std::vector<Vec3> eta = random_vectors(kMany, 1);
+  std::vector<Vec3> queries = unit_points(shapes::torus(kMany, 0.6, 0.25, 4).points);
+  expect_same_with_less_memory({1, 0.95}, [&](const std::shared_ptr<gpu::Execution>& where) {
+    SumPlan plan = sum_plan(1e-2, kMany);
+    plan.execution = where;
+    return FastSum(points, Widths(0.01), plan).winding_at(eta, queries);
+  });
+}
+
+TEST(Gpu, SolvesWithLessMemoryAreInPartsWithTheSameBytes) {
+  if (!execution()->device().info().doubles) GTEST_SKIP() << "the device has no doubles";
+  constexpr std::size_t kMany = 20'000;
+  const std::vector<Vec3> points = unit_points(shapes::torus(kMany, 0.6, 0.25, 3).points);
+  expect_same_with_less_memory({1, 0.85}, [&](const std::shared_ptr<gpu::Execution>& where) {
+    SumPlan plan = sum_plan(1e-2, kMany);
+    plan.execution = where;
+    FastSum sum(points, Widths(0.4 * spacing_of(points)), plan);
+    EnergySystem system(sum, kDamping, kWeight);
+    return solve_iteratively(system, {{2, StepKind::kConjugateGradient}}, 0).eta;
+  });
+}
+
+TEST(Gpu, FieldsEqualThoseOfTheProcessor) {
+  constexpr double kAccuracy = 1e-3;  // of a Field
+  const shapes::Surface torus = shapes::torus(kPoints, 0.6, 0.25, 3);
+  Orientation orientation;
+  orientation.normals = torus.normals;
+  orientation.areas.assign(kPoints, 4 * std::acos(-1.0) * std::acos(-1.0) * 0.6 * 0.25 / kPoints);
+  Random random(2);
+  std::vector<Vec3> queries{{9, 0, 0}, {0, 0, -40}};
+  for (int i = 0; i < 500; ++i) queries.push_back({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-0.5, 0.5)});
+  const Field processor(torus.points, orientation, 0, "cpu");
+  const Field device(torus.points, orientation, 0, "gpu:0");
+  EXPECT_LE(relative_error(device.value(queries), processor.value(queries)), kAccuracy);
+  EXPECT_LE(relative_error(device.gradient(queries), processor.gradient(queries)), kAccuracy);
+  EXPECT_EQ(device.value(queries), device.value(queries)) << "not the same bytes";
+  std::vector<double> of_other_thread;
+  std::thread other([&] { of_other_thread = device.value(queries); });
+  EXPECT_EQ(device.value(queries), Field(torus.points, orientation, 0, "gpu:0").value(queries));
+  other.join();
+  EXPECT_EQ(of_other_thread, device.value(queries));
+  EXPECT_THROW(Field(torus.points, orientation, 0, "gpu:" + std::to_string(gpu::list_devices().size())), Unavailable);
+  EXPECT_THROW(Field(torus.points, orientation, 0, "gpu:first"), InvalidInput);
+}
+
+TEST(Gpu, NearestPointsAreThoseOfTheProcessor) {
+  if (!execution()->device().rounds_alike()) GTEST_SKIP() << "the device has no doubles, or rounds them in its own way";
+  Random random(3);
+  std::vector<Vec3> ties;  // as far from each other, and in the same place
+  for (int i = 0; i < 4000; ++i) ties.push_back({std::floor(random.uniform(0, 12)), std::floor(random.uniform(0, 12)), 0});
+  std::vector<Case> cases = clouds(kPoints);
+  cases.push_back({"ties", ties});
+  for (const std::size_t n : {1UL, 2UL, 16UL, 17UL, 33UL}) cases.push_back({"n=" + std::to_string(n), shapes::sphere(n).points});
+  for (const Case& c : cases) {
+    const Neighbours tree(c.points);
+    const std::vector<std::uint32_t> expected = tree.of_all(17);
+    const double before = execution()->seconds();
+    const gpu::Placed there(execution());
+    EXPECT_EQ(tree.of_all(17), expected) << c.name;
+    EXPECT_GT(execution()->seconds(), before) << "not on the device";
+    EXPECT_TRUE(tree.of_all(0).empty());
+  }
+  EXPECT_EQ(execution()->failure(), "");
 }
 
 TEST(Gpu, SumsStopWhenCancelled) {

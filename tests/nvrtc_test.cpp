@@ -71,6 +71,12 @@ TEST(Nvrtc, VectorsOfASolveCompileForEveryArchitecture) {
   }
 }
 
+TEST(Nvrtc, NearestPointsCompileForEveryArchitecture) {
+  for (const int architecture : architectures()) {
+    for (const std::size_t k : {1UL, 17UL, 33UL}) expect_kernels(gpu::neighbours_source(k, 16, false), architecture, {"nearest_of_all"});
+  }
+}
+
 TEST(Nvrtc, WhatDoesNotCompileIsSaidInALine) {
   try {
     (void)gpu::compile_ptx("this is no kernel\n", gpu::nvrtc_architectures().front());

@@ -238,14 +238,16 @@ void carry_attributes(Mesh& mesh, const PointsView& points, const std::vector<st
 /// with eta_i = areas[i] * normals[i] and g_s the Gaussian-mollified kernel of width s (docs/math.md).
 class Field {
  public:
-  /// From oriented points; `width` s in input units, 0: 0.55 spacings. Throws InvalidInput like orient().
-  Field(const PointsView& points, const Orientation& orientation, double width = 0);
+  /// From oriented points; `width` s in input units, 0: 0.55 spacings. `device`: where it is evaluated, see Options::device; it is held as
+  /// long as the field. Throws InvalidInput like orient(), Unavailable.
+  Field(const PointsView& points, const Orientation& orientation, double width = 0, const std::string& device = "auto");
   ~Field();
   Field(Field&&) noexcept;
   Field& operator=(Field&&) noexcept;
 
   /// w at Q query points, finite: Q values. O(N + Q log N) after a build of O(N log N), anywhere up to millions of widths from the points.
-  /// The value at a query depends on that query alone. Throws Cancelled, std::bad_alloc.
+  /// The value at a query depends on that query alone, and on the device in its last digits. Throws Cancelled, Unavailable,
+  /// std::bad_alloc.
   [[nodiscard]] std::vector<double> value(const PointsView& queries, const Monitor& monitor = {}) const;
   /// Gradient of w at Q query points, in 1 / input units: Q vectors, which near the surface point inward. Cost and errors of value().
   [[nodiscard]] std::vector<Vec3> gradient(const PointsView& queries, const Monitor& monitor = {}) const;

@@ -56,13 +56,13 @@ def _trim(trim: Union[None, str, float]) -> Dict[str, Any]:
 class Field:
     """The winding field of oriented points: about 1 inside, 0 outside, 1/2 on the surface. Call it with query points."""
 
-    def __init__(self, points: Any, normals: Any, areas: Any, *, width: float = 0.0) -> None:
+    def __init__(self, points: Any, normals: Any, areas: Any, *, width: float = 0.0, device: str = "auto") -> None:
         """`points`, `normals` (unit, outward): (n, 3); `areas`: (n,) in squared input units. `width` of the smoothing in input units,
-        0: 0.55 spacings. O(n log n). Raises InputError."""
+        0: 0.55 spacings. `device`: as in `run`, held as long as the field. O(n log n). Raises InputError, UnavailableError."""
         import numpy as np
 
         self._field = _g3r.field(as_points(points), np.ascontiguousarray(as_points(normals, "normals"), dtype=np.float64),
-                                 np.ascontiguousarray(areas, dtype=np.float64), float(width))
+                                 np.ascontiguousarray(areas, dtype=np.float64), float(width), device)
 
     def __call__(self, queries: Any) -> Floats:
         """The field at (q, 3) query points: (q,) float64. O(n + q log n). Ctrl-C works. Raises InputError."""
@@ -85,7 +85,7 @@ class Result:
     """
 
     def __init__(self, points: Points, normals: Floats, areas: Floats, confidence: Singles, report: str,
-                 mesh: Optional[Tuple[Floats, Indices, Optional[Bytes], Optional[Singles]]]) -> None:
+                 mesh: Optional[Tuple[Floats, Indices, Optional[Bytes], Optional[Singles]]], device: str = "auto") -> None:
         self.points = points
         self.normals = normals
         self.areas = areas
@@ -98,13 +98,14 @@ class Result:
         self.vertex_confidence: Optional[Singles] = None
         if mesh is not None:
             self.vertices, self.faces, self.vertex_colors, self.vertex_confidence = mesh
+        self._device = device
         self._field: Optional[Field] = None
 
     @property
     def field(self) -> Field:
-        """The winding field: r.field(Q), r.field.gradient(Q). Built on first use."""
+        """The winding field: r.field(Q), r.field.gradient(Q). Built on first use, for the device that `run` was asked for."""
         if self._field is None:
-            self._field = Field(self.points, self.normals, self.areas)
+            self._field = Field(self.points, self.normals, self.areas, device=self._device)
         return self._field
 
     def __repr__(self) -> str:
@@ -224,11 +225,12 @@ def run(points: Any, *, colors: Any = None, epsilon: Union[str, float] = "auto",
     options.update(checked_numbers(hints, len(array)))
     if colors is not None:
         colors = as_colors(colors, len(array))
+    device = options.get("device", "auto")
     if not mesh:
         normals, areas, confidence, report = _g3r.orient(array, options, progress)
-        return Result(array, normals, areas, confidence, report, None)
+        return Result(array, normals, areas, confidence, report, None, device)
     normals, areas, confidence, report, surface = _g3r.reconstruct(array, colors, options, progress)
-    return Result(array, normals, areas, confidence, report, surface)
+    return Result(array, normals, areas, confidence, report, surface, device)
 
 
 def mesh_oriented(points: Any, normals: Any = None, *, depth: Union[str, int] = "auto", mesher: str = "auto",

@@ -107,6 +107,10 @@ def test_field_tells_inside_from_outside(result, sphere):
     assert result.field is result.field, "built once"
     same = g3r.Field(sphere, result.normals, result.areas)
     np.testing.assert_array_equal(same(queries), result.field(queries))
+    there = g3r.Field(sphere, result.normals, result.areas, device="cpu")
+    np.testing.assert_array_equal(there(queries), same(queries))
+    with pytest.raises(g3r.UnavailableError, match="there is no device gpu:999"):
+        g3r.Field(sphere, result.normals, result.areas, device="gpu:999")
 
 
 @pytest.mark.parametrize("options", [

@@ -2,17 +2,22 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
+#include <mutex>
 #include <numeric>
 #include <utility>
 
 #include "base/vector.h"
 #include "cpu/parallel.h"
+#include "gpu/execution.h"
+#include "gpu/neighbours_on_device.h"
 
 namespace g3r {
 namespace {
 
 constexpr std::size_t kLeaf = 16;       // points per leaf: fewer make more nodes, more are looked at in vain; a matter of speed only
+constexpr std::size_t kMostThere = 64;  // nearest points that a device looks for, which it keeps in registers
 constexpr std::size_t kMany = 128;      // nearest points, from which sorting them at last is faster than keeping them sorted
 constexpr std::size_t kApart = 1 << 9;  // leaves from which halves are built side by side: fewer take less time than handing them out
 
@@ -203,6 +208,31 @@ struct Neighbours::Tree {
     cuts[node.first] = {boxes[0].high[axis], boxes[1].low[axis], axis};
   }
 
+  // Nearest points of all on the device of this thread's call; none where that is the processor, or cannot.
+  [[nodiscard]] std::vector<std::uint32_t> of_all_there(std::size_t k) const {
+    const std::shared_ptr<gpu::Execution> execution = gpu::Execution::current();
+    if (execution == nullptr || !execution->usable(true) || !execution->device().rounds_alike() || k == 0 || k > kMostThere) return {};
+    const std::size_t count = order.size();
+    std::vector<double> places(3 * count);
+    parallel::for_all(count, [&](std::size_t i) {
+      for (std::size_t a = 0; a < 3; ++a) places[a * count + i] = points[order[i]][a];
+    });
+    std::vector<double> cuts_there;
+    cuts_there.reserve(3 * cuts.size());
+    for (const Cut& c : cuts) cuts_there.insert(cuts_there.end(), {c.before, c.after, static_cast<double>(c.axis)});
+    const std::unique_lock lock = execution->device().lock();
+    try {
+      const auto start = std::chrono::steady_clock::now();
+      std::vector<std::uint32_t> found = gpu::nearest_of_all(execution->device(), {kLeaf, places, order, cuts_there}, k);
+      execution->add_seconds(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+      return found;
+    } catch (const gpu::OutOfMemory&) {  // the sums may fit, in parts
+    } catch (const gpu::DeviceError& error) {
+      execution->fail(error.what());
+    }
+    return {};
+  }
+
   // Shows `found` every point that is no farther from x than it still looks, and some others.
   template <class Found>
   void search(const Vec3& x, Found& found) const {
@@ -290,7 +320,9 @@ void Neighbours::within(const Vec3& x, double radius, std::vector<std::uint32_t>
 std::vector<std::uint32_t> Neighbours::of_all(std::size_t k) const {
   const std::vector<Vec3>& points = tree_->points;
   k = std::min(k, points.size());
-  std::vector<std::uint32_t> out(points.size() * k);
+  std::vector<std::uint32_t> out = tree_->of_all_there(k);
+  if (!out.empty()) return out;
+  out.resize(points.size() * k);
   parallel::for_blocks(points.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<double> squared(k);
     for (std::size_t i = begin; i < end; ++i) {

@@ -29,7 +29,7 @@ class Neighbours {
   /// All points closer to x than `radius`, in no particular order. O(log N + points found).
   void within(const Vec3& x, double radius, std::vector<std::uint32_t>& index) const;
   /// For every point, the min(k, N) points nearest to it, nearest first (itself, but for points in the same
-  /// place): N x min(k, N), row-major. O(k N log N).
+  /// place): N x min(k, N), row-major. O(k N log N). On the device of the call, if it has one, with the same result.
   [[nodiscard]] std::vector<std::uint32_t> of_all(std::size_t k) const;
 
  private:

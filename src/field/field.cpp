@@ -1,6 +1,7 @@
 // The winding field of an oriented cloud, anywhere in space.
 #include "cloud/canonical_cloud.h"
 #include "field/oriented_cloud.h"
+#include "sum/device_scope.h"
 #include "sum/fast_sum.h"
 
 #include <g3r/g3r.h>
@@ -19,6 +20,7 @@ constexpr double kAccuracy = 1e-3;
 }  // namespace
 
 struct Field::Impl {
+  gpu::Lease device;
   OrientedCloud oriented;
   FastSum sum;
 
@@ -30,15 +32,18 @@ struct Field::Impl {
   }
 };
 
-Field::Field(const PointsView& points, const Orientation& orientation, double width) {
+Field::Field(const PointsView& points, const Orientation& orientation, double width, const std::string& device) {
   if (orientation.normals.size() != points.count || orientation.areas.size() != points.count) {
     throw InvalidInput("field: " + std::to_string(points.count) + " points but " + std::to_string(orientation.normals.size()) + " normals");
   }
   if (!(width >= 0) || !std::isfinite(width)) throw InvalidInput("field: the width must be 0 (automatic) or positive");
+  gpu::Lease lease(device, points.count);
   OrientedCloud oriented = oriented_cloud(points, orientation.normals, orientation.areas);
   const double unit_width = width > 0 ? oriented.cloud.frame.length_to_unit(width) : kDefaultWidth * oriented.spacing;
-  FastSum sum(oriented.cloud.points(), Widths(unit_width), sum_plan(kAccuracy, oriented.cloud.size()));
-  impl_ = std::unique_ptr<Impl>(new Impl{std::move(oriented), std::move(sum)});
+  SumPlan plan = sum_plan(kAccuracy, oriented.cloud.size());
+  plan.execution = lease.execution();
+  FastSum sum(oriented.cloud.points(), Widths(unit_width), plan);
+  impl_ = std::unique_ptr<Impl>(new Impl{std::move(lease), std::move(oriented), std::move(sum)});
 }
 
 Field::~Field() = default;

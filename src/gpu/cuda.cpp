@@ -28,9 +28,8 @@ void check(int code, const char* what) {
   if (code == kSuccess) return;
   std::string why = "CUDA error " + std::to_string(code);
   const char* text = nullptr;
-  if (code == kOutOfMemory) {
-    why = "out of memory";
-  } else if (api()->error_text(code, &text) == kSuccess && text != nullptr) {
+  if (code == kOutOfMemory) throw OutOfMemory(std::string(what) + ": out of memory");
+  if (api()->error_text(code, &text) == kSuccess && text != nullptr) {
     why = text;
   }
   throw DeviceError(std::string(what) + ": " + why);
@@ -143,18 +142,18 @@ class CudaDevice : public Device {
   CudaDevice(const CudaDevice&) = delete;
   CudaDevice& operator=(const CudaDevice&) = delete;
 
-  std::unique_ptr<Buffer> allocate(std::size_t bytes) override {
-    const Current current(context_);
-    Pointer pointer = 0;
-    check(api()->allocate(&pointer, std::max<std::size_t>(bytes, 1)), "cannot allocate on the device");
-    return std::make_unique<CudaBuffer>(bytes, context_, pointer);
-  }
   void finish() override {
     const Current current(context_);
     check(api()->synchronize(), "the device failed");
   }
 
  protected:
+  std::unique_ptr<Buffer> make_buffer(std::size_t bytes) override {
+    const Current current(context_);
+    Pointer pointer = 0;
+    check(api()->allocate(&pointer, std::max<std::size_t>(bytes, 1)), "cannot allocate on the device");
+    return std::make_unique<CudaBuffer>(bytes, context_, pointer);
+  }
   std::unique_ptr<Staging> make_staging(std::size_t bytes) override { return std::make_unique<CudaStaging>(context_, bytes); }
   void start_write(const Buffer& to, std::size_t offset, Staging& staging, std::size_t bytes) override {
     const Current current(context_);

@@ -29,6 +29,19 @@ std::array<std::atomic<Kept*>, kKeptDevices>& kept_devices() {
 
 }  // namespace
 
+std::unique_ptr<Buffer> Device::allocate(std::size_t bytes) {
+  const std::size_t held = held_->now;
+  if (info_.memory > 0 && (held > info_.memory || bytes > info_.memory - held)) {
+    throw OutOfMemory("cannot allocate on the device: out of memory, " + std::to_string(bytes >> 20) + " MB more than the " +
+                      std::to_string(held >> 20) + " MB in use of " + std::to_string(info_.memory >> 20) + " MB");
+  }
+  std::unique_ptr<Buffer> buffer = make_buffer(bytes);
+  buffer->held_ = held_;
+  held_->now += bytes;
+  held_->most = std::max(held_->most.load(), held_->now.load());
+  return buffer;
+}
+
 Staging& Device::staging(std::size_t k) {
   std::unique_ptr<Staging>& made = staging_[k];
   if (!made) made = make_staging(kStagingBytes);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -26,13 +27,19 @@ class DeviceError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Its memory does not hold what is asked for; less may do.
+class OutOfMemory : public DeviceError {
+ public:
+  using DeviceError::DeviceError;
+};
+
 /// A device, not yet in use.
 struct DeviceInfo {
   std::string name;                ///< "NVIDIA H100"
   std::string driver;              ///< "OpenCL 3.0 CUDA, driver 550.54"
   bool software = false;           ///< an OpenCL that runs on the processor
   bool doubles = false;            ///< has arithmetic in double
-  std::size_t memory = 0;          ///< bytes
+  std::size_t memory = 0;          ///< bytes; 0: not known
   std::size_t largest_buffer = 0;  ///< bytes
   std::size_t local_memory = 0;    ///< bytes per work-group
   std::size_t lanes_float = 1;     ///< numbers worked on together: more than 1 on processors
@@ -41,17 +48,29 @@ struct DeviceInfo {
   std::uint64_t handle[2] = {0, 0};  ///< of the interface
 };
 
+/// Bytes in buffers.
+struct HeldMemory {
+  std::atomic<std::size_t> now{0};
+  std::atomic<std::size_t> most{0};
+};
+
 /// Memory of a device, freed with it.
 class Buffer {
  public:
-  virtual ~Buffer() = default;
+  virtual ~Buffer() {
+    if (held_) held_->now -= bytes_;
+  }
+  Buffer(const Buffer&) = delete;
+  Buffer& operator=(const Buffer&) = delete;
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
  protected:
   explicit Buffer(std::size_t bytes) : bytes_(bytes) {}
 
  private:
+  friend class Device;
   std::size_t bytes_;
+  std::shared_ptr<HeldMemory> held_;
 };
 
 /// Memory of the processor that a device copies to and from by itself, while the processor does something else.
@@ -104,9 +123,14 @@ class Device {
   virtual ~Device() = default;
   [[nodiscard]] const DeviceInfo& info() const { return info_; }
   [[nodiscard]] std::unique_lock<std::mutex> lock() { return std::unique_lock(mutex_); }
+  /// Whether sums and products of doubles have the bytes of the processor's, so far as is known: neighbours rely on it.
+  [[nodiscard]] bool rounds_alike() const { return info_.doubles && rounds_alike_; }
+  void set_rounds_alike(bool alike) { rounds_alike_ = alike; }
 
-  /// Memory that is not set to anything.
-  [[nodiscard]] virtual std::unique_ptr<Buffer> allocate(std::size_t bytes) = 0;
+  /// Memory that is not set to anything. Throws OutOfMemory where buffers would take more than info().memory, or the driver has no more.
+  [[nodiscard]] std::unique_ptr<Buffer> allocate(std::size_t bytes);
+  /// Bytes that buffers have taken at most at a time since the last call.
+  [[nodiscard]] std::size_t take_most_memory() { return held_->most.exchange(held_->now); }
   /// The bytes at `from` may change as soon as it returns.
   void write(const Buffer& to, std::size_t offset, const void* from, std::size_t bytes);
   /// Hands the first `bytes` bytes of a buffer to use(offset, data, bytes), in parts of a multiple of `unit`, each while the next is
@@ -126,6 +150,7 @@ class Device {
 
  protected:
   explicit Device(DeviceInfo info) : info_(std::move(info)) {}
+  [[nodiscard]] virtual std::unique_ptr<Buffer> make_buffer(std::size_t bytes) = 0;
   [[nodiscard]] virtual std::unique_ptr<Staging> make_staging(std::size_t bytes) = 0;
   /// Copies from and to the beginning of `staging`, in the order of the launches; returns at once.
   virtual void start_write(const Buffer& to, std::size_t offset, Staging& staging, std::size_t bytes) = 0;
@@ -145,9 +170,11 @@ class Device {
   Staging& staging(std::size_t k);
 
   DeviceInfo info_;
+  std::shared_ptr<HeldMemory> held_ = std::make_shared<HeldMemory>();
   std::map<std::string, std::unique_ptr<Program>> programs_;
   std::array<std::unique_ptr<Staging>, 2> staging_;
   bool timed_ = false;
+  bool rounds_alike_ = true;
   std::map<std::string, double> seconds_;
   std::mutex mutex_;
 };

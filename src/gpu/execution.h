@@ -1,4 +1,4 @@
-// Where sums run: a device in use, and what happens when it fails. A SumPlan carries it; null stands for the processor.
+// Where a call's work runs: a device in use, and what happens when it fails. A SumPlan carries it; null stands for the processor.
 #pragma once
 
 #include "gpu/device.h"
@@ -14,23 +14,39 @@ class Execution {
   /// `required`: failures throw Unavailable; otherwise the processor takes over.
   Execution(std::shared_ptr<Device> device, bool required) : device_(std::move(device)), required_(required) {}
 
+  /// That of the innermost Placed of this thread; null: the processor.
+  [[nodiscard]] static const std::shared_ptr<Execution>& current();
+
   [[nodiscard]] Device& device() const { return *device_; }
   [[nodiscard]] std::shared_ptr<Device> shared_device() const { return device_; }
-  /// Whether sums of this precision run on the device: it has not failed, and has doubles if they are needed.
-  [[nodiscard]] bool usable(bool doubles) const { return failure_.empty() && (!doubles || device_->info().doubles); }
-  /// Adds the time of a sum; seconds() is that of all.
+  /// Whether work of this precision runs on the device: it has not failed, and has doubles if they are needed.
+  [[nodiscard]] bool usable(bool doubles) const { return !failed_ && (!doubles || device_->info().doubles); }
+  /// Adds the time of a piece of work; seconds() is that of all.
   void add_seconds(double seconds) { seconds_ = seconds_ + seconds; }
   [[nodiscard]] double seconds() const { return seconds_; }
-  /// Takes note that the device has failed. Throws Unavailable if it was required.
+  /// Takes note that the device has failed; its lock is held. Throws Unavailable if it was required.
   void fail(const std::string& why);
   /// Why the processor took over; empty if it did not.
-  [[nodiscard]] const std::string& failure() const { return failure_; }
+  [[nodiscard]] std::string failure() const { return failed_ ? failure_ : std::string(); }
 
  private:
   std::shared_ptr<Device> device_;
   bool required_;
-  std::string failure_;
+  std::string failure_;  // not read before failed_ is set, nor changed after
+  std::atomic<bool> failed_ = false;
   std::atomic<double> seconds_ = 0;
+};
+
+/// Makes an Execution the current one of this thread as long as it lives.
+class Placed {
+ public:
+  explicit Placed(std::shared_ptr<Execution> execution);
+  ~Placed();
+  Placed(const Placed&) = delete;
+  Placed& operator=(const Placed&) = delete;
+
+ private:
+  std::shared_ptr<Execution> before_;
 };
 
 }  // namespace g3r::gpu

@@ -14,6 +14,7 @@ extern const std::string_view near_field_cl;
 extern const std::string_view expansions_cl;
 extern const std::string_view translations_cl;
 extern const std::string_view vectors_cl;
+extern const std::string_view neighbours_cl;
 }  // namespace kernels
 
 namespace {
@@ -22,6 +23,8 @@ namespace {
 constexpr std::size_t kNearGroup = 128;
 constexpr std::size_t kFarGroup = 32;
 constexpr std::size_t kVectorsGroup = 128;
+constexpr std::size_t kNeighboursGroup = 64;  // items of a group wait for the one that takes longest
+constexpr std::size_t kMostDepth = 32;        // of a tree of fewer than 2^32 points
 constexpr std::size_t kSoftwareGroup = 16;
 // Sources of the near field in local memory at a time: one per item; processors rather have few turns, within their cache.
 constexpr std::size_t kTile = 128;
@@ -94,5 +97,12 @@ std::string vectors_source(bool doubles, bool software) {
 }
 
 std::size_t vectors_group(bool software) { return software ? kSoftwareGroup : kVectorsGroup; }
+
+std::string neighbours_source(std::size_t k, std::size_t leaf, bool software) {
+  return define("REAL_IS_DOUBLE", 1) + define("LANES", 1) + define("GROUP", neighbours_group(software)) + std::string(kernels::dialect_cl) +
+         define("K", k) + define("LEAF", leaf) + define("MOST_DEPTH", kMostDepth) + std::string(kernels::neighbours_cl);
+}
+
+std::size_t neighbours_group(bool software) { return software ? kSoftwareGroup : kNeighboursGroup; }
 
 }  // namespace g3r::gpu

@@ -35,4 +35,8 @@ struct KernelTraits {
 /// Doubles that a work-group of dot_of_blocks() adds up.
 inline constexpr std::size_t kDotBlock = 4096;  // 700 groups of a million points, and little to read back
 
+/// nearest_of_all() of the `k` nearest points in a tree with leaves of `leaf`, and the items of a work-group.
+[[nodiscard]] std::string neighbours_source(std::size_t k, std::size_t leaf, bool software);
+[[nodiscard]] std::size_t neighbours_group(bool software);
+
 }  // namespace g3r::gpu

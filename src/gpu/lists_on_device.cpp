@@ -22,6 +22,9 @@ constexpr std::size_t kMirrors = 8;
 constexpr std::size_t kGroupsWanted = 8192;
 constexpr std::size_t kMostChunkNodes = 4;
 constexpr std::size_t kSoftwareChunkNodes = 32;
+// Parts that targets are cut into at most: their locals, a third of what a sum takes, become an eighth of that, and more save next to
+// nothing.
+constexpr std::size_t kMostParts = 8;
 constexpr std::size_t kChunkBlock = 64;  // chunks that a thread tiles at a time: some thousand pairs
 
 std::size_t chunk_nodes_for(std::size_t nodes, bool software) {
@@ -107,12 +110,16 @@ struct PairsOfChunks {
   UnsetVector<NumberedPair> pairs;
 };
 
-PairsOfChunks pairs_of_chunks(const InteractionLists& lists, std::size_t nodes, std::size_t chunk_nodes) {
+PairsOfChunks pairs_of_chunks(const InteractionLists& lists, std::size_t nodes, std::size_t chunk_nodes,
+                              const std::vector<std::uint32_t>& number) {
   const auto for_pairs = [&](const auto& use) {
     parallel::for_each(lists.far_begin.size() - 1, [&](std::size_t part) {
       auto pair = lists.far.begin() + static_cast<std::ptrdiff_t>(lists.far_begin[part]);
       for (std::size_t r = lists.run_begin[part]; r < lists.run_begin[part + 1]; ++r) {
-        for (std::uint32_t k = 0; k < lists.runs[r].pairs; ++k, ++pair) use(pair->target / chunk_nodes, *pair, lists.runs[r].offset);
+        for (std::uint32_t k = 0; k < lists.runs[r].pairs; ++k, ++pair) {
+          const std::uint32_t target = number.empty() ? pair->target : number[pair->target];
+          if (target != kNotInPart) use(target / chunk_nodes, FarPair{target, pair->source}, lists.runs[r].offset);
+        }
       }
     });
   };
@@ -125,7 +132,7 @@ PairsOfChunks pairs_of_chunks(const InteractionLists& lists, std::size_t nodes, 
     out.begin.push_back(out.begin.back() + n.load());
     n = out.begin[out.begin.size() - 2];
   }
-  out.pairs.resize(lists.far.size());
+  out.pairs.resize(out.begin.back());
   for_pairs([&](std::size_t c, const FarPair& pair, std::uint32_t offset) {
     out.pairs[next[c].fetch_add(1, std::memory_order_relaxed)] = {pair, offset};
   });
@@ -191,13 +198,34 @@ TreeOnDevice::TreeOnDevice(Device& device, const Octree& tree) {
   leaf_centres = upload(device, leaf_centre_of);
 }
 
+PartOfTree part_of_tree(const Octree& tree, std::size_t first_leaf, std::size_t end_leaf) {
+  const std::uint32_t first_point = tree.nodes[tree.leaves[first_leaf]].begin;
+  const std::uint32_t end_point = tree.nodes[tree.leaves[end_leaf - 1]].end;
+  PartOfTree out;
+  out.number.assign(tree.nodes.size(), kNotInPart);
+  out.tree.level_begin.push_back(0);
+  for (std::size_t level = 0; level < tree.levels(); ++level) {
+    for (std::uint32_t i = tree.level_begin[level]; i < tree.level_begin[level + 1]; ++i) {
+      OctreeNode node = tree.nodes[i];
+      if (node.end <= first_point || node.begin >= end_point) continue;
+      out.number[i] = narrow(out.tree.nodes.size());
+      node.parent = out.number[node.parent];
+      node.first_child = node.child_count = 0;
+      out.tree.nodes.push_back(node);
+    }
+    out.tree.level_begin.push_back(narrow(out.tree.nodes.size()));
+  }
+  for (std::size_t i = first_leaf; i < end_leaf; ++i) out.tree.leaves.push_back(out.number[tree.leaves[i]]);
+  return out;
+}
+
 TiledPairs tile_pairs(const InteractionLists& lists, std::size_t nodes, std::size_t chunk_nodes,
-                      const std::vector<std::uint32_t>& matrix_of) {
+                      const std::vector<std::uint32_t>& matrix_of, const std::vector<std::uint32_t>& number) {
   (void)narrow(lists.far.size());
-  const PairsOfChunks of_chunks = pairs_of_chunks(lists, nodes, chunk_nodes);
+  const PairsOfChunks of_chunks = pairs_of_chunks(lists, nodes, chunk_nodes, number);
   const std::size_t chunks = of_chunks.begin.size() - 1;
   TiledPairs out;
-  out.pairs.resize(lists.far.size());
+  out.pairs.resize(of_chunks.pairs.size());
   out.chunk_tiles.resize(chunks + 1);
   std::vector<std::vector<Uint4>> tiles_of((chunks + kChunkBlock - 1) / kChunkBlock);
   parallel::for_blocks(chunks, kChunkBlock, [&](std::size_t begin, std::size_t end) {
@@ -222,41 +250,71 @@ TiledPairs tile_pairs(const InteractionLists& lists, std::size_t nodes, std::siz
 template <class T>
 ListsOnDevice<T>::ListsOnDevice(Device& device, const Octree& targets, const Octree& sources,
                                 std::shared_ptr<const TreeOnDevice> source_tree, const InteractionLists& lists)
-    : device_(device),
-      lists_(lists),
-      target_nodes_(targets.nodes.size()),
-      source_tree_(std::move(source_tree)),
-      chunk_nodes_(chunk_nodes_for(target_nodes_, device.info().software)) {
-  if (&targets != &sources) target_tree_ = std::make_unique<TreeOnDevice>(device, targets);
+    : device_(device), targets_(targets), source_octree_(sources), lists_(lists), source_tree_(std::move(source_tree)) {}
+
+template <class T>
+TargetsOnDevice ListsOnDevice<T>::make_part(std::size_t first_leaf, std::size_t end_leaf) const {
+  TargetsOnDevice part;
+  part.first_leaf = first_leaf;
+  part.leaves = end_leaf - first_leaf;
+  const bool all = part.leaves == targets_.leaves.size();
+  PartOfTree some;
+  if (!all) some = part_of_tree(targets_, first_leaf, end_leaf);
+  const Octree& tree = all ? targets_ : some.tree;
+  part.nodes = tree.nodes.size();
+  part.level_begin = tree.level_begin;
+  part.chunk_nodes = chunk_nodes_for(part.nodes, device_.info().software);
+  part.tree = &tree == &source_octree_ ? source_tree_ : std::make_shared<TreeOnDevice>(device_, tree);
+  part.number = std::move(some.number);
+  add_near(part);
+  return part;
+}
+
+template <class T>
+void ListsOnDevice<T>::add_near(TargetsOnDevice& part) const {
+  const std::size_t first = lists_.near_begin[part.first_leaf];
+  const std::size_t end = lists_.near_begin[part.first_leaf + part.leaves];
   std::vector<std::uint32_t> begin;
-  begin.reserve(lists.near_begin.size());
-  for (const std::size_t b : lists.near_begin) begin.push_back(narrow(b));
-  near_begin_ = upload(device, begin);
-  near_leaves_ = upload(device, lists.near);
+  for (std::size_t i = 0; i <= part.leaves; ++i) begin.push_back(narrow(lists_.near_begin[part.first_leaf + i] - first));
+  part.near_begin = upload(device_, begin);
+  const std::vector<std::uint32_t> leaves(lists_.near.begin() + static_cast<std::ptrdiff_t>(first),
+                                          lists_.near.begin() + static_cast<std::ptrdiff_t>(end));
+  part.near_leaves = upload(device_, leaves);
   std::vector<std::uint32_t> points(1, 0);
-  points.reserve(lists.near.size() + 1);
-  for (const std::uint32_t leaf : lists.near) {
-    points.push_back(narrow(std::size_t{points.back()} + sources.nodes[sources.leaves[leaf]].count()));
+  points.reserve(leaves.size() + 1);
+  for (const std::uint32_t leaf : leaves) {
+    points.push_back(narrow(std::size_t{points.back()} + source_octree_.nodes[source_octree_.leaves[leaf]].count()));
   }
-  near_points_ = upload(device, points);
-  std::vector<std::uint32_t> order(targets.leaves.size());
+  part.near_points = upload(device_, points);
+  std::vector<std::uint32_t> order(part.leaves);
   std::iota(order.begin(), order.end(), 0U);
   const auto cost = [&](std::uint32_t leaf) { return points[begin[leaf + 1]] - points[begin[leaf]]; };
   parallel::sort(order.begin(), order.end(),
                  [&](std::uint32_t a, std::uint32_t b) { return std::pair(cost(b), a) < std::pair(cost(a), b); });
-  near_order_ = upload(device, order);
+  part.near_order = upload(device_, order);
+}
+
+template <class T>
+void ListsOnDevice<T>::prepare_near() {
+  if (!parts_.empty()) return;
+  std::vector<TargetsOnDevice> made;
+  const std::size_t leaves = targets_.leaves.size();
+  for (std::size_t p = 0; p < wanted_parts_; ++p) made.push_back(make_part(leaves * p / wanted_parts_, leaves * (p + 1) / wanted_parts_));
+  parts_ = std::move(made);
 }
 
 template <class T>
 void ListsOnDevice<T>::prepare_far(const M2lMatrices<T>& matrices, int order, const Shifts<T>& shifts, std::size_t coefficients) {
-  if (!pairs_) {
+  for (TargetsOnDevice& part : parts_) {
+    if (part.pairs) continue;
     std::vector<std::uint32_t> matrix_of(lists_.offsets.size());
     for (std::size_t i = 0; i < matrix_of.size(); ++i) matrix_of[i] = narrow(matrices.index(i));
-    const TiledPairs tiled = tile_pairs(lists_, target_nodes_, chunk_nodes_, matrix_of);
-    chunks_ = tiled.chunk_tiles.size() - 1;
-    chunk_tiles_ = upload(device_, tiled.chunk_tiles);
-    tiles_ = upload(device_, tiled.tiles);
-    pairs_ = upload(device_, tiled.pairs);
+    const TiledPairs tiled = tile_pairs(lists_, part.nodes, part.chunk_nodes, matrix_of, part.number);
+    part.chunks = tiled.chunk_tiles.size() - 1;
+    part.chunk_tiles = upload(device_, tiled.chunk_tiles);
+    part.tiles = upload(device_, tiled.tiles);
+    part.pairs = upload(device_, tiled.pairs);  // the last: tells that all are there
+    std::vector<std::uint32_t>().swap(part.number);
   }
   if (!up_.data) {
     down_ = upload_shifts(device_, shifts.parent_to_child, coefficients);
@@ -266,6 +324,29 @@ void ListsOnDevice<T>::prepare_far(const M2lMatrices<T>& matrices, int order, co
     const std::size_t n = coefficient_count(order);
     matrices_.emplace(order, upload_matrices(device_, lists_.offsets, matrices, cpu::padded_count(n)));
   }
+}
+
+template <class T>
+Buffer& ListsOnDevice<T>::locals(std::size_t each) {
+  std::size_t nodes = 0;
+  for (const TargetsOnDevice& part : parts_) nodes = std::max(nodes, part.nodes);
+  const std::size_t bytes = nodes * each * sizeof(T);
+  wanted_locals_ = std::max(wanted_locals_, bytes);
+  if (!locals_ || locals_->bytes() < bytes) {
+    locals_.reset();  // not twice in memory
+    locals_ = device_.allocate(bytes);
+  }
+  return *locals_;
+}
+
+template <class T>
+bool ListsOnDevice<T>::cut_finer() {
+  if (wanted_locals_ == 0 || 2 * wanted_parts_ > std::min(kMostParts, targets_.leaves.size())) return false;
+  wanted_parts_ *= 2;
+  wanted_locals_ = 0;
+  locals_.reset();
+  parts_.clear();
+  return true;
 }
 
 template class ListsOnDevice<float>;

@@ -60,47 +60,70 @@ inline constexpr std::size_t kMostTilePairs = 16;  ///< more share no more, for 
 inline constexpr std::uint32_t kPositive = 8;      ///< Offset::positive()
 
 /// `nodes` targets, of which a chunk has `chunk_nodes`. `matrix_of`: M2lMatrices::index().
+/// `number`: of every target, or kNotInPart; empty: targets have their own numbers.
 [[nodiscard]] TiledPairs tile_pairs(const InteractionLists& lists, std::size_t nodes, std::size_t chunk_nodes,
-                                    const std::vector<std::uint32_t>& matrix_of);
+                                    const std::vector<std::uint32_t>& matrix_of, const std::vector<std::uint32_t>& number = {});
+inline constexpr std::uint32_t kNotInPart = 0xFFFFFFFF;
+
+/// Some consecutive leaves of a tree and the nodes above them, in their order and numbered by it; points keep their numbers.
+struct PartOfTree {
+  Octree tree;                        ///< without children
+  std::vector<std::uint32_t> number;  ///< of every node of the whole tree, or kNotInPart
+};
+[[nodiscard]] PartOfTree part_of_tree(const Octree& tree, std::size_t first_leaf, std::size_t end_leaf);
+
+/// Targets that are worked on together: all, or those of some consecutive leaves.
+struct TargetsOnDevice {
+  std::size_t first_leaf = 0, leaves = 0;  ///< in the order of their points
+  std::size_t nodes = 0;
+  std::vector<std::uint32_t> level_begin;    ///< as that of an Octree
+  std::vector<std::uint32_t> number;         ///< PartOfTree::number, empty for all
+  std::shared_ptr<const TreeOnDevice> tree;  ///< of these nodes
+  std::unique_ptr<Buffer> near_begin, near_leaves;
+  std::unique_ptr<Buffer> near_points;  ///< points of the leaves before each one of near_leaves, and of all
+  std::unique_ptr<Buffer> near_order;   ///< leaves by what their near field costs, the most first: one that takes long has to begin early
+  std::size_t chunk_nodes = 0, chunks = 0;
+  std::unique_ptr<Buffer> chunk_tiles, tiles, pairs;  ///< TiledPairs
+};
 
 /// Throws DeviceError, std::bad_alloc. Built once per tree and lists; matrices when an order is first used.
 template <class T>
 class ListsOnDevice {
  public:
-  /// `source_tree`: `sources` on the device.
+  /// `source_tree`: `sources` on the device. All must outlive it.
   ListsOnDevice(Device& device, const Octree& targets, const Octree& sources, std::shared_ptr<const TreeOnDevice> source_tree,
                 const InteractionLists& lists);
 
-  [[nodiscard]] const TreeOnDevice& targets() const { return target_tree_ ? *target_tree_ : *source_tree_; }
   [[nodiscard]] const TreeOnDevice& sources() const { return *source_tree_; }
-  [[nodiscard]] const Buffer& near_begin() const { return *near_begin_; }
-  [[nodiscard]] const Buffer& near_leaves() const { return *near_leaves_; }
-  /// Points of the leaves before each one of near_leaves(), and of all.
-  [[nodiscard]] const Buffer& near_points() const { return *near_points_; }
-  /// Target leaves by what their near field costs, the most first: one that takes long has to begin early.
-  [[nodiscard]] const Buffer& near_order() const { return *near_order_; }
-  [[nodiscard]] const Buffer& chunk_tiles() const { return *chunk_tiles_; }
-  [[nodiscard]] const Buffer& tiles() const { return *tiles_; }
-  [[nodiscard]] const Buffer& pairs() const { return *pairs_; }
-  [[nodiscard]] std::size_t chunks() const { return chunks_; }
-  [[nodiscard]] std::size_t chunk_nodes() const { return chunk_nodes_; }
+  /// The targets, part by part.
+  [[nodiscard]] const std::vector<TargetsOnDevice>& parts() const { return parts_; }
+  /// Room for `each` numbers for every node of the largest part, for one sum at a time.
+  [[nodiscard]] Buffer& locals(std::size_t each);
 
+  /// Uploads what the near field needs, unless it is there.
+  void prepare_near();
   /// Uploads what the far field of one order needs, unless it is there.
   void prepare_far(const M2lMatrices<T>& matrices, int order, const Shifts<T>& shifts, std::size_t coefficients);
+  /// Twice as many parts, to be prepared again, and no locals; false where that would save next to nothing. Lists are there for all parts.
+  /// What comes of a target does not depend on its part.
+  [[nodiscard]] bool cut_finer();
   [[nodiscard]] const MatricesOnDevice& matrices(int order) const { return matrices_.at(order); }
   [[nodiscard]] const MatricesOnDevice& child_to_parent() const { return up_; }
   [[nodiscard]] const MatricesOnDevice& parent_to_child() const { return down_; }
 
  private:
+  [[nodiscard]] TargetsOnDevice make_part(std::size_t first_leaf, std::size_t end_leaf) const;
+  void add_near(TargetsOnDevice& part) const;
+
   Device& device_;
+  const Octree& targets_;
+  const Octree& source_octree_;
   const InteractionLists& lists_;
-  std::size_t target_nodes_;
   std::shared_ptr<const TreeOnDevice> source_tree_;
-  std::unique_ptr<TreeOnDevice> target_tree_;  // null: the sources' tree
-  std::unique_ptr<Buffer> near_begin_, near_leaves_, near_points_, near_order_;
-  std::size_t chunk_nodes_;
-  std::size_t chunks_ = 0;
-  std::unique_ptr<Buffer> chunk_tiles_, tiles_, pairs_;
+  std::size_t wanted_parts_ = 1;
+  std::vector<TargetsOnDevice> parts_;  // none before they are prepared
+  std::unique_ptr<Buffer> locals_;
+  std::size_t wanted_locals_ = 0;  // bytes
   std::map<int, MatricesOnDevice> matrices_;
   MatricesOnDevice up_, down_;
 };

@@ -26,15 +26,14 @@ const Api* api() {
   return loaded.get();
 }
 
+// Of buffers, which drivers may make when they are first used, or larger than the device takes.
+bool is_out_of_memory(std::int32_t code) { return code == -4 || code == -5 || code == -6 || code == -61; }
+
 std::string error_name(std::int32_t code) {
+  if (is_out_of_memory(code)) return "out of memory";
   switch (code) {
     case -2:
       return "the device is not available";
-    case -4:
-    case -5:
-    case -6:
-    case -61:
-      return "out of memory";
     case -11:
       return "the kernels do not compile";
     case -36:
@@ -45,7 +44,10 @@ std::string error_name(std::int32_t code) {
 }
 
 void check(std::int32_t code, const char* what) {
-  if (code != kSuccess) throw DeviceError(std::string(what) + ": " + error_name(code));
+  if (code == kSuccess) return;
+  const std::string text = std::string(what) + ": " + error_name(code);
+  if (is_out_of_memory(code)) throw OutOfMemory(text);
+  throw DeviceError(text);
 }
 
 template <class T, class Object, class Function>
@@ -170,15 +172,15 @@ class ClDevice : public Device {
   ClDevice(const ClDevice&) = delete;
   ClDevice& operator=(const ClDevice&) = delete;
 
-  std::unique_ptr<Buffer> allocate(std::size_t bytes) override {
+  void finish() override { check(api()->finish(queue_), "the device failed"); }
+
+ protected:
+  std::unique_ptr<Buffer> make_buffer(std::size_t bytes) override {
     std::int32_t code = 0;
     const Memory memory = api()->create_buffer(context_, kReadWrite, std::max<std::size_t>(bytes, 1), nullptr, &code);
     check(code, "cannot allocate on the device");
     return std::make_unique<ClBuffer>(bytes, memory);
   }
-  void finish() override { check(api()->finish(queue_), "the device failed"); }
-
- protected:
   std::unique_ptr<Staging> make_staging(std::size_t bytes) override {
     std::int32_t code = 0;
     const Memory memory = api()->create_buffer(context_, kReadWrite | kAllocateHostMemory, bytes, nullptr, &code);

@@ -57,9 +57,9 @@ SumOnDevice<T>::SumOnDevice(Device& device, const SourcesOfSum<T>& sources)
 }
 
 template <class T>
-void SumOnDevice<T>::set_targets(std::shared_ptr<const ListsOnDevice<T>> lists, const TargetsOfSum<T>& targets) {
+void SumOnDevice<T>::set_targets(std::shared_ptr<ListsOnDevice<T>> lists, const TargetsOfSum<T>& targets) {
   lists_ = std::move(lists);
-  target_tree_ = &targets.tree;
+  target_count_ = targets.count;
   target_stride_ = targets.stride;
   if (targets.places == nullptr) return;
   const std::size_t elements = 3 * target_stride_;
@@ -127,72 +127,71 @@ void SumOnDevice<T>::upward(const cpu::SumRequest<T>& request, Program& expansio
 }
 
 template <class T>
-void SumOnDevice<T>::across(const cpu::SumRequest<T>& request, Program& translations) {
+void SumOnDevice<T>::across(const cpu::SumRequest<T>& request, const TargetsOnDevice& targets, Program& translations, Buffer& locals) {
   const KernelTraits t = traits(request);
   const std::size_t stride = cpu::padded_count(coefficient_count(request.order));
   const std::size_t moved = most_moved(request.form, request.multipole_channels, t.local_widths);
-  const std::size_t nodes = target_tree_->nodes.size();
   const MatricesOnDevice& matrices = lists_->matrices(request.order);
-  Buffer& locals = room(locals_, nodes * request.local_channels * stride);
   const std::size_t each = packed_slot(moved, stride);
   const std::size_t slots = that_fit(kMostSlots, 1, 0, each, sizeof(T));
   const std::size_t slice = std::max<std::size_t>(1, (device_.info().software ? kSoftwareSlice : kSlice) / 8);
-  in_slices(lists_->chunks(), slice, request.cancel, [&](std::size_t first, std::size_t number) {
+  in_slices(targets.chunks, slice, request.cancel, [&](std::size_t first, std::size_t number) {
     device_.launch(translations.kernel("multipoles_to_locals"), number, far_group(t),
-                   {as_int(first), as_int(lists_->chunk_nodes()), as_int(nodes), lists_->chunk_tiles(), lists_->tiles(), lists_->pairs(),
-                    *lists_->sources().centres, *lists_->targets().centres, *matrices.signs, *matrices.data, *matrices.groups,
-                    *matrices.shapes, as_int(stride), as_int(slots), *multipoles_, locals},
+                   {as_int(first), as_int(targets.chunk_nodes), as_int(targets.nodes), *targets.chunk_tiles, *targets.tiles, *targets.pairs,
+                    *lists_->sources().centres, *targets.tree->centres, *matrices.signs, *matrices.data, *matrices.groups, *matrices.shapes,
+                    as_int(stride), as_int(slots), *multipoles_, locals},
                    slots * each * sizeof(T));
   });
 }
 
 template <class T>
-void SumOnDevice<T>::downward(const cpu::SumRequest<T>& request, Program& translations) {
+void SumOnDevice<T>::downward(const cpu::SumRequest<T>& request, const TargetsOnDevice& targets, Program& translations, Buffer& locals) {
   const KernelTraits t = traits(request);
-  const TreeOnDevice& tree = lists_->targets();
+  const TreeOnDevice& tree = *targets.tree;
   const std::size_t n = coefficient_count(request.order);
   const std::size_t stride = cpu::padded_count(n);
   const MatricesOnDevice& shifts = lists_->parent_to_child();
   const std::size_t apart = shifts.groups->bytes() / sizeof(std::array<std::uint32_t, 4>) / 8;
-  for (std::size_t level = 1; level < target_tree_->levels(); ++level) {
-    const std::size_t first = target_tree_->level_begin[level];
-    device_.launch(translations.kernel("locals_to_children"), target_tree_->level_begin[level + 1] - first, far_group(t),
+  for (std::size_t level = 1; level + 1 < targets.level_begin.size(); ++level) {
+    const std::size_t first = targets.level_begin[level];
+    device_.launch(translations.kernel("locals_to_children"), targets.level_begin[level + 1] - first, far_group(t),
                    {as_int(first), *tree.parents, *tree.octants, *tree.centres, *shifts.data, *shifts.groups, as_int(apart), as_int(n),
-                    as_int(stride), *locals_},
+                    as_int(stride), locals},
                    request.local_channels * stride * sizeof(T));
   }
 }
 
 template <class T>
-void SumOnDevice<T>::near(const cpu::SumRequest<T>& request) {
+void SumOnDevice<T>::near(const cpu::SumRequest<T>& request, const TargetsOnDevice& targets) {
   const KernelTraits t = traits(request);
   Program& program = device_.program(near_field_source(t));
   const T width2 = static_cast<T>(uniform_width_ * uniform_width_);
   const T inverse_width = static_cast<T>(1 / uniform_width_);
   const T reach2 = request.reach * request.reach;
   const std::size_t slice = device_.info().software ? kSoftwareSlice : kSlice;
-  in_slices(target_tree_->leaves.size(), slice, request.cancel, [&](std::size_t first, std::size_t number) {
-    device_.launch(program.kernel("near_field"), number, near_group(t),
-                   {as_int(first), lists_->near_order(), lists_->near_begin(), lists_->near_leaves(), lists_->near_points(),
-                    *lists_->targets().leaf_points, *lists_->targets().leaf_centres, *lists_->sources().leaf_points,
-                    *lists_->sources().leaf_centres, *sources_, *values_, narrow(source_stride_), target_geometry(), *target_data_,
-                    narrow(target_stride_), width2, inverse_width, reach2, *out_},
-                   0);
+  in_slices(targets.leaves, slice, request.cancel, [&](std::size_t first, std::size_t number) {
+    device_.launch(
+        program.kernel("near_field"), number, near_group(t),
+        {as_int(first), *targets.near_order, *targets.near_begin, *targets.near_leaves, *targets.near_points, *targets.tree->leaf_points,
+         *targets.tree->leaf_centres, *lists_->sources().leaf_points, *lists_->sources().leaf_centres, *sources_, *values_,
+         narrow(source_stride_), target_geometry(), *target_data_, narrow(target_stride_), width2, inverse_width, reach2, *out_},
+        0);
   });
 }
 
 template <class T>
-void SumOnDevice<T>::far_to_points(const cpu::SumRequest<T>& request, Program& expansions) {
+void SumOnDevice<T>::far_to_points(const cpu::SumRequest<T>& request, const TargetsOnDevice& targets, Program& expansions,
+                                   const Buffer& locals) {
   const KernelTraits t = traits(request);
   const std::size_t n = coefficient_count(request.order);
   const T width2 = static_cast<T>(uniform_width_ * uniform_width_);
   const std::size_t slice = device_.info().software ? kSoftwareSlice : kSlice;
-  in_slices(target_tree_->leaves.size(), slice, request.cancel, [&](std::size_t first, std::size_t number) {
-    device_.launch(
-        expansions.kernel("locals_to_points"), number, far_group(t),
-        {as_int(first), *lists_->targets().leaf_points, *lists_->targets().leaf_nodes, *lists_->targets().leaf_centres, target_geometry(),
-         *target_data_, narrow(target_stride_), request.order, as_int(cpu::padded_count(n)), width2, *locals_, *out_},
-        7 * n * sizeof(T));
+  const TreeOnDevice& tree = *targets.tree;
+  in_slices(targets.leaves, slice, request.cancel, [&](std::size_t first, std::size_t number) {
+    device_.launch(expansions.kernel("locals_to_points"), number, far_group(t),
+                   {as_int(first), *tree.leaf_points, *tree.leaf_nodes, *tree.leaf_centres, target_geometry(), *target_data_,
+                    narrow(target_stride_), request.order, as_int(cpu::padded_count(n)), width2, locals, *out_},
+                   7 * n * sizeof(T));
   });
 }
 
@@ -210,19 +209,24 @@ const Buffer& SumOnDevice<T>::target_data(const cpu::SumRequest<T>& request) {
 
 template <class T>
 const Buffer& SumOnDevice<T>::sums_there(const cpu::SumRequest<T>& request) {
-  room(out_, (target_tree_->nodes.front().count() + cpu::kLanes - 1) / cpu::kLanes * request.out_channels * cpu::kLanes);
-  near(request);
-  if (!request.direct) {
-    Program& expansions = device_.program(expansions_source(traits(request)));
-    Program& translations = device_.program(translations_source(traits(request)));
-    if (multipoles_of_ != request.form) {
-      multipoles_of_.reset();
-      upward(request, expansions, translations);
-      multipoles_of_ = request.form;
-    }
-    across(request, translations);
-    downward(request, translations);
-    far_to_points(request, expansions);
+  room(out_, (target_count_ + cpu::kLanes - 1) / cpu::kLanes * request.out_channels * cpu::kLanes);
+  if (request.direct) {
+    for (const TargetsOnDevice& targets : lists_->parts()) near(request, targets);
+    return *out_;
+  }
+  Program& expansions = device_.program(expansions_source(traits(request)));
+  Program& translations = device_.program(translations_source(traits(request)));
+  Buffer& locals = lists_->locals(request.local_channels * cpu::padded_count(coefficient_count(request.order)));
+  if (multipoles_of_ != request.form) {
+    multipoles_of_.reset();
+    upward(request, expansions, translations);
+    multipoles_of_ = request.form;
+  }
+  for (const TargetsOnDevice& targets : lists_->parts()) {
+    near(request, targets);
+    across(request, targets, translations, locals);
+    downward(request, targets, translations, locals);
+    far_to_points(request, targets, expansions, locals);
   }
   return *out_;
 }
@@ -233,16 +237,15 @@ void SumOnDevice<T>::run(const cpu::SumRequest<T>& request, const Take& take) {
   has_values_ = true;
   device_.write(target_data(request), 0, request.target_data, request.data_fields * target_stride_ * sizeof(T));
   const Buffer& sums = sums_there(request);
-  const std::size_t targets = target_tree_->nodes.front().count();
   const std::size_t block = request.out_channels * cpu::kLanes;
-  const std::size_t elements = (targets + cpu::kLanes - 1) / cpu::kLanes * block;
+  const std::size_t elements = (target_count_ + cpu::kLanes - 1) / cpu::kLanes * block;
   device_.finish();  // what fails, fails before anything is taken
   device_.read(sums, elements * sizeof(T), block * sizeof(T), [&](std::size_t offset, const unsigned char* data, std::size_t bytes) {
     const std::size_t first_block = offset / (block * sizeof(T));
     const auto* const sums = reinterpret_cast<const T*>(data);
     parallel::for_blocks(bytes / (block * sizeof(T)), kTakenBlocks, [&](std::size_t begin, std::size_t end) {
       const std::size_t first = (first_block + begin) * cpu::kLanes;
-      take(first, std::min((first_block + end) * cpu::kLanes, targets) - first, sums + begin * block);
+      take(first, std::min((first_block + end) * cpu::kLanes, target_count_) - first, sums + begin * block);
     });
   });
 }

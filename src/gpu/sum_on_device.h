@@ -30,7 +30,7 @@ struct SourcesOfSum {
 /// Targets, in the same way.
 template <class T>
 struct TargetsOfSum {
-  const Octree& tree;
+  std::size_t count;
   const T* places;  ///< null: the sources
   std::size_t stride;
 };
@@ -42,8 +42,8 @@ class SumOnDevice {
   /// The device and the tree of the sources must outlive it.
   SumOnDevice(Device& device, const SourcesOfSum<T>& sources);
 
-  /// Takes targets, in place of others; values of the sources stay, and so do their multipoles. The tree must outlive the sums.
-  void set_targets(std::shared_ptr<const ListsOnDevice<T>> lists, const TargetsOfSum<T>& targets);
+  /// Takes targets, in place of others; values of the sources stay, and so do their multipoles.
+  void set_targets(std::shared_ptr<ListsOnDevice<T>> lists, const TargetsOfSum<T>& targets);
   /// The values of the sources are to change.
   void forget_values() { has_values_ = false; }
 
@@ -60,10 +60,10 @@ class SumOnDevice {
  private:
   [[nodiscard]] KernelTraits traits(const cpu::SumRequest<T>& request) const;
   void upward(const cpu::SumRequest<T>& request, Program& expansions, Program& translations);
-  void across(const cpu::SumRequest<T>& request, Program& translations);
-  void downward(const cpu::SumRequest<T>& request, Program& translations);
-  void near(const cpu::SumRequest<T>& request);
-  void far_to_points(const cpu::SumRequest<T>& request, Program& expansions);
+  void across(const cpu::SumRequest<T>& request, const TargetsOnDevice& targets, Program& translations, Buffer& locals);
+  void downward(const cpu::SumRequest<T>& request, const TargetsOnDevice& targets, Program& translations, Buffer& locals);
+  void near(const cpu::SumRequest<T>& request, const TargetsOnDevice& targets);
+  void far_to_points(const cpu::SumRequest<T>& request, const TargetsOnDevice& targets, Program& expansions, const Buffer& locals);
   template <class Launch>
   void in_slices(std::size_t count, std::size_t slice, const std::atomic<bool>* cancel, const Launch& launch);
   Buffer& room(std::unique_ptr<Buffer>& buffer, std::size_t elements);
@@ -71,17 +71,17 @@ class SumOnDevice {
   [[nodiscard]] const Buffer& target_geometry() const { return targets_ ? *targets_ : *sources_; }
 
   Device& device_;
-  std::shared_ptr<const ListsOnDevice<T>> lists_;
+  std::shared_ptr<ListsOnDevice<T>> lists_;
   const Octree& source_tree_;
-  const Octree* target_tree_ = nullptr;
   bool local_widths_;
   std::size_t source_stride_;
   std::size_t target_stride_ = 0;
+  std::size_t target_count_ = 0;
   double uniform_width_;
   bool has_values_ = false;                     // those of the engine
   std::optional<cpu::NearForm> multipoles_of_;  // the form for which they are those of the values
   std::unique_ptr<Buffer> sources_, targets_;   // null: the sources
-  std::unique_ptr<Buffer> values_, target_data_, multipoles_, locals_, out_;
+  std::unique_ptr<Buffer> values_, target_data_, multipoles_, out_;
 };
 
 extern template class SumOnDevice<float>;

@@ -2,6 +2,7 @@
 
 #include "base/vector.h"
 #include "cloud/canonical_cloud.h"
+#include "cloud/neighbours.h"
 #include "cpu/parallel.h"
 #include "sum/fast_sum.h"
 
@@ -18,6 +19,7 @@ namespace {
 constexpr std::size_t kFewestPointsPerCore = 3'000;
 constexpr std::size_t kTrialPoints = 2'000;  // some levels of a tree
 constexpr double kTrialAccuracy = 1e-2;
+constexpr std::size_t kTrialNeighbours = 17;  // those of PointSet::near()
 
 thread_local Scope* innermost = nullptr;
 
@@ -110,7 +112,7 @@ void try_out(const std::shared_ptr<Execution>& execution) {
   const Widths widths(1 / std::sqrt(static_cast<double>(kTrialPoints)));
   std::vector<std::vector<Vec3>> s(2);
   std::vector<double> w;
-  const Scope processor("cpu", kTrialPoints);  // for the first of the two
+  const Placed processor(nullptr);  // the first of the two
   parallel::with_threads(1, [&] {
     FastSum here(cloud.points(), widths, plan);
     plan.execution = execution;
@@ -120,49 +122,54 @@ void try_out(const std::shared_ptr<Execution>& execution) {
     if (!agree(s[1], s[0])) throw DeviceError("its sums are wrong; a newer driver may help");
     const std::unique_ptr<SolveVectors> solve = there.energy_vectors(0, 1, {});
     if (solve != nullptr) try_solve(*solve, here, cloud.points());
+    const Neighbours tree(cloud.points());
+    const std::vector<std::uint32_t> near = tree.of_all(kTrialNeighbours);
+    const Placed there_too(execution);
+    execution->device().set_rounds_alike(tree.of_all(kTrialNeighbours) == near);
   });
 }
 
 }  // namespace
 
-Scope::Scope(const std::string& request, std::size_t points) : request_(request), outer_(innermost) {
+Lease::Lease(const std::string& request, std::size_t points) {
   const Request parsed = parse(request);
   const auto cores = static_cast<std::size_t>(parallel::thread_count(0));
-  if (outer_ != nullptr && outer_->request_ == request) {
-    execution_ = outer_->execution_;
-    note_ = outer_->note_;
-  } else if (parsed.wanted != Wanted::kProcessor && (parsed.wanted != Wanted::kAuto || points >= kFewestPointsPerCore * cores)) {
-    if (const std::optional<DeviceInfo> info = choose(parsed)) {
-      try {
-        std::shared_ptr<Device> device = take_kept_device(*info);
-        const bool trusted = device != nullptr;
-        if (!trusted) device = open_device(*info);
-        execution_ = std::make_shared<Execution>(std::move(device), parsed.wanted != Wanted::kAuto);
-        opened_ = true;
-        if (!trusted) try_out(execution_);
-        if (!execution_->failure().empty()) note_ = execution_->failure();
-      } catch (const DeviceError& error) {
-        note_ = info->name + ": " + error.what();
-        if (parsed.wanted != Wanted::kAuto) throw Unavailable(note_);
-        execution_.reset();
-      }
-    }
+  if (parsed.wanted == Wanted::kProcessor || (parsed.wanted == Wanted::kAuto && points < kFewestPointsPerCore * cores)) return;
+  const std::optional<DeviceInfo> info = choose(parsed);
+  if (!info) return;
+  try {
+    std::shared_ptr<Device> device = take_kept_device(*info);
+    const bool trusted = device != nullptr;
+    if (!trusted) device = open_device(*info);
+    execution_ = std::make_shared<Execution>(std::move(device), parsed.wanted != Wanted::kAuto);
+    if (!trusted) try_out(execution_);
+    if (!execution_->failure().empty()) note_ = execution_->failure();
+  } catch (const DeviceError& error) {
+    note_ = info->name + ": " + error.what();
+    if (parsed.wanted != Wanted::kAuto) throw Unavailable(note_);
+    execution_.reset();
   }
+}
+
+Lease::~Lease() {
+  if (execution_ != nullptr && execution_->failure().empty()) keep_device(execution_->shared_device());
+}
+
+Scope::Scope(const std::string& request, std::size_t points)
+    : request_(request),
+      lease_(innermost != nullptr && innermost->request_ == request ? innermost->lease_ : std::make_shared<const Lease>(request, points)),
+      placed_(execution()),
+      outer_(innermost) {
   innermost = this;
 }
 
-Scope::~Scope() {
-  innermost = outer_;
-  if (opened_ && execution_ != nullptr && execution_->failure().empty()) keep_device(execution_->shared_device());
-}
-
-std::shared_ptr<Execution> Scope::current() { return innermost != nullptr ? innermost->execution_ : nullptr; }
+Scope::~Scope() { innermost = outer_; }
 
 void Scope::describe(Stats& stats) const {
-  const std::string& failure = execution_ && note_.empty() ? execution_->failure() : note_;
-  const bool used = execution_ && failure.empty();
-  stats.device = used ? execution_->device().info().name : "cpu";
-  stats.driver = used ? execution_->device().info().driver : "";
+  const std::string failure = execution() && lease_->note().empty() ? execution()->failure() : lease_->note();
+  const bool used = execution() && failure.empty();
+  stats.device = used ? execution()->device().info().name : "cpu";
+  stats.driver = used ? execution()->device().info().driver : "";
   if (failure.empty()) return;
   const std::string warning = "computed on the processor, not on the GPU: " + failure;
   if (std::find(stats.warnings.begin(), stats.warnings.end(), warning) == stats.warnings.end()) stats.warnings.push_back(warning);

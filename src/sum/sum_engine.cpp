@@ -81,6 +81,7 @@ gpu::SumOnDevice<T>& SumEngine<T>::prepare_device(const M2lTerms& terms) {
   if (!tree) tree = std::make_shared<gpu::TreeOnDevice>(device, sources.tree);
   std::shared_ptr<gpu::ListsOnDevice<T>>& lists = geometry_.lists_on_device();
   if (!lists) lists = std::make_shared<gpu::ListsOnDevice<T>>(device, targets, sources.tree, tree, geometry_.lists());
+  lists->prepare_near();
   if (!plan.direct) {
     lists->prepare_far(geometry_.matrices(terms), terms.order, {sources.child_to_parent, sources.parent_to_child},
                        coefficient_count(plan.order));
@@ -93,10 +94,23 @@ gpu::SumOnDevice<T>& SumEngine<T>::prepare_device(const M2lTerms& terms) {
   }
   if (!has_targets_there_) {
     const T* const places = geometry_.has_own_targets() ? geometry_.target_places().data() : nullptr;
-    on_device_->set_targets(lists, {targets, places, geometry_.target_stride()});
+    on_device_->set_targets(lists, {targets.nodes.front().count(), places, geometry_.target_stride()});
     has_targets_there_ = true;
   }
   return *on_device_;
+}
+
+template <class T>
+template <class Work>
+void SumEngine<T>::in_parts(const std::atomic<bool>& taken, const Work& work) {
+  for (;;) {
+    try {
+      return work();
+    } catch (const gpu::OutOfMemory&) {
+      const std::shared_ptr<gpu::ListsOnDevice<T>>& lists = geometry_.lists_on_device();
+      if (taken || !lists || !lists->cut_finer()) throw;
+    }
+  }
 }
 
 template <class T>
@@ -104,9 +118,16 @@ const gpu::Buffer& SumEngine<T>::run_there(cpu::NearForm form, int batch, std::s
                                            const std::function<void(const gpu::Buffer&, const gpu::Buffer&)>& fill) {
   const M2lTerms terms = terms_for(form, batch, geometry_.plan());
   const cpu::SumRequest<T> request = request_for(form, batch, values, out_channels, terms);
-  gpu::SumOnDevice<T>& there = prepare_device(terms);
-  fill(there.values(request), there.target_data(request));
-  return there.sums_there(request);
+  const std::atomic<bool> none_taken = false;
+  in_parts(none_taken, [&] {
+    gpu::SumOnDevice<T>& there = prepare_device(terms);
+    (void)there.values(request);
+    (void)there.target_data(request);
+  });
+  fill(on_device_->values(request), on_device_->target_data(request));  // once: it may read the sums that the next ones replace
+  const gpu::Buffer* sums = nullptr;
+  in_parts(none_taken, [&] { sums = &prepare_device(terms).sums_there(request); });
+  return *sums;
 }
 
 template <class T>
@@ -114,6 +135,8 @@ bool SumEngine<T>::run_on_device(const cpu::SumRequest<T>& request, const M2lTer
   const std::shared_ptr<gpu::Execution> execution = this->execution();
   if (!execution) return false;
   std::atomic<bool> taken = false;
+  const std::unique_lock lock = execution->device().lock();
+  if (!execution->usable(sizeof(T) == sizeof(double))) return false;  // of another thread
   const auto take_some = [&](std::size_t first, std::size_t count, const T* sums) {
     taken = true;
     std::vector<double> block(request.out_channels * cpu::kLanes);
@@ -123,11 +146,12 @@ bool SumEngine<T>::run_on_device(const cpu::SumRequest<T>& request, const M2lTer
     }
   };
   try {
-    const std::unique_lock lock = execution->device().lock();
-    gpu::SumOnDevice<T>& there = prepare_device(terms);
-    const auto start = std::chrono::steady_clock::now();
-    there.run(request, take_some);
-    execution->add_seconds(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    in_parts(taken, [&] {
+      gpu::SumOnDevice<T>& there = prepare_device(terms);
+      const auto start = std::chrono::steady_clock::now();
+      there.run(request, take_some);
+      execution->add_seconds(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    });
   } catch (const gpu::DeviceError& error) {
     on_device_.reset();
     geometry_.lists_on_device().reset();

@@ -62,6 +62,9 @@ class SumEngine {
                                                const M2lTerms& terms) const;
   // False if there is no device, or it failed, and the processor has to do it.
   bool run_on_device(const cpu::SumRequest<T>& request, const M2lTerms& terms, const TakeSums& take);
+  // Does work(), again with the targets in more parts while it runs out of the device's memory before any sum is taken.
+  template <class Work>
+  void in_parts(const std::atomic<bool>& taken, const Work& work);
   // What sums with these terms need there, uploaded unless it is there.
   gpu::SumOnDevice<T>& prepare_device(const M2lTerms& terms);
 
