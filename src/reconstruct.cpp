@@ -13,6 +13,7 @@
 #include "mesh/findings.h"
 #include "mesh/held_points.h"
 #include "mesh/mesh_finish.h"
+#include "mesh/point_parts.h"
 #include "mesh/regained_points.h"
 #include "mesh/screened_poisson.h"
 #include "mesh/separate_vertices.h"
@@ -86,10 +87,10 @@ std::vector<Vec3> directions_of(const std::vector<Vec3>& eta) {
   return directions;
 }
 
-// Leaves out the points that no surface goes through. The numbers of the others do not lead to the input any more.
-void drop_strays(OrientedCloud& oriented, std::vector<Vec3>& strays, const std::atomic<bool>* cancel) {
+// Leaves out the points that are not held. The numbers of the others do not lead to the input any more.
+void leave_out(OrientedCloud& oriented, const std::vector<std::uint8_t>& held, std::vector<Vec3>& strays) {
+  if (std::find(held.begin(), held.end(), std::uint8_t{0}) == held.end()) return;
   CanonicalCloud& cloud = oriented.cloud;
-  const std::vector<std::uint8_t> held = mesh::held_points(cloud.points(), directions_of(oriented.eta), cancel);
   std::vector<Vec3> points;
   points.reserve(held.size());
   for (std::size_t i = 0; i < held.size(); ++i) {
@@ -160,9 +161,10 @@ Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor
   for (Vec3& p : left_out.strays) p = oriented.cloud.frame.to_unit(p);
   if (!options.keep_all) {
     std::vector<Vec3> doubtful;
-    drop_strays(oriented, doubtful, monitor.cancel);
+    leave_out(oriented, mesh::held_points(oriented.cloud.points(), directions_of(oriented.eta), monitor.cancel), doubtful);
     regain_points(oriented, left_out.strays, monitor.cancel);
     left_out.strays.insert(left_out.strays.end(), doubtful.begin(), doubtful.end());
+    leave_out(oriented, mesh::points_of_parts(oriented.cloud.set, left_out.strays), left_out.strays);
   }
   left_out.dropped.points = left_out.strays.size();
   const WindingSampler field(oriented, monitor.cancel);

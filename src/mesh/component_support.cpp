@@ -1,5 +1,6 @@
 #include "mesh/component_support.h"
 
+#include "base/median.h"
 #include "base/vector.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
@@ -15,10 +16,6 @@
 
 namespace g3r::mesh {
 namespace {
-
-// The distance in spacings up to which a stray is beside a point: the parts that strays make are no farther from them. With less, outliers
-// that fill space leave parts.
-constexpr double kBesideSpacings = 3;
 
 // For every place the nearest of some points within its squared reach, or kNone.
 template <class Reach>
@@ -51,14 +48,15 @@ void add_areas(const Mesh& mesh, const std::vector<std::uint32_t>& component, co
                const std::vector<double>& spacing, double scatter, std::vector<Support>& support) {
   const std::vector<Vec3> centres = centres_of(mesh);
   const std::vector<std::uint32_t> nearest = nearest_of(points, centres, anywhere);
+  const double typical = median(spacing);
   const double widened = 2 * scatter;  // what points stand for, as noise makes spheres of 1.7 standard deviations
   for (std::size_t t = 0; t < centres.size(); ++t) {
-    const double h2 = spacing[nearest[t]] * spacing[nearest[t]];
+    const double h = spacing[nearest[t]], h2 = h * h, reach = kFarSpacings * std::min(h, typical);
     const double area = area_of(mesh, mesh.triangles[t]);
     const Vec3 d = vector::subtract(centres[t], points[nearest[t]]);
     Support& of = support[component[t]];
     of.area += area;
-    of.near_area += vector::dot(d, d) <= kFarSpacings * kFarSpacings * h2 ? area : 0;
+    of.near_area += vector::dot(d, d) <= reach * reach ? area : 0;
     of.stands_for += area / h2;
     of.stands_for_under_noise += area / (h2 + widened * widened);
   }

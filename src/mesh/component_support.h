@@ -9,10 +9,14 @@
 
 namespace g3r::mesh {
 
+/// The distance in spacings up to which a stray is beside a point: the parts that strays make are no farther from them. With less, outliers
+/// that fill space leave parts.
+inline constexpr double kBesideSpacings = 3;
+
 /// What holds a component. Of parts that turn out to be one component the sums are those of the parts.
 struct Support {
   double area = 0;                    ///< of its surface
-  double near_area = 0;               ///< of that within kFarSpacings of a point
+  double near_area = 0;               ///< of that within kFarSpacings of a point, of the cloud where the point is isolated
   double stands_for = 0;              ///< points that its area stands for
   double stands_for_under_noise = 0;  ///< the same where noise makes spurious components
   double strays = 0;                  ///< beside it

@@ -1,0 +1,65 @@
+#include "mesh/point_parts.h"
+
+#include "base/disjoint_sets.h"
+#include "cpu/parallel.h"
+#include "mesh/component_support.h"
+#include "mesh/constants.h"
+#include "mesh/held_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace g3r::mesh {
+namespace {
+
+// For every stray the point that it is beside, or kNone.
+std::vector<std::uint32_t> points_beside(const PointSet& set, const std::vector<Vec3>& strays) {
+  const std::vector<double>& spacing = set.smoothed_spacing();
+  const Neighbours& tree = set.tree();
+  std::vector<std::uint32_t> out(strays.size());
+  parallel::for_blocks(strays.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      double squared = std::numeric_limits<double>::max();
+      out[k] = tree.nearest(strays[k], squared, kNone);
+      if (std::sqrt(squared) > kBesideSpacings * spacing[out[k]]) out[k] = kNone;
+    }
+  });
+  return out;
+}
+
+DisjointSets join_parts(const PointSet& set) {
+  const std::size_t count = std::min(kRing + 1, set.near_count());
+  const std::vector<double>& spacing = set.smoothed_spacing();
+  DisjointSets parts(set.size());
+  for (std::uint32_t i = 0; i < set.size(); ++i) {
+    const std::uint32_t* const near = set.near().data() + i * set.near_count();
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::uint32_t j = near[k];
+      if (std::max(spacing[i], spacing[j]) <= 2 * std::min(spacing[i], spacing[j])) parts.join(i, j);
+    }
+  }
+  return parts;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> points_of_parts(const PointSet& set, const std::vector<Vec3>& strays) {
+  std::vector<std::uint8_t> out(set.size(), 1);
+  if (strays.empty() || set.size() < kFewestPoints) return out;
+  DisjointSets parts = join_parts(set);
+  std::vector<std::size_t> points(set.size(), 0), beside(set.size(), 0);
+  for (std::size_t i = 0; i < set.size(); ++i) ++points[parts.find(i)];
+  for (const std::uint32_t i : points_beside(set, strays)) {
+    if (i != kNone) ++beside[parts.find(i)];
+  }
+  const std::size_t most = *std::max_element(points.begin(), points.end());
+  const double least = least_points_of_a_part(strays.size());
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    const std::size_t part = parts.find(i);
+    if (points[part] < most && static_cast<double>(points[part]) < std::max(least, static_cast<double>(beside[part]))) out[i] = 0;
+  }
+  return out;
+}
+
+}  // namespace g3r::mesh
