@@ -14,7 +14,6 @@
 #include "mesh/lines.h"
 #include "mesh/mesh_finish.h"
 #include "mesh/mesh_memory.h"
-#include "mesh/undersampled.h"
 #include "mesh/untangle.h"
 
 #include <g3r/error.h>
@@ -156,14 +155,12 @@ Mesh field_mesh(const std::vector<Vec3>& points, std::vector<Vec3> normals, cons
   mesh::smooth_noise(noise, monitor.cancel, prepared);
   report(monitor, Done::kSmoothing);
   std::vector<double> size = mesh::sizes_to_resolve(prepared);
-  std::vector<std::uint8_t> rough = mesh::points_in_lines(prepared.points.positions, prepared.near);
-  const std::vector<std::uint8_t> undersampled = mesh::undersampled_points(prepared.points.normals, prepared.near);
-  for (std::size_t i = 0; i < rough.size(); ++i) rough[i] |= undersampled[i];
+  const std::vector<std::uint8_t> in_lines = mesh::points_in_lines(prepared.points.positions, prepared.near);
   Mesh mesh = raw_mesh(prepared, size, sampler, options, monitor, memory);
   size = mesh::lengths_to_carry(prepared, size);
   prepared.neighbours.reset();
   std::vector<std::uint32_t>().swap(prepared.near);  // not only emptied
-  mesh::make_fair(mesh, prepared.points.positions, rough, monitor.cancel);
+  mesh::make_fair(mesh, prepared.points.positions, in_lines, monitor.cancel);
   // A depth that was asked for is the size of triangles that was asked for.
   if (options.depth == 0) mesh::coarsen(mesh, prepared.points.positions, size, monitor.cancel);
   mesh::soften_thorns(mesh, mesh::untangle(mesh, monitor.cancel));

@@ -20,9 +20,6 @@ using vector::subtract;
 // The steps of conjugate gradients at most, and the share of the first residual that is enough: what is left moves no vertex visibly.
 constexpr int kGradientSteps = 300;
 constexpr double kResidualShare = 1e-4;
-// How much the squared distance of a point from the surface weighs beside the squared Laplacian of a vertex: with less, thin parts lose
-// their volume.
-constexpr double kAnchorWeight = 8;
 
 double product(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return parallel::sum_blocks(a.size(), parallel::kSmallBlock, 0.0, [&](std::size_t begin, std::size_t end) {
@@ -86,12 +83,13 @@ void LeastSquaresMesh::gradient(const std::vector<Vec3>& at, const std::vector<A
       for (const std::uint32_t other : ring) out[v] = subtract(out[v], shares_[other]);
     }
   });
+  // The distance of a point from the surface weighs half as much as the Laplacian of a vertex: less smooths, and leaves the points.
   for (const Anchor& anchor : anchors) {
     Vec3 miss = is_affine ? scale(anchor.point, -1) : Vec3{0, 0, 0};
     for (std::size_t k = 0; k < anchor.vertex.size(); ++k) miss = add(miss, scale(at[anchor.vertex[k]], anchor.weight[k]));
     for (std::size_t k = 0; k < anchor.vertex.size(); ++k) {
       const std::uint32_t v = anchor.vertex[k];
-      if (free_[v] != 0) out[v] = add(out[v], scale(miss, kAnchorWeight * anchor.weight[k]));
+      if (free_[v] != 0) out[v] = add(out[v], scale(miss, 0.5 * anchor.weight[k]));
     }
   }
 }

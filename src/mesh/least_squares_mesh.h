@@ -2,7 +2,7 @@
 //
 // Sorkine, Cohen-Or, "Least-squares meshes", SMI 2004. With L x_v = x_v - (mean of the vertices around v), b the barycentric coordinates of
 // an anchor in its triangle and p its place, the vertices x minimise
-//   sum_v |L x_v|^2 + 8 sum_anchors |sum_k b_k x_k - p|^2.
+//   sum_v |L x_v|^2 + 1/2 sum_anchors |sum_k b_k x_k - p|^2.
 #pragma once
 
 #include <g3r/mesh.h>
