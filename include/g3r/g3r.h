@@ -140,7 +140,7 @@ struct Stats {
   int threads = 0;
   std::string device;  ///< "cpu", or the name of the device that the sums ran on; empty: none did
   std::string driver;  ///< of the device
-  /// Per stage, what of its seconds was spent on sums on the device, with copies to and from it; empty for the processor.
+  /// Per stage, what of its seconds was spent on sums and neighbours on the device, with copies to and from it; empty for the processor.
   std::vector<std::pair<std::string, double>> device_seconds;
   std::vector<std::string> warnings;
 };

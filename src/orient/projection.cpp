@@ -52,8 +52,7 @@ std::vector<Vec3> project_points(const std::vector<Vec3>& points, const Neighbou
 double projection_misfit(const PointSet& set, const std::vector<Vec3>& normals, double noise, double spacing) {
   const double reach = projection_reach(noise, spacing);
   const std::size_t stride = 1 + set.size() / kPlaces;
-  constexpr double kNone = -1;
-  std::vector<double> residuals((set.size() + stride - 1) / stride, kNone);
+  std::vector<double> residuals((set.size() + stride - 1) / stride, -1);  // negative: too few points on its side
   parallel::for_all(residuals.size(), [&](std::size_t k) {
     const std::size_t i = k * stride;
     SameSide side(set.points(), set.tree(), normals);

@@ -34,7 +34,8 @@ namespace g3r {
 
 /// How far points lie from their wall, in proportion to `noise`: the median, over at most 2000 of them, of the residual of such a
 /// quadratic, 1 or a little less where the normals are right; more where two walls are taken for one, and at creases. As the others, but at
-/// `spacing` everywhere; 1 if no point has enough others on its side.
+/// `spacing` everywhere; 1 if no point has enough others on its side. `normals`: N unit vectors; `noise` > 0 and `spacing` in the units of
+/// the points. A fit for each of these points.
 [[nodiscard]] double projection_misfit(const PointSet& set, const std::vector<Vec3>& normals, double noise, double spacing);
 
 }  // namespace g3r
