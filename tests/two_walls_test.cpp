@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <numeric>
 #include <vector>
@@ -22,11 +23,11 @@ double normal(shapes::Random& random) {
 }
 
 // On [-1, 1]^2, `gap` and `noise` in spacings: half of the points on a second wall. Tilted, so that no coordinate is along the walls.
-std::vector<Vec3> walls(double gap, double noise, double waves = 0) {
-  const double h = 2 / std::sqrt(static_cast<double>(kPoints));
-  shapes::Random random(11);
+std::vector<Vec3> walls(double gap, double noise, double waves = 0, std::size_t count = kPoints, std::uint64_t seed = 11) {
+  const double h = 2 / std::sqrt(static_cast<double>(count));
+  shapes::Random random(seed);
   std::vector<Vec3> points;
-  for (std::size_t i = 0; i < kPoints; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
     const double z = waves * std::sin(5 * x) * std::cos(4 * y) + (i % 2 == 0 ? gap * h : 0) + noise * h * normal(random);
     points.push_back({0.8 * x - 0.6 * z, y, 0.6 * x + 0.8 * z});
@@ -51,6 +52,13 @@ TEST(TwoWalls, OneSurfaceIsNone) {
 
 TEST(TwoWalls, AreFoundWithoutNoise) {
   for (const double gap : {0.2, 0.5, 1.0}) EXPECT_TRUE(found(walls(gap, 0), 0)) << gap;
+}
+
+// The fewer neighbourhoods a surface has, the likelier is it that all of them look like two walls by chance.
+TEST(TwoWalls, SmallSurfacesAreNone) {
+  int taken = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) taken += found(walls(0, 0.2, 0, 1000, seed), 0.2) ? 1 : 0;
+  EXPECT_LE(taken, 2);
 }
 
 // Two standard deviations apart heights have one peak, not two: only the kurtosis shows it. One deviation apart nothing does.

@@ -72,7 +72,11 @@ bool on_noisy_walls(const PointSet& set, const Sites& sites, const std::vector<s
     ++count;
   }
   const double mean = sum / count;
-  const double error = std::sqrt(std::max(0.0, squares / count - mean * mean) / count);
+  // Places share points: no more of them are independent than the part holds such neighbourhoods.
+  const double held = static_cast<double>(members.size()) * static_cast<double>(points.size()) / static_cast<double>(sites.size());
+  const double places = static_cast<double>(excess.size());
+  const double independent = count * std::min(1.0, held / (places * static_cast<double>(kNoisyPoints)));
+  const double error = std::sqrt(std::max(0.0, squares / count - mean * mean) / independent);
   return mean < kExcess && mean < -kSigmas * error;
 }
 
