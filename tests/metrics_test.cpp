@@ -15,13 +15,13 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 // A few roundings of coordinates of size one.
-constexpr double kRounding = 1e-13;
+constexpr double kRoundingOfScores = 1e-13;
 
 // ---- normals
 
 TEST(ScoreNormals, PerfectNormalsOfAnyLengthHaveNoError) {
   const NormalScore score = score_normals({{2, 0, 0}, {0, 1e-200, 0}, {0, 0, 1e200}}, {{1, 0, 0}, {0, 5, 0}, {0, 0, 1}});
-  EXPECT_NEAR(score.ae, 0, kRounding);
+  EXPECT_NEAR(score.ae, 0, kRoundingOfScores);
   EXPECT_EQ(score.pco, 1);
   EXPECT_EQ(score.points, 3u);
 }
@@ -29,7 +29,7 @@ TEST(ScoreNormals, PerfectNormalsOfAnyLengthHaveNoError) {
 TEST(ScoreNormals, AngleErrorIsHalfOneMinusCosine) {
   // Right, inverted, and two at right angles (which are not on the right side).
   const NormalScore score = score_normals({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{1, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 0, 0}});
-  EXPECT_NEAR(score.ae, (0 + 1 + 0.5 + 0.5) / 4, kRounding);
+  EXPECT_NEAR(score.ae, (0 + 1 + 0.5 + 0.5) / 4, kRoundingOfScores);
   EXPECT_EQ(score.pco, 0.25);
 }
 
@@ -103,7 +103,7 @@ TEST(SampleMesh, PointsLieOnTheirTriangles) {
   for (std::size_t i = 0; i < 1000; ++i) {
     const Vec3& p = samples.points[i];
     const Vec3& n = samples.normals[i];
-    EXPECT_NEAR(vector::dot(n, n), 1, kRounding);
+    EXPECT_NEAR(vector::dot(n, n), 1, kRoundingOfScores);
     for (std::size_t k = 0; k < 3; ++k) {
       EXPECT_GE(p[k], 0);
       EXPECT_LE(p[k], 1);
@@ -160,13 +160,13 @@ TEST(SampleMesh, TrianglesWithoutAreaGetNoPoints) {
   Mesh mesh = shapes::cube();
   mesh.triangles.insert(mesh.triangles.begin(), {0, 0, 7});
   mesh.triangles.push_back({1, 1, 1});
-  for (const Vec3& n : sample_mesh(mesh, 1000, 1).normals) EXPECT_NEAR(vector::dot(n, n), 1, kRounding);
+  for (const Vec3& n : sample_mesh(mesh, 1000, 1).normals) EXPECT_NEAR(vector::dot(n, n), 1, kRoundingOfScores);
 }
 
 TEST(SampleMesh, TinyAndHugeMeshesAreSampled) {
   for (const double size : {1e-150, 1e45}) {
     const Samples samples = sample_mesh(shapes::moved(shapes::cube(), {0, 0, 0}, size), 100, 1);
-    for (const Vec3& n : samples.normals) EXPECT_NEAR(vector::dot(n, n), 1, kRounding);
+    for (const Vec3& n : samples.normals) EXPECT_NEAR(vector::dot(n, n), 1, kRoundingOfScores);
   }
 }
 
@@ -199,27 +199,27 @@ TEST(TriangleTree, EqualsTestingEveryTriangle) {
     for (const auto& t : mesh.triangles) {
       expected = std::min(expected, squared_distance_to_triangle(p, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
     }
-    EXPECT_NEAR(tree.closest(p).distance, std::sqrt(expected), kRounding);
+    EXPECT_NEAR(tree.closest(p).distance, std::sqrt(expected), kRoundingOfScores);
   }
 }
 
 TEST(TriangleTree, DistanceToATriangleByRegion) {
   const Vec3 a{0, 0, 0}, b{2, 0, 0}, c{0, 2, 0};
-  EXPECT_NEAR(squared_distance_to_triangle({0.5, 0.5, 3}, a, b, c), 9, kRounding);      // face
-  EXPECT_NEAR(squared_distance_to_triangle({1, -2, 1}, a, b, c), 5, kRounding);         // side ab
-  EXPECT_NEAR(squared_distance_to_triangle({2, 2, 0}, a, b, c), 2, kRounding);          // side bc
-  EXPECT_NEAR(squared_distance_to_triangle({-3, 1, 4}, a, b, c), 25, kRounding);        // side ca
-  EXPECT_NEAR(squared_distance_to_triangle({-1, -1, 1}, a, b, c), 3, kRounding);        // corner a
-  EXPECT_NEAR(squared_distance_to_triangle({4, -1, 0}, a, b, c), 5, kRounding);         // corner b
-  EXPECT_NEAR(squared_distance_to_triangle({-1, 5, 0}, a, b, c), 10, kRounding);        // corner c
-  EXPECT_NEAR(squared_distance_to_triangle({1, 1, 0}, a, a, a), 2, kRounding);          // a point
-  EXPECT_NEAR(squared_distance_to_triangle({1, 1, 0}, a, b, {1, 0, 0}), 1, kRounding);  // a segment
+  EXPECT_NEAR(squared_distance_to_triangle({0.5, 0.5, 3}, a, b, c), 9, kRoundingOfScores);      // face
+  EXPECT_NEAR(squared_distance_to_triangle({1, -2, 1}, a, b, c), 5, kRoundingOfScores);         // side ab
+  EXPECT_NEAR(squared_distance_to_triangle({2, 2, 0}, a, b, c), 2, kRoundingOfScores);          // side bc
+  EXPECT_NEAR(squared_distance_to_triangle({-3, 1, 4}, a, b, c), 25, kRoundingOfScores);        // side ca
+  EXPECT_NEAR(squared_distance_to_triangle({-1, -1, 1}, a, b, c), 3, kRoundingOfScores);        // corner a
+  EXPECT_NEAR(squared_distance_to_triangle({4, -1, 0}, a, b, c), 5, kRoundingOfScores);         // corner b
+  EXPECT_NEAR(squared_distance_to_triangle({-1, 5, 0}, a, b, c), 10, kRoundingOfScores);        // corner c
+  EXPECT_NEAR(squared_distance_to_triangle({1, 1, 0}, a, a, a), 2, kRoundingOfScores);          // a point
+  EXPECT_NEAR(squared_distance_to_triangle({1, 1, 0}, a, b, {1, 0, 0}), 1, kRoundingOfScores);  // a segment
 }
 
 TEST(TriangleTree, KeepsItsDigitsFarAwayAndAtAnyScale) {
   for (const double size : {1e-120, 1e-3, 1e40}) {
     const TriangleTree tree(shapes::moved(shapes::cube(), {0, 0, 0}, size));
-    EXPECT_NEAR(tree.closest({0.5 * size, 0.5 * size, 3 * size}).distance / size, 2, kRounding);
+    EXPECT_NEAR(tree.closest({0.5 * size, 0.5 * size, 3 * size}).distance / size, 2, kRoundingOfScores);
   }
   const TriangleTree far(shapes::moved(shapes::cube(), {5e6, 4e6, 0}));
   EXPECT_NEAR(far.closest({5e6 + 0.5, 4e6 + 0.5, 1.001}).distance, 0.001, 1e-9);
@@ -251,7 +251,7 @@ TEST(ScoreMesh, PrecisionIsOfTheMeshAndRecallOfTheTruth) {
   const FScore score = score_mesh(one, shapes::united(one, shapes::moved(one, {5, 0, 0})), 20000, 1, {0.01}).f_scores[0];
   EXPECT_EQ(score.precision, 1);
   EXPECT_NEAR(score.recall, 0.5, 5 * 0.5 / std::sqrt(20000.0));  // five standard deviations
-  EXPECT_NEAR(score.f, 2 * score.recall / (1 + score.recall), kRounding);
+  EXPECT_NEAR(score.f, 2 * score.recall / (1 + score.recall), kRoundingOfScores);
 }
 
 // Normals that point the other way are consistent still.
@@ -263,9 +263,9 @@ TEST(ScoreMesh, NormalConsistencyHasNoSides) {
 TEST(ScoreMesh, MeshAgainstItselfHasNoError) {
   const Mesh mesh = shapes::torus(1, 0.3, 40, 20);
   const MeshScore score = score_mesh(mesh, mesh, 5000, 1);
-  EXPECT_LT(score.chamfer, kRounding);
-  EXPECT_LT(score.hausdorff, kRounding);
-  EXPECT_LT(score.ae, kRounding);
+  EXPECT_LT(score.chamfer, kRoundingOfScores);
+  EXPECT_LT(score.hausdorff, kRoundingOfScores);
+  EXPECT_LT(score.ae, kRoundingOfScores);
 }
 
 TEST(ScoreMesh, ConcentricSpheresAreTheDifferenceOfRadiiApart) {
@@ -285,9 +285,9 @@ TEST(ScoreMesh, TranslatedPlaneIsAsFarAsTheTranslation) {
   const Mesh low = shapes::square(1, 0, 7);
   const Mesh high = shapes::square(1, 0.25, 3);
   const MeshScore score = score_mesh(low, high, 5000, 1);
-  EXPECT_NEAR(score.chamfer, 0.25, kRounding);
-  EXPECT_NEAR(score.hausdorff, 0.25, kRounding);
-  EXPECT_NEAR(score.ae, 0, kRounding);
+  EXPECT_NEAR(score.chamfer, 0.25, kRoundingOfScores);
+  EXPECT_NEAR(score.hausdorff, 0.25, kRoundingOfScores);
+  EXPECT_NEAR(score.ae, 0, kRoundingOfScores);
 }
 
 TEST(ScoreMesh, MissingPartShowsInOneDirectionOnly) {

@@ -12,7 +12,7 @@
 namespace g3r {
 namespace {
 
-constexpr double kRounding = 1e-12;
+constexpr double kRoundingOfMeasures = 1e-12;
 
 /// The surface of unit cells of a grid, with vertices shared by position: touches itself in edges and vertices.
 Mesh cells(const std::set<std::array<int, 3>>& solid) {
@@ -49,8 +49,8 @@ void expect_made_manifold(const Mesh& mesh) {
   const MeshCheck after = check_mesh(split_nonmanifold(mesh));
   EXPECT_TRUE(after.closed);
   EXPECT_TRUE(after.manifold);
-  EXPECT_NEAR(after.volume, before.volume, kRounding * before.area);
-  EXPECT_NEAR(after.area, before.area, kRounding * before.area);
+  EXPECT_NEAR(after.volume, before.volume, kRoundingOfMeasures * before.area);
+  EXPECT_NEAR(after.area, before.area, kRoundingOfMeasures * before.area);
 }
 
 TEST(SplitNonmanifold, ManifoldMeshIsReturnedUnchanged) {
@@ -105,7 +105,7 @@ TEST(SplitNonmanifold, RandomTrianglesKeepTheirAreaAndGainNoBoundary) {
       if (const std::set<std::uint32_t> set(t.begin(), t.end()); set.size() == 3 && used.insert(set).second) mesh.triangles.push_back(t);
     }
     const MeshCheck before = check_mesh(mesh), after = check_mesh(split_nonmanifold(mesh));
-    EXPECT_NEAR(after.area, before.area, kRounding * before.area);
+    EXPECT_NEAR(after.area, before.area, kRoundingOfMeasures * before.area);
     EXPECT_EQ(after.boundary_edges, before.boundary_edges);
     EXPECT_LE(after.nonmanifold_edges, before.nonmanifold_edges);
   }

@@ -1,0 +1,23 @@
+# Tests that are compiled as one program where G3R_TOGETHER is on, as the library is (src/together.cmake): what they instantiate of the
+# standard library, of Eigen and of GoogleTest is compiled once, and one program is linked. Each is a test of ctest of its own all the same,
+# and runs in a process of its own. No two of a group have a name of their own in common; a test that needs more than g3r_test() gives, or
+# has no group, is a program by itself.
+set(programs "")
+function(g3r_tests_together program)
+  list(TRANSFORM ARGN APPEND _test)
+  set(names_of_${program} ${ARGN} PARENT_SCOPE)
+  set(programs ${programs} ${program} PARENT_SCOPE)
+endfunction()
+
+g3r_tests_together(tests_of_quality areas baselines green_identity open_surfaces orient outliers planes)
+g3r_tests_together(tests_of_noise noise noisy_jets projection viewpoint)
+g3r_tests_together(tests_of_clouds certificate clusters clustered_polish confidence creases exact_plane jets hints neighbours point_set
+                                   quadratic_patch separate_vertices sight_normals sites spacing two_walls)
+g3r_tests_together(tests_of_sums adjoint coarse_to_fine energy_system fast_sum harmonics heights part_system polish problem refine
+                                 scattered_planes settings sign_graph tree)
+g3r_tests_together(tests_of_meshes coarsen fair field_arcs field_mesher field_scenes)
+g3r_tests_together(tests_of_parts field_contour handle_removal mesh_finish mesh_memory point_parts)
+g3r_tests_together(tests_of_shapes check_mesh metrics self_intersections split_nonmanifold untangle)
+g3r_tests_together(tests_of_fields crossings expansions facets field_denoise field_local_fit findings held_points scanner_files)
+g3r_tests_together(tests_of_files any_size base io_read io_write names platform splat_light table utf8 xml)
+g3r_tests_together(tests_of_counted io_sweep point_stream tiles tiles_mesh)
