@@ -30,7 +30,7 @@ TEST(Areas, AddUpUnderNoise) {
   const std::size_t n = 15000;
   const double truth = 4 * M_PI * 1.25, h = std::sqrt(truth / static_cast<double>(n));
   const std::vector<Vec3> places{{0, 0, 0.75}, {0.75, 0, 0}, {-0.5, 0.5, 0.3}, {0, 0, 0}, {0.2, 0.1, -0.1}, {0, 0, 1.25}, {1.5, 0, 0.2}};
-  for (const double sigma : {0.0, 0.2, 0.5, 1.0, 1.5}) {
+  for (const double sigma : {0.0, 0.5, 1.5}) {
     const std::vector<Vec3> noisy = hollow_ball(n, sigma * h);
     const Orientation o = orient(noisy);
     EXPECT_NEAR(total(o.areas), truth, 0.06 * truth) << sigma;

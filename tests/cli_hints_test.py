@@ -57,7 +57,8 @@ class Hints(ProgramTest):
         plan = [(2 * random_.random() - 1, 2 * random_.random() - 1) for _ in range(thinned(2000))]
         write_points(self.path("terrain.ply"), [(x, y, 0.1 * math.sin(4 * x) * math.cos(3 * y)) for x, y in plan])
         self.assertIn("is a choice", self.expect(OK, "orient", "terrain.ply", "out.ply").err)
-        for up, place in (("+z", (0, 0, 9)), ("-z", (0, 0, -9)), ("0.1,0,-3", (0, 0, -9))):
+        ups = (("0.1,0,-3", (0, 0, -9)), ("+z", (0, 0, 9)), ("-z", (0, 0, -9)))
+        for up, place in ups[:1] if is_sanitized() else ups:
             result = self.expect(OK, "orient", "terrain.ply", "out.ply", "--up", up, "--report", "r.json", "--strict")
             self.assertEqual(self.facing("out.ply", place), 1)
             self.assertNotIn("is a choice", result.err)
@@ -69,7 +70,8 @@ class Hints(ProgramTest):
         write_points(self.path("room.ply"), self.room())
         self.expect(OK, "orient", "room.ply", "out.ply")
         self.assertLess(self.facing("out.ply", (2, 1.5, 1)), 0.01)
-        for hint in (["--seen-from-inside"], ["--sensor", "1,1,1.5"], ["--sensor", "1,1,1", "--sensor", "3,2,1"], ["--flip"]):
+        hints = (["--sensor", "1,1,1", "--sensor", "3,2,1"], ["--flip"], ["--seen-from-inside"], ["--sensor", "1,1,1.5"])
+        for hint in hints[:1] if is_sanitized() else hints:
             result = self.expect(OK, "room.ply", "mesh.ply", "--oriented", "out.ply", "--report", "r.json", *hint)
             self.assertGreaterEqual(self.facing("out.ply", (2, 1.5, 1)), 0.995, hint)
             report = self.json_of("r.json")

@@ -47,14 +47,14 @@ class Points(ProgramTest):
         self.assertTrue(math.isnan(out[300]["x"]) and out[300]["y"] == 1.0)
 
     def test_the_number_of_threads_changes_no_byte(self):
-        write_points(self.path("in.ply"), sphere(1500))
+        write_points(self.path("in.ply"), sphere(thinned(1500)))
         self.expect(OK, "orient", "in.ply", "one.ply", "--threads", "1")
         for threads in ("2", "3", "8", "0"):
             self.expect(OK, "orient", "in.ply", "many.ply", "--threads", threads)
             self.assertTrue(self.bytes_of("one.ply") == self.bytes_of("many.ply"), threads)
 
     def test_oriented_points_are_enough_for_a_mesh(self):
-        write_points(self.path("in.ply"), sphere(2000))
+        write_points(self.path("in.ply"), sphere(thinned(2000)))
         self.expect(OK, "orient", "in.ply", "oriented.ply")
         for mesher in ("auto", "field", "poisson"):
             with self.subTest(mesher):

@@ -197,7 +197,7 @@ TEST(Noise, SlightNoiseOnPlatesCostsNoSides) {
 
 // Plates 0.7 spacings thick and as far apart: no neighbourhood has a single side in it.
 TEST(Noise, PlatesWithoutSingleSidesAreClean) {
-  const Surface plates = shapes::plates(6, 0.9, 0.7, 0.7, 0.02);
+  const Surface plates = shapes::plates(6, 0.6, 0.7, 0.7, 0.02);
   EXPECT_EQ(estimate(plates), 0);
   EXPECT_GE(shapes::share_correct(orient(plates.points).normals, plates.normals), 0.9);
 }
@@ -266,7 +266,7 @@ TEST(Scatter, IsTheNoiseWhereThatIsEven) {
   }
 }
 
-TEST(Scatter, IsNoneOnExactPlanes) { EXPECT_EQ(scatter_of(shapes::plates(6, 0.9, 0.7, 0.7, 0.02)), 0); }
+TEST(Scatter, IsNoneOnExactPlanes) { EXPECT_EQ(scatter_of(shapes::plates(6, 0.6, 0.7, 0.7, 0.02)), 0); }
 
 // The least noise is what the estimate goes by; with it 84 % of the sides were right.
 TEST(Noise, ThatDiffersFromPlaceToPlaceIsSeen) {

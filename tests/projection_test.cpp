@@ -151,7 +151,7 @@ TEST(Projection, MisfitTellsTwoWallsTakenForOne) {
 // right, but most are.
 TEST(Projection, NarrowerKernelsAreTakenWhereWallsMerge) {
   if (kSanitized) GTEST_SKIP() << "long";
-  Surface s = shapes::plates(6, 0.9, 2, 3, 0.02);
+  Surface s = shapes::plates(6, 0.65, 2, 3, 0.02);
   shapes::scatter(s, 0.55 * 0.02);
   Options without;
   without.without = "noise-choice";

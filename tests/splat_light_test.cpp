@@ -162,7 +162,7 @@ TEST(Splats, WildNumbersAreHarmless) {
 
 // splats: of the scene nine tenths of the surface stay (neighbours hide the others), and a twentieth of the rest.
 TEST(Splats, TheSceneIsTakenApart) {
-  const Scene scene = ellipsoid_of_splats(5000);
+  const Scene scene = ellipsoid_of_splats(kSanitized ? 1500 : 5000);
   const std::vector<SplatPlace> places = places_of(scene.splats);
   EXPECT_GE(number_of(places, scene, kSurface, SplatPlace::kSurface), scene.count(kSurface) * 9 / 10);
   EXPECT_LE(number_of(places, scene, kInside, SplatPlace::kSurface), scene.count(kInside) / 20);
@@ -202,7 +202,7 @@ TEST(SplatsDeathTest, OneThreadStartsNoOther) {
 
 // splats: in a room, whose walls hide what stands in it, nothing is hidden.
 TEST(Splats, ARoomKeepsItsFurniture) {
-  Scene room = ellipsoid_of_splats(4000);
+  Scene room = ellipsoid_of_splats(kSanitized ? 2000 : 4000);
   const std::size_t furniture = room.splats.size();
   for (std::size_t i = 0; i < furniture; ++i) {
     if (room.kinds[i] != kSurface) continue;
