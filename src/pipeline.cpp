@@ -330,24 +330,28 @@ Attempt attempt(Problem problem, const PointsView& points, const Options& option
 
 // Kernels that hide the noise take walls closer together than they are wide for one: then points lie farther from the surface that is
 // found than noise carries them. Where that is so, narrower kernels are tried until it is not (the discrepancy principle of Morozov, "On
-// the solution of functional equations by the method of regularization", 1966); if they do not get there before points come to lie farther
+// the solution of functional equations by the method of regularization", 1966). If they do not get there before points come to lie farther
 // away again, it was shape, creases for example, and the first ones stay; as they do where they are as narrow as those of clean clouds.
+// Half of the points of merged walls face the wrong way and turn when the walls are separated: where fewer do than half of a doubtful
+// share, the misfit has another cause, such as noise that was estimated too low, and narrower kernels only fit the noise.
 Attempt separate_walls(Attempt found, const PointsView& points, const Options& options, Stages& stages) {
   const double noise = found.problem.noise;
   const double spacing = found.problem.spacing;
   const bool is_open = found.stats.open_share > 0;  // and has no walls
   if (noise == 0 || is_open || found.oriented.doubt < kDoubtful || !may_try_noises(found.problem, options)) return found;
-  const auto misfit = [&](const Attempt& a) {
-    return projection_misfit(a.problem.cloud.set, a.oriented.solution.refinement.normals, noise, spacing);
+  const auto places_of = [&](const Attempt& a) {
+    return fit_places(a.problem.cloud.set, a.oriented.solution.refinement.normals, noise, spacing);
   };
+  const PlacesOnWalls first = places_of(found);
   double hidden = noise;
-  double before = misfit(found);
+  double before = misfit(first);
   for (int i = 0; i < kMostNarrower && before > 1; ++i) {
     hidden *= kNarrower;
     if (hidden <= noise_of_clean_widths() * spacing) break;
     Attempt tried = attempt(with_noise(found.problem, hidden, options), points, options, stages);
-    const double after = misfit(tried);
-    if (after >= before || tried.stats.open_share > 0) break;
+    const PlacesOnWalls places = places_of(tried);
+    const double after = misfit(places);
+    if (turned_share(first, places) < kDoubtful / 2 || after >= before || tried.stats.open_share > 0) break;
     if (after <= 1) {
       tried.solved.noise = found.solved.noise;
       tried.stats.noise = found.stats.noise;

@@ -143,8 +143,12 @@ TEST(Projection, MisfitTellsTwoWallsTakenForOne) {
   Surface s = shapes::join(square(0, -1, 5), square(3 * sigma, 1, 6));
   shapes::scatter(s, sigma);
   const PointSet set(s.points);
-  EXPECT_NEAR(projection_misfit(set, s.normals, sigma, kSpacing), 1, 0.15);
-  EXPECT_GT(projection_misfit(set, std::vector<Vec3>(s.normals.size(), {0, 0, 1}), sigma, kSpacing), 1.3);
+  const PlacesOnWalls merged = fit_places(set, std::vector<Vec3>(s.normals.size(), {0, 0, 1}), sigma, kSpacing);
+  const PlacesOnWalls separate = fit_places(set, s.normals, sigma, kSpacing);
+  EXPECT_NEAR(misfit(separate), 1, 0.15);
+  EXPECT_GT(misfit(merged), 1.3);
+  EXPECT_NEAR(turned_share(merged, separate), 0.5, 0.05);
+  EXPECT_EQ(turned_share(separate, separate), 0);
 }
 
 // Walls of 3.6 sigma, 5.4 sigma apart, under noise of 0.55 spacings: kernels that hide it take them for one. Nothing says that sides are

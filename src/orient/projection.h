@@ -32,10 +32,20 @@ namespace g3r {
 [[nodiscard]] std::vector<Vec3> project_points(const std::vector<Vec3>& points, const Neighbours& tree, const std::vector<Vec3>& normals,
                                                double noise, const std::vector<double>& spacing, const std::atomic<bool>* cancel = nullptr);
 
-/// How far points lie from their wall, in proportion to `noise`: the median, over at most 2000 of them, of the residual of such a
-/// quadratic, 1 or a little less where the normals are right; more where two walls are taken for one, and at creases. As the others, but at
-/// `spacing` everywhere; 1 if no point has enough others on its side. `normals`: N unit vectors; `noise` > 0 and `spacing` in the units of
-/// the points. A fit for each of these points.
-[[nodiscard]] double projection_misfit(const PointSet& set, const std::vector<Vec3>& normals, double noise, double spacing);
+/// Such quadratics at M places, at most 2000 of the points, the same for any normals, with `spacing` everywhere.
+struct PlacesOnWalls {
+  std::vector<Vec3> normals;      ///< M, of the places, as given
+  std::vector<double> residuals;  ///< M, of the quadratics, in proportion to the noise; negative where too few points are on the side
+};
+/// `normals`: N unit vectors; `noise` > 0 and `spacing` in the units of the points. A fit for each place.
+[[nodiscard]] PlacesOnWalls fit_places(const PointSet& set, const std::vector<Vec3>& normals, double noise, double spacing);
+
+/// How far points lie from their wall: the median of the residuals, 1 or a little less where the normals are right; more where two walls
+/// are taken for one, and at creases. 1 if no place has a quadratic. O(M).
+[[nodiscard]] double misfit(const PlacesOnWalls& places);
+
+/// Share in [0, 1] of the places of one set of points whose normals face the other way afterwards, among those with a quadratic in both; 0
+/// if there is none. O(M).
+[[nodiscard]] double turned_share(const PlacesOnWalls& before, const PlacesOnWalls& after);
 
 }  // namespace g3r
