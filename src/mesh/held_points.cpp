@@ -17,8 +17,9 @@ namespace {
 
 using vector::dot;
 
-// The height over the distance up to which two points are on one patch, at both: random directions have less once in eight times.
-constexpr double kSlope = 0.35;
+// The height over the distance up to which two points are on one patch, at both: random directions have less once among the points of a
+// ring.
+const double kSlope = 1 / std::sqrt(static_cast<double>(kRing));
 // One stray in so many seems to be held by the one next to it, measured 1 in 4 to 1 in 50. It decides how many points a part needs: with
 // less, strays become parts, with more, small parts are lost.
 constexpr double kLooksLikeSurface = 4;
