@@ -20,9 +20,9 @@ using vector::dot;
 constexpr std::size_t kLooks = 20000;
 // The points around the line that are looked at: those of an X within 3.5 spacings. Fewer are few in each half, and farther surfaces curve.
 constexpr std::size_t kAround = 5 * kFitPoints;
-// A point is on a plane if it is so near, in spacings, and its normal is one of the plane's patch: noise and curvature leave as much. From
-// the line on it is beyond what the ends of creases and of walls that stand on others scatter by.
-constexpr double kLayer = 0.8;
+// A point is on a plane if it is so near, in spacings, as meshes resolve, and its normal is one of the plane's patch: noise and curvature
+// leave as much. From the line on it is beyond what the ends of creases and of walls that stand on others scatter by.
+constexpr double kLayer = kFinestCell;
 // Each of the four halves has so many points at least: of an X there are twice as many.
 constexpr std::size_t kFewestInHalf = kRing / 2;
 
