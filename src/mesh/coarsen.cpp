@@ -28,9 +28,9 @@ using vector::subtract;
 
 // The distance from the old surface over the length: fits miss more, and with 0.01 AE_m grows by 0.2 %.
 constexpr double kTolerance = 0.003;
-// The cosine of the most that triangles around a vertex differ by from their mean, 5 degrees, before and after: surface that bends more
-// has its vertices for that.
-constexpr double kTurn = 0.996;
+// The cosine of the most that triangles around a vertex differ by from their mean, 4.4 degrees, before and after, so that a flat part loses
+// no more of its area: surface that bends more has its vertices for that.
+constexpr double kTurn = 1 - kTolerance;
 
 // A mesh whose edges are collapsed.
 class Collapsing {

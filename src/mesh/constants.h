@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 
 namespace g3r::mesh {
 
@@ -28,16 +29,25 @@ inline constexpr std::size_t kSample = 4000;
 inline constexpr std::size_t kFewestMeshPoints = 4;
 /// The points of a cloud, or pairs of them, below which nothing is said of what is rare in it: it would be a matter of chance.
 inline constexpr std::size_t kFewestPoints = 100;
+/// The share of a whole that is little beside it, and that nearly all of it has: of a variance, of the misfit of a surface, of pairs, of
+/// the side of a cube; of heights, of points.
+inline constexpr double kLittle = 0.05;
+inline constexpr double kNearlyAll = 0.9;
 /// The share of a length up to which it is rounding.
 inline constexpr double kRounding = 1e-9;
-/// The noise in spacings that counts as none: fits hide less of it by themselves, and smoothing would round detail.
-inline constexpr double kNoisy = 0.15;
-/// Half of the widest gap between points of a random sample of a surface, in spacings: the disc around a point that is refined, as the
-/// holes of the sample would be coarse with less, and the distance up to which surface is held by it.
-inline constexpr double kGap = 1.4;
+/// The side of the leaves around points of a clean cloud, in typical spacings: smaller ones add vertices and no detail, larger ones lose
+/// some.
+inline constexpr double kFinestCell = 0.8;
+/// Half of the widest gap between points of a random sample of a surface, in spacings: a disc that has 2 pi points is empty once in 500
+/// times. The disc around a point that is refined, as the holes of the sample would be coarse with less, and the distance up to which
+/// surface is held by it.
+inline constexpr double kGap = std::numbers::sqrt2;
 /// The half thickness in spacings of the disc around each point whose leaves are refined: the surface curves away from the tangent plane by
 /// so much within it.
 inline constexpr double kDiscHalf = 0.3;
+/// The noise in spacings that counts as none, twice of which is within the disc: fits hide less of it by themselves, and smoothing would
+/// round detail.
+inline constexpr double kNoisy = kDiscHalf / 2;
 /// The spacings beyond which surface without a point is a guess.
 inline constexpr double kFarSpacings = 4;
 /// The share of a length (the side of a leaf or the spacing, which differ little, or an edge) up to which two places are one. A vertex on a
@@ -49,7 +59,7 @@ inline constexpr double kAtOnePlace = 0.05;
 /// degrees: sharp edges of a fit turn less, and surfaces that meet in a crease turn more.
 inline constexpr double kSlant = 0.3;
 /// The cosine of 45 degrees, from which a direction is rather along another than across it.
-inline constexpr double kAlong = 0.7;
+inline constexpr double kAlong = 1 / std::numbers::sqrt2;
 /// The rings of triangles or vertices around a place that feel what is changed there: with one ring gears come out otherwise, with two they
 /// do not.
 inline constexpr int kRings = 3;

@@ -17,9 +17,6 @@
 
 namespace g3r::mesh {
 
-/// The distance from the cube of the points, of its side, beyond which all is outside: fast sums end there, and single ones are slow.
-inline constexpr double kBeyond = 0.05;
-
 /// |w - level| from which the field overrules the fitted surface: with 0.4 the sword has 44 handles instead of 5
 /// (docs/evidence/meshes.md).
 inline constexpr double kFieldSure = 0.2;
@@ -45,7 +42,8 @@ class CornerSides {
   CornerSides(const LocalFit& local, const FieldSampler& sampler, double typical, const Cube& cube, const std::vector<Vec3>& places,
               std::size_t asked_at_once);
 
-  /// Of the corners for which wanted(corner); the others are outside. Throws Cancelled.
+  /// Of the corners for which wanted(corner); the others are outside, and so is all that is beyond the cube by kLittle of its side. Throws
+  /// Cancelled.
   [[nodiscard]] Corners of(const Octree& octree, const std::function<bool(std::uint32_t)>& wanted, const std::atomic<bool>* cancel) const;
 
  private:

@@ -13,10 +13,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The width in spacings of the fits that points move onto, at no noise: with 0.7, at 50,000 points, smooth models have a CD 2 to 4 %
-// larger.
-constexpr double kWidthFloor = 0.8;
-
 // The points near point i that face the same way, weighed by their distance along the surface.
 class Neighbourhood {
  public:
@@ -89,7 +85,8 @@ Noise estimate_noise(const OrientedPoints& points, const Neighbours& neighbours,
   return {median(std::move(position)), median(std::move(normal))};
 }
 
-double smoothing_width(double position) { return std::min(kWidthFloor + 2 * position, kFarSpacings); }
+// Two deviations wider than a leaf: narrower by a tenth of a spacing, smooth models of 50,000 points have a CD 2 to 4 % larger.
+double smoothing_width(double position) { return std::min(kFinestCell + 2 * position, kFarSpacings); }
 
 void denoise(OrientedPoints& points, const Neighbours& neighbours, const Noise& noise, double typical, const std::atomic<bool>* cancel) {
   std::vector<Vec3> positions(points.positions.size()), normals(points.positions.size());

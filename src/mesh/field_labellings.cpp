@@ -1,5 +1,6 @@
 #include "mesh/field_labellings.h"
 
+#include "mesh/field_corners.h"
 #include "mesh/handle_removal.h"
 
 #include <algorithm>
@@ -9,12 +10,14 @@
 namespace g3r::mesh {
 namespace {
 
-// A candidate labelling: the signs of the ambiguous corners after so many smoothing passes, at some iso-level.
+// A candidate labelling: the signs of the ambiguous corners after so many smoothing passes, at some iso-level: none, that from which the
+// field is sure, and the middle between none and the largest value.
 struct Labelling {
   std::size_t passes;
   double level;
 };
-constexpr std::array<Labelling, 6> kLabellings{{{2, 0}, {0, 0}, {1, 0.2}, {1, -0.2}, {1, 0.5}, {1, -0.5}}};
+constexpr std::array kLabellings{Labelling{2, 0},           Labelling{0, 0},   Labelling{1, kFieldSure},
+                                 Labelling{1, -kFieldSure}, Labelling{1, 0.5}, Labelling{1, -0.5}};
 
 // What a proposal may change: fewer corners in a group, and so smaller ones that can be taken, if it goes one way only.
 enum class Way { kBoth, kFill, kCut };

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <tuple>
 #include <vector>
 
@@ -26,8 +27,8 @@ constexpr std::uint32_t lattice_place(std::uint32_t bits) {
   return (bits & 1U) + kLatticeSide * (((bits >> 1U) & 1U) + kLatticeSide * (bits >> 2U));
 }
 
-/// Deepest level: corner coordinates fit in 21 bits, so that three of them fit in a 64-bit key.
-inline constexpr int kMaxOctreeLevel = 20;
+/// Deepest level: three corner coordinates, each with a bit more, fit in a 64-bit key.
+inline constexpr int kMaxOctreeLevel = std::numeric_limits<std::uint64_t>::digits / 3 - 1;
 
 /// A request: leaves that touch the disc around `centre` of the given radius and half thickness are at least `level` deep.
 struct RefineDisc {
@@ -127,7 +128,7 @@ class Octree {
   int depth_ = 0;
   // Nodes are most of the memory: what eight siblings share is held once, so that one takes 6 bytes where OctreeNode has 20.
   struct Node {
-    std::uint32_t next : 31;
+    std::uint32_t next : std::numeric_limits<std::int32_t>::digits;
     std::uint32_t split : 1;
   };
   struct Family {

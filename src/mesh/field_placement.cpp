@@ -18,10 +18,8 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-// The share of its leaf's side that a vertex may leave the leaf by: with more, triangles fold over each other.
-constexpr double kReach = 0.3;
-// Steps towards a surface or an intersection: each squares the error, so that fewer suffice but where patches bend.
-constexpr int kNewtonSteps = 5;
+// Steps towards a surface or an intersection: each squares the error, and with five nothing is better.
+constexpr int kNewtonSteps = 3;
 
 Vec3 array(const Vector3d& p) { return {p[0], p[1], p[2]}; }
 
@@ -149,7 +147,8 @@ class Placement {
       const Placer placer(fit, box);
       if (features) feature = placer.feature(start, x);
       if (feature == Feature::kNone) x = placer.smooth(start);
-      const AlignedBox3d reach(box.min().array() - kReach * cell, box.max().array() + kReach * cell);
+      // A vertex may leave its leaf as far as surface curves: farther, triangles fold over each other.
+      const AlignedBox3d reach(box.min().array() - kDiscHalf * cell, box.max().array() + kDiscHalf * cell);
       if (!x.allFinite()) x = start;
       x = x.cwiseMax(reach.min()).cwiseMin(reach.max());
       int active = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cloud/neighbours.h"
+#include "mesh/constants.h"
 #include "mesh/field_denoise.h"
 #include "mesh/field_local_fit.h"
 #include "mesh/field_octree.h"
@@ -16,9 +17,6 @@
 
 namespace g3r::mesh {
 
-/// The side of the leaves around points of a clean cloud, in typical spacings: smaller ones add vertices and no detail, larger ones lose
-/// some.
-inline constexpr double kFinestCell = 0.8;
 /// The level of the largest leaves: 16 along each axis, so that coarse places of the field are seen too.
 inline constexpr int kBaseLevel = kLeastMeshDepth;
 

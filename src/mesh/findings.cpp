@@ -16,10 +16,8 @@
 namespace g3r {
 namespace {
 
-// These decide on warnings alone. The share of the pairs with the same coordinate that terraces have at least: surfaces that are not flat
-// have none. Flat ones have all but twice this and more, and single steps on them are shape.
-constexpr double kLeastSame = 0.05;
-// The step is as low a quantile of the differences, and so much of their median at least: without steps they come in all sizes.
+// These decide on warnings alone. The step is as low a quantile of the differences, and so much of their median at least: without steps
+// they come in all sizes.
 constexpr double kStepToMedian = 0.3;
 // The handles or parts below which nothing is said: so few may be the shape's own.
 constexpr std::size_t kFewestOdd = 10;
@@ -57,9 +55,10 @@ double terrace_step(const PointSet& set, const std::vector<Vec3>& normals, std::
   }
   if (pairs < mesh::kFewestPoints || 2 * single < across || steps.empty()) return 0;
   const double same = 1 - static_cast<double>(steps.size()) / static_cast<double>(pairs);
-  if (same < kLeastSame || same > 1 - 2 * kLeastSame) return 0;
+  // Terraces have some pairs of the same height, surfaces that are not flat have none, and single steps on flat ones are shape.
+  if (same < mesh::kLittle || same > mesh::kNearlyAll) return 0;
   std::sort(steps.begin(), steps.end());
-  const double low = steps[static_cast<std::size_t>(kLeastSame * static_cast<double>(steps.size()))];
+  const double low = steps[static_cast<std::size_t>(mesh::kLittle * static_cast<double>(steps.size()))];
   // Smaller steps are below the noise of clean clouds, and larger ones are stairs.
   const bool is_terrace = low >= mesh::kNoisy * spacing && low <= mesh::kFarSpacings * spacing;
   const bool is_step = is_terrace && low >= kStepToMedian * steps[steps.size() / 2];

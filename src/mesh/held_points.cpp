@@ -17,10 +17,9 @@ namespace {
 
 using vector::dot;
 
-// The height over the distance up to which two points are on one patch, at both: random directions have less once in eight times.
-constexpr double kSlope = 0.35;
-// The quantile of the heights that is the usual one: up to a tenth of the points may be strays, and do not change it.
-constexpr double kUsual = 0.9;
+// The height over the distance up to which two points are on one patch, at both: random directions have less once among the points of a
+// ring.
+const double kSlope = 1 / std::sqrt(static_cast<double>(kRing));
 // One stray in so many seems to be held by the one next to it, measured 1 in 4 to 1 in 50. It decides how many points a part needs: with
 // less, strays become parts, with more, small parts are lost.
 constexpr double kLooksLikeSurface = 4;
@@ -127,7 +126,7 @@ class Search {
         heights[i] = upper_median(height);
       }
     });
-    return quantile(std::move(heights), kUsual);
+    return quantile(std::move(heights), kNearlyAll);  // up to a tenth of the points may be strays, and do not change it
   }
 
   // On the patch a point may be twice as high as usual: about four standard deviations of noise. It is alone where its spacing is twice

@@ -17,8 +17,8 @@ inline constexpr double kMostStrays = 1.0 / 3;
 
 /// Marks (1) the points that the surface of the others goes through. A point is a stray
 ///   - if less than 3 of its 8 nearest points are on one patch with it: its distance from their plane, and theirs from its own, is at most
-///     0.35 of the way between them and twice what is usual (the 90 % quantile over the points of such distances, for noise and detail), or
-///     their normals are mirror images as they are round bends and across creases; or
+///     1 / sqrt(8) of the way between them and twice what is usual (the 90 % quantile over the points of such distances, for noise and
+///     detail), or their normals are mirror images as they are round bends and across creases; or
 ///   - if its spacing is more than twice that of these 8 (geometric mean): it is alone.
 /// Strays are taken out and their neighbours are tested again, until all are held. Random points that find_outliers() left among those
 /// of a surface: 93 to 99 % of those farther than 1.5 spacings from it; points of clean and noisy surfaces: 0 to 0.1 %, of very uneven ones

@@ -16,9 +16,6 @@ namespace {
 using vector::dot;
 using vector::subtract;
 
-// The second variance of a point and its ring over the largest, up to which they lie along a curve: on surfaces one point in 1,000 is below
-// 0.1.
-constexpr double kThin = 0.05;
 // The points among which the next line is searched for: of lines a hundred times as far apart as their points, those of a quarter turn.
 constexpr std::size_t kMostPoints = 256;
 
@@ -44,7 +41,7 @@ std::vector<std::uint8_t> points_along_curves(const std::vector<Vec3>& points, c
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector3d variance =
           Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread_around(points, near, i), Eigen::EigenvaluesOnly).eigenvalues();
-      out[i] = variance[1] <= kThin * variance[2] ? 1 : 0;
+      out[i] = variance[1] <= kLittle * variance[2] ? 1 : 0;  // on surfaces one point in 1,000 is below twice this
     }
   });
   return out;

@@ -13,9 +13,6 @@ using Eigen::Vector3d;
 // The share of the distances of a patch's points from another patch, less those on the other side, from which it lies on one side of it:
 // three quarters of them. A patch that goes on on both sides of another does not surely end there; 0.8 gives the same genus.
 constexpr double kOneSide = 0.5;
-// The share of one patch's squared misfit that several ones may leave at most: a crease of a CAD model passes, undersampled detail does not
-// (without, the dragon's AE_m is 1.05 instead of 0.88, docs/evidence/meshes.md).
-constexpr double kSplitGain = 0.05;
 
 // The patch of a member that none has taken yet, and of one that makes no patch with those like it.
 enum : int { kUnassigned = -1, kLeftOut = -2 };
@@ -129,8 +126,9 @@ bool is_simple(const LocalSurface& s, const std::vector<FitPoint>& members, cons
   });
 }
 
-// Undersampled detail also makes normals differ. Several patches are kept only if they explain the points far better than one smooth
-// patch does; patches that face each other are always kept.
+// Undersampled detail also makes normals differ. Several patches are kept only if they leave little of the squared misfit of one smooth
+// patch, as a crease of a CAD model does (without, the dragon's AE_m is 1.05 instead of 0.88, docs/evidence/meshes.md); patches that face
+// each other are always kept.
 void prefer_one_patch(LocalSurface& s, std::vector<FitPoint>& members) {
   if (s.walls) return;
   double split = 0, whole = 0;
@@ -143,7 +141,7 @@ void prefer_one_patch(LocalSurface& s, std::vector<FitPoint>& members) {
   }
   const QuadraticPatch one = fit_quadratic_patch(members, 0, s.spacing, kSlopeWeight);
   for (const FitPoint& m : members) whole += m.patch == 0 ? misfit(one, m, s.spacing) : 0;
-  if (split > kSplitGain * whole) {
+  if (split > kLittle * whole) {
     s.count = 1;
     s.patch[0] = one;
   } else {

@@ -3,6 +3,7 @@
 #include "base/suits_float.h"
 #include "base/vector.h"
 #include "cpu/parallel_sort.h"
+#include "mesh/constants.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,8 +16,6 @@
 namespace g3r::mesh {
 namespace {
 
-// The largest move, of the shortest edge: with it no triangle turns over.
-constexpr double kMostMove = 0.25;
 constexpr double kFloatStep = std::numeric_limits<float>::epsilon();
 
 using Place = std::array<float, 3>;
@@ -100,7 +99,8 @@ bool move(const Around& around, std::vector<Rounding>& roundings, Vec3& vertex) 
   if (normal == Vec3{0, 0, 0}) normal = {1, 0, 0};
   double step = 0;  // a move by less than one may round to the old place
   for (const Rounding& rounding : roundings) step = std::max(step, rounding.step(vertex));
-  for (double length = 2 * step; length <= kMostMove * around.shortest; length *= 2) {
+  // So little of the shortest edge turns no triangle over.
+  for (double length = 2 * step; length <= kAtOnePlace * around.shortest; length *= 2) {
     for (const double way : {-length, length}) {
       const Vec3 to = vector::add(vertex, vector::scale(normal, way));
       if (!std::all_of(roundings.begin(), roundings.end(), [&](const Rounding& r) { return r.is_free(to); })) continue;

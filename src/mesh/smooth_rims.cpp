@@ -17,8 +17,9 @@ using vector::dot;
 using vector::scale;
 using vector::subtract;
 
-// Passes of smoothing: steps of the triangulation, up to three edges long, go; fewer leave rags, more round corners.
-constexpr int kPasses = 10;
+// Passes of smoothing, which reaches as many edges as the root of their number: steps of the triangulation, up to three edges long, go;
+// fewer leave rags, more round corners.
+constexpr int kPasses = kRings * kRings;
 // The mark of a vertex on the boundary; those that follow it have larger ones.
 enum : std::uint8_t { kRim = 1 };
 

@@ -20,8 +20,8 @@ namespace {
 
 // Rounds of moving vertices of crossing triangles: what still crosses after them hardly comes apart. From the first of the later ones on
 // the vertices around move too: it smooths more, and is for few crossings, not for where most stay as they are.
-constexpr int kRounds = 12;
 constexpr int kFirstLater = 4;
+constexpr int kRounds = kRings * kFirstLater;
 // The cosine between normals below which two triangles fold back, at a dihedral angle of less than 60 degrees: creases are duller.
 constexpr double kFold = -0.5;
 
