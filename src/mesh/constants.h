@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 
 namespace g3r::mesh {
 
@@ -38,10 +37,9 @@ inline constexpr double kRounding = 1e-9;
 /// The side of the leaves around points of a clean cloud, in typical spacings: smaller ones add vertices and no detail, larger ones lose
 /// some.
 inline constexpr double kFinestCell = 0.8;
-/// Half of the widest gap between points of a random sample of a surface, in spacings: a disc that has 2 pi points is empty once in 500
-/// times. The disc around a point that is refined, as the holes of the sample would be coarse with less, and the distance up to which
-/// surface is held by it.
-inline constexpr double kGap = std::numbers::sqrt2;
+/// Half of the widest gap between points of a random sample of a surface, in spacings: the disc around a point that is refined, as the
+/// holes of the sample would be coarse with less, and the distance up to which surface is held by it.
+inline constexpr double kGap = 1.4;
 /// The half thickness in spacings of the disc around each point whose leaves are refined: the surface curves away from the tangent plane by
 /// so much within it.
 inline constexpr double kDiscHalf = 0.3;
@@ -59,7 +57,7 @@ inline constexpr double kAtOnePlace = 0.05;
 /// degrees: sharp edges of a fit turn less, and surfaces that meet in a crease turn more.
 inline constexpr double kSlant = 0.3;
 /// The cosine of 45 degrees, from which a direction is rather along another than across it.
-inline constexpr double kAlong = 1 / std::numbers::sqrt2;
+inline constexpr double kAlong = 0.7;
 /// The rings of triangles or vertices around a place that feel what is changed there: with one ring gears come out otherwise, with two they
 /// do not.
 inline constexpr int kRings = 3;

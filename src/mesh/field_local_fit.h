@@ -1,7 +1,7 @@
 // The surface near any place of an oriented cloud: which points take part in its fit (mesh/local_surface.h), and with what weights.
 //
 // Moving least squares: Levin, "Mesh-independent surface interpolation", 2003. A point at distance d from the place has a weight
-// of about exp((e^2 - d^2) / h^2), e being the distance of the nearest point and h the spacing there.
+// of about exp((e^2 - d^2) / (2 (0.7 h)^2)), e being the distance of the nearest point and h the spacing there.
 #pragma once
 
 #include "cloud/neighbours.h"
@@ -25,8 +25,8 @@ struct OrientedPoints {
   std::vector<double> spacing;
 };
 
-/// About the standard deviation in spacings of the weights of a fit to clean points, half of a gap: they fall to 1/e within a spacing. With
-/// 1 the dragon's CD is 0.29 instead of 0.24 (docs/evidence/meshes.md).
+/// About the standard deviation in spacings of the weights of a fit to clean points, so that twice it bridges the gaps of a random sample:
+/// with 1 the dragon's CD is 0.29 instead of 0.24 (docs/evidence/meshes.md).
 inline constexpr double kWidth = kGap / 2;
 
 class LocalFit {
