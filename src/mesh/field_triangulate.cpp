@@ -4,19 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace g3r::mesh {
 namespace {
 
-// The least cosine between a triangle and the normals at its corners, of two triangles; where this is equal, the angle between them.
+// Cosine between a triangle and the mean of the normals at its corners, the worse of two triangles; falls back on the angle between them.
 class DiagonalQuality {
  public:
   DiagonalQuality(const std::vector<Vec3>& positions, const std::vector<Vec3>& normals) : positions_(positions), normals_(normals) {}
 
-  std::pair<double, double> operator()(const std::array<std::uint32_t, 3>& s, const std::array<std::uint32_t, 3>& t) const {
+  double operator()(const std::array<std::uint32_t, 3>& s, const std::array<std::uint32_t, 3>& t) const {
     const Vec3 a = unit_normal(s), b = unit_normal(t);
-    return {normals_.empty() ? 0 : std::min(agreement(a, s), agreement(b, t)), vector::dot(a, b)};
+    if (normals_.empty()) return vector::dot(a, b);
+    return std::min(agreement(a, s), agreement(b, t)) + 1e-3 * vector::dot(a, b);
   }
 
  private:
