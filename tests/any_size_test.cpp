@@ -361,7 +361,7 @@ TEST(TilesPlan, TellsWhatItCannotDo) {
   EXPECT_THROW((void)run_tiles(folder.file("work")), InvalidInput);
   EXPECT_THROW((void)run_tiles(folder.file("work"), {3, 2}), InvalidInput);
   EXPECT_FALSE(needs_tiles({folder.file("few.ply")}, 1000));
-  EXPECT_TRUE(needs_tiles({folder.file("in.ply")}, std::size_t{20} << 20U));
+  EXPECT_TRUE(needs_tiles({folder.file("in.ply")}, std::size_t{10} << 20U));
   EXPECT_FALSE(needs_tiles({folder.file("in.ply")}, std::size_t{80} << 20U));
   EXPECT_FALSE(needs_tiles({folder.file("in.ply")}, 0));
 }

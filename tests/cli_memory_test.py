@@ -16,6 +16,10 @@ LOADER_FAILED = 127  # not even the program's own code fits
 LOADER_STEP = 4 << 20  # bytes of address space, in which the least that the program and its libraries need is looked for
 COUNT = thinned(3000)
 IN_CONTAINER = 20000  # points that take more than the program itself
+BALLAST = 256 << 20  # bytes of the process that starts the program
+PLANNED = (3000, 5000, 20000)  # points whose plan is held against the peak
+HELD = 1.1  # peak over plan, at most
+OVER = 1.3  # plan over peak, at most
 GROUP_LIMITS = ("memory.limit_in_bytes", "memory.max")  # of the two versions of control groups
 
 
@@ -46,6 +50,24 @@ class Memory(ProgramTest):
         self.plan = self.json_of("r.json")["planned_memory_bytes"]
         os.remove(self.path("oriented.ply"))
         os.remove(self.path("r.json"))
+
+    def report(self, cloud):
+        return json.loads(self.expect(OK, "orient", cloud, "out.ply", "--threads", "1", "--report", "-").out)
+
+    def test_the_peak_is_that_of_the_program_whoever_starts_it(self):
+        alone = self.report("ball.ply")["peak_memory_bytes"]
+        ballast = b"x" * BALLAST
+        self.assertLess(self.report("ball.ply")["peak_memory_bytes"], alone + len(ballast) // 2)
+
+    @unittest.skipIf(is_sanitized(), "a sanitizer takes memory")
+    def test_the_plan_is_the_peak_of_clouds_as_wide_as_they_are_long(self):
+        for count in PLANNED:
+            with self.subTest(count=count):
+                write_points(self.path("wide.ply"), sphere(count))
+                report = self.report("wide.ply")
+                share = report["peak_memory_bytes"] / report["planned_memory_bytes"]
+                self.assertLess(share, HELD)
+                self.assertGreater(share, 1 / OVER)
 
     def test_a_plan_beyond_the_limit_is_refused_before_the_solve(self):
         self.expect(OK, "ball.ply", "mesh.ply", "--report", "r.json")
@@ -120,8 +142,7 @@ class Memory(ProgramTest):
             with open(os.path.join(group, "cgroup.procs"), "w") as processes:
                 processes.write(str(os.getpid()))
 
-        # Long: clouds as wide one way as another take more than planned, for sums at probes outside their box.
-        write_points(self.path("ball.ply"), [(4 * x, 2 * y, z) for x, y, z in sphere(IN_CONTAINER)])
+        write_points(self.path("ball.ply"), sphere(IN_CONTAINER))
         plans = [json.loads(self.expect(OK, *arguments, "--report", "-").out)["planned_memory_bytes"]
                  for arguments in (["orient", "ball.ply", "out.ply"], ["info", "ball.ply"])]
         os.remove(self.path("out.ply"))

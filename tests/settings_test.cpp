@@ -129,13 +129,15 @@ TEST(PlannedMemory, HasASiteOfTheCertificateForEveryPointOnlyWithoutNoise) {
   EXPECT_LT(static_cast<double>(planned_memory(s, 100'000, 100'000)), 0.8 * static_cast<double>(clean));
 }
 
-TEST(PlannedMemory, OfClustersIsThatOfTheCertificate) {
+TEST(PlannedMemory, KnowsTheMatricesOfTheSums) {
   Settings s;
-  s.spacing = 0.001;
-  s.noise = 4 * s.spacing;
-  const std::size_t points = planned_memory(s, 1'000'000, 1'000'000);
-  s.cluster_side = 8 * s.spacing;
-  EXPECT_LT(planned_memory(s, 1'000'000, 1'000'000), points);
+  s.spacing = 0.01;
+  s.first_sums = sum_plan(1e-2, 10'000);
+  const std::size_t usual = planned_memory(s, 10'000, 10'000);
+  s.first_sums = sum_plan(1e-5, 10'000);
+  EXPECT_GT(planned_memory(s, 10'000, 10'000), usual + 40'000'000);
+  s.first_sums = sum_plan(0, 10'000);
+  EXPECT_LT(planned_memory(s, 10'000, 10'000), usual);
 }
 
 TEST(PlannedMemory, GrowsWithEveryPointAndIsHeldToTheLimit) {

@@ -27,15 +27,15 @@ constexpr double kApart = 1.9;  // spacings between a probe and any site, so tha
 // single sites are not seen at the nearest probes, walls of a spacing are.
 class Probed {
  public:
-  Probed(const Sites& sites, const std::vector<std::vector<Vec3>>& hypotheses, const SumPlan& sums, const std::atomic<bool>* cancel)
+  Probed(const Sites& sites, std::vector<std::vector<Vec3>> hypotheses, const SumPlan& sums, const std::atomic<bool>* cancel)
       : sites_(sites),
         cancel_(cancel),
         field_(sites.points(), Widths(kEpsilon * sites.set.spacing()), sums, cancel),
-        etas_(hypotheses),
+        etas_(std::move(hypotheses)),
         axis_(sites.axis) {
     for (std::size_t i = 0; i < axis_.size(); ++i) {
       const double side = sites.side(i);
-      if (vector::dot(hypotheses.front()[i], axis_[i]) < 0) axis_[i] = vector::scale(axis_[i], -1);
+      if (vector::dot(etas_.front()[i], axis_[i]) < 0) axis_[i] = vector::scale(axis_[i], -1);
       for (std::vector<Vec3>& eta : etas_) eta[i] = vector::scale(eta[i], side * side);
     }
   }
@@ -95,13 +95,13 @@ std::vector<std::uint8_t> are_own(const Sites& sites, const std::vector<Vec3>& p
 
 }  // namespace
 
-JumpDefects jump_defects(const Sites& sites, const std::vector<std::vector<Vec3>>& hypotheses, const SumPlan& sums,
+JumpDefects jump_defects(const Sites& sites, std::vector<std::vector<Vec3>> hypotheses, const SumPlan& sums,
                          const std::atomic<bool>* cancel) {
   const std::size_t count = sites.size();
   const std::vector<std::vector<double>> none(hypotheses.size(), std::vector<double>(count, 0));
   JumpDefects out{none, none};
   if (hypotheses.empty()) return out;
-  const Probed probed(sites, hypotheses, sums, cancel);
+  const Probed probed(sites, std::move(hypotheses), sums, cancel);
   std::vector<double> looked(count, 0);
   for (std::size_t d = 0; d < kJumps; ++d) {
     const std::vector<Vec3> probes = probed.at(distance_of(d));

@@ -42,7 +42,7 @@ struct JumpDefects {
   std::vector<std::vector<double>> own;
 };
 /// `hypotheses`: the normals that they have; six evaluations of the field of each.
-[[nodiscard]] JumpDefects jump_defects(const Sites& sites, const std::vector<std::vector<Vec3>>& hypotheses, const SumPlan& sums,
+[[nodiscard]] JumpDefects jump_defects(const Sites& sites, std::vector<std::vector<Vec3>> hypotheses, const SumPlan& sums,
                                        const std::atomic<bool>* cancel);
 
 }  // namespace g3r

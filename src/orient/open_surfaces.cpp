@@ -47,9 +47,8 @@ class Search {
   Search(const PointSet& set, double noise, const SumPlan& sums, const std::atomic<bool>* cancel)
       : set_(set), points_(set.points()), noise_(noise), sums_(sums), cancel_(cancel) {
     finest_ = place_sites(set_, site_distance(set.size(), set.spacing(), noise));
-    edges_ = edges_of(finest_);
     DisjointSets parts(finest_.size());
-    for (const SignEdge& edge : edges_) parts.join(edge.a, edge.b);
+    for (const SignEdge& edge : edges_of(finest_)) parts.join(edge.a, edge.b);
     std::vector<std::uint32_t> number(finest_.size(), 0);
     for (std::uint32_t s = 0; s < finest_.size(); ++s) {
       const std::size_t first = parts.find(s);  // the smallest site of its part
@@ -103,7 +102,7 @@ class Search {
   [[nodiscard]] JumpDefects jump_defects(const std::vector<std::vector<Vec3>>& hypotheses) const {
     std::vector<std::vector<Vec3>> normals;
     for (const std::vector<Vec3>& hypothesis : hypotheses) normals.push_back(at_sites(hypothesis));
-    return g3r::jump_defects(finest_, normals, sums_, cancel_);
+    return g3r::jump_defects(finest_, std::move(normals), sums_, cancel_);
   }
 
   [[nodiscard]] bool has_two_walls(std::uint32_t part) const { return on_two_walls(set_, finest_, members_[part], noise_); }
@@ -125,10 +124,10 @@ class Search {
   // Normals of all points from the signs that neighbours agree on: the sides of every scale, the directions of the finest, so that they
   // differ in sides only.
   [[nodiscard]] std::vector<std::vector<Vec3>> hypotheses() const {
-    std::vector<std::vector<Vec3>> all{by_agreement(finest_, edges_)};
+    std::vector<std::vector<Vec3>> all{by_agreement(finest_)};
     Sites sites = coarser_than(finest_);
     while (all.size() < kScales && sites.size() >= kFewestSites) {
-      std::vector<Vec3> normals = by_agreement(sites, edges_of(sites));
+      std::vector<Vec3> normals = by_agreement(sites);
       for (std::size_t i = 0; i < normals.size(); ++i) {
         normals[i] = vector::scale(all.front()[i], dot(all.front()[i], normals[i]) < 0 ? -1 : 1);
       }
@@ -192,9 +191,9 @@ class Search {
     return edges;
   }
 
-  [[nodiscard]] std::vector<Vec3> by_agreement(const Sites& sites, const std::vector<SignEdge>& edges) const {
+  [[nodiscard]] std::vector<Vec3> by_agreement(const Sites& sites) const {
     const std::size_t count = sites.size();
-    const Signs signs = agree_on_signs(count, edges);
+    const Signs signs = agree_on_signs(count, edges_of(sites));  // 110 bytes a site, made again rather than kept
     std::vector<Vec3> normals(count);
     for (std::size_t s = 0; s < count; ++s) normals[s] = vector::scale(sites.axis[s], signs.sign[s]);
     const double spacing = sites.set.spacing();
@@ -217,7 +216,6 @@ class Search {
   SumPlan sums_;
   const std::atomic<bool>* cancel_;
   Sites finest_;
-  std::vector<SignEdge> edges_;
   std::vector<std::uint32_t> part_;                  // of every site
   std::vector<std::vector<std::uint32_t>> members_;  // the sites of every part
   std::vector<double> reach_;                        // half the side of a square of as many sites as the part has

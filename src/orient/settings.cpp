@@ -3,6 +3,7 @@
 #include "base/whole_bytes.h"
 #include "cloud/chance.h"
 #include "cloud/sites.h"
+#include "expansions/expansions.h"
 #include "orient/open_surfaces.h"
 #include "orient/projection.h"
 
@@ -235,20 +236,25 @@ bool starts_coarse(const Settings& settings, std::size_t points) {
 }
 
 std::size_t planned_memory(const Settings& settings, std::size_t given, std::size_t used) {
-  constexpr double kProgram = 20u << 20;  // code, libraries, thread stacks, matrices, queries
-  constexpr double kPerUnknown = 330;     // while the equations are solved,
-  constexpr double kBase = 255;           // or what stays of it while sides are certified,
-  constexpr double kPerSite = 445;        // and what each of the sites then takes;
-  constexpr double kMoved = 40;           // under noise, besides, points that are moved onto their surface
-  constexpr double kFilled = 0.7;         // as many as a maximal sample of points so far apart has, in squares of that side
+  constexpr double kProgram = 9.3e6;   // code, libraries, thread stacks
+  constexpr double kQueries = 2.5e6;   // that the certificate has, beside their matrices
+  constexpr double kMatrices = 180;    // that far pairs share
+  constexpr double kPerUnknown = 330;  // while the equations are solved,
+  constexpr double kBase = 255;        // or what stays of it while sides are certified,
+  constexpr double kPerSite = 400;     // and what each of the sites then takes;
+  constexpr double kMoved = 100;       // under noise, besides, points that are moved onto their surface
+  constexpr double kFilled = 0.7;      // as many as a maximal sample of points so far apart has, in squares of that side
   const std::size_t harmonics = settings.method == Method::kGreen ? settings.harmonics.size() : 0;
   const auto unknowns = static_cast<double>(used);
-  // Clusters are so few that their solve takes less than the certificate.
-  const double solve = settings.cluster_side > 0 ? 0 : (kPerUnknown + 2 * sizeof(Vec3) * static_cast<double>(harmonics)) * unknowns;
+  const double solve = (kPerUnknown + 2 * sizeof(Vec3) * static_cast<double>(harmonics)) * unknowns;
   const double apart = site_distance(used, settings.spacing, settings.noise) / settings.spacing;
   const double sites = apart > 0 ? kFilled * unknowns / (apart * apart) : unknowns;
   const double certificate = (kBase + (settings.noise > 0 ? kMoved : 0)) * unknowns + kPerSite * sites;
-  double bytes = kProgram + static_cast<double>(given * sizeof(Given)) + std::max(solve, certificate);
+  const SumPlan& sums = settings.first_sums;
+  const auto terms = static_cast<double>(coefficient_count(sums.order));
+  const double matrix = terms * terms * (sums.double_precision ? sizeof(double) : sizeof(float));
+  const double expansions = sums.direct ? 0 : kQueries + kMatrices * matrix;
+  double bytes = kProgram + expansions + static_cast<double>(given * sizeof(Given)) + std::max(solve, certificate);
   if (settings.dense) bytes += 3 * unknowns * 3 * unknowns * sizeof(double);
   return whole_bytes(bytes);
 }

@@ -99,8 +99,8 @@ inline constexpr Steps kMoreSteps{60, StepKind::kConjugateGradient};
 /// Whether solve_coarse_to_fine() begins with fewer points.
 [[nodiscard]] bool starts_coarse(const Settings& settings, std::size_t points);
 
-/// Predicted peak memory of orient() in bytes for N points. Measured peaks are 0.9 to 1.08 of it from 50,000 points on, but for clouds
-/// whose facets are solved for, 1.25 (docs/evidence/speed.md).
+/// Predicted peak memory of orient() in bytes for N points. Measured peaks are 0.9 to 1.08 of it, but for clouds whose facets are
+/// solved for, 1.25 (docs/evidence/speed.md), and large clean ones that are open, 1.3.
 [[nodiscard]] std::size_t planned_memory(const Settings& settings, std::size_t given, std::size_t used);
 
 /// Throws Unavailable if the plan exceeds options.max_memory.

@@ -20,8 +20,10 @@ using namespace sum_operators;
 using target_shells::kNoShell, target_shells::kShells, target_shells::scaled, target_shells::sort_canonically;
 
 constexpr std::size_t kTargetsAtOnce = 1 << 17;  // of queries: what a sum holds per target is 330 bytes. Fewer: each chunk costs lists
-// Of targets outside the cube: with fewer terms their derivatives err by percents, as nothing near outweighs what was cut off.
-constexpr double kShellAccuracy = 1e-5;
+// Of targets outside the cube, and of derivatives there: with fewer terms they err by percents, as nothing near outweighs what was cut off.
+// More take matrices of 17 MB instead of 3.
+constexpr double kShellAccuracy = 1e-4;
+constexpr double kShellGradientAccuracy = 1e-5;
 
 // Sums run on the device of their plan, or else of their surroundings.
 SumPlan placed(SumPlan plan) {
@@ -45,19 +47,23 @@ struct FastSum::Impl {
   }
 
   // The sources with all lengths times `factor`, a power of two: their order stays.
-  [[nodiscard]] Engine shrunk(double factor, const std::atomic<bool>* stop) const {
-    const std::vector<Vec3> sources = scaled(*points, factor);
-    SumPlan finer = sum_plan(kShellAccuracy, sources.size());
+  [[nodiscard]] Engine shrunk(double factor, const SumPlan& with, const std::atomic<bool>* stop) const {
+    return make(scaled(*points, factor), Widths(factor * width), with, stop);
+  }
+
+  // The plan of the sums, of this accuracy at least.
+  [[nodiscard]] SumPlan finer(double accuracy) const {
+    SumPlan finer = sum_plan(accuracy, points->size());
     finer.execution = plan.execution;
-    return make(sources, Widths(factor * width), plan.order < finer.order ? finer : plan, stop);
+    return plan.order < finer.order ? finer : plan;
   }
 
   // Sums of `eta` at any targets. Everything is shrunk until the targets are in the cube: one sum for every shell that has some.
   // `fast(engine for some targets, their order, factor)`: lengths are `factor` times as long as the caller's. `direct(targets, their
-  // order)`: outside the cube where sums are direct anyway, or a shell's kernels would be too narrow.
+  // order)`: outside the cube where sums are direct anyway, or a shell's kernels would be too narrow. `outside`: of the shells.
   template <class Fast, class Direct>
-  void at(const std::vector<Vec3>& eta, const std::vector<Vec3>& targets, const std::atomic<bool>* stop, const Fast& fast,
-          const Direct& direct) const {
+  void at(const std::vector<Vec3>& eta, const std::vector<Vec3>& targets, const SumPlan& outside, const std::atomic<bool>* stop,
+          const Fast& fast, const Direct& direct) const {
     std::array<std::vector<std::uint32_t>, kShells + 1> members = target_shells::members(targets, width, !plan.direct);
     for (int shell = 0; shell <= kNoShell; ++shell) {
       std::vector<std::uint32_t>& index = members[static_cast<std::size_t>(shell)];
@@ -74,7 +80,7 @@ struct FastSum::Impl {
       if (shell == 0) {
         std::visit(sum_on, engine);
       } else {
-        std::visit(sum_on, shrunk(factor, stop));
+        std::visit(sum_on, shrunk(factor, outside, stop));
       }
       std::vector<std::uint32_t>().swap(index);
     }
@@ -194,7 +200,7 @@ std::vector<std::vector<double>> FastSum::windings_at(const std::vector<std::vec
                                                       const std::atomic<bool>* cancel) const {
   std::vector<std::vector<double>> out(etas.size(), std::vector<double>(targets.size()));
   impl_->at(
-      etas.front(), targets, cancel,
+      etas.front(), targets, impl_->finer(kShellAccuracy), cancel,
       [&](auto& engine, const std::vector<std::uint32_t>& index, double factor) {
         std::vector<double> sorted(index.size());
         for (std::size_t h = 0; h < etas.size(); ++h) {
@@ -216,7 +222,7 @@ std::vector<Vec3> FastSum::winding_gradient_at(const std::vector<Vec3>& eta, con
                                                const std::atomic<bool>* cancel) const {
   std::vector<Vec3> out(targets.size());
   impl_->at(
-      eta, targets, cancel,
+      eta, targets, impl_->finer(kShellGradientAccuracy), cancel,
       [&](auto& engine, const std::vector<std::uint32_t>& index, double factor) {
         std::vector<Vec3> sorted(index.size());
         winding_gradient_into(engine, sorted);
