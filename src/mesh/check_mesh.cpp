@@ -91,7 +91,7 @@ void measure(const Mesh& mesh, const Vec3& centre, MeshCheck& check) {
     const Vec3 b = subtract(mesh.vertices[t[1]], centre);
     const Vec3 c = subtract(mesh.vertices[t[2]], centre);
     const Vec3 n = cross(subtract(b, a), subtract(c, a));
-    check.volume += dot(a, n) / 2 / 3;  // div x = 3 integrated over the tetrahedron (centre, a, b, c)
+    check.volume += dot(a, n) / 6;  // div x = 3 integrated over the tetrahedron (centre, a, b, c)
     check.area += std::sqrt(dot(n, n)) / 2;
   }
 }

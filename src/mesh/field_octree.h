@@ -128,7 +128,7 @@ class Octree {
   int depth_ = 0;
   // Nodes are most of the memory: what eight siblings share is held once, so that one takes 6 bytes where OctreeNode has 20.
   struct Node {
-    std::uint32_t next : std::numeric_limits<std::int32_t>::digits;
+    std::uint32_t next : 31;
     std::uint32_t split : 1;
   };
   struct Family {
