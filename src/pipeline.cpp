@@ -41,7 +41,6 @@ constexpr double kHardlyAny = 0.2;
 constexpr std::size_t kFewPoints = 2500;
 // Noise that kernels are made for, from one try of narrower ones to the next: the kernels, which follow its square, by sqrt(2).
 const double kNarrower = std::exp2(-0.25);
-constexpr int kMostNarrower = 3;  // tries: kernels almost a third as wide; in narrower ones single points show
 // Dimension from which points fill a volume: cubes and balls have 2.57 and more, surfaces under noise of 2 h at most 2.45.
 constexpr double kVolume = 2.55;
 
@@ -345,7 +344,7 @@ Attempt separate_walls(Attempt found, const PointsView& points, const Options& o
   const PlacesOnWalls first = places_of(found);
   double hidden = noise;
   double before = misfit(first);
-  for (int i = 0; i < kMostNarrower && before > 1; ++i) {
+  while (before > 1) {
     hidden *= kNarrower;
     if (hidden <= noise_of_clean_widths() * spacing) break;
     Attempt tried = attempt(with_noise(found.problem, hidden, options), points, options, stages);

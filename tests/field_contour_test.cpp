@@ -87,8 +87,8 @@ void expect_closed_manifold(const Mesh& mesh, const std::string& what) {
   EXPECT_EQ(t.bad_vertices, 0U) << what;
 }
 
-constexpr int kFields = kSanitized ? 150 : 1000;
-constexpr int kPatterns = kSanitized ? 75 : 500;
+constexpr int kFields = kSanitized ? 300 : 2000;
+constexpr int kPatterns = kSanitized ? 150 : 1000;
 constexpr std::size_t kLeastTriangles = 50;  // of a field, on average: the fields are not empty
 
 TEST(FieldContour, RandomFieldsOnUnbalancedOctreesGiveClosedManifolds) {

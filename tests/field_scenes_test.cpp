@@ -1,4 +1,4 @@
-// Hundreds of random scenes (fifty under the sanitizers): whatever the shape, the mesh is closed, 2-manifold and oriented outward.
+// A thousand random scenes (a hundred under the sanitizers): whatever the shape, the mesh is closed, 2-manifold and oriented outward.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 using namespace g3r;
 using namespace g3r::testing;
 
-constexpr int kScenes = kSanitized ? 50 : 400;
+constexpr int kScenes = kSanitized ? 100 : 1000;
 constexpr std::size_t kPoints = 60;  // far too few for most scenes: walls, gaps and folds below the spacing
 
 struct Primitive {
@@ -85,7 +85,7 @@ OrientedSample sample(const Scene& scene, std::mt19937_64& rng) {
   return out;
 }
 
-TEST(FieldScenes, RandomScenesGiveClosedManifoldsOrientedOutward) {
+TEST(FieldScenes, AThousandRandomScenesGiveClosedManifoldsOrientedOutward) {
   std::mt19937_64 rng(7);
   MeshOptions options;
   options.min_component = 0;

@@ -19,7 +19,7 @@ namespace g3r::stress {
 namespace {
 
 constexpr std::uint64_t kSeed = 5000;
-constexpr std::uint64_t kClouds = kSanitized ? 4 : 100;
+constexpr std::uint64_t kClouds = kSanitized ? 8 : 200;
 constexpr std::size_t kLargest = 60;
 constexpr double kDishonest = 0.05;  // share of the clouds with points that are wrong and sure: few points do not show thin walls
 

@@ -28,8 +28,8 @@ inline constexpr std::size_t kSample = 4000;
 inline constexpr std::size_t kFewestMeshPoints = 4;
 /// The points of a cloud, or pairs of them, below which nothing is said of what is rare in it: it would be a matter of chance.
 inline constexpr std::size_t kFewestPoints = 100;
-/// The share of a whole that is little beside it, and that nearly all of it has: of a variance, of the misfit of a surface, of pairs, of
-/// the side of a cube; of heights, of points.
+/// The share of a whole that is little beside it, and that nearly all of it has: of a variance, of the misfit of a surface, of pairs; of
+/// heights, of points.
 inline constexpr double kLittle = 0.05;
 inline constexpr double kNearlyAll = 0.9;
 /// The share of a length up to which it is rounding.

@@ -1,6 +1,7 @@
 #include "mesh/field_corners.h"
 
 #include "base/median.h"
+#include "cloud/canonical_cloud.h"
 #include "cpu/parallel.h"
 #include "mesh/constants.h"
 
@@ -29,7 +30,7 @@ struct CornerSides::Place {
 CornerSides::CornerSides(const LocalFit& local, const FieldSampler& sampler, double typical, const Cube& cube,
                          const std::vector<Vec3>& places, std::size_t asked_at_once)
     : local_(local), sampler_(sampler), spacing_(typical), cube_(cube), asked_at_once_(std::max(kCornersAtOnce, asked_at_once)) {
-  reach_ = (0.5 + kLittle) * cube_.side;  // fast sums end there, and single ones are slow
+  reach_ = cube_.side / kBoxSide;  // fast sums end there, and single ones are slow
   std::vector<double> field;
   sampler_.sample(places, field, nullptr);
   level_ = median(std::move(field));

@@ -18,8 +18,8 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-// Steps towards a surface or an intersection: each squares the error, and with five nothing is better.
-constexpr int kNewtonSteps = 3;
+// Steps towards a surface or an intersection: each squares the error, but where patches bend. With three, a thin plate has 1.5 % more CD.
+constexpr int kNewtonSteps = 5;
 
 Vec3 array(const Vector3d& p) { return {p[0], p[1], p[2]}; }
 

@@ -1,6 +1,7 @@
 #include "mesh/mesh_memory.h"
 
 #include "base/whole_bytes.h"
+#include "cloud/canonical_cloud.h"
 #include "mesh/constants.h"
 #include "mesh/field_corners.h"
 #include "mesh/field_points.h"
@@ -31,7 +32,7 @@ std::size_t memory_for(std::size_t points, double leaves, int depth) {
 
 }  // namespace
 
-double mesh::octree_side(double spacing, double longest_side) { return longest_side * (1 + 2 * kLittle) + 2 * kFarSpacings * spacing; }
+double mesh::octree_side(double spacing, double longest_side) { return 2 / kBoxSide * longest_side + 2 * kFarSpacings * spacing; }
 
 std::size_t field_mesh_memory(std::size_t points, double spacing, double noise, double longest_side, int depth) {
   double leaves = kPlainLeaves;

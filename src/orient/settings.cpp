@@ -236,9 +236,8 @@ bool starts_coarse(const Settings& settings, std::size_t points) {
 }
 
 std::size_t planned_memory(const Settings& settings, std::size_t given, std::size_t used) {
-  constexpr double kProgram = 9.3e6;   // code, libraries, thread stacks
-  constexpr double kQueries = 2.5e6;   // that the certificate has, beside their matrices
-  constexpr double kMatrices = 180;    // that far pairs share
+  constexpr double kProgram = 12e6;    // code, libraries, thread stacks, queries of the certificate
+  constexpr double kMatrices = 180;    // of the expansions, that the far pairs of a cloud share: measured
   constexpr double kPerUnknown = 330;  // while the equations are solved,
   constexpr double kBase = 255;        // or what stays of it while sides are certified,
   constexpr double kPerSite = 400;     // and what each of the sites then takes;
@@ -253,7 +252,7 @@ std::size_t planned_memory(const Settings& settings, std::size_t given, std::siz
   const SumPlan& sums = settings.first_sums;
   const auto terms = static_cast<double>(coefficient_count(sums.order));
   const double matrix = terms * terms * (sums.double_precision ? sizeof(double) : sizeof(float));
-  const double expansions = sums.direct ? 0 : kQueries + kMatrices * matrix;
+  const double expansions = sums.direct ? 0 : kMatrices * matrix;
   double bytes = kProgram + expansions + static_cast<double>(given * sizeof(Given)) + std::max(solve, certificate);
   if (settings.dense) bytes += 3 * unknowns * 3 * unknowns * sizeof(double);
   return whole_bytes(bytes);
