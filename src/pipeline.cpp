@@ -256,7 +256,10 @@ Oriented assess(const Problem& problem, Solution solution, Stats& stats) {
   const auto is_open = [&](std::size_t i) { return stats.open_share > 0 && surfaces.part[i] != OpenSurfaces::kNone; };
   out.agreed = share_of_wanted(problem, [&](std::size_t i) { return is_open(i) && surfaces.agrees[i] != 0; });
   out.doubt = share_of_wanted(problem, [&](std::size_t i) { return out.confidence[i] < kUndecided; }) + share_of_wanted(problem, is_open);
-  if (!contains(problem.settings.without, Step::kCertificate)) certify_sides(out.solution.open_surfaces, out.confidence);
+  if (!contains(problem.settings.without, Step::kCertificate)) {
+    certify_sides(out.solution.open_surfaces, out.confidence);
+    limit_to_evidence(problem.cloud.size(), out.confidence);
+  }
   judge(out.solution.open_surfaces, out.confidence, stats);
   return out;
 }

@@ -1,7 +1,10 @@
 #include "orient/confidence.h"
 
+#include "cloud/spacing.h"
+
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <vector>
 
 namespace g3r {
@@ -44,6 +47,18 @@ TEST(SideConfidence, DoesNotDependOnUnits) {
   std::vector<double> larger = areas;
   for (double& a : larger) a *= 64;
   EXPECT_EQ(side_confidence(eta, kUp, kJumps, larger), c);
+}
+
+// Laplace: after c n of n trials the next succeeds with the chance (c n + 1) / (n + 2).
+TEST(LimitToEvidence, IsTheRuleOfSuccessionAboveAHalf) {
+  const std::vector<float> shown{1, 0.8F, 0.5F, 0.25F, 0};
+  for (const double n : {2.0, 8.0, 1000.0}) {
+    std::vector<float> c = shown;
+    limit_to_evidence(static_cast<std::size_t>(n) * kSpacingNeighbours, c);
+    EXPECT_FLOAT_EQ(c[0], static_cast<float>((n + 1) / (n + 2)));
+    EXPECT_FLOAT_EQ(c[1], static_cast<float>((0.8 * n + 1) / (n + 2)));
+    EXPECT_EQ(std::vector<float>(c.begin() + 2, c.end()), std::vector<float>(shown.begin() + 2, shown.end()));
+  }
 }
 
 TEST(SumsOver, OfThePointAloneAreTheVectorsAndOfAllTheirSum) {

@@ -21,27 +21,14 @@ namespace {
 constexpr std::uint64_t kSeed = 5000;
 constexpr std::uint64_t kClouds = kSanitized ? 8 : 200;
 constexpr std::size_t kLargest = 60;
-constexpr double kDishonest = 0.05;  // share of the clouds with points that are wrong and sure: few points do not show thin walls
 
-std::string words(const Outcome& outcome) {
-  std::string out;
-  for (const Finding& f : outcome.findings) {
-    if (!is_statistical(f.kind)) out += f.kind + ": " + f.what + "\n";
-  }
-  return out;
-}
-
+// Sides too: no cloud of so few points is sure of any (limit_to_evidence()).
 TEST(Stress, ShortSetHolds) {
-  std::size_t dishonest = 0;
   for (std::uint64_t seed = kSeed; seed < kSeed + kClouds; ++seed) {
     const Recipe recipe = random_recipe(seed, kLargest);
-    const Outcome outcome = hold_apart(recipe, {});
-    EXPECT_EQ(words(outcome), "") << recipe.line();
-    dishonest += std::any_of(outcome.findings.begin(), outcome.findings.end(),
-                             [](const Finding& f) { return f.kind == "confidence" || f.kind == "rigid"; });
+    for (const Finding& f : hold_apart(recipe, {}).findings) ADD_FAILURE() << recipe.line() << ' ' << f.kind << ": " << f.what;
   }
   RecordProperty("clouds", static_cast<int>(kClouds));
-  EXPECT_LE(static_cast<double>(dishonest), kDishonest * kClouds);
 }
 
 TEST(Stress, KeptCasesHold) {

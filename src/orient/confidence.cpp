@@ -1,6 +1,7 @@
 #include "orient/confidence.h"
 
 #include "base/median.h"
+#include "cloud/spacing.h"
 #include "cpu/parallel.h"
 
 #include <algorithm>
@@ -47,6 +48,12 @@ Sums sums_over(const std::vector<std::uint32_t>& near, const std::vector<Vec3>& 
     }
   });
   return sums;
+}
+
+void limit_to_evidence(std::size_t points, std::vector<float>& confidence) {
+  const double neighbourhoods = static_cast<double>(points) / static_cast<double>(kSpacingNeighbours);
+  const auto left = static_cast<float>(neighbourhoods / (neighbourhoods + 2));
+  for (float& c : confidence) c = std::min(c, kUndecided) + std::max(0.0F, c - kUndecided) * left;
 }
 
 std::vector<std::uint8_t> unsure_points(const std::vector<float>& confidence) {

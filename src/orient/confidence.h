@@ -3,6 +3,7 @@
 
 #include <g3r/points.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -28,6 +29,12 @@ struct Sums {
   std::vector<double> lengths;
 };
 [[nodiscard]] Sums sums_over(const std::vector<std::uint32_t>& near, const std::vector<Vec3>& vectors);
+
+/// What n = N / kSpacingNeighbours independent neighbourhoods can show of sides. Were they n trials of which a share c succeeded, the next
+/// would succeed with the expected chance (c n + 1) / (n + 2) = 1/2 + (c - 1/2) n / (n + 2) (rule of succession; Laplace, "Memoire sur la
+/// probabilite des causes par les evenements", 1774): so much is left of a confidence c above a half. Where less is shown nothing changes,
+/// and the order of the points stays. `points`: N, distinct. O(N).
+void limit_to_evidence(std::size_t points, std::vector<float>& confidence);
 
 /// Of every point, whether its side_confidence() is below a half.
 [[nodiscard]] std::vector<std::uint8_t> unsure_points(const std::vector<float>& confidence);
