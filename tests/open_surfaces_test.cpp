@@ -208,7 +208,10 @@ TEST(OpenSurfaces, FinsThinnerThanTheNoiseAreNoSureSides) {
 TEST(OpenSurfaces, OfFewPointsNoSideIsSure) {
   const Orientation few = orient(shapes::sphere(29).points);
   EXPECT_LE(*std::max_element(few.confidence.begin(), few.confidence.end()), 0.5F);
-  const Orientation more = orient(shapes::sphere(100).points);
+  const Orientation some = orient(shapes::sphere(100).points);  // limit_to_evidence()
+  EXPECT_LE(*std::max_element(some.confidence.begin(), some.confidence.end()), 0.9F);
+  EXPECT_GT(*std::min_element(some.confidence.begin(), some.confidence.end()), 0.8F);
+  const Orientation more = orient(shapes::sphere(200).points);
   EXPECT_GT(*std::min_element(more.confidence.begin(), more.confidence.end()), 0.9F);
 }
 
