@@ -16,9 +16,9 @@
 #include "orient/open_to_views.h"
 #include "orient/polish.h"
 #include "orient/problem.h"
-#include "orient/projection.h"
 #include "orient/solution.h"
 #include "orient/start.h"
+#include "orient/walls.h"
 #include "solve/refine.h"
 #include "sum/device_scope.h"
 #include "sum/fast_sum.h"
@@ -35,6 +35,8 @@ namespace {
 
 // Times the estimate, the scatter that speaks against it; times the scatter, the noise that is tried: kernels have to hide all of it.
 constexpr double kAboveScatter = 1.4;
+// Of the doubt that there is, up to which another noise is taken: chance does not halve it.
+constexpr double kHalf = 0.5;
 // The same for more noise than the points speak for: noise hides thin walls and all doubt about them.
 constexpr double kHardlyAny = 0.2;
 // Points up to which shape looks like noise, so that none is tried too: with more it costs time and is never taken.
@@ -181,12 +183,17 @@ void add_open_surfaces(const OpenSurfaces& surfaces, std::vector<float>& confide
                            (agreed == open ? "their sides are consistent" : "their sides do not agree everywhere"));
 }
 
-// Sides of closed surfaces that their field does not show to be right are worth less, those on open ones that do not agree nothing.
-void certify_sides(const OpenSurfaces& surfaces, std::vector<float>& confidence) {
+// Sides of closed surfaces that their field does not show to be right are worth less, those on open ones that do not agree nothing. Where
+// noise hides walls, the field of one wall is right, and half of the points are on the other.
+void certify_sides(const OpenSurfaces& surfaces, bool hides_walls, std::vector<float>& confidence) {
   for (std::size_t i = 0; i < surfaces.certified.size(); ++i) {
     const bool is_open = !surfaces.part.empty() && surfaces.part[i] != OpenSurfaces::kNone;
     const float least = is_open ? 0 : std::min(confidence[i], surfaces.uncertified);
     confidence[i] = least + (confidence[i] - least) * surfaces.certified[i];
+  }
+  if (!hides_walls) return;
+  for (std::size_t i = 0; i < confidence.size(); ++i) {
+    if (surfaces.part.empty() || surfaces.part[i] == OpenSurfaces::kNone) confidence[i] *= kUndecided;
   }
 }
 
@@ -227,6 +234,7 @@ struct Oriented {
   std::vector<float> confidence;
   double doubt = 0;   // share of the wanted points that could face either way by their own equations, or lie on open surfaces
   double agreed = 0;  // share of the wanted points that lie on open surfaces whose sides agree: these could face either way, but together
+  MeanExcess about_walls;  // of the heights of noisy points about what was found, if not all of it is open
 };
 
 Solution solve_problem(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
@@ -256,11 +264,20 @@ Oriented assess(const Problem& problem, Solution solution, Stats& stats) {
   const auto is_open = [&](std::size_t i) { return stats.open_share > 0 && surfaces.part[i] != OpenSurfaces::kNone; };
   out.agreed = share_of_wanted(problem, [&](std::size_t i) { return is_open(i) && surfaces.agrees[i] != 0; });
   out.doubt = share_of_wanted(problem, [&](std::size_t i) { return out.confidence[i] < kUndecided; }) + share_of_wanted(problem, is_open);
+  if (problem.noise > 0 && stats.open_share < 1 && !problem.cloud.set.views().known()) {
+    out.about_walls = excess_about_walls(problem.cloud.set, refined.normals, problem.noise, problem.spacing);
+  }
+  const bool hides_walls = out.about_walls.is_two_walls();
   if (!contains(problem.settings.without, Step::kCertificate)) {
-    certify_sides(out.solution.open_surfaces, out.confidence);
+    certify_sides(surfaces, hides_walls, out.confidence);
     limit_to_evidence(problem.cloud.size(), out.confidence);
   }
-  judge(out.solution.open_surfaces, out.confidence, stats);
+  if (hides_walls) {
+    stats.warnings.emplace_back(
+        "two layers: the points lie about their surface as about two, closer together than the noise shows: a thin wall, which more points "
+        "show, or scans that do not fit onto each other");
+  }
+  judge(surfaces, out.confidence, stats);
   return out;
 }
 
@@ -280,7 +297,7 @@ bool may_try_noises(const Problem& problem, const Options& options) {
 
 struct OtherNoise {
   double noise = 0;
-  double most_doubt = 0.5;  // of the doubt with the estimate, up to which it is taken: chance does not halve it
+  double most_doubt = kHalf;  // of the doubt with the estimate, up to which it is taken
 };
 
 // What to try where the sides of many points are unsure. No noise: few points on much shape look noisy, but not rounded. More: what
@@ -330,52 +347,60 @@ Attempt attempt(Problem problem, const PointsView& points, const Options& option
   return out;
 }
 
+// The walls that were found, for noise of so much.
+PlacesOnWalls walls_of(const Attempt& found, double noise) {
+  return fit_places(found.problem.cloud.set, found.oriented.solution.refinement.normals, noise, found.problem.spacing);
+}
+
 // Kernels that hide the noise take walls closer together than they are wide for one: then points lie farther from the surface that is
-// found than noise carries them. Where that is so, narrower kernels are tried until it is not (the discrepancy principle of Morozov, "On
-// the solution of functional equations by the method of regularization", 1966). If they do not get there before points come to lie farther
-// away again, it was shape, creases for example, and the first ones stay; as they do where they are as narrow as those of clean clouds.
-// Half of the points of merged walls face the wrong way and turn when the walls are separated: where fewer do than half of a doubtful
-// share, the misfit has another cause, such as noise that was estimated too low, and narrower kernels only fit the noise.
+// found than noise carries them, or lie about it as about two. Where that is so, narrower kernels are tried until it is not (the
+// discrepancy principle of Morozov, "On the solution of functional equations by the method of regularization", 1966), or until they are as
+// narrow as those of clean clouds. If points come to lie farther away again before, it was shape, creases for example, and the first ones
+// stay. Half of the points of merged walls face the wrong way and turn when the walls are separated: where fewer do than half of a doubtful
+// share, and there is as much doubt as before, points far from the surface have another cause, such as noise that was estimated too low,
+// and narrower kernels only fit the noise.
 Attempt separate_walls(Attempt found, const PointsView& points, const Options& options, Stages& stages) {
   const double noise = found.problem.noise;
-  const double spacing = found.problem.spacing;
   const bool is_open = found.stats.open_share > 0;  // and has no walls
-  if (noise == 0 || is_open || found.oriented.doubt < kDoubtful || !may_try_noises(found.problem, options)) return found;
-  const auto places_of = [&](const Attempt& a) {
-    return fit_places(a.problem.cloud.set, a.oriented.solution.refinement.normals, noise, spacing);
-  };
-  const PlacesOnWalls first = places_of(found);
-  double hidden = noise;
+  bool hides = found.oriented.about_walls.is_two_walls();
+  if (noise == 0 || is_open || !may_try_noises(found.problem, options)) return found;
+  if (found.oriented.doubt < kDoubtful && !hides) return found;
+  const double least = noise_of_clean_widths() * found.problem.spacing;
+  const PlacesOnWalls first = walls_of(found, noise);
   double before = misfit(first);
-  while (before > 1) {
-    hidden *= kNarrower;
-    if (hidden <= noise_of_clean_widths() * spacing) break;
+  std::optional<Attempt> separated;
+  for (double hidden = noise * kNarrower; before > 1 && hidden > least; hidden *= kNarrower) {
     Attempt tried = attempt(with_noise(found.problem, hidden, options), points, options, stages);
-    const PlacesOnWalls places = places_of(tried);
-    const double after = misfit(places);
-    if (turned_share(first, places) < kDoubtful / 2 || after >= before || tried.stats.open_share > 0) break;
-    if (after <= 1) {
-      tried.solved.noise = found.solved.noise;
-      tried.stats.noise = found.stats.noise;
-      return tried;
-    }
+    const PlacesOnWalls walls = walls_of(tried, noise);
+    const double after = misfit(walls);
+    const bool separates = hides || turned_share(first, walls) >= kDoubtful / 2 || tried.oriented.doubt <= kHalf * found.oriented.doubt;
+    if (!separates || after >= before || tried.stats.open_share > 0) return found;
+    hides = tried.oriented.about_walls.is_two_walls();
+    separated = std::move(tried);
     before = after;
   }
-  return found;
+  if (!separated) return found;
+  separated->solved.noise = found.solved.noise;
+  separated->stats.noise = found.stats.noise;
+  return std::move(*separated);
 }
 
 // Thin walls and layers of scans that do not fit onto each other look alike from near. But few sides of walls are unsure when they are
-// solved for as what they are, of layers when they are solved for as noise.
+// solved for as what they are, of layers when they are solved for as noise. More noise may also make one surface of thin walls, of which
+// all sides are sure: it is not taken where points then lie about that surface as about two.
 Attempt orient_with_best_noise(const PointsView& points, Known known, const Options& options, Stages& stages) {
   Attempt best = attempt(prepare(points, std::move(known), options, stages), points, options, stages);
   const double estimate = best.problem.noise;
   best = separate_walls(std::move(best), points, options, stages);
-  if (best.problem.noise < estimate) return best;
+  const bool has_walls = best.problem.noise < estimate || best.oriented.about_walls.is_two_walls();
   const double doubt = best.oriented.doubt;
+  const double hidden_anyway = std::max(estimate, noise_of_clean_widths() * best.problem.spacing);
   for (const OtherNoise& other : other_noises(best.problem, options, best.oriented)) {
+    if (has_walls && other.noise > best.problem.noise) continue;
     Attempt tried = attempt(with_noise(best.problem, other.noise, options), points, options, stages);
     const double most = std::min(other.most_doubt * doubt, best.oriented.doubt);
-    if (tried.oriented.doubt <= most) best = std::move(tried);
+    const bool merges_walls = kNarrower * other.noise > hidden_anyway && tried.oriented.about_walls.may_be_two_walls();
+    if (tried.oriented.doubt <= most && !merges_walls) best = std::move(tried);
   }
   return best;
 }

@@ -3,7 +3,6 @@
 
 #include "cloud/point_set.h"
 #include "cpu/parallel.h"
-#include "sanitized.h"
 #include "shapes.h"
 
 #include <g3r/g3r.h>
@@ -135,34 +134,6 @@ TEST(Projection, IsTheSameWithAnyNumberOfThreadsAndStopsWhenAsked) {
   const PointSet set(s.points);
   const std::atomic<bool> cancel{true};
   EXPECT_THROW((void)project_points(set.points(), set.tree(), s.normals, 0.1, {kSpacing}, &cancel), Cancelled);
-}
-
-// A point between two walls of 3 sigma that are taken for one is as far from it as the noise and half of that distance carry it.
-TEST(Projection, MisfitTellsTwoWallsTakenForOne) {
-  const double sigma = 0.8 * kSpacing;
-  Surface s = shapes::join(square(0, -1, 5), square(3 * sigma, 1, 6));
-  shapes::scatter(s, sigma);
-  const PointSet set(s.points);
-  const PlacesOnWalls merged = fit_places(set, std::vector<Vec3>(s.normals.size(), {0, 0, 1}), sigma, kSpacing);
-  const PlacesOnWalls separate = fit_places(set, s.normals, sigma, kSpacing);
-  EXPECT_NEAR(misfit(separate), 1, 0.15);
-  EXPECT_GT(misfit(merged), 1.3);
-  EXPECT_NEAR(turned_share(merged, separate), 0.5, 0.05);
-  EXPECT_EQ(turned_share(separate, separate), 0);
-}
-
-// Walls of 3.6 sigma, 5.4 sigma apart, under noise of 0.55 spacings: kernels that hide it take them for one. Nothing says that sides are
-// right, but most are.
-TEST(Projection, NarrowerKernelsAreTakenWhereWallsMerge) {
-  if (kSanitized) GTEST_SKIP() << "long";
-  Surface s = shapes::plates(6, 0.65, 2, 3, 0.02);
-  shapes::scatter(s, 0.55 * 0.02);
-  Options without;
-  without.without = "noise-choice";
-  const double wide = shapes::share_correct(orient(s.points, without).normals, s.normals);
-  const Orientation found = orient(s.points);
-  EXPECT_GT(shapes::share_correct(found.normals, s.normals), std::max(0.85, wide + 0.05)) << wide;
-  EXPECT_NEAR(found.stats.noise, 0.55 * 0.02, 0.1 * 0.02);  // the noise, not what kernels hide
 }
 
 // Plates whose gaps are 2.6 spacings wide, under noise of 0.9: kernels that hide the noise hide the gaps.

@@ -15,15 +15,33 @@ namespace g3r {
 /// has the mean 0 for any n, whatever sum r^2 is (Basu, "On statistics independent of a complete sufficient statistic", Sankhya 1955). The
 /// last factor makes up for the fit, which takes a part of every height: of other noise r_i has about M_ii^4 times its fourth cumulant.
 /// Points on two walls, s the noise and 2 a their distance, have about -2 (a^2 / (a^2 + s^2))^2: -2 without noise, -0.5 where the walls are
-/// 2 s apart. Noise that differs from point to point has more than 0.
+/// 2 s apart. Noise that differs from point to point has more than 0. Rounding to steps q has the fourth cumulant -sum n_a^4 q_a^4 / 120, n
+/// the direction of the heights, which is taken off.
 struct HeightMoments {
   double mean_square = 0;  ///< of the residuals, corrected for the 10 numbers; square of the points' unit
   double excess = 0;       ///< of the kurtosis over that of normal noise
 };
 
-/// `index`: `count` > 10 points; `normal`: unit vector that heights are along; `h` > 0: length unit of the fit. Zeros where the points do
-/// not determine a cubic, as on a line, or lie on it. O(count).
+/// `index`: `count` > 10 points; `normal`: unit vector that heights are along; `h` > 0: length unit of the fit; `steps`: to which each
+/// coordinate is rounded, 0 where it is not. Zeros where the points do not determine a cubic, as on a line, or lie on it. O(count).
 [[nodiscard]] HeightMoments height_moments(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count,
-                                           const Vec3& normal, double h);
+                                           const Vec3& normal, double h, const Vec3& steps = {0, 0, 0});
+
+/// The mean of many, and how far chance carries it.
+struct MeanExcess {
+  double mean = 0;
+  double error = 0;  ///< standard error
+
+  /// Whether what looks like one wall may be two that noise hides: the mean is below -0.2, that of walls 1.35 standard deviations apart.
+  /// What else has light tails looks like two walls: two scans of one surface that do not fit onto each other, noise that is evenly
+  /// distributed.
+  [[nodiscard]] bool may_be_two_walls() const;
+  /// Whether it is, but for one case in a hundred: the mean is 2.5 standard errors below 0 too.
+  [[nodiscard]] bool is_two_walls() const;
+};
+
+/// Of the flatter half of the places, which says nothing of the excess. `places`: their moments; 0 and 0 of none; `disjoint` > 0: as many
+/// of their neighbourhoods the points fill, if they share none: no more of them are independent. O(places).
+[[nodiscard]] MeanExcess mean_excess(const std::vector<HeightMoments>& places, double disjoint);
 
 }  // namespace g3r

@@ -1,7 +1,5 @@
 #include "orient/projection.h"
 
-#include "base/median.h"
-#include "base/vector.h"
 #include "cloud/constants.h"
 #include "cloud/quadratic_patch.h"
 #include "cpu/parallel.h"
@@ -48,40 +46,6 @@ std::vector<Vec3> project_points(const std::vector<Vec3>& points, const Neighbou
   };
   parallel::for_blocks(points.size(), parallel::kSmallBlock, project_block, cancel);
   return out;
-}
-
-PlacesOnWalls fit_places(const PointSet& set, const std::vector<Vec3>& normals, double noise, double spacing) {
-  const double reach = projection_reach(noise, spacing);
-  const std::size_t stride = 1 + set.size() / kPlaces;
-  const std::size_t count = (set.size() + stride - 1) / stride;
-  PlacesOnWalls places{std::vector<Vec3>(count), std::vector<double>(count, -1)};
-  parallel::for_all(count, [&](std::size_t k) {
-    const std::size_t i = k * stride;
-    places.normals[k] = normals[i];
-    SameSide side(set.points(), set.tree(), normals);
-    side.gather(i, to_eigen(normals[i]), reach, kSigmas * noise);
-    if (side.members().size() < 2 * kQuadraticTerms) return;
-    const double found = residual(fit_quadratic_patch(side.members(), 0, reach / 2, 0), side.members()) / noise;
-    if (found >= 0) places.residuals[k] = found;
-  });
-  return places;
-}
-
-double misfit(const PlacesOnWalls& places) {
-  std::vector<double> residuals = places.residuals;
-  std::erase_if(residuals, [](double r) { return r < 0; });
-  return residuals.empty() ? 1 : median(std::move(residuals));
-}
-
-double turned_share(const PlacesOnWalls& before, const PlacesOnWalls& after) {
-  std::size_t both = 0;
-  std::size_t turned = 0;
-  for (std::size_t k = 0; k < before.residuals.size(); ++k) {
-    if (before.residuals[k] < 0 || after.residuals[k] < 0) continue;
-    ++both;
-    turned += vector::dot(before.normals[k], after.normals[k]) < 0 ? 1 : 0;
-  }
-  return both == 0 ? 0 : static_cast<double>(turned) / static_cast<double>(both);
 }
 
 }  // namespace g3r

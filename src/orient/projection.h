@@ -2,7 +2,6 @@
 #pragma once
 
 #include "cloud/neighbours.h"
-#include "cloud/point_set.h"
 
 #include <g3r/points.h>
 
@@ -31,21 +30,5 @@ namespace g3r {
 /// all; `noise` > 0. In the order of `points`. Throws Cancelled. O(N) for as many points within the reach.
 [[nodiscard]] std::vector<Vec3> project_points(const std::vector<Vec3>& points, const Neighbours& tree, const std::vector<Vec3>& normals,
                                                double noise, const std::vector<double>& spacing, const std::atomic<bool>* cancel = nullptr);
-
-/// Such quadratics at M places, at most 2000 of the points, the same for any normals, with `spacing` everywhere.
-struct PlacesOnWalls {
-  std::vector<Vec3> normals;      ///< M, of the places, as given
-  std::vector<double> residuals;  ///< M, of the quadratics, in proportion to the noise; negative where too few points are on the side
-};
-/// `normals`: N unit vectors; `noise` > 0 and `spacing` in the units of the points. A fit for each place.
-[[nodiscard]] PlacesOnWalls fit_places(const PointSet& set, const std::vector<Vec3>& normals, double noise, double spacing);
-
-/// How far points lie from their wall: the median of the residuals, 1 or a little less where the normals are right; more where two walls
-/// are taken for one, and at creases. 1 if no place has a quadratic. O(M).
-[[nodiscard]] double misfit(const PlacesOnWalls& places);
-
-/// Share in [0, 1] of the places of one set of points whose normals face the other way afterwards, among those with a quadratic in both; 0
-/// if there is none. O(M).
-[[nodiscard]] double turned_share(const PlacesOnWalls& before, const PlacesOnWalls& after);
 
 }  // namespace g3r

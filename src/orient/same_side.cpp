@@ -11,6 +11,7 @@ double SameSide::gather(std::size_t i, const Eigen::Vector3d& axis, double reach
   tree_.within(points_[i], std::hypot(reach, depth), index_);
   const std::size_t stride = 1 + index_.size() / kPlaces;
   members_.clear();
+  own_.clear();
   weight_ = 0;
   double opposed = 0;
   for (std::size_t k = 0; k < index_.size(); k += stride) {
@@ -22,6 +23,7 @@ double SameSide::gather(std::size_t i, const Eigen::Vector3d& axis, double reach
     const double cosine = n.dot(axis);
     if (cosine > kSameSide) {
       members_.push_back({d, n, weight, 0});
+      own_.push_back(index_[k]);
       weight_ += weight;
     } else if (cosine <= 0) {
       opposed += weight;

@@ -25,9 +25,10 @@ class SameSide {
   /// Returns the share of the weight that faces away from `axis`, 0 if there is none. O(their number).
   double gather(std::size_t i, const Eigen::Vector3d& axis, double reach, double depth);
 
-  [[nodiscard]] const std::vector<FitPoint>& members() const { return members_; }  ///< relative to point i
-  [[nodiscard]] double weight() const { return weight_; }                          ///< of all members
-  [[nodiscard]] std::size_t seen() const { return index_.size(); }                 ///< points in the ball, members or not
+  [[nodiscard]] const std::vector<FitPoint>& members() const { return members_; }   ///< relative to point i
+  [[nodiscard]] const std::vector<std::uint32_t>& indices() const { return own_; }  ///< of the members
+  [[nodiscard]] double weight() const { return weight_; }                           ///< of all members
+  [[nodiscard]] std::size_t seen() const { return index_.size(); }                  ///< points in the ball, members or not
 
  private:
   const std::vector<Vec3>& points_;
@@ -35,6 +36,7 @@ class SameSide {
   const std::vector<Vec3>& normals_;
   std::vector<std::uint32_t> index_;
   std::vector<FitPoint> members_;
+  std::vector<std::uint32_t> own_;
   double weight_ = 0;
 };
 

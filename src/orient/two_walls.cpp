@@ -16,7 +16,6 @@ namespace {
 
 constexpr double kExact = 0.01;            // site spacings: deviations below are as good as none
 constexpr std::size_t kNoisyPoints = 128;  // the same under noise: fewer follow the noise, more the shape
-constexpr double kExcess = -0.2;           // of the kurtosis of walls 1.35 standard deviations apart; rough ground has -0.1 at most
 
 // Calls visit(site, its `count` nearest points in canonical order).
 template <typename Visit>
@@ -52,32 +51,12 @@ bool on_noisy_walls(const PointSet& set, const Sites& sites, const std::vector<s
   const std::vector<Vec3>& points = set.points();
   if (points.size() < kNoisyPoints) return false;
   const Vec3 steps = rounding_steps(points, set.spacing());
-  std::vector<double> excess;
-  std::vector<double> square;
+  std::vector<HeightMoments> places;
   for_some(set, sites, members, kNoisyPoints, [&](std::uint32_t s, const std::vector<std::uint32_t>& index) {
-    const HeightMoments m = height_moments(points, index.data(), index.size(), sites.axis[s], sites.spacing()[s]);
-    double rounding = 0;  // fourth cumulant
-    for (std::size_t a = 0; a < 3; ++a) rounding += kRoundingCumulant * std::pow(sites.axis[s][a] * steps[a], 4);
-    square.push_back(m.mean_square);
-    excess.push_back(m.excess - (m.mean_square > 0 ? rounding / (m.mean_square * m.mean_square) : 0));
+    places.push_back(height_moments(points, index.data(), index.size(), sites.axis[s], sites.spacing()[s], steps));
   });
-  const double flat = median(square);
-  double sum = 0;
-  double squares = 0;
-  double count = 0;
-  for (std::size_t k = 0; k < excess.size(); ++k) {
-    if (square[k] > flat) continue;
-    sum += excess[k];
-    squares += excess[k] * excess[k];
-    ++count;
-  }
-  const double mean = sum / count;
-  // Places share points: no more of them are independent than the part holds such neighbourhoods.
   const double held = static_cast<double>(members.size()) * static_cast<double>(points.size()) / static_cast<double>(sites.size());
-  const double places = static_cast<double>(excess.size());
-  const double independent = count * std::min(1.0, held / (places * static_cast<double>(kNoisyPoints)));
-  const double error = std::sqrt(std::max(0.0, squares / count - mean * mean) / independent);
-  return mean < kExcess && mean < -kSigmas * error;
+  return mean_excess(places, held / static_cast<double>(kNoisyPoints)).is_two_walls();
 }
 
 }  // namespace
