@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <numbers>
 #include <numeric>
 #include <vector>
@@ -78,6 +80,43 @@ TEST(HeightMoments, CubicsAreExactAndHaveNone) {
   shapes::Random random(3);
   const HeightMoments m = moments(heights(40, random, [] { return 0; }));
   EXPECT_LT(m.mean_square, 1e-17);
+}
+
+// Of many patches what there is; of one patch, and where all patches share their points, two walls may be chance.
+TEST(HeightMoments, WallsAreTwoWhereTheMeanExcessIsNoChance) {
+  const auto patches = [](double half, std::size_t count) {
+    shapes::Random random(11);
+    std::vector<HeightMoments> all;
+    for (std::size_t k = 0; k < count; ++k) {
+      all.push_back(moments(heights(128, random, [&] { return (random.uniform() < 0.5 ? half : -half) + normal(random); })));
+    }
+    return all;
+  };
+  EXPECT_TRUE(mean_excess(patches(1, 100), 100).is_two_walls());
+  EXPECT_FALSE(mean_excess(patches(0, 100), 100).may_be_two_walls());
+  const MeanExcess shared = mean_excess(patches(1, 100), 2);
+  EXPECT_TRUE(shared.may_be_two_walls());
+  EXPECT_FALSE(shared.is_two_walls());
+  EXPECT_NEAR(shared.error, std::sqrt(50) * mean_excess(patches(1, 100), 100).error, 1e-9);
+  EXPECT_FALSE(mean_excess({}, 1).may_be_two_walls());
+}
+
+// Rounding to steps along the heights has less, and is taken off where it is known.
+TEST(HeightMoments, KnownStepsAreTakenOff) {
+  shapes::Random random(13);
+  double known = 0;
+  double unknown = 0;
+  constexpr int kPatches = 1000;
+  for (int k = 0; k < kPatches; ++k) {
+    std::vector<Vec3> points = heights(128, random, [&] { return 0.02 * normal(random); });
+    for (Vec3& p : points) p[2] = std::round(p[2] / 0.25) * 0.25;
+    std::vector<std::uint32_t> index(points.size());
+    std::iota(index.begin(), index.end(), 0U);
+    unknown += height_moments(points, index.data(), index.size(), {0, 0, 1}, 0.5).excess / kPatches;
+    known += height_moments(points, index.data(), index.size(), {0, 0, 1}, 0.5, {0, 0, 0.25}).excess / kPatches;
+  }
+  EXPECT_LT(unknown, -0.8);
+  EXPECT_NEAR(known, 0, 0.2);
 }
 
 // Whatever the rounding of their singular equations.
