@@ -274,8 +274,8 @@ Oriented assess(const Problem& problem, Solution solution, Stats& stats) {
   }
   if (hides_walls) {
     stats.warnings.emplace_back(
-        "two layers: the points lie about their surface as about two, closer together than the noise shows: a thin wall, which more points "
-        "show, or scans that do not fit onto each other");
+        "two layers: the points lie about their surface as about two that are too close together for their noise: a wall that needs more "
+        "points or less noise, or scans that have to be aligned");
   }
   judge(surfaces, out.confidence, stats);
   return out;
