@@ -36,7 +36,7 @@ namespace {
 // Times the estimate, the scatter that speaks against it; times the scatter, the noise that is tried: kernels have to hide all of it.
 constexpr double kAboveScatter = 1.4;
 // Of the doubt that there is, up to which another noise is taken: chance does not halve it.
-constexpr double kHalf = 0.5;
+constexpr double kClearlyLess = 0.5;
 // The same for more noise than the points speak for: noise hides thin walls and all doubt about them.
 constexpr double kHardlyAny = 0.2;
 // Points up to which shape looks like noise, so that none is tried too: with more it costs time and is never taken.
@@ -154,7 +154,7 @@ std::vector<std::uint8_t> open_points(const CanonicalCloud& cloud, const OpenSur
   std::vector<std::uint8_t> open(cloud.point_of.size(), 0);
   for (std::size_t i = 0; i < open.size(); ++i) {
     const std::uint32_t p = cloud.point_of[i];
-    if (p < surfaces.part.size() && surfaces.part[p] != OpenSurfaces::kNone) open[i] = 1;
+    if (surfaces.is_open(p)) open[i] = 1;
   }
   return open;
 }
@@ -166,7 +166,7 @@ void add_open_surfaces(const OpenSurfaces& surfaces, std::vector<float>& confide
   std::size_t undecided = 0;
   std::size_t agreed = 0;
   for (std::size_t i = 0; i < surfaces.part.size(); ++i) {
-    if (surfaces.part[i] == OpenSurfaces::kNone) {
+    if (!surfaces.is_open(i)) {
       confidence[i] *= surfaces.certainty[i];
       continue;
     }
@@ -187,13 +187,12 @@ void add_open_surfaces(const OpenSurfaces& surfaces, std::vector<float>& confide
 // noise hides walls, the field of one wall is right, and half of the points are on the other.
 void certify_sides(const OpenSurfaces& surfaces, bool hides_walls, std::vector<float>& confidence) {
   for (std::size_t i = 0; i < surfaces.certified.size(); ++i) {
-    const bool is_open = !surfaces.part.empty() && surfaces.part[i] != OpenSurfaces::kNone;
-    const float least = is_open ? 0 : std::min(confidence[i], surfaces.uncertified);
+    const float least = surfaces.is_open(i) ? 0 : std::min(confidence[i], surfaces.uncertified);
     confidence[i] = least + (confidence[i] - least) * surfaces.certified[i];
   }
   if (!hides_walls) return;
   for (std::size_t i = 0; i < confidence.size(); ++i) {
-    if (surfaces.part.empty() || surfaces.part[i] == OpenSurfaces::kNone) confidence[i] *= kUndecided;
+    if (!surfaces.is_open(i)) confidence[i] *= kUndecided;
   }
 }
 
@@ -261,7 +260,7 @@ Oriented assess(const Problem& problem, Solution solution, Stats& stats) {
   }
   const OpenSurfaces& surfaces = out.solution.open_surfaces;
   add_open_surfaces(surfaces, out.confidence, stats);
-  const auto is_open = [&](std::size_t i) { return stats.open_share > 0 && surfaces.part[i] != OpenSurfaces::kNone; };
+  const auto is_open = [&](std::size_t i) { return surfaces.is_open(i); };
   out.agreed = share_of_wanted(problem, [&](std::size_t i) { return is_open(i) && surfaces.agrees[i] != 0; });
   out.doubt = share_of_wanted(problem, [&](std::size_t i) { return out.confidence[i] < kUndecided; }) + share_of_wanted(problem, is_open);
   if (problem.noise > 0 && stats.open_share < 1 && !problem.cloud.set.views().known()) {
@@ -297,7 +296,7 @@ bool may_try_noises(const Problem& problem, const Options& options) {
 
 struct OtherNoise {
   double noise = 0;
-  double most_doubt = kHalf;  // of the doubt with the estimate, up to which it is taken
+  double most_doubt = kClearlyLess;  // of the doubt with the estimate, up to which it is taken
 };
 
 // What to try where the sides of many points are unsure. No noise: few points on much shape look noisy, but not rounded. More: what
@@ -373,7 +372,8 @@ Attempt separate_walls(Attempt found, const PointsView& points, const Options& o
     Attempt tried = attempt(with_noise(found.problem, hidden, options), points, options, stages);
     const PlacesOnWalls walls = walls_of(tried, noise);
     const double after = misfit(walls);
-    const bool separates = hides || turned_share(first, walls) >= kDoubtful / 2 || tried.oriented.doubt <= kHalf * found.oriented.doubt;
+    const bool separates =
+        hides || turned_share(first, walls) >= kDoubtful / 2 || tried.oriented.doubt <= kClearlyLess * found.oriented.doubt;
     if (!separates || after >= before || tried.stats.open_share > 0) return found;
     hides = tried.oriented.about_walls.is_two_walls();
     separated = std::move(tried);
@@ -394,6 +394,7 @@ Attempt orient_with_best_noise(const PointsView& points, Known known, const Opti
   best = separate_walls(std::move(best), points, options, stages);
   const bool has_walls = best.problem.noise < estimate || best.oriented.about_walls.is_two_walls();
   const double doubt = best.oriented.doubt;
+  // Kernels for this estimate, or those of clean clouds, hide so much noise, and merge what it merges.
   const double hidden_anyway = std::max(estimate, noise_of_clean_widths() * best.problem.spacing);
   for (const OtherNoise& other : other_noises(best.problem, options, best.oriented)) {
     if (has_walls && other.noise > best.problem.noise) continue;

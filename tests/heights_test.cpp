@@ -14,12 +14,6 @@
 namespace g3r {
 namespace {
 
-// Normal, unlike Random::gaussian(), whose excess kurtosis is -0.1 (Box and Muller 1958).
-double normal(shapes::Random& random) {
-  const double radius = std::sqrt(-2 * std::log(1 - random.uniform()));
-  return radius * std::cos(2 * std::numbers::pi * random.uniform());
-}
-
 // Heights at random places, of a cubic and of what `noise` adds.
 template <typename Noise>
 std::vector<Vec3> heights(std::size_t count, shapes::Random& random, Noise noise) {
@@ -54,7 +48,7 @@ HeightMoments mean_moments(std::size_t count, Draw draw) {
 // Few points as many: the kurtosis of residuals alone would be 0.5 too small for 16.
 TEST(HeightMoments, NormalNoiseHasNoExcessForAnyNumberOfPoints) {
   for (const std::size_t count : {16, 24, 64, 128}) {
-    const HeightMoments m = mean_moments(count, [](shapes::Random& random) { return 0.2 * normal(random); });
+    const HeightMoments m = mean_moments(count, [](shapes::Random& random) { return 0.2 * random.normal(); });
     EXPECT_NEAR(m.excess, 0, 0.08) << count;
     EXPECT_NEAR(m.mean_square, 0.04, 0.001) << count;
   }
@@ -64,7 +58,7 @@ TEST(HeightMoments, TwoWallsHaveTheirShareOfTheVarianceSquared) {
   for (const double half : {0.5, 1.0, 2.0}) {  // standard deviations
     const double share = half * half / (half * half + 1);
     const HeightMoments m =
-        mean_moments(128, [&](shapes::Random& random) { return (random.uniform() < 0.5 ? half : -half) + normal(random); });
+        mean_moments(128, [&](shapes::Random& random) { return (random.uniform() < 0.5 ? half : -half) + random.normal(); });
     EXPECT_NEAR(m.excess, -2 * share * share, 0.03 + 0.1 * share * share) << half;
     EXPECT_NEAR(m.mean_square, 1 + half * half, 0.02 * (1 + half * half));
   }
@@ -73,7 +67,7 @@ TEST(HeightMoments, TwoWallsHaveTheirShareOfTheVarianceSquared) {
 // -1.2 times q^4 / 144 over the variance squared, and uneven noise the other way.
 TEST(HeightMoments, EvenNoiseHasLessAndUnevenNoiseMore) {
   EXPECT_NEAR(mean_moments(128, [](shapes::Random& random) { return random.uniform(-1, 1); }).excess, -1.2, 0.12);
-  EXPECT_GT(mean_moments(128, [](shapes::Random& random) { return random.uniform(0.1, 2) * normal(random); }).excess, 0.5);
+  EXPECT_GT(mean_moments(128, [](shapes::Random& random) { return random.uniform(0.1, 2) * random.normal(); }).excess, 0.5);
 }
 
 TEST(HeightMoments, CubicsAreExactAndHaveNone) {
@@ -88,7 +82,7 @@ TEST(HeightMoments, WallsAreTwoWhereTheMeanExcessIsNoChance) {
     shapes::Random random(11);
     std::vector<HeightMoments> all;
     for (std::size_t k = 0; k < count; ++k) {
-      all.push_back(moments(heights(128, random, [&] { return (random.uniform() < 0.5 ? half : -half) + normal(random); })));
+      all.push_back(moments(heights(128, random, [&] { return (random.uniform() < 0.5 ? half : -half) + random.normal(); })));
     }
     return all;
   };
@@ -108,7 +102,7 @@ TEST(HeightMoments, KnownStepsAreTakenOff) {
   double unknown = 0;
   constexpr int kPatches = 1000;
   for (int k = 0; k < kPatches; ++k) {
-    std::vector<Vec3> points = heights(128, random, [&] { return 0.02 * normal(random); });
+    std::vector<Vec3> points = heights(128, random, [&] { return 0.02 * random.normal(); });
     for (Vec3& p : points) p[2] = std::round(p[2] / 0.25) * 0.25;
     std::vector<std::uint32_t> index(points.size());
     std::iota(index.begin(), index.end(), 0U);
@@ -123,7 +117,7 @@ TEST(HeightMoments, KnownStepsAreTakenOff) {
 TEST(HeightMoments, PointsOnALineHaveNone) {
   shapes::Random random(3);
   std::vector<Vec3> points;
-  for (int i = 0; i < 40; ++i) points.push_back({random.uniform(-1, 1), 0, 0.1 * normal(random)});
+  for (int i = 0; i < 40; ++i) points.push_back({random.uniform(-1, 1), 0, 0.1 * random.normal()});
   const HeightMoments m = moments(points);
   EXPECT_TRUE(std::isfinite(m.mean_square) && std::isfinite(m.excess)) << m.mean_square << " " << m.excess;
 }

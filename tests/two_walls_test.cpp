@@ -17,11 +17,6 @@ namespace {
 
 constexpr std::size_t kPoints = 6000;
 
-double normal(shapes::Random& random) {
-  const double radius = std::sqrt(-2 * std::log(1 - random.uniform()));
-  return radius * std::cos(2 * std::numbers::pi * random.uniform());
-}
-
 // On [-1, 1]^2, `gap` and `noise` in spacings: half of the points on a second wall. Tilted, so that no coordinate is along the walls.
 std::vector<Vec3> walls(double gap, double noise, double waves = 0, std::size_t count = kPoints, std::uint64_t seed = 11) {
   const double h = 2 / std::sqrt(static_cast<double>(count));
@@ -29,7 +24,7 @@ std::vector<Vec3> walls(double gap, double noise, double waves = 0, std::size_t 
   std::vector<Vec3> points;
   for (std::size_t i = 0; i < count; ++i) {
     const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
-    const double z = waves * std::sin(5 * x) * std::cos(4 * y) + (i % 2 == 0 ? gap * h : 0) + noise * h * normal(random);
+    const double z = waves * std::sin(5 * x) * std::cos(4 * y) + (i % 2 == 0 ? gap * h : 0) + noise * h * random.normal();
     points.push_back({0.8 * x - 0.6 * z, y, 0.6 * x + 0.8 * z});
   }
   return points;

@@ -1,6 +1,7 @@
 // Whether walls that were found explain noisy points, and what orient() makes of walls that noise hides.
 #include "orient/walls.h"
 
+#include "base/vector.h"
 #include "cloud/point_set.h"
 #include "shapes.h"
 
@@ -22,15 +23,9 @@ using shapes::Surface;
 
 constexpr double kApart = 0.02;  // of the points of the walls
 
-// Normal, unlike Random::gaussian(), whose excess kurtosis is -0.1 (Box and Muller 1958).
-double normal_deviate(shapes::Random& random) {
-  const double radius = std::sqrt(-2 * std::log(1 - random.uniform()));
-  return radius * std::cos(2 * std::numbers::pi * random.uniform());
-}
-
 void add_noise(Surface& s, double sigma, shapes::Random& random) {
   for (Vec3& p : s.points) {
-    for (double& x : p) x += sigma * normal_deviate(random);
+    for (double& x : p) x += sigma * random.normal();
   }
 }
 
@@ -103,7 +98,7 @@ TEST(Walls, TwoWallsTakenForOneAreHiddenAndWallsThatAreFoundAreNot) {
 TEST(Walls, RoundedHeightsAreOneWall) {
   Surface s = two_walls(0, 0);
   shapes::Random random(7);
-  for (Vec3& p : s.points) p[2] += 0.2 * p[0] + 0.1 * p[1] + 0.1 * kApart * normal_deviate(random);
+  for (Vec3& p : s.points) p[2] += 0.2 * p[0] + 0.1 * p[1] + 0.1 * kApart * random.normal();
   for (Vec3& p : s.points) p[2] = std::round(p[2] / kApart) * kApart;
   const PointSet set(s.points);
   EXPECT_FALSE(excess_about_walls(set, all_up(s), 0.3 * kApart, kApart).may_be_two_walls());
@@ -144,9 +139,8 @@ TEST(Walls, ThatNoiseHidesAreNotSure) {
     const Orientation found = orient(s.points);
     std::size_t wrong_and_sure = 0;
     for (std::size_t i = 0; i < s.points.size(); ++i) {
-      const Vec3& n = found.normals[i];
-      const Vec3& t = s.normals[i];
-      wrong_and_sure += n[0] * t[0] + n[1] * t[1] + n[2] * t[2] < 0 && found.confidence[i] > 0.9F ? 1 : 0;
+      const bool is_wrong = vector::dot(found.normals[i], s.normals[i]) < 0;
+      wrong_and_sure += is_wrong && found.confidence[i] > 0.9F ? 1 : 0;
     }
     EXPECT_LE(wrong_and_sure, 9U) << sigma;  // 0.3 %
     EXPECT_FALSE(found.stats.consistent) << sigma;

@@ -36,5 +36,7 @@ constexpr std::size_t terms_of(std::size_t degree) { return (degree + 1) * (degr
 inline constexpr std::size_t kPlaneTerms = terms_of(1);
 /// Numbers of a quadratic height field, 1, u, v, u^2, uv, v^2: one point more says how far they are off.
 inline constexpr std::size_t kQuadraticTerms = terms_of(2);
+/// Numbers of a cubic height field, whose residuals follow the noise on more points than those of a quadratic.
+inline constexpr std::size_t kCubicTerms = terms_of(3);
 
 }  // namespace g3r

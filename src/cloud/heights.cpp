@@ -15,7 +15,7 @@
 namespace g3r {
 namespace {
 
-constexpr Eigen::Index kColumns = terms_of(3);
+constexpr Eigen::Index kColumns = kCubicTerms;
 constexpr double kExcess = -0.2;  // of the kurtosis of walls 1.35 standard deviations apart; rough ground has -0.1 at most
 
 }  // namespace

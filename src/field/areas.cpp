@@ -36,7 +36,7 @@ std::vector<Vec3> area_vectors(const PointSet& set, const std::vector<Vec3>& nor
   if (!surfaces.part.empty()) {
     std::vector<double> closed;
     for (std::size_t i = 0; i < winding.size(); ++i) {
-      if (surfaces.part[i] == OpenSurfaces::kNone) closed.push_back(winding[i]);
+      if (!surfaces.is_open(i)) closed.push_back(winding[i]);
     }
     if (closed.empty()) return eta;
     winding = std::move(closed);

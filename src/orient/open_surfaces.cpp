@@ -428,7 +428,7 @@ void find_among(const std::vector<std::uint32_t>& some, const PointSet& set, dou
 double unsure_share(const OpenSurfaces& surfaces, const std::vector<float>& confidence) {
   std::size_t unsure = 0;
   for (std::size_t i = 0; i < confidence.size(); ++i) {
-    const bool is_open = !surfaces.part.empty() && surfaces.part[i] != OpenSurfaces::kNone;
+    const bool is_open = surfaces.is_open(i);
     const bool not_shown = !is_open && confidence[i] == kUndecided && confidence.size() >= kFewestSites;
     unsure += confidence[i] < kUndecided || not_shown ? 1 : 0;
   }

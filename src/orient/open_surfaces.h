@@ -34,6 +34,9 @@ struct OpenSurfaces {
                                      ///< open surfaces, that the side of a point agrees with those around it
   float uncertified = kUndecided;    ///< confidence, at most, of a side that it does not show: a choice, or under noise none
   std::vector<std::uint8_t> agrees;  ///< N: 1 on open surfaces whose sides agree (their mean jump defect is small), 0 elsewhere
+
+  /// Whether point i lies on an open surface; also of points beyond N, such as outliers, which do not.
+  [[nodiscard]] bool is_open(std::size_t i) const { return i < part.size() && part[i] != kNone; }
 };
 
 /// The equations are true of the boundary of a solid. A surface without an inside (terrain, one depth frame, a dental arch) satisfies them

@@ -106,7 +106,7 @@ std::vector<std::uint32_t> solved_points(const Solution& solution) {
 void set_open_areas(const OpenSurfaces& surfaces, const PointSet& set, const std::vector<Vec3>& normals, std::vector<Vec3>& eta) {
   const std::vector<double>& spacing = set.local_spacing();
   for (std::size_t i = 0; i < surfaces.part.size(); ++i) {
-    if (surfaces.part[i] == OpenSurfaces::kNone) continue;
+    if (!surfaces.is_open(i)) continue;
     for (std::size_t a = 0; a < 3; ++a) eta[i][a] = spacing[i] * spacing[i] * normals[i][a];
   }
 }

@@ -15,8 +15,6 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kCubicTerms = terms_of(3);
-
 std::size_t stride_of_places(const PointSet& set) { return 1 + set.size() / kPlaces; }
 std::size_t count_of_places(const PointSet& set) { return (set.size() + stride_of_places(set) - 1) / stride_of_places(set); }
 

@@ -27,9 +27,9 @@ struct PlacesOnWalls {
 /// if there is none. O(M).
 [[nodiscard]] double turned_share(const PlacesOnWalls& before, const PlacesOnWalls& after);
 
-/// The excess kurtosis of the heights of the points on the side (SameSide) of each of these places over a cubic, within twice the reach of
-/// the quadratics: below 0 where two walls that the noise hides are taken for one (MeanExcess). Of the places that have twice as many
-/// points on their side as a cubic has terms; 0 if there are none. Arguments as above. A fit for each place.
+/// The excess kurtosis of the heights of the points on the side (SameSide) of each of these places over a cubic, within twice the reach
+/// of the quadratics and 5 times the noise: below 0 where two walls that the noise hides are taken for one (MeanExcess). Of the places that
+/// have twice as many points on their side as a cubic has terms; 0 if there are none. Arguments as above. A fit for each place.
 [[nodiscard]] MeanExcess excess_about_walls(const PointSet& set, const std::vector<Vec3>& normals, double noise, double spacing);
 
 }  // namespace g3r
