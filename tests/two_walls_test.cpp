@@ -35,7 +35,7 @@ bool found(const std::vector<Vec3>& points, double noise) {
   const Sites sites = place_sites(cloud.set, noise > 0 ? 1.5 * cloud.set.spacing() : 0);
   std::vector<std::uint32_t> all(sites.size());
   std::iota(all.begin(), all.end(), 0U);
-  return on_two_walls(cloud.set, sites, all, noise * cloud.set.spacing());
+  return on_two_walls(cloud.set, sites, all, noise * cloud.set.spacing(), std::vector<double>(sites.size(), 0), 1);
 }
 
 TEST(TwoWalls, OneSurfaceIsNone) {
@@ -47,6 +47,31 @@ TEST(TwoWalls, OneSurfaceIsNone) {
 
 TEST(TwoWalls, AreFoundWithoutNoise) {
   for (const double gap : {0.2, 0.5, 1.0}) EXPECT_TRUE(found(walls(gap, 0), 0)) << gap;
+}
+
+// Scans that overlap and are a little off each other are two walls where they overlap, and so is a plate with a rim. What makes a field
+// restless on account of walls does so where these are.
+TEST(TwoWalls, AreNoReasonForUnrestBesideThem) {
+  const std::vector<Vec3> two = walls(0.5, 0.02);
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < two.size(); ++i) {
+    if (i % 2 == 1 || two[i][1] < 0.4) points.push_back(two[i]);
+  }
+  const CanonicalCloud cloud = canonical_cloud(PointsView(points));
+  const Sites sites = place_sites(cloud.set, 0);
+  std::vector<std::uint32_t> all(sites.size());
+  std::iota(all.begin(), all.end(), 0U);
+  const double rim = cloud.frame.to_unit({0, 0.4, 0})[1];
+  const auto found_with = [&](double on_walls, double beside) {
+    std::vector<double> unrest;
+    for (const Vec3& p : sites.points()) unrest.push_back(p[1] < rim ? on_walls : beside);
+    return on_two_walls(cloud.set, sites, all, 0, unrest, 0.08);
+  };
+  EXPECT_TRUE(found_with(0.2, 0.03));
+  EXPECT_TRUE(found_with(0.2, 0.1));
+  EXPECT_TRUE(found_with(0.05, 0.06));
+  EXPECT_FALSE(found_with(0.1, 0.1));
+  EXPECT_FALSE(found_with(0.1, 0.2));
 }
 
 // The fewer neighbourhoods a surface has, the likelier is it that all of them look like two walls by chance.

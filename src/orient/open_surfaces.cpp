@@ -105,7 +105,10 @@ class Search {
     return g3r::jump_defects(finest_, std::move(normals), sums_, cancel_);
   }
 
-  [[nodiscard]] bool has_two_walls(std::uint32_t part) const { return on_two_walls(set_, finest_, members_[part], noise_); }
+  // `unrest`: of the sites.
+  [[nodiscard]] bool has_two_walls(std::uint32_t part, const std::vector<double>& unrest) const {
+    return on_two_walls(set_, finest_, members_[part], noise_, unrest, kUnrest);
+  }
 
   // Twice the mean of w at the sites of a part, w of that part alone: 1 on a closed surface, 0 on a plane, -1 on one inside out.
   [[nodiscard]] double enclosure(std::uint32_t part, const std::vector<Vec3>& normals) const {
@@ -290,7 +293,8 @@ struct Verdict {
 };
 
 // From the field of the given normals, unrest and jump defects being means of the parts.
-Verdict suspect(const Search& search, const std::vector<double>& unrest, const std::vector<double>& defect, double noise) {
+Verdict suspect(const Search& search, const Certificate& given, const std::vector<double>& unrest, const std::vector<double>& defect,
+                double noise) {
   const std::size_t parts = search.parts();
   const std::vector<std::uint8_t> none(parts, 0);
   Verdict verdict{
@@ -298,7 +302,7 @@ Verdict suspect(const Search& search, const std::vector<double>& unrest, const s
   for (std::uint32_t p = 0; p < parts; ++p) {
     if (search.size(p) < kFewestSites) continue;
     if (unrest[p] <= kUnrest && defect[p] <= (noise > 0 ? kNoJumpNoisy : kNoJump)) continue;
-    verdict.is_open[p] = search.has_two_walls(p) ? 0 : 1;
+    verdict.is_open[p] = search.has_two_walls(p, given.unrest) ? 0 : 1;
     verdict.is_doubtful[p] = verdict.is_open[p] == 0 && unrest[p] > kUnrest ? 1 : 0;
   }
   return verdict;
@@ -464,7 +468,7 @@ OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan
   const Certificate given = search.test(normals);
   const std::vector<double> unrest = search.mean_of_parts(given.unrest);
   const std::vector<double> defect = search.mean_of_parts(given.jump_defect);
-  Verdict verdict = suspect(search, unrest, defect, noise);
+  Verdict verdict = suspect(search, given, unrest, defect, noise);
   const std::vector<std::uint32_t> suspects = points_of(search, verdict.is_open);
   const bool are_some = !suspects.empty() && suspects.size() < set.size();
   if (are_some) std::fill(verdict.is_open.begin(), verdict.is_open.end(), std::uint8_t{0});

@@ -4,10 +4,13 @@
 #include "cloud/constants.h"
 #include "cloud/heights.h"
 #include "cloud/layers.h"
+#include "cloud/neighbours.h"
 #include "cloud/noise.h"
 #include "cloud/quadratic_patch.h"
+#include "cloud/spacing.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -17,23 +20,25 @@ namespace {
 constexpr double kExact = 0.01;            // site spacings: deviations below are as good as none
 constexpr std::size_t kNoisyPoints = 128;  // the same under noise: fewer follow the noise, more the shape
 
-// Calls visit(site, its `count` nearest points in canonical order).
+// Calls visit(site, its `count` nearest points in canonical order) for `places` to twice as many of the members.
 template <typename Visit>
-void for_some(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members, std::size_t count, Visit visit) {
+void for_some(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members, std::size_t places, std::size_t count,
+              Visit visit) {
   std::vector<std::uint32_t> index;
   std::vector<double> squared;
-  for (std::size_t k = 0; k < members.size(); k += std::max<std::size_t>(1, members.size() / kFewPlaces)) {
+  for (std::size_t k = 0; k < members.size(); k += std::max<std::size_t>(1, members.size() / places)) {
     set.tree().nearest(sites.points()[members[k]], count, index, squared);
     std::sort(index.begin(), index.end());
     visit(members[k], index);
   }
 }
 
-bool on_exact_walls(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members) {
+// How much likelier two walls are than one around some of the members: visit(site, gain per point) for each.
+template <typename Visit>
+void for_gains(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members, std::size_t places, Visit visit) {
   const std::vector<Vec3>& points = set.points();
   const Vec3 steps = rounding_steps(points, set.spacing());
-  std::vector<double> gain;
-  for_some(set, sites, members, 2 * kPatchNeighbours, [&](std::uint32_t s, const std::vector<std::uint32_t>& index) {
+  for_some(set, sites, members, places, 2 * kPatchNeighbours, [&](std::uint32_t s, const std::vector<std::uint32_t>& index) {
     const double spacing = sites.spacing()[s];
     const double one = quadratic_residual(points, index.data(), index.size(), sites.axis[s], spacing);
     const TwoLayers two = fit_two_layers(points, index.data(), index.size(), sites.axis[s]);
@@ -42,9 +47,45 @@ bool on_exact_walls(const PointSet& set, const Sites& sites, const std::vector<s
     double rounding = 0;
     for (std::size_t a = 0; a < 3; ++a) rounding += std::abs(sites.axis[s][a]) * steps[a];
     const double cost = (rounding > exact ? 2 : 1) * std::numbers::ln2;
-    gain.push_back((thin ? std::log(std::max(one, exact) / std::max(two.deviation, exact)) : 0) - cost);
+    visit(s, (thin ? std::log(std::max(one, exact) / std::max(two.deviation, exact)) : 0) - cost);
   });
-  return median(gain) > 0;
+}
+
+// Whether the field is as restless where there is one wall as where there are two.
+bool is_restless_beside_walls(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members,
+                              const std::vector<double>& unrest, double rest) {
+  std::vector<Vec3> places;
+  std::vector<std::uint32_t> site;
+  std::vector<std::uint8_t> on_two;
+  for_gains(set, sites, members, kPlaces, [&](std::uint32_t s, double gain) {
+    if (unrest[s] < 0) return;
+    places.push_back(sites.points()[s]);
+    site.push_back(s);
+    on_two.push_back(gain > 0 ? 1 : 0);
+  });
+  const Neighbours tree(places);
+  std::array<double, 2> sum{};
+  std::array<std::size_t, 2> count{};
+  std::vector<std::uint32_t> index;
+  std::vector<double> squared;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    tree.nearest(places[k], kClosest + 1, index, squared);
+    std::size_t twos = 0;
+    for (const std::uint32_t q : index) twos += on_two[q];
+    if (std::min(twos, index.size() - twos) > 1) continue;  // a rim of the walls, or chance
+    const std::size_t kind = twos > 1 ? 1 : 0;
+    sum[kind] += unrest[site[k]];
+    ++count[kind];
+  }
+  if (count[0] < kFewestSites) return false;
+  const double beside = sum[0] / static_cast<double>(count[0]);
+  return beside > rest && beside * static_cast<double>(count[1]) >= sum[1];
+}
+
+bool on_exact_walls(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members) {
+  std::vector<double> gains;
+  for_gains(set, sites, members, kFewPlaces, [&](std::uint32_t, double gain) { gains.push_back(gain); });
+  return median(std::move(gains)) > 0;
 }
 
 bool on_noisy_walls(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members) {
@@ -52,7 +93,7 @@ bool on_noisy_walls(const PointSet& set, const Sites& sites, const std::vector<s
   if (points.size() < kNoisyPoints) return false;
   const Vec3 steps = rounding_steps(points, set.spacing());
   std::vector<HeightMoments> places;
-  for_some(set, sites, members, kNoisyPoints, [&](std::uint32_t s, const std::vector<std::uint32_t>& index) {
+  for_some(set, sites, members, kFewPlaces, kNoisyPoints, [&](std::uint32_t s, const std::vector<std::uint32_t>& index) {
     places.push_back(height_moments(points, index.data(), index.size(), sites.axis[s], sites.spacing()[s], steps));
   });
   const double held = static_cast<double>(members.size()) * static_cast<double>(points.size()) / static_cast<double>(sites.size());
@@ -61,8 +102,10 @@ bool on_noisy_walls(const PointSet& set, const Sites& sites, const std::vector<s
 
 }  // namespace
 
-bool on_two_walls(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members, double noise) {
-  return on_exact_walls(set, sites, members) || (noise > 0 && on_noisy_walls(set, sites, members));
+bool on_two_walls(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members, double noise,
+                  const std::vector<double>& unrest, double rest) {
+  if (noise > 0 && on_noisy_walls(set, sites, members)) return true;
+  return on_exact_walls(set, sites, members) && !is_restless_beside_walls(set, sites, members, unrest, rest);
 }
 
 }  // namespace g3r
