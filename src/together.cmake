@@ -19,7 +19,8 @@ g3r_together(solvers cloud/sites solve/dense_solver solve/iterative_solver field
 g3r_together(orient sum/device_scope metrics/triangle_tree orient/certificate orient/coarse_to_fine orient/creases orient/planes
              orient/polish orient/problem orient/sign_graph orient/solution)
 g3r_together(steps orient/facets orient/hints orient/apply_hints orient/steps names reconstruct)
-g3r_together(jets orient/jets orient/open_surfaces pipeline)
+g3r_together(jets orient/jets orient/open_surfaces pipeline orient/assess orient/attempt orient/callers_order orient/describe
+             orient/noise_choice orient/outlier_normals orient/separate_walls)
 
 g3r_together(fields mesh/automatic_depth mesh/box_tree mesh/carry_attributes mesh/check_mesh mesh/component_support mesh/crossings
              mesh/exact_orientation mesh/field_contour mesh/field_corners mesh/field_denoise mesh/field_mesher mesh/field_octree

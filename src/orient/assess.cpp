@@ -1,0 +1,123 @@
+#include "orient/assess.h"
+
+#include "base/percent.h"
+#include "orient/confidence.h"
+#include "orient/polish.h"
+#include "orient/walls.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+namespace g3r {
+namespace {
+
+std::vector<float> confidence_of_solution(const Problem& problem, const Solution& solution) {
+  const Refinement& refined = solution.refinement;
+  if (problem.noise > 0) {
+    const Sums around = sums_over(problem.cloud.set.near(), solution.eta);
+    return side_confidence(around.vectors, refined.normals, refined.strength, around.lengths);
+  }
+  const std::vector<double> areas = point_areas(problem.settings, problem.cloud.set.smoothed_spacing());
+  return side_confidence(solution.eta, refined.normals, refined.strength, areas);
+}
+
+// The sides of points on open surfaces do not come from the equations, and their confidence neither.
+void add_open_surfaces(const OpenSurfaces& surfaces, std::vector<float>& confidence, Stats& stats) {
+  if (surfaces.part.empty()) return;
+  std::size_t open = 0;
+  std::size_t undecided = 0;
+  std::size_t agreed = 0;
+  for (std::size_t i = 0; i < surfaces.part.size(); ++i) {
+    if (!surfaces.is_open(i)) {
+      confidence[i] *= surfaces.certainty[i];
+      continue;
+    }
+    confidence[i] = surfaces.certainty[i];
+    ++open;
+    agreed += surfaces.agrees[i];
+    undecided += surfaces.certainty[i] <= kUndecided ? 1 : 0;
+  }
+  if (open == 0) return;
+  const auto all = static_cast<double>(confidence.size());
+  stats.open_share = static_cast<double>(open) / all;
+  stats.undecided_share = static_cast<double>(undecided) / all;
+  stats.warnings.push_back("open: " + percent(stats.open_share) + " of the points lie on surfaces without an inside; " +
+                           (agreed == open ? "their sides are consistent" : "their sides do not agree everywhere"));
+}
+
+// Sides of closed surfaces that their field does not show to be right are worth less, those on open ones that do not agree nothing. Where
+// noise hides walls, the field of one wall is right, and half of the points are on the other.
+void certify_sides(const OpenSurfaces& surfaces, bool hides_walls, std::vector<float>& confidence) {
+  for (std::size_t i = 0; i < surfaces.certified.size(); ++i) {
+    const float least = surfaces.is_open(i) ? 0 : std::min(confidence[i], surfaces.uncertified);
+    confidence[i] = least + (confidence[i] - least) * surfaces.certified[i];
+  }
+  if (!hides_walls) return;
+  for (std::size_t i = 0; i < confidence.size(); ++i) {
+    if (!surfaces.is_open(i)) confidence[i] *= kUndecided;
+  }
+}
+
+void judge(const OpenSurfaces& surfaces, const std::vector<float>& confidence, Stats& stats) {
+  double sum = 0;
+  for (const float c : confidence) sum += static_cast<double>(c);
+  stats.confidence_mean = sum / static_cast<double>(confidence.size());
+  stats.confidence_below_half = unsure_share(confidence);
+  const double unsure = unsure_share(surfaces, confidence);
+  if (stats.open_share == 1) stats.converged = true;  // no side and no direction comes from the equations
+  if (!stats.converged) {
+    stats.warnings.emplace_back("the solver did not reach its tolerance; normals may be less accurate");
+  }
+  stats.consistent = unsure + stats.undecided_share <= kManyUnsure;
+  if (unsure > kManyUnsure) {
+    stats.warnings.push_back("orientation not consistent: " + percent(unsure) +
+                             " of the points could face either way; the cloud may be open, very noisy or too sparse");
+  }
+}
+
+// The share of the wanted points for which is_so(i); of all, if none is.
+template <class IsSo>
+double share_of_wanted(const Problem& problem, const IsSo& is_so) {
+  const std::vector<std::uint8_t>& wanted = problem.known.wanted;
+  const bool all = std::none_of(wanted.begin(), wanted.end(), [](std::uint8_t w) { return w != 0; });
+  std::size_t points = 0;
+  std::size_t so = 0;
+  for (std::size_t i = 0; i < problem.cloud.size(); ++i) {
+    if (!all && wanted[i] == 0) continue;
+    ++points;
+    so += is_so(i) ? 1 : 0;
+  }
+  return static_cast<double>(so) / static_cast<double>(points);
+}
+
+}  // namespace
+
+Oriented assess(const Problem& problem, Solution solution, Stats& stats) {
+  Oriented out;
+  out.solution = std::move(solution);
+  out.confidence = confidence_of_solution(problem, out.solution);
+  const OpenSurfaces& surfaces = out.solution.open_surfaces;
+  add_open_surfaces(surfaces, out.confidence, stats);
+  const auto is_open = [&](std::size_t i) { return surfaces.is_open(i); };
+  out.agreed = share_of_wanted(problem, [&](std::size_t i) { return is_open(i) && surfaces.agrees[i] != 0; });
+  out.doubt = share_of_wanted(problem, [&](std::size_t i) { return out.confidence[i] < kUndecided; }) + share_of_wanted(problem, is_open);
+  if (problem.noise > 0 && stats.open_share < 1 && !problem.cloud.set.views().known()) {
+    out.about_walls = excess_about_walls(problem.cloud.set, out.solution.refinement.normals, problem.noise, problem.spacing);
+  }
+  const bool hides_walls = out.about_walls.is_two_walls();
+  if (!contains(problem.settings.without, Step::kCertificate)) {
+    certify_sides(surfaces, hides_walls, out.confidence);
+    limit_to_evidence(problem.cloud.size(), out.confidence);
+  }
+  if (hides_walls) {
+    stats.warnings.emplace_back(
+        "two layers: the points lie about their surface as about two that are too close together for their noise: a wall that needs more "
+        "points or less noise, or scans that have to be aligned");
+  }
+  judge(surfaces, out.confidence, stats);
+  return out;
+}
+
+}  // namespace g3r

@@ -1,0 +1,75 @@
+#include "orient/describe.h"
+
+#include "cloud/noise.h"
+#include "cloud/spacing.h"
+#include "cpu/parallel.h"
+
+#include <g3r/names.h>
+
+#include <algorithm>
+#include <string>
+
+namespace g3r {
+namespace {
+
+// Dimension from which points fill a volume: cubes and balls have 2.57 and more, surfaces under noise of 2 h at most 2.45.
+constexpr double kVolume = 2.55;
+
+void describe_baseline(const Problem& problem, Stats& stats) {
+  stats.epsilon = problem.cloud.frame.length_to_world(problem.baseline->epsilon);
+  stats.solver = problem.settings.method == Method::kWnnc ? "wnnc" : "cg";
+  stats.harmonics = std::string(1, '1');
+  stats.tolerance = problem.baseline->tolerance;
+  stats.planned_memory_bytes += baseline_memory(*problem.baseline, problem.spacing, problem.cloud.size());
+}
+
+void warn_of_points(const Problem& problem, Stats& stats) {
+  if (stats.dropped_non_finite > 0) {
+    stats.warnings.push_back(std::to_string(stats.dropped_non_finite) + " points with a non-finite coordinate were left out");
+  }
+  if (problem.spacing <= kLeastSpacing) {
+    stats.warnings.emplace_back(
+        "the points are closer together than a millionth of the cloud's width, too close for the solver: "
+        "treat parts that are far apart one by one");
+  }
+  if (is_flat(problem.cloud)) {
+    stats.warnings.emplace_back("the cloud is flat (all points in one plane): which side is outside is a choice");
+  }
+}
+
+}  // namespace
+
+void describe(const Problem& problem, const PointsView& points, const Options& options, Stats& stats) {
+  const CanonicalCloud& cloud = problem.cloud;
+  const Settings& settings = problem.settings;
+  stats.points = points.count;
+  stats.used = cloud.size();
+  stats.dropped_non_finite = cloud.non_finite;
+  stats.outliers = problem.outliers.size();
+  stats.merged_duplicates = points.count - cloud.non_finite - cloud.size() - problem.outliers.size();
+  stats.box_centre = cloud.frame.centre;
+  stats.box_side = kBoxSide / cloud.frame.scale;
+  stats.spacing = cloud.frame.length_to_world(problem.spacing);
+  stats.noise = cloud.frame.length_to_world(std::max(problem.noise, problem.view_noise));
+  stats.epsilon = cloud.frame.length_to_world(settings.epsilon.typical());
+  stats.preset = name_of(options.preset);
+  stats.method = name_of(settings.method);
+  stats.solver = name_of(settings.dense ? Solver::kDense : Solver::kConjugateGradient);
+  stats.harmonics = settings.method == Method::kGreen ? format_harmonics(settings.harmonics) : "1,x,y,z";
+  stats.sums = settings.dense || settings.sums.direct ? "direct" : "hierarchical";
+  stats.accuracy = settings.sums.direct ? 0 : settings.accuracy;
+  stats.tolerance = starts_coarse(settings, cloud.size()) ? settings.continued_tolerance : settings.tolerance;
+  stats.threads = parallel::thread_count(options.threads);
+  stats.planned_memory_bytes = planned_memory(settings, points.count, cloud.size());
+  if (problem.baseline) describe_baseline(problem, stats);
+  warn_of_points(problem, stats);
+}
+
+void warn_of_volume(const Problem& problem, Stats& stats) {
+  if (problem.settings.cluster_side == 0) return;
+  if (dimension(problem.cloud.set) < kVolume) return;
+  stats.consistent = false;
+  stats.warnings.emplace_back("the points fill a volume: there is no surface, or the noise hides it");
+}
+
+}  // namespace g3r

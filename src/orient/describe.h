@@ -1,0 +1,19 @@
+// What a report says of a cloud and of its problem, before anything is solved.
+#pragma once
+
+#include "orient/problem.h"
+
+#include <g3r/g3r.h>
+
+namespace g3r {
+
+/// Writes into `stats` how many points there are and what became of them, the box, spacing, noise and width of the kernels in the units of
+/// `points`, the method, and the memory that the solve takes. Warns of points that are not finite, that are too close together for the
+/// solver, and that all lie in one plane. `problem`: made of these points with these options. O(N).
+void describe(const Problem& problem, const PointsView& points, const Options& options, Stats& stats);
+
+/// Calls the result inconsistent, with a warning, where the points fill a volume (dimension()): there is no surface then, or the noise
+/// hides it. Only of problems that are solved for on clusters: to estimate_noise() a volume looks like noise of 0.75 spacings and more.
+void warn_of_volume(const Problem& problem, Stats& stats);
+
+}  // namespace g3r

@@ -1,0 +1,69 @@
+#include "orient/noise_choice.h"
+
+#include "cloud/noise.h"
+#include "orient/confidence.h"
+#include "orient/separate_walls.h"
+#include "orient/settings.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+namespace g3r {
+namespace {
+
+// Times the estimate, the scatter that speaks against it; times the scatter, the noise that is tried: kernels have to hide all of it.
+constexpr double kAboveScatter = 1.4;
+// The doubt that is left, of what there is, with more noise than the points speak for: noise hides thin walls and all doubt about them.
+constexpr double kHardlyAny = 0.2;
+// Points up to which shape looks like noise, so that none is tried too: with more it costs time and is never taken.
+constexpr std::size_t kFewPoints = 2500;
+
+bool may_try_noises(const Problem& problem, const Options& options) {
+  const bool on_points = problem.line_distance == 0;  // sites have a noise of their own
+  const bool sides_known = problem.cloud.set.views().known();
+  return on_points && !sides_known && problem.settings.method == Method::kEnergy && options.preset != Preset::kPaper &&
+         options.epsilon.unit == Length::Unit::kAuto && options.noise.unit == Length::Unit::kAuto && options.schedule.empty() &&
+         !contains(problem.settings.without, Step::kNoise) && !contains(problem.settings.without, Step::kNoiseChoice);
+}
+
+}  // namespace
+
+std::vector<OtherNoise> other_noises(const Problem& problem, const Oriented& found) {
+  if (found.doubt < kDoubtful) return {};
+  const PointSet& set = problem.cloud.set;
+  const double scatter = largest_scatter(set);
+  const double least = noise_of_clean_widths() * problem.spacing;  // less blurs no less, and leaves more unsure
+  const double unsure = found.doubt - found.agreed;
+  std::vector<OtherNoise> noises;
+  const double rounding = rounding_deviation(set);
+  if (rounding > problem.noise) noises.push_back({rounding});
+  if (kAboveScatter * scatter <= least && unsure < kDoubtful) return noises;
+  if (set.size() <= kFewPoints && problem.noise > rounding_noise(set)) noises.push_back({0});
+  if (scatter > kAboveScatter * problem.noise) {
+    noises.push_back({std::max(kAboveScatter * scatter, least)});
+  } else if (problem.noise > 0 && unsure >= kDoubtful) {
+    noises.push_back({kAboveScatter * problem.noise, kHardlyAny});
+  }
+  return noises;
+}
+
+Attempt with_best_noise(Attempt first, const PointsView& points, const Options& options, Stages& stages) {
+  if (!may_try_noises(first.problem, options)) return first;
+  const double estimate = first.problem.noise;
+  Attempt best = separate_walls(std::move(first), points, options, stages);
+  const bool has_walls = best.problem.noise < estimate || best.oriented.about_walls.is_two_walls();
+  const double doubt = best.oriented.doubt;
+  // Kernels for this estimate, or those of clean clouds, hide so much noise, and merge what it merges.
+  const double hidden_anyway = std::max(estimate, noise_of_clean_widths() * best.problem.spacing);
+  for (const OtherNoise& other : other_noises(best.problem, best.oriented)) {
+    if (has_walls && other.noise > best.problem.noise) continue;
+    Attempt tried = attempt(with_noise(best.problem, other.noise, options), points, options, stages);
+    const double most = std::min(other.most_doubt * doubt, best.oriented.doubt);
+    const bool merges_walls = narrower(other.noise) > hidden_anyway && tried.oriented.about_walls.may_be_two_walls();
+    if (tried.oriented.doubt <= most && !merges_walls) best = std::move(tried);
+  }
+  return best;
+}
+
+}  // namespace g3r
