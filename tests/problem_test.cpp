@@ -1,5 +1,6 @@
 #include "orient/problem.h"
 
+#include "problems.h"
 #include "shapes.h"
 
 #include <gtest/gtest.h>
@@ -10,11 +11,7 @@
 namespace g3r {
 namespace {
 
-Problem prepared(const std::vector<Vec3>& points, const Options& options = {}) {
-  const Monitor monitor;
-  Stages stages(monitor);
-  return prepare(points, {}, options, stages);
-}
+using problems::prepared;
 
 TEST(Prepare, DoesNotDependOnUnitsOrPlace) {
   std::vector<Vec3> points = shapes::sphere(600).points;

@@ -1,0 +1,104 @@
+// What a report says of a cloud: every point is counted once, lengths are the caller's, volumes are no surfaces.
+#include "orient/describe.h"
+
+#include "problems.h"
+#include "shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace g3r {
+namespace {
+
+Stats described(const std::vector<Vec3>& points, const Options& options = {}) {
+  Stats stats;
+  describe(problems::prepared(points, options), points, options, stats);
+  return stats;
+}
+
+TEST(Describe, CountsEveryPointOnce) {
+  std::vector<Vec3> points = shapes::sphere(600).points;
+  points.push_back(points[7]);
+  points.push_back(points[7]);
+  points.push_back({std::numeric_limits<double>::quiet_NaN(), 0, 0});
+  points.push_back({40, 0, 0});
+  const Stats stats = described(points);
+  EXPECT_EQ(stats.points, 604U);
+  EXPECT_EQ(stats.used, 600U);
+  EXPECT_EQ(stats.merged_duplicates, 2U);
+  EXPECT_EQ(stats.dropped_non_finite, 1U);
+  EXPECT_EQ(stats.outliers, 1U);
+  ASSERT_EQ(stats.warnings.size(), 1U);
+  EXPECT_NE(stats.warnings[0].find("non-finite"), std::string::npos);
+}
+
+TEST(Describe, LengthsAreInTheUnitsOfThePoints) {
+  std::vector<Vec3> points = shapes::sphere(2000, 0.9).points;
+  Options options;
+  options.noise = {Length::Unit::kSpacing, 0.25};
+  const Stats stats = described(points, options);
+  EXPECT_NEAR(stats.spacing, 0.9 * std::sqrt(4 * std::numbers::pi / 2000), 0.05 * stats.spacing);
+  EXPECT_NEAR(stats.box_side, 1.8, 0.01);
+  EXPECT_NEAR(stats.noise, 0.25 * stats.spacing, 1e-12);
+  for (Vec3& p : points) {
+    for (double& c : p) c *= 1024;  // exact
+  }
+  const Stats larger = described(points, options);
+  EXPECT_EQ(larger.spacing, 1024 * stats.spacing);
+  EXPECT_EQ(larger.box_side, 1024 * stats.box_side);
+  EXPECT_EQ(larger.noise, 1024 * stats.noise);
+  EXPECT_EQ(larger.epsilon, 1024 * stats.epsilon);
+  EXPECT_EQ(larger.planned_memory_bytes, stats.planned_memory_bytes);
+}
+
+TEST(Describe, EarlierMethodsTakeTheirOwnMemory) {
+  const std::vector<Vec3> points = shapes::sphere(2000).points;
+  Options options;
+  options.method = Method::kWnnc;
+  const Stats stats = described(points, options);
+  EXPECT_EQ(stats.method, "wnnc");
+  EXPECT_EQ(stats.harmonics, "1");
+  EXPECT_GT(stats.planned_memory_bytes, described(points).planned_memory_bytes);
+}
+
+TEST(Describe, OfAPlaneTheOutsideIsAChoice) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 20; ++i) {
+    for (int j = 0; j < 20; ++j) points.push_back({static_cast<double>(i), static_cast<double>(j), 3});
+  }
+  const Stats flat = described(points);
+  ASSERT_EQ(flat.warnings.size(), 1U);
+  EXPECT_NE(flat.warnings[0].find("flat"), std::string::npos);
+  points[0][2] = 4;
+  EXPECT_TRUE(described(points).warnings.empty());
+}
+
+// As many points in a ball as on its surface, both taken for as noisy.
+TEST(WarnOfVolume, IsThatOfABallAndNotOfItsSurface) {
+  shapes::Surface sphere = shapes::sphere(6000);
+  shapes::Random random(3);
+  std::vector<Vec3> ball;
+  for (const Vec3& p : sphere.points) ball.push_back(vector::scale(p, std::cbrt(random.uniform())));
+  Options options;
+  options.noise = {Length::Unit::kSpacing, 2};
+  options.without = "outliers";
+  shapes::scatter(sphere, 2 * described(sphere.points, options).spacing);
+  Stats of_ball, of_sphere, of_clean_ball;
+  warn_of_volume(problems::prepared(ball, options), of_ball);
+  EXPECT_FALSE(of_ball.consistent);
+  EXPECT_EQ(of_ball.warnings.size(), 1U);
+  warn_of_volume(problems::prepared(sphere.points, options), of_sphere);
+  EXPECT_TRUE(of_sphere.consistent);
+  EXPECT_TRUE(of_sphere.warnings.empty());
+  options.noise.value = 0;  // who says that there is no noise says that there is a surface
+  warn_of_volume(problems::prepared(ball, options), of_clean_ball);
+  EXPECT_TRUE(of_clean_ball.consistent);
+}
+
+}  // namespace
+}  // namespace g3r
