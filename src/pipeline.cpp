@@ -9,6 +9,7 @@
 #include "orient/describe.h"
 #include "orient/hints.h"
 #include "orient/noise_choice.h"
+#include "orient/noisy_surface.h"
 #include "orient/outlier_normals.h"
 #include "orient/problem.h"
 #include "orient/solution.h"

@@ -1,9 +1,12 @@
 #include "orient/attempt.h"
 
 #include "orient/describe.h"
+#include "orient/noisy_surface.h"
 #include "orient/open_surfaces.h"
 #include "orient/open_to_views.h"
 #include "orient/solution.h"
+#include "orient/solve_apart.h"
+#include "orient/solve_on_sites.h"
 
 #include <utility>
 #include <vector>
@@ -13,8 +16,8 @@ namespace {
 
 Solution solve_problem(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
   if (is_seen_in_noise(problem)) return solve_by_sight(problem, stages, stats);
-  Solution solution = solve(problem, options, stages, stats);
-  solve_open_surfaces_apart(problem, options, stages, stats, solution);
+  Solution solution =
+      problem.line_distance > 0 ? solve_on_sites(problem, options, stages, stats) : solve_parts(problem, options, stages, stats);
   if (const Views& views = problem.cloud.set.views(); views.known()) {
     open_to_views(views, problem.cloud.points(), solution.open_surfaces, solution.refinement.normals, solution.eta);
   }

@@ -43,6 +43,9 @@ void limit_to_evidence(std::size_t points, std::vector<float>& confidence);
 /// Share of unsure sides from which more steps and other noises are tried: few clean clouds leave as many, and with a larger share thin
 /// parts, and scans that do not fit onto each other, would stay wrong.
 inline constexpr double kDoubtful = 0.05;
+/// Share of the points on a doubtful side, from which facets or projected points are solved for, and once more: fewer are not worth it.
+inline constexpr double kMinMinority = 1e-3;
+inline constexpr int kMostRounds = 3;       ///< of facets, as points on none come right after those on one; and of projections
 inline constexpr double kManyUnsure = 0.2;  ///< share of unsure points above which the orientation is called inconsistent
 
 }  // namespace g3r

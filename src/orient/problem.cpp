@@ -15,6 +15,9 @@
 namespace g3r {
 namespace {
 
+// Of the typical spacing, up to which noise alone may have scattered points so far apart.
+constexpr double kChance = 1.12;
+
 void choose_scales(Problem& problem, const Options& options) {
   problem.settings = choose_settings(options, problem.cloud, problem.spacing, problem.noise, problem.outliers.size());
 }
@@ -49,6 +52,17 @@ Views find_views(const CanonicalCloud& cloud, const Hints& hints) {
 }
 
 }  // namespace
+
+std::vector<double> relative_spacing(const Problem& problem, const Options& options) {
+  const bool is_free = problem.settings.method == Method::kEnergy && options.epsilon.unit == Length::Unit::kAuto;
+  const std::vector<double>& thinned = problem.known.relative_spacing;
+  if (!is_free || !runs(problem, Step::kLocalWidths)) return thinned;
+  std::vector<double> relative = spacing_before_thinning(problem.cloud.set.smoothed_spacing(), thinned);
+  const double typical = (problem.is_clean() ? 1 : kChance) * problem.spacing;
+  for (double& h : relative) h = std::max(1.0, h / typical);
+  for (std::size_t i = 0; i < thinned.size(); ++i) relative[i] *= thinned[i];
+  return relative;
+}
 
 Problem prepare(const PointsView& points, Known known, const Options& options, Stages& stages) {
   Problem problem;

@@ -35,6 +35,13 @@ struct Problem {
   std::optional<BaselineSettings> baseline;  ///< with the methods wnnc, agr and pgr
 };
 
+/// Whether a step is not left out.
+[[nodiscard]] inline bool runs(const Problem& problem, Step step) { return !contains(problem.settings.without, step); }
+
+/// How many times as far apart the points are as typical ones, 1 at least; kernels are as much wider. Unless the width is given: then only
+/// as far as they have been thinned. Empty: nowhere. O(N).
+[[nodiscard]] std::vector<double> relative_spacing(const Problem& problem, const Options& options);
+
 /// Canonical order, outliers, spacing, noise and settings of a cloud; `known`: in the order of `points`. Throws InvalidInput for a cloud or
 /// an option out of range, Cancelled. O(N log N).
 [[nodiscard]] Problem prepare(const PointsView& points, Known known, const Options& options, Stages& stages);

@@ -1,0 +1,56 @@
+#include "orient/clean_surface.h"
+
+#include "orient/confidence.h"
+#include "orient/creases.h"
+#include "orient/facets.h"
+#include "orient/jets.h"
+#include "orient/open_surfaces.h"
+#include "orient/planes.h"
+#include "orient/polish.h"
+#include "solve/refine.h"
+#include "sum/fast_sum.h"
+
+#include <cstddef>
+
+namespace g3r {
+namespace {
+
+// Where the points of a cloud's facets disagree about their sides, every facet gets one, and the other points their normals from the field
+// of what the facets have become. `fit` proves normals; `proven`: those it has.
+template <typename Fit>
+void agree_on_facets(const Problem& problem, const std::vector<std::uint8_t>& proven, const Fit& fit, std::vector<Vec3>& eta,
+                     std::vector<Vec3>& normals, Stages& stages) {
+  const PointSet& set = problem.cloud.set;
+  const Settings& s = problem.settings;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const Facets facets = find_facets(set, proven, normals, problem.known.wanted);
+    if (minority_share(facets, normals) < kMinMinority) return;
+    make_room_for_sums(set);
+    choose_facet_sides(set, s, facets, eta, normals, stages);
+    FastSum sum(set.points(), local_widths(s.polish_width, s, set.smoothed_spacing()), s.sums, stages.cancel());
+    const Refinement refined = refine_normals(sum, eta);
+    for (std::size_t i = 0; i < set.size(); ++i) {
+      if (facets.of[i] == Facets::kNone) normals[i] = refined.normals[i];
+    }
+    fit();
+  }
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> fit_directions(const Problem& problem, std::vector<Vec3>& normals) {
+  std::vector<std::uint8_t> proven(normals.size(), 0);
+  if (runs(problem, Step::kJets)) proven = fit_jets(problem.cloud.set, normals);
+  if (runs(problem, Step::kPlanes)) fit_planes(problem.cloud.set, problem.scatter, proven, normals);
+  return proven;
+}
+
+void fit_clean_surface(const Problem& problem, std::vector<Vec3>& eta, std::vector<Vec3>& normals, Stages& stages) {
+  std::vector<std::uint8_t> proven;
+  const auto fit = [&] { proven = fit_directions(problem, normals); };
+  fit();
+  if (runs(problem, Step::kCreases) && sharpen_creases(problem.cloud.set, normals)) fit();
+  if (runs(problem, Step::kFacets)) agree_on_facets(problem, proven, fit, eta, normals, stages);
+}
+
+}  // namespace g3r

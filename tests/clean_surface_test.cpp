@@ -1,0 +1,79 @@
+// Normals of clean points: exact where planes hold them, one side for every facet.
+#include "orient/clean_surface.h"
+
+#include "base/vector.h"
+#include "problems.h"
+#include "shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace g3r {
+namespace {
+
+// A plate of random points in planes, with its problem and true normals in canonical order.
+struct Plate {
+  explicit Plate(double thickness) : surface(shapes::plates(1, 1, thickness, 0, 0.02)) {
+    Options options;
+    options.noise = {Length::Unit::kSpacing, 0};
+    problem = problems::prepared(surface.points, options);
+    normals = problems::in_its_order(problem, surface.normals);
+  }
+  shapes::Surface surface;
+  Problem problem;
+  std::vector<Vec3> normals;
+};
+
+TEST(FitDirections, AreExactInPlanesAndKeepTheirSides) {
+  const Plate plate(10);
+  std::vector<Vec3> found = shapes::disturbed(plate.normals, 0.1);
+  const std::vector<std::uint8_t> proven = fit_directions(plate.problem, found);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_GT(vector::dot(found[i], plate.normals[i]), 0);
+    if (proven[i] == 0) continue;
+    ++count;
+    EXPECT_GT(vector::dot(found[i], plate.normals[i]), 1 - 1e-6) << i;
+  }
+  EXPECT_GT(static_cast<double>(count), 0.9 * static_cast<double>(found.size()));
+}
+
+TEST(FitDirections, ThatAreLeftOutProveNothing) {
+  const Plate plate(10);
+  Problem problem = plate.problem;
+  problem.settings.without = parse_steps("jets,planes");
+  std::vector<Vec3> found = shapes::disturbed(plate.normals, 0.1);
+  const std::vector<Vec3> given = found;
+  EXPECT_EQ(fit_directions(problem, found), std::vector<std::uint8_t>(given.size(), 0));
+  EXPECT_EQ(found, given);
+}
+
+// Every twentieth point of a thin plate has the other side than its wall.
+TEST(FitCleanSurface, TheFacetsTakeTheSideOfMostOfTheirPoints) {
+  const Plate plate(0.8);
+  for (const bool has_facets : {true, false}) {
+    Problem problem = plate.problem;
+    if (!has_facets) problem.settings.without = parse_steps("facets");
+    Solution solution = problems::solution_of(problem, plate.surface.normals);
+    std::vector<Vec3>& normals = solution.refinement.normals;
+    for (std::size_t i = 0; i < normals.size(); i += 20) {
+      normals[i] = vector::scale(normals[i], -1);
+      solution.eta[i] = vector::scale(solution.eta[i], -1);
+    }
+    const Monitor monitor;
+    Stages stages(monitor);
+    fit_clean_surface(problem, solution.eta, normals, stages);
+    const double right = shapes::share_correct(normals, plate.normals);
+    if (has_facets) {
+      EXPECT_GT(right, 0.995);
+    } else {
+      EXPECT_LT(right, 0.96);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace g3r

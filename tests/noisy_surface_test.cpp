@@ -1,0 +1,97 @@
+// Noisy points on their own walls: for which noise, of which points, and that their directions come closer to the truth.
+#include "orient/noisy_surface.h"
+
+#include "orient/projection.h"
+#include "problems.h"
+#include "shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+namespace g3r {
+namespace {
+
+Problem with_spacings_of_noise(const std::vector<Vec3>& points, double noise, const char* without = "outliers") {
+  Options options;
+  options.noise = {Length::Unit::kSpacing, noise};
+  options.without = without;
+  return problems::prepared(points, options);
+}
+
+// sigma' = sigma h / R sqrt(72 / (15 pi)) with R in proportion to sqrt(sigma h) halves the variance from one sigma / h on.
+TEST(IsProjected, IsWhereThatHalvesTheVarianceOfTheNoise) {
+  const std::vector<Vec3> points = shapes::sphere(3000).points;
+  const double unit = projected_noise(1, 1);  // sigma' = unit sqrt(sigma h)
+  const double least = 2 * unit * unit;
+  EXPECT_FALSE(is_projected(with_spacings_of_noise(points, 0.98 * least)));
+  EXPECT_TRUE(is_projected(with_spacings_of_noise(points, 1.02 * least)));
+  EXPECT_FALSE(is_projected(with_spacings_of_noise(points, 1.02 * least, "projection")));
+  EXPECT_FALSE(is_projected(with_spacings_of_noise(points, 0)));
+}
+
+struct NoisyTorus {
+  NoisyTorus() : surface(shapes::torus(6000, 0.6, 0.25, 2)) {
+    shapes::scatter(surface, 0.5 * std::sqrt(4 * std::numbers::pi * std::numbers::pi * 0.6 * 0.25 / 6000));
+    problem = with_spacings_of_noise(surface.points, 0.5);
+    truth = problems::in_its_order(problem, surface.normals);
+    solution = problems::solution_of(problem, shapes::disturbed(surface.normals, 0.3));
+  }
+  shapes::Surface surface;
+  Problem problem;
+  std::vector<Vec3> truth;
+  Solution solution;
+  Monitor monitor;
+  Stages stages{monitor};
+};
+
+// Directions that are off by 30 degrees come from the field of the polished vectors instead, and with a side that most points have all do.
+TEST(PolishProjected, BringsNormalsCloserToTheTruth) {
+  NoisyTorus torus;
+  for (std::size_t i = 0; i < torus.truth.size(); i += 50) {
+    Vec3& n = torus.solution.refinement.normals[i];
+    n = vector::scale(n, -1);
+  }
+  const double error = shapes::angle_error(torus.solution.refinement.normals, torus.truth);
+  EXPECT_TRUE(polish_projected(torus.problem, {}, torus.stages, torus.solution));
+  EXPECT_GT(shapes::share_correct(torus.solution.refinement.normals, torus.truth), 0.999);
+  EXPECT_LT(shapes::angle_error(torus.solution.refinement.normals, torus.truth), 0.3 * error);
+}
+
+TEST(PolishProjected, LeavesOpenSurfacesAsTheyAre) {
+  NoisyTorus torus;
+  const std::size_t n = torus.truth.size();
+  OpenSurfaces& surfaces = torus.solution.open_surfaces;
+  surfaces.part.assign(n, OpenSurfaces::kNone);
+  surfaces.certainty.assign(n, 1);
+  surfaces.agrees.assign(n, 1);
+  surfaces.certified.assign(n, 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (torus.problem.cloud.points()[i][0] < 0) surfaces.part[i] = 0;
+  }
+  const std::vector<Vec3> before = torus.solution.refinement.normals;
+  EXPECT_TRUE(polish_projected(torus.problem, {}, torus.stages, torus.solution));
+  for (std::size_t i = 0; i < n; ++i) {
+    const bool is_open = surfaces.is_open(i);
+    EXPECT_EQ(torus.solution.refinement.normals[i] == before[i], is_open) << i;
+    if (is_open) {
+      EXPECT_EQ(surfaces.certified[i], 0);
+    }
+  }
+}
+
+TEST(FitNoisySurface, SmoothsDirectionsUnderNoiseOnly) {
+  NoisyTorus torus;
+  const std::vector<Vec3> before = torus.solution.refinement.normals;
+  fit_noisy_surface(torus.problem, torus.stages, torus.solution);
+  EXPECT_LT(shapes::angle_error(torus.solution.refinement.normals, torus.truth), 0.2 * shapes::angle_error(before, torus.truth));
+  torus.solution.refinement.normals = before;
+  fit_noisy_surface(with_noise(torus.problem, 0, {}), torus.stages, torus.solution);
+  EXPECT_EQ(torus.solution.refinement.normals, before);
+}
+
+}  // namespace
+}  // namespace g3r
