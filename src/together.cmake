@@ -19,7 +19,8 @@ g3r_together(solvers cloud/sites solve/dense_solver solve/iterative_solver field
 g3r_together(orient sum/device_scope metrics/triangle_tree orient/certificate orient/coarse_to_fine orient/creases orient/planes
              orient/polish orient/problem orient/sign_graph orient/solution orient/clean_surface orient/noisy_surface orient/solve_apart
              orient/solve_on_sites)
-g3r_together(steps orient/facets orient/hints orient/apply_hints orient/steps names reconstruct)
+g3r_together(steps orient/facets orient/hints orient/apply_hints orient/closed_sides orient/patch_sides orient/votes orient/steps names
+             reconstruct)
 g3r_together(jets orient/jets orient/open_surfaces pipeline orient/assess orient/attempt orient/callers_order orient/describe
              orient/noise_choice orient/outlier_normals orient/separate_walls)
 

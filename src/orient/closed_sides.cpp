@@ -1,0 +1,90 @@
+#include "orient/closed_sides.h"
+
+#include "base/vector.h"
+#include "cloud/constants.h"
+#include "orient/settings.h"
+#include "sum/direct_sum.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace g3r {
+namespace {
+
+// Winding number of a closed part about a place inside it, at least: a street, half of it open, has about 1/2.
+constexpr double kInsideWinding = 0.25;
+// Of the cloud's extent along every axis, what closed parts span that surround the scanner.
+constexpr double kSpan = 0.5;
+
+// Winding numbers of the closed parts at some places.
+std::vector<double> winding_at(const HintedCloud& cloud, const std::vector<Vec3>& places, const std::atomic<bool>* cancel) {
+  std::vector<Vec3> eta = cloud.sided.eta;
+  for (std::size_t i = 0; i < eta.size(); ++i) {
+    if (!cloud.patches.is_closed(i)) eta[i] = {0, 0, 0};
+  }
+  return direct_sum::winding(cloud.points, kRefinementWidth * cloud.spacing, eta, places, cancel);
+}
+
+// Whether closed parts reach so far along every axis that what stands in the cloud stands in them.
+bool spans_cloud(const HintedCloud& cloud) {
+  vector::Box all;
+  vector::Box closed;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    all.extend(cloud.points[i]);
+    if (cloud.patches.is_closed(i)) closed.extend(cloud.points[i]);
+  }
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (!(closed.high[a] - closed.low[a] >= kSpan * (all.high[a] - all.low[a]))) return false;
+  }
+  return true;
+}
+
+// Share of the sensors that stand inside closed parts. Of many, which are along a path, every so-manieth tells.
+double share_of_sensors_inside(const HintedCloud& cloud, const std::atomic<bool>* cancel) {
+  const std::vector<Vec3>& sensors = cloud.hints.sensors;
+  if (sensors.empty()) return 0;
+  std::vector<Vec3> some;
+  const std::size_t step = (sensors.size() + kFewPlaces - 1) / kFewPlaces;
+  for (std::size_t s = 0; s < sensors.size(); s += step) some.push_back(sensors[s]);
+  double inside = 0;
+  for (const double w : winding_at(cloud, some, cancel)) inside += w >= kInsideWinding ? 1 : 0;
+  return inside / static_cast<double>(some.size());
+}
+
+// `votes`: of the sensors, on all closed parts together.
+void judge_by_sensors(const HintedCloud& cloud, const Votes& votes, HintEffect& effect, const std::atomic<bool>* cancel) {
+  const bool each_known = !cloud.hints.sensor_of_point.empty();
+  const double inside = share_of_sensors_inside(cloud, cancel);
+  bool against = each_known ? votes.share_against() >= kMostOf : inside > 0.5;
+  // From outside a closed part, as much of it is seen from behind as from the front: only sensors inside, or those of the points, object.
+  if (each_known || inside > 0) effect.contradicted_share = votes.share_against() > 1 - kMostOf ? votes.share_against() : 0;
+  if (cloud.hints.seen_from_inside) {
+    against = against || inside > 0 || spans_cloud(cloud);
+    effect.contradicted_share = 0;
+  }
+  if (!against) return;
+  effect.closed_parts_turned = true;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    if (cloud.patches.is_closed(i)) effect.turned[i] = 1;
+  }
+}
+
+}  // namespace
+
+void judge_closed_parts(const HintedCloud& cloud, Voters& voters, HintEffect& effect, const std::atomic<bool>* cancel) {
+  const std::vector<Vec3>& places = cloud.hints.inside;
+  Votes votes;
+  bool has_closed = false;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    if (!cloud.patches.is_closed(i)) continue;
+    has_closed = true;
+    votes.add(voters.seen(i, cloud.sided.normals[i]));
+  }
+  if (votes.total() > 0 || cloud.hints.seen_from_inside) judge_by_sensors(cloud, votes, effect, cancel);
+  if (places.empty() || !has_closed) return;
+  const std::vector<double> winding = winding_at(cloud, places, cancel);
+  const auto least = std::min_element(winding.begin(), winding.end());
+  if (*least < kInsideWinding) effect.inside_that_is_outside = places[static_cast<std::size_t>(least - winding.begin())];
+}
+
+}  // namespace g3r

@@ -1,0 +1,78 @@
+// What hints say of the side of single points.
+#pragma once
+
+#include "cloud/neighbours.h"
+
+#include <g3r/hints.h>
+#include <g3r/points.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace g3r {
+
+/// Of the votes, a majority that noise, hidden and grazing points do not make; less against a side is no contradiction.
+inline constexpr double kMostOf = 2.0 / 3;
+
+/// Votes on one side, of points that are turned together.
+struct Votes {
+  double in_favour = 0;
+  double against = 0;
+  std::size_t points = 0;
+
+  void add(double vote) {
+    in_favour += std::max(vote, 0.0);
+    against += std::max(-vote, 0.0);
+  }
+  [[nodiscard]] double total() const { return in_favour + against; }
+  /// Seen edge-on, rounding alone votes.
+  [[nodiscard]] bool count() const { return total() > std::numeric_limits<float>::epsilon() * static_cast<double>(points); }
+  [[nodiscard]] double share_against() const { return total() > 0 ? against / total() : 0; }
+};
+
+/// Cosine under which a place sees the front of a point; 0 from the point itself.
+[[nodiscard]] double seen_from(const Vec3& place, const Vec3& point, const Vec3& normal);
+
+/// The nearest of a few places, or nothing if there is none.
+class NearestPlace {
+ public:
+  /// `places` are kept by reference.
+  explicit NearestPlace(const std::vector<Vec3>& places);
+  [[nodiscard]] const Vec3* to(const Vec3& point);
+
+ private:
+  const std::vector<Vec3>& places_;
+  std::optional<Neighbours> neighbours_;
+  std::vector<std::uint32_t> index_;
+  std::vector<double> squared_;
+};
+
+/// Votes of single points p with normals n, which count by how squarely a point is seen, and not by how near it is:
+///   sensor s:  n . (s - p) / |s - p|      up u:  n . u / |u|      inside q:  - n . (q - p) / |q - p|
+/// s is the sensor of the point if that is known, else the nearest one, and q the nearest place. `seen_from_inside` without sensors votes
+/// like a sensor in the mean of the points.
+class Voters {
+ public:
+  /// Both are kept by reference.
+  Voters(const std::vector<Vec3>& points, const Hints& hints);
+
+  /// What a sensor, or the middle that stands for one, says of point i with this normal.
+  [[nodiscard]] double seen(std::size_t i, const Vec3& normal);
+
+  /// What all hints say of it together.
+  [[nodiscard]] double vote(std::size_t i, const Vec3& normal);
+
+ private:
+  const std::vector<Vec3>& points_;
+  const Hints& hints_;
+  NearestPlace sensors_;
+  NearestPlace inside_;
+  std::optional<Vec3> up_;
+  std::optional<Vec3> middle_;
+};
+
+}  // namespace g3r

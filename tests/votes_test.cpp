@@ -1,0 +1,84 @@
+// Votes of single points: cosines towards and from what people know, whatever the distance.
+#include "orient/votes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace g3r {
+namespace {
+
+const std::vector<Vec3> kPlaces{{0, 0, 0}, {2, 0, 0}};
+constexpr Vec3 kUpwards{0, 0, 1};
+
+// A point of a plane sees a sensor at 60 degrees from its normal under the cosine 1/2, at any distance and from behind with the other sign.
+TEST(SeenFrom, IsTheCosineOfTheAngleToTheNormal) {
+  for (const double distance : {1e-3, 1.0, 1e6}) {
+    const Vec3 place{distance * std::sqrt(0.75), 0, distance / 2};
+    EXPECT_NEAR(seen_from(place, {0, 0, 0}, kUpwards), 0.5, 1e-12);
+    EXPECT_NEAR(seen_from(place, {0, 0, 0}, {0, 0, -1}), -0.5, 1e-12);
+  }
+  EXPECT_EQ(seen_from({1, 2, 3}, {1, 2, 3}, kUpwards), 0);
+}
+
+TEST(NearestPlace, IsTheNearestOrNone) {
+  const std::vector<Vec3> none;
+  EXPECT_EQ(NearestPlace(none).to({0, 0, 0}), nullptr);
+  NearestPlace nearest(kPlaces);
+  EXPECT_EQ(*nearest.to({0.9, 5, 0}), kPlaces[0]);
+  EXPECT_EQ(*nearest.to({1.1, 5, 0}), kPlaces[1]);
+}
+
+TEST(Voters, GoByTheNearestSensorUnlessThatOfThePointIsKnown) {
+  Hints hints;
+  hints.sensors = {{0, 0, 1}, {2, 0, -1}};
+  Voters nearest(kPlaces, hints);
+  EXPECT_DOUBLE_EQ(nearest.vote(0, kUpwards), 1);
+  EXPECT_DOUBLE_EQ(nearest.vote(1, kUpwards), -1);
+  hints.sensor_of_point = {1, kNoSensor};
+  Voters known(kPlaces, hints);
+  EXPECT_NEAR(known.vote(0, kUpwards), -1 / std::sqrt(5), 1e-12);
+  EXPECT_EQ(known.vote(1, kUpwards), 0);
+}
+
+TEST(Voters, AddUpAllHints) {
+  Hints hints;
+  hints.up = Vec3{0, 0, 7};
+  hints.inside = {{0, 0, -3}};
+  Voters voters(kPlaces, hints);
+  EXPECT_DOUBLE_EQ(voters.vote(0, kUpwards), 2);  // up, and away from what is inside
+  EXPECT_DOUBLE_EQ(voters.vote(0, {0, 0, -1}), -2);
+  EXPECT_EQ(voters.seen(0, kUpwards), 0);  // by no sensor
+}
+
+TEST(Voters, TheMiddleStandsForAScannerInside) {
+  Hints hints;
+  hints.seen_from_inside = true;
+  Voters inside(kPlaces, hints);
+  EXPECT_DOUBLE_EQ(inside.seen(0, {1, 0, 0}), 1);
+  EXPECT_DOUBLE_EQ(inside.seen(1, {1, 0, 0}), -1);
+  hints.sensors = {{0, 0, 5}};
+  EXPECT_DOUBLE_EQ(Voters(kPlaces, hints).seen(0, kUpwards), 1);
+}
+
+TEST(Votes, SayWhatShareIsAgainstAndNothingEdgeOn) {
+  Votes votes;
+  EXPECT_EQ(votes.share_against(), 0);
+  for (const double vote : {1.0, 0.5, -0.5}) {
+    votes.add(vote);
+    ++votes.points;
+  }
+  EXPECT_DOUBLE_EQ(votes.total(), 2);
+  EXPECT_DOUBLE_EQ(votes.share_against(), 0.25);
+  EXPECT_TRUE(votes.count());
+  Votes edge_on;
+  for (int i = 0; i < 100; ++i) {
+    edge_on.add(1e-9);  // of a float, rounding alone is more
+    ++edge_on.points;
+  }
+  EXPECT_FALSE(edge_on.count());
+}
+
+}  // namespace
+}  // namespace g3r
