@@ -356,25 +356,6 @@ TEST(OpenSurfaces, ThinWallsAreNone) {
   EXPECT_TRUE(std::all_of(found.part.begin(), found.part.end(), [](std::uint32_t part) { return part == OpenSurfaces::kNone; }));
 }
 
-// The certificate is that of the sides that are given: a point that is turned has none, and a bowl, which is not at rest, nowhere.
-TEST(CertifiedSides, AreThoseOfTheGivenNormals) {
-  const Surface s = shapes::sphere(3000);
-  const auto certified = [](const Surface& of, const std::vector<Vec3>& normals) {
-    const Sorted sorted = sorted_as(of, normals);
-    const std::vector<float> in_order = certified_sides(sorted.set, 0, sum_plan(1e-2, sorted.set.size()), sorted.normals);
-    std::vector<float> out(in_order.size());
-    for (std::size_t k = 0; k < out.size(); ++k) out[sorted.order[k]] = in_order[k];
-    return out;
-  };
-  for (const float c : certified(s, s.normals)) EXPECT_GT(c, 0.9F);
-  std::vector<Vec3> turned = s.normals;
-  for (std::size_t i = 0; i < turned.size(); i += 100) turned[i] = vector::scale(turned[i], -1);
-  const std::vector<float> of_turned = certified(s, turned);
-  for (std::size_t i = 0; i < turned.size(); i += 100) EXPECT_EQ(of_turned[i], 0) << i;
-  const Surface bowl = upper_part(s, 0.3);
-  for (const float c : certified(bowl, bowl.normals)) EXPECT_EQ(c, 0);
-}
-
 // Lines up to 20 times as far apart as their points: a surface across the gaps, nothing within a line.
 TEST(OpenSurfaces, ScanLinesAreOneSurface) {
   for (const double ratio : {4.0, 12.0, 20.0}) {

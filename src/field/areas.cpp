@@ -4,6 +4,7 @@
 #include "cpu/parallel.h"
 #include "field/winding_sampler.h"
 #include "mesh/held_points.h"
+#include "orient/site_parts.h"
 #include "sum/fast_sum.h"
 
 #include <algorithm>

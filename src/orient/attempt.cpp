@@ -2,8 +2,8 @@
 
 #include "orient/describe.h"
 #include "orient/noisy_surface.h"
-#include "orient/open_surfaces.h"
 #include "orient/open_to_views.h"
+#include "orient/site_parts.h"
 #include "orient/solution.h"
 #include "orient/solve_apart.h"
 #include "orient/solve_on_sites.h"

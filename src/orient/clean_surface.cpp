@@ -4,9 +4,9 @@
 #include "orient/creases.h"
 #include "orient/facets.h"
 #include "orient/jets.h"
-#include "orient/open_surfaces.h"
 #include "orient/planes.h"
 #include "orient/polish.h"
+#include "orient/site_parts.h"
 #include "solve/refine.h"
 #include "sum/fast_sum.h"
 

@@ -23,7 +23,7 @@ inline constexpr float kUndecided = 0.5F;
 
 /// Of every point the sums of the vectors of its near points and of their lengths, `near`: Neighbours::of_all(k). O(N k). Under noise the
 /// vectors of single points fit the noise; those of a place together tell its side, and how far they are one direction (the mean resultant
-/// length of directional statistics, as in open_surfaces.cpp) how surely, whatever the density.
+/// length of directional statistics, as in concentration()) how surely, whatever the density.
 struct Sums {
   std::vector<Vec3> vectors;
   std::vector<double> lengths;

@@ -4,12 +4,14 @@
 #include "cloud/canonical_cloud.h"
 #include "cloud/clusters.h"
 #include "cloud/constants.h"
+#include "orient/certified_sides.h"
 #include "orient/clustered_polish.h"
 #include "orient/confidence.h"
 #include "orient/noisy_jets.h"
 #include "orient/planes.h"
 #include "orient/polish.h"
 #include "orient/projection.h"
+#include "orient/site_parts.h"
 #include "solve/part_system.h"
 
 #include <algorithm>

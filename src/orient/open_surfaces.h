@@ -14,16 +14,6 @@
 
 namespace g3r {
 
-/// Sites of the finest scale of the certificate, at most: more take long and say no more about sides.
-inline constexpr std::size_t kMostSites = 200000;
-
-/// Gives back the neighbours of more points than that: sums that follow take more than these do. Up to there the certificate takes more
-/// than both.
-void make_room_for_sums(const PointSet& set);
-
-/// The least distance of the sites of that scale, of a cloud with this typical spacing and noise; 0: every point is one.
-[[nodiscard]] double site_distance(std::size_t points, double spacing, double noise);
-
 /// Open surfaces of a cloud. Empty vectors of parts: there is none.
 struct OpenSurfaces {
   static constexpr std::uint32_t kNone = UINT32_MAX;
@@ -41,34 +31,21 @@ struct OpenSurfaces {
 
 /// The equations are true of the boundary of a solid. A surface without an inside (terrain, one depth frame, a dental arch) satisfies them
 /// too, but with area vectors that lie in it or change their side from place to place. The field of the result shows it: beside a closed
-/// surface it is 0 or 1, beside an open one it is not (Certificate::unrest). So every connected part of the cloud is tested, and where its
-/// unrest is above 0.08 or its jump defect above 0.6 (0.8 under noise), and its points do not lie on two walls close together
-/// (on_two_walls()), it is tested without the closed parts, and other hypotheses are tried, from the finest scale on which
-/// the samples are a surface (scan lines are one only across their gaps) and two with sites twice as far apart each:
-///   1. sites an even distance apart, with the planes of their surroundings (place_sites());
-///   2. signs by agreement of neighbours (agree_on_signs()), weights
-///        w_ij = f_i f_j exp(-|d|^2 / (2 (1.5 r)^2)) (n_i . n_j - 2 (n_i . e)(n_j . e)),
-///      d = p_j - p_i, e = d / |d|, r the distance of the sites, f = 1 - flatness: two normals agree if one is the mirror image of the
-///      other across the plane between the points, as on every arc (Xie, Wang, Hua, Qin, Kaufman, "Piecewise C1 continuous surface
-///      reconstruction of noisy point clouds via local implicit quadric regression", IEEE Visualization 2003);
-///   3. three times the direction of the winding gradient of what came out, two site spacings wide, which fills grooves narrower than the
-///      sampling and turns single sites;
-///   4. the sides of each scale, with the directions of the finest: so that only sides differ.
+/// surface it is 0 or 1, beside an open one it is not (Certificate::unrest). So every connected part of the cloud (SiteParts) is tested,
+/// and where its unrest is above 0.08 or its jump defect above 0.6 (0.8 under noise), and its points do not lie on two walls close together
+/// (on_two_walls()), it is tested without the closed parts, and the sides_by_agreement() of neighbours are tried, from the finest scale on
+/// which the samples are a surface (scan lines are one only across their gaps) on.
 /// The hypothesis with the least mean of JumpDefects::all + own is taken, of equal ones the finest: where layers are close to each other,
 /// so that a probe of one is behind the next, what no other surface disturbs counts twice. Where the defect of a site is above a half, in a
 /// groove narrower than the sampling for instance, the direction is that of a field four site spacings wide, which sees what is around, and
 /// the side of a point is not certified in full. The outside of a part is the side on which the mean of w at the part, of its own field, is
-/// positive: e / 2, with e = 1 on a closed surface, 0.62 on half a sphere, 0 on a plane. Where |e| is below 1/2 either side could be it,
-/// and the one that faces up (+z; if the part is level, +y, then +x) is taken. Under noise a part with |e| above 0.7 is closed: noise makes
-/// one wall of two, and what is left encloses nearly everything. Where it is
-/// neither at rest nor shown to be open, its sides are those of the best hypothesis where the normals of a site and those around it have
-/// one side, if the mean defect of the hypothesis is less than that of the solution. Where the solution stays as it is, J = max(0, jump of
-/// its site) certifies a side: where walls are too close for the sampling the field does not jump from 0 to 1, whatever the sides. J is the
-/// largest jump, and 1 - scaled_defect where sites are thinned for noise, which makes layers of single wrong patches. Under noise it counts
-/// R times, R the length of the mean of the normals of the points of the site and the eight around it: two walls closer together than 4
-/// sigma are one site or two neighbours, and which normal is whose is chance. Points that face the other way than the mean of their site
-/// have 0, and all points of a cloud of fewer than 30. `noise`: standard deviation; `normals`: N unit vectors, in: the solution, out:
-/// changed on open surfaces. O(N log N).
+/// positive: e / 2, with e = 1 on a closed surface, 0.62 on half a sphere, 0 on a plane (SiteParts::enclosure()). Where |e| is below 1/2
+/// either side could be it, and the one that faces up (+z; if the part is level, +y, then +x) is taken. Under noise a part with |e| above
+/// 0.7 is closed: noise makes one wall of two, and what is left encloses nearly everything. Where it is neither at rest nor shown to be
+/// open, its sides are those of the best hypothesis where the normals of a site and those around it have one side, if the mean defect of
+/// the hypothesis is less than that of the solution. Where the solution stays as it is, certified_sides() says how far its field shows it
+/// to be right; all points of a cloud of fewer than 30 have 0. `noise`: standard deviation; `normals`: N unit vectors, in: the solution,
+/// out: changed on open surfaces. O(N log N).
 [[nodiscard]] OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan& sums, std::vector<Vec3>& normals,
                                               const std::atomic<bool>* cancel = nullptr);
 
@@ -76,9 +53,5 @@ struct OpenSurfaces {
 /// which nothing shows to be right. Where there are fewer than 30 points nothing can show it, and a half is no reason. `confidence`: of the
 /// N points.
 [[nodiscard]] double unsure_share(const OpenSurfaces& surfaces, const std::vector<float>& confidence);
-
-/// OpenSurfaces::certified of the given normals alone, for sides that have changed since. O(N log N).
-[[nodiscard]] std::vector<float> certified_sides(const PointSet& set, double noise, const SumPlan& sums, const std::vector<Vec3>& normals,
-                                                 const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace g3r

@@ -4,8 +4,8 @@
 #include "cloud/chance.h"
 #include "cloud/sites.h"
 #include "expansions/expansions.h"
-#include "orient/open_surfaces.h"
 #include "orient/projection.h"
+#include "orient/site_parts.h"
 
 #include <g3r/error.h>
 

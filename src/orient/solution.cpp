@@ -3,6 +3,7 @@
 #include "base/vector.h"
 #include "baselines/baseline.h"
 #include "cloud/clusters.h"
+#include "orient/certified_sides.h"
 #include "orient/clean_surface.h"
 #include "orient/clustered_polish.h"
 #include "orient/coarse_to_fine.h"

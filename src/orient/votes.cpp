@@ -3,9 +3,12 @@
 #include "base/vector.h"
 
 namespace g3r {
+namespace {
 
 using vector::dot;
 using vector::normalised;
+
+}  // namespace
 
 double seen_from(const Vec3& place, const Vec3& point, const Vec3& normal) {
   return dot(normal, normalised(vector::subtract(place, point)));
