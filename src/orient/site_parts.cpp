@@ -66,6 +66,7 @@ Certificate SiteParts::test(const std::vector<Vec3>& normals) const {
 
 JumpDefects SiteParts::jump_defects(const std::vector<std::vector<Vec3>>& hypotheses) const {
   std::vector<std::vector<Vec3>> normals;
+  normals.reserve(hypotheses.size());
   for (const std::vector<Vec3>& hypothesis : hypotheses) normals.push_back(at_sites(sites_, hypothesis));
   return g3r::jump_defects(sites_, std::move(normals), sums_, cancel_);
 }
