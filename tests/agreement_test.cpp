@@ -56,6 +56,21 @@ TEST(AdjacentSites, AgreeOnASphereWhereTheirAxesFaceTheSameWay) {
   }
 }
 
+// The six ends of the axes: whatever the angle, radial normals of a sphere are mirror images, and the weight is that of their distance.
+TEST(AdjacentSites, AreMirrorImagesOnEveryArc) {
+  Sites sites;
+  sites.distance = 1.5;
+  sites.axis = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  sites.set = PointSet(sites.axis);
+  sites.flatness.assign(6, 0);
+  const std::vector<SignEdge> edges = adjacent_sites(sites);
+  EXPECT_EQ(edges.size(), 15U);
+  for (const SignEdge& edge : edges) {
+    const Vec3 d = vector::subtract(sites.axis[edge.b], sites.axis[edge.a]);
+    EXPECT_NEAR(edge.weight, std::exp(-vector::dot(d, d) / (2 * 1.5 * 1.5 * 1.5 * 1.5)), 1e-12);
+  }
+}
+
 TEST(AdjacentSites, DoNotCrossGaps) {
   const std::size_t n = 1000;
   std::vector<Vec3> points = shapes::sphere(n, 0.4, {-0.5, 0, 0}).points;
