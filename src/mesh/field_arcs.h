@@ -1,7 +1,7 @@
 // The arcs of a dual surface: the lines across the faces of an octree along which its patches meet, and what they join.
 //
 // Round the rim of a face the signs change an even number of times, so arcs that do not cross join its crossings in pairs: steps 1 and 2 of
-// the proof in docs/algorithms/mesher.md.
+// the proof in docs/math.md.
 #pragma once
 
 #include "base/disjoint_sets.h"

@@ -1,7 +1,7 @@
 // Manifold dual contouring of a sign pattern on an octree: which vertices there are and how they are joined, no positions yet.
 //
 // Ju, Losasso, Schaefer, Warren, "Dual contouring of Hermite data", SIGGRAPH 2002 (one polygon per crossing edge);
-// Schaefer, Ju, Warren, "Manifold dual contouring", TVCG 2007 (one vertex per patch). docs/algorithms/mesher.md proves that the result is a
+// Schaefer, Ju, Warren, "Manifold dual contouring", TVCG 2007 (one vertex per patch). docs/math.md proves that the result is a
 // closed 2-manifold for every octree and every sign pattern whose boundary corners are outside.
 #pragma once
 

@@ -31,7 +31,7 @@ struct KernelWidth {
   [[nodiscard]] double typical() const { return at(1); }
 };
 
-/// Everything orient() needs to know, in normalised units. Values without an option are explained in docs/algorithms/orientation.md.
+/// Everything orient() needs to know, in normalised units. Values without an option are explained in docs/math.md.
 struct Settings {
   StepSet without;  ///< steps that are left out
   Method method = Method::kEnergy;
