@@ -10,7 +10,7 @@
 
 namespace g3r {
 
-/// The width of the field of areas and meshes, in spacings: with 0.55 the sword's AE_m is 1.9 instead of 1.5 (docs/evidence/meshes.md).
+/// The width of the field of areas and meshes, in spacings: with 0.55 the sword's AE_m is 1.9 instead of 1.5.
 inline constexpr double kFieldWidth = 0.35;
 /// The accuracy of its sums: signs count from 0.2 beside the level on, and 1e-3 changes CD and AE_m by less than 0.5 %.
 inline constexpr double kFieldAccuracy = 1e-2;

@@ -17,8 +17,7 @@
 
 namespace g3r::mesh {
 
-/// |w - level| from which the field overrules the fitted surface: with 0.4 the sword has 44 handles instead of 5
-/// (docs/evidence/meshes.md).
+/// |w - level| from which the field overrules the fitted surface: with 0.4 the sword has 44 handles instead of 5.
 inline constexpr double kFieldSure = 0.2;
 
 /// The corners of an octree.

@@ -26,7 +26,7 @@ struct OrientedPoints {
 };
 
 /// About the standard deviation in spacings of the weights of a fit to clean points, so that twice it bridges the gaps of a random sample:
-/// with 1 the dragon's CD is 0.29 instead of 0.24 (docs/evidence/meshes.md).
+/// with 1 the dragon's CD is 0.29 instead of 0.24.
 inline constexpr double kWidth = kGap / 2;
 
 class LocalFit {

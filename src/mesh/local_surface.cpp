@@ -127,7 +127,7 @@ bool is_simple(const LocalSurface& s, const std::vector<FitPoint>& members, cons
 }
 
 // Undersampled detail also makes normals differ. Several patches are kept only if they leave little of the squared misfit of one smooth
-// patch, as a crease of a CAD model does (without, the dragon's AE_m is 1.05 instead of 0.88, docs/evidence/meshes.md); patches that face
+// patch, as a crease of a CAD model does (without, the dragon's AE_m is 1.05 instead of 0.88); patches that face
 // each other are always kept.
 void prefer_one_patch(LocalSurface& s, std::vector<FitPoint>& members) {
   if (s.walls) return;
