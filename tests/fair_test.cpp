@@ -11,6 +11,7 @@
 #include "cloud/neighbours.h"
 #include "field_shapes.h"
 #include "mesh/field_mesher.h"
+#include "mesh/field_points.h"
 #include "mesh/least_squares_mesh.h"
 #include "mesh/lines.h"
 #include "mesh_topology.h"
@@ -98,6 +99,29 @@ TEST(Fair, ThornsGo) {
   const std::vector<Vec3> before = mesh.vertices;
   mesh::make_fair(mesh, sphere.points, std::vector<std::uint8_t>(sphere.points.size(), 0));
   EXPECT_EQ(mesh.vertices, before);
+}
+
+// Of the points of a curve every other one faces the other way, as if it were thin.
+TEST(Fair, LinesAreNoWallsToThemselves) {
+  std::vector<Vec3> points, normals;
+  for (int i = 0; i < 400; ++i) {
+    const double t = 0.1 * i;
+    points.push_back({5 * std::cos(t), 5 * std::sin(t), t});
+    normals.push_back({0, 0, i % 2 == 0 ? 1.0 : -1.0});
+  }
+  const auto sizes = [&](std::size_t count, bool told) {
+    mesh::Prepared prepared;
+    mesh::prepare({points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count)},
+                  {normals.begin(), normals.begin() + static_cast<std::ptrdiff_t>(count)}, 0, prepared);
+    const std::vector<std::uint8_t> in_lines = mesh::points_in_lines(prepared.points.positions, prepared.near);
+    EXPECT_EQ(std::count(in_lines.begin(), in_lines.end(), std::uint8_t{1}), static_cast<std::ptrdiff_t>(count));
+    std::vector<double> out = told ? mesh::sizes_to_resolve(prepared, in_lines) : mesh::sizes_to_resolve(prepared);
+    for (std::size_t i = 0; i < count; ++i) out[i] /= prepared.points.spacing[i];
+    return out;
+  };
+  EXPECT_EQ(sizes(400, true), std::vector<double>(400, 1));
+  for (const double size : sizes(400, false)) EXPECT_LT(size, 0.8);
+  EXPECT_EQ(sizes(10, true), sizes(10, false));  // by chance
 }
 
 // A square grid in the plane, z = 0 but where it is moved.

@@ -74,6 +74,46 @@ TEST(OpenSurfaces, ValleyOfAHeightMapFacesUp) {
   EXPECT_EQ(o.stats.undecided_share, 1);
 }
 
+// An object on a table is one surface without an inside: where it faces out the table faces up. Most of its field is at rest, and the
+// equations close it with a table that faces down.
+TEST(OpenSurfaces, AnObjectStandsOnItsTable) {
+  const double broad = 0.5, high = 0.9, low = -0.6;
+  for (const double radius : {0.8, 1.1}) {
+    shapes::Random random(4);
+    Surface scene;
+    double tried = 0;  // directions, all over the ellipsoid
+    while (scene.points.size() < 6000) {
+      const double z = random.uniform(-1, 1), turn = random.uniform(0, 2 * std::numbers::pi), s = std::sqrt(1 - z * z);
+      const Vec3 q{s * std::cos(turn) / broad, s * std::sin(turn) / broad, z / high};  // along the normal
+      const double size = std::sqrt(vector::dot(q, q));
+      ++tried;
+      if (high * z < low || random.uniform(0, 1) > broad * size) continue;  // even by area, which goes with that size
+      scene.points.push_back({broad * broad * q[0], broad * broad * q[1], high * z});
+      scene.normals.push_back(vector::scale(q, 1 / size));
+    }
+    // Of directions, each of which stands for broad^2 high size 4 pi / tried of area, the share broad size is taken.
+    const double per_area = tried / (4 * std::numbers::pi * broad * high);
+    const double inner = broad * std::sqrt(1 - low * low / (high * high));
+    const auto table = static_cast<std::size_t>(per_area * std::numbers::pi * (radius * radius - inner * inner) / 2);
+    for (std::size_t i = 0; i < table; ++i) {
+      const double r = std::sqrt(random.uniform(inner * inner, radius * radius)), a = random.uniform(0, 2 * std::numbers::pi);
+      scene.points.push_back({r * std::cos(a), r * std::sin(a), low});
+      scene.normals.push_back({0, 0, 1});
+    }
+    const Orientation o = orient(scene.points);
+    std::size_t wrong = 0;
+    std::size_t sure = 0;
+    for (std::size_t i = 0; i < scene.points.size(); ++i) {
+      if (vector::dot(o.normals[i], scene.normals[i]) > 0) continue;
+      ++wrong;
+      sure += o.confidence[i] > 0.9F ? 1 : 0;
+    }
+    EXPECT_LT(static_cast<double>(wrong), 0.01 * static_cast<double>(scene.points.size())) << radius;
+    EXPECT_EQ(sure, 0U) << radius;
+    EXPECT_GT(o.stats.open_share, 0.9) << radius;
+  }
+}
+
 // The equations alone leave 49 to 51 % of these on the right side, and turn directions by up to 90 degrees.
 TEST(OpenSurfaces, TerrainFacesUp) {
   for (const auto& height : {flat, saddle, hill, waves}) {

@@ -154,8 +154,8 @@ Mesh field_mesh(const std::vector<Vec3>& points, std::vector<Vec3> normals, cons
   report(monitor, Done::kNoise);
   mesh::smooth_noise(noise, monitor.cancel, prepared);
   report(monitor, Done::kSmoothing);
-  std::vector<double> size = mesh::sizes_to_resolve(prepared);
   const std::vector<std::uint8_t> in_lines = mesh::points_in_lines(prepared.points.positions, prepared.near);
+  std::vector<double> size = mesh::sizes_to_resolve(prepared, in_lines);
   Mesh mesh = raw_mesh(prepared, size, sampler, options, monitor, memory);
   size = mesh::lengths_to_carry(prepared, size);
   prepared.neighbours.reset();

@@ -63,12 +63,15 @@ long most_per_handle(double noise, double cell) {
   return std::lround(static_cast<double>(kMostPerHandle) * blurred * blurred * blurred);
 }
 
-std::vector<double> sizes_to_resolve(const Prepared& prepared) {
+std::vector<double> sizes_to_resolve(const Prepared& prepared, const std::vector<std::uint8_t>& in_lines) {
   std::vector<double> sizes = prepared.points.spacing;
   if (prepared.noise > 0) return sizes;  // which side points are on is not known well enough to tell walls
   const std::vector<double> thickness = wall_thickness(prepared.points, prepared.near);
-  for (std::size_t i = 0; i < sizes.size(); ++i)
+  const bool has_lines = in_lines.size() > kFitPoints;
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    if (has_lines && in_lines[i] != 0) continue;  // what faces it is most often the same line
     sizes[i] = std::min(sizes[i], std::max(thickness[i] / (kThin * kFinestCell), sizes[i] / 2));
+  }
   return sizes;
 }
 

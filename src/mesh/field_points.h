@@ -50,8 +50,9 @@ void smooth_noise(const Noise& noise, const std::atomic<bool>* cancel, Prepared&
 /// those are to kFinestCell.
 [[nodiscard]] long most_per_handle(double noise, double cell);
 
-/// The size of what is to be seen at each point: its spacing, or less where walls and gaps are thinner.
-[[nodiscard]] std::vector<double> sizes_to_resolve(const Prepared& prepared);
+/// The size of what is to be seen at each point: its spacing, or less where walls and gaps are thinner. `in_lines`: of points_in_lines(),
+/// which are no walls to each other unless so few points are a line by chance; may be empty.
+[[nodiscard]] std::vector<double> sizes_to_resolve(const Prepared& prepared, const std::vector<std::uint8_t>& in_lines = {});
 
 /// Levels of leaves around points.
 struct LevelRule {

@@ -6,6 +6,7 @@
 #include "orient/agreement.h"
 #include "orient/certificate.h"
 #include "orient/certified_sides.h"
+#include "orient/restless.h"
 #include "orient/site_parts.h"
 #include "orient/two_walls.h"
 #include "solve/part_system.h"
@@ -39,6 +40,7 @@ bool any(const std::vector<std::uint8_t>& parts) {
 
 // What is known of every part.
 struct Verdict {
+  std::vector<std::vector<std::uint32_t>> restless;  // the sites where its field is not that of a closed surface: all, or those of pieces
   std::vector<std::uint8_t> is_open;
   std::vector<std::uint8_t> is_doubtful;     // neither at rest nor shown to be open
   std::vector<std::uint8_t> is_turned;       // of those, whose sides are more certain by a hypothesis
@@ -48,26 +50,39 @@ struct Verdict {
   std::vector<double> enclosure;             // of the best
 };
 
-// From the field of the given normals, unrest and jump defects being means of the parts.
+// From the field of the given normals, unrest and jump defects being means of the parts. A part that is closed but for a place may be open
+// all the same, as an object is that stands on a table.
 Verdict suspect(const SiteParts& parts, const Certificate& given, const std::vector<double>& unrest, const std::vector<double>& defect,
                 double noise) {
   const std::size_t count = parts.count();
   const std::vector<std::uint8_t> none(count, 0);
-  Verdict verdict{
-      none, none, none, {}, std::vector<std::size_t>(count, 0), std::vector<double>(count, HUGE_VAL), std::vector<double>(count, 0)};
+  Verdict verdict{std::vector<std::vector<std::uint32_t>>(count),
+                  none,
+                  none,
+                  none,
+                  {},
+                  std::vector<std::size_t>(count, 0),
+                  std::vector<double>(count, HUGE_VAL),
+                  std::vector<double>(count, 0)};
   for (std::uint32_t p = 0; p < count; ++p) {
-    if (parts.members(p).size() < kFewestSites) continue;
-    if (unrest[p] <= kUnrest && defect[p] <= (noise > 0 ? kNoJumpNoisy : kNoJump)) continue;
-    verdict.is_open[p] = on_two_walls(parts.set(), parts.sites(), parts.members(p), noise, given.unrest, kUnrest) ? 0 : 1;
+    const std::vector<std::uint32_t>& part = parts.members(p);
+    if (part.size() < kFewestSites) continue;
+    if (unrest[p] <= kUnrest && defect[p] <= (noise > 0 ? kNoJumpNoisy : kNoJump)) {
+      verdict.restless[p] = restless_pieces(parts, p, given.unrest, noise);
+      verdict.is_open[p] = verdict.restless[p].empty() ? 0 : 1;
+      continue;
+    }
+    verdict.restless[p] = part;
+    verdict.is_open[p] = on_two_walls(parts.set(), parts.sites(), part, noise, given.unrest, kUnrest) ? 0 : 1;
     verdict.is_doubtful[p] = verdict.is_open[p] == 0 && unrest[p] > kUnrest ? 1 : 0;
   }
   return verdict;
 }
 
-// The best hypothesis of every part. Where unrest alone does not decide it has to halve the defect of what was given; else nothing is
-// certain, if the part is not at rest either.
-void choose_hypotheses(const SiteParts& parts, const std::vector<std::vector<Vec3>>& tried, const std::vector<double>& unrest,
-                       const std::vector<double>& defect, double noise, Verdict& verdict) {
+// The best hypothesis of every part. Where unrest alone does not decide it has to halve the defect of what was given, where that is
+// restless; else nothing is certain, if the part is not at rest either.
+void choose_hypotheses(const SiteParts& parts, const std::vector<std::vector<Vec3>>& tried, const Certificate& given,
+                       const std::vector<double>& unrest, const std::vector<double>& defect, double noise, Verdict& verdict) {
   JumpDefects defects = parts.jump_defects(tried);
   std::vector<double> least(unrest.size(), HUGE_VAL);
   for (std::size_t h = 0; h < tried.size(); ++h) {
@@ -90,9 +105,13 @@ void choose_hypotheses(const SiteParts& parts, const std::vector<std::vector<Vec
   const double most_unrest = parts.sites().distance > 0 ? kUnrestNoisy : kUnrest;
   for (std::size_t p = 0; p < unrest.size(); ++p) {
     if (verdict.is_open[p] == 0) continue;
-    const bool is_better = unrest[p] > most_unrest || 2 * verdict.defect[p] <= defect[p];
-    // Noise makes one wall of two: what encloses nearly everything is a closed surface whose thin parts it hides.
-    const bool is_enclosed = noise > 0 && std::abs(verdict.enclosure[p]) >= kEncloses;
+    const std::vector<std::uint32_t>& restless = verdict.restless[p];
+    const bool halves = 2 * mean_over(restless, verdict.defects[verdict.best[p]]) <= mean_over(restless, given.jump_defect);
+    const bool is_better = unrest[p] > most_unrest || halves;
+    // Noise makes one wall of two: what encloses nearly everything is a closed surface whose thin parts it hides. So is what is at rest but
+    // for a place.
+    const bool in_pieces = restless.size() < parts.members(p).size();
+    const bool is_enclosed = (noise > 0 || in_pieces) && std::abs(verdict.enclosure[p]) >= kEncloses;
     if (is_better && !is_enclosed) continue;
     verdict.is_open[p] = 0;
     verdict.is_doubtful[p] = unrest[p] > kUnrest ? 1 : 0;
@@ -219,7 +238,7 @@ OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan
   std::vector<Vec3> best;
   if (any(verdict.is_open)) {
     const std::vector<std::vector<Vec3>> tried = sides_by_agreement(set, parts.sites(), sums, cancel);
-    choose_hypotheses(parts, tried, unrest, defect, noise, verdict);
+    choose_hypotheses(parts, tried, given, unrest, defect, noise, verdict);
     best = best_of(parts, tried, verdict);
   }
   const bool are_turned = any(verdict.is_turned);

@@ -46,17 +46,20 @@ SiteParts::SiteParts(const PointSet& set, double noise, const SumPlan& sums, con
   }
 }
 
-std::vector<double> SiteParts::means(const std::vector<double>& value) const {
-  std::vector<double> mean(members_.size(), 0);
-  for (std::size_t p = 0; p < members_.size(); ++p) {
-    double count = 0;
-    for (const std::uint32_t s : members_[p]) {
-      if (value[s] < 0) continue;
-      mean[p] += value[s];
-      ++count;
-    }
-    if (count > 0) mean[p] /= count;
+double mean_over(const std::vector<std::uint32_t>& sites, const std::vector<double>& value) {
+  double sum = 0;
+  double count = 0;
+  for (const std::uint32_t s : sites) {
+    if (value[s] < 0) continue;
+    sum += value[s];
+    ++count;
   }
+  return count > 0 ? sum / count : 0;
+}
+
+std::vector<double> SiteParts::means(const std::vector<double>& value) const {
+  std::vector<double> mean;
+  for (const std::vector<std::uint32_t>& part : members_) mean.push_back(mean_over(part, value));
   return mean;
 }
 

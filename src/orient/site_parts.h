@@ -25,6 +25,9 @@ void make_room_for_sums(const PointSet& set);
 /// The least distance of the sites of that scale, of a cloud with this typical spacing and noise; 0: every point is one.
 [[nodiscard]] double site_distance(std::size_t points, double spacing, double noise);
 
+/// Mean of `value` over the given sites, negative values being left out; 0 where there is no other.
+[[nodiscard]] double mean_over(const std::vector<std::uint32_t>& sites, const std::vector<double>& value);
+
 /// The sites of that scale and the parts that adjacent ones (adjacent_sites()) hang together in. Parts are numbered by their first sites.
 class SiteParts {
  public:
@@ -38,7 +41,7 @@ class SiteParts {
   [[nodiscard]] const std::vector<std::uint32_t>& members(std::size_t part) const { return members_[part]; }
   [[nodiscard]] std::uint32_t of_point(std::size_t i) const { return part_[sites_.site_of[i]]; }
 
-  /// Mean of `value` over the sites of every part; negative values are left out, 0 where there is none.
+  /// mean_over() the sites of every part.
   [[nodiscard]] std::vector<double> means(const std::vector<double>& value) const;
 
   /// The certificate of normals of the N points (certify()). The size of a part is that of a square of as many sites.
