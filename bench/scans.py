@@ -12,8 +12,10 @@
     wires     a ring of which only curves are drawn
     slices    the same ring, as contours of computed tomography
     room      a room and its table, scanned from inside
+    table     a pear of revolution and the table that it stands on
 
-What is true of each: house and ground only; genus 0; everything faces the camera; one surface that faces up, for arch, airborne and lines;
+What is true of each: house and ground only; genus 0; everything faces the camera; one surface that faces up, for arch, airborne, lines
+and table;
 genus 1 for wires and slices; normals that face the middle of the room. N is about how many points there are. Needs NumPy.
 """
 
@@ -148,8 +150,25 @@ def room(n, rng, _):
     return points + rng.normal(0, 0.003, points.shape)
 
 
-KINDS = {kind.__name__: kind for kind in (house, plate, frame, arch, airborne, lines, wires, slices, room)}
-USUAL = {"house": 10000, "plate": 30000, "frame": 34240, "arch": 20000, "airborne": 6000, "lines": 19200, "wires": 1000, "slices": 3000}
+def table(n, rng, _):
+    def radius(t):
+        return 0.7 * np.sqrt(t * (1 - t)) * (1.4 - t)
+
+    foot = 0.05  # where the pear meets the table, as a share of its height
+    t = rng.uniform(foot, 1, 20 * n)
+    slope = (radius(np.minimum(t + 1e-4, 1)) - radius(t - 1e-4)) / 2e-4
+    area = radius(t) * np.hypot(1, slope)
+    t = t[rng.random(len(t)) < area / area.max()][: int(0.7 * n)]
+    turn = rng.uniform(0, 2 * np.pi, len(t))
+    pear = np.c_[radius(t) * np.cos(turn), radius(t) * np.sin(turn), t]
+    far = np.sqrt(rng.uniform(radius(foot) ** 2, 0.7**2, int(0.3 * n)))
+    turn = rng.uniform(0, 2 * np.pi, len(far))
+    return np.concatenate([pear, np.c_[far * np.cos(turn), far * np.sin(turn), np.full_like(far, foot)]])
+
+
+KINDS = {kind.__name__: kind for kind in (house, plate, frame, arch, airborne, lines, wires, slices, room, table)}
+USUAL = {"house": 10000, "plate": 30000, "frame": 34240, "arch": 20000, "airborne": 6000, "lines": 19200, "wires": 1000, "slices": 3000,
+         "table": 20000}
 
 
 def main():

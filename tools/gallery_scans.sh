@@ -91,6 +91,11 @@ for name in room inside; do # without the ceiling
 done
 python3 "$bench/montage.py" "$images/scan-room.png" --heads "no flag,--seen-from-inside" --tile $tile --colours 160 room=room.png,inside.png
 
+show python3 "$bench/scans.py" table table.ply
+mesh table table
+mesh open table --up +z --open
+pictures scan-table "points,no flag,--up +z --open" z table table open
+
 show python3 "$bench/splats.py" make dense.ply splats.ply --count 30000
 mesh all splats --all-splats
 mesh splats splats
