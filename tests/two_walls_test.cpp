@@ -35,7 +35,7 @@ bool found(const std::vector<Vec3>& points, double noise) {
   const Sites sites = place_sites(cloud.set, noise > 0 ? 1.5 * cloud.set.spacing() : 0);
   std::vector<std::uint32_t> all(sites.size());
   std::iota(all.begin(), all.end(), 0U);
-  return on_two_walls(cloud.set, sites, all, noise * cloud.set.spacing(), std::vector<double>(sites.size(), 0), 1);
+  return on_two_walls(cloud.set, sites, all, noise * cloud.set.spacing(), std::vector<double>(sites.size(), 0));
 }
 
 TEST(TwoWalls, OneSurfaceIsNone) {
@@ -65,7 +65,7 @@ TEST(TwoWalls, AreNoReasonForUnrestBesideThem) {
   const auto found_with = [&](double on_walls, double beside) {
     std::vector<double> unrest;
     for (const Vec3& p : sites.points()) unrest.push_back(p[1] < rim ? on_walls : beside);
-    return on_two_walls(cloud.set, sites, all, 0, unrest, 0.08);
+    return on_two_walls(cloud.set, sites, all, 0, unrest);
   };
   EXPECT_TRUE(found_with(0.2, 0.03));
   EXPECT_TRUE(found_with(0.2, 0.1));

@@ -73,7 +73,7 @@ Verdict suspect(const SiteParts& parts, const Certificate& given, const std::vec
       continue;
     }
     verdict.restless[p] = part;
-    verdict.is_open[p] = on_two_walls(parts.set(), parts.sites(), part, noise, given.unrest, kUnrest) ? 0 : 1;
+    verdict.is_open[p] = on_two_walls(parts.set(), parts.sites(), part, noise, given.unrest) ? 0 : 1;
     verdict.is_doubtful[p] = verdict.is_open[p] == 0 && unrest[p] > kUnrest ? 1 : 0;
   }
   return verdict;

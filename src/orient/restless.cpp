@@ -18,7 +18,7 @@ std::vector<std::uint32_t> restless_pieces(const SiteParts& parts, std::uint32_t
     const auto start = [&](std::size_t piece) { return members.begin() + static_cast<std::ptrdiff_t>(piece * members.size() / count); };
     const std::vector<std::uint32_t> piece(start(k), start(k + 1));
     if (mean_over(piece, unrest) <= kUnrest) continue;
-    if (on_two_walls(parts.set(), parts.sites(), piece, noise, unrest, kUnrest)) continue;
+    if (on_two_walls(parts.set(), parts.sites(), piece, noise, unrest)) continue;
     restless.insert(restless.end(), piece.begin(), piece.end());
   }
   return restless;

@@ -8,6 +8,7 @@
 #include "cloud/noise.h"
 #include "cloud/quadratic_patch.h"
 #include "cloud/spacing.h"
+#include "orient/certified_sides.h"
 
 #include <algorithm>
 #include <array>
@@ -53,7 +54,7 @@ void for_gains(const PointSet& set, const Sites& sites, const std::vector<std::u
 
 // Whether the field is as restless where there is one wall as where there are two.
 bool is_restless_beside_walls(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members,
-                              const std::vector<double>& unrest, double rest) {
+                              const std::vector<double>& unrest) {
   std::vector<Vec3> places;
   std::vector<std::uint32_t> site;
   std::vector<std::uint8_t> on_two;
@@ -79,7 +80,7 @@ bool is_restless_beside_walls(const PointSet& set, const Sites& sites, const std
   }
   if (count[0] < kFewestSites) return false;
   const double beside = sum[0] / static_cast<double>(count[0]);
-  return beside > rest && beside * static_cast<double>(count[1]) >= sum[1];
+  return beside > kUnrest && beside * static_cast<double>(count[1]) >= sum[1];
 }
 
 bool on_exact_walls(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members) {
@@ -103,9 +104,9 @@ bool on_noisy_walls(const PointSet& set, const Sites& sites, const std::vector<s
 }  // namespace
 
 bool on_two_walls(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members, double noise,
-                  const std::vector<double>& unrest, double rest) {
-  if (noise > 0 && on_noisy_walls(set, sites, members)) return true;
-  return on_exact_walls(set, sites, members) && !is_restless_beside_walls(set, sites, members, unrest, rest);
+                  const std::vector<double>& unrest) {
+  if (on_exact_walls(set, sites, members) && !is_restless_beside_walls(set, sites, members, unrest)) return true;
+  return noise > 0 && on_noisy_walls(set, sites, members);
 }
 
 }  // namespace g3r

@@ -15,13 +15,13 @@ namespace g3r {
 ///     (fit_two_layers()), and from one, through 24 points. Two are likelier if they are at half of the places or more. Rounding spreads
 ///     heights evenly, and what is cut in half then has half the deviation without any wall: another ln 2 per point against two.
 ///     Where such walls are why a field is restless, it is so on them. If it is no less restless in places on one wall, and by more than
-///     `rest`, they are not the reason, and count for nothing: scans of one open surface that overlap in part and do not fit onto each
+///     kUnrest, they are not the reason, and count for nothing: scans of one open surface that overlap in part and do not fit onto each
 ///     other. Of 2000 to 4000 places those are on one wall, or on two, that are so themselves with their 8 nearest, all but one; fewer than
 ///     30 on one wall say nothing.
 ///   - Where there is noise, walls that it hides: MeanExcess::is_two_walls() of the heights over cubics through 128 points.
 /// `members`: of the sites, at least one; `noise`: standard deviation, unit of the points; 0: none; `unrest`: Certificate::unrest of all
-/// sites; `rest`: of a closed surface, at most. O(log N) per place, and O(N log N) under noise.
+/// sites. O(log N) per place, and O(N log N) under noise.
 [[nodiscard]] bool on_two_walls(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members, double noise,
-                                const std::vector<double>& unrest, double rest);
+                                const std::vector<double>& unrest);
 
 }  // namespace g3r
