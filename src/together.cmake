@@ -22,7 +22,7 @@ g3r_together(orient sum/device_scope metrics/triangle_tree orient/certificate or
 g3r_together(steps orient/facets orient/hints orient/apply_hints orient/closed_sides orient/patch_sides orient/votes orient/steps names
              reconstruct)
 g3r_together(jets orient/jets orient/agreement orient/certified_sides orient/open_surfaces orient/restless orient/site_parts pipeline orient/assess
-             orient/attempt orient/callers_order orient/describe orient/noise_choice orient/outlier_normals orient/separate_walls)
+             orient/attempt orient/callers_order orient/describe orient/noise_choice orient/outlier_normals orient/outside orient/separate_walls)
 
 g3r_together(fields mesh/automatic_depth mesh/box_tree mesh/carry_attributes mesh/check_mesh mesh/component_support mesh/crossings
              mesh/exact_orientation mesh/field_contour mesh/field_corners mesh/field_denoise mesh/field_mesher mesh/field_octree

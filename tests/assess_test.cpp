@@ -48,6 +48,7 @@ OpenSurfaces open_part(std::size_t open, float certainty) {
   surfaces.certainty.assign(kPoints, 1);
   surfaces.certified.assign(kPoints, 1);
   surfaces.agrees.assign(kPoints, 0);
+  surfaces.held.assign(kPoints, 1);
   for (std::size_t i = 0; i < open; ++i) {
     surfaces.part[i] = 0;
     surfaces.certainty[i] = certainty;

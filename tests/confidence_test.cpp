@@ -22,6 +22,19 @@ TEST(SideConfidence, IsOneWhereAllAgreesAndNoneWhereDirectionsAreOpposite) {
   EXPECT_EQ(c, (std::vector<float>{1, 1, 1, 0, 0.5F}));
 }
 
+TEST(Chances, OfTwoSidesThatAgreeAndOfTwoObservationsOfOne) {
+  for (const double c : {0.0, 0.2, 0.5, 0.9, 1.0}) {
+    EXPECT_DOUBLE_EQ(both_agree(c, 1), c);
+    EXPECT_DOUBLE_EQ(both_agree(c, 0.5), 0.5);  // a choice is all that is left
+    EXPECT_DOUBLE_EQ(both_agree(c, 0), 1 - c);
+    EXPECT_DOUBLE_EQ(both_say(c, 0.5), c);  // who knows nothing changes nothing
+    if (c > 0 && c < 1) {
+      EXPECT_NEAR(both_say(c, 1 - c), 0.5, 1e-15);
+    }
+  }
+  EXPECT_NEAR(both_say(0.8, 0.8), 0.64 / 0.68, 1e-15);
+}
+
 TEST(SideConfidence, FallsWithAreaAndFieldBelowHalfTheirMedians) {
   std::vector<Vec3> eta = kAreas;
   eta[0][2] = 0.25 * 0.2;

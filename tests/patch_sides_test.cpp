@@ -1,6 +1,7 @@
 // What hints make of patches: what people know decides sides that are open.
 #include "orient/patch_sides.h"
 
+#include "orient/confidence.h"
 #include "sides.h"
 
 #include <gtest/gtest.h>
@@ -65,13 +66,17 @@ TEST(DecidePatches, APatchFacesAwayFromInside) {
   EXPECT_EQ(sides.normals.front(), (Vec3{0, 0, -1}));
 }
 
-// The votes of a patch that bends back disagree, and its confidence is the share of those that agree; near a half it stays a choice.
+// The votes of a patch that bends back disagree, and its confidence is the share of those that agree, or what a point is seen by itself;
+// near a half it stays a choice.
 TEST(DecidePatches, ConfidenceIsTheAgreementOfTheVotes) {
   for (const double least_z : {-0.5, -0.9}) {
     Sides sides;
     sides.add_sphere({0, 0, 0}, 1, least_z, 0, true);
     const HintEffect effect = sides.follow({.up = Vec3{0, 0, 1}});
-    EXPECT_NEAR(sides.confidence[0], 1 / (1 + least_z * least_z), 0.01);  // integrals of |z| above and below 0
+    const double agreement = 1 / (1 + least_z * least_z);  // integrals of |z| above and below 0
+    for (std::size_t i = 0; i < sides.points.size(); ++i) {
+      EXPECT_NEAR(sides.confidence[i], std::max(agreement, (1 + sides.normals[i][2]) / 2), 0.01) << i;
+    }
     EXPECT_EQ(effect.decided[0] != 0, least_z == -0.5);
     for (std::size_t i = 0; i < sides.points.size(); ++i) EXPECT_GT(dot(sides.normals[i], sides.points[i]), 0.9);
   }
@@ -90,6 +95,35 @@ TEST(DecidePatches, PointsThatDoNotAgreeWithTheirPatchHaveLessConfidence) {
   EXPECT_EQ(sides.confidence[7], 0.25F);
 }
 
+// Up says nothing of the walls, whose sides are those of the ground as surely as they are held together with it.
+TEST(DecidePatches, WhatIsSeenEdgeOnIsAsSureAsItIsHeld) {
+  Sides sides;
+  sides.add_square({0, 0, 0}, 2, 1, 0);
+  sides.add_square({5, 0, 0}, 0, 1, 0);
+  sides.patches.held.assign(800, 1);
+  std::fill(sides.patches.held.begin() + 400, sides.patches.held.end(), 0.75F);
+  Sides squarely = sides;
+  (void)sides.follow({.up = Vec3{0, 0, 1}});
+  EXPECT_EQ(sides.confidence.front(), 1);
+  EXPECT_FLOAT_EQ(sides.confidence.back(), 0.75F);
+  (void)squarely.follow({.sensors = {{1000, 0, 1000}}});  // which sees both at 45 degrees
+  EXPECT_NEAR(squarely.confidence.back(), (1 + std::sqrt(0.5)) / 2, 0.01);
+}
+
+// Votes that are balanced, as those of up on a ball are, leave what the points show; against it they need more than that.
+TEST(DecidePatches, WhatThePointsShowStaysUnlessVotesOutweighIt) {
+  for (const float certainty : {0.55F, 0.65F}) {
+    Sides sides;
+    sides.add_sphere({0, 0, 0}, 1, -0.8, 0, true);
+    std::fill(sides.patches.certainty.begin(), sides.patches.certainty.end(), certainty);
+    const double against = 1 / (1 + 0.64);
+    (void)sides.follow({.up = Vec3{0, 0, -1}});
+    const bool is_turned = against > static_cast<double>(certainty);
+    EXPECT_EQ(sides.normals.front()[2] < 0, is_turned);
+    EXPECT_NEAR(sides.confidence[0], is_turned ? (1 + std::abs(sides.normals[0][2])) / 2 : both_say(certainty, 1 - against), 0.02);
+  }
+}
+
 // What a scanner has seen it has seen from the front: a point that faces away from it has the wrong side, or the wrong direction.
 TEST(DecidePatches, WhatFacesAwayFromEveryScannerIsDoubted) {
   Sides above;
@@ -100,12 +134,9 @@ TEST(DecidePatches, WhatFacesAwayFromEveryScannerIsDoubted) {
   for (std::size_t i = 0; i < above.points.size(); ++i) {
     const double z = above.normals[i][2];
     if (std::abs(z) < 0.01) continue;  // seen edge-on
-    if (z < 0) {
-      EXPECT_NEAR(above.confidence[i], (1 + z) / 2, 0.01) << z;
-    } else {
-      EXPECT_EQ(above.confidence[i], above.confidence[0]) << z;
-    }
-    EXPECT_EQ(around.confidence[i], around.confidence[0]) << z;
+    const double of_patch = 1 / (1 + 0.25);
+    EXPECT_NEAR(above.confidence[i], z < 0 ? (1 + z) / 2 : std::max(of_patch, (1 + z) / 2), 0.01) << z;
+    EXPECT_GE(around.confidence[i], (1 + std::abs(z)) / 2 - 0.01) << z;
   }
 }
 
@@ -121,8 +152,9 @@ TEST(DecidePatches, OfOneViewNothingIsSeenSquarelyFromBehind) {
     if (std::abs(z) < 0.01 || std::abs(z + 0.2236) < 0.01) continue;  // edge-on, and at the limit
     EXPECT_EQ(effect.turned[i] != 0, z < -0.2236) << z;
     EXPECT_EQ(dot(sides.normals[i], outward[i]) < 0, z < -0.2236) << z;
-    const double shown = z < -0.2236 ? (1 - z) / 2 : z < 0 ? (1 + z) / 2 : 1;
-    EXPECT_NEAR(sides.confidence[i], std::min(shown, 1 / (1 + 0.81)), 0.01) << z;  // and no more than the votes agree
+    const double agreement = 1 / (1 + 0.81);
+    const double shown = z < 0 ? std::min((z < -0.2236 ? 1 - z : 1 + z) / 2, agreement) : std::max((1 + z) / 2, agreement);
+    EXPECT_NEAR(sides.confidence[i], shown, 0.01) << z;
   }
 }
 

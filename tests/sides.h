@@ -31,7 +31,7 @@ struct Sides {
     eta.push_back({area * normal[0], area * normal[1], area * normal[2]});
     confidence.push_back(is_choice ? 0.5F : 1.0F);
     patches.of.push_back(patch);
-    patches.is_choice.push_back(is_choice ? 1 : 0);
+    patches.certainty.push_back(is_choice ? 0.5F : 1.0F);
   }
   // A square of side 2 about `centre`, along the axes other than `axis`, whose normals are `sign` times that axis.
   void add_square(const Vec3& centre, std::size_t axis, double sign, std::uint32_t patch, bool is_choice = true) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace g3r {
@@ -73,6 +74,53 @@ TEST(SignGraph, DoesNotDependOnTheOrderOfTheEdges) {
   for (SignEdge& edge : graph.edges) std::swap(edge.a, edge.b);
   const Signs backwards = agree_on_signs(graph.sign.size(), graph.edges);
   EXPECT_EQ(forwards.sign, backwards.sign);
+}
+
+// Two square lattices, of 20 x 20 and of 30 x 30 nodes, and `bridges` edges between them of the given weight.
+std::vector<SignEdge> two_lattices(std::uint32_t bridges, double weight = 1) {
+  std::vector<SignEdge> edges;
+  for (const auto& [first, side] : {std::pair<std::uint32_t, std::uint32_t>{0, 20}, {400, 30}}) {
+    for (std::uint32_t i = 0; i < side; ++i) {
+      for (std::uint32_t j = 0; j + 1 < side; ++j) {
+        edges.push_back({first + i * side + j, first + i * side + j + 1, 1});
+        edges.push_back({first + j * side + i, first + (j + 1) * side + i, 1});
+      }
+    }
+  }
+  for (std::uint32_t k = 0; k < bridges; ++k) edges.push_back({k, 400 + k, weight});
+  return edges;
+}
+
+// The bridges, weaker than all else, are all that holds the smaller lattice: its mean degree is d = (4 * 400 - 80 + b / 4) / 400.
+TEST(HeldTogether, BridgesHoldByTheRuleOfSuccession) {
+  for (const std::uint32_t bridges : {1U, 5U, 20U}) {
+    const std::vector<Hold> hold = held_together(1300, two_lattices(bridges, 0.25));
+    const double k = 0.25 * bridges / ((1520 + 0.25 * bridges) / 400);
+    const double chance = 1 - (1 - k / 20) / (k + 2);
+    for (std::size_t i = 0; i < 400; ++i) EXPECT_LE(hold[i].chance, static_cast<float>(chance) + 1e-6F) << i;
+    EXPECT_NEAR(hold[210].chance, chance, 1e-6);  // in its middle nothing hangs more loosely
+    EXPECT_GT(hold[400 + 465].chance, 0.9F);
+  }
+}
+
+// Neither contradictions nor nothing hold anything, and one group of nodes is distinguished from the other.
+TEST(HeldTogether, ContradictionsHoldNothing) {
+  const std::vector<Hold> hold = held_together(1300, two_lattices(20, -1));
+  for (std::size_t i = 0; i < 400; ++i) {
+    EXPECT_EQ(hold[i].chance, 0.5F) << i;
+    EXPECT_EQ(hold[i].group, hold[0].group) << i;
+    EXPECT_NE(hold[i].group, 0U) << i;
+  }
+  EXPECT_EQ(held_together(3, {})[1].chance, 1);  // alone it has the side of all there is
+}
+
+TEST(HeldTogether, DoesNotDependOnTheOrderOfTheEdges) {
+  std::vector<SignEdge> edges = two_lattices(7);
+  const std::vector<Hold> forwards = held_together(1300, edges);
+  std::reverse(edges.begin(), edges.end());
+  for (SignEdge& edge : edges) std::swap(edge.a, edge.b);
+  const std::vector<Hold> backwards = held_together(1300, edges);
+  for (std::size_t i = 0; i < 1300; ++i) EXPECT_EQ(forwards[i].chance, backwards[i].chance) << i;
 }
 
 TEST(SignGraph, FrustrationIsTheShareOfTheWeightThatIsContradicted) {

@@ -54,7 +54,8 @@ TEST(SiteParts, EncloseAllNothingOrSome) {
     std::vector<Vec3> normals;
     for (const Vec3& n : s.normals) normals.push_back(vector::scale(n, sign));
     const PointSet set(s.points);
-    return parts_of(set).enclosure(0, normals);
+    const SiteParts parts = parts_of(set);
+    return parts.enclosure(parts.members(0), normals);
   };
   EXPECT_NEAR(enclosure(sphere, 1), 1, 0.1);
   EXPECT_NEAR(enclosure(sphere, -1), -1, 0.1);

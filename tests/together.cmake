@@ -12,7 +12,7 @@ endfunction()
 g3r_tests_together(tests_of_quality areas baselines green_identity open_surfaces orient outliers planes)
 g3r_tests_together(tests_of_noise noise noisy_jets projection viewpoint walls)
 g3r_tests_together(tests_of_attempts agreement assess attempt callers_order certified_sides clean_surface describe noise_choice noisy_surface
-                                     outlier_normals problem restless separate_walls site_parts solve_apart solve_on_sites)
+                                     outlier_normals outside problem restless separate_walls site_parts solve_apart solve_on_sites)
 g3r_tests_together(tests_of_clouds certificate clusters clustered_polish confidence creases exact_plane jets hints closed_sides patch_sides
                                    votes neighbours point_set quadratic_patch separate_vertices sight_normals sites spacing two_walls)
 g3r_tests_together(tests_of_sums adjoint coarse_to_fine dense_solver energy_system fast_sum harmonics heights part_system polish refine

@@ -15,9 +15,10 @@ namespace G3R_PUBLIC g3r {
 inline constexpr std::uint32_t kNoSensor = 0xffffffff;
 
 /// Hints for orient(); all are optional. They vote where the points leave the side open - on every open surface as a whole, each point with
-/// the cosine under which it is seen - and decide it with the share of the votes that agree as its confidence. The sides of closed parts
-/// follow from the points; a hint that contradicts them is a warning with its share. Two hints do turn closed parts: `seen_from_inside`,
-/// and a sensor inside a closed part, from which nobody could have seen its outside; of the latter a warning tells.
+/// the cosine under which it is seen - and decide it with the share of the votes that agree as its confidence; less where a point hardly
+/// hangs together with the rest of its surface and is seen edge-on, as a wall is from above. The sides of closed parts follow from the
+/// points; a hint that contradicts them is a warning with its share. Two hints do turn closed parts: `seen_from_inside`, and a sensor
+/// inside a closed part, from which nobody could have seen its outside; of the latter a warning tells.
 struct Hints {
   /// Direction, of any length, that open surfaces face: terrain, roofs, what lies on a table.
   std::optional<Vec3> up{};

@@ -101,6 +101,15 @@ std::vector<Vec3> at_sites(const Sites& sites, const std::vector<Vec3>& normals)
   return mean;
 }
 
+std::vector<Hold> held_by_neighbours(const Sites& sites, const std::vector<Vec3>& normals) {
+  std::vector<SignEdge> edges = adjacent_sites(sites);
+  for (SignEdge& edge : edges) {
+    const bool is_turned = (dot(normals[edge.a], sites.axis[edge.a]) < 0) != (dot(normals[edge.b], sites.axis[edge.b]) < 0);
+    if (is_turned) edge.weight = -edge.weight;
+  }
+  return held_together(sites.size(), edges);
+}
+
 std::vector<std::vector<Vec3>> sides_by_agreement(const PointSet& set, const Sites& finest, const SumPlan& sums,
                                                   const std::atomic<bool>* cancel) {
   std::vector<std::vector<Vec3>> all{by_agreement(set, finest, sums, cancel)};

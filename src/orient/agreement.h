@@ -24,6 +24,10 @@ namespace g3r {
 /// M mean directions of the normals of the N points of every site; its axis where these cancel. O(N).
 [[nodiscard]] std::vector<Vec3> at_sites(const Sites& sites, const std::vector<Vec3>& normals);
 
+/// How surely every site has the side of the rest of what it hangs together with: held_together(), of adjacent_sites(). `normals`: of the
+/// sites. O(M log M).
+[[nodiscard]] std::vector<Hold> held_by_neighbours(const Sites& sites, const std::vector<Vec3>& normals);
+
 /// Normals of all N points, three times at most: on the finest scale and on two with sites twice as far apart each, as long as there are 30
 /// sites,
 ///   1. signs of the axes by agreement of neighbours (agree_on_signs());

@@ -41,8 +41,9 @@ Hints in_frame(const Hints& given, const CanonicalCloud& cloud) {
 Patches patches_of(const OpenSurfaces& surfaces) {
   Patches patches;
   patches.of = surfaces.part;
-  for (const float certainty : surfaces.certainty) patches.is_choice.push_back(certainty < 1 ? 1 : 0);
+  patches.certainty = surfaces.certainty;
   patches.agreed = surfaces.certified;
+  patches.held = surfaces.held;
   return patches;
 }
 

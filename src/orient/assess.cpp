@@ -34,7 +34,7 @@ void add_open_surfaces(const OpenSurfaces& surfaces, std::vector<float>& confide
       confidence[i] *= surfaces.certainty[i];
       continue;
     }
-    confidence[i] = surfaces.certainty[i];
+    confidence[i] = static_cast<float>(both_agree(surfaces.certainty[i], surfaces.held[i]));
     ++open;
     agreed += surfaces.agrees[i];
     undecided += surfaces.certainty[i] <= kUndecided ? 1 : 0;

@@ -36,6 +36,12 @@ struct Sums {
 /// and the order of the points stays. `points`: N, distinct. O(N).
 void limit_to_evidence(std::size_t points, std::vector<float>& confidence);
 
+/// Chance that two sides are the same, or both not, of the independent chances that each is: a half if either is a choice.
+[[nodiscard]] inline double both_agree(double one, double other) { return one * other + (1 - one) * (1 - other); }
+
+/// Chance of a side of which two independent observations say that it has these chances, not both 0 or 1 against each other (Bayes).
+[[nodiscard]] inline double both_say(double one, double other) { return one * other / (one * other + (1 - one) * (1 - other)); }
+
 /// Of every point, whether its side_confidence() is below a half.
 [[nodiscard]] std::vector<std::uint8_t> unsure_points(const std::vector<float>& confidence);
 /// Share of the points, of at least one, whose side_confidence() is below a half. O(N).

@@ -15,10 +15,11 @@ namespace g3r {
 /// The parts of a cloud that are turned as a whole.
 struct Patches {
   static constexpr std::uint32_t kNone = UINT32_MAX;
-  std::vector<std::uint32_t> of;        ///< N: number of the patch a point belongs to, or kNone: it lies on a closed part; empty: all do
-  std::vector<std::uint8_t> is_choice;  ///< N: not 0 where nothing tells the side of the patch; empty: nowhere
-  std::vector<float> agreed;            ///< N, 0..1: how far the side of a point is that of its patch; empty: everywhere
-  bool seen = false;                    ///< sensors that are known have seen all points, each from the front
+  std::vector<std::uint32_t> of;  ///< N: number of the patch a point belongs to, or kNone: it lies on a closed part; empty: all do
+  std::vector<float> certainty;   ///< N, 1/2..1: of the side of the patch; below 1 it is a choice; empty: 1
+  std::vector<float> agreed;      ///< N, 0..1: how far the side of a point is that of its patch; empty: everywhere
+  std::vector<float> held;        ///< N: the chance that a point has the side of the rest of its patch; empty: 1
+  bool seen = false;              ///< sensors that are known have seen all points, each from the front
 
   /// Whether point i lies on a closed part.
   [[nodiscard]] bool is_closed(std::size_t i) const { return of.empty() || of[i] == kNone; }

@@ -6,6 +6,7 @@
 #include "orient/agreement.h"
 #include "orient/certificate.h"
 #include "orient/certified_sides.h"
+#include "orient/outside.h"
 #include "orient/restless.h"
 #include "orient/site_parts.h"
 #include "orient/two_walls.h"
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace g3r {
@@ -24,15 +24,6 @@ using vector::dot;
 constexpr double kNoJump = 0.6;       // mean jump defect of a part whose sides change from site to site, or of two walls
 constexpr double kNoJumpNoisy = 0.8;  // the same under noise
 constexpr double kEncloses = 0.7;     // enclosure under noise that no bowl up to a half sphere has, so that the part is a closed one
-
-// By the first axis from z to x that the sum of the normals is not level to, as far as a float tells.
-bool faces_down(const Vec3& sum) {
-  const double size = std::max({std::abs(sum[0]), std::abs(sum[1]), std::abs(sum[2])});
-  for (const std::size_t axis : {std::size_t{2}, std::size_t{1}, std::size_t{0}}) {
-    if (std::abs(sum[axis]) > std::numeric_limits<float>::epsilon() * size) return sum[axis] < 0;
-  }
-  return false;
-}
 
 bool any(const std::vector<std::uint8_t>& parts) {
   return std::any_of(parts.begin(), parts.end(), [](std::uint8_t part) { return part != 0; });
@@ -99,7 +90,7 @@ void choose_hypotheses(const SiteParts& parts, const std::vector<std::vector<Vec
   for (std::size_t h = 0; h < tried.size(); ++h) {
     const std::vector<Vec3> normals = at_sites(parts.sites(), tried[h]);
     for (std::uint32_t p = 0; p < unrest.size(); ++p) {
-      if (verdict.is_open[p] != 0 && verdict.best[p] == h) verdict.enclosure[p] = parts.enclosure(p, normals);
+      if (verdict.is_open[p] != 0 && verdict.best[p] == h) verdict.enclosure[p] = parts.enclosure(parts.members(p), normals);
     }
   }
   const double most_unrest = parts.sites().distance > 0 ? kUnrestNoisy : kUnrest;
@@ -152,29 +143,18 @@ OpenSurfaces take(const SiteParts& parts, const std::vector<Vec3>& best, const s
   found.part.assign(normals.size(), OpenSurfaces::kNone);
   found.certainty.assign(normals.size(), 1);
   found.agrees.assign(normals.size(), 0);
-  std::vector<Vec3> sum(parts.count(), Vec3{0, 0, 0});
-  std::vector<std::uint32_t> first(parts.count(), OpenSurfaces::kNone);
+  found.held.assign(normals.size(), 1);
   for (std::uint32_t i = 0; i < normals.size(); ++i) {
     const std::uint32_t p = parts.of_point(i);
     if (verdict.is_doubtful[p] != 0) found.certainty[i] = kUndecided;
     if (verdict.is_open[p] == 0) continue;
-    first[p] = std::min(first[p], i);
-    found.part[i] = first[p];
     found.agrees[i] = verdict.defect[p] < kUndecided ? 1 : 0;
     const double agreed = 1 - verdict.defects[verdict.best[p]][parts.sites().site_of[i]];
     // A side that shows less than half of the jump has more against it than for it, and what is around tells.
     normals[i] = agreed < kUndecided ? wide[i] : best[i];
     found.certified[i] = static_cast<float>(std::clamp(agreed / kUndecided, 0.0, 1.0));
-    sum[p] = vector::add(sum[p], normals[i]);
   }
-  for (std::uint32_t i = 0; i < normals.size(); ++i) {
-    const std::uint32_t p = parts.of_point(i);
-    if (verdict.is_open[p] == 0) continue;
-    const double enclosure = verdict.enclosure[p];
-    const bool decided = std::abs(enclosure) > kUndecided;
-    if (decided ? enclosure < 0 : faces_down(sum[p])) normals[i] = vector::scale(normals[i], -1);
-    found.certainty[i] = decided ? static_cast<float>(std::min(1.0, std::abs(enclosure))) : kUndecided;
-  }
+  if (any(verdict.is_open)) face_outside(parts, verdict.is_open, verdict.enclosure, normals, found);
   return found;
 }
 
@@ -196,6 +176,7 @@ void find_among(const std::vector<std::uint32_t>& some, const PointSet& set, dou
     found.part.assign(set.size(), OpenSurfaces::kNone);
     found.certainty.assign(set.size(), 1);
     found.agrees.assign(set.size(), 0);
+    found.held.assign(set.size(), 1);
   }
   for (std::size_t k = 0; k < some.size(); ++k) {
     const std::uint32_t i = some[k];
@@ -205,6 +186,7 @@ void find_among(const std::vector<std::uint32_t>& some, const PointSet& set, dou
     found.part[i] = here.part[k] == OpenSurfaces::kNone ? OpenSurfaces::kNone : some[here.part[k]];
     found.certainty[i] = here.certainty[k];
     found.agrees[i] = here.agrees[k];
+    found.held[i] = here.held[k];
   }
 }
 

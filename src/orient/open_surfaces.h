@@ -25,6 +25,8 @@ struct OpenSurfaces {
   float uncertified = kUndecided;    ///< confidence, at most, of a side that it does not show: a choice, or under noise none
   std::vector<std::uint8_t> agrees;  ///< N: 1 on open surfaces whose sides agree (their mean jump defect is small), 0 elsewhere
 
+  std::vector<float> held;  ///< N: chance that a point has the side of the rest of its part (held_by_neighbours()); 1 on closed ones
+
   /// Whether point i lies on an open surface; also of points beyond N, such as outliers, which do not.
   [[nodiscard]] bool is_open(std::size_t i) const { return i < part.size() && part[i] != kNone; }
 };
@@ -39,14 +41,12 @@ struct OpenSurfaces {
 /// with the least mean of JumpDefects::all + own is taken, of equal ones the finest: where layers are close to each other, so that a probe
 /// of one is behind the next, what no other surface disturbs counts twice. Where the defect of a site is above a half, in a groove narrower
 /// than the sampling for instance, the direction is that of a field four site spacings wide, which sees what is around, and the side of a
-/// point is not certified in full. The outside of a part is the side on which the mean of w at the part, of its own field, is positive: e /
-/// 2, with e = 1 on a closed surface, 0.62 on half a sphere, 0 on a plane (SiteParts::enclosure()). Where |e| is below 1/2 either side
-/// could be it, and the one that faces up (+z; if the part is level, +y, then +x) is taken. Under noise a part with |e| above 0.7 is
-/// closed: noise makes one wall of two, and what is left encloses nearly everything. Where it is neither at rest nor shown to be open, its
-/// sides are those of the best hypothesis where the normals of a site and those around it have one side, if the mean defect of the
-/// hypothesis is less than that of the solution. Where the solution stays as it is, certified_sides() says how far its field shows it to be
-/// right; all points of a cloud of fewer than 30 have 0. `noise`: standard deviation; `normals`: N unit vectors, in: the solution, out:
-/// changed on open surfaces. O(N log N).
+/// point is not certified in full. Then normals are turned to the outside (face_outside()). e is SiteParts::enclosure(); under noise a part
+/// with |e| above 0.7 is closed: noise makes one wall of two, and what is left encloses nearly everything. Where it is neither at rest nor
+/// shown to be open, its sides are those of the best hypothesis where the normals of a site and those around it have one side, if the mean
+/// defect of the hypothesis is less than that of the solution. Where the solution stays as it is, certified_sides() says how far its field
+/// shows it to be right; all points of a cloud of fewer than 30 have 0. `noise`: standard deviation; `normals`: N unit vectors, in: the
+/// solution, out: changed on open surfaces. O(N log N).
 [[nodiscard]] OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan& sums, std::vector<Vec3>& normals,
                                               const std::atomic<bool>* cancel = nullptr);
 

@@ -17,6 +17,7 @@ void open_to_views(const Views& views, const std::vector<Vec3>& points, OpenSurf
   surfaces.certainty.resize(n, 1);
   surfaces.certified.resize(n, 1);
   surfaces.agrees.resize(n, 0);
+  surfaces.held.resize(n, 1);
   std::uint32_t part = OpenSurfaces::kNone;  // as all parts, by its first point
   for (std::uint32_t i = 0; i < n; ++i) {
     if (surfaces.part[i] != OpenSurfaces::kNone) continue;
@@ -52,6 +53,7 @@ Solution solve_by_sight(const Problem& problem, Stages& stages, Stats& stats) {
   out.open_surfaces.certainty.assign(set.size(), 1);
   out.open_surfaces.certified = std::move(seen.certified);
   out.open_surfaces.agrees.assign(set.size(), 1);
+  out.open_surfaces.held.assign(set.size(), 1);
   stats.converged = true;
   return out;
 }

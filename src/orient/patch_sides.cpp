@@ -3,6 +3,7 @@
 #include "base/disjoint_sets.h"
 #include "base/vector.h"
 #include "cloud/constants.h"
+#include "orient/confidence.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,8 +43,9 @@ class PatchSides {
     for (std::size_t i = 0; i < points_.size(); ++i) {
       if (is_closed(i) || !patches[patches_.of[i]].count()) continue;
       const double against = patches[patches_.of[i]].share_against();
-      effect_.turned[i] = is_choice(i) ? against > 0.5 : against >= kMostOf;
+      effect_.turned[i] = against > std::min(certainty(i), kMostOf) ? 1 : 0;
     }
+    const std::vector<std::uint8_t> patch_turned = effect_.turned;
     turn_pieces(votes);
     patches = votes_on_patches(votes);
     double agreed = 0;
@@ -52,7 +54,11 @@ class PatchSides {
       if (!is_choice(i) || is_closed(i) || !patches[patches_.of[i]].count()) continue;
       const double agreement = 1 - patches[patches_.of[i]].share_against();
       effect_.decided[i] = agreement >= kMostOf ? 1 : 0;
-      sided_.confidence[i] = static_cast<float>(agreement) * (patches_.agreed.empty() ? 1 : patches_.agreed[i]);
+      const double shown = patch_turned[i] != 0 ? 1 - certainty(i) : certainty(i);
+      const double own = effect_.turned[i] != 0 ? -votes[i] : votes[i];
+      const double held = patches_.held.empty() ? 1 : patches_.held[i];
+      const double side = std::max(both_agree(both_say(shown, agreement), held), (1 + own) / 2);
+      sided_.confidence[i] = static_cast<float>(side) * (patches_.agreed.empty() ? 1 : patches_.agreed[i]);
       if (effect_.decided[i] == 0) continue;
       agreed += agreement;
       ++all;
@@ -63,7 +69,11 @@ class PatchSides {
 
  private:
   [[nodiscard]] bool is_closed(std::size_t i) const { return patches_.is_closed(i); }
-  [[nodiscard]] bool is_choice(std::size_t i) const { return !patches_.is_choice.empty() && patches_.is_choice[i] != 0; }
+  // Of the side that the points themselves show.
+  [[nodiscard]] double certainty(std::size_t i) const {
+    return patches_.certainty.empty() ? 1 : std::max(0.5, static_cast<double>(patches_.certainty[i]));
+  }
+  [[nodiscard]] bool is_choice(std::size_t i) const { return certainty(i) < 1; }
 
   // The votes on every patch, as its points are turned by now.
   [[nodiscard]] std::map<std::uint32_t, Votes> votes_on_patches(const std::vector<double>& votes) const {

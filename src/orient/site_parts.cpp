@@ -74,10 +74,10 @@ JumpDefects SiteParts::jump_defects(const std::vector<std::vector<Vec3>>& hypoth
   return g3r::jump_defects(sites_, std::move(normals), sums_, cancel_);
 }
 
-double SiteParts::enclosure(std::uint32_t part, const std::vector<Vec3>& normals) const {
+double SiteParts::enclosure(const std::vector<std::uint32_t>& some, const std::vector<Vec3>& normals) const {
   std::vector<Vec3> points;
   std::vector<Vec3> eta;
-  for (const std::uint32_t s : members_[part]) {
+  for (const std::uint32_t s : some) {
     points.push_back(sites_.points()[s]);
     eta.push_back(vector::scale(normals[s], sites_.side(s) * sites_.side(s)));
   }

@@ -50,9 +50,9 @@ class SiteParts {
   /// jump_defects() of several normals of the N points.
   [[nodiscard]] JumpDefects jump_defects(const std::vector<std::vector<Vec3>>& hypotheses) const;
 
-  /// Twice the mean of w at the sites of a part, w of that part alone: 1 on a closed surface, 0 on a plane, -1 on one inside out.
-  /// `normals`: of the sites.
-  [[nodiscard]] double enclosure(std::uint32_t part, const std::vector<Vec3>& normals) const;
+  /// Twice the mean of w at some sites, w of these alone: 1 on a closed surface, 0 on a plane, -1 on one inside out. `normals`: of all
+  /// sites.
+  [[nodiscard]] double enclosure(const std::vector<std::uint32_t>& some, const std::vector<Vec3>& normals) const;
 
  private:
   const PointSet& set_;

@@ -52,6 +52,7 @@ bool solve_apart(const Problem& problem, const std::vector<std::uint32_t>& some,
     solution.open_surfaces.part[i] = open ? some[apart.open_surfaces.part[k]] : OpenSurfaces::kNone;
     solution.open_surfaces.certainty[i] = apart.open_surfaces.certainty.empty() ? 1 : apart.open_surfaces.certainty[k];
     solution.open_surfaces.agrees[i] = apart.open_surfaces.agrees.empty() ? 0 : apart.open_surfaces.agrees[k];
+    solution.open_surfaces.held[i] = apart.open_surfaces.held.empty() ? 1 : apart.open_surfaces.held[k];
   }
   return stats.converged;
 }

@@ -36,6 +36,7 @@ Solution solve_on_sites(const Problem& problem, const Options& options, Stages& 
     out.open_surfaces.part.push_back(part == OpenSurfaces::kNone ? part : first[part]);
     out.open_surfaces.certainty.push_back(solved.open_surfaces.certainty[s]);
     out.open_surfaces.agrees.push_back(solved.open_surfaces.agrees[s]);
+    out.open_surfaces.held.push_back(solved.open_surfaces.held[s]);
   }
   const FastSum field(sites.points(), Widths(kBetweenSites * coarse.spacing), coarse.settings.sums, stages.cancel());
   out.refinement = unit_normals(field.winding_gradient_at(solved.eta, points, stages.cancel()), out.eta);
