@@ -41,6 +41,7 @@ HeightMoments mean_moments(std::size_t count, Draw draw) {
     const HeightMoments m = moments(heights(count, random, [&] { return draw(random); }));
     mean.mean_square += m.mean_square / kPatches;
     mean.excess += m.excess / kPatches;
+    mean.correlation += m.correlation / kPatches;
   }
   return mean;
 }
@@ -50,6 +51,7 @@ TEST(HeightMoments, NormalNoiseHasNoExcessForAnyNumberOfPoints) {
   for (const std::size_t count : {16, 24, 64, 128}) {
     const HeightMoments m = mean_moments(count, [](shapes::Random& random) { return 0.2 * random.normal(); });
     EXPECT_NEAR(m.excess, 0, 0.08) << count;
+    EXPECT_NEAR(m.correlation, 0, 0.01) << count;
     EXPECT_NEAR(m.mean_square, 0.04, 0.001) << count;
   }
 }
@@ -60,6 +62,7 @@ TEST(HeightMoments, TwoWallsHaveTheirShareOfTheVarianceSquared) {
     const HeightMoments m =
         mean_moments(128, [&](shapes::Random& random) { return (random.uniform() < 0.5 ? half : -half) + random.normal(); });
     EXPECT_NEAR(m.excess, -2 * share * share, 0.03 + 0.1 * share * share) << half;
+    EXPECT_NEAR(m.correlation, 0, 0.01) << half;
     EXPECT_NEAR(m.mean_square, 1 + half * half, 0.02 * (1 + half * half));
   }
 }
@@ -93,6 +96,28 @@ TEST(HeightMoments, WallsAreTwoWhereTheMeanExcessIsNoChance) {
   EXPECT_FALSE(shared.is_two_walls());
   EXPECT_NEAR(shared.error, std::sqrt(50) * mean_excess(patches(1, 100), 100).error, 1e-9);
   EXPECT_FALSE(mean_excess({}, 1).may_be_two_walls());
+}
+
+// Ground that takes two heights has light tails as two walls have, but neighbours take the same: the correlation is in
+// proportion to the share of shape, as far as neighbours are not beyond an edge.
+TEST(HeightMoments, StepsInTheGroundAreNoWalls) {
+  for (const double noise : {0.02, 0.05, 0.1}) {
+    shapes::Random random(17);
+    std::vector<HeightMoments> all;
+    double shape = 0, square = 0;
+    for (int k = 0; k < 200; ++k) {
+      const double phase = random.uniform(0, 2 * std::numbers::pi);
+      std::vector<Vec3> points = heights(128, random, [&] { return noise * random.normal(); });
+      for (Vec3& p : points) p[2] += std::sin(5 * p[0] + phase) > 0 ? 0.25 : -0.25;
+      all.push_back(moments(points));
+      square += all.back().mean_square;
+      shape += all.back().mean_square * all.back().correlation;
+    }
+    const MeanExcess excess = mean_excess(all, 200);
+    EXPECT_LT(excess.mean, -0.2 - 2.5 * excess.error) << noise;  // what two walls have
+    EXPECT_FALSE(excess.is_two_walls()) << noise;
+    EXPECT_NEAR(shape / square, 0.7 * (1 - noise * noise * 200 / square), 0.03) << noise;
+  }
 }
 
 // Rounding to steps along the heights has less, and is taken off where it is known.

@@ -18,6 +18,22 @@ namespace {
 constexpr Eigen::Index kColumns = kCubicTerms;
 constexpr double kExcess = -0.2;  // of the kurtosis of walls 1.35 standard deviations apart; rough ground has -0.1 at most
 
+// Columns 1 and 2 are the places across the normal, and whitened^T whitened is what the fit takes.
+double correlation_of_adjacent(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& whitened, const Eigen::VectorXd& residual) {
+  const Eigen::Index n = residual.size();
+  const double square = residual.squaredNorm();
+  const double variance = square / static_cast<double>(n - kColumns);
+  double sum = 0;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    Eigen::ArrayXd squared = (columns.col(1).array() - columns(k, 1)).square() + (columns.col(2).array() - columns(k, 2)).square();
+    squared[k] = HUGE_VAL;
+    Eigen::Index nearest = 0;
+    squared.minCoeff(&nearest);
+    sum += residual[k] * residual[nearest] + variance * whitened.col(k).dot(whitened.col(nearest));
+  }
+  return sum / square;
+}
+
 }  // namespace
 
 HeightMoments height_moments(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count, const Vec3& normal, double h,
@@ -49,15 +65,18 @@ HeightMoments height_moments(const std::vector<Vec3>& points, const std::uint32_
   if (!(square * square >= least) || !(kept.square().sum() >= least)) return {};
   moments.excess = residual.array().square().square().sum() / (square * square) * free * (free + 2) - 3 * kept.sum();
   moments.excess /= kept.square().sum();
+  moments.correlation = correlation_of_adjacent(columns, whitened, residual);
   double rounding = 0;  // fourth cumulant
   for (std::size_t a = 0; a < 3; ++a) rounding += kRoundingCumulant * std::pow(normal[a] * steps[a], 4);
   if (rounding != 0) moments.excess -= rounding / (moments.mean_square * moments.mean_square);
   return moments;
 }
 
-bool MeanExcess::may_be_two_walls() const { return mean < kExcess; }
+double MeanExcess::of_shape() const { return -2 * std::pow(std::max(0.0, correlation), 2); }
 
-bool MeanExcess::is_two_walls() const { return may_be_two_walls() && mean < -kSigmas * error; }
+bool MeanExcess::may_be_two_walls() const { return mean < of_shape() + kExcess; }
+
+bool MeanExcess::is_two_walls() const { return may_be_two_walls() && mean < of_shape() - kSigmas * error; }
 
 MeanExcess mean_excess(const std::vector<HeightMoments>& places, double disjoint) {
   if (places.empty()) return {};
@@ -66,16 +85,18 @@ MeanExcess mean_excess(const std::vector<HeightMoments>& places, double disjoint
   const double flat = median(std::move(squares));
   double sum = 0;
   double sum_of_squares = 0;
+  double correlation = 0;
   double count = 0;
   for (const HeightMoments& m : places) {
     if (m.mean_square > flat) continue;
     sum += m.excess;
+    correlation += m.correlation;
     sum_of_squares += m.excess * m.excess;
     ++count;
   }
   const double mean = sum / count;
   const double independent = count * std::min(1.0, disjoint / static_cast<double>(places.size()));
-  return {mean, std::sqrt(std::max(0.0, sum_of_squares / count - mean * mean) / independent)};
+  return {mean, std::sqrt(std::max(0.0, sum_of_squares / count - mean * mean) / independent), correlation / count};
 }
 
 }  // namespace g3r
