@@ -110,6 +110,14 @@ TEST(DecidePatches, WhatIsSeenEdgeOnIsAsSureAsItIsHeld) {
   EXPECT_NEAR(squarely.confidence.back(), (1 + std::sqrt(0.5)) / 2, 0.01);
 }
 
+// Several hints that agree are no surer than sure.
+TEST(DecidePatches, NoConfidenceIsAboveOne) {
+  Sides sides;
+  sides.add_square({0, 0, 0}, 2, 1, 0);
+  (void)sides.follow({.up = Vec3{0, 0, 1}, .sensors = {{0, 0, 5}}, .inside = {{0, 0, -5}}});
+  for (const float c : sides.confidence) EXPECT_EQ(c, 1);
+}
+
 // Votes that are balanced, as those of up on a ball are, leave what the points show; against it they need more than that.
 TEST(DecidePatches, WhatThePointsShowStaysUnlessVotesOutweighIt) {
   for (const float certainty : {0.55F, 0.65F}) {

@@ -16,7 +16,7 @@ namespace g3r {
 namespace {
 
 constexpr Eigen::Index kColumns = kCubicTerms;
-constexpr double kExcess = -0.2;  // of the kurtosis of walls 1.35 standard deviations apart; rough ground has -0.1 at most
+constexpr double kExcess = -0.2;  // of the kurtosis of walls 1.35 standard deviations apart
 
 // Columns 1 and 2 are the places across the normal, and whitened^T whitened is what the fit takes.
 double correlation_of_adjacent(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& whitened, const Eigen::VectorXd& residual) {

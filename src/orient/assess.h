@@ -23,8 +23,7 @@ struct Oriented {
 /// The confidence of a solution's sides is, in this order,
 ///   - side_confidence(), under noise of the sums over the points near each one (sums_over());
 ///   - on open surfaces, whose sides do not come from the equations, their certainty instead, as far as a point has the side of its part
-///     (both_agree() with OpenSurfaces::held); elsewhere times their certainty, which is a
-///     half on parts whose field is not at rest;
+///     (both_agree() with OpenSurfaces::held); elsewhere times their certainty, which is a half on parts whose field is not at rest;
 ///   - c l + (1 - c) u with the certificate c of a side, the confidence l that came out so far, and u what an uncertified side is worth:
 ///     OpenSurfaces::uncertified at most, and nothing on open surfaces, where c says whether neighbours agree;
 ///   - half of that on closed parts where noise hides walls (MeanExcess::is_two_walls()): the field of one wall is right, and half of the

@@ -24,8 +24,7 @@ struct OpenSurfaces {
                                      ///< open surfaces, that the side of a point agrees with those around it
   float uncertified = kUndecided;    ///< confidence, at most, of a side that it does not show: a choice, or under noise none
   std::vector<std::uint8_t> agrees;  ///< N: 1 on open surfaces whose sides agree (their mean jump defect is small), 0 elsewhere
-
-  std::vector<float> held;  ///< N: chance that a point has the side of the rest of its part (held_by_neighbours()); 1 on closed ones
+  std::vector<float> held;           ///< N: chance that a point has the side of the rest of its part (held_by_neighbours()); else 1
 
   /// Whether point i lies on an open surface; also of points beyond N, such as outliers, which do not.
   [[nodiscard]] bool is_open(std::size_t i) const { return i < part.size() && part[i] != kNone; }

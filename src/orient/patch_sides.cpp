@@ -57,7 +57,8 @@ class PatchSides {
       const double shown = patch_turned[i] != 0 ? 1 - certainty(i) : certainty(i);
       const double own = effect_.turned[i] != 0 ? -votes[i] : votes[i];
       const double held = patches_.held.empty() ? 1 : patches_.held[i];
-      const double side = std::max(both_agree(both_say(shown, agreement), held), (1 + own) / 2);
+      const double alone = (1 + std::min(own, 1.0)) / 2;
+      const double side = std::max(both_agree(both_say(shown, agreement), held), alone);
       sided_.confidence[i] = static_cast<float>(side) * (patches_.agreed.empty() ? 1 : patches_.agreed[i]);
       if (effect_.decided[i] == 0) continue;
       agreed += agreement;
