@@ -44,7 +44,7 @@ struct HintedCloud {
 };
 
 struct HintEffect {
-  std::vector<std::uint8_t> decided;  ///< N: on a patch whose side was a choice and is none now; empty: nowhere
+  std::vector<std::uint8_t> decided;  ///< N: of points whose side was a choice and is none now; empty: nowhere
   std::vector<std::uint8_t> turned;   ///< N: by a vote or an order, not counting `flip`; empty: nowhere
   double agreement = 0;               ///< share of the votes on decided patches that agree with the side they got; 0: none was decided
   double contradicted_share = 0;      ///< share of the votes on closed parts that were against their side; 0 if too few to matter

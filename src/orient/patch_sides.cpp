@@ -53,13 +53,13 @@ class PatchSides {
     for (std::size_t i = 0; i < points_.size(); ++i) {
       if (!is_choice(i) || is_closed(i) || !patches[patches_.of[i]].count()) continue;
       const double agreement = 1 - patches[patches_.of[i]].share_against();
-      effect_.decided[i] = agreement >= kMostOf ? 1 : 0;
       const double shown = patch_turned[i] != 0 ? 1 - certainty(i) : certainty(i);
       const double own = effect_.turned[i] != 0 ? -votes[i] : votes[i];
       const double held = patches_.held.empty() ? 1 : patches_.held[i];
       const double alone = (1 + std::min(own, 1.0)) / 2;
       const double side = std::max(both_agree(both_say(shown, agreement), held), alone);
       sided_.confidence[i] = static_cast<float>(side) * (patches_.agreed.empty() ? 1 : patches_.agreed[i]);
+      effect_.decided[i] = side >= kMostOf ? 1 : 0;
       if (effect_.decided[i] == 0) continue;
       agreed += agreement;
       ++all;
