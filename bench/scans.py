@@ -15,8 +15,7 @@
     table     a pear of revolution and the table that it stands on
 
 What is true of each: house and ground only; genus 0; everything faces the camera; one surface that faces up, for arch, airborne, lines
-and table;
-genus 1 for wires and slices; normals that face the middle of the room. N is about how many points there are. Needs NumPy.
+and table; genus 1 for wires and slices; normals that face the middle of the room. N is about how many points there are. Needs NumPy.
 """
 
 import argparse

@@ -13,7 +13,7 @@
 namespace g3r {
 namespace {
 
-// A pair of groups waiting to become one. Of equal sums the one with the smaller groups comes first.
+// A pair of groups waiting to become one. Of equal ranks the one with the smaller numbers comes first.
 struct Contraction {
   double rank;  // the largest comes first
   double sum;
@@ -45,8 +45,7 @@ class Contractor {
     waiting_ = std::priority_queue<Contraction>(std::less<Contraction>(), std::move(first));
   }
 
-  // body(nodes of the group that is kept, those of the one that joins it, sum of the weights between them), for every pair that becomes
-  // one.
+  // For every pair that becomes one: body(nodes of the group that is kept, of the one that joins it, sum of the weights between them).
   template <class Body>
   void run(const Body& body) {
     while (!waiting_.empty()) {
