@@ -161,5 +161,27 @@ TEST(Certificate, FindsTurnedPoints) {
   }
 }
 
+// Twice the certainty is enough, and so is any where the others have none; sides that are no better, or certain of nothing, are never
+// shown.
+TEST(ShownBetter, ByHalfOfTheDefectOrWhereTheOthersJumpNowhere) {
+  EXPECT_TRUE(is_shown_better(0.3, 0.6));
+  EXPECT_FALSE(is_shown_better(0.31, 0.6));
+  EXPECT_TRUE(is_shown_better(0.5, 0.99));    // Bayes: 0.01 0.5 / (0.01 0.5 + 0.99 0.5) = 0.01
+  EXPECT_FALSE(is_shown_better(0.62, 0.94));  // 0.095: a thin wire, whose sides are right
+  EXPECT_TRUE(is_shown_better(0.9, 1.2));
+  EXPECT_FALSE(is_shown_better(1, 1.2));
+  EXPECT_FALSE(is_shown_better(0, 0));
+  for (double defect = 0; defect < 1; defect += 0.01) {
+    EXPECT_FALSE(is_shown_better(defect, defect)) << defect;
+    bool was_shown = false;  // the worse the others, the sooner
+    for (double than = defect; than < 1.5; than += 0.01) {
+      const bool is_shown = is_shown_better(defect, than);
+      EXPECT_TRUE(is_shown || !was_shown) << defect << ' ' << than;
+      was_shown = is_shown;
+    }
+    EXPECT_TRUE(was_shown) << defect;
+  }
+}
+
 }  // namespace
 }  // namespace g3r

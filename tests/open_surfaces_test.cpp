@@ -411,6 +411,22 @@ TEST(OpenSurfaces, ScanLinesAreOneSurface) {
   }
 }
 
+// A few lines of soundings, a hundred times as far apart as their points: the neighbours across a line are half certain of its side, and
+// the equations of nothing.
+TEST(OpenSurfaces, FewSoundingLinesAreOneSurface) {
+  for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+    shapes::Random random(seed);
+    Surface s;
+    for (int line = 0; line < 4; ++line) {
+      for (double x = 0; x < 120; x += 0.18)
+        s.points.push_back({x, 25 * line + 0.02 * random.gaussian(), 3 * std::sin(0.2 * x + line) + 0.126 * random.gaussian()});
+    }
+    const Orientation o = orient(s.points);
+    EXPECT_TRUE(std::all_of(o.normals.begin(), o.normals.end(), [](const Vec3& n) { return n[2] > 0; })) << seed;
+    EXPECT_LE(*std::max_element(o.confidence.begin(), o.confidence.end()), 0.5F) << seed;
+  }
+}
+
 // Walls of a trench narrower than the distance between the points: sides follow the ground around it.
 TEST(OpenSurfaces, GroovesDoNotTurnWhatLiesBehindThem) {
   Surface s = terrain(12000, [](double x, double) { return 0.3 * std::min(1.0, std::sqrt(std::abs(std::sin(6 * x)))); });

@@ -2,6 +2,7 @@
 
 #include "base/median.h"
 #include "base/vector.h"
+#include "cloud/chance.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
 #include "orient/settings.h"
@@ -170,6 +171,13 @@ Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const 
   }
   for (std::size_t i = 0; i < count; ++i) out.unrest[i] = quiet[i] > 0 ? out.unrest[i] / quiet[i] : -1;
   return out;
+}
+
+bool is_shown_better(double defect, double than) {
+  if (defect >= than || defect >= 1) return false;
+  const double first = (1 - defect) * than;
+  const double second = defect * std::max(0.0, 1 - than);
+  return 2 * defect <= than || second <= kFalseAlarms * (first + second);
 }
 
 }  // namespace g3r

@@ -70,7 +70,7 @@ Verdict suspect(const SiteParts& parts, const Certificate& given, const std::vec
   return verdict;
 }
 
-// The best hypothesis of every part. Where unrest alone does not decide it has to halve the defect of what was given, where that is
+// The best hypothesis of every part. Where unrest alone does not decide it has to be shown to be better than what was given, where that is
 // restless; else nothing is certain, if the part is not at rest either.
 void choose_hypotheses(const SiteParts& parts, const std::vector<std::vector<Vec3>>& tried, const Certificate& given,
                        const std::vector<double>& unrest, const std::vector<double>& defect, double noise, Verdict& verdict) {
@@ -97,8 +97,8 @@ void choose_hypotheses(const SiteParts& parts, const std::vector<std::vector<Vec
   for (std::size_t p = 0; p < unrest.size(); ++p) {
     if (verdict.is_open[p] == 0) continue;
     const std::vector<std::uint32_t>& restless = verdict.restless[p];
-    const bool halves = 2 * mean_over(restless, verdict.defects[verdict.best[p]]) <= mean_over(restless, given.jump_defect);
-    const bool is_better = unrest[p] > most_unrest || halves;
+    const bool is_shown = is_shown_better(mean_over(restless, verdict.defects[verdict.best[p]]), mean_over(restless, given.jump_defect));
+    const bool is_better = unrest[p] > most_unrest || is_shown;
     // Noise makes one wall of two: what encloses nearly everything is a closed surface whose thin parts it hides. So is what is at rest but
     // for a place.
     const bool in_pieces = restless.size() < parts.members(p).size();
