@@ -19,6 +19,7 @@
 #include "mesh/separate_vertices.h"
 #include "mesh/smooth_spacing.h"
 #include "orient/confidence.h"
+#include "orient/memory_plan.h"
 #include "orient/settings.h"
 #include "sum/device_scope.h"
 

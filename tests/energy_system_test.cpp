@@ -51,7 +51,7 @@ TEST(EnergySystem, IsWeightedAlikeForEverySpacing) {
     const Settings wide = choose_settings({}, cloud, h, noise * h, 0);
     const Settings narrow = choose_settings({}, cloud, h / 4, noise * h / 4, 0);
     EXPECT_NEAR(wide.winding_weight / narrow.winding_weight, 64, 1e-9) << noise;
-    EXPECT_NEAR(wide.polish_winding_weight / narrow.polish_winding_weight, 64, 1e-9) << noise;
+    EXPECT_NEAR(wide.polish.winding_weight / narrow.polish.winding_weight, 64, 1e-9) << noise;
   }
 }
 

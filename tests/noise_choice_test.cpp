@@ -4,7 +4,7 @@
 #include "base/vector.h"
 #include "cloud/noise.h"
 #include "orient/confidence.h"
-#include "orient/settings.h"
+#include "orient/noise_settings.h"
 #include "problems.h"
 #include "shapes.h"
 

@@ -1,6 +1,7 @@
 #include "orient/attempt.h"
 
 #include "orient/describe.h"
+#include "orient/memory_plan.h"
 #include "orient/noisy_surface.h"
 #include "orient/open_to_views.h"
 #include "orient/site_parts.h"

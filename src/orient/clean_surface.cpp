@@ -27,7 +27,7 @@ void agree_on_facets(const Problem& problem, const std::vector<std::uint8_t>& pr
     if (minority_share(facets, normals) < kMinMinority) return;
     make_room_for_sums(set);
     choose_facet_sides(set, s, facets, eta, normals, stages);
-    FastSum sum(set.points(), local_widths(s.polish_width, s, set.smoothed_spacing()), s.sums, stages.cancel());
+    FastSum sum(set.points(), local_widths(s.polish.width, s, set.smoothed_spacing()), s.sums, stages.cancel());
     const Refinement refined = refine_normals(sum, eta);
     for (std::size_t i = 0; i < set.size(); ++i) {
       if (facets.of[i] == Facets::kNone) normals[i] = refined.normals[i];

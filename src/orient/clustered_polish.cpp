@@ -25,9 +25,9 @@ Polished polish_clusters(const Clustered& of, const Settings& settings, Refineme
     const double area = of.relative_spacing.empty() ? 1 : of.relative_spacing[i] * of.relative_spacing[i];
     for (std::size_t a = 0; a < 3; ++a) out.eta[i][a] = eta[c][a] * area / clusters.multiplicity[c];
   }
-  const FastSum field(clusters.points, Widths(settings.polish_width.typical()), settings.sums, stages.cancel());
+  const FastSum field(clusters.points, Widths(settings.polish.width.typical()), settings.sums, stages.cancel());
   out.refinement = unit_normals(field.winding_gradient_at(eta, of.points, stages.cancel()), out.eta);
-  for (double& jump : out.refinement.strength) jump *= settings.polish_width.typical();
+  for (double& jump : out.refinement.strength) jump *= settings.polish.width.typical();
   for (std::size_t i = 0; i < out.eta.size(); ++i) {  // points by themselves are sparse, and have kernels of their own width
     const std::uint32_t c = clusters.cluster_of[i];
     if (members[c] > 1) continue;

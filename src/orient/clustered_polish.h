@@ -18,7 +18,7 @@ struct Clustered {
 /// polish() of the clusters, of which each is one point with the area of all of its own: a quarter of the unknowns where cells are two
 /// spacings wide, and the same normals while they are no wider than what the kernels see as one. `start`: the refinement of the clusters.
 /// Of every point: its share of the area vector of its cluster, in proportion to the area that it stands for, and the refinement at the
-/// point itself, by kernels of the typical settings.polish_width; by those of its own width where it is alone. Throws Cancelled.
+/// point itself, by kernels of the typical settings.polish.width; by those of its own width where it is alone. Throws Cancelled.
 [[nodiscard]] Polished polish_clusters(const Clustered& of, const Settings& settings, Refinement start, Stages& stages);
 
 /// Of every cluster the mean of its points' normals, each as long as the field jumps there: short where they face either way. What

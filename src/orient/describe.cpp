@@ -3,6 +3,7 @@
 #include "cloud/noise.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
+#include "orient/memory_plan.h"
 
 #include <g3r/names.h>
 

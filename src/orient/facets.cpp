@@ -183,8 +183,8 @@ void choose_facet_sides(const PointSet& set, const Settings& settings, const Fac
   const std::vector<Vec3> start = subspace.project(values_at(some, eta));
   for (std::size_t k = 0; k < some.size(); ++k) eta[some[k]] = start[k];
   const auto with_system = [&](const std::vector<Vec3>& points, const std::vector<double>& h, const auto& work) {
-    FastSum sum(points, local_widths(settings.polish_epsilon, settings, h), settings.first_sums, stages.cancel());
-    EnergySystem system(sum, 0, settings.polish_winding_weight);
+    FastSum sum(points, local_widths(settings.polish.epsilon, settings, h), settings.first_sums, stages.cancel());
+    EnergySystem system(sum, 0, settings.polish.winding_weight);
     return work(system);
   };
   PartResidual right = with_system(set.points(), spacing, [&](EnergySystem& all) { return residual_at(some, all, eta); });

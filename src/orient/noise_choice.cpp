@@ -2,8 +2,8 @@
 
 #include "cloud/noise.h"
 #include "orient/confidence.h"
+#include "orient/noise_settings.h"
 #include "orient/separate_walls.h"
-#include "orient/settings.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,4 +1,5 @@
 #include "orient/noisy_surface.h"
+#include "orient/noise_settings.h"
 
 #include "base/vector.h"
 #include "cloud/canonical_cloud.h"
@@ -39,7 +40,7 @@ std::vector<std::uint32_t> solved_points(const Solution& solution) {
 bool is_projected(const Problem& problem) {
   const double left = projected_noise(problem.noise, problem.spacing);
   const bool halves_variance = 2 * left * left <= problem.noise * problem.noise;
-  const bool on_points = !problem.baseline && problem.line_distance == 0 && problem.settings.polish_steps > 0;
+  const bool on_points = !problem.baseline && problem.line_distance == 0 && problem.settings.polish.steps > 0;
   return problem.noise > 0 && on_points && halves_variance && runs(problem, Step::kProjection);
 }
 
@@ -61,7 +62,7 @@ bool polish_projected(const Problem& problem, const Options& options, Stages& st
     points = values_at(order, points);
     const std::vector<double> here = values_at(order, relative);
     // Kernels of width e see what is within 2 e as one.
-    const Clusters clusters = cluster_points(points, 2 * s.polish_epsilon.typical(), here);
+    const Clusters clusters = cluster_points(points, 2 * s.polish.epsilon.typical(), here);
     Refinement start = mean_of_clusters(clusters, {values_at(order, refined.normals), values_at(order, refined.strength)});
     const Polished polished = polish_clusters({points, here, clusters}, s, std::move(start), stages);
     std::size_t turned = 0;
@@ -87,7 +88,7 @@ bool polish_projected(const Problem& problem, const Options& options, Stages& st
 
 void fit_noisy_surface(const Problem& problem, Stages& stages, Solution& solution) {
   const double noise = std::max(problem.noise, problem.view_noise);
-  if (problem.baseline || noise == 0 || problem.settings.polish_steps == 0 || !runs(problem, Step::kNoisyJets)) return;
+  if (problem.baseline || noise == 0 || problem.settings.polish.steps == 0 || !runs(problem, Step::kNoisyJets)) return;
   fit_noisy_jets(problem.cloud.set, noise, problem.known.wanted, solution.refinement.normals, stages.cancel());
   std::vector<std::uint8_t> none(problem.cloud.size(), 0);
   if (problem.noise > 0 && problem.scatter > 0 && runs(problem, Step::kPlanes))

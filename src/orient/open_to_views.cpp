@@ -1,4 +1,5 @@
 #include "orient/open_to_views.h"
+#include "orient/noise_settings.h"
 
 #include "base/vector.h"
 #include "orient/sight_normals.h"
@@ -35,7 +36,7 @@ void open_to_views(const Views& views, const std::vector<Vec3>& points, OpenSurf
 }
 
 bool is_seen_in_noise(const Problem& problem) {
-  const bool is_ours = problem.settings.method == Method::kEnergy && problem.line_distance == 0 && problem.settings.polish_steps > 0;
+  const bool is_ours = problem.settings.method == Method::kEnergy && problem.line_distance == 0 && problem.settings.polish.steps > 0;
   return is_ours && problem.cloud.set.views().known() && problem.view_noise > noise_of_clean_widths() * problem.spacing;
 }
 

@@ -42,9 +42,9 @@ std::vector<double> point_areas(const Settings& settings, const std::vector<doub
 }
 
 Polished polish(PolishCloud cloud, const Settings& settings, Refinement refined, Stages& stages) {
-  FastSum wider(cloud.points, local_widths(settings.polish_width, settings, cloud.spacing), settings.sums, stages.cancel());
-  FastSum sum(wider, local_widths(settings.polish_epsilon, settings, cloud.spacing));
-  EnergySystem system(sum, settings.polish_damping, settings.polish_winding_weight, cloud.roots);
+  FastSum wider(cloud.points, local_widths(settings.polish.width, settings, cloud.spacing), settings.sums, stages.cancel());
+  FastSum sum(wider, local_widths(settings.polish.epsilon, settings, cloud.spacing));
+  EnergySystem system(sum, settings.polish.damping, settings.polish.winding_weight, cloud.roots);
   std::vector<double>().swap(cloud.spacing);
   std::vector<Vec3> start = std::move(refined.normals);
   for (std::size_t i = 0; i < start.size(); ++i) {
@@ -53,11 +53,11 @@ Polished polish(PolishCloud cloud, const Settings& settings, Refinement refined,
   std::vector<double>().swap(refined.strength);
   gradient_to_areas(sum, cloud.areas, start);
   std::vector<double>().swap(cloud.areas);
-  const std::vector<Steps> schedule{{settings.polish_steps, StepKind::kConjugateGradient}};
+  const std::vector<Steps> schedule{{settings.polish.steps, StepKind::kConjugateGradient}};
   const auto still_going = [&stages](int, int, double) { stages.still_going(); };
   Polished polished;
   polished.eta =
-      system.to_areas(solve_iteratively(system, schedule, settings.polish_tolerance, system.from_areas(std::move(start)), still_going).eta);
+      system.to_areas(solve_iteratively(system, schedule, settings.polish.tolerance, system.from_areas(std::move(start)), still_going).eta);
   polished.refinement = refine_normals(wider, polished.eta);
   return polished;
 }

@@ -43,8 +43,8 @@ struct PolishCloud {
   std::vector<double> roots;    ///< of how much the equations of each point count; empty: ones
 };
 
-/// settings.polish_steps of conjugate gradients on the energy form at settings.polish_epsilon, started from `refined`, and the refinement
-/// at settings.polish_width. The start has the right areas, which the first solve does not (its eta are 0.6 to 1.3 of them), so a few
+/// settings.polish.steps of conjugate gradients on the energy form at settings.polish.epsilon, started from `refined`, and the refinement
+/// at settings.polish.width. The start has the right areas, which the first solve does not (its eta are 0.6 to 1.3 of them), so a few
 /// steps suffice. Once: a second round rounds edges. This step is ours, not the paper's. Measured:
 /// docs/evidence/formulation.md.
 [[nodiscard]] Polished polish(PolishCloud cloud, const Settings& settings, Refinement refined, Stages& stages);

@@ -24,7 +24,7 @@ void choose_scales(Problem& problem, const Options& options) {
 
 void choose_scales_and_scatter(Problem& problem, const Options& options) {
   choose_scales(problem, options);
-  const bool fits_planes = problem.settings.polish_steps > 0 && !contains(problem.settings.without, Step::kPlanes);
+  const bool fits_planes = problem.settings.polish.steps > 0 && !contains(problem.settings.without, Step::kPlanes);
   if (fits_planes) problem.scatter = facet_scatter(problem.cloud.set);
 }
 

@@ -1,7 +1,7 @@
 #include "orient/separate_walls.h"
 
 #include "orient/confidence.h"
-#include "orient/settings.h"
+#include "orient/noise_settings.h"
 #include "orient/walls.h"
 
 #include <cmath>

@@ -31,6 +31,16 @@ struct KernelWidth {
   [[nodiscard]] double typical() const { return at(1); }
 };
 
+/// Of polish().
+struct PolishSettings {
+  int steps = 0;              ///< of conjugate gradients; 0: no polish
+  KernelWidth epsilon;        ///< of the equations
+  double damping = 0;         ///< of the equations
+  double winding_weight = 0;  ///< of the equations, length^3
+  double tolerance = 0;       ///< relative residual at which the steps end earlier
+  KernelWidth width;          ///< of the refinement after them
+};
+
 /// Everything orient() needs to know, in normalised units. Values without an option are explained in docs/math.md.
 struct Settings {
   StepSet without;  ///< steps that are left out
@@ -41,16 +51,11 @@ struct Settings {
   double spacing = 0;
   double noise = 0;  ///< that the widths are made for, 0 when clean
   KernelWidth epsilon;
-  KernelWidth coarsest_epsilon;           ///< of the first solve, at its own spacing: without a start a wider one does better
-  KernelWidth refinement_width;           ///< 0: no refinement
-  double cluster_side = 0;                ///< energy: solve on clusters of points of this size; 0: on the points
-  bool coarse_to_fine = false;            ///< start from a solution on fewer points
-  int polish_steps = 0;                   ///< conjugate gradients of polish(); 0: no polish
-  KernelWidth polish_epsilon;             ///< of polish()
-  double polish_tolerance = 0;            ///< relative residual at which they end earlier
-  double polish_damping = 0;              ///< of polish()
-  double polish_winding_weight = 0;       ///< of polish()
-  KernelWidth polish_width;               ///< of the refinement that ends polish()
+  KernelWidth coarsest_epsilon;  ///< of the first solve, at its own spacing: without a start a wider one does better
+  KernelWidth refinement_width;  ///< 0: no refinement
+  double cluster_side = 0;       ///< energy: solve on clusters of points of this size; 0: on the points
+  bool coarse_to_fine = false;   ///< start from a solution on fewer points
+  PolishSettings polish;
   std::vector<Steps> schedule;            ///< from eta = 0
   std::vector<Steps> continued_schedule;  ///< from a coarse solution
   std::vector<Steps> doubtful_schedule;   ///< after it, where many sides are unsure, of width coarsest_epsilon; empty: never
@@ -68,9 +73,6 @@ struct Settings {
 
 /// The noise of options in the cloud's frame, if it is given. Throws InvalidInput below 0.
 [[nodiscard]] std::optional<double> given_noise(const Length& noise, const CanonicalCloud& cloud, double spacing);
-
-/// The noise in spacings that asks for kernels no wider than those of clean clouds.
-[[nodiscard]] double noise_of_clean_widths();
 
 /// `noise`: given_noise() or estimate_noise(); `outliers`: points that find_outliers() took out. Throws InvalidInput for an option out of
 /// range, naming it and the range.
@@ -93,17 +95,14 @@ inline constexpr double kContinuedAccuracy = 2e-2;
 inline constexpr std::size_t kFewestCoarsePoints = 10000;
 /// Where sides are unsure, around them or around facets, at most: 20 to 40 are enough as a rule.
 inline constexpr Steps kMoreSteps{60, StepKind::kConjugateGradient};
-/// The same with a polish for noisy points that project_points() has moved onto the surface: for the noise that this leaves.
-[[nodiscard]] Settings after_projection(const Settings& settings);
+/// Steps in which what is known reaches the far sides: fewer leave those undecided. More fit what is wrong with the equations: noise, above
+/// all in the polish, and after a coarse start, where smooth shapes take 2 to 10, open surfaces and the outliers that are always left.
+inline constexpr int kFewSteps = 10;
+/// Weight of the winding number in the polish of clean points and little noise, in h^3, so that S eta and l W^T W eta keep their
+/// proportion: more costs sides, less costs narrow gaps and smooth shapes.
+inline constexpr double kPolishWindingWeight = 70;
 
 /// Whether solve_coarse_to_fine() begins with fewer points.
 [[nodiscard]] bool starts_coarse(const Settings& settings, std::size_t points);
-
-/// Predicted peak memory of orient() in bytes for N points. Measured peaks are 0.9 to 1.08 of it, but for clouds whose facets are
-/// solved for, 1.25 (docs/evidence/speed.md), and large clean ones that are open, 1.3.
-[[nodiscard]] std::size_t planned_memory(const Settings& settings, std::size_t given, std::size_t used);
-
-/// Throws Unavailable if the plan exceeds options.max_memory.
-void require_memory(std::size_t planned_bytes, const Options& options);
 
 }  // namespace g3r

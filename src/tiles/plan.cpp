@@ -8,6 +8,7 @@
 #include "io/tiles.h"
 #include "mesh/field_mesher.h"
 #include "mesh/field_points.h"
+#include "orient/memory_plan.h"
 #include "orient/settings.h"
 #include "orient/site_parts.h"
 #include "orient/start.h"
