@@ -12,7 +12,8 @@
 namespace g3r {
 namespace {
 
-// Times the estimate, the scatter that speaks against it; times the scatter, the noise that is tried: kernels have to hide all of it.
+// Times the estimate, the scatter that speaks against it; times the larger of both, the noise that is tried: kernels have to hide all of
+// it.
 constexpr double kAboveScatter = 1.4;
 // The doubt that is left, of what there is, with more noise than the points speak for: noise hides thin walls and all doubt about them.
 constexpr double kHardlyAny = 0.2;
@@ -43,7 +44,7 @@ std::vector<OtherNoise> other_noises(const Problem& problem, const Oriented& fou
   if (scatter > kAboveScatter * problem.noise) {
     noises.push_back({std::max(kAboveScatter * scatter, least)});
   } else if (problem.noise > 0 && unsure >= kDoubtful) {
-    noises.push_back({kAboveScatter * problem.noise, kHardlyAny});
+    noises.push_back({kAboveScatter * std::max(scatter, problem.noise), kHardlyAny});
   }
   return noises;
 }
