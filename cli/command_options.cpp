@@ -20,7 +20,7 @@ constexpr const char* kCommandGroup = "Commands";
 constexpr const char* kTilesHelp =
     "If it would need more, for example 8G: work in tiles, on disk beside OUT (.ply; orient: .las, .laz too), or refuse "
     "(default: refuse beyond what the container leaves)";
-constexpr const char* kRefuseHelp = "Refuse before the solve if it would need more, for example 8G";
+constexpr const char* kMemoryHelp = "Warn if reconstruction would need more, for example 8G";
 
 void add_reconstruct(CLI::App& app, Settings& s) {
   app.add_option("IN", s.input, "Point cloud; - for standard input")->type_name("");
@@ -98,7 +98,8 @@ void add_eval(CLI::App& app, Settings& s) {
          "Meshes: also the F-scores at these distances, in units of the mesh")
       ->type_name("X,X,...");
   add_seed_option(*sub, s);
-  add_run_options(*sub, s);
+  add_threads_option(*sub, s);
+  add_console_options(*sub, s);
 }
 
 void add_sample(CLI::App& app, Settings& s) {
@@ -118,7 +119,7 @@ void add_sample(CLI::App& app, Settings& s) {
       ->type_name("X[%]");
   add_seed_option(*sub, s);
   add_write_options(*sub, s);
-  add_run_options(*sub, s);
+  add_console_options(*sub, s);
 }
 
 void add_info(CLI::App& app, Settings& s) {
@@ -128,7 +129,7 @@ void add_info(CLI::App& app, Settings& s) {
   sub->add_option("--report", s.report, "Write the plan as JSON; - for standard output, instead of the text")->type_name("FILE");
   add_read_options(*sub, s);
   add_method_options(*sub, s);
-  add_memory_option(*sub, s, kRefuseHelp);
+  add_memory_option(*sub, s, kMemoryHelp);
   add_mesh_options(*sub, s);
 }
 
@@ -179,7 +180,7 @@ void add_tiles(CLI::App& app, Settings& s) {
   CLI::Option* mesh_flag = merge->add_flag("--mesh", s.merge_mesh, "Write the mesh instead of the points")->disable_flag_override();
   add_component_options(*merge, s.mesh_options);
   for (const char* name : {"--keep-largest", "--min-component", "--keep-all"}) merge->get_option(name)->needs(mesh_flag);
-  add_run_options(*merge, s);
+  add_console_options(*merge, s);
 }
 
 void add_view(CLI::App& app, Settings& s) {
@@ -211,7 +212,8 @@ void add_view(CLI::App& app, Settings& s) {
       ->type_name("N");
   sub->add_flag("--dark", s.picture.dark, "Picture: dark background");
   add_read_options(*sub, s);
-  add_run_options(*sub, s);
+  add_threads_option(*sub, s);
+  add_console_options(*sub, s);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "files.h"
 
 #include "base/platform.h"
+#include "io/output_file.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -30,21 +31,12 @@ void check_not_a_command(const std::string& input) {
   }
 }
 
-bool same_file(const std::string& a, const std::string& b) {
-  if (a.empty() || a == "-" || b.empty() || b == "-") return false;
-  std::error_code ignored;
-  const auto place = [&](const std::string& path) {
-    return std::filesystem::weakly_canonical(std::filesystem::absolute(platform::path_of(path), ignored), ignored);
-  };
-  return place(a) == place(b) || std::filesystem::equivalent(platform::path_of(a), platform::path_of(b), ignored);
-}
-
 /// A report or a page, which check_output() cannot judge by its extension.
 void check_text_output(const std::string& path, const std::vector<std::string>& others) {
   if (path.empty() || path == "-") return;
   const std::string refused = "cannot create " + escape_text(path) + ": ";
   for (const std::string& other : others) {
-    if (same_file(path, other)) throw IoError(IoError::Kind::kCannotCreate, refused + "it is also the input or the result");
+    if (io::same_file(path, other)) throw IoError(IoError::Kind::kCannotCreate, refused + "it is also the input or the result");
   }
   std::error_code ignored;
   if (std::filesystem::is_directory(platform::path_of(path), ignored))
@@ -72,7 +64,7 @@ void check_result(const std::string& path, bool is_mesh, std::vector<std::string
     throw UsageError(error.what());
   }
   for (const std::string& other : taken) {
-    if (same_file(path, other)) {
+    if (io::same_file(path, other)) {
       throw IoError(IoError::Kind::kCannotCreate, "cannot create " + escape_text(path) + ": it is also the input or another result");
     }
   }

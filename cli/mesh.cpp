@@ -1,4 +1,6 @@
 // g3r mesh ORIENTED OUT: points that already have outward normals in, a mesh out.
+#include "mesh/findings.h"
+
 #include <g3r/g3r.h>
 #include <g3r/io.h>
 
@@ -28,6 +30,7 @@ int run_mesh(const Settings& settings, Session& session) {
   stats.depth = options.depth;
   stats.converged = true;
   stats.warnings = cloud.warnings;
+  warn_of_faces(mesh.triangles.size(), options.faces, stats.warnings);
   if (!check.closed) stats.warnings.emplace_back("the mesh is not closed");
   return finish(settings, session, stats, &check);
 }

@@ -28,11 +28,15 @@ std::string device_list() {
 
 }  // namespace
 
-void add_run_options(CLI::App& app, Settings& s) {
+void add_threads_option(CLI::App& app, Settings& s) {
   app.option_defaults()->group(kRunGroup);
   app.add_option("--threads", s.options.threads, "Threads, 0 (the default) for all cores; the result is the same for any number")
       ->check(range(0, kMaxThreads))
       ->type_name("N");
+}
+
+void add_device_option(CLI::App& app, Settings& s) {
+  app.option_defaults()->group(kRunGroup);
   app.add_option_function<std::string>(
          "--device",
          [&s](const std::string& text) {
@@ -43,11 +47,21 @@ void add_run_options(CLI::App& app, Settings& s) {
          },
          "Where the sums run: cpu, gpu, gpu:N; auto (the default): a GPU if there is one, for many points; list: what there is")
       ->type_name("NAME");
+}
+
+void add_console_options(CLI::App& app, Settings& s) {
+  app.option_defaults()->group(kRunGroup);
   app.add_flag("-q,--quiet", s.quiet, "Say nothing but errors");
   app.add_flag_callback(
          "--no-progress", [&s] { s.progress = false; }, "No progress bar")
       ->disable_flag_override();
   app.add_flag("-v,--verbose", s.verbosity, "Say more");
+}
+
+void add_run_options(CLI::App& app, Settings& s) {
+  add_threads_option(app, s);
+  add_device_option(app, s);
+  add_console_options(app, s);
 }
 
 void add_report_options(CLI::App& app, Settings& s) {

@@ -9,8 +9,11 @@
 
 namespace g3r::cli {
 
-void add_run_options(CLI::App& app, Settings& s);     ///< --threads, --device, --quiet, --no-progress, --verbose
-void add_report_options(CLI::App& app, Settings& s);  ///< --report, --strict
+void add_threads_option(CLI::App& app, Settings& s);   ///< --threads
+void add_device_option(CLI::App& app, Settings& s);    ///< --device
+void add_console_options(CLI::App& app, Settings& s);  ///< --quiet, --no-progress, --verbose
+void add_run_options(CLI::App& app, Settings& s);      ///< all of these
+void add_report_options(CLI::App& app, Settings& s);   ///< --report, --strict
 void add_seed_option(CLI::App& app, Settings& s);
 void add_read_options(CLI::App& app, Settings& s);        ///< --min-opacity, --all-splats, --box, --levels
 void add_write_options(CLI::App& app, Settings& s);       ///< --ascii

@@ -54,7 +54,7 @@ void mention_sensors(const Cloud& cloud, const std::vector<Vec3>& normals, Stats
   if (stats.open_share > 0) {
     stats.warnings.push_back(named + ": with --sensor file the open surfaces face the scanner");
   } else if (away >= kSurrounded) {
-    stats.warnings.push_back(named + ", and " + percent(away) +
+    stats.warnings.push_back(named + ", and " + exact_percent(away) +
                              " of the points face away, as in a room that is seen from inside: with "
                              "--sensor file they face the scanner");
   }

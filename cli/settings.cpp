@@ -1,6 +1,7 @@
 #include "settings.h"
 
 #include "base/platform.h"
+#include "io/source.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -81,12 +82,12 @@ void complete(const CLI::App& app, Settings& s) {
     throw UsageError("expected the command '" + app.get_subcommands().front()->get_name() + "' before its files");
   }
   if (s.command == Command::kView) {
-    const std::string extension = platform::name_of(platform::path_of(s.output).extension());
-    if (s.output != "-" && extension != ".html" && extension != ".htm" && extension != ".png") {
+    const std::string extension = io::extension(s.output);
+    if (s.output != "-" && extension != "html" && extension != "htm" && extension != "png") {
       throw UsageError("unknown extension '" + extension + "' of " + s.output + ": view writes .html or .png");
     }
     const CLI::App& view = *app.get_subcommands().front();
-    const bool picture = extension == ".png";
+    const bool picture = extension == "png";
     for (const char* option : {"--layers", "--tile", "--views", "--dark"}) {
       if (!picture && view.count(option) > 0) throw UsageError(std::string(option) + " is for pictures (.png), not for pages");
     }

@@ -93,8 +93,8 @@ void show_summary(const Settings& settings, Console& console, const Stats& stats
   show_details(console, stats);
   if (!stats.solver.empty()) {
     console.say(line("solve", solve_text(stats)));
-    console.say(line("normals", "mean confidence " + short_number(stats.confidence_mean, 2) + ", " + percent(stats.confidence_below_half) +
-                                    " of the points below 0.5"));
+    console.say(line("normals", "mean confidence " + short_number(stats.confidence_mean, 2) + ", " +
+                                    exact_percent(stats.confidence_below_half) + " of the points below 0.5"));
     if (stats.hints.viewpoint) console.say(line("camera", "at " + place_text(*stats.hints.viewpoint) + ", as the rows of pixels show"));
   }
   if (mesh != nullptr) console.say(line("mesh", mesh_text(*mesh)));

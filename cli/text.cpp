@@ -35,13 +35,7 @@ std::string with_commas(std::size_t count) {
 
 std::string counted(std::size_t count, const std::string& noun) { return with_commas(count) + " " + noun + (count == 1 ? "" : "s"); }
 
-std::string short_number(double value, int digits) {
-  std::array<char, 64> buffer{};
-  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, digits);
-  return {buffer.data(), result.ptr};
-}
-
-std::string percent(double share) {
+std::string exact_percent(double share) {
   const double value = 100 * share;
   if (value > 0 && value < 0.01) return "under 0.01 %";
   return short_number(value, value >= 99 && value < 100 ? 4 : 3) + " %";

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "base/number_text.h"
+
 namespace g3r::cli {
 
 /// 1234567 -> "1,234,567".
@@ -17,11 +19,8 @@ namespace g3r::cli {
 /// "1 point", "2,000 points": the plural is the noun with an s.
 [[nodiscard]] std::string counted(std::size_t count, const std::string& noun);
 
-/// Up to `digits` significant digits without trailing zeros, independent of the locale: 0.0123, 5.2e-07.
-[[nodiscard]] std::string short_number(double value, int digits = 4);
-
-/// Share 0..1 -> "0.3 %"; a share that is not zero is never shown as "0 %".
-[[nodiscard]] std::string percent(double share);
+/// Share 0..1 -> "12.3 %", three digits, and four of what is nearly all; a share that is not zero is never shown as "0 %".
+[[nodiscard]] std::string exact_percent(double share);
 
 /// 1536 -> "1.5 KiB".
 [[nodiscard]] std::string bytes(std::size_t count);

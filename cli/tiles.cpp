@@ -1,5 +1,7 @@
 // g3r tiles plan, run, mesh, status, merge; and g3r orient and g3r IN OUT with --max-memory where the cloud does not fit.
 #include "base/platform.h"
+#include "io/source.h"
+#include "tiles/manifest.h"
 
 #include <g3r/g3r.h>
 #include <g3r/io.h>
@@ -20,7 +22,7 @@
 namespace g3r::cli {
 namespace {
 
-constexpr const char* kFolderSuffix = ".tiles";  // of the work folder beside the output of orient
+constexpr const char* kFolderSuffix = ".tiles";  // of the work folder beside the output
 
 std::string status_text(const TileStatus& status) {
   std::string text =
@@ -73,7 +75,7 @@ bool is_default_method(const Options& o) {
 
 // Whether tiles can do what is asked for, and end in a file with one of these extensions.
 bool can_be_tiled(const Settings& s, std::initializer_list<const char*> extensions) {
-  const std::string extension = platform::name_of(platform::path_of(s.output).extension());
+  const std::string extension = "." + io::extension(s.output);
   const bool simple_output = s.also.empty() && !s.write_options.ascii && !s.write_options.cloud_compare_names &&
                              std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
   const ReadOptions& read = s.read_options;
@@ -124,8 +126,7 @@ int work_in_tiles(const Settings& settings, Session& session, bool mesh, const M
   const TileStatus status = g3r::run_tiles(folder, worker_of(settings), monitor);
   Stats stats = stats_of(status, settings);
   const std::string left_out = merge(folder, monitor, stats);
-  std::error_code ignored;  // a folder that cannot be removed does no harm
-  std::filesystem::remove_all(platform::path_of(folder), ignored);
+  tiles::remove_plan(folder);
   stats.warnings.push_back("beyond --max-memory in one piece: worked in " + counted(status.tiles, "tile") +
                            (left_out.empty() ? "" : "; " + left_out));
   return finish(settings, session, stats, nullptr);

@@ -1,5 +1,6 @@
 // g3r view IN... -o OUT: a page (.html) or a picture (.png) of a cloud, a mesh, or both.
 #include "base/platform.h"
+#include "io/source.h"
 
 #include <g3r/io.h>
 #include <g3r/view.h>
@@ -66,7 +67,7 @@ Scene read_scene(const Settings& settings, const ReadOptions& options) {
 int run_view(const Settings& settings, Session& session) {
   const Scene scene = session.stage("read", [&] { return read_scene(settings, session.cancellable(settings.read_options)); });
   const std::string bytes = session.stage("draw", [&] {
-    if (platform::path_of(settings.output).extension() != ".png") return view_html(scene, settings.page);
+    if (io::extension(settings.output) != "png") return view_html(scene, settings.page);
     PictureOptions picture = settings.picture;
     picture.threads = settings.options.threads;
     const std::vector<std::uint8_t> png = view_png(scene, picture);

@@ -1,6 +1,6 @@
 // From points, or oriented points, to a mesh.
 #include "base/median.h"
-#include "base/percent.h"
+#include "base/number_text.h"
 #include "base/stages.h"
 #include "base/vector.h"
 #include "cpu/parallel.h"
@@ -302,6 +302,7 @@ Reconstruction reconstruct(const PointsView& points, const Options& options, con
     stats.doubtful = stats.doubtful || (far > kManyUnsure && chosen.trim == MeshOptions::Trim::kOff);
   }
   warn_of_topology(out.check, out.orientation.stats);
+  warn_of_faces(out.mesh.triangles.size(), chosen.faces, out.orientation.stats.warnings);
   const double widest = std::ldexp(mesh::kFinestCell, mesh::kMaxOctreeLevel) * out.orientation.stats.spacing;  // that the octree resolves
   if (chosen.mesher == Mesher::kField && chosen.depth == 0 && out.orientation.stats.box_side > widest) {
     out.orientation.stats.warnings.emplace_back(

@@ -1,8 +1,8 @@
 #include "base/degrees.h"
 #include "base/disjoint_sets.h"
 #include "base/hash.h"
+#include "base/number_text.h"
 #include "base/pair_key.h"
-#include "base/percent.h"
 #include "base/whole_bytes.h"
 
 #include <gtest/gtest.h>
@@ -34,9 +34,18 @@ TEST(DisjointSets, AreNamedByTheirSmallestMemberWhateverTheOrder) {
   EXPECT_EQ(sets.count(), 4U);
 }
 
-TEST(Percent, IsWhole) {
+TEST(Percent, IsWholeButNeverNothingForWhatIsThere) {
   EXPECT_EQ(percent(0.124), "12 %");
   EXPECT_EQ(percent(1), "100 %");
+  EXPECT_EQ(percent(0.0034), "0.3 %");
+  EXPECT_EQ(percent(1e-6), "under 0.01 %");
+  EXPECT_EQ(percent(0), "0 %");
+}
+
+TEST(MebibytesNeeded, AreMoreThanALimitThatIsLess) {
+  EXPECT_EQ(mebibytes_needed(600 * kMebibyte), 600U);
+  EXPECT_EQ(mebibytes_needed(600 * kMebibyte + 1), 601U);
+  EXPECT_EQ(mebibytes(600 * kMebibyte + 1), 600U);
 }
 
 TEST(WholeBytes, AreNeverMoreThanASizeHolds) {

@@ -76,7 +76,7 @@ class Memory(ProgramTest):
         self.assertEqual(info_plan, mesh_plan)
         for plan, arguments in (self.plan, ["orient", "ball.ply", "out.ply"]), (mesh_plan, ["ball.ply", "out.ply"]):
             result = self.expect(UNAVAILABLE, *arguments, "-v", "--max-memory", str(plan - 1))
-            self.assertEqual(int(re.search(r"plan needs (\d+) MiB", result.err).group(1)), plan >> 20)
+            self.assertEqual(int(re.search(r"plan needs (\d+) MiB", result.err).group(1)), -(-plan >> 20))
             self.assertNotIn("g3r: solve", result.err)
             self.assertFalse(os.path.exists(self.path("out.ply")))
             self.expect(OK, *arguments, "--max-memory", str(plan))

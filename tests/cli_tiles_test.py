@@ -71,6 +71,14 @@ class Tiles(ProgramTest):
             self.assertIn("--mesh", self.expect(USAGE, "tiles", "merge", "work", "out.ply", *option).err)
         self.assertFalse(os.path.exists(self.path("out.ply")))
 
+    def test_an_input_is_no_output(self):
+        before = self.bytes_of("in.ply")
+        self.expect(OK, "tiles", "plan", "in.ply", "work", "--tiles", "1")
+        self.expect(OK, "tiles", "run", "work")
+        result = self.expect(CANNOT_CREATE, "tiles", "merge", "work", "work/../in.ply")
+        self.assertIn("input of the plan", result.err)
+        self.assertEqual(self.bytes_of("in.ply"), before)
+
     def test_damage_in_a_text_names_the_line(self):
         lines = ["%r,%r,%r" % point for point in sphere(COUNT)]
         lines[4000] = "1,2,north"
@@ -93,7 +101,7 @@ class Tiles(ProgramTest):
     def test_orient_works_in_tiles_where_it_would_refuse(self):
         """Until the sort: the tiles themselves are those of the other tests."""
         write_points(self.path("large.ply"), sphere(LARGE_COUNT))
-        arguments = ["orient", "large.ply", "out.ply", "--max-memory", "130M"]
+        arguments = ["orient", "large.ply", "out.PLY", "--max-memory", "130M"]
         self.expect(UNAVAILABLE, *arguments, "--ascii")  # which tiles do not write
         self.expect(UNAVAILABLE, *arguments[1:], "--open")  # of a mesh neither
         process = self.start(*arguments, "-v", preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
@@ -109,8 +117,8 @@ class Tiles(ProgramTest):
         guard.cancel()
         self.assertEqual(process.returncode, INTERRUPTED, stages)
         self.assertIn(b"g3r: sort\n", stages)
-        self.assertFalse(os.path.exists(self.path("out.ply")))
-        self.assertTrue(os.path.exists(self.path("out.ply.tiles/points-1.bin")))
+        self.assertFalse(os.path.exists(self.path("out.PLY")))
+        self.assertTrue(os.path.exists(self.path("out.PLY.tiles/points-1.bin")))
 
 
 if __name__ == "__main__":

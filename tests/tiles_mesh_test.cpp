@@ -175,6 +175,42 @@ TEST_F(TilesMesh, StraysAreLeftOut) {
   EXPECT_EQ(merged_.components, 2U);
 }
 
+// Each in cells of its own, they are more cells than those of the surface, of which spacing and noise are taken all the same.
+TEST(TilesMeshOfStrays, TheSpacingIsThatOfTheSurface) {
+  const TemporaryFolder folder;
+  shapes::Surface s = shapes::torus(9000, kRing, kTube, 2);
+  shapes::Random random(7);
+  for (int k = 0; k < 400; ++k) {
+    s.points.push_back({random.uniform(-6, 6), random.uniform(-6, 6), random.uniform(2, 8)});
+    s.normals.push_back(random.direction());
+  }
+  Cloud cloud;
+  cloud.positions = s.points;
+  write_cloud(folder.file("in.ply"), cloud, nullptr, nullptr);
+  TileOptions options;
+  options.tiles = 2;
+  const std::string work = folder.file("work");
+  (void)plan_tiles({folder.file("in.ply")}, work, options);
+  write_normals(work, s.normals);
+  (void)mesh_tiles(work);
+  const tiles::MeshFolder opened = tiles::read_mesh_folder(work, tiles::read_manifest(work));
+  const double spacing = std::sqrt(4 * std::numbers::pi * std::numbers::pi * kRing * kTube / 9000);
+  EXPECT_NEAR(opened.plan.spacing / opened.manifest.frame.scale, spacing, kSpacingError * spacing);
+  EXPECT_EQ(merge_mesh(work, folder.file("out.ply")).components, 1U);
+}
+
+TEST_F(TilesMesh, FilesOfOthersStayWhereAPlanIsRemoved) {
+  const std::string work = folder_->file("shared");
+  std::filesystem::copy(folder_->file("work"), work);
+  write_bytes(work + "/notes.bin", "mine");
+  tiles::remove_plan(work);
+  EXPECT_EQ(bytes_of(work + "/notes.bin"), "mine");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(work), {}), 1);
+  std::filesystem::copy(folder_->file("plan"), folder_->file("alone"));
+  tiles::remove_plan(folder_->file("alone"));
+  EXPECT_FALSE(std::filesystem::exists(folder_->file("alone")));
+}
+
 // A vertex that the patches have beyond its neighbours is pulled back within its tile.
 TEST_F(TilesMesh, UnfoldsTrianglesThatCross) {
   const std::string work = folder_->file("folded");
@@ -206,6 +242,9 @@ TEST_F(TilesMesh, IsRefusedWhereItCannotBe) {
   EXPECT_THROW((void)merge_mesh(folder_->file("no-normals"), folder_->file("none.ply")), InvalidInput);
   EXPECT_THROW((void)merge_mesh(folder_->file("work"), folder_->file("none.obj")), InvalidInput);
   EXPECT_THROW((void)mesh_tiles(folder_->file("work"), {3, 2}), InvalidInput);
+  EXPECT_THROW((void)mesh_tiles(folder_->file("work"), {1, 1, 0, "gpu:99"}), Error);
+  EXPECT_THROW((void)merge_mesh(folder_->file("work"), folder_->file("in.ply")), IoError);
+  EXPECT_THROW((void)merge_tiles(folder_->file("work"), folder_->file("in.ply")), IoError);
 }
 
 TEST_F(TilesMesh, DamagedFilesAreRefused) {

@@ -174,7 +174,7 @@ struct MeshOptions {
   /// Whether surface far from every point is cut away, which leaves an open boundary.
   enum class Trim {
     kOff,      ///< closed
-    kAuto,     ///< farther than 4 spacings of the cloud, or of the place where that is denser; 1.5 where it is so sparse that this is more
+    kAuto,     ///< farther than 4 spacings of the cloud, or of the place where that is denser; 1.4 where it is so sparse that this is more
     kDistance  ///< farther than trim_distance
   };
   Trim trim = Trim::kOff;

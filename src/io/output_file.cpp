@@ -5,6 +5,7 @@
 #include <g3r/io.h>
 
 #include <cerrno>
+#include <filesystem>
 #include <system_error>
 #include <utility>
 
@@ -124,6 +125,15 @@ void OutputFile::fail(bool creating, int error) const {
   const std::string reason = creating && error == ENOENT ? "there is no such folder" : std::generic_category().message(error);
   throw IoError(creating ? IoError::Kind::kCannotCreate : IoError::Kind::kFailed,
                 escape_text(path_) + ": cannot " + (creating ? "create" : "write") + ": " + reason);
+}
+
+bool same_file(const std::string& a, const std::string& b) {
+  if (a.empty() || a == "-" || b.empty() || b == "-") return false;
+  std::error_code ignored;
+  const auto place = [&](const std::string& path) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(platform::path_of(path), ignored), ignored);
+  };
+  return place(a) == place(b) || std::filesystem::equivalent(platform::path_of(a), platform::path_of(b), ignored);
 }
 
 void check_creatable(const std::string& path) { OutputFile probe(path); }

@@ -48,6 +48,10 @@ class OutputFile {
   int fd_ = -1;
 };
 
+/// Whether both names are those of one file, also by links and where there is none yet. Standard input and output ("-") and "" are no
+/// files.
+[[nodiscard]] bool same_file(const std::string& a, const std::string& b);
+
 /// Throws what OutputFile(path) would throw; leaves nothing behind.
 void check_creatable(const std::string& path);
 

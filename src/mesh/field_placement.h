@@ -16,7 +16,8 @@ struct PlacedVertices {
 };
 
 /// `value`: one per corner, positive inside, zero on the surface; only ratios across an edge matter.
-/// A vertex stays within `kReach` cells of its leaf. O(vertices). Throws Cancelled.
+/// A vertex stays within kDiscHalf of the side of its leaf about it. `wanted`: empty, or 1 for each patch to place; the others stay at the
+/// origin. O(vertices). Throws Cancelled.
 [[nodiscard]] PlacedVertices place_vertices(const Octree& octree, const DualSurface& surface, const std::vector<float>& value,
                                             const LocalFit& local, const std::atomic<bool>* cancel = nullptr,
                                             const std::vector<std::uint8_t>& wanted = {});

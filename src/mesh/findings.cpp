@@ -1,6 +1,6 @@
 #include "mesh/findings.h"
 
-#include "base/percent.h"
+#include "base/number_text.h"
 #include "base/vector.h"
 #include "cloud/noise.h"
 #include "mesh/constants.h"
@@ -8,9 +8,7 @@
 #include "mesh/lines.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 namespace g3r {
@@ -24,11 +22,7 @@ constexpr std::size_t kFewestOdd = 10;
 // The points for each handle, and for each part, that a mesh needs: the smallest handle that was right, in a lattice of rods, had 156.
 constexpr std::size_t kPointsPerOdd = 150;
 
-std::string short_number(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.2g", value);
-  return text.data();
-}
+std::string two_digits(double value) { return short_number(value, 2); }
 
 // The step of the terraces across an axis, 0 if there are none.
 double terrace_step(const PointSet& set, const std::vector<Vec3>& normals, std::size_t axis) {
@@ -79,8 +73,8 @@ void warn_of_lines(const CanonicalCloud& cloud, Stats& stats) {
 void warn_of_crossings(const CanonicalCloud& cloud, const std::vector<Vec3>& normals, Stats& stats) {
   const mesh::Crossings found = mesh::find_crossings(cloud.set, normals);
   if (!found.is_clear) return;
-  stats.warnings.push_back("two surfaces cross: " + short_number(100 * found.share) +
-                           " % of the points are near a curve where both go on to either side, at about " + short_number(found.angle) +
+  stats.warnings.push_back("two surfaces cross: " + two_digits(100 * found.share) +
+                           " % of the points are near a curve where both go on to either side, at about " + two_digits(found.angle) +
                            " degrees; between the two, inside and outside are a guess: align the scans, or mesh the parts one by one");
 }
 
@@ -102,10 +96,10 @@ void warn_of_sampling(const CanonicalCloud& cloud, const std::vector<Vec3>& norm
   if (axes.empty()) return;
   const double deviation = cloud.frame.length_to_world(largest * std::sqrt(kRoundingVariance));
   stats.warnings.push_back("rounded coordinates: along " + axes + " they come in steps of about " +
-                           short_number(cloud.frame.length_to_world(largest)) + " (" + short_number(largest / spacing) + " spacings), " +
-                           (stats.noise >= deviation ? "which are smoothed over as noise of " + short_number(stats.noise)
+                           two_digits(cloud.frame.length_to_world(largest)) + " (" + two_digits(largest / spacing) + " spacings), " +
+                           (stats.noise >= deviation ? "which are smoothed over as noise of " + two_digits(stats.noise)
                                                      : "which makes terraces: export more digits, or smooth over them with a noise of " +
-                                                           short_number(deviation) + " or more"));
+                                                           two_digits(deviation) + " or more"));
 }
 
 void warn_of_topology(const MeshCheck& check, Stats& stats) {
@@ -123,6 +117,12 @@ void warn_of_topology(const MeshCheck& check, Stats& stats) {
         std::to_string(check.components) + " parts: one for every " + std::to_string(points / check.components) +
         " points is more than they can carry: outliers, noise or gaps in the sampling; keep the largest, or clean the cloud");
   }
+}
+
+void warn_of_faces(std::size_t triangles, std::size_t faces, std::vector<std::string>& warnings) {
+  if (faces == 0 || triangles <= faces) return;
+  warnings.push_back(std::to_string(triangles) + " triangles instead of " + std::to_string(faces) +
+                     ": fewer would open the mesh or change its parts or handles; keep the largest part, or ask for more");
 }
 
 }  // namespace g3r

@@ -5,7 +5,9 @@
 
 #include <g3r/g3r.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace g3r {
@@ -22,5 +24,8 @@ void warn_of_sampling(const CanonicalCloud& cloud, const std::vector<Vec3>& norm
 /// Warns, and calls the result doubtful, where a closed mesh has 10 handles or parts or more and fewer than 150 points for each: surfaces
 /// that are resolved have more.
 void warn_of_topology(const MeshCheck& check, Stats& stats);
+
+/// A warning where more triangles are left than `faces` (0: no limit) asks for, as fewer would change what the surface is.
+void warn_of_faces(std::size_t triangles, std::size_t faces, std::vector<std::string>& warnings);
 
 }  // namespace g3r

@@ -54,7 +54,7 @@ std::size_t field_mesh_memory(std::size_t points, double spacing, double noise, 
 void mesh::check_memory(std::size_t points, std::size_t leaves, int depth, MeshMemory& memory) {
   memory.needed = memory_for(points, static_cast<double>(leaves), depth);
   if (memory.limit == 0 || memory.needed <= memory.limit) return;
-  throw Unavailable("the mesh needs " + std::to_string(mebibytes(memory.needed)) + " MiB, the limit is " +
+  throw Unavailable("the mesh needs " + std::to_string(mebibytes_needed(memory.needed)) + " MiB, the limit is " +
                     std::to_string(mebibytes(memory.limit)) + " MiB; raise the limit, lower the depth or thin the cloud");
 }
 

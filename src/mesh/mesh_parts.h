@@ -1,4 +1,4 @@
-// Parts of a mesh: connected components by size, and surface far from the points.
+// Components of a mesh, and removal of triangles, components and unused vertices.
 #pragma once
 
 #include <g3r/mesh.h>

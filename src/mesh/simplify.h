@@ -8,8 +8,8 @@
 
 namespace g3r::mesh {
 
-/// Simplifies to about `faces` triangles; more where fewer would make the mesh non-manifold or open it: whatever closedness and
-/// manifoldness the mesh has, the result has too. Vertices stay where they are. Attributes are kept. O(F log F).
+/// Simplifies to `faces` triangles or a few less; to more, or not at all, where fewer would make the mesh non-manifold, open it, or change
+/// the number of its components or its genus. Vertices stay where they are. Attributes are kept. O(F log F).
 void simplify(Mesh& mesh, std::size_t faces);
 
 }  // namespace g3r::mesh

@@ -1,21 +1,18 @@
 #include "orient/apply_hints.h"
 
-#include "base/percent.h"
+#include "base/number_text.h"
 #include "orient/confidence.h"
 #include "orient/hints.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 namespace g3r {
 namespace {
 
 std::string in_words(const Vec3& place) {
-  char text[96];
-  std::snprintf(text, sizeof text, "%.7g,%.7g,%.7g", place[0], place[1], place[2]);
-  return text;
+  return short_number(place[0], 7) + ',' + short_number(place[1], 7) + ',' + short_number(place[2], 7);
 }
 
 double share(const std::vector<std::uint8_t>& marked) {

@@ -1,6 +1,6 @@
 #include "orient/assess.h"
 
-#include "base/percent.h"
+#include "base/number_text.h"
 #include "orient/confidence.h"
 #include "orient/polish.h"
 #include "orient/walls.h"

@@ -25,7 +25,7 @@ class ExternalSort {
 
   /// Throws IoError, Cancelled.
   void add(const Record& record);
-  /// Returns all records in order. Throws IoError, Cancelled.
+  /// Calls take(code, record) for all records in order, once. Throws IoError, Cancelled.
   void finish(const std::function<void(std::uint64_t code, const Record&)>& take);
 
  private:

@@ -36,6 +36,14 @@ std::uint64_t size_of_file(const std::string& path) {
   throw InvalidInput(escape_text(manifest_path(folder)) + ": " + what + "; make the plan anew in another folder");
 }
 
+// Whether a file of a work folder has a name that a plan, its workers or a part of a sort gives.
+bool is_of_plan(const std::string& name) {
+  const auto begins = [&](const char* with) { return name.rfind(with, 0) == 0; };
+  const bool ends = name.size() > 4 && name.compare(name.size() - 4, 4, ".bin") == 0;
+  const bool numbered = begins("points-") || begins("tile-") || begins("run-") || begins("mesh-");
+  return name == "manifest.json" || name == "cells.bin" || name == "coarse.bin" || name == "mesh.json" || (numbered && ends);
+}
+
 Manifest parsed(const json& from) {
   Manifest m;
   from.at("asked").get_to(m.asked);
@@ -112,6 +120,27 @@ std::string cells_path(const std::string& folder) { return folder + "/cells.bin"
 std::string points_path(const std::string& folder, std::uint64_t stride) { return folder + "/points-" + std::to_string(stride) + ".bin"; }
 std::string coarse_path(const std::string& folder) { return folder + "/coarse.bin"; }
 std::string result_path(const std::string& folder, std::size_t tile) { return folder + "/tile-" + std::to_string(tile) + ".bin"; }
+
+void require_worker(const TileWorker& worker) {
+  if (worker.number >= 1 && worker.number <= worker.workers) return;
+  throw InvalidInput("tiles: expected a worker of 1 to the number of workers, found " + std::to_string(worker.number) + " of " +
+                     std::to_string(worker.workers));
+}
+
+void require_no_input(const Manifest& manifest, const std::string& output) {
+  for (const Input& input : manifest.inputs) {
+    if (!io::same_file(input.path, output)) continue;
+    throw IoError(IoError::Kind::kCannotCreate, "cannot create " + escape_text(output) + ": it is an input of the plan; give another name");
+  }
+}
+
+void remove_plan(const std::string& folder) {
+  std::error_code ignored;  // a folder that cannot be removed does no harm
+  for (const auto& entry : std::filesystem::directory_iterator(platform::path_of(folder), ignored)) {
+    if (is_of_plan(platform::name_of(entry.path().filename()))) std::filesystem::remove(entry.path(), ignored);
+  }
+  std::filesystem::remove(platform::path_of(folder), ignored);  // nothing happens where files of others are in it
+}
 
 bool can_be_stored(const std::string& path) {
   try {

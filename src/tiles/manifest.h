@@ -14,7 +14,8 @@
 
 namespace g3r::tiles {
 
-inline constexpr double kLongestSide = 2 / 1.1;  ///< of the box of all points, in the unit frame
+/// The largest side that the box of all points may have in the unit frame; scale_for() makes it this to half of this.
+inline constexpr double kLongestSide = kBoxSide;
 
 struct Input {
   std::string path;
@@ -76,6 +77,15 @@ void write_manifest(const std::string& folder, const Manifest& manifest);
 [[nodiscard]] Manifest read_manifest(const std::string& folder);
 /// Throws InvalidInput where the file is not that of the manifest, IoError.
 [[nodiscard]] Cells read_cells(const std::string& folder, const Manifest& manifest);
+
+/// Throws InvalidInput unless the worker is one of 1 to workers.
+void require_worker(const TileWorker& worker);
+
+/// Throws IoError where the output is an input of the plan, which would be gone before it was read.
+void require_no_input(const Manifest& manifest, const std::string& output);
+
+/// Removes the files of a plan and its tiles, and the folder if there is nothing else in it.
+void remove_plan(const std::string& folder);
 
 /// Tiles of nearly equal numbers of points, cut between cells.
 [[nodiscard]] std::vector<Tile> cut(const Cells& cells, std::size_t count);

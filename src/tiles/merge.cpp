@@ -18,11 +18,13 @@
 namespace g3r::tiles {
 namespace {
 
+constexpr std::uint64_t kCursorMemory = 64u << 20;  // bytes of the results that all cursors hold: it does not grow with the tiles
+
 // The results of a tile, front to back.
 class Cursor {
  public:
-  // `points`: of the input, which results lie among.
-  Cursor(std::string path, std::uint64_t points) : path_(std::move(path)), points_(points) {}
+  // `points`: of the input, which results lie among; `at_once`: results read at once.
+  Cursor(std::string path, std::uint64_t points, std::uint64_t at_once) : path_(std::move(path)), points_(points), at_once_(at_once) {}
 
   // Calls take(result) for those before `end` that have not been taken. The file is open only while it is read: there may be thousands.
   template <class Take>
@@ -37,7 +39,7 @@ class Cursor {
     results_.clear();
     used_ = 0;
     const RecordFile<Result> file(path_);
-    const std::uint64_t to = std::min(file.size(), at_ + kRecordsAtOnce);
+    const std::uint64_t to = std::min(file.size(), at_ + at_once_);
     file.append(at_, to, results_);
     at_ = to;
     ended_ = results_.empty();
@@ -60,6 +62,7 @@ class Cursor {
 
   std::string path_;
   std::uint64_t points_;
+  std::uint64_t at_once_;
   std::uint64_t next_ = 0;  // least index that may follow
   std::uint64_t at_ = 0;
   bool ended_ = false;
@@ -89,7 +92,8 @@ MergedTiles merge(const std::string& folder, const Manifest& m, const std::strin
   Stages stages(monitor);
   stages.begin("merge");
   std::vector<Cursor> cursors;
-  for (std::size_t t = 0; t < m.tiles.size(); ++t) cursors.emplace_back(result_path(folder, t), m.points);
+  const std::uint64_t at_once = std::clamp<std::uint64_t>(kCursorMemory / (m.tiles.size() * sizeof(Result)), 1, kRecordsAtOnce);
+  for (std::size_t t = 0; t < m.tiles.size(); ++t) cursors.emplace_back(result_path(folder, t), m.points, at_once);
   PointWriter writer(output, m, stages);
   std::vector<Vec3> points;
   std::string records;

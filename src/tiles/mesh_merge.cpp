@@ -153,7 +153,7 @@ void require_parts(const MeshFolder& folder) {
 
 void require_known(const MeshOptions& options) {
   if (options.trim == MeshOptions::Trim::kOff && options.faces == 0 && options.depth == 0 && options.mesher != Mesher::kPoisson) return;
-  throw Unavailable("meshes of tiles are neither trimmed nor simplified, and have the depth that their plan gives them");
+  throw Unavailable("meshes of tiles take keep_largest, min_component and keep_all alone; leave mesher, depth, trim and faces as they are");
 }
 
 // Of the vertices of a tile those that stay.
@@ -234,7 +234,9 @@ MergedMesh merge_mesh(const std::string& folder, const std::string& output, cons
   if (io::extension(output) != "ply") {
     throw InvalidInput(escape_text(output) + ": meshes of tiles are written as binary PLY: expected a name that ends in .ply");
   }
-  return tiles::merge(tiles::read_mesh_folder(folder, tiles::read_manifest(folder)), output, options, monitor);
+  const tiles::Manifest manifest = tiles::read_manifest(folder);
+  tiles::require_no_input(manifest, output);
+  return tiles::merge(tiles::read_mesh_folder(folder, manifest), output, options, monitor);
 }
 
 }  // namespace g3r

@@ -4,6 +4,7 @@
 #include "base/platform.h"
 #include "base/vector.h"
 #include "base/whole_bytes.h"
+#include "cloud/constants.h"
 #include "cpu/parallel.h"
 #include "field/oriented_cloud.h"
 #include "field/winding_sampler.h"
@@ -20,6 +21,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <system_error>
 
 namespace g3r::tiles {
@@ -29,7 +31,7 @@ using nlohmann::json;
 
 constexpr const char* kSchema = "g3r.tiles.mesh";
 constexpr int kVersion = 2;
-constexpr std::size_t kSamples = 32;         // cells, of 64 points or more each, that stand for the cloud
+constexpr std::size_t kSamples = 32;         // places of the order of the points, that stand for the cloud
 constexpr int kSampleAround = 1;             // cells around them: 8 spacings or more
 constexpr std::uint64_t kFixed = 72u << 20;  // as of the solves
 constexpr std::uint64_t kPerPoint = 1400;    // bytes of the octree, the sides and the patches around each point (docs/algorithms/tiles.md)
@@ -41,22 +43,31 @@ constexpr int kMaxLevel = mesh::kMaxOctreeLevel - 4;  // of the cells: leaves ar
   throw InvalidInput(escape_text(mesh_plan_path(folder)) + ": " + what + "; remove it and the other mesh-* files, and mesh again");
 }
 
-// Spacing, noise and heights of the cloud: the medians over some of its cells.
+// The cell of a point of the order.
+std::uint64_t code_of_point(const Cells& cells, std::uint64_t place) {
+  const auto after =
+      std::upper_bound(cells.cells.begin(), cells.cells.end(), place, [](std::uint64_t at, const Cell& cell) { return at < cell.begin; });
+  return std::prev(after)->code;
+}
+
+// Spacing, noise and heights of the cloud: the medians over the surroundings of points evenly spaced in the order, so that strays, which
+// have cells of their own, count as few as they are. Surroundings of too few points for any of the three are left out.
 void sample_cloud(const std::string& folder, const Manifest& m, const Cells& cells, MeshPlan& plan, const std::atomic<bool>* cancel) {
   std::vector<double> spacing;
   std::vector<double> position;
   std::vector<double> normal;
   std::vector<double> usual;
   std::vector<double> strays;
-  const std::size_t count = std::min(kSamples, cells.cells.size());
+  const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(kSamples, cells.points));
   for (std::size_t s = 0; s < count; ++s) {
     if (cancel != nullptr && cancel->load()) throw Cancelled();
-    const std::uint64_t code = cells.cells[s * cells.cells.size() / count].code;
+    const std::uint64_t code = code_of_point(cells, s * (cells.points / count));
     std::vector<std::uint64_t> near;
     for_neighbours(code, cells.level, kSampleAround, [&](std::uint64_t other) { near.push_back(other); });
     std::sort(near.begin(), near.end());
     const RawPoints raw =
         read_raw_points(folder, m, cells, [&](std::size_t c) { return std::binary_search(near.begin(), near.end(), cells.cells[c].code); });
+    if (raw.positions.size() < kSmallPart * kPatchNeighbours) continue;
     mesh::Prepared prepared;
     mesh::prepare(raw.positions, raw.normals, 0, prepared);
     spacing.push_back(median(prepared.points.spacing));
@@ -67,6 +78,7 @@ void sample_cloud(const std::string& folder, const Manifest& m, const Cells& cel
     usual.push_back(heights.usual);
     strays.push_back(heights.stray_share);
   }
+  if (spacing.empty()) throw InvalidInput(escape_text(folder) + ": its points are too scattered to be a surface; there is no mesh of them");
   plan.spacing = median(std::move(spacing));
   plan.noise = {median(std::move(position)) / plan.spacing, median(std::move(normal))};
   plan.heights = {median(std::move(usual)), median(std::move(strays))};
@@ -121,7 +133,7 @@ void choose_tiles(MeshFolder& folder) {
     if (folder.plan.worker_memory <= limit) return;
     const bool stuck = count > 64 && largest == before;
     if (count >= folder.cells.cells.size() || stuck) {
-      throw Unavailable("tiles of this mesh need " + std::to_string(mebibytes(folder.plan.worker_memory)) +
+      throw Unavailable("tiles of this mesh need " + std::to_string(mebibytes_needed(folder.plan.worker_memory)) +
                         " MiB, the limit of the plan is " + std::to_string(mebibytes(limit)) + " MiB; make a plan with a higher limit");
     }
     before = largest;

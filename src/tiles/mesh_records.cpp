@@ -13,7 +13,7 @@ struct Waiting {
   std::size_t point;
 };
 
-// Both ascend by index.
+// Results ascend by index; those that wait are sorted to walk along with them.
 void take_normals(const std::string& path, std::vector<Waiting>& waiting, std::vector<Vec3>& normals) {
   std::sort(waiting.begin(), waiting.end(), [](const Waiting& a, const Waiting& b) { return a.index < b.index; });
   const RecordFile<Result> file(path);

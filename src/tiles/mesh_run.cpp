@@ -2,6 +2,7 @@
 #include "base/platform.h"
 #include "base/stages.h"
 #include "cpu/parallel.h"
+#include "sum/device_scope.h"
 #include "tiles/mesh_passes.h"
 #include "tiles/patches_file.h"
 
@@ -83,13 +84,11 @@ std::uint64_t planned_mesh_memory(const std::string& folder) {
 }
 
 MeshTiles mesh_tiles(const std::string& folder, const TileWorker& worker, const Monitor& monitor) {
-  if (worker.workers == 0 || worker.number == 0 || worker.number > worker.workers) {
-    throw InvalidInput("mesh_tiles: expected a worker of 1.." + std::to_string(worker.workers) + ", found " +
-                       std::to_string(worker.number));
-  }
+  tiles::require_worker(worker);
   const tiles::Manifest manifest = tiles::read_manifest(folder);
   tiles::require_normals(folder, manifest);
   return parallel::with_threads(worker.threads, [&] {
+    const gpu::Scope device(worker.device, static_cast<std::size_t>(manifest.points / manifest.tiles.size()));
     Stages stages(monitor);
     stages.begin("mesh");
     const tiles::MeshFolder opened = tiles::open_mesh_folder(folder, manifest, stages.cancel());

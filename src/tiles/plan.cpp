@@ -192,7 +192,7 @@ std::size_t memory_limit(const TileOptions& options) {
 }
 
 [[noreturn]] void refuse_memory(std::size_t limit, std::uint64_t needed) {
-  throw Unavailable("tiles of this cloud need " + std::to_string(mebibytes(memory_for(needed))) + " MiB, the limit is " +
+  throw Unavailable("tiles of this cloud need " + std::to_string(mebibytes_needed(memory_for(needed))) + " MiB, the limit is " +
                     std::to_string(mebibytes(limit)) + " MiB; raise the limit, or thin the cloud");
 }
 

@@ -75,6 +75,7 @@ PointWriter::PointWriter(const std::string& output, const Manifest& manifest, St
 }
 
 void PointWriter::check(const std::string& output, const Manifest& manifest) {
+  require_no_input(manifest, output);
   const std::string format = io::extension(output);
   if (format == "ply") return;
   const std::string name = escape_text(output);

@@ -4,6 +4,7 @@
 #include "io/output_file.h"
 #include "orient/start.h"
 #include "orient/steps.h"
+#include "sum/device_scope.h"
 #include "tiles/coarse_sides.h"
 #include "tiles/manifest.h"
 #include "tiles/records.h"
@@ -79,7 +80,10 @@ std::vector<Result> results_of(const TileCloud& cloud, const Orientation& solved
 void solve_tile(const std::string& folder, const Manifest& m, const Cells& cells, std::size_t t, const TileWorker& worker,
                 const Monitor& monitor) {
   TileCloud cloud = read_tile_cloud(folder, m, cells, m.tiles[t]);
-  CoarseSides coarse = parallel::with_threads(worker.threads, [&] { return coarse_sides(folder, m, cloud, monitor.cancel); });
+  CoarseSides coarse = parallel::with_threads(worker.threads, [&] {
+    const gpu::Scope device(worker.device, cloud.points.size());
+    return coarse_sides(folder, m, cloud, monitor.cancel);
+  });
   const std::vector<Vec3> open_gradient = gradient_of_open(cloud, coarse);
   const Orientation solved = solve(cloud, {std::move(coarse.gradient), std::move(cloud.relative_spacing), cloud.own}, worker,
                                    named(monitor, "tile " + std::to_string(t + 1) + " of " + std::to_string(m.tiles.size())));
@@ -94,9 +98,7 @@ void solve_tile(const std::string& folder, const Manifest& m, const Cells& cells
 namespace g3r {
 
 TileStatus run_tiles(const std::string& folder, const TileWorker& worker, const Monitor& monitor) {
-  if (worker.workers == 0 || worker.number == 0 || worker.number > worker.workers) {
-    throw InvalidInput("run_tiles: expected a worker of 1.." + std::to_string(worker.workers) + ", found " + std::to_string(worker.number));
-  }
+  tiles::require_worker(worker);
   const tiles::Manifest manifest = tiles::read_manifest(folder);
   const tiles::Cells cells = tiles::read_cells(folder, manifest);
   for (std::size_t t = worker.number - 1; t < manifest.tiles.size(); t += worker.workers) {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint64_t kScanAtOnce = std::uint64_t{1} << 16;  // records
 
-// Places in a thinned file that fall into [begin, end) of the order.
+// How many records of a file thinned by `stride` come before `place` of the order.
 std::uint64_t thinned(std::uint64_t place, std::uint64_t stride) { return (place + stride - 1) / stride; }
 
 void reserve(TileCloud& cloud, std::size_t points) {
