@@ -25,7 +25,7 @@ g3r_together(steps orient/facets orient/hints orient/apply_hints orient/closed_s
 g3r_together(jets orient/jets orient/agreement orient/certified_sides orient/open_surfaces orient/restless orient/site_parts pipeline orient/assess
              orient/attempt orient/callers_order orient/describe orient/noise_choice orient/outlier_normals orient/outside orient/separate_walls)
 
-g3r_together(fields mesh/automatic_depth mesh/box_tree mesh/carry_attributes mesh/check_mesh mesh/component_support mesh/crossings
+g3r_together(fields mesh/automatic_depth mesh/box_tree mesh/carry_attributes mesh/check_mesh mesh/component_support mesh/crossings mesh/edge_collapse
              mesh/exact_orientation mesh/field_contour mesh/field_corners mesh/field_denoise mesh/field_mesher mesh/field_octree
              mesh/trim)
 g3r_together(fair mesh/fair mesh/field_local_fit mesh/field_placement mesh/field_labellings mesh/field_triangulate mesh/findings

@@ -13,11 +13,11 @@ g3r_tests_together(tests_of_quality areas baselines green_identity open_surfaces
 g3r_tests_together(tests_of_noise noise noise_settings noisy_jets projection viewpoint walls)
 g3r_tests_together(tests_of_attempts agreement assess attempt callers_order certified_sides clean_surface describe noise_choice noisy_surface
                                      outlier_normals outside problem restless separate_walls site_parts solve_apart solve_on_sites)
-g3r_tests_together(tests_of_clouds certificate clusters clustered_polish confidence creases exact_plane jets hints closed_sides patch_sides
+g3r_tests_together(tests_of_clouds certificate chance clusters clustered_polish confidence creases exact_plane jets hints closed_sides patch_sides
                                    votes neighbours point_set quadratic_patch separate_vertices sight_normals sites spacing two_walls)
 g3r_tests_together(tests_of_sums adjoint coarse_to_fine dense_solver energy_system fast_sum harmonics heights memory_plan part_system polish refine
                                  scattered_planes settings sign_graph tree)
-g3r_tests_together(tests_of_meshes coarsen fair field_arcs field_mesher field_scenes)
+g3r_tests_together(tests_of_meshes coarsen edge_collapse fair field_arcs field_mesher field_scenes)
 g3r_tests_together(tests_of_parts field_contour handle_removal mesh_finish mesh_memory point_parts)
 g3r_tests_together(tests_of_shapes check_mesh metrics self_intersections split_nonmanifold untangle)
 g3r_tests_together(tests_of_fields crossings expansions facets field_denoise field_local_fit findings held_points scanner_files)

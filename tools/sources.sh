@@ -83,8 +83,6 @@ if [ "${1:-}" = all ]; then
     '*/include' '*/src/tbb' '*/LICENSE.txt' || missing+=(oneTBB)
   fetch highway from_debian highway_1.0.3.orig.tar.gz 566fc77315878473d9a6bd815f7de78c73734acdcb745c3dde8579560ac5440e \
     '*/hwy' '*/LICENSE' --exclude '*/contrib' --exclude '*/tests' --exclude '*_test.cc' || missing+=(Highway)
-  fetch meshoptimizer from_debian meshoptimizer_0.18+dfsg.orig.tar.xz 881ea2cc687f1fef5ce70484e0ca6504e13856dd856677749f3763bc685956d3 \
-    '*/src' '*/LICENSE.md' || missing+=(meshoptimizer)
   fetch png from_debian libpng1.6_1.6.39.orig.tar.gz a00e9d2f2f664186e4202db9299397f851aea71b36a35e74910b8820e380d441 \
     --no-wildcards-match-slash '*/*.c' '*/*.h' '*/scripts/pnglibconf.h.prebuilt' '*/LICENSE' || missing+=(libpng)
   fetch zlib from_debian zlib_1.2.13.dfsg.orig.tar.bz2 71feb7947e3c00ef125f83b79a4e529bde31171e5babe48b391f06758d1ab0a1 \

@@ -13,7 +13,6 @@ class G3r < Formula
   depends_on "highway"
   depends_on "libpng"
   depends_on :linux # the shared library is linked with a version script
-  depends_on "meshoptimizer"
   depends_on "tbb"
 
   uses_from_macos "zlib"

@@ -1,62 +1,129 @@
 #include "mesh/simplify.h"
 
+#include "base/vector.h"
+#include "mesh/edge_collapse.h"
 #include "mesh/mesh_parts.h"
-#include "mesh/used_vertices.h"
+#include "mesh/quadric.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <functional>
+#include <queue>
+#include <tuple>
+#include <utility>
 #include <vector>
-
-#include <meshoptimizer.h>
 
 namespace g3r::mesh {
 namespace {
 
-// The targets that are tried, each of more triangles than the one before, until topology stays: each costs a simplification.
-constexpr int kAttempts = 5;
+using vector::dot;
+using vector::subtract;
 
-// Positions in single precision relative to the box, as meshoptimizer takes them.
-std::vector<float> relative_positions(const Mesh& mesh) {
-  const vector::Box box = box_of_used_vertices(mesh);
-  const Vec3 centre = box.centre();
-  double extent = 0;
-  for (std::size_t a = 0; a < 3; ++a) extent = std::max(extent, box.high[a] - box.low[a]);
-  std::vector<float> out;
-  out.reserve(mesh.vertices.size() * 3);
-  for (const Vec3& v : mesh.vertices) {
-    for (std::size_t a = 0; a < 3; ++a) out.push_back(static_cast<float>(extent > 0 ? (v[a] - centre[a]) / extent : 0));
+class Simplification {
+ public:
+  explicit Simplification(Mesh& mesh)
+      : mesh_(mesh),
+        edges_(mesh),
+        origin_(mesh.vertices[mesh.triangles.front()[0]]),
+        quadric_(mesh.vertices.size()),
+        changes_(mesh.vertices.size(), 0) {
+    for (const auto& t : mesh.triangles) add_planes(t);
   }
-  return out;
-}
 
-bool no_worse(const MeshCheck& now, const MeshCheck& before) {
-  return (now.closed || !before.closed) && (now.manifold || !before.manifold) && now.components == before.components &&
-         now.genus == before.genus;
-}
+  // Edges that were refused may be collapsed once those around them are: so all are tried again while some are.
+  const std::vector<std::uint8_t>& run(std::size_t faces) {
+    for (std::size_t before = 0; edges_.count() > faces && edges_.count() != before;) {
+      before = edges_.count();
+      push_all();
+      while (!queue_.empty() && edges_.count() > faces) {
+        const Entry next = queue_.top();
+        queue_.pop();
+        if (is_current(next)) collapse(std::get<1>(next), std::get<2>(next));
+      }
+      queue_ = {};
+    }
+    return edges_.is_left();
+  }
+
+ private:
+  using Entry = std::tuple<double, std::uint32_t, std::uint32_t, std::uint64_t>;  // cost, from, to, changes of both
+
+  // That of a triangle, and across its edges that are boundaries one that stands on it, so that boundaries keep their place.
+  void add_planes(const std::array<std::uint32_t, 3>& t) {
+    const Vec3 n = edges_.normal_of(t);
+    const double area = std::sqrt(dot(n, n));
+    if (!(area > 0)) return;
+    const Vec3 unit = vector::scale(n, 1 / area);
+    add_plane(t, unit, t[0], area);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+      if (!edges_.is_boundary(a, b)) continue;
+      const Vec3 along = subtract(edges_.place(b), edges_.place(a));
+      add_plane({a, b, b}, vector::normalised(vector::cross(along, unit)), a, dot(along, along));
+    }
+  }
+  void add_plane(const std::array<std::uint32_t, 3>& vertices, const Vec3& unit, std::uint32_t on, double weight) {
+    const double distance = -dot(unit, subtract(edges_.place(on), origin_));
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (k == 0 || vertices[k] != vertices[k - 1]) quadric_[vertices[k]].add_plane(unit, distance, weight);
+    }
+  }
+
+  [[nodiscard]] double cost(std::uint32_t from, std::uint32_t to) const {
+    Quadric both = quadric_[from];
+    both.add(quadric_[to]);
+    return both.squared_distances(subtract(edges_.place(to), origin_));
+  }
+  void push(std::uint32_t a, std::uint32_t b) {
+    const double onto_b = cost(a, b), onto_a = cost(b, a);
+    const bool forward = std::tie(onto_b, a) <= std::tie(onto_a, b);
+    queue_.emplace(forward ? onto_b : onto_a, forward ? a : b, forward ? b : a, std::uint64_t{changes_[a]} + changes_[b]);
+  }
+  void push_all() {
+    for (std::size_t f = 0; f < mesh_.triangles.size(); ++f) {
+      if (edges_.is_left()[f] == 0) continue;
+      const auto& t = mesh_.triangles[f];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+        if (a < b || edges_.is_boundary(a, b)) push(a, b);
+      }
+    }
+  }
+  [[nodiscard]] bool is_current(const Entry& entry) const {
+    const auto& [unused, from, to, changes] = entry;
+    return edges_.is_used(from) && edges_.is_used(to) && changes == std::uint64_t{changes_[from]} + changes_[to];
+  }
+  [[nodiscard]] bool turns_none_over(std::uint32_t from, std::uint32_t to) const {
+    return edges_.for_triangles_of(from, [&](const std::array<std::uint32_t, 3>& t) {
+      const bool goes = std::find(t.begin(), t.end(), to) != t.end();
+      return goes || dot(edges_.normal_of(t), edges_.normal_of(t, from, to)) > 0;
+    });
+  }
+  void collapse(std::uint32_t from, std::uint32_t to) {
+    if (!turns_none_over(from, to) || !edges_.collapse(from, to)) return;
+    quadric_[to].add(quadric_[from]);
+    ++changes_[to];
+    edges_.find_neighbours(to, neighbours_);
+    for (const std::uint32_t v : neighbours_) push(to, v);
+  }
+
+  Mesh& mesh_;
+  EdgeCollapse edges_;
+  Vec3 origin_;  // of the quadrics: far from 0 they would cancel
+  std::vector<Quadric> quadric_;
+  std::vector<std::uint32_t> changes_;  // of the quadric of each vertex
+  std::vector<std::uint32_t> neighbours_;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
+};
 
 }  // namespace
 
 void simplify(Mesh& mesh, std::size_t faces) {
   if (mesh.triangles.size() <= faces) return;
-  const MeshCheck before = check_mesh(mesh);
-  const std::vector<float> positions = relative_positions(mesh);
-  const unsigned int* indices = mesh.triangles.front().data();
-  const std::size_t index_count = mesh.triangles.size() * 3;
-  const double ratio = static_cast<double>(faces) / static_cast<double>(mesh.triangles.size());
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    // The error allowed is all of the extent of the mesh, so that the number of triangles alone decides.
-    const double share = std::pow(ratio, 1 - static_cast<double>(attempt) / kAttempts);
-    const std::size_t target = static_cast<std::size_t>(share * static_cast<double>(mesh.triangles.size())) * 3;
-    std::vector<unsigned int> out(index_count);
-    out.resize(meshopt_simplify(out.data(), indices, index_count, positions.data(), mesh.vertices.size(), 3 * sizeof(float), target, 1.0F,
-                                0, nullptr));
-    Mesh candidate = mesh;
-    candidate.triangles.resize(out.size() / 3);
-    for (std::size_t i = 0; i < out.size(); ++i) candidate.triangles[i / 3][i % 3] = out[i];
-    if (candidate.triangles.empty() || !no_worse(check_mesh(candidate), before)) continue;
-    mesh = std::move(candidate);
-    drop_unused_vertices(mesh);
-    return;
-  }
+  Simplification simplification(mesh);
+  remove_triangles(mesh, simplification.run(faces));
 }
 
 }  // namespace g3r::mesh

@@ -1,5 +1,6 @@
-// Fewer triangles: quadric edge collapse (Garland, Heckbert, SIGGRAPH 1997) by meshoptimizer. The only mesher file that names it is
-// simplify.cpp.
+// Fewer triangles, by collapsed edges.
+//
+// Garland, Heckbert, "Surface simplification using quadric error metrics", SIGGRAPH 1997, with vertices that stay where they are.
 #pragma once
 
 #include <g3r/mesh.h>
@@ -8,8 +9,10 @@
 
 namespace g3r::mesh {
 
-/// Simplifies to `faces` triangles or a few less; to more, or not at all, where fewer would make the mesh non-manifold, open it, or change
-/// the number of its components or its genus. Vertices stay where they are. Attributes are kept. O(F log F).
+/// Collapses the edges whose collapse moves the surface least (the squared distance from the planes of all triangles that a vertex stands
+/// for, times their areas) onto one of their ends, until `faces` triangles are left, or one more in a closed mesh. Closedness,
+/// manifoldness, components, genus and boundaries stay, and no triangle turns over, so that more triangles are left where fewer are not
+/// enough for that. Vertices stay where they are, with their attributes. O(V log V).
 void simplify(Mesh& mesh, std::size_t faces);
 
 }  // namespace g3r::mesh

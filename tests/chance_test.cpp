@@ -1,0 +1,40 @@
+// What chance puts on a slab: exact sums, also where the smallest of their terms are too small for a number.
+#include "cloud/chance.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace g3r {
+namespace {
+
+TEST(ChancesOfAsMany, AreThoseOfABinomial) {
+  const std::vector<double> chances = chances_of_as_many(3, 0.5);
+  const double expected[] = {1, 7.0 / 8, 4.0 / 8, 1.0 / 8};
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(chances[k], expected[k], 1e-15);
+  EXPECT_EQ(chances_of_as_many(5, 1), std::vector<double>(6, 1));
+}
+
+// The mean is n p, and 1 - P(less) counts the same from the other end.
+TEST(ChancesOfAsMany, SumToTheMeanForAnyNumber) {
+  for (const std::size_t n : {30UL, 500UL, 5000UL}) {
+    for (const double share : {0.02, 0.3, 0.9}) {
+      const std::vector<double> chances = chances_of_as_many(n, share);
+      double mean = 0;
+      for (std::size_t k = 1; k <= n; ++k) mean += chances[k];
+      EXPECT_NEAR(mean, static_cast<double>(n) * share, 1e-9 * static_cast<double>(n)) << n << ' ' << share;
+      EXPECT_NEAR(chances[1], 1 - std::pow(1 - share, static_cast<double>(n)), 1e-9);
+    }
+  }
+}
+
+// Two to three standard deviations above the mean, not the first that is there.
+TEST(ProvingNumber, IsFarAboveTheMeanOfManyPoints) {
+  const std::size_t proves = proving_number(500, 0.02, 1);
+  EXPECT_GE(proves, 16U);
+  EXPECT_LE(proves, 19U);
+  EXPECT_EQ(proving_number(3, 0.9, 1000), 4U);  // not even all do
+}
+
+}  // namespace
+}  // namespace g3r
