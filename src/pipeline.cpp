@@ -32,7 +32,6 @@ void replace_areas(const Problem& problem, Stages& stages, Solution& solution) {
 
 Orientation orient_in_arena(const PointsView& points, Known known, const Options& options, Stages& stages,
                             std::vector<std::uint8_t>* open) {
-  require_sound(options.hints, points.count);
   Problem prepared = prepare(points, std::move(known), options, stages);
   Attempt best = attempt(std::move(prepared), points, options, stages);
   best = with_best_noise(std::move(best), points, options, stages);

@@ -64,6 +64,35 @@ TEST(Prepare, KnowsWhereTheCloudHasBeenThinned) {
   EXPECT_NEAR(problem.spacing, prepared(dense).spacing, 0.05 * problem.spacing);
 }
 
+// Also by plan(), before anything is read of them.
+TEST(Prepare, RefusesSensorsThatDoNotGoWithThePoints) {
+  const std::vector<Vec3> points = shapes::sphere(600).points;
+  Options options;
+  options.hints.sensors = {{3, 0, 0}};
+  options.hints.sensor_of_point.assign(601, 0);
+  EXPECT_THROW((void)plan(points, options), InvalidInput);
+  options.hints.sensor_of_point.assign(600, 1);
+  EXPECT_THROW((void)plan(points, options), InvalidInput);
+  options.hints.sensor_of_point.assign(600, 0);
+  EXPECT_NO_THROW((void)plan(points, options));
+}
+
+// Points at one place may name different sensors, in any order.
+TEST(SensorsOfPoints, OfDuplicatesTheSmallestCounts) {
+  std::vector<Vec3> points = shapes::sphere(600).points;
+  points.insert(points.end(), points.begin(), points.begin() + 100);
+  std::vector<std::uint32_t> sensors(points.size(), 2);
+  for (std::size_t i = 0; i < 100; ++i) sensors[i] = 0, sensors[600 + i] = 1;
+  const CanonicalCloud cloud = canonical_cloud(points);
+  const std::vector<std::uint32_t> of_points = sensors_of_points(cloud, sensors);
+  ASSERT_EQ(of_points.size(), 600U);
+  for (std::size_t i = 0; i < 100; ++i) {
+    EXPECT_EQ(of_points[cloud.point_of[i]], 0U);
+    std::swap(sensors[i], sensors[600 + i]);
+  }
+  EXPECT_EQ(sensors_of_points(cloud, sensors), of_points);
+}
+
 TEST(Prepare, RefusesTooFewPoints) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW((void)prepared({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0}, {kNan, 0, 0}}), InvalidInput);

@@ -46,7 +46,7 @@ struct HintStats {
   /// pixels), or a single sensor that was given, where nothing hides anything from there. Every point faces it unless another hint says
   /// what it faces.
   std::optional<Vec3> viewpoint{};
-  double contradicted_share = 0;  ///< share of the votes on closed parts that were against their side; 0 up to 1/5, which is usual
+  double contradicted_share = 0;  ///< share of the votes on closed parts that were against their side; 0 up to 1/3, which is usual
 };
 
 }  // namespace g3r

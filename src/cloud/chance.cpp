@@ -12,10 +12,10 @@ double share_of_ball(double height) {
 
 std::vector<double> chances_of_as_many(std::size_t n, double share) {
   std::vector<double> chances(n + 1, 1);
-  double tail = 0, term = std::pow(share, static_cast<double>(n));  // of all n
+  double tail = 0, logarithm = static_cast<double>(n) * std::log(share);  // of the term of all n, which may be too small for a number
   for (std::size_t k = n; k > 0; --k) {
-    chances[k] = tail += term;
-    term *= static_cast<double>(k) / static_cast<double>(n - k + 1) * (1 - share) / share;
+    chances[k] = tail += std::exp(logarithm);
+    logarithm += std::log(static_cast<double>(k) / static_cast<double>(n - k + 1) * (1 - share) / share);
   }
   return chances;
 }

@@ -88,6 +88,7 @@ Candidate best_plane(const Around& around, const Vec3* towards, double within) {
 
 // Whether a quadratic height field over the plane through these points is likelier than the plane (Schwarz's criterion).
 bool is_bent(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& held, const PlaneFit& plane, double spacing) {
+  if (held.size() <= kQuadraticTerms) return false;  // some quadratic goes through any six points
   const auto n = static_cast<double>(held.size());
   const double flat = plane.residual * std::sqrt((n - kPlaneTerms) / n);  // root mean squares, of which the likelihoods are made
   const double bent = quadratic_residual(points, held.data(), held.size(), plane.normal, spacing) * std::sqrt((n - kQuadraticTerms) / n);
@@ -167,7 +168,7 @@ LikeliestPlane find_likeliest_plane(const std::vector<Vec3>& points, const std::
     const double chance = chances_of_as_many(around.count - 3, share_by_chance(within))[static_cast<std::size_t>(best.held - 3)];
     if (chance >= least) continue;
     const Held held = fit_to_held(points, index, around, best.normal, {0, 0, 0}, within);
-    if (held.points.size() <= static_cast<std::size_t>(kFewest)) continue;  // rounding
+    if (held.points.size() <= static_cast<std::size_t>(kFewest)) continue;  // too few to show that they are not bent
     if (held.fit.breadth < kFacetBreadth || is_bent(points, held.points, held.fit, spacing)) continue;
     least = chance;
     found = {held.plane(), scatter};

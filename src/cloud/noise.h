@@ -59,7 +59,7 @@ inline constexpr double kRoundingCumulant = rounding_moment(4) - 3 * kRoundingVa
 [[nodiscard]] Vec3 rounding_steps(const std::vector<Vec3>& points, double spacing);
 
 /// How the number of points grows with the distance from one, as its power: about 2 on a surface, noisy or not, nearly 3 in a volume (2.6
-/// to 3: its boundary counts). From the distances r of the neighbours k = min(2048, N / 16) and k / 8, ln 8 / ln(r_k / r_(k/8)), the median
+/// to 3: its boundary counts). From the distances r of the neighbours k = min(1024, N / 16) and k / 4, ln 4 / ln(r_k / r_(k/4)), the median
 /// over about 500 points; 2 for fewer than 192. O(k log N).
 [[nodiscard]] double dimension(const PointSet& set);
 

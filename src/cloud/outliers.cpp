@@ -214,9 +214,10 @@ Outliers find_outliers(const PointSet& set, const std::vector<double>& relative_
     h = others.spacing();
   }
   const double sigma = *noise / h;
-  const auto count = static_cast<std::size_t>(std::numbers::pi * std::pow(kHeldWhole * sigma, 2));
+  const double held = std::numbers::pi * std::pow(kHeldWhole * sigma, 2);
+  if (!(held < static_cast<double>(set.size()))) return {};
+  const auto count = static_cast<std::size_t>(held);
   if (count <= kClosest) return {chosen, noise, others};
-  if (count >= set.size()) return {};
   const EvenSurface layer{count, sigma * std::sqrt(std::numbers::pi / static_cast<double>(count))};
   chosen = choose(strays, wide_spacing(set, strays, relative_spacing, count), layer, set.size());
   if (too_many()) chosen.clear();

@@ -1,6 +1,7 @@
 #include "orient/apply_hints.h"
 
 #include "base/number_text.h"
+#include "orient/assess.h"
 #include "orient/confidence.h"
 #include "orient/hints.h"
 
@@ -26,13 +27,18 @@ Hints in_frame(const Hints& given, const CanonicalCloud& cloud) {
   for (Vec3& place : hints.sensors) place = cloud.frame.to_unit(place);
   for (Vec3& place : hints.inside) place = cloud.frame.to_unit(place);
   if (given.sensor_of_point.empty()) return hints;
-  hints.sensor_of_point.assign(cloud.size(), kNoSensor);
-  for (std::size_t i = 0; i < cloud.point_of.size(); ++i) {
-    const std::uint32_t p = cloud.point_of[i];
-    if (p >= cloud.size()) continue;  // an outlier, or not finite
-    hints.sensor_of_point[p] = std::min(hints.sensor_of_point[p], given.sensor_of_point[i]);
-  }
+  hints.sensor_of_point = sensors_of_points(cloud, given.sensor_of_point);
   return hints;
+}
+
+// The share of the points whose side is a choice that no hint decided.
+double share_of_choices(const OpenSurfaces& surfaces, const std::vector<std::uint8_t>& decided) {
+  std::size_t choices = 0;
+  for (std::size_t i = 0; i < surfaces.part.size(); ++i) {
+    const bool is_decided = !decided.empty() && decided[i] != 0;
+    choices += surfaces.is_open(i) && surfaces.certainty[i] <= kUndecided && !is_decided ? 1 : 0;
+  }
+  return surfaces.part.empty() ? 0 : static_cast<double>(choices) / static_cast<double>(surfaces.part.size());
 }
 
 Patches patches_of(const OpenSurfaces& surfaces) {
@@ -95,12 +101,9 @@ void apply_hints(const Problem& problem, const Options& options, Solution& solut
   stats.hints.settled_share = share(effect.decided);
   stats.hints.agreement = effect.agreement;
   stats.hints.contradicted_share = effect.contradicted_share;
-  stats.undecided_share = std::max(0.0, stats.undecided_share - stats.hints.settled_share);
-  double sum = 0;
-  for (const float c : confidence) sum += static_cast<double>(c);
-  stats.confidence_mean = sum / static_cast<double>(confidence.size());
-  stats.confidence_below_half = unsure_share(confidence);
-  stats.consistent = unsure_share(solution.open_surfaces, confidence) + stats.undecided_share <= kManyUnsure;
+  stats.undecided_share = share_of_choices(solution.open_surfaces, effect.decided);
+  summarise_sides(solution.open_surfaces, confidence, stats);
+  warn_of_unsure(solution.open_surfaces, confidence, stats);
   warn(effect, hints, problem.cloud, stats.open_share > 0, stats);
   if (stats.undecided_share > 0) {
     stats.warnings.push_back("which side of " + percent(stats.undecided_share) +

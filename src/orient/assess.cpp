@@ -60,23 +60,6 @@ void certify_sides(const OpenSurfaces& surfaces, bool hides_walls, std::vector<f
   }
 }
 
-void judge(const OpenSurfaces& surfaces, const std::vector<float>& confidence, Stats& stats) {
-  double sum = 0;
-  for (const float c : confidence) sum += static_cast<double>(c);
-  stats.confidence_mean = sum / static_cast<double>(confidence.size());
-  stats.confidence_below_half = unsure_share(confidence);
-  const double unsure = unsure_share(surfaces, confidence);
-  if (stats.open_share == 1) stats.converged = true;  // no side and no direction comes from the equations
-  if (!stats.converged) {
-    stats.warnings.emplace_back("the solver did not reach its tolerance; normals may be less accurate");
-  }
-  stats.consistent = unsure + stats.undecided_share <= kManyUnsure;
-  if (unsure > kManyUnsure) {
-    stats.warnings.push_back("orientation not consistent: " + percent(unsure) +
-                             " of the points could face either way; the cloud may be open, very noisy or too sparse");
-  }
-}
-
 // The share of the wanted points for which is_so(i); of all, if none is.
 template <class IsSo>
 double share_of_wanted(const Problem& problem, const IsSo& is_so) {
@@ -116,8 +99,27 @@ Oriented assess(const Problem& problem, Solution solution, Stats& stats) {
         "two layers: the points lie about their surface as about two that are too close together for their noise: a wall that needs more "
         "points or less noise, or scans that have to be aligned");
   }
-  judge(surfaces, out.confidence, stats);
+  if (stats.open_share == 1) stats.converged = true;  // no side and no direction comes from the equations
+  if (!stats.converged) {
+    stats.warnings.emplace_back("the solver did not reach its tolerance; normals may be less accurate");
+  }
+  summarise_sides(surfaces, out.confidence, stats);
   return out;
+}
+
+void summarise_sides(const OpenSurfaces& surfaces, const std::vector<float>& confidence, Stats& stats) {
+  double sum = 0;
+  for (const float c : confidence) sum += static_cast<double>(c);
+  stats.confidence_mean = sum / static_cast<double>(confidence.size());
+  stats.confidence_below_half = unsure_share(confidence);
+  stats.consistent = unsure_share(surfaces, confidence) + stats.undecided_share <= kManyUnsure;
+}
+
+void warn_of_unsure(const OpenSurfaces& surfaces, const std::vector<float>& confidence, Stats& stats) {
+  const double unsure = unsure_share(surfaces, confidence);
+  if (unsure <= kManyUnsure) return;
+  stats.warnings.push_back("orientation not consistent: " + percent(unsure) +
+                           " of the points could face either way; the cloud may be open, very noisy or too sparse");
 }
 
 }  // namespace g3r

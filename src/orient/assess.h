@@ -35,4 +35,10 @@ struct Oriented {
 /// depends on the solver, and it counts as converged. O(N).
 [[nodiscard]] Oriented assess(const Problem& problem, Solution solution, Stats& stats);
 
+/// Sets the mean confidence, the share of unsure points, and `consistent` with stats.undecided_share as it is. O(N).
+void summarise_sides(const OpenSurfaces& surfaces, const std::vector<float>& confidence, Stats& stats);
+
+/// Warns where more than a fifth of the points are unsure: once, of the final sides. O(N).
+void warn_of_unsure(const OpenSurfaces& surfaces, const std::vector<float>& confidence, Stats& stats);
+
 }  // namespace g3r

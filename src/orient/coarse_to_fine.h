@@ -25,7 +25,7 @@ struct Solved {
 /// continued solves are wider. Measured: docs/evidence/formulation.md.
 /// Where the sides of many points are unsure in the end (thin walls, narrow gaps), more steps are tried, wider and with more weight on the
 /// winding number, which turns parts that are wrong as a whole; not where most points lie on open surfaces (find_open_surfaces()), of which
-/// the equations are not true. They are undone if a quarter more points are unsure then; not under noise, of which every step makes more of
+/// the equations are not true. They are undone if more points are unsure then; not under noise, of which every step makes more of
 /// them unsure, right or wrong.
 /// `gradient`, `relative_spacing`: what is known of these points (Known), or empty. The gradient takes the place of that winding gradient.
 /// All kernels of the finest level are as much wider where points are farther apart by the relative spacing, and the unknowns and equations

@@ -20,9 +20,9 @@ struct Facets {
 };
 
 /// Grows facets over the 16 nearest points from seeds in the order of the points: p_j joins beside p_i if both are proven and each lies
-/// within 0.003 h of the other's plane, and its normal is parallel, on either side, to that of the seed to 1.8 degrees. Sets of fewer than
-/// 6 points are no facets, nor are those without a wanted point. h: smoothed_spacing(); `proven`: fit_jets() or fit_planes() found its
-/// normal; `wanted`: N, or empty for all. O(N).
+/// within kExactScatter h of the other's plane, and its normal is parallel, on either side, to that of the seed to 1.8 degrees. Sets of
+/// fewer than 6 points are no facets, nor are those without a wanted point. h: smoothed_spacing(); `proven`: fit_jets() or fit_planes()
+/// found its normal; `wanted`: N, or empty for all. O(N).
 [[nodiscard]] Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven, const std::vector<Vec3>& normals,
                                  const std::vector<std::uint8_t>& wanted = {});
 

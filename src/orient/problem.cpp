@@ -4,6 +4,7 @@
 #include "cloud/outliers.h"
 #include "cloud/spacing.h"
 #include "cloud/viewpoint.h"
+#include "orient/hints.h"
 #include "solve/part_system.h"
 
 #include <g3r/error.h>
@@ -19,7 +20,7 @@ namespace {
 constexpr double kChance = 1.12;
 
 void choose_scales(Problem& problem, const Options& options) {
-  problem.settings = choose_settings(options, problem.cloud, problem.spacing, problem.noise, problem.outliers.size());
+  problem.settings = choose_settings(options, problem.cloud, problem.spacing, problem.noise, problem.outlier_share);
 }
 
 void choose_scales_and_scatter(Problem& problem, const Options& options) {
@@ -28,21 +29,28 @@ void choose_scales_and_scatter(Problem& problem, const Options& options) {
   if (fits_planes) problem.scatter = facet_scatter(problem.cloud.set);
 }
 
-// Of the points of a cloud, from the caller's order; of duplicates the last counts, and outliers have none.
-template <class T>
-std::vector<T> in_canonical_order(const CanonicalCloud& cloud, const std::vector<T>& values) {
-  std::vector<T> out(values.empty() ? 0 : cloud.size());
+// Of the points of a cloud, from the caller's order; outliers have none. Duplicates have merge(of those before, of the next), and the first
+// of them merge(none, its own).
+template <class T, class Merge>
+std::vector<T> in_canonical_order(const CanonicalCloud& cloud, const std::vector<T>& values, const T& none, const Merge& merge) {
+  std::vector<T> out(values.empty() ? 0 : cloud.size(), none);
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (cloud.point_of[i] < out.size()) out[cloud.point_of[i]] = values[i];
+    if (cloud.point_of[i] < out.size()) out[cloud.point_of[i]] = merge(out[cloud.point_of[i]], values[i]);
   }
   return out;
+}
+
+// What tiles know of their points, which they hand over in an order of their own: of duplicates the last counts.
+template <class T>
+std::vector<T> last_in_canonical_order(const CanonicalCloud& cloud, const std::vector<T>& values) {
+  return in_canonical_order(cloud, values, T{}, [](const T&, const T& next) { return next; });
 }
 
 // Where the caller says that the points have been seen from, if it says so of each and nothing hides anything; or the place that they show.
 Views find_views(const CanonicalCloud& cloud, const Hints& hints) {
   Views views;
   for (const Vec3& sensor : hints.sensors) views.places.push_back(cloud.frame.to_unit(sensor));
-  views.of_point = in_canonical_order(cloud, hints.sensor_of_point);
+  views.of_point = sensors_of_points(cloud, hints.sensor_of_point);
   const bool named = views.places.size() == 1 || !views.of_point.empty();
   const bool each = std::count(views.of_point.begin(), views.of_point.end(), kNoSensor) == 0;
   if (views.places.size() == 1) views.of_point.clear();
@@ -52,6 +60,10 @@ Views find_views(const CanonicalCloud& cloud, const Hints& hints) {
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> sensors_of_points(const CanonicalCloud& cloud, const std::vector<std::uint32_t>& sensor_of_point) {
+  return in_canonical_order(cloud, sensor_of_point, kNoSensor, [](std::uint32_t a, std::uint32_t b) { return std::min(a, b); });
+}
 
 std::vector<double> relative_spacing(const Problem& problem, const Options& options) {
   const bool is_free = problem.settings.method == Method::kEnergy && options.epsilon.unit == Length::Unit::kAuto;
@@ -65,6 +77,7 @@ std::vector<double> relative_spacing(const Problem& problem, const Options& opti
 }
 
 Problem prepare(const PointsView& points, Known known, const Options& options, Stages& stages) {
+  require_sound(options.hints, points.count);
   Problem problem;
   stages.begin("build");
   problem.cloud = canonical_cloud(points);
@@ -78,7 +91,7 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
   bool outliers_wanted = own_steps && !contains(without, Step::kOutliers);
   std::optional<double> noise;
   while (outliers_wanted) {
-    const std::vector<double> relative_spacing = in_canonical_order(problem.cloud, known.relative_spacing);
+    const std::vector<double> relative_spacing = last_in_canonical_order(problem.cloud, known.relative_spacing);
     Outliers found = find_outliers(problem.cloud.set, relative_spacing, known_noise(problem.cloud.set.spacing()));
     noise = found.noise;
     if (found.indices.empty()) break;
@@ -86,13 +99,16 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
     problem.outliers.insert(problem.outliers.begin(), removed.begin(), removed.end());
     outliers_wanted = refit_frame(problem.cloud, problem.outliers);  // far ones may have hidden nearer ones
   }
+  const auto all = static_cast<double>(problem.cloud.size() + problem.outliers.size());
+  problem.outlier_share = static_cast<double>(problem.outliers.size()) / all;
   if (own_steps && known.gradient.empty() && !contains(without, Step::kViewpoint)) {
     problem.cloud.set.set_views(find_views(problem.cloud, options.hints));
   }
   const PointSet& set = problem.cloud.set;
-  problem.known = {in_canonical_order(problem.cloud, std::exchange(known.gradient, {})),
-                   in_canonical_order(problem.cloud, std::exchange(known.relative_spacing, {})),
-                   in_canonical_order(problem.cloud, std::exchange(known.wanted, {}))};
+  const auto any = [](std::uint8_t a, std::uint8_t b) { return std::max(a, b); };
+  problem.known = {last_in_canonical_order(problem.cloud, std::exchange(known.gradient, {})),
+                   last_in_canonical_order(problem.cloud, std::exchange(known.relative_spacing, {})),
+                   in_canonical_order(problem.cloud, std::exchange(known.wanted, {}), std::uint8_t{0}, any)};
   problem.spacing = typical_spacing(spacing_before_thinning(set.local_spacing(), problem.known.relative_spacing));
   const std::optional<double> given = known_noise(problem.spacing);
   if (set.views().known()) {
@@ -145,7 +161,7 @@ Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, 
   part.spacing = typical_spacing(spacing_before_thinning(part.cloud.set.local_spacing(), part.known.relative_spacing));
   part.noise = problem.noise;
   part.view_noise = problem.view_noise;
-  part.outliers = problem.outliers;  // those of the whole cloud: the part was solved for among them
+  part.outlier_share = problem.outlier_share;
   Options same = options;
   if (options.epsilon.unit == Length::Unit::kPercent) {  // of the whole cloud's box
     same.epsilon = {Length::Unit::kInput, problem.cloud.frame.length_to_world(problem.settings.epsilon.typical())};

@@ -19,6 +19,7 @@ namespace g3r {
 struct Problem {
   CanonicalCloud cloud;
   std::vector<Vec3> outliers;  ///< taken out of the cloud; their indices follow those of its points
+  double outlier_share = 0;    ///< of the whole cloud; that of its parts, which are among its outliers, too
   double spacing = 0;          ///< typical_spacing()
   double noise = 0;          ///< given_noise() or estimate_noise(); 0 where Views are known, and with them sides: no kernel has to be wide
   double view_noise = 0;     ///< given_noise() or largest_scatter() where sides are known: only directions follow it, and each its place's
@@ -37,6 +38,10 @@ struct Problem {
 
 /// Whether a step is not left out.
 [[nodiscard]] inline bool runs(const Problem& problem, Step step) { return !contains(problem.settings.without, step); }
+
+/// Which sensor has seen each point of the cloud, from what the caller says of all; of duplicates the one with the smallest number,
+/// kNoSensor if none is known.
+[[nodiscard]] std::vector<std::uint32_t> sensors_of_points(const CanonicalCloud& cloud, const std::vector<std::uint32_t>& sensor_of_point);
 
 /// How many times as far apart the points are as typical ones, 1 at least; kernels are as much wider. Unless the width is given: then only
 /// as far as they have been thinned. Empty: nowhere. O(N).

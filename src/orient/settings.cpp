@@ -159,13 +159,13 @@ double paper_epsilon(const CanonicalCloud& cloud) {
   return kPaperLeafFactor * std::ldexp(2.0, -deepest);
 }
 
-Settings choose_settings(const Options& options, const CanonicalCloud& cloud, double spacing, double noise, std::size_t outliers) {
+Settings choose_settings(const Options& options, const CanonicalCloud& cloud, double spacing, double noise, double outlier_share) {
   require_sound(options);
   Settings s;
   s.without = parse_steps(options.without);
   s.spacing = spacing;
   // Clean clouds lose one point, very uneven ones 0.6 %.
-  const bool among_outliers = static_cast<double>(outliers) > kFalseAlarms * static_cast<double>(cloud.size());
+  const bool among_outliers = outlier_share > kFalseAlarms;
   choose_equations(options, cloud.size(), s);
   choose_widths(options, cloud, s);
   choose_steps(options, among_outliers, s);

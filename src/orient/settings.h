@@ -74,10 +74,11 @@ struct Settings {
 /// The noise of options in the cloud's frame, if it is given. Throws InvalidInput below 0.
 [[nodiscard]] std::optional<double> given_noise(const Length& noise, const CanonicalCloud& cloud, double spacing);
 
-/// `noise`: given_noise() or estimate_noise(); `outliers`: points that find_outliers() took out. Throws InvalidInput for an option out of
+/// `noise`: given_noise() or estimate_noise(); `outlier_share`: of all
+/// points, those that find_outliers() took out. Throws InvalidInput for an option out of
 /// range, naming it and the range.
 [[nodiscard]] Settings choose_settings(const Options& options, const CanonicalCloud& cloud, double spacing, double noise,
-                                       std::size_t outliers);
+                                       double outlier_share);
 
 /// The paper's mollifier for clean input: 0.8 x the leaf side of an octree with at most one point per leaf, at its deepest level.
 [[nodiscard]] double paper_epsilon(const CanonicalCloud& cloud);

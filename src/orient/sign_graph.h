@@ -20,11 +20,11 @@ struct Signs {
 };
 
 /// Signs s_i that make sum w_ij s_i s_j over all edges large, which is Z2 synchronisation (max-cut; NP-hard), by greedy additive edge
-/// contraction: the two groups with the largest |sum of the weights between them| become one, the smaller group turned if the sum is
-/// negative, and the sums of the new group are those of both (Keuper et al., "Efficient decomposition of image and mesh graphs by lifted
-/// multicuts", ICCV 2015; for orientation the same graph as in Hoppe et al. 1992, whose spanning tree trusts single edges where this asks
-/// all edges between two groups). Ties go to the smaller nodes, so the result does not depend on the order of the edges; parallel edges
-/// add up. `nodes` = N. O(E log E).
+/// contraction: the two groups with the largest |sum of the weights between them| become one, the group with fewer neighbours turned if the
+/// sum is negative, and the sums of the new group are those of both (Keuper et al., "Efficient decomposition of image and mesh graphs by
+/// lifted multicuts", ICCV 2015; for orientation the same graph as in Hoppe et al. 1992, whose spanning tree trusts single edges where this
+/// asks all edges between two groups). Ties go to the smaller nodes, so the result does not depend on the order of the edges; parallel
+/// edges add up. `nodes` = N. O(E log E).
 [[nodiscard]] Signs agree_on_signs(std::size_t nodes, const std::vector<SignEdge>& edges);
 
 /// How surely a node has the side of the rest of its component.
