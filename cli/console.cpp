@@ -47,6 +47,11 @@ void Console::detail(const std::string& line) {
 
 void Console::warn(const std::string& line) { say("g3r: warning: " + escape_text(line)); }
 
+void Console::fail(const std::string& line) {
+  clear_bar();
+  print("g3r: " + escape_text(line) + "\n");
+}
+
 void Console::progress(std::string_view stage, double fraction) {
   const bool is_new = stage != stage_;
   if (is_new) {

@@ -18,6 +18,7 @@ class Console {
   void say(const std::string& line);     ///< unless quiet
   void detail(const std::string& line);  ///< only when verbose
   void warn(const std::string& line);    ///< unless quiet; control characters are escaped
+  void fail(const std::string& line);    ///< why the exit code is not 0, also when quiet; control characters are escaped
   void progress(std::string_view stage, double fraction);
   void clear_bar();
 

@@ -2,9 +2,11 @@
 
 #include "base/platform.h"
 #include "io/output_file.h"
+#include "io/source.h"
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
@@ -89,6 +91,17 @@ void check_files(const Settings& settings) {
   for (const std::string& output : settings.outputs()) check_result(output, makes_mesh(settings.command), taken);
   if (!settings.oriented.empty()) check_result(settings.oriented, false, taken);
   check_text_output(settings.report, taken);
+}
+
+void check_points(const std::vector<Vec3>& points, const std::vector<std::string>& outputs) {
+  const auto is_finite = [](const Vec3& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); };
+  const auto bad = static_cast<std::size_t>(points.end() - points.begin() - std::count_if(points.begin(), points.end(), is_finite));
+  for (const std::string& output : outputs) {
+    const std::string format = io::extension(output);
+    if (bad == 0 || (format != "las" && format != "laz")) continue;
+    throw InvalidInput("cannot write " + escape_text(output) + ": LAS holds no points that are not finite, of which there are " +
+                       std::to_string(bad) + "; write PLY, or leave them out");
+  }
 }
 
 std::optional<Mesh> mesh_if_any(const std::string& path) {

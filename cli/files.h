@@ -14,6 +14,9 @@ namespace g3r::cli {
 /// (IoError), an output or report that cannot be created or is one of the inputs (IoError), an unknown extension (UsageError).
 void check_files(const Settings& settings);
 
+/// Throws InvalidInput, before the work, where an output cannot hold the points as they are: LAS those that are not finite.
+void check_points(const std::vector<Vec3>& points, const std::vector<std::string>& outputs);
+
 /// The mesh in a file, or nothing if it holds no faces. A pipe cannot be read twice and is taken for points. Throws IoError.
 [[nodiscard]] std::optional<Mesh> mesh_if_any(const std::string& path);
 

@@ -8,7 +8,8 @@
 namespace g3r::cli {
 namespace {
 
-constexpr int kMaxThreads = 4096;  // No machine has more, so a larger number is a typing error.
+constexpr std::size_t kLeastMemory = std::size_t{1} << 20;  // Less is a unit that was left out: 8 for 8G.
+constexpr int kMaxThreads = 4096;                           // No machine has more, so a larger number is a typing error.
 
 // Headings of --help.
 constexpr const char* kResultGroup = "Results";
@@ -203,7 +204,7 @@ void add_memory_option(CLI::App& app, Settings& s, const std::string& help) {
          "--max-memory",
          [&s](const std::string& text) {
            const auto limit = parse_bytes(text);
-           if (!limit) reject("--max-memory", text, "a size such as 8G or 512M");
+           if (!limit || *limit < kLeastMemory) reject("--max-memory", text, "a size such as 8G or 512M, 1M at least");
            s.options.max_memory = *limit;
          },
          help)

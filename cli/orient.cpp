@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "files.h"
 #include "sensors.h"
 #include "summary.h"
 
@@ -13,6 +14,7 @@ namespace g3r::cli {
 int run_orient(const Settings& settings, Session& session) {
   if (const std::optional<int> code = orient_in_tiles(settings, session)) return *code;
   Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, session.cancellable(settings.read_options)); });
+  check_points(cloud.positions, settings.outputs());
   std::vector<Vec3>().swap(cloud.normals);  // of no use here, and the new ones take as much
   Orientation result = orient(cloud.positions, run_options(settings, cloud), session.monitor());
   session.stage("write", [&] {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "commands.h"
+#include "files.h"
 #include "sensors.h"
 #include "summary.h"
 
@@ -13,6 +14,7 @@ namespace g3r::cli {
 int run_reconstruct(const Settings& settings, Session& session) {
   if (const std::optional<int> code = reconstruct_in_tiles(settings, session)) return *code;
   Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, session.cancellable(settings.read_options)); });
+  check_points(cloud.positions, {settings.oriented});
   std::vector<Vec3>().swap(cloud.normals);  // of no use here, and the new ones take as much
   Reconstruction result = reconstruct(cloud.positions, run_options(settings, cloud), settings.mesh_options, session.monitor());
   if (!cloud.colors.empty()) {

@@ -38,6 +38,18 @@ std::string suggestion(const std::string& found, const std::vector<std::string>&
   return nearest.empty() ? "" : "; did you mean " + nearest + "?";
 }
 
+/// " of g3r orient: it belongs to g3r IN OUT, g3r mesh" if other commands have the option, else nothing.
+std::string owners(const CLI::App& app, const CLI::App& command, const std::string& option) {
+  std::string text;
+  const auto add = [&](const CLI::App& other, const std::string& name) {
+    if (&other != &command && other.get_option_no_throw(option) != nullptr) text += (text.empty() ? "" : ", ") + name;
+  };
+  add(app, "g3r IN OUT");
+  for (const CLI::App* other : app.get_subcommands({})) add(*other, "g3r " + other->get_name());
+  if (text.empty()) return "";
+  return (&command == &app ? " here" : " of g3r " + command.get_name()) + ": it belongs to " + text;
+}
+
 }  // namespace
 
 std::string about_extras(const CLI::App& app) {
@@ -51,7 +63,8 @@ std::string about_extras(const CLI::App& app) {
     for (const CLI::Option* option : command.get_options()) {
       for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
     }
-    return "unknown option " + first + suggestion(first.substr(0, first.find('=')), options);
+    const std::string name = first.substr(0, first.find('='));
+    return "unknown option " + first + owners(app, command, name) + suggestion(name, options);
   }
   if (!parsed.empty()) return "one file too many for g3r " + command.get_name() + ": " + first;
   std::vector<std::string> names;

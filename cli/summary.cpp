@@ -106,6 +106,17 @@ void show_summary(const Settings& settings, Console& console, const Stats& stats
   }
 }
 
+// What makes a result doubtful, "" if nothing does.
+std::string doubts_of(const Stats& stats, bool is_open) {
+  std::string text;
+  const auto add = [&](bool is_so, const char* what) { text += is_so ? (text.empty() ? "" : ", ") + std::string(what) : ""; };
+  add(!stats.converged, "the solver did not reach its tolerance");
+  add(!stats.consistent, "the sides of many points are unsure or a choice");
+  add(stats.doubtful, "a warning says that this is most likely not what was measured");
+  add(is_open, "the mesh is not closed");
+  return text;
+}
+
 }  // namespace
 
 int finish(const Settings& settings, Session& session, Stats stats, const MeshCheck* mesh) {
@@ -115,8 +126,10 @@ int finish(const Settings& settings, Session& session, Stats stats, const MeshCh
   for (const std::string& warning : stats.warnings) console.warn(warning);
   show_summary(settings, console, stats, mesh);
   if (!settings.report.empty()) write_text(settings.report, report_json(stats, mesh));
-  const bool is_doubtful = !stats.converged || !stats.consistent || stats.doubtful || is_open;
-  return settings.strict && is_doubtful ? kBadData : kOk;
+  const std::string doubts = doubts_of(stats, is_open);
+  if (!settings.strict || doubts.empty()) return kOk;
+  console.fail("--strict: " + doubts + "; the results are written all the same");
+  return kBadData;
 }
 
 }  // namespace g3r::cli

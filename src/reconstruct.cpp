@@ -298,7 +298,7 @@ Reconstruction reconstruct(const PointsView& points, const Options& options, con
     Stats& stats = out.orientation.stats;
     const bool is_noisy = stats.noise > mesh::kNoisy * stats.spacing;
     stats.warnings.push_back(percent(far) + " of the surface is farther than 4 spacings from any point: the cloud looks open" +
-                             (is_noisy ? ", as do two walls that are no farther apart than its noise" : "") + "; trim the mesh");
+                             (is_noisy ? ", as do two walls that are no farther apart than its noise" : "") + "; trim the mesh (--open)");
     stats.doubtful = stats.doubtful || (far > kManyUnsure && chosen.trim == MeshOptions::Trim::kOff);
   }
   warn_of_topology(out.check, out.orientation.stats);

@@ -80,7 +80,7 @@ TEST(Assess, DoubtIsTheShareThatContradictsItself) {
     EXPECT_DOUBLE_EQ(found.doubt, static_cast<double>(turned) / kPoints);
     EXPECT_DOUBLE_EQ(stats.confidence_below_half, found.doubt);
     EXPECT_EQ(stats.consistent, found.doubt <= kManyUnsure);
-    EXPECT_EQ(stats.consistent, found.doubt <= kManyUnsure);
+  }
 }
 
 TEST(Assess, SurroundingsDoNotCountForDoubt) {

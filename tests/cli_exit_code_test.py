@@ -90,11 +90,34 @@ class ExitCodes(ProgramTest):
                 ["ball.ply", "--epsilon", "0"], ["ball.ply", "--epsilon", "0.5x"], ["ball.ply", "--epsilon", "nan"],
                 ["ball.ply", "--degree", "99"], ["ball.ply", "--depth", "1"], ["ball.ply", "--preset", "best"],
                 ["ball.ply", "--solver", "magic"], ["ball.ply", "--schedule", "many"], ["ball.ply", "--harmonics", "x,q"],
-                ["ball.ply", "--degree", "2", "--harmonics", "1,x"], ["ball.ply", "--max-memory", "8Q"], ["ball.ply", "--accuracy", "7"],
+                ["ball.ply", "--degree", "2", "--harmonics", "1,x"], ["ball.ply", "--max-memory", "8Q"], ["ball.ply", "--max-memory", "8"], ["ball.ply", "--accuracy", "7"],
                 ["ball.ply", "out.docx"], ["orient", "ball.ply", "out.stl"], ["-"], ["ball.ply", "-", "--report", "-"]):
             with self.subTest(arguments):
                 self.assertEqual(self.expect(USAGE, *arguments).out, b"")
         self.assertEqual(os.listdir(self.folder), ["ball.ply"])
+
+    def test_an_option_of_another_command_names_its_owner(self):
+        self.assertIn("it belongs to g3r IN OUT, g3r mesh", self.expect(USAGE, "orient", "ball.ply", "a.ply", "--open").err)
+        self.assertIn("of g3r mesh: it belongs to", self.expect(USAGE, "mesh", "ball.ply", "a.ply", "--up", "+z").err)
+
+    def test_strict_says_why_also_when_quiet(self):
+        write_points(self.path("slope.ply"), [(x / 40, y / 40, 0.1 * (x / 40) ** 2) for x in range(40) for y in range(40)])
+        result = self.expect(BAD_DATA, "orient", "slope.ply", "a.ply", "--strict", "--quiet")
+        self.assertIn("g3r: --strict: the sides of many points are unsure or a choice", result.err)
+        self.assertTrue(os.path.exists(self.path("a.ply")))
+        self.assertEqual(self.expect(OK, "orient", "slope.ply", "a.ply", "--strict", "--quiet", "--up", "+z").err, "")
+
+    def test_what_an_output_cannot_hold_is_refused_before_the_work(self):
+        with open(self.path("nan.xyz"), "w") as points:
+            points.write("nan 0 0\n" + "".join("%r %r %r\n" % point for point in sphere(60)))
+        for arguments in (["orient", "nan.xyz", "a.las"], ["nan.xyz", "a.ply", "--oriented", "b.las"]):
+            self.assertIn("not finite, of which there are 1; write PLY", self.expect(BAD_DATA, *arguments).err)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["ball.ply", "nan.xyz"])
+
+    def test_decimal_commas_between_commas_are_told(self):
+        with open(self.path("comma.csv"), "w") as points:
+            points.write("x,y,z\n" + "".join("1,%d,2,%d,3,%d\n" % (k, k * k % 10, k % 7) for k in range(30)))
+        self.assertIn("line 1: names 3 columns", self.expect(BAD_DATA, "orient", "comma.csv", "a.ply").err)
 
     def test_unusable_data_is_65(self):
         files = {"empty.ply": b"", "words.xyz": b"once upon a time\n", "cut.ply": b"ply\nformat ascii 1.0\nelement vertex 9\n",
@@ -121,7 +144,7 @@ class ExitCodes(ProgramTest):
                 self.assertIn("nosuch" if "nosuch" in str(arguments) else "nofolder", self.expect(NO_INPUT, *arguments).err)
 
     def test_too_little_memory_allowed_is_69(self):
-        self.expect(UNAVAILABLE, "orient", "ball.ply", "out.ply", "--max-memory", "1K")
+        self.expect(UNAVAILABLE, "orient", "ball.ply", "out.ply", "--max-memory", "1M")
         self.assertFalse(os.path.exists(self.path("out.ply")))
 
     @unittest.skipIf(is_sanitized(), "a sanitizer needs the addresses")

@@ -39,6 +39,12 @@ void find_names(const Text& text, TextShape& shape) {
     const char separator = count_values(line, shape.separator) == shape.columns ? shape.separator : separator_of(line);
     if (count_values(line, separator) != shape.columns) {
       shape.header_differs = shape.header_differs || !comment;
+      if (!comment && separator == ',' && shape.separator == ',' && 2 * count_values(line, separator) == shape.columns) {
+        fail_at_line(text.source(), lines.number(),
+                     "names " + std::to_string(shape.columns / 2) +
+                         " columns, and the points have twice as many: decimal commas? write "
+                         "numbers with a point, or separate columns by semicolons or blanks");
+      }
       continue;
     }
     ColumnNames header = column_names(line, separator);

@@ -106,9 +106,9 @@ void apply_hints(const Problem& problem, const Options& options, Solution& solut
   warn_of_unsure(solution.open_surfaces, confidence, stats);
   warn(effect, hints, problem.cloud, stats.open_share > 0, stats);
   if (stats.undecided_share > 0) {
-    stats.warnings.push_back("which side of " + percent(stats.undecided_share) +
-                             " of the points is the outside is a choice: the one that " +
-                             (stats.hints.given.empty() ? "faces up (+z); a hint decides it (up, sensor)" : "the hints left as it was"));
+    stats.warnings.push_back(
+        "which side of " + percent(stats.undecided_share) + " of the points is the outside is a choice: the one that " +
+        (stats.hints.given.empty() ? "faces up (+z); a hint decides it (--up, --sensor)" : "the hints left as it was"));
   }
 }
 
