@@ -1,12 +1,12 @@
 #include "files.h"
 
 #include "base/platform.h"
+#include "base/vector.h"
 #include "io/output_file.h"
 #include "io/source.h"
 
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
@@ -94,8 +94,7 @@ void check_files(const Settings& settings) {
 }
 
 void check_points(const std::vector<Vec3>& points, const std::vector<std::string>& outputs) {
-  const auto is_finite = [](const Vec3& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); };
-  const auto bad = static_cast<std::size_t>(points.end() - points.begin() - std::count_if(points.begin(), points.end(), is_finite));
+  const auto bad = static_cast<std::size_t>(points.end() - points.begin() - std::count_if(points.begin(), points.end(), vector::is_finite));
   for (const std::string& output : outputs) {
     const std::string format = io::extension(output);
     if (bad == 0 || (format != "las" && format != "laz")) continue;

@@ -132,6 +132,15 @@ int work_in_tiles(const Settings& settings, Session& session, bool mesh, const M
   return finish(settings, session, stats, nullptr);
 }
 
+// What g3r tiles mesh will take, or that it will not do, before any tile is solved.
+void say_mesh_memory(Session& session, const std::string& folder) {
+  try {
+    session.console().say("a mesh of them takes " + bytes(static_cast<std::size_t>(planned_mesh_memory(folder))) + " a worker");
+  } catch (const Unavailable& error) {
+    session.console().warn(error.what());
+  }
+}
+
 }  // namespace
 
 int run_tiles(const Settings& settings, Session& session) {
@@ -139,6 +148,7 @@ int run_tiles(const Settings& settings, Session& session) {
   switch (settings.tile_step) {
     case TileStep::kPlan:
       say_status(session, plan_tiles(settings.tile_paths, settings.tile_folder, tile_options(settings), monitor));
+      say_mesh_memory(session, settings.tile_folder);
       break;
     case TileStep::kRun:
       say_status(session, g3r::run_tiles(settings.tile_folder, worker_of(settings), monitor));

@@ -347,6 +347,9 @@ void bind(nb::module_& m) {
         nb::arg("colors").none(), nb::arg("true_normals").none(), nb::arg("vertices").none(), nb::arg("faces").none(),
         nb::arg("vertex_colors").none(), nb::arg("vertex_confidence").none(), nb::arg("report"));
   m.def(
+      "write_file", [](const Text& path, const nb::bytes& data) { write_file(path, std::string(data.c_str(), data.size())); },
+      nb::arg("path"), nb::arg("data"));
+  m.def(
       "view_html",
       [](const PyScene& scene, bool z_up, std::size_t max_points) {
         PageOptions options;

@@ -182,7 +182,7 @@ Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor
     mesh = mesh_with_poisson(oriented, directions, options.depth);
     normalised.min_component = 0;  // spurious components of screened Poisson are part of its result
     const std::vector<Vec3>& points = oriented.cloud.points();
-    mesh::finish_mesh(mesh, {points, directions, mesh::smooth_spacing(points)}, 0, normalised, left_out);
+    mesh::finish_mesh(mesh, {points, directions, mesh::smooth_spacing(points)}, 0, normalised, left_out, monitor.cancel);
   } else {
     oriented.cloud.set.release_neighbours();  // the mesher has its own, of the points that it moves
     mesh = field_mesh(oriented.cloud.points(), std::move(directions), field, normalised, monitor, memory, &left_out);
@@ -297,7 +297,8 @@ Reconstruction reconstruct(const PointsView& points, const Options& options, con
   if (far > kDoubtful) {
     Stats& stats = out.orientation.stats;
     const bool is_noisy = stats.noise > mesh::kNoisy * stats.spacing;
-    stats.warnings.push_back(percent(far) + " of the surface is farther than 4 spacings from any point: the cloud looks open" +
+    stats.warnings.push_back(percent(far) + " of the surface is farther than " + short_number(mesh::kFarSpacings) +
+                             " spacings from any point: the cloud looks open" +
                              (is_noisy ? ", as do two walls that are no farther apart than its noise" : "") + "; trim the mesh (--open)");
     stats.doubtful = stats.doubtful || (far > kManyUnsure && chosen.trim == MeshOptions::Trim::kOff);
   }

@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <vector>
 
 #include "counting_allocator.h"
 #include "io/file_lists.h"
 #include "io/table.h"
 #include "io_samples.h"
+#include "tiles/fewest_tiles.h"
 
 namespace g3r {
 namespace {
@@ -252,6 +254,28 @@ TEST(Ept, DamageIsSaid) {
       (void)message();  // an error or a cloud
     }
   }
+}
+
+// Tiles of as many points each as there are: ten fit where a tenth does, and where surroundings are all no number does.
+TEST(CutIntoFewest, StopsWhereTheLargestFitsOrNoneCan) {
+  std::vector<std::size_t> tried;
+  const auto even = [&](std::size_t count) {
+    tried.push_back(count);
+    return std::uint64_t{1000 / count};
+  };
+  EXPECT_TRUE(tiles::cut_into_fewest(1, 500, 100, even));
+  EXPECT_EQ(tried, (std::vector<std::size_t>{1, 2, 3, 4, 6, 8, 11}));
+  EXPECT_TRUE(tiles::cut_into_fewest(20, 500, 100, even));
+  EXPECT_FALSE(tiles::cut_into_fewest(1, 5, 100, even));
+  EXPECT_EQ(tried.back(), 5U);
+  tried.clear();
+  const auto surroundings = [&](std::size_t count) {
+    tried.push_back(count);
+    return std::uint64_t{500};
+  };
+  EXPECT_FALSE(tiles::cut_into_fewest(1, 100000, 100, surroundings));
+  EXPECT_GT(tried.back(), 64U);
+  EXPECT_LT(tried.back(), 100U);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "cloud/canonical_cloud.h"
 
+#include "base/vector.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
 
@@ -16,8 +17,6 @@ namespace {
 
 constexpr std::size_t kFewestPoints = 4;  // fewer cannot enclose a volume
 constexpr double kLineThickness = 1e-12;  // distance from a line over its length, below which points count as collinear: rounding
-
-bool finite(const Vec3& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }
 
 // Ones in groups of so many bits, each group at three times the place that it would have without gaps.
 constexpr std::uint64_t groups_of(int bits) {
@@ -97,7 +96,7 @@ Bounds bounds_of(const PointsView& points) {
   return parallel::sum_blocks(points.count, parallel::kBlock, Bounds{}, [&](std::size_t begin, std::size_t end) {
     Bounds b;
     for (std::size_t i = begin; i < end; ++i) {
-      if (const Vec3 p = points[i]; finite(p)) b += {p, p, 1};
+      if (const Vec3 p = points[i]; vector::is_finite(p)) b += {p, p, 1};
     }
     return b;
   });
@@ -220,7 +219,7 @@ CanonicalCloud canonical_cloud(const PointsView& points) {
   std::vector<std::uint32_t> input;
   input.reserve(bounds.finite_points);
   for (std::size_t i = 0; i < points.count; ++i) {
-    if (finite(points[i])) input.push_back(static_cast<std::uint32_t>(i));
+    if (vector::is_finite(points[i])) input.push_back(static_cast<std::uint32_t>(i));
   }
   const std::size_t n = input.size();
   std::vector<Vec3> unit(n);
@@ -278,12 +277,9 @@ bool refit_frame(CanonicalCloud& cloud, std::vector<Vec3>& others) {
 bool is_flat(const CanonicalCloud& cloud) {
   // The plane through the first point, the point farthest from it, and the point farthest from the line through both.
   const Vec3& origin = cloud.points().front();
-  const auto to = [&origin](const Vec3& p) { return Vec3{p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]}; };
-  const auto cross = [](const Vec3& a, const Vec3& b) {
-    return Vec3{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-  };
+  const auto to = [&origin](const Vec3& p) { return vector::subtract(p, origin); };
   const Vec3 axis = longest(cloud.points(), to);
-  const Vec3 normal = longest(cloud.points(), [&](const Vec3& p) { return cross(axis, to(p)); });
+  const Vec3 normal = longest(cloud.points(), [&](const Vec3& p) { return vector::cross(axis, to(p)); });
   const double allowed = kLeastSpacing * norm(normal);
   return std::all_of(cloud.points().begin(), cloud.points().end(), [&](const Vec3& p) {
     const Vec3 d = to(p);

@@ -47,7 +47,8 @@ struct MeanExcess {
   [[nodiscard]] bool is_two_walls() const;
 };
 
-/// Of the flatter half of the places, which says nothing of the excess. `places`: their moments; 0 and 0 of none; `disjoint` > 0: as many
+/// Of the places whose mean square is at most the median. Under normal noise the excess does not depend on the mean square, so that the
+/// choice does not change its mean. `places`: their moments; 0 and 0 of none; `disjoint` > 0: as many
 /// of their neighbourhoods the points fill, if they share none: no more of them are independent. O(places).
 [[nodiscard]] MeanExcess mean_excess(const std::vector<HeightMoments>& places, double disjoint);
 

@@ -134,7 +134,7 @@ ExactPlane find_facet(const PointSet& set, const std::vector<std::uint32_t>& ind
 
 // Whether many of the points lie on exact planes along the surface, and not because rounding has put them there.
 bool on_exact_planes(const PointSet& set) {
-  const Vec3 steps = rounding_steps(set.points(), set.spacing());
+  const Vec3 steps = set.rounding_steps();
   if (std::max({steps[0], steps[1], steps[2]}) > 0) return false;
   const std::vector<double> on_facet = at_some(set, kPlaces, kPlaneNeighbours, [&](const Vec3&, const auto& index, const auto&) {
     const ExactPlane facet = find_facet(set, index);
@@ -203,10 +203,10 @@ Vec3 rounding_steps(const std::vector<Vec3>& points, double spacing) {
   return steps;
 }
 
-double rounding_deviation(const PointSet& set) { return deviation_of(rounding_steps(set.points(), set.spacing()), set.spacing()); }
+double rounding_deviation(const PointSet& set) { return deviation_of(set.rounding_steps(), set.spacing()); }
 
 double rounding_noise(const PointSet& set) {
-  const Vec3 steps = rounding_steps(set.points(), set.spacing());
+  const Vec3 steps = set.rounding_steps();
   const double sigma = deviation_of(steps, set.spacing());
   if (sigma == 0) return 0;
   std::vector<Vec3> cubes;

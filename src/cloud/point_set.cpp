@@ -1,5 +1,6 @@
 #include "cloud/point_set.h"
 
+#include "cloud/noise.h"
 #include "cloud/spacing.h"
 
 #include <algorithm>
@@ -14,12 +15,13 @@ struct PointSet::Known {
   std::vector<Vec3> points;
   std::mutex making;  // tree, near and local
   std::atomic<bool> has_tree{false}, has_near{false}, has_local{false};
-  std::once_flag smoothed_made, spacing_made;
+  std::once_flag smoothed_made, spacing_made, steps_made;
   std::unique_ptr<Neighbours> tree;
   std::vector<std::uint32_t> near;
   std::vector<double> local;
   std::vector<double> smoothed;
   double spacing = 0;
+  Vec3 steps{0, 0, 0};
   Views views;
 };
 
@@ -80,6 +82,11 @@ const std::vector<double>& PointSet::smoothed_spacing() const {
 double PointSet::spacing() const {
   std::call_once(known_->spacing_made, [this] { known_->spacing = typical_spacing(local_spacing()); });
   return known_->spacing;
+}
+
+const Vec3& PointSet::rounding_steps() const {
+  std::call_once(known_->steps_made, [this] { known_->steps = g3r::rounding_steps(known_->points, spacing()); });
+  return known_->steps;
 }
 
 }  // namespace g3r

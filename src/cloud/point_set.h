@@ -43,6 +43,8 @@ class PointSet {
   [[nodiscard]] const std::vector<double>& local_spacing() const;
   [[nodiscard]] const std::vector<double>& smoothed_spacing() const;
   [[nodiscard]] double spacing() const;
+  /// rounding_steps() of the points.
+  [[nodiscard]] const Vec3& rounding_steps() const;
 
   /// Not known unless they have been told, in the frame of the points.
   [[nodiscard]] const Views& views() const;

@@ -19,8 +19,10 @@
 namespace g3r {
 namespace {
 
-constexpr double kReach = 2.5;     // distances: the plane of a site sees its neighbours and theirs, about 20 sites
-constexpr double kIsolated = 1.5;  // times the spacing around a site, its own: more is that of a stray
+// Distances of sites: the plane of a site is fitted to its neighbours and theirs, about 20 sites.
+constexpr double kReach = 2.5;
+// Times the (logarithmic) mean spacing around a site, its own at most: more is that of a stray, whose area would be that of its emptiness.
+constexpr double kIsolated = 1.5;
 
 // Cells of the size of the distance: whoever is nearer than that lies in the same or an adjacent one.
 class Grid {

@@ -24,8 +24,6 @@ constexpr double kFewestRows = 0.1;
 // Points whose neighbourhoods are small parts of the cloud.
 constexpr std::size_t kFewestSeen = kSmallPart * kPatchNeighbours;
 
-double length(const Vec3& a) { return std::sqrt(vector::dot(a, a)); }
-
 bool is_along(const Vec3& viewpoint, const Vec3& point, const Vec3& normal) {
   return std::abs(vector::dot(normal, vector::normalised(vector::subtract(viewpoint, point)))) <= kExactScatter;
 }
@@ -122,7 +120,7 @@ class ViewpointSearch {
     const Vec3* one = nullptr;
     for (const ExactPlane& plane : place.planes) {
       if (!is_along(candidate, point_of(place), plane.normal)) continue;
-      if (one != nullptr && length(vector::cross(*one, plane.normal)) > kLineBreadth) {
+      if (one != nullptr && vector::length(vector::cross(*one, plane.normal)) > kLineBreadth) {
         return !hides_another(place.index, sight_to(place, candidate));
       }
       one = &plane.normal;
@@ -171,7 +169,7 @@ class ViewpointSearch {
 
   [[nodiscard]] bool hides_another(const std::vector<std::uint32_t>& index, const Vec3& sight) const {
     return std::any_of(index.begin() + 1, index.end(), [&](std::uint32_t i) {
-      return length(vector::cross(sight, vector::subtract(points_[i], points_[index.front()]))) <= within_;
+      return vector::length(vector::cross(sight, vector::subtract(points_[i], points_[index.front()]))) <= within_;
     });
   }
 

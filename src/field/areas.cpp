@@ -20,6 +20,8 @@ constexpr double kMost = 1.3;
 
 }  // namespace
 
+double area_factor(double level) { return std::abs(level) > 0 ? std::clamp(0.5 / std::abs(level), kLeast, kMost) : kMost; }
+
 std::vector<Vec3> area_vectors(const PointSet& set, const std::vector<Vec3>& normals, const OpenSurfaces& surfaces,
                                const std::atomic<bool>* cancel) {
   std::vector<double> spacing = set.smoothed_spacing();
@@ -42,8 +44,7 @@ std::vector<Vec3> area_vectors(const PointSet& set, const std::vector<Vec3>& nor
     if (closed.empty()) return eta;
     winding = std::move(closed);
   }
-  const double level = std::abs(median(std::move(winding)));  // normals may face into the solid, as those of a room do
-  const double factor = level > 0 ? std::clamp(0.5 / level, kLeast, kMost) : kMost;
+  const double factor = area_factor(median(std::move(winding)));
   parallel::for_all(eta.size(), [&](std::size_t i) {
     for (double& c : eta[i]) c *= factor;
   });

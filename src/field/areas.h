@@ -11,6 +11,10 @@
 
 namespace g3r {
 
+/// c of area_vectors(), within 1/3 and 1.3, where the median of w over points on a closed surface is +-`level` with c = 1: normals may face
+/// into the solid, as those of a room do.
+[[nodiscard]] double area_factor(double level);
+
 /// eta_i = c s_i^2 n_i, with s_i the spacing averaged over 16 neighbours and c such that the median of |w| over the points is 1/2, as it is
 /// on a closed surface: points that scatter lie farther apart than their share of the surface, those of a grid closer (docs/math.md,
 /// "Areas"). c is within 1/3 and 1.3, and 1 if every point is on an open surface; only the others are asked for it. Strays, which no

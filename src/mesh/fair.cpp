@@ -145,14 +145,14 @@ void make_fair(Mesh& mesh, const std::vector<Vec3>& points, const std::vector<st
   std::vector<std::uint8_t> free = vertices_at(mesh, points, in_lines);
   const VertexRings rings = vertex_rings(mesh);
   const std::vector<Vec3> home = mesh.vertices;
-  const std::vector<TrianglePair> before = self_intersections(mesh);
+  const std::vector<TrianglePair> before = self_intersections(mesh, cancel);
   std::optional<double> enough;
   // Each attempt holds what crossed in the one before, and the rings around it; after as many as there are rings it stays.
   for (int attempt = 1;; ++attempt) {
     LeastSquaresMesh surface(rings, free);
     for (int meeting = 0; meeting < kMeetings; ++meeting)
       surface.minimise(anchors_on(mesh, points, in_lines), mesh.vertices, enough, cancel);
-    const std::vector<TrianglePair> after = self_intersections(mesh);
+    const std::vector<TrianglePair> after = self_intersections(mesh, cancel);
     if (after.size() <= before.size()) return;
     if (attempt > kRings) {
       Regions(rings, free).take_back(mesh, before, after, home);

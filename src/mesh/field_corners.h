@@ -32,6 +32,9 @@ struct Cube {
   double side = 0;
 };
 
+/// Places at which the field is asked at once, of every point: each evaluation sums the points anew, so fewer take longer, and more memory.
+inline constexpr std::size_t kAskedPerPoint = 2;
+
 /// A positive value inside. Near the points it is minus the distance to the fitted surface, unless the field is sure of the contrary;
 /// elsewhere it is the field, scaled to a length.
 class CornerSides {

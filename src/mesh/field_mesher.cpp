@@ -89,9 +89,9 @@ struct Signs {
 
 Signs find_signs(const Octree& octree, const Prepared& prepared, const mesh::LocalFit& local, const FieldSampler& sampler,
                  const mesh::Cube& cube, const mesh::InsideTest& centre_inside, long most_per_handle, const Monitor& monitor) {
-  // Every evaluation of the field sums the points anew, so fewer places at once than two a point take longer, and more take memory.
   const std::vector<Vec3>& positions = prepared.points.positions;
-  const mesh::CornerSides side(local, sampler, prepared.typical, cube, mesh::level_places(positions), 2 * positions.size());
+  const mesh::CornerSides side(local, sampler, prepared.typical, cube, mesh::level_places(positions),
+                               mesh::kAskedPerPoint * positions.size());
   const auto all = [](std::uint32_t) { return true; };
   mesh::Corners corners = side.of(octree, all, monitor.cancel);
   Signs out{std::move(corners.value), std::vector<std::uint8_t>(octree.corner_count())};
@@ -163,9 +163,9 @@ Mesh field_mesh(const std::vector<Vec3>& points, std::vector<Vec3> normals, cons
   mesh::make_fair(mesh, prepared.points.positions, in_lines, monitor.cancel);
   // A depth that was asked for is the size of triangles that was asked for.
   if (options.depth == 0) mesh::coarsen(mesh, prepared.points.positions, size, monitor.cancel);
-  mesh::soften_thorns(mesh, mesh::untangle(mesh, monitor.cancel));
+  mesh::soften_thorns(mesh, mesh::untangle(mesh, monitor.cancel), monitor.cancel);
   mesh::LeftOut nothing;
-  mesh::finish_mesh(mesh, prepared.points, prepared.noise, options, left_out != nullptr ? *left_out : nothing);
+  mesh::finish_mesh(mesh, prepared.points, prepared.noise, options, left_out != nullptr ? *left_out : nothing, monitor.cancel);
   report(monitor, Done::kAll);
   return mesh;
 }

@@ -39,14 +39,15 @@ double far_share(const Mesh& mesh, const std::vector<Vec3>& points, double spaci
   return total > 0 ? far / total : 0;
 }
 
-void finish_mesh(Mesh& mesh, const OrientedPoints& points, double noise, const MeshOptions& options, LeftOut& left_out) {
+void finish_mesh(Mesh& mesh, const OrientedPoints& points, double noise, const MeshOptions& options, LeftOut& left_out,
+                 const std::atomic<bool>* cancel) {
   const bool by_distance = options.trim == MeshOptions::Trim::kDistance;
   if (by_distance && !(options.trim_distance > 0)) throw InvalidInput("the trim distance must be positive");
   if (!(options.min_component.value_or(0) >= 0)) throw InvalidInput("the smallest component must not be negative");
   if (mesh.triangles.empty()) return;
   if (options.trim != MeshOptions::Trim::kOff) trim(mesh, points, options);
   drop_components(mesh, points.positions, points.spacing, noise, options, left_out);
-  if (options.faces > 0) simplify(mesh, options.faces);
+  if (options.faces > 0) simplify(mesh, options.faces, cancel);
 }
 
 }  // namespace g3r::mesh

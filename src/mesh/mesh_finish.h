@@ -5,6 +5,7 @@
 
 #include <g3r/g3r.h>
 
+#include <atomic>
 #include <vector>
 
 namespace g3r::mesh {
@@ -19,9 +20,10 @@ struct LeftOut {
 [[nodiscard]] double far_share(const Mesh& mesh, const std::vector<Vec3>& points, double spacings);
 
 /// Trims, drops components and simplifies as the options ask; `trim_distance` is in the units of the mesh. A closed 2-manifold stays
-/// closed unless trimmed, and 2-manifold always. Throws InvalidInput if an option is out of range or nothing would be left.
+/// closed unless trimmed, and 2-manifold always. Throws InvalidInput if an option is out of range or nothing would be left; Cancelled.
 /// `noise`: standard deviation of the points about the surface, in spacings; `left_out`: the points
 /// that were left out before, to which the components that kept_components() leaves out are added.
-void finish_mesh(Mesh& mesh, const OrientedPoints& points, double noise, const MeshOptions& options, LeftOut& left_out);
+void finish_mesh(Mesh& mesh, const OrientedPoints& points, double noise, const MeshOptions& options, LeftOut& left_out,
+                 const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace g3r::mesh

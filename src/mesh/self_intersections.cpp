@@ -110,7 +110,7 @@ mesh::FloatBox box_of(const Corners& t) {
 
 namespace mesh {
 
-std::vector<TrianglePair> self_intersections(const Mesh& mesh) {
+std::vector<TrianglePair> self_intersections(const Mesh& mesh, const std::atomic<bool>* cancel) {
   const vector::Box box = box_of_used_vertices(mesh);
   if (mesh.triangles.empty() || !(box.longest_side() > 0)) return {};
   // By a power of two, which is exact, to about 1.
@@ -138,15 +138,18 @@ std::vector<TrianglePair> self_intersections(const Mesh& mesh) {
   const BoxTree tree(std::move(boxes));
   const std::vector<BoxTree::PairJob> jobs = tree.pair_jobs();
   std::vector<std::vector<TrianglePair>> found(jobs.size());
-  parallel::for_each(jobs.size(), [&](std::size_t job) {
-    tree.visit_pairs(jobs[job], [&](std::uint32_t i, std::uint32_t j) {
-      const std::uint32_t f = with_area[i], g = with_area[j];
-      if (share_a_corner(mesh.triangles[f], mesh.triangles[g])) return;
-      const Corners mine = corners(f), theirs = corners(g);
-      if (surely_apart(mine, theirs) || surely_apart(theirs, mine) || touch_at_a_corner(mine, theirs)) return;
-      if (triangles_meet(mine, theirs)) found[job].push_back({f, g});
-    });
-  });
+  parallel::for_each(
+      jobs.size(),
+      [&](std::size_t job) {
+        tree.visit_pairs(jobs[job], [&](std::uint32_t i, std::uint32_t j) {
+          const std::uint32_t f = with_area[i], g = with_area[j];
+          if (share_a_corner(mesh.triangles[f], mesh.triangles[g])) return;
+          const Corners mine = corners(f), theirs = corners(g);
+          if (surely_apart(mine, theirs) || surely_apart(theirs, mine) || touch_at_a_corner(mine, theirs)) return;
+          if (triangles_meet(mine, theirs)) found[job].push_back({f, g});
+        });
+      },
+      cancel);
   std::vector<TrianglePair> all;
   for (const std::vector<TrianglePair>& pairs : found) all.insert(all.end(), pairs.begin(), pairs.end());
   std::sort(all.begin(), all.end());

@@ -1,9 +1,12 @@
 #include "mesh/simplify.h"
 
 #include "base/vector.h"
+#include "cpu/parallel.h"
 #include "mesh/edge_collapse.h"
 #include "mesh/mesh_parts.h"
 #include "mesh/quadric.h"
+
+#include <g3r/error.h>
 
 #include <algorithm>
 #include <array>
@@ -33,11 +36,12 @@ class Simplification {
   }
 
   // Edges that were refused may be collapsed once those around them are: so all are tried again while some are.
-  const std::vector<std::uint8_t>& run(std::size_t faces) {
+  const std::vector<std::uint8_t>& run(std::size_t faces, const std::atomic<bool>* cancel) {
     for (std::size_t before = 0; edges_.count() > faces && edges_.count() != before;) {
       before = edges_.count();
       push_all();
-      while (!queue_.empty() && edges_.count() > faces) {
+      for (std::size_t count = 0; !queue_.empty() && edges_.count() > faces; ++count) {
+        if (count % parallel::kSmallBlock == 0 && cancel != nullptr && cancel->load()) throw Cancelled();
         const Entry next = queue_.top();
         queue_.pop();
         if (is_current(next)) collapse(std::get<1>(next), std::get<2>(next));
@@ -120,10 +124,10 @@ class Simplification {
 
 }  // namespace
 
-void simplify(Mesh& mesh, std::size_t faces) {
+void simplify(Mesh& mesh, std::size_t faces, const std::atomic<bool>* cancel) {
   if (mesh.triangles.size() <= faces) return;
   Simplification simplification(mesh);
-  remove_triangles(mesh, simplification.run(faces));
+  remove_triangles(mesh, simplification.run(faces, cancel));
 }
 
 }  // namespace g3r::mesh

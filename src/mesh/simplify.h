@@ -5,6 +5,7 @@
 
 #include <g3r/mesh.h>
 
+#include <atomic>
 #include <cstddef>
 
 namespace g3r::mesh {
@@ -12,7 +13,7 @@ namespace g3r::mesh {
 /// Collapses the edges whose collapse moves the surface least (the squared distance from the planes of all triangles that a vertex stands
 /// for, times their areas) onto one of their ends, until `faces` triangles are left, or one more in a closed mesh. Closedness,
 /// manifoldness, components, genus and boundaries stay, and no triangle turns over, so that more triangles are left where fewer are not
-/// enough for that. Vertices stay where they are, with their attributes. O(V log V).
-void simplify(Mesh& mesh, std::size_t faces);
+/// enough for that. Vertices stay where they are, with their attributes. O(V log V). Throws Cancelled.
+void simplify(Mesh& mesh, std::size_t faces, const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace g3r::mesh

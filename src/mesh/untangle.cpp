@@ -122,7 +122,7 @@ void mark_thorns(const Part& part, std::vector<std::uint8_t>& marked) {
 
 }  // namespace
 
-void soften_thorns(Mesh& mesh, std::size_t crossings) {
+void soften_thorns(Mesh& mesh, std::size_t crossings, const std::atomic<bool>* cancel) {
   std::vector<std::uint8_t> move(mesh.vertices.size(), 0), near = pointed(mesh);
   grow(mesh, near);
   mark_thorns(part_of(mesh, near), move);
@@ -148,7 +148,7 @@ void soften_thorns(Mesh& mesh, std::size_t crossings) {
   std::vector<std::uint8_t> back(mesh.vertices.size(), 0);
   for (int attempt = 0; attempt <= kRings; ++attempt) {
     put();
-    const std::vector<TrianglePair> pairs = self_intersections(mesh);
+    const std::vector<TrianglePair> pairs = self_intersections(mesh, cancel);
     if (pairs.size() <= crossings) return;
     mark_corners(
         mesh, pairs, [](std::uint32_t v) { return v; }, back);
@@ -160,7 +160,7 @@ void soften_thorns(Mesh& mesh, std::size_t crossings) {
 }
 
 std::size_t untangle(Mesh& mesh, const std::atomic<bool>* cancel, const std::vector<std::uint8_t>& fixed) {
-  std::vector<TrianglePair> pairs = self_intersections(mesh);
+  std::vector<TrianglePair> pairs = self_intersections(mesh, cancel);
   std::vector<std::uint8_t> crossing(mesh.vertices.size(), 0);
   mark_corners(
       mesh, pairs, [](std::uint32_t v) { return v; }, crossing);
@@ -180,7 +180,7 @@ std::size_t untangle(Mesh& mesh, const std::atomic<bool>* cancel, const std::vec
     Part part = part_of(mesh, near);
     smooth(part, move);
     for (std::size_t i = 0; i < part.vertex.size(); ++i) mesh.vertices[part.vertex[i]] = part.mesh.vertices[i];
-    pairs = self_intersections(part.mesh);
+    pairs = self_intersections(part.mesh, cancel);
     std::fill(crossing.begin(), crossing.end(), 0);
     mark_corners(
         part.mesh, pairs, [&](std::uint32_t v) { return part.vertex[v]; }, crossing);

@@ -19,7 +19,7 @@ std::size_t untangle(Mesh& mesh, const std::atomic<bool>* cancel = nullptr, cons
 /// Moves the vertices of edges at which triangles fold back, with a dihedral angle below 60 degrees, towards the mean of their neighbours,
 /// up to three times: points hold no thorns, and thin parts lose little. Connectivity and all other vertices stay. `crossings`: how many
 /// pairs may intersect in the end; around more everything stays as it was, and where that does not help, everywhere. The same result for
-/// any number of threads. O(F), and with folds searches of the whole mesh, O(F log F), one to five.
-void soften_thorns(Mesh& mesh, std::size_t crossings);
+/// any number of threads. O(F), and with folds searches of the whole mesh, O(F log F), one to five. Throws Cancelled.
+void soften_thorns(Mesh& mesh, std::size_t crossings, const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace g3r::mesh

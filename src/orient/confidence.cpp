@@ -1,6 +1,7 @@
 #include "orient/confidence.h"
 
 #include "base/median.h"
+#include "base/vector.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
 
@@ -12,8 +13,6 @@ namespace {
 
 constexpr double kFullSize = 0.5;  // share of the median from which a size no longer lowers the confidence
 
-double length(const Vec3& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
-
 }  // namespace
 
 std::vector<float> side_confidence(const std::vector<Vec3>& eta, const std::vector<Vec3>& normals, const std::vector<double>& jumps,
@@ -21,7 +20,7 @@ std::vector<float> side_confidence(const std::vector<Vec3>& eta, const std::vect
   std::vector<double> sizes(eta.size()), shares(eta.size());
   parallel::for_all(eta.size(), [&](std::size_t i) {
     const double area = areas[areas.size() == 1 ? 0 : i];
-    sizes[i] = length(eta[i]);
+    sizes[i] = vector::length(eta[i]);
     shares[i] = area > 0 ? sizes[i] / area : 0;
   });
   const double full_share = kFullSize * median(shares);
@@ -44,7 +43,7 @@ Sums sums_over(const std::vector<std::uint32_t>& near, const std::vector<Vec3>& 
     for (std::size_t k = 0; k < stride; ++k) {
       const Vec3& v = vectors[near[i * stride + k]];
       for (std::size_t a = 0; a < 3; ++a) sums.vectors[i][a] += v[a];
-      sums.lengths[i] += length(v);
+      sums.lengths[i] += vector::length(v);
     }
   });
   return sums;

@@ -51,7 +51,10 @@ void limit_to_evidence(std::size_t points, std::vector<float>& confidence);
 inline constexpr double kDoubtful = 0.05;
 /// Share of the points on a doubtful side, from which facets or projected points are solved for, and once more: fewer are not worth it.
 inline constexpr double kMinMinority = 1e-3;
-inline constexpr int kMostRounds = 3;       ///< of facets, as points on none come right after those on one; and of projections
-inline constexpr double kManyUnsure = 0.2;  ///< share of unsure points above which the orientation is called inconsistent
+/// Rounds of solving for facets, and of projecting points and polishing, at most: points on no facet come right only after those on facets,
+/// and what a third round has not turned a fourth does not either.
+inline constexpr int kMostRounds = 3;
+/// Share of unsure points above which the orientation is called inconsistent.
+inline constexpr double kManyUnsure = 0.2;
 
 }  // namespace g3r

@@ -16,8 +16,8 @@
 namespace g3r {
 namespace {
 
-// Of the typical spacing, up to which noise alone may have scattered points so far apart.
-constexpr double kChance = 1.12;
+// Times the typical spacing, up to which noise alone may have scattered points: below it kernels of noisy clouds keep one width.
+constexpr double kNoisySpread = 1.12;
 
 void choose_scales(Problem& problem, const Options& options) {
   problem.settings = choose_settings(options, problem.cloud, problem.spacing, problem.noise, problem.outlier_share);
@@ -70,7 +70,7 @@ std::vector<double> relative_spacing(const Problem& problem, const Options& opti
   const std::vector<double>& thinned = problem.known.relative_spacing;
   if (!is_free || !runs(problem, Step::kLocalWidths)) return thinned;
   std::vector<double> relative = spacing_before_thinning(problem.cloud.set.smoothed_spacing(), thinned);
-  const double typical = (problem.is_clean() ? 1 : kChance) * problem.spacing;
+  const double typical = (problem.is_clean() ? 1 : kNoisySpread) * problem.spacing;
   for (double& h : relative) h = std::max(1.0, h / typical);
   for (std::size_t i = 0; i < thinned.size(); ++i) relative[i] *= thinned[i];
   return relative;

@@ -18,8 +18,10 @@
 namespace g3r {
 namespace {
 
-constexpr double kExact = 0.01;            // site spacings: deviations below are as good as none
-constexpr std::size_t kNoisyPoints = 128;  // the same under noise: fewer follow the noise, more the shape
+// Site spacings: deviations from a height field below it are rounding, of which ratios say nothing.
+constexpr double kExact = 0.01;
+// The nearest points whose heights are tested for two walls that noise hides: fewer follow the noise, more the shape.
+constexpr std::size_t kNoisyPoints = 128;
 
 // Calls visit(site, its `count` nearest points in canonical order) for `places` to twice as many of the members.
 template <typename Visit>
@@ -38,7 +40,7 @@ void for_some(const PointSet& set, const Sites& sites, const std::vector<std::ui
 template <typename Visit>
 void for_gains(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members, std::size_t places, Visit visit) {
   const std::vector<Vec3>& points = set.points();
-  const Vec3 steps = rounding_steps(points, set.spacing());
+  const Vec3 steps = set.rounding_steps();
   for_some(set, sites, members, places, 2 * kPatchNeighbours, [&](std::uint32_t s, const std::vector<std::uint32_t>& index) {
     const double spacing = sites.spacing()[s];
     const double one = quadratic_residual(points, index.data(), index.size(), sites.axis[s], spacing);
@@ -92,7 +94,7 @@ bool on_exact_walls(const PointSet& set, const Sites& sites, const std::vector<s
 bool on_noisy_walls(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members) {
   const std::vector<Vec3>& points = set.points();
   if (points.size() < kNoisyPoints) return false;
-  const Vec3 steps = rounding_steps(points, set.spacing());
+  const Vec3 steps = set.rounding_steps();
   std::vector<HeightMoments> places;
   for_some(set, sites, members, kFewPlaces, kNoisyPoints, [&](std::uint32_t s, const std::vector<std::uint32_t>& index) {
     places.push_back(height_moments(points, index.data(), index.size(), sites.axis[s], sites.spacing()[s], steps));

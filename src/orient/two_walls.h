@@ -20,7 +20,7 @@ namespace g3r {
 ///     30 on one wall say nothing.
 ///   - Where there is noise, walls that it hides: MeanExcess::is_two_walls() of the heights over cubics through 128 points.
 /// `members`: of the sites, at least one; `noise`: standard deviation, unit of the points; 0: none; `unrest`: Certificate::unrest of all
-/// sites. O(log N) per place, and O(N log N) under noise.
+/// sites. O(log N) per place, and O(N log N) once for the steps of rounding.
 [[nodiscard]] bool on_two_walls(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members, double noise,
                                 const std::vector<double>& unrest);
 

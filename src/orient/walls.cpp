@@ -57,7 +57,7 @@ double turned_share(const PlacesOnWalls& before, const PlacesOnWalls& after) {
 MeanExcess excess_about_walls(const PointSet& set, const std::vector<Vec3>& normals, double noise, double spacing) {
   const double reach = 2 * projection_reach(noise, spacing);
   const double depth = 2 * kSigmas * noise;
-  const Vec3 steps = rounding_steps(set.points(), set.spacing());
+  const Vec3 steps = set.rounding_steps();
   const std::size_t stride = stride_of_places(set);
   std::vector<HeightMoments> at(count_of_places(set));
   std::vector<std::size_t> held(at.size(), 0);

@@ -1,21 +1,18 @@
 #include "solve/refine.h"
 
+#include "base/vector.h"
 #include "cpu/parallel.h"
 
 #include <cmath>
 #include <utility>
 
 namespace g3r {
-namespace {
-
-double length(const Vec3& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
-
-}  // namespace
+namespace {}  // namespace
 
 std::vector<Vec3> normalised(const std::vector<Vec3>& eta) {
   std::vector<Vec3> out(eta.size());
   parallel::for_all(eta.size(), [&](std::size_t i) {
-    const double size = length(eta[i]);
+    const double size = vector::length(eta[i]);
     out[i] = size > 0 ? Vec3{eta[i][0] / size, eta[i][1] / size, eta[i][2] / size} : Vec3{0, 0, 1};
   });
   return out;
@@ -33,7 +30,7 @@ Refinement unit_normals(std::vector<Vec3> gradients, const std::vector<Vec3>& et
   refined.strength.resize(eta.size());
   parallel::for_all(eta.size(), [&](std::size_t i) {
     Vec3& n = refined.normals[i];
-    const double size = length(n);
+    const double size = vector::length(n);
     refined.strength[i] = size;
     if (size > 0) {
       for (double& c : n) c /= size;

@@ -2,6 +2,7 @@
 #include "base/median.h"
 #include "base/pair_key.h"
 #include "base/vector.h"
+#include "field/areas.h"
 #include "field/winding_sampler.h"
 #include "io/output_file.h"
 #include "mesh/field_corners.h"
@@ -17,10 +18,6 @@
 
 namespace g3r::tiles {
 namespace {
-
-constexpr double kLeastFactor = 1.0 / 3;  // of areas from the spacing: area_vectors()
-constexpr double kMostFactor = 1.3;
-constexpr std::size_t kAskedPerPoint = 2;
 
 // Of rings 1 and up of one tile: nodes one level finer than the cells that are too far to be seen point by point.
 void add_far_nodes(const MeshFolder& folder, std::size_t tile, const std::vector<std::uint8_t>& rings, std::vector<Vec3>& points,
@@ -77,8 +74,7 @@ OrientedCloud field_sources(const MeshFolder& folder, const Surroundings& around
 void scale_areas(OrientedCloud& sources, const std::vector<Vec3>& places, const std::atomic<bool>* cancel) {
   std::vector<double> field;
   WindingSampler(sources, cancel).sample(places, field, nullptr);
-  const double level = std::abs(median(std::move(field)));
-  const double factor = level > 0 ? std::clamp(0.5 / level, kLeastFactor, kMostFactor) : kMostFactor;
+  const double factor = area_factor(median(std::move(field)));
   for (Vec3& v : sources.eta) v = vector::scale(v, factor);
 }
 
@@ -134,7 +130,7 @@ void write_corners(const MeshFolder& folder, std::size_t tile, const std::atomic
     OrientedCloud sources = field_sources(folder, around);
     scale_areas(sources, places, cancel);
     const WindingSampler field(sources, cancel);
-    const mesh::CornerSides sides(local, field, prepared.typical, {{0, 0, 0}, kLongestSide}, places, kAskedPerPoint * own.size());
+    const mesh::CornerSides sides(local, field, prepared.typical, {{0, 0, 0}, kLongestSide}, places, mesh::kAskedPerPoint * own.size());
     corners = sides.of(
         octree, [&](std::uint32_t c) { return owned[c] != 0; }, cancel);
   }

@@ -11,6 +11,7 @@
 #include "io/output_file.h"
 #include "io/source.h"
 #include "tiles/cell_codes.h"
+#include "tiles/fewest_tiles.h"
 #include "tiles/mesh_records.h"
 #include "tiles/whole_number.h"
 
@@ -33,7 +34,7 @@ constexpr const char* kSchema = "g3r.tiles.mesh";
 constexpr int kVersion = 2;
 constexpr std::size_t kSamples = 32;         // places of the order of the points, that stand for the cloud
 constexpr int kSampleAround = 1;             // cells around them: 8 spacings or more
-constexpr std::uint64_t kFixed = 72u << 20;  // as of the solves
+constexpr std::uint64_t kFixed = 72u << 20;  // bytes beside what grows with the points (docs/algorithms/tiles.md)
 constexpr std::uint64_t kPerPoint = 1400;    // bytes of the octree, the sides and the patches around each point (docs/algorithms/tiles.md)
 // Times cell_under(): the frame is made for cells of kFinestCell, from a sample of the spacing that errs (scale_for() in plan.cpp).
 constexpr double kLargestCell = 1.15;
@@ -119,25 +120,20 @@ void find_first_codes(MeshFolder& folder) {
 
 // As many as there are of normals, or more where the memory asks for it.
 void choose_tiles(MeshFolder& folder) {
-  const std::uint64_t limit = folder.manifest.limit;
-  std::size_t count = folder.manifest.tiles.size();
-  for (std::uint64_t before = 0;; count += count / 4 + 1) {
+  const auto cut_into = [&](std::size_t count) {
     std::vector<Tile>& tiles = folder.plan.tiles;
-    tiles = cut(folder.cells, std::min(count, folder.cells.cells.size()));
+    tiles = cut(folder.cells, count);
     find_first_codes(folder);
     std::vector<std::uint64_t> solved(tiles.size());
     parallel::for_each(tiles.size(), [&](std::size_t t) { solved[t] = points_around(folder, t); });
     for (std::size_t t = 0; t < tiles.size(); ++t) tiles[t].solved = solved[t];
-    const std::uint64_t largest = *std::max_element(solved.begin(), solved.end());
-    folder.plan.worker_memory = kFixed + kPerPoint * largest;
-    if (folder.plan.worker_memory <= limit) return;
-    const bool stuck = count > 64 && largest == before;
-    if (count >= folder.cells.cells.size() || stuck) {
-      throw Unavailable("tiles of this mesh need " + std::to_string(mebibytes_needed(folder.plan.worker_memory)) +
-                        " MiB, the limit of the plan is " + std::to_string(mebibytes(limit)) + " MiB; make a plan with a higher limit");
-    }
-    before = largest;
-  }
+    folder.plan.worker_memory = kFixed + kPerPoint * *std::max_element(solved.begin(), solved.end());
+    return folder.plan.worker_memory;
+  };
+  const std::uint64_t limit = folder.manifest.limit;
+  if (cut_into_fewest(folder.manifest.tiles.size(), folder.cells.cells.size(), limit, cut_into)) return;
+  throw Unavailable("tiles of this mesh need " + std::to_string(mebibytes_needed(folder.plan.worker_memory)) +
+                    " MiB, the limit of the plan is " + std::to_string(mebibytes(limit)) + " MiB; make a plan with a higher limit");
 }
 
 void write_plan(const std::string& folder, const MeshPlan& plan) {

@@ -1,6 +1,7 @@
 // Two readings of the inputs (extent, then sort), one scan of the sorted points, one solve of the thinned cloud.
 #include "base/platform.h"
 #include "base/stages.h"
+#include "base/vector.h"
 #include "base/whole_bytes.h"
 #include "cpu/parallel.h"
 #include "io/output_file.h"
@@ -13,6 +14,7 @@
 #include "orient/site_parts.h"
 #include "orient/start.h"
 #include "tiles/external_sort.h"
+#include "tiles/fewest_tiles.h"
 #include "tiles/manifest.h"
 #include "tiles/records.h"
 #include "tiles/spacing_sample.h"
@@ -61,8 +63,6 @@ void for_all_points(const std::vector<std::string>& files, const ReadOptions& op
     }
   }
 }
-
-bool is_finite(const Vec3& p) { return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]); }
 
 // Absolute, so that workers may be started anywhere.
 std::vector<std::string> files_of(const std::vector<std::string>& inputs) {
@@ -130,7 +130,7 @@ Manifest survey(const std::vector<std::string>& files, const TileOptions& option
       [&](std::size_t file, const Vec3& p) {
         ++m.points;
         ++m.inputs[file].points;
-        if (!is_finite(p)) {
+        if (!vector::is_finite(p)) {
           ++m.non_finite;
           ++non_finite[file];
           return;
@@ -191,16 +191,16 @@ std::size_t memory_limit(const TileOptions& options) {
   return static_cast<std::size_t>(kFreeShare * platform::free_memory());
 }
 
-[[noreturn]] void refuse_memory(std::size_t limit, std::uint64_t needed) {
+[[noreturn]] void refuse_memory(std::size_t limit, std::uint64_t needed, const std::string& remedy) {
   throw Unavailable("tiles of this cloud need " + std::to_string(mebibytes_needed(memory_for(needed))) + " MiB, the limit is " +
-                    std::to_string(mebibytes(limit)) + " MiB; raise the limit, or thin the cloud");
+                    std::to_string(mebibytes(limit)) + " MiB; " + remedy + ", or thin the cloud");
 }
 
 // The thinned cloud has as many points as are useful and the memory allows.
 std::uint64_t choose_stride(std::uint64_t points, std::size_t limit) {
   const std::uint64_t most = std::min(kMostCoarse, points_for(limit) / 2);
   const std::uint64_t fewest = std::min(kFewestCoarse, points / 4);
-  if (most < fewest) refuse_memory(limit, 2 * fewest);
+  if (most < fewest) refuse_memory(limit, 2 * fewest, "raise the limit");
   const std::uint64_t wanted = std::min(most, std::max(fewest, points / kCoarseShare));
   std::uint64_t stride = 2;
   while (points / (2 * stride) >= wanted || points / stride > most) stride *= 2;
@@ -217,7 +217,7 @@ Cells sort_points(const std::vector<std::string>& files, const std::string& fold
       files, {.threads = threads, .cancel = stages.cancel()}, [](std::size_t, const io::PointStream&) {},
       [&](double share) { stages.progress(share / 2); },
       [&](std::size_t, const Vec3& p) {
-        if (is_finite(p)) sort.add({p, index});
+        if (vector::is_finite(p)) sort.add({p, index});
         ++index;
       });
   if (index != m.points) throw InvalidInput("the inputs have changed while they were read: " + std::to_string(index) + " points now");
@@ -250,17 +250,17 @@ std::uint64_t count_solved(const Cells& cells, std::uint64_t stride, std::vector
 void choose_tiles(const Cells& cells, const TileOptions& options, std::size_t limit, Manifest& m) {
   const std::uint64_t most = points_for(limit);
   const std::uint64_t free = most > m.coarse_points ? most - m.coarse_points : 1;
-  std::size_t count =
-      options.tiles > 0 ? options.tiles : static_cast<std::size_t>(std::min<std::uint64_t>(kMostTiles, m.sorted() / free + 1));
-  for (std::uint64_t before = 0;; count += count / 4 + 1) {
-    m.tiles = cut(cells, std::min(count, cells.cells.size()));
-    const std::uint64_t largest = count_solved(cells, m.stride, m.tiles);
+  std::uint64_t largest = 0;
+  const auto cut_into = [&](std::size_t count) {
+    m.tiles = cut(cells, count);
+    largest = count_solved(cells, m.stride, m.tiles);
     m.worker_memory = memory_for(std::max(largest, m.coarse_points));
-    if (largest <= most) return;
-    const bool stuck = count > 64 && largest == before;  // no smaller for having fewer points of its own: all is halo
-    if (options.tiles > 0 || count >= cells.cells.size() || stuck) refuse_memory(limit, largest);
-    before = largest;
-  }
+    return m.worker_memory;
+  };
+  const std::size_t all = cells.cells.size();
+  const auto first = static_cast<std::size_t>(std::min<std::uint64_t>(kMostTiles, m.sorted() / free + 1));
+  const bool fits = options.tiles > 0 ? cut_into(std::min(options.tiles, all)) <= limit : cut_into_fewest(first, all, limit, cut_into);
+  if (!fits) refuse_memory(limit, largest, options.tiles > 0 ? "ask for more tiles, raise the limit" : "raise the limit");
 }
 
 // The sides: every stride-th point, in core.
