@@ -168,7 +168,7 @@ LikeliestPlane find_likeliest_plane(const std::vector<Vec3>& points, const std::
     const double chance = chances_of_as_many(around.count - 3, share_by_chance(within))[static_cast<std::size_t>(best.held - 3)];
     if (chance >= least) continue;
     const Held held = fit_to_held(points, index, around, best.normal, {0, 0, 0}, within);
-    if (held.points.size() <= static_cast<std::size_t>(kFewest)) continue;  // too few to show that they are not bent
+    if (held.points.size() <= static_cast<std::size_t>(kFewest)) continue;  // is_bent() cannot tell
     if (held.fit.breadth < kFacetBreadth || is_bent(points, held.points, held.fit, spacing)) continue;
     least = chance;
     found = {held.plane(), scatter};
