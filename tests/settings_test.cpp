@@ -65,6 +65,30 @@ TEST(GivenNoise, IsTheSameLengthInEveryUnit) {
   EXPECT_THROW((void)given_noise({Length::Unit::kInput, -1}, cloud(), h), InvalidInput);
 }
 
+// A method that is named takes the steps that it has by itself; what others have published has none of ours.
+TEST(StepsLeftOut, AreThoseThatAMethodHasNot) {
+  Options options;
+  EXPECT_TRUE(steps_left_out(options).none());
+  options.method = Method::kEnergy;
+  EXPECT_TRUE(steps_left_out(options).none());
+  options.without = "jets";
+  EXPECT_EQ(steps_left_out(options), parse_steps("jets"));
+  options = {};
+  options.degree = 2;  // least squares
+  EXPECT_TRUE(contains(steps_left_out(options), Step::kSites));
+  EXPECT_TRUE(contains(steps_left_out(options), Step::kAreas));
+  EXPECT_FALSE(contains(steps_left_out(options), Step::kPolish));
+  options = {};
+  options.preset = Preset::kPaper;
+  for (const Step step : {Step::kViewpoint, Step::kOutliers, Step::kNoise, Step::kSites, Step::kCoarseStart, Step::kPolish}) {
+    EXPECT_TRUE(contains(steps_left_out(options), step)) << kStepNames[static_cast<std::size_t>(step)];
+  }
+  options = {};
+  options.method = Method::kWnnc;
+  EXPECT_TRUE(contains(steps_left_out(options), Step::kPolish));
+  EXPECT_FALSE(contains(steps_left_out(options), Step::kNoise));  // which its confidence counts
+}
+
 TEST(StartsCoarse, OnlyWhereItIsAskedForAndPointsAreMany) {
   Settings s;
   EXPECT_FALSE(starts_coarse(s, 1'000'000));

@@ -57,7 +57,7 @@ struct Sides {
     }
   }
   HintEffect follow(const Hints& hints) {
-    return follow_hints(points, Neighbours(points).of_all(9), spacing, patches, hints, {normals, eta, confidence});
+    return follow_hints({points, Neighbours(points).of_all(9), spacing, patches, hints, {normals, eta, confidence}});
   }
 };
 

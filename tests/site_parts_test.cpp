@@ -73,6 +73,18 @@ TEST(SiteParts, TestWhatTheyAreGiven) {
   EXPECT_EQ(parts.jump_defects({s.normals}).all.front(), right.jump_defect);
 }
 
+// Many points are thinned for their number, which says nothing of how far the field of a closed surface is at rest.
+TEST(SiteParts, KnowWhetherTheyAreThinnedForNoise) {
+  const PointSet few(shapes::sphere(2000).points);
+  const PointSet many(shapes::sphere(kMostSites + 20000).points);
+  const SiteParts of_few = parts_of(few), of_many = parts_of(many);
+  EXPECT_EQ(of_few.sites().size(), few.size());
+  EXPECT_LT(of_many.sites().size(), many.size());
+  EXPECT_FALSE(of_few.thinned_for_noise());
+  EXPECT_FALSE(of_many.thinned_for_noise());
+  EXPECT_TRUE(SiteParts(few, few.spacing(), sum_plan(1e-2, few.size()), nullptr).thinned_for_noise());
+}
+
 // Sites are two standard deviations of the noise apart, and no more than 200,000, which many points are farther apart for.
 TEST(SiteDistance, FollowsTheNoiseAndTheNumberOfPoints) {
   EXPECT_EQ(site_distance(1000, 0.01, 0), 0);

@@ -77,5 +77,24 @@ TEST(SolveParts, IsOneSolveWhereNothingDisturbs) {
   }
 }
 
+// What is not solved for again has converged only if the solve of everything has.
+TEST(SolveParts, DoNotConvergeByBeingLeftAlone) {
+  Options options;
+  options.without = "outliers,more-steps";
+  options.schedule = "1 cg";
+  options.tolerance = 1e-9;
+  const Problem problem = problems::prepared(sphere_above_ground(25, 0.5).points, options);
+  const Monitor monitor;
+  Stages stages(monitor);
+  Stats stats;
+  const Solution found = solve_parts(problem, options, stages, stats);
+  std::size_t open = 0;
+  for (std::size_t i = 0; i < problem.cloud.size(); ++i) open += found.open_surfaces.is_open(i) ? 1 : 0;
+  ASSERT_GT(open, 0U);
+  ASSERT_LT(open, problem.cloud.size());
+  EXPECT_EQ(stats.iterations.size(), 1U);  // nothing was solved for again
+  EXPECT_FALSE(stats.converged);
+}
+
 }  // namespace
 }  // namespace g3r

@@ -51,5 +51,13 @@ TEST(SolveOnSites, ScanLinesOfASphereFaceOutwards) {
   EXPECT_NEAR(area * world, 4 * std::numbers::pi, 0.2 * 4 * std::numbers::pi);  // that of every site is shared by its points
 }
 
+// The method that is taken by itself, named, is the same run.
+TEST(SolveOnSites, IsPartOfTheMethodThatIsNamed) {
+  const std::vector<Vec3> points = circles(20).points;
+  Options named;
+  named.method = Method::kEnergy;
+  EXPECT_EQ(orient(points, named).normals, orient(points).normals);
+}
+
 }  // namespace
 }  // namespace g3r

@@ -93,8 +93,8 @@ void apply_hints(const Problem& problem, const Options& options, Solution& solut
   }
   HintEffect effect;
   if (vote(hints) || hints.flip) {
-    effect = follow_hints(problem.cloud.points(), problem.cloud.set.near(), problem.spacing, patches, hints,
-                          {solution.refinement.normals, solution.eta, confidence}, cancel);
+    const SidedPoints sided{solution.refinement.normals, solution.eta, confidence};
+    effect = follow_hints({problem.cloud.points(), problem.cloud.set.near(), problem.spacing, patches, hints, sided}, cancel);
   }
   const double turned = share(effect.turned);
   stats.hints.turned_share = hints.flip ? 1 - turned : turned;

@@ -90,7 +90,7 @@ Oriented assess(const Problem& problem, Solution solution, Stats& stats) {
     out.about_walls = excess_about_walls(problem.cloud.set, out.solution.refinement.normals, problem.noise, problem.spacing);
   }
   const bool hides_walls = out.about_walls.is_two_walls();
-  if (!contains(problem.settings.without, Step::kCertificate)) {
+  if (runs(problem, Step::kCertificate)) {
     certify_sides(surfaces, hides_walls, out.confidence);
     limit_to_evidence(problem.cloud.size(), out.confidence);
   }

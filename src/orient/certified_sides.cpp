@@ -42,7 +42,7 @@ std::vector<float> certified_sides(const SiteParts& parts, const Certificate& ce
   const std::vector<double> unrest = parts.means(certificate.unrest);
   const std::vector<Vec3> mean = at_sites(parts.sites(), normals);
   const std::vector<double> one_way = exact ? std::vector<double>{} : concentration(parts.sites(), normals);
-  const bool is_thinned = parts.sites().distance > 0;
+  const bool is_thinned = parts.thinned_for_noise();
   std::vector<float> out(normals.size(), 0);
   for (std::size_t i = 0; i < normals.size(); ++i) {
     const std::uint32_t s = parts.sites().site_of[i];

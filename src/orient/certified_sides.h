@@ -14,7 +14,7 @@ namespace g3r {
 
 /// Mean unrest (Certificate::unrest) of a part that is open: closed ones have up to 0.06, open ones 0.1 to 0.3.
 inline constexpr double kUnrest = 0.08;
-/// The same where noise hides thin walls, whose field is open in places.
+/// The same where sites are thinned for noise (SiteParts::thinned_for_noise()): it hides thin walls, whose field is open in places.
 inline constexpr double kUnrestNoisy = 0.2;
 
 /// Of every site, how far the normals of its points and of those of the 8 sites around it are one direction: the length of their mean (the

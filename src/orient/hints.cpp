@@ -25,20 +25,19 @@ void require_finite(const std::vector<Vec3>& places, const std::string& name) {
 
 }  // namespace
 
-HintEffect follow_hints(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near, double spacing, const Patches& patches,
-                        const Hints& hints, const SidedPoints& sided, const std::atomic<bool>* cancel) {
-  if (!has_any(hints) || points.empty()) return {};
-  const HintedCloud cloud{points, near, spacing, patches, hints, sided};
-  Voters voters(points, hints);
+HintEffect follow_hints(const HintedCloud& cloud, const std::atomic<bool>* cancel) {
+  const std::size_t count = cloud.points.size();
+  if (!has_any(cloud.hints) || count == 0) return {};
+  Voters voters(cloud.points, cloud.hints);
   HintEffect effect;
-  effect.decided.assign(points.size(), 0);
-  effect.turned.assign(points.size(), 0);
+  effect.decided.assign(count, 0);
+  effect.turned.assign(count, 0);
   decide_patches(cloud, voters, effect);
   judge_closed_parts(cloud, voters, effect, cancel);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if ((effect.turned[i] != 0) == hints.flip) continue;
-    sided.normals[i] = vector::scale(sided.normals[i], -1);
-    sided.eta[i] = vector::scale(sided.eta[i], -1);
+  for (std::size_t i = 0; i < count; ++i) {
+    if ((effect.turned[i] != 0) == cloud.hints.flip) continue;
+    cloud.sided.normals[i] = vector::scale(cloud.sided.normals[i], -1);
+    cloud.sided.eta[i] = vector::scale(cloud.sided.eta[i], -1);
   }
   return effect;
 }

@@ -32,8 +32,8 @@ struct SidedPoints {
   std::vector<float>& confidence;  ///< N
 };
 
-/// What hints are followed for: points, their Neighbours::of_all(k) (empty: patches have no pieces), their spacing, and what is known of
-/// their sides. All but the spacing is kept by reference.
+/// What hints are followed for: points, their Neighbours::of_all(k) (empty: patches have no pieces), their spacing, for the winding number,
+/// and what is known of their sides. All but the spacing is kept by reference.
 struct HintedCloud {
   const std::vector<Vec3>& points;
   const std::vector<std::uint32_t>& near;
@@ -52,15 +52,12 @@ struct HintEffect {
   std::optional<Vec3> inside_that_is_outside;  ///< of Hints::inside, one that no closed part encloses although there are such parts
 };
 
-/// Follows the hints, given in the coordinates of the points, `sensor_of_point` in their order: patches take the side that most of the
-/// votes of their points are for (decide_patches()), and closed parts, which have one side, are turned where they surround the sensors
-/// (judge_closed_parts()). Then turns the normals and area vectors of the points that this turns, and by `flip` those of all others
-/// instead. `near`: Neighbours::of_all(k), or empty: patches have no pieces; `spacing`: of the points, for the winding number. O(N
-/// log(sensors) + N k), O(N) for each of at most 500 sensors, and all sensors for each open point that none of them sees from the front.
-/// Throws Cancelled.
-[[nodiscard]] HintEffect follow_hints(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near, double spacing,
-                                      const Patches& patches, const Hints& hints, const SidedPoints& sided,
-                                      const std::atomic<bool>* cancel = nullptr);
+/// Follows the hints of a cloud, given in the coordinates of its points, `sensor_of_point` in their order: patches take the side that most
+/// of the votes of their points are for (decide_patches()), and closed parts, which have one side, are turned where they surround the
+/// sensors (judge_closed_parts()). Then turns the normals and area vectors of the points that this turns, and by `flip` those of all others
+/// instead. O(N log(sensors) + N k), O(N) for each of at most 500 sensors, and all sensors for each open point that none of them sees from
+/// the front. Throws Cancelled.
+[[nodiscard]] HintEffect follow_hints(const HintedCloud& cloud, const std::atomic<bool>* cancel = nullptr);
 
 /// Throws InvalidInput for hints that cannot be meant for `count` points: a vector that is not finite, a direction of no length, a number
 /// of a sensor that there is not.

@@ -23,9 +23,8 @@ constexpr std::size_t kFewPoints = 2500;
 bool may_try_noises(const Problem& problem, const Options& options) {
   const bool on_points = problem.line_distance == 0;  // sites have a noise of their own
   const bool sides_known = problem.cloud.set.views().known();
-  return on_points && !sides_known && problem.settings.method == Method::kEnergy && options.preset != Preset::kPaper &&
-         options.epsilon.unit == Length::Unit::kAuto && options.noise.unit == Length::Unit::kAuto && options.schedule.empty() &&
-         !contains(problem.settings.without, Step::kNoise) && !contains(problem.settings.without, Step::kNoiseChoice);
+  return on_points && !sides_known && options.epsilon.unit == Length::Unit::kAuto && options.noise.unit == Length::Unit::kAuto &&
+         options.schedule.empty() && runs(problem, Step::kNoise) && runs(problem, Step::kNoiseChoice);
 }
 
 }  // namespace

@@ -40,8 +40,8 @@ std::vector<std::uint32_t> solved_points(const Solution& solution) {
 bool is_projected(const Problem& problem) {
   const double left = projected_noise(problem.noise, problem.spacing);
   const bool halves_variance = 2 * left * left <= problem.noise * problem.noise;
-  const bool on_points = !problem.baseline && problem.line_distance == 0 && problem.settings.polish.steps > 0;
-  return problem.noise > 0 && on_points && halves_variance && runs(problem, Step::kProjection);
+  const bool on_points = problem.line_distance == 0;
+  return problem.noise > 0 && on_points && halves_variance && runs(problem, Step::kPolish) && runs(problem, Step::kProjection);
 }
 
 bool polish_projected(const Problem& problem, const Options& options, Stages& stages, Solution& solution) {
@@ -88,7 +88,7 @@ bool polish_projected(const Problem& problem, const Options& options, Stages& st
 
 void fit_noisy_surface(const Problem& problem, Stages& stages, Solution& solution) {
   const double noise = std::max(problem.noise, problem.view_noise);
-  if (problem.baseline || noise == 0 || problem.settings.polish.steps == 0 || !runs(problem, Step::kNoisyJets)) return;
+  if (noise == 0 || !runs(problem, Step::kPolish) || !runs(problem, Step::kNoisyJets)) return;
   fit_noisy_jets(problem.cloud.set, noise, problem.known.wanted, solution.refinement.normals, stages.cancel());
   std::vector<std::uint8_t> none(problem.cloud.size(), 0);
   if (problem.noise > 0 && problem.scatter > 0 && runs(problem, Step::kPlanes))

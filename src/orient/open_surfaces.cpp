@@ -29,6 +29,13 @@ bool any(const std::vector<std::uint8_t>& parts) {
   return std::any_of(parts.begin(), parts.end(), [](std::uint8_t part) { return part != 0; });
 }
 
+// What the field of the given normals says of the sites, and in the mean of every part.
+struct Given {
+  Certificate of_sites;
+  std::vector<double> unrest;
+  std::vector<double> defect;
+};
+
 // What is known of every part.
 struct Verdict {
   std::vector<std::vector<std::uint32_t>> restless;  // the sites where its field is not that of a closed surface: all, or those of pieces
@@ -41,10 +48,9 @@ struct Verdict {
   std::vector<double> enclosure;             // of the best
 };
 
-// From the field of the given normals, unrest and jump defects being means of the parts. A part that is closed but for a place may be open
-// all the same, as an object is that stands on a table.
-Verdict suspect(const SiteParts& parts, const Certificate& given, const std::vector<double>& unrest, const std::vector<double>& defect,
-                double noise) {
+// From the field of the given normals. A part that is closed but for a place may be open all the same, as an object is that stands on a
+// table.
+Verdict suspect(const SiteParts& parts, const Given& given, double noise) {
   const std::size_t count = parts.count();
   const std::vector<std::uint8_t> none(count, 0);
   Verdict verdict{std::vector<std::vector<std::uint32_t>>(count),
@@ -58,24 +64,24 @@ Verdict suspect(const SiteParts& parts, const Certificate& given, const std::vec
   for (std::uint32_t p = 0; p < count; ++p) {
     const std::vector<std::uint32_t>& part = parts.members(p);
     if (part.size() < kFewestSites) continue;
-    if (unrest[p] <= kUnrest && defect[p] <= (noise > 0 ? kNoJumpNoisy : kNoJump)) {
-      verdict.restless[p] = restless_pieces(parts, p, given.unrest, noise);
+    if (given.unrest[p] <= kUnrest && given.defect[p] <= (noise > 0 ? kNoJumpNoisy : kNoJump)) {
+      verdict.restless[p] = restless_pieces(parts, p, given.of_sites.unrest, noise);
       verdict.is_open[p] = verdict.restless[p].empty() ? 0 : 1;
       continue;
     }
     verdict.restless[p] = part;
-    verdict.is_open[p] = on_two_walls(parts.set(), parts.sites(), part, noise, given.unrest) ? 0 : 1;
-    verdict.is_doubtful[p] = verdict.is_open[p] == 0 && unrest[p] > kUnrest ? 1 : 0;
+    verdict.is_open[p] = on_two_walls(parts.set(), parts.sites(), part, noise, given.of_sites.unrest) ? 0 : 1;
+    verdict.is_doubtful[p] = verdict.is_open[p] == 0 && given.unrest[p] > kUnrest ? 1 : 0;
   }
   return verdict;
 }
 
 // The best hypothesis of every part. Where unrest alone does not decide it has to be shown to be better than what was given, where that is
 // restless; else nothing is certain, if the part is not at rest either.
-void choose_hypotheses(const SiteParts& parts, const std::vector<std::vector<Vec3>>& tried, const Certificate& given,
-                       const std::vector<double>& unrest, const std::vector<double>& defect, double noise, Verdict& verdict) {
+void choose_hypotheses(const SiteParts& parts, const std::vector<std::vector<Vec3>>& tried, const Given& given, double noise,
+                       Verdict& verdict) {
   JumpDefects defects = parts.jump_defects(tried);
-  std::vector<double> least(unrest.size(), HUGE_VAL);
+  std::vector<double> least(parts.count(), HUGE_VAL);
   for (std::size_t h = 0; h < tried.size(); ++h) {
     const std::vector<double> all = parts.means(defects.all[h]);
     const std::vector<double> own = parts.means(defects.own[h]);
@@ -89,26 +95,27 @@ void choose_hypotheses(const SiteParts& parts, const std::vector<std::vector<Vec
   verdict.defects = std::move(defects.all);
   for (std::size_t h = 0; h < tried.size(); ++h) {
     const std::vector<Vec3> normals = at_sites(parts.sites(), tried[h]);
-    for (std::uint32_t p = 0; p < unrest.size(); ++p) {
+    for (std::uint32_t p = 0; p < parts.count(); ++p) {
       if (verdict.is_open[p] != 0 && verdict.best[p] == h) verdict.enclosure[p] = parts.enclosure(parts.members(p), normals);
     }
   }
-  const double most_unrest = parts.sites().distance > 0 ? kUnrestNoisy : kUnrest;
-  for (std::size_t p = 0; p < unrest.size(); ++p) {
+  const double most_unrest = parts.thinned_for_noise() ? kUnrestNoisy : kUnrest;
+  for (std::size_t p = 0; p < parts.count(); ++p) {
     if (verdict.is_open[p] == 0) continue;
     const std::vector<std::uint32_t>& restless = verdict.restless[p];
-    const bool is_shown = is_shown_better(mean_over(restless, verdict.defects[verdict.best[p]]), mean_over(restless, given.jump_defect));
-    const bool is_better = unrest[p] > most_unrest || is_shown;
+    const bool is_shown =
+        is_shown_better(mean_over(restless, verdict.defects[verdict.best[p]]), mean_over(restless, given.of_sites.jump_defect));
+    const bool is_better = given.unrest[p] > most_unrest || is_shown;
     // Noise makes one wall of two: what encloses nearly everything is a closed surface whose thin parts it hides. So is what is at rest but
     // for a place.
     const bool in_pieces = restless.size() < parts.members(p).size();
     const bool is_enclosed = (noise > 0 || in_pieces) && std::abs(verdict.enclosure[p]) >= kEncloses;
     if (is_better && !is_enclosed) continue;
     verdict.is_open[p] = 0;
-    verdict.is_doubtful[p] = unrest[p] > kUnrest ? 1 : 0;
+    verdict.is_doubtful[p] = given.unrest[p] > kUnrest ? 1 : 0;
     // What encloses little has no outside that tells which way to turn it.
     const bool has_outside = std::abs(verdict.enclosure[p]) >= kEncloses;
-    verdict.is_turned[p] = verdict.is_doubtful[p] != 0 && has_outside && verdict.defect[p] < defect[p] ? 1 : 0;
+    verdict.is_turned[p] = verdict.is_doubtful[p] != 0 && has_outside && verdict.defect[p] < given.defect[p] ? 1 : 0;
   }
 }
 
@@ -167,30 +174,26 @@ std::vector<std::uint32_t> points_of(const SiteParts& parts, const std::vector<s
   return some;
 }
 
-// Looks at some of the points without the others, which are closed.
-void find_among(const std::vector<std::uint32_t>& some, const PointSet& set, double noise, const SumPlan& sums,
-                const std::atomic<bool>* cancel, std::vector<Vec3>& normals, OpenSurfaces& found) {
-  std::vector<Vec3> sides = values_at(some, normals);
-  const OpenSurfaces here = find_open_surfaces(PointSet(values_at(some, set.points())), noise, sums, sides, cancel);
-  if (!here.part.empty() && found.part.empty()) {
-    found.part.assign(set.size(), OpenSurfaces::kNone);
-    found.certainty.assign(set.size(), 1);
-    found.agrees.assign(set.size(), 0);
-    found.held.assign(set.size(), 1);
+}  // namespace
+
+void OpenSurfaces::put(const std::vector<std::uint32_t>& some, const OpenSurfaces& here) {
+  const std::size_t count = certified.size();
+  if (part.empty() && !here.part.empty()) {
+    part.assign(count, kNone);
+    certainty.assign(count, 1);
+    agrees.assign(count, 0);
+    held.assign(count, 1);
   }
   for (std::size_t k = 0; k < some.size(); ++k) {
     const std::uint32_t i = some[k];
-    normals[i] = sides[k];
-    found.certified[i] = here.certified[k];
-    if (here.part.empty()) continue;
-    found.part[i] = here.part[k] == OpenSurfaces::kNone ? OpenSurfaces::kNone : some[here.part[k]];
-    found.certainty[i] = here.certainty[k];
-    found.agrees[i] = here.agrees[k];
-    found.held[i] = here.held[k];
+    certified[i] = here.certified[k];
+    if (part.empty()) continue;
+    part[i] = here.is_open(k) ? some[here.part[k]] : kNone;
+    certainty[i] = here.part.empty() ? 1 : here.certainty[k];
+    agrees[i] = here.part.empty() ? 0 : here.agrees[k];
+    held[i] = here.part.empty() ? 1 : here.held[k];
   }
 }
-
-}  // namespace
 
 double unsure_share(const OpenSurfaces& surfaces, const std::vector<float>& confidence) {
   std::size_t unsure = 0;
@@ -210,22 +213,22 @@ OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan
     return unknown;
   }
   const SiteParts parts(set, noise, sums, cancel);
-  const Certificate given = parts.test(normals);
-  const std::vector<double> unrest = parts.means(given.unrest);
-  const std::vector<double> defect = parts.means(given.jump_defect);
-  Verdict verdict = suspect(parts, given, unrest, defect, noise);
+  Given given{parts.test(normals), {}, {}};
+  given.unrest = parts.means(given.of_sites.unrest);
+  given.defect = parts.means(given.of_sites.jump_defect);
+  Verdict verdict = suspect(parts, given, noise);
   const std::vector<std::uint32_t> suspects = points_of(parts, verdict.is_open);
   const bool are_some = !suspects.empty() && suspects.size() < set.size();
   if (are_some) std::fill(verdict.is_open.begin(), verdict.is_open.end(), std::uint8_t{0});
   std::vector<Vec3> best;
   if (any(verdict.is_open)) {
     const std::vector<std::vector<Vec3>> tried = sides_by_agreement(set, parts.sites(), sums, cancel);
-    choose_hypotheses(parts, tried, given, unrest, defect, noise, verdict);
+    choose_hypotheses(parts, tried, given, noise, verdict);
     best = best_of(parts, tried, verdict);
   }
   const bool are_turned = any(verdict.is_turned);
   if (are_turned) turn_doubtful(parts, best, verdict, normals);
-  std::vector<float> shown = certified_sides(parts, are_turned ? parts.test(normals) : given, normals, noise == 0);
+  std::vector<float> shown = certified_sides(parts, are_turned ? parts.test(normals) : given.of_sites, normals, noise == 0);
   OpenSurfaces found;
   if (any(verdict.is_open) || any(verdict.is_doubtful)) {
     const std::vector<Vec3> wide = best.empty() ? best : seen_from_afar(set, parts.sites(), best, sums, cancel);
@@ -234,7 +237,10 @@ OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan
     found.certified = std::move(shown);
   }
   found.uncertified = noise == 0 ? kUndecided : 0;
-  if (are_some) find_among(suspects, set, noise, sums, cancel, normals, found);
+  if (!are_some) return found;
+  std::vector<Vec3> sides = values_at(suspects, normals);  // of the suspects without the others, which are closed
+  found.put(suspects, find_open_surfaces(PointSet(values_at(suspects, set.points())), noise, sums, sides, cancel));
+  for (std::size_t k = 0; k < suspects.size(); ++k) normals[suspects[k]] = sides[k];
   return found;
 }
 

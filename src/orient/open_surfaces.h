@@ -28,6 +28,9 @@ struct OpenSurfaces {
 
   /// Whether point i lies on an open surface; also of points beyond N, such as outliers, which do not.
   [[nodiscard]] bool is_open(std::size_t i) const { return i < part.size() && part[i] != kNone; }
+
+  /// Takes what was found for some of the N points (ascending) without the others.
+  void put(const std::vector<std::uint32_t>& some, const OpenSurfaces& here);
 };
 
 /// The equations are true of the boundary of a solid. A surface without an inside (terrain, one depth frame, a dental arch) satisfies them

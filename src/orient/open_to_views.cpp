@@ -36,8 +36,9 @@ void open_to_views(const Views& views, const std::vector<Vec3>& points, OpenSurf
 }
 
 bool is_seen_in_noise(const Problem& problem) {
-  const bool is_ours = problem.settings.method == Method::kEnergy && problem.line_distance == 0 && problem.settings.polish.steps > 0;
-  return is_ours && problem.cloud.set.views().known() && problem.view_noise > noise_of_clean_widths() * problem.spacing;
+  const bool is_ours = problem.settings.method == Method::kEnergy && problem.line_distance == 0;
+  return is_ours && runs(problem, Step::kPolish) && problem.cloud.set.views().known() &&
+         problem.view_noise > noise_of_clean_widths() * problem.spacing;
 }
 
 Solution solve_by_sight(const Problem& problem, Stages& stages, Stats& stats) {

@@ -25,7 +25,7 @@ void choose_scales(Problem& problem, const Options& options) {
 
 void choose_scales_and_scatter(Problem& problem, const Options& options) {
   choose_scales(problem, options);
-  const bool fits_planes = problem.settings.polish.steps > 0 && !contains(problem.settings.without, Step::kPlanes);
+  const bool fits_planes = runs(problem, Step::kPolish) && runs(problem, Step::kPlanes);
   if (fits_planes) problem.scatter = facet_scatter(problem.cloud.set);
 }
 
@@ -82,13 +82,12 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
   stages.begin("build");
   problem.cloud = canonical_cloud(points);
   stages.check();
-  const StepSet without = parse_steps(options.without);
+  const StepSet without = steps_left_out(options);
   const auto known_noise = [&](double spacing) {
     const std::optional<double> given = given_noise(options.noise, problem.cloud, spacing);
-    return given || (options.preset != Preset::kPaper && !contains(without, Step::kNoise)) ? given : 0;
+    return given || !contains(without, Step::kNoise) ? given : 0;
   };
-  const bool own_steps = options.preset != Preset::kPaper && !is_baseline(options.method);
-  bool outliers_wanted = own_steps && !contains(without, Step::kOutliers);
+  bool outliers_wanted = !contains(without, Step::kOutliers);
   std::optional<double> noise;
   while (outliers_wanted) {
     const std::vector<double> relative_spacing = last_in_canonical_order(problem.cloud, known.relative_spacing);
@@ -101,7 +100,7 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
   }
   const auto all = static_cast<double>(problem.cloud.size() + problem.outliers.size());
   problem.outlier_share = static_cast<double>(problem.outliers.size()) / all;
-  if (own_steps && known.gradient.empty() && !contains(without, Step::kViewpoint)) {
+  if (known.gradient.empty() && !contains(without, Step::kViewpoint)) {
     problem.cloud.set.set_views(find_views(problem.cloud, options.hints));
   }
   const PointSet& set = problem.cloud.set;
@@ -116,9 +115,7 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
   } else {
     problem.noise = given ? *given : noise ? *noise : estimate_noise(set);
   }
-  if (options.method == Method::kAuto && options.preset != Preset::kPaper && !contains(without, Step::kSites)) {
-    problem.line_distance = surface_distance(set);
-  }
+  if (!contains(without, Step::kSites)) problem.line_distance = surface_distance(set);
   choose_scales_and_scatter(problem, options);
   if (!options.wnnc_widths.empty() && options.method != Method::kWnnc) throw InvalidInput("wnnc_widths belong to the method wnnc");
   if (is_baseline(options.method)) {
@@ -141,7 +138,7 @@ Problem on_sites(const Problem& problem, const Sites& sites, const Options& opti
   coarse.cloud.set = sites.set;
   coarse.spacing = sites.set.spacing();
   const std::optional<double> given = given_noise(options.noise, problem.cloud, problem.spacing);
-  coarse.noise = given ? *given : contains(problem.settings.without, Step::kNoise) ? 0 : estimate_noise(sites.set);
+  coarse.noise = given ? *given : !runs(problem, Step::kNoise) ? 0 : estimate_noise(sites.set);
   choose_scales_and_scatter(coarse, options);
   return coarse;
 }

@@ -29,10 +29,10 @@ struct Problem {
   Settings settings;
 
   /// Whether the points are exact, so that steps follow the local spacing and prove directions from the points alone.
-  [[nodiscard]] bool is_clean() const { return noise == 0 && settings.polish.steps > 0; }
+  [[nodiscard]] bool is_clean() const { return noise == 0 && !contains(settings.without, Step::kPolish); }
   /// Whether the areas that are returned come from the spacing: the solve is for normals, and the lengths of its vectors vary with the
   /// sample. Earlier methods keep theirs.
-  [[nodiscard]] bool replaces_areas() const { return settings.method == Method::kEnergy && !contains(settings.without, Step::kAreas); }
+  [[nodiscard]] bool replaces_areas() const { return !contains(settings.without, Step::kAreas); }
   std::optional<BaselineSettings> baseline;  ///< with the methods wnnc, agr and pgr
 };
 

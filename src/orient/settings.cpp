@@ -1,5 +1,6 @@
 #include "orient/settings.h"
 
+#include "baselines/baseline.h"
 #include "cloud/chance.h"
 #include "cloud/sites.h"
 #include "orient/noise_settings.h"
@@ -10,6 +11,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 
 namespace g3r {
@@ -121,10 +123,10 @@ void choose_steps(const Options& options, bool among_outliers, Settings& s) {
   const bool given = options.tolerance >= 0;
   s.schedule_text = !options.schedule.empty() ? options.schedule : paper ? kPaperSchedule : green ? kGreenSchedule : kEnergySchedule;
   s.schedule = parse_schedule(s.schedule_text);
-  s.coarse_to_fine = !paper && !green && options.schedule.empty() && !contains(s.without, Step::kCoarseStart);
+  s.coarse_to_fine = options.schedule.empty() && !contains(s.without, Step::kCoarseStart);
   s.continued_schedule = {{kFewSteps, StepKind::kConjugateGradient}};
   if (!among_outliers && !contains(s.without, Step::kMoreSteps)) s.doubtful_schedule = {kMoreSteps};
-  s.polish.steps = paper || contains(s.without, Step::kPolish) ? 0 : kPolishSteps;
+  s.polish.steps = contains(s.without, Step::kPolish) ? 0 : kPolishSteps;
   s.tolerance = given ? options.tolerance : paper ? 0 : kTolerance;
   s.accepted_residual = given ? options.tolerance : kAcceptedResidual;
   // Starts, and what starts from them, are no better than their sums.
@@ -141,6 +143,19 @@ void choose_sums(const Options& options, std::size_t points, Settings& s) {
 }
 
 }  // namespace
+
+StepSet steps_left_out(const Options& options) {
+  StepSet out = parse_steps(options.without);
+  const auto leave_out = [&out](std::initializer_list<Step> steps) {
+    for (const Step step : steps) out.set(static_cast<std::size_t>(step));
+  };
+  const bool paper = options.preset == Preset::kPaper;
+  // What others have published stays as it is.
+  if (paper || is_baseline(options.method)) leave_out({Step::kViewpoint, Step::kOutliers, Step::kSites, Step::kPolish, Step::kNoiseChoice});
+  if (paper) leave_out({Step::kNoise, Step::kCoarseStart});
+  if (method_of(options) != Method::kEnergy) leave_out({Step::kSites, Step::kCoarseStart, Step::kNoiseChoice, Step::kAreas});
+  return out;
+}
 
 std::optional<double> given_noise(const Length& noise, const CanonicalCloud& cloud, double spacing) {
   if (noise.unit == Length::Unit::kAuto) return std::nullopt;
@@ -162,7 +177,7 @@ double paper_epsilon(const CanonicalCloud& cloud) {
 Settings choose_settings(const Options& options, const CanonicalCloud& cloud, double spacing, double noise, double outlier_share) {
   require_sound(options);
   Settings s;
-  s.without = parse_steps(options.without);
+  s.without = steps_left_out(options);
   s.spacing = spacing;
   // Clean clouds lose one point, very uneven ones 0.6 %.
   const bool among_outliers = outlier_share > kFalseAlarms;

@@ -43,7 +43,7 @@ struct PolishSettings {
 
 /// Everything orient() needs to know, in normalised units. Values without an option are explained in docs/math.md.
 struct Settings {
-  StepSet without;  ///< steps that are left out
+  StepSet without;  ///< steps_left_out()
   Method method = Method::kEnergy;
   bool dense = false;
   std::vector<Harmonic> harmonics;  ///< green only
@@ -70,6 +70,9 @@ struct Settings {
   SumPlan first_sums;              ///< of the solve from eta = 0
   SumPlan sums;                    ///< of everything after it
 };
+
+/// The steps that a run is without: those that options leave out, and those that a method or a preset has not. Throws InvalidInput.
+[[nodiscard]] StepSet steps_left_out(const Options& options);
 
 /// The noise of options in the cloud's frame, if it is given. Throws InvalidInput below 0.
 [[nodiscard]] std::optional<double> given_noise(const Length& noise, const CanonicalCloud& cloud, double spacing);

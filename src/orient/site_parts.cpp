@@ -28,7 +28,11 @@ double site_distance(std::size_t points, double spacing, double noise) {
 }
 
 SiteParts::SiteParts(const PointSet& set, double noise, const SumPlan& sums, const std::atomic<bool>* cancel)
-    : set_(set), sums_(sums), cancel_(cancel), sites_(place_sites(set, site_distance(set.size(), set.spacing(), noise))) {
+    : set_(set),
+      sums_(sums),
+      cancel_(cancel),
+      sites_(place_sites(set, site_distance(set.size(), set.spacing(), noise))),
+      thinned_for_noise_(site_distance(0, set.spacing(), noise) > 0) {
   DisjointSets parts(sites_.size());
   for (const SignEdge& edge : adjacent_sites(sites_)) parts.join(edge.a, edge.b);
   std::vector<std::uint32_t> number(sites_.size(), 0);

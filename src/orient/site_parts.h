@@ -36,6 +36,8 @@ class SiteParts {
 
   [[nodiscard]] const PointSet& set() const { return set_; }
   [[nodiscard]] const Sites& sites() const { return sites_; }
+  /// Whether the sites are fewer than the points for the sake of the noise, whatever the number of points.
+  [[nodiscard]] bool thinned_for_noise() const { return thinned_for_noise_; }
   [[nodiscard]] std::size_t count() const { return members_.size(); }
   /// The sites of a part, ascending.
   [[nodiscard]] const std::vector<std::uint32_t>& members(std::size_t part) const { return members_[part]; }
@@ -59,6 +61,7 @@ class SiteParts {
   SumPlan sums_;
   const std::atomic<bool>* cancel_;
   Sites sites_;
+  bool thinned_for_noise_;
   std::vector<std::uint32_t> part_;                  // of every site
   std::vector<std::vector<std::uint32_t>> members_;  // the sites of every part
   std::vector<double> reach_;                        // of every site: half the side of that square

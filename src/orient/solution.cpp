@@ -91,7 +91,7 @@ Solution solve_on_points(const Problem& problem, const Options& options, Stages&
   const PointSet& set = problem.cloud.set;
   Solution solution = solve_equations(problem, options, stages, stats);
   if (s.refinement_width.typical() == 0) solution.refinement.normals = normalised(solution.eta);
-  if (s.polish.steps == 0) return solution;
+  if (!runs(problem, Step::kPolish)) return solution;
   std::vector<Vec3>().swap(solution.eta);  // the polish starts from the refinement
   Polished polished = polish(polish_cloud(problem, options), s, std::move(solution.refinement), stages);
   solution = {std::move(polished.eta), std::move(polished.refinement), {}};

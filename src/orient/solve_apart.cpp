@@ -35,54 +35,78 @@ double winding_of_others(const Problem& problem, const std::vector<std::uint32_t
   return sum / static_cast<double>(here.size());
 }
 
-// Solves for some points (ascending) without the others, unless the sums do not show that these take part in their equations. An open
-// surface that is one by itself too stays as it is. Returns false if what it took did not converge.
-bool solve_apart(const Problem& problem, const std::vector<std::uint32_t>& some, bool is_open, const Options& options, Stages& stages,
-                 Stats& stats, Solution& solution) {
-  if (some.size() < kFewestSites || winding_of_others(problem, some, solution.eta, stages) <= kContinuedAccuracy) return true;
-  const Solution apart = solve(part_of(problem, some, options), options, stages, stats);
-  if (is_open && !apart.open_surfaces.part.empty()) return true;
-  for (std::size_t k = 0; k < some.size(); ++k) {
-    const std::uint32_t i = some[k];
-    solution.eta[i] = apart.eta[k];
-    solution.refinement.normals[i] = apart.refinement.normals[k];
-    solution.refinement.strength[i] = apart.refinement.strength[k];
-    solution.open_surfaces.certified[i] = apart.open_surfaces.certified[k];
-    const bool open = !apart.open_surfaces.part.empty() && apart.open_surfaces.part[k] != OpenSurfaces::kNone;
-    solution.open_surfaces.part[i] = open ? some[apart.open_surfaces.part[k]] : OpenSurfaces::kNone;
-    solution.open_surfaces.certainty[i] = apart.open_surfaces.certainty.empty() ? 1 : apart.open_surfaces.certainty[k];
-    solution.open_surfaces.agrees[i] = apart.open_surfaces.agrees.empty() ? 0 : apart.open_surfaces.agrees[k];
-    solution.open_surfaces.held[i] = apart.open_surfaces.held.empty() ? 1 : apart.open_surfaces.held[k];
-  }
-  return stats.converged;
-}
+// Replaces a solution of all points, part by part.
+class SolvedApart {
+ public:
+  SolvedApart(const Problem& problem, const Options& options, Stages& stages, Stats& stats, Solution& solution)
+      : problem_(problem), options_(options), stages_(stages), stats_(stats), solution_(solution), all_converged_(stats.converged) {}
 
-void solve_open_surfaces_apart(const Problem& problem, const Options& options, Stages& stages, Stats& stats, Solution& solution) {
-  std::map<std::uint32_t, std::vector<std::uint32_t>> parts;
-  const auto collect = [&] {
-    parts.clear();
-    for (std::uint32_t i = 0; i < solution.open_surfaces.part.size(); ++i) parts[solution.open_surfaces.part[i]].push_back(i);
-  };
-  collect();
-  if (parts.size() < 2) return;  // no open surface, or one that is all there is
-  bool converged = true;         // what is open does not solve the equations, and does not have to
-  for (const auto& [surface, points] : parts) {
-    // What encloses nothing is not closed by itself either.
-    const bool may_be_closed = surface != OpenSurfaces::kNone && solution.open_surfaces.certainty[surface] > kUndecided;
-    if (may_be_closed) converged &= solve_apart(problem, points, true, options, stages, stats, solution);
+  void run() {
+    std::map<std::uint32_t, std::vector<std::uint32_t>> parts = by_surface();
+    if (parts.size() < 2) return;  // no open surface, or one that is all there is
+    for (const auto& [surface, points] : parts) {
+      // What encloses nothing is not closed by itself either.
+      if (surface != OpenSurfaces::kNone && solution_.open_surfaces.certainty[surface] > kUndecided) solve_open(points);
+    }
+    parts = by_surface();
+    stats_.converged = parts.count(OpenSurfaces::kNone) == 0 || closed_converged(parts[OpenSurfaces::kNone]);
   }
-  collect();
-  if (parts.size() > 1 && parts.count(OpenSurfaces::kNone) > 0) {
-    converged &= solve_apart(problem, parts[OpenSurfaces::kNone], false, options, stages, stats, solution);
+
+ private:
+  // The points of every open surface, and of everything else, ascending.
+  [[nodiscard]] std::map<std::uint32_t, std::vector<std::uint32_t>> by_surface() const {
+    std::map<std::uint32_t, std::vector<std::uint32_t>> parts;
+    const std::vector<std::uint32_t>& part = solution_.open_surfaces.part;
+    for (std::uint32_t i = 0; i < part.size(); ++i) parts[part[i]].push_back(i);
+    return parts;
   }
-  stats.converged = converged;
-}
+
+  // Whether the others take part in the equations of some points, as far as the sums show it.
+  [[nodiscard]] bool are_disturbed(const std::vector<std::uint32_t>& some) const {
+    return some.size() >= kFewestSites && winding_of_others(problem_, some, solution_.eta, stages_) > kContinuedAccuracy;
+  }
+
+  // One that is open by itself too stays as it is.
+  void solve_open(const std::vector<std::uint32_t>& some) {
+    if (!are_disturbed(some)) return;
+    const Solution apart = solve(part_of(problem_, some, options_), options_, stages_, stats_);
+    if (!apart.open_surfaces.part.empty()) return;
+    found_closed_ &= stats_.converged;
+    take(some, apart);
+  }
+
+  // What is closed, and that is all of `some`, has to solve the equations.
+  bool closed_converged(const std::vector<std::uint32_t>& some) {
+    if (some.size() == problem_.cloud.size()) return found_closed_;
+    if (!are_disturbed(some)) return found_closed_ && all_converged_;
+    take(some, solve(part_of(problem_, some, options_), options_, stages_, stats_));
+    return stats_.converged;
+  }
+
+  void take(const std::vector<std::uint32_t>& some, const Solution& apart) {
+    for (std::size_t k = 0; k < some.size(); ++k) {
+      const std::uint32_t i = some[k];
+      solution_.eta[i] = apart.eta[k];
+      solution_.refinement.normals[i] = apart.refinement.normals[k];
+      solution_.refinement.strength[i] = apart.refinement.strength[k];
+    }
+    solution_.open_surfaces.put(some, apart.open_surfaces);
+  }
+
+  const Problem& problem_;
+  const Options& options_;
+  Stages& stages_;
+  Stats& stats_;
+  Solution& solution_;
+  bool all_converged_;        // the solve of everything
+  bool found_closed_ = true;  // and those of parts that looked open
+};
 
 }  // namespace
 
 Solution solve_parts(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
   Solution solution = solve(problem, options, stages, stats);
-  if (runs(problem, Step::kApart)) solve_open_surfaces_apart(problem, options, stages, stats, solution);
+  if (runs(problem, Step::kApart)) SolvedApart(problem, options, stages, stats, solution).run();
   return solution;
 }
 
