@@ -1,8 +1,9 @@
 #include <g3r/names.h>
 
-#include <charconv>
 #include <cmath>
 #include <system_error>
+
+#include "io/float_text.h"
 
 namespace g3r {
 
@@ -10,7 +11,7 @@ std::optional<Length> parse_length(std::string_view text) {
   if (text == "auto") return Length{};
   Length length;
   const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, length.value);
+  const auto [rest, error] = io::number_from_chars(text.data(), end, length.value);
   if (error != std::errc() || !std::isfinite(length.value) || length.value < 0) return std::nullopt;
   const auto unit = parse<Length::Unit>(std::string_view(rest, static_cast<std::size_t>(end - rest)));
   if (!unit) return std::nullopt;
@@ -24,7 +25,7 @@ std::optional<Vec3> parse_vector(std::string_view text) {
   const char* const end = at + text.size();
   for (std::size_t a = 0; a < 3; ++a) {
     if (a > 0 && (at == end || *at++ != ',')) return std::nullopt;
-    const auto [rest, error] = std::from_chars(at, end, vector[a]);
+    const auto [rest, error] = io::number_from_chars(at, end, vector[a]);
     if (error != std::errc() || !std::isfinite(vector[a])) return std::nullopt;
     at = rest;
   }

@@ -11,6 +11,8 @@ SOURCES = ROOT / "src"
 OF_A_SYSTEM = re.compile(r"^#include <((?:arpa|linux|mach|net|netinet|sys)/.*|csignal|signal\.h|dirent\.h|dlfcn\.h|fcntl\.h|ftw\.h|glob\.h|io\.h|langinfo\.h|"
                          r"malloc\.h|poll\.h|psapi\.h|pthread\.h|pwd\.h|sched\.h|share\.h|shellapi\.h|spawn\.h|termios\.h|unistd\.h|windows\.h)>", re.MULTILINE)
 FOR_A_SYSTEM = re.compile(r"_(posix|windows)\.cpp$")
+# Where the standard library's functions take integers alone: the browsers' one has them for no others (io/float_text.h is for those).
+OF_INTEGERS = {"io/float_text.h", "io/text.h", "io/text.cpp", "io/xml.cpp", "io/float_text.cpp", "solve/harmonics.cpp", "sum/device_scope.cpp"}
 ENTRY = "src"  # files of src/ itself: the public entry points, which may use every folder
 
 
@@ -73,6 +75,15 @@ class SourceFolders(unittest.TestCase):
     def test_headers_of_an_operating_system_stay_in_its_sources(self):
         self.assertEqual(OF_A_SYSTEM.findall("#include <sys/stat.h>\n#include <unistd.h>\n#include <system_error>\n"), ["sys/stat.h", "unistd.h"])
         self.assertEqual(strayed(), [])
+
+    def test_numbers_as_text_go_through_one_source(self):
+        found = {path.relative_to(SOURCES).as_posix() for path in SOURCES.rglob("*.*") if path.suffix in (".h", ".cpp")
+                 and re.search(r"std::(from|to)_chars\(", path.read_text())}
+        self.assertEqual(sorted(found - OF_INTEGERS), [])
+
+    def test_no_comparison_is_left_to_standard_containers(self):  # of which the browsers' standard library has no operator<=>
+        found = [path.name for path in SOURCES.rglob("*.h") if re.search(r"operator<=>\([^)]*\) const = default", path.read_text())]
+        self.assertEqual(found, [])
 
     def test_a_circle_is_found(self):
         graph = {"a": {"b": "a/1 includes b/2"}, "b": {"c": "b/2 includes c/3"}, "c": {"b": "c/3 includes b/1"}}

@@ -5,7 +5,6 @@
 #include "tiles/mesh_plan.h"
 #include "tiles/records.h"
 
-#include <compare>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -47,7 +46,8 @@ static_assert(sizeof(CornerValue) == 12);
 /// arc: the lesser and the greater leaf, 1 + the lesser edge.
 struct VertexKey {
   std::array<std::uint64_t, 3> part;
-  auto operator<=>(const VertexKey&) const = default;
+  bool operator==(const VertexKey&) const = default;
+  bool operator<(const VertexKey& other) const { return part < other.part; }
 };
 
 struct MeshVertex {
