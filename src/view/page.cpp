@@ -16,7 +16,6 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 using Json = nlohmann::ordered_json;
-using view::Box;
 
 // Indices of the points to show: all finite ones, or every so many of them.
 std::vector<std::size_t> choose_points(const Scene& scene, std::size_t most, std::size_t& finite) {
@@ -40,7 +39,7 @@ std::string packed(const std::vector<std::size_t>& chosen, const Append& append)
   return view::base64(bytes);
 }
 
-Json points_json(const Scene& scene, const Box& box, std::size_t most) {
+Json points_json(const Scene& scene, const view::Box& box, std::size_t most) {
   std::size_t finite = 0;
   const std::vector<std::size_t> chosen = choose_points(scene, most, finite);
   Json json = {{"given", scene.points.size()}, {"finite", finite}, {"shown", chosen.size()}, {"spacing", 0.0}};
@@ -79,7 +78,7 @@ Json truth_json(const Scene& scene) {
   return {{"compared", compared}, {"wrong_side", wrong}, {"mean_error", compared > 0 ? sum / static_cast<double>(compared) : 0}};
 }
 
-Json mesh_json(const Mesh& mesh, const Box& box, std::size_t most) {
+Json mesh_json(const Mesh& mesh, const view::Box& box, std::size_t most) {
   const std::size_t count = mesh.triangles.size();
   if (count == 0) return nullptr;
   Json json = {{"given", count}, {"shown", count <= most ? count : 0}, {"vertices", mesh.vertices.size()}};
@@ -150,7 +149,7 @@ std::string fill(std::string_view page, const std::vector<std::pair<std::string_
 }  // namespace
 
 std::string view_html(const Scene& scene, const PageOptions& options) {
-  const Box box = view::check_scene(scene);
+  const view::Box box = view::check_scene(scene);
   Json report = nullptr;
   if (!scene.report.empty()) {
     report = Json::parse(scene.report, nullptr, false);
