@@ -29,6 +29,7 @@ cmake --build build/windows --target "${targets[@]}"
 
 # Wine takes names of files as the locale writes them.
 export WINEPREFIX=$PWD/build/wine WINEDEBUG=-all WINEDLLOVERRIDES='mscoree=;mshtml=' LC_ALL=C.UTF-8
+mkdir -p "$WINEPREFIX"
 # What Wine starts beside the first program would hold that program's pipes open, and the test wait for it.
 /usr/lib/wine/wineserver64 -p
 trap '/usr/lib/wine/wineserver64 -k' EXIT
