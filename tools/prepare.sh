@@ -27,10 +27,10 @@ prepare() {
   tools/sources.sh || true
 }
 
-# cli_headers PREFIX: CLI11, which is headers, where a build for another system looks for it.
+# cli_headers PREFIX: CLI11, which is headers, where a build for another system looks for it; as old as it is, so that it is compiled once.
 cli_headers() {
   mkdir -p "$1/include" "$1/share/cmake"
-  cp -r /usr/include/CLI "$1/include"
+  cp -r --preserve=timestamps /usr/include/CLI "$1/include"
   cp -r /usr/share/cmake/CLI11 "$1/share/cmake"
 }
 
