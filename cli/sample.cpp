@@ -33,6 +33,7 @@ int run_sample(const Settings& settings, Session& session) {
   cloud.positions = std::move(samples.points);
   session.stage("write",
                 [&] { write_cloud(settings.output, cloud, &samples.normals, nullptr, session.cancellable(settings.write_options)); });
+  for (const std::string& warning : session.write_warnings()) session.console().warn(warning);
   session.console().say(counted(cloud.positions.size(), "point") + " with normals" +
                         (settings.output == "-" ? "" : " in " + escape_text(settings.output)));
   return 0;

@@ -17,6 +17,9 @@ Monitor Session::monitor() {
 }
 
 void Session::complete(Stats& stats) const {
+  for (const std::string& warning : write_warnings_) {
+    if (std::find(stats.warnings.begin(), stats.warnings.end(), warning) == stats.warnings.end()) stats.warnings.push_back(warning);
+  }
   stats.seconds.insert(stats.seconds.end(), seconds_.begin(), seconds_.end());
   std::erase_if(stats.seconds, [](const auto& entry) { return entry.first == "total"; });
   stats.seconds.emplace_back("total", std::chrono::duration<double>(Clock::now() - start_).count());

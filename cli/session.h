@@ -24,11 +24,14 @@ class Session {
   /// Progress and cancellation for a call of the library.
   [[nodiscard]] Monitor monitor();
 
-  /// The options with the way to be cancelled.
-  [[nodiscard]] WriteOptions cancellable(WriteOptions options) const {
+  /// The options with the way to be cancelled. What they warn of becomes part of the summary.
+  [[nodiscard]] WriteOptions cancellable(WriteOptions options) {
     options.cancel = &interrupts_.requested();
+    options.warnings = &write_warnings_;
     return options;
   }
+  /// What the files written so far could not take as it is.
+  [[nodiscard]] const std::vector<std::string>& write_warnings() const { return write_warnings_; }
   [[nodiscard]] ReadOptions cancellable(ReadOptions options) const {
     options.cancel = &interrupts_.requested();
     return options;
@@ -43,7 +46,7 @@ class Session {
     return std::forward<Work>(work)();
   }
 
-  /// Adds to `stats` what only the program knows: the times of its own stages, the whole time and the peak of memory.
+  /// Adds to `stats` what only the program knows: the times of its own stages, the whole time, the peak of memory and warnings of writers.
   void complete(Stats& stats) const;
 
  private:
@@ -59,6 +62,7 @@ class Session {
   const Interrupts& interrupts_;
   Clock::time_point start_;
   std::vector<std::pair<std::string, double>> seconds_;
+  std::vector<std::string> write_warnings_;
 };
 
 }  // namespace g3r::cli

@@ -168,7 +168,8 @@ int run_tiles(const Settings& settings, Session& session) {
       if (settings.merge_mesh) {
         mesh = ": " + mesh_text(merge_mesh(settings.tile_folder, settings.output, settings.mesh_options, monitor));
       } else {
-        (void)merge_tiles(settings.tile_folder, settings.output, monitor);
+        for (const std::string& warning : merge_tiles(settings.tile_folder, settings.output, monitor).warnings)
+          session.console().warn(warning);
       }
       session.console().clear_bar();
       session.console().say("wrote " + escape_text(settings.output) + mesh);
@@ -185,6 +186,7 @@ std::optional<int> orient_in_tiles(const Settings& settings, Session& session) {
     const MergedTiles merged = merge_tiles(folder, settings.output, monitor);
     stats.confidence_mean = merged.confidence_mean;
     stats.confidence_below_half = merged.confidence_below_half;
+    stats.warnings.insert(stats.warnings.end(), merged.warnings.begin(), merged.warnings.end());
     return std::string();
   });
 }

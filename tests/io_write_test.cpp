@@ -189,7 +189,8 @@ TEST(Write, EveryPointFormatTakesEveryOther) {
 
 TEST(Write, ExtraBytesOfLasHaveNamesOfTheirOwn) {
   const std::string long_name(40, 'n');
-  const Cloud cloud = read("x y z intensity " + long_name + "1 " + long_name + "2 GPS_time\n0 0 0 5 6 7 8\n1 0 0 9 10 11 12\n", "a.txt");
+  const Cloud cloud =
+      read("x y z intensity " + long_name + "1 " + long_name + "2 GPS_time\n0 0 0 5.5 6 7 inf\n1 0 0 9 10 11 12\n", "a.txt");
   const std::string bytes = samples::written(cloud, "a.las");
   for (const std::string& name :
        {std::string("intensity_2"), long_name.substr(0, 32), long_name.substr(0, 30) + "_2", std::string("GPS_time_2")}) {

@@ -77,16 +77,17 @@ TileStatus run_tiles(const std::string& folder, const TileWorker& worker = {}, c
 /// Of all points that are finite.
 struct MergedTiles {
   double confidence_mean = 0;
-  double confidence_below_half = 0;  ///< share, 0..1
+  double confidence_below_half = 0;   ///< share, 0..1
+  std::vector<std::string> warnings;  ///< what the format cannot hold as it is: WriteOptions::warnings
 };
 
 /// Writes one binary .ply, .las or .laz, whole or not at all: for every input point, in the order of the input, its position, unit normal
 /// (0 for points that are not finite), confidence, and colours and other properties as write_cloud() writes them of the same cloud; one LAS
 /// or LAZ keeps its header, scale and offset as LAS or LAZ. Left out are elements of a PLY beside its points, and colours that no property
-/// holds (of splats). Reads the inputs once more, twice where colours must be brought to 8 bits. Memory does not depend on the number of
-/// points, as far as the inputs are streams (docs/tiles.md). Throws InvalidInput (tiles that are not done, inputs that have changed,
-/// another extension, points that LAS cannot hold: not finite, or more than 2^32 - 1 of other formats), Unavailable (LAZ in builds without
-/// it), IoError, Cancelled.
+/// holds (of splats). Reads the inputs once more, once again where colours must be brought to 8 bits, and again where they become a LAS
+/// with steps and fields of its own. Memory does not depend on the number of points, as far as the inputs are streams (docs/tiles.md).
+/// Throws InvalidInput (tiles that are not done, inputs that have changed, another extension, points that LAS cannot hold: not finite),
+/// Unavailable (LAZ in builds without it), IoError, Cancelled.
 MergedTiles merge_tiles(const std::string& folder, const std::string& output, const Monitor& monitor = {});
 
 /// Throws what merge_tiles() will throw of this output, as far as it is known from the plan, before any tile is solved: InvalidInput

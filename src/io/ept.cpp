@@ -3,6 +3,7 @@
 
 #include "base/platform.h"
 #include "io/cloud_from_table.h"
+#include "io/decimal_steps.h"
 #include "io/ept_cells.h"
 #include "io/json.h"
 #include "io/readers.h"
@@ -28,8 +29,7 @@ namespace fs = std::filesystem;
 struct Dimension {
   std::string name;
   Type type = Type::kFloat64;
-  double scale = 1;
-  double offset = 0;
+  DecimalSteps steps;
 };
 
 struct Ept {
@@ -68,7 +68,7 @@ void read_schema(const Json& json, Ept& ept) {
         name == nullptr || kind == nullptr || size == nullptr ? std::nullopt : type_named(kind->text, size->whole().value_or(0));
     if (!type) fail(ept.file, "a dimension of the schema has no name, or a type that is not signed, unsigned or float of 1 to 8 bytes");
     // Red: red, as in other formats
-    Dimension dimension{lower_case(name->text), *type, number(item, "scale", 1), number(item, "offset", 0)};
+    Dimension dimension{lower_case(name->text), *type, DecimalSteps(number(item, "scale", 1), number(item, "offset", 0))};
     for (const Dimension& other : ept.schema) {
       if (other.name == dimension.name) fail(ept.file, "the dimension " + quote(dimension.name) + " is declared twice");
     }
@@ -109,14 +109,14 @@ Cloud read_records(const Ept& ept, const Source& source, std::uint64_t count) {
   Element& points = table->elements.back();
   points.count = count;
   for (const Dimension& dimension : ept.schema) {
-    const bool as_it_is = dimension.scale == 1 && dimension.offset == 0;
+    const bool as_it_is = dimension.steps.scale() == 1 && dimension.steps.offset() == 0;
     points.add(dimension.name, as_it_is ? dimension.type : Type::kFloat64);
   }
   const char* from = source.bytes.data();
   for (std::uint64_t i = 0; i < count; ++i) {
     for (std::size_t d = 0; d < ept.schema.size(); ++d) {
       const Dimension& dimension = ept.schema[d];
-      const double value = load_as_double(dimension.type, from) * dimension.scale + dimension.offset;
+      const double value = dimension.steps.value(load_as_double(dimension.type, from));
       from += size_of(dimension.type);
       append_double(points.properties[d].type, value, points.data);
     }

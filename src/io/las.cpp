@@ -146,6 +146,7 @@ LasHeader read_las_header(const Source& source, std::uint64_t file_size) {
     if (!std::isfinite(header.scale[a]) || header.scale[a] == 0 || !std::isfinite(header.offset[a])) {
       fail_at_byte(source, kScale + 8 * a, "the scale or offset of an axis is zero or not finite");
     }
+    header.steps[a] = DecimalSteps(header.scale[a], header.offset[a]);
   }
   header.fields = standard_fields(format);
   read_vlrs(source, header);

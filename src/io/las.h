@@ -1,6 +1,7 @@
 // The layout of LAS files. Source: ASPRS, "LAS Specification 1.4 - R15", 2019.
 #pragma once
 
+#include "io/decimal_steps.h"
 #include "io/source.h"
 #include "io/table.h"
 
@@ -31,6 +32,7 @@ struct LasHeader {
   std::uint32_t vlr_count = 0;
   Vec3 scale{1, 1, 1};
   Vec3 offset{0, 0, 0};
+  std::array<DecimalSteps, 3> steps;  ///< the same
   std::vector<LasField> fields;       ///< after X Y Z, described extra bytes included
   std::size_t undescribed_bytes = 0;  ///< extra bytes at the end of a record that no descriptor names
   std::size_t extra_vlr = 0;          ///< byte offset of the Extra Bytes record's header, 0 if there is none

@@ -12,6 +12,8 @@
 
 namespace g3r::io {
 
+class LasPlan;
+
 /// Where the bytes of a LAS file go.
 class LasOutput {
  public:
@@ -47,8 +49,7 @@ class LasWriter {
 /// InvalidInput.
 std::unique_ptr<LasWriter> las_from_las(const Source& head, bool normals, bool confidence, LasOutput& out);
 
-/// For other points: LAS 1.4, point format 0 or 2, all other properties as extra bytes. `like` has no points but says what they have, as
-/// plan_columns() takes it, and has a colour if they have; `count` points lie within `bounds`. Writes the header. Throws InvalidInput.
-std::unique_ptr<LasWriter> new_las(const PointData& like, std::uint64_t count, const Box& bounds, LasOutput& out);
+/// For other points, of which `plan` has all and which must outlive the writer. Writes the header. Throws InvalidInput.
+std::unique_ptr<LasWriter> new_las(const LasPlan& plan, LasOutput& out);
 
 }  // namespace g3r::io

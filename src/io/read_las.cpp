@@ -1,5 +1,5 @@
-// LAS 1.0 to 1.4, all point formats (LAZ through unpack_laz()): coordinates as X scale + offset in double, every other field and described
-// extra byte as a property.
+// LAS 1.0 to 1.4, all point formats (LAZ through unpack_laz()): coordinates as X scale + offset in double (decimal_steps.h), every other
+// field and described extra byte as a property.
 #include "io/cloud_from_table.h"
 #include "io/copc.h"
 #include "io/las.h"
@@ -67,7 +67,7 @@ Attributes las_table(const LasHeader& header) {
 
 char* copy_las_record(const LasHeader& header, const char* record, char* to) {
   for (std::size_t a = 0; a < 3; ++a, to += sizeof(double)) {
-    const double value = load<std::int32_t>(record + 4 * a) * header.scale[a] + header.offset[a];
+    const double value = header.steps[a].value(load<std::int32_t>(record + 4 * a));
     std::memcpy(to, &value, sizeof value);
   }
   for (const LasField& field : header.fields) to = std::copy_n(record + field.offset, size_of(field.type), to);

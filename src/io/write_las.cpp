@@ -2,11 +2,11 @@
 // added as extra bytes (NormalX, NormalY, NormalZ, confidence). Other clouds: write_las_new.cpp.
 #include "io/las.h"
 #include "io/las_output.h"
+#include "io/las_plan.h"
 #include "io/text.h"
 #include "io/writers.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace g3r::io {
@@ -28,12 +28,12 @@ double added_value(const PointData& data, const Added& added, std::size_t i) {
   return added.axis < 3 ? (*data.normals)[i][added.axis] : static_cast<double>((*data.confidence)[i]);
 }
 
-void store_position(const PointData& data, std::size_t i, const Vec3& scale, const Vec3& offset, char* record) {
+void store_position(const PointData& data, std::size_t i, const LasHeader& header, char* record) {
   constexpr const char* kAxes[] = {"x", "y", "z"};
   for (std::size_t a = 0; a < 3; ++a) {
     const double value = data.cloud.positions[i][a];
-    if (load<std::int32_t>(record + 4 * a) * scale[a] + offset[a] == value) continue;  // as it was in the file, to the bit
-    const std::int32_t steps = las_steps(value, scale[a], offset[a], kAxes[a]);
+    if (header.steps[a].value(load<std::int32_t>(record + 4 * a)) == value) continue;  // as it was in the file, to the bit
+    const std::int32_t steps = las_steps(value, header.scale[a], header.offset[a], kAxes[a]);
     std::memcpy(record + 4 * a, &steps, sizeof steps);
   }
 }
@@ -107,7 +107,7 @@ class FromLas : public LasWriter {
     for (std::size_t i = 0; i < data.size(); ++i, stored += header_.record_bytes) {
       record_.assign(stored, header_.record_bytes);
       record_.resize(record_bytes_);
-      store_position(data, i, header_.scale, header_.offset, record_.data());
+      store_position(data, i, header_, record_.data());
       for (const Added& a : added_) store_double(a.type, added_value(data, a, i), record_.data() + a.offset);
       out_.record(record_);
     }
@@ -128,19 +128,6 @@ void write_from_las(const PointData& data, LasOutput& out) {
   const std::string_view rest = source.bytes.substr(header.points_at + data.size() * header.record_bytes);
   out.finish(rest.size());
   out.rest(rest);
-}
-
-Box bounds_of(const Cloud& cloud) {
-  if (cloud.positions.empty()) return {};
-  Box bounds{cloud.positions[0], cloud.positions[0]};
-  for (const Vec3& p : cloud.positions) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      if (!std::isfinite(p[a])) throw InvalidInput("write_cloud: LAS cannot hold coordinates that are not finite");
-      bounds.low[a] = std::min(bounds.low[a], p[a]);
-      bounds.high[a] = std::max(bounds.high[a], p[a]);
-    }
-  }
-  return bounds;
 }
 
 class PlainLas : public LasOutput {
@@ -165,8 +152,13 @@ std::unique_ptr<LasWriter> las_from_las(const Source& head, bool normals, bool c
 
 void write_las(const PointData& data, LasOutput& out) {
   if (data.table != nullptr && data.table->dialect == Attributes::Dialect::kLas) return write_from_las(data, out);
-  new_las(data, data.size(), bounds_of(data.cloud), out)->write(data, nullptr);
+  LasPlan plan(data);
+  plan.add(data);
+  plan.finish();
+  new_las(plan, out)->write(data, nullptr);
   out.finish(0);
+  if (data.options.warnings != nullptr)
+    data.options.warnings->insert(data.options.warnings->end(), plan.warnings().begin(), plan.warnings().end());
 }
 
 }  // namespace g3r::io

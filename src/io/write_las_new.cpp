@@ -1,13 +1,11 @@
-// LAS of clouds that come from other formats: LAS 1.4, point format 0 or 2, all other properties as extra bytes.
+// LAS of clouds that come from other formats: LAS 1.4, the point format that holds the fields which the points have, all other properties
+// as extra bytes.
 #include "io/las.h"
 #include "io/las_output.h"
+#include "io/las_plan.h"
 #include "io/rows.h"
-#include "io/text.h"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
-#include <set>
 
 namespace g3r::io {
 
@@ -15,49 +13,11 @@ namespace {
 
 using namespace las;
 
-// Fields of points, under the names that LAS and its readers have for them: extra bytes of the same name make readers stumble.
-constexpr const char* kFieldNames[] = {"x",
-                                       "y",
-                                       "z",
-                                       "intensity",
-                                       "return_number",
-                                       "return_numbers",
-                                       "number_of_returns",
-                                       "return_flags",
-                                       "bit_fields",
-                                       "scan_direction_flag",
-                                       "edge_of_flight_line",
-                                       "classification",
-                                       "raw_classification",
-                                       "classification_flags",
-                                       "synthetic",
-                                       "key_point",
-                                       "withheld",
-                                       "overlap",
-                                       "scanner_channel",
-                                       "scan_angle",
-                                       "scan_angle_rank",
-                                       "user_data",
-                                       "point_source_id",
-                                       "gps_time",
-                                       "red",
-                                       "green",
-                                       "blue",
-                                       "nir"};
-
-// Steps of a power of ten, so small that the extent takes about 30 bits; the offset is a whole number of them.
-void choose_scale(double low, double high, double& scale, double& offset) {
-  constexpr double kSteps = 2e9;  // The extent has so many steps at most: the numbers of LAS have 32 bits, half of them negative.
-  const double extent = std::max(high - low, 1e-6 * std::max(std::abs(low), std::abs(high)));
-  scale = extent > 0 && std::isfinite(extent) ? std::pow(10.0, std::ceil(std::log10(extent / kSteps))) : 1e-9;
-  if (!(scale > 0)) scale = std::numeric_limits<double>::min();
-  offset = std::floor((low / 2 + high / 2) / (scale * 1e6)) * (scale * 1e6);
-  if (!std::isfinite(offset)) offset = low / 2 + high / 2;
-}
-
-std::string new_header(std::uint64_t count, const Box& bounds, bool colored, const std::string& descriptors, std::size_t record_bytes,
-                       Vec3& scale, Vec3& offset) {
-  constexpr std::size_t kSize = 375;  // Bytes of the header of LAS 1.4.
+std::string new_header(const LasPlan& plan, const std::string& descriptors, std::size_t record_bytes) {
+  constexpr std::size_t kSize = 375;     // Bytes of the header of LAS 1.4.
+  constexpr std::size_t kEncoding = 6;   // Byte offset of the global encoding.
+  constexpr unsigned kAbsoluteTime = 1;  // GPS times are not seconds of the week.
+  constexpr unsigned kWellKnown = 16;    // Coordinate systems are WKT: demanded of new point formats.
   std::string text(kSize, '\0');
   text.replace(0, 4, "LASF");
   text[24] = 1;
@@ -65,18 +25,23 @@ std::string new_header(std::uint64_t count, const Box& bounds, bool colored, con
   text.replace(26, 5, "OTHER");
   text.replace(58, 3, "g3r");
   put(text, kHeaderSize, static_cast<std::uint16_t>(kSize));
-  text[kPointFormat] = colored ? 2 : 0;
+  text[kPointFormat] = static_cast<char>(plan.point_format());
   put(text, kRecordBytes, static_cast<std::uint16_t>(record_bytes));
-  put(text, kLegacyCount, static_cast<std::uint32_t>(count));
-  put(text, kLegacyCount + 4, static_cast<std::uint32_t>(count));  // all are first returns
-  put(text, kCount, count);
-  put(text, kCount + 8, count);
+  const bool is_old = plan.family() == LasFamily::kOld;
+  const bool is_absolute = plan.has(LasPart::kGpsTime) && plan.absolute_time();
+  put(text, kEncoding, static_cast<std::uint16_t>((is_absolute ? kAbsoluteTime : 0) + (is_old ? 0 : kWellKnown)));
+  const std::array<std::uint64_t, 16> returns = plan.returns();
+  if (is_old) put(text, kLegacyCount, static_cast<std::uint32_t>(plan.count()));
+  put(text, kCount, plan.count());
+  for (std::size_t r = 1; r < returns.size(); ++r) {
+    if (is_old && r <= 5) put(text, kLegacyCount + 4 * r, static_cast<std::uint32_t>(returns[r]));
+    put(text, kCount + 8 * r, returns[r]);
+  }
   for (std::size_t a = 0; a < 3; ++a) {
-    choose_scale(bounds.low[a], bounds.high[a], scale[a], offset[a]);
-    put(text, kScale + 8 * a, scale[a]);
-    put(text, kOffset + 8 * a, offset[a]);
-    put(text, kBounds + 16 * a, bounds.high[a]);
-    put(text, kBounds + 16 * a + 8, bounds.low[a]);
+    put(text, kScale + 8 * a, plan.steps(a).scale());
+    put(text, kOffset + 8 * a, plan.steps(a).offset());
+    put(text, kBounds + 16 * a, plan.bounds().high[a]);
+    put(text, kBounds + 16 * a + 8, plan.bounds().low[a]);
   }
   if (!descriptors.empty()) {
     put(text, kVlrCount, std::uint32_t{1});
@@ -86,73 +51,68 @@ std::string new_header(std::uint64_t count, const Box& bounds, bool colored, con
   return text;
 }
 
-// Names for extra bytes that are neither those of fields nor twice the same, where needed with a number at the end.
-std::vector<std::string> extra_names(const std::vector<Column>& columns) {
-  std::set<std::string> taken(std::begin(kFieldNames), std::end(kFieldNames));
-  std::vector<std::string> names;
-  for (const Column& column : columns) {
-    std::string name = column.property.name.substr(0, kLasNameBytes);
-    for (int number = 2; !taken.insert(lower_case(name)).second; ++number) {
-      const std::string digits = std::to_string(number);
-      name = column.property.name.substr(0, kLasNameBytes - 1 - digits.size());
-      (name += '_') += digits;
-    }
-    names.push_back(name);
-  }
-  return names;
-}
-
 class NewLas : public LasWriter {
  public:
-  NewLas(const PointData& like, std::uint64_t count, const Box& bounds, LasOutput& out)
-      : columns_(plan_columns(like, Attributes::Dialect::kLas, false)), colored_(!like.cloud.colors.empty()), out_(out) {
-    if (count > std::numeric_limits<std::uint32_t>::max())
-      throw InvalidInput("write_cloud: more than 2^32 - 1 points do not fit in LAS point format 0");
-    std::erase_if(columns_, [&](const Column& column) {
-      return column.from == Column::From::kPosition || column.from == Column::From::kColor || column.property.count != 1;
-    });
-    std::size_t record_bytes = kRecordSize[colored_ ? 2 : 0];
+  NewLas(const LasPlan& plan, LasOutput& out) : plan_(plan), out_(out) {
+    std::size_t record_bytes = kRecordSize[plan.point_format()];
     std::string descriptors;
-    const std::vector<std::string> names = extra_names(columns_);
-    for (std::size_t c = 0; c < columns_.size(); ++c) {
-      const Type type = columns_[c].property.type;
-      descriptors += las_descriptor(names[c], las_type_number(type), 0);
+    for (const LasPlan::Extra& extra : plan.extras()) {
+      const Type type = plan.columns()[extra.column].property.type;
+      descriptors += las_descriptor(extra.name, las_type_number(type), 0);
       record_bytes += size_of(type);
     }
     if (descriptors.size() > std::numeric_limits<std::uint16_t>::max())
       throw InvalidInput("write_cloud: LAS holds at most 341 extra properties");
-    out_.header(new_header(count, bounds, colored_, descriptors, record_bytes, scale_, offset_));
+    out_.header(new_header(plan, descriptors, record_bytes));
   }
 
   void write(const PointData& data, const char* /*stored*/) override {
-    constexpr const char* kAxes[] = {"x", "y", "z"};
-    Rows rows(data, columns_);
+    Rows rows(data, plan_.columns());
     for (std::size_t i = 0; i < data.size(); ++i) {
       rows.next();
-      record_.assign(kRecordSize[colored_ ? 2 : 0], '\0');
-      for (std::size_t a = 0; a < 3; ++a) put(record_, 4 * a, las_steps(data.cloud.positions[i][a], scale_[a], offset_[a], kAxes[a]));
-      record_[14] = 9;  // return 1 of 1
-      if (colored_) {
-        for (std::size_t c = 0; c < 3; ++c) put(record_, 20 + 2 * c, static_cast<std::uint16_t>(data.cloud.colors[i][c] * 257));
-      }
-      for (std::size_t c = 0; c < columns_.size(); ++c) rows.append_bytes(c, record_);
+      record_.assign(kRecordSize[plan_.point_format()], '\0');
+      put_position(data.cloud.positions[i]);
+      for (const LasPlan::Field& field : plan_.fields()) put_las_part(field.place, rows.number(field.column), record_);
+      put_returns();
+      if (plan_.colored()) put_color(data.cloud.colors[i], rows);
+      for (const LasPlan::Extra& extra : plan_.extras()) rows.append_bytes(extra.column, record_);
       out_.record(record_);
     }
   }
 
  private:
-  std::vector<Column> columns_;
-  bool colored_;
+  void put_position(const Vec3& position) {
+    constexpr const char* kAxes[] = {"x", "y", "z"};
+    for (std::size_t a = 0; a < 3; ++a) {
+      const DecimalSteps& steps = plan_.steps(a);
+      put(record_, 4 * a, las_steps(position[a], steps.scale(), steps.offset(), kAxes[a]));
+    }
+  }
+
+  // Where the points do not say, it is return 1, and there are no more.
+  void put_returns() {
+    const LasPlace number = las_place(LasPart::kReturnNumber, plan_.family(), false);
+    const LasPlace count = las_place(LasPart::kNumberOfReturns, plan_.family(), false);
+    if (!plan_.has_return_numbers()) put_las_part(number, 1, record_);
+    const int returned = record_[number.offset] & static_cast<int>(number.high);
+    if (!plan_.has_counts_of_returns()) put_las_part(count, std::max(1, returned), record_);
+  }
+
+  void put_color(const std::array<std::uint8_t, 3>& color, Rows& rows) {
+    const std::size_t at = las_color_offset(plan_.point_format());
+    const std::vector<std::size_t>& deep = plan_.deep_colors();
+    for (std::size_t c = 0; c < 3; ++c) {
+      put(record_, at + 2 * c, static_cast<std::uint16_t>(deep.empty() ? color[c] * 257 : rows.number(deep[c])));
+    }
+  }
+
+  const LasPlan& plan_;
   LasOutput& out_;
-  Vec3 scale_{};
-  Vec3 offset_{};
   std::string record_;
 };
 
 }  // namespace
 
-std::unique_ptr<LasWriter> new_las(const PointData& like, std::uint64_t count, const Box& bounds, LasOutput& out) {
-  return std::make_unique<NewLas>(like, count, bounds, out);
-}
+std::unique_ptr<LasWriter> new_las(const LasPlan& plan, LasOutput& out) { return std::make_unique<NewLas>(plan, out); }
 
 }  // namespace g3r::io

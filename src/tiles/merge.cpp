@@ -130,6 +130,7 @@ MergedTiles merge(const std::string& folder, const Manifest& m, const std::strin
     writer.end(*stream);
   }
   writer.commit();
+  out.warnings = writer.warnings();
   out.confidence_mean /= static_cast<double>(m.sorted());
   out.confidence_below_half /= static_cast<double>(m.sorted());
   return out;

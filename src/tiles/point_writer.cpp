@@ -71,7 +71,7 @@ PointWriter::PointWriter(const std::string& output, const Manifest& manifest, St
   if (format == "las") las_file_ = io::plain_las(file_);
   if (format == "laz") las_file_ = io::packed_las(file_);
   for (const Input& input : manifest.inputs) look_at(input, stages);
-  if (!from_las_) write_header(manifest);
+  if (!from_las_) write_header(manifest, stages);
 }
 
 void PointWriter::check(const std::string& output, const Manifest& manifest) {
@@ -88,7 +88,26 @@ void PointWriter::check(const std::string& output, const Manifest& manifest) {
                      " points have such: write PLY");
 }
 
-void PointWriter::write_header(const Manifest& manifest) {
+// Reads the inputs as they will be written.
+void PointWriter::measure_for_las(const Manifest& manifest, Stages& stages) {
+  const std::vector<Vec3> normals;
+  const std::vector<float> confidence;
+  const WriteOptions options;
+  for (std::size_t i = 0; i < manifest.inputs.size(); ++i) {
+    const auto stream = io::open_points(manifest.inputs[i].path, true, {.cancel = stages.cancel()});
+    std::vector<Vec3> points;
+    std::string records;
+    const std::size_t most = block(*stream);
+    for (stream->next(most, points, &records); !points.empty(); stream->next(most, points, &records)) {
+      stages.still_going();
+      const Cloud cloud = as_written(i, points, records);
+      las_plan_->add({cloud, &normals, &confidence, cloud.attributes.get(), options});
+    }
+  }
+  las_plan_->finish();
+}
+
+void PointWriter::write_header(const Manifest& manifest, Stages& stages) {
   Cloud like = parts_[0].cloud;
   if (!alone_) {
     std::vector<Cloud> clouds;
@@ -106,7 +125,9 @@ void PointWriter::write_header(const Manifest& manifest) {
   const WriteOptions options;
   const io::PointData data{like, &normals, &confidence, like.attributes.get(), options};
   if (las_file_) {
-    las_ = io::new_las(data, manifest.points, manifest.bounds, *las_file_);
+    las_plan_.emplace(data);
+    measure_for_las(manifest, stages);
+    las_ = io::new_las(*las_plan_, *las_file_);
     return;
   }
   columns_ = io::ply_columns(data);
@@ -139,6 +160,17 @@ Cloud PointWriter::make_cloud(const Part& part, const std::vector<Vec3>& points,
   return cloud;
 }
 
+// The points with the properties that the file gets.
+Cloud PointWriter::as_written(std::size_t input, const std::vector<Vec3>& points, std::string& records) {
+  Cloud cloud = make_cloud(parts_[input], points, records);
+  if (merger_) {
+    merger_->append(cloud);
+    cloud.attributes = table_of(Attributes(), merger_->take());
+    if (colored_) cloud.colors.resize(points.size());  // of those that have none
+  }
+  return cloud;
+}
+
 void PointWriter::write(std::size_t input, const std::vector<Vec3>& points, std::string& records, const std::vector<Vec3>& normals,
                         const std::vector<float>& confidence) {
   const WriteOptions options;
@@ -149,12 +181,7 @@ void PointWriter::write(std::size_t input, const std::vector<Vec3>& points, std:
     stored_.clear();
     return;
   }
-  Cloud cloud = make_cloud(parts_[input], points, records);
-  if (merger_) {
-    merger_->append(cloud);
-    cloud.attributes = table_of(Attributes(), merger_->take());
-    if (colored_) cloud.colors.resize(points.size());  // of those that have none
-  }
+  const Cloud cloud = as_written(input, points, records);
   const io::PointData data{cloud, &normals, &confidence, cloud.attributes.get(), options};
   if (las_) {
     las_->write(data, nullptr);

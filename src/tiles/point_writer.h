@@ -5,6 +5,7 @@
 #include "io/cloud_from_table.h"
 #include "io/columns.h"
 #include "io/las_output.h"
+#include "io/las_plan.h"
 #include "io/merger.h"
 #include "io/output_file.h"
 #include "io/point_stream.h"
@@ -40,6 +41,8 @@ class PointWriter {
   void end(io::PointStream& stream);
   /// Makes the file take its place.
   void commit();
+  /// What the format cannot hold as it is: WriteOptions::warnings.
+  [[nodiscard]] std::vector<std::string> warnings() const { return las_plan_ ? las_plan_->warnings() : std::vector<std::string>(); }
 
  private:
   // What is known of an input without its points.
@@ -49,12 +52,15 @@ class PointWriter {
     Cloud cloud;                             // without points; members that the file has are not empty
   };
   void look_at(const Input& input, Stages& stages);
-  void write_header(const Manifest& manifest);
+  void write_header(const Manifest& manifest, Stages& stages);
+  void measure_for_las(const Manifest& manifest, Stages& stages);
   [[nodiscard]] Cloud make_cloud(const Part& part, const std::vector<Vec3>& points, std::string& records) const;
+  [[nodiscard]] Cloud as_written(std::size_t input, const std::vector<Vec3>& points, std::string& records);
 
   io::OutputFile file_;
   bool alone_;                               // one input
   std::unique_ptr<io::LasOutput> las_file_;  // null for PLY
+  std::optional<io::LasPlan> las_plan_;      // of a LAS file that is none of the inputs with results
   std::unique_ptr<io::LasWriter> las_;
   bool from_las_ = false;  // one input that is LAS or LAZ, written as such
   std::string path_;       // of it
