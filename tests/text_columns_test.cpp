@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "io/column_facts.h"
 #include "io/column_names.h"
@@ -66,6 +67,87 @@ TEST(TextColumns, AWordAmongNumbersIsDamage) {
   EXPECT_NE(message_of("x,y,z,label\n1,2,3,wall\n1,north,3,wall\n").find("line 3: expected a number, found \"north\""), std::string::npos);
   EXPECT_NE(message_of("1 2 3 4\n1 north 3 4\n").find("line 2"), std::string::npos);
   EXPECT_NE(message_of("0,5;1,5;2,5;255;0;0\n").find("decimal comma"), std::string::npos);
+}
+
+TEST(MissingNumbers, AreNanAndSaid) {
+  const Cloud last = read("x,y,z,i\n1,2,3,4\n1,2,4,\n1,2,5,\n");
+  EXPECT_EQ(last.property_names, (Names{"x", "y", "z", "i"}));
+  EXPECT_EQ(last.positions.size(), 3U);
+  expect_said(last.warnings, "column 4 \"i\" has no number in 2 lines, first in line 3");
+  EXPECT_EQ(read("x,y,z,i\n1,2,4,\n1,2,3,4\n").property_names.size(), 4U);  // the first line ends with the empty cell
+  EXPECT_EQ(read("1,2,4,\n1,2,3,4\n").property_names.size(), 4U);
+  EXPECT_EQ(read("1,2,4,\n1,2,3,\n").property_names.size(), 3U);  // a separator ends each line
+  EXPECT_EQ(read("1;2;;7\n1;2;3;8\n").property_names.size(), 4U);
+  const Cloud words = read("x y z i\n1 2 3 NA\n1 2 null 5\n1 2 4 n/a\n");
+  EXPECT_TRUE(std::isnan(words.positions[1][2]));
+  expect_said(words.warnings, "column 3 \"z\" has no number in one line, first in line 3");
+  const Cloud bare = read("1,2,3\n1,,4\n1,2,5\n");
+  EXPECT_TRUE(std::isnan(bare.positions[1][1]));
+  expect_said(bare.warnings, "column 2 has no number in one line");
+  EXPECT_NE(message_of("x,y,z\n1,2,\n3,4,\n").find("expected a coordinate in column 3 \"z\""), std::string::npos);
+  EXPECT_NE(message_of("1,2,3,4\n1,2,3\n").find("line 2: expected 4 columns as on the lines before, found 3 (also an empty cell"),
+            std::string::npos);
+}
+
+TEST(Words, InColumnsOfNumbersAreSaidWithTheColumn) {
+  EXPECT_NE(message_of("x,y,z\n1,2,3\n1,2,abc\n").find("line 3: expected a number, found \"abc\" in column 3 \"z\""), std::string::npos);
+  EXPECT_NE(message_of("1 2 3\n1 abc 3\n").find("line 2: expected a number, found \"abc\" in column 2"), std::string::npos);
+}
+
+TEST(Tabs, SeparateWordsWithBlanksAndEmptyCells) {
+  const Cloud cloud = read("ID\tX\tY\tZ\tnote\ti\n1\t1.5\t2\t3\t\"a, b\"\t5\n2\t1.5\t2\t4\tbig wall\t6\n3\t1.5\t2\t5\t\t7\n");
+  EXPECT_EQ(cloud.positions[2], (Vec3{1.5, 2, 5}));
+  EXPECT_EQ(cloud.property_names, (Names{"ID", "x", "y", "z", "i"}));
+  EXPECT_EQ(io::separator_of("1\t\t2\t\t3"), ' ');
+  EXPECT_EQ(io::separator_of("1\t2 3\t4\t5"), ' ');
+  EXPECT_EQ(io::separator_of("1,\t2,\t3"), ',');
+}
+
+TEST(HeaderLines, OfAnyNumberMayComeFirst) {
+  const Cloud cloud = read("Project: Bridge 7\nDate: today, operator: me\nx,y,z,i\n[m],[m],[m],[-]\n1,2,3,4\n", "a.csv");
+  EXPECT_EQ(cloud.property_names, (Names{"x", "y", "z", "i"}));
+  expect_said(cloud.warnings, "3 lines before the points, line 1 \"Project: Bridge 7\" the first, not used");
+  EXPECT_EQ(read("made by hand\nP N E H code\nP1 2 1 3 wall\n", "a.txt").positions[0], (Vec3{1, 2, 3}));
+  EXPECT_THROW((void)read("Project: Bridge 7\nx,y,z,i\n1,2,3,4\n", "a.ply"), InvalidInput);  // a PLY whose header is damaged
+  std::string many;
+  for (int i = 0; i < 30; ++i) many += "a line of words\n";
+  EXPECT_THROW((void)read(many + "1 2 3\n", "a.txt"), InvalidInput);
+}
+
+TEST(Names, AreOursOnlyWhereAllThreeAreThere) {
+  const auto names = [](const std::string& header, const std::string& row) { return read(header + "\n" + row + "\n").property_names; };
+  EXPECT_EQ(names("x,y,z,b", "1,2,3,4"), (Names{"x", "y", "z", "b"}));
+  EXPECT_EQ(names("x,y,z,Red", "1,2,3,4"), (Names{"x", "y", "z", "Red"}));
+  EXPECT_EQ(names("R,G,B,X,Y,Z", "1,2,3,4,5,6"), (Names{"red", "green", "blue", "x", "y", "z"}));
+  EXPECT_EQ(names("x,y,z,n_x,n_y,n_z", "1,2,3,4,5,6"), (Names{"x", "y", "z", "nx", "ny", "nz"}));
+  EXPECT_EQ(names("x,y,z,i,j,k", "1,2,3,0,0,1"), (Names{"x", "y", "z", "nx", "ny", "nz"}));  // of length 1
+  EXPECT_EQ(names("x,y,z,i,j,k", "1,2,3,4,5,6"), (Names{"x", "y", "z", "i", "j", "k"}));
+  EXPECT_EQ(names("x,y,z,id,label", "1,2,3,4,5"), (Names{"x", "y", "z", "id", "label"}));
+  EXPECT_EQ(names("x,y,n", "1,2,3"), (Names{"x", "y", "z"}));  // the first three, with a warning
+}
+
+TEST(Names, OfAxesAreFoundWhereverTheyStand) {
+  EXPECT_EQ(read("P,N,E,H\n7,5000,1000,3\n").positions[0], (Vec3{1000, 5000, 3}));
+  EXPECT_EQ(read("t,e,n,u\n7,1000,5000,3\n").positions[0], (Vec3{1000, 5000, 3}));
+  for (const char* header :
+       {"id,POINT_X,POINT_Y,POINT_Z", "id,Points:0,Points:1,Points:2", "id,x_m,y_m,z_m", "id,field.x,field.y,field.z"}) {
+    const Cloud cloud = read(std::string(header) + "\n7,1,2,3\n");
+    EXPECT_EQ(cloud.positions[0], (Vec3{1, 2, 3})) << header;
+    expect_said(cloud.warnings, "are taken for them");
+  }
+  const Cloud latin = read("Nr;Rechtswert;Hochwert;H\xf6he \xfc.NN;Code\n7;1000;5000;3;8\n");  // two are known, the next is the third
+  EXPECT_EQ(latin.positions[0], (Vec3{1000, 5000, 3}));
+  expect_said(latin.warnings, "are taken for them");
+  EXPECT_EQ(read("nx,ny,nz,p_x,p_y,p_z\n0,0,1,1,2,3\n").positions[0], (Vec3{1, 2, 3}));
+}
+
+TEST(Order, OfColumnsWithoutNamesIsDoubtedWhereItLooksOdd) {
+  expect_said(read("255 0 7 1.5 2 3\n1 2 3 1.5 2 4\n").warnings, "look like colours");
+  expect_said(read("255 0 7 255 1.5 2 3\n1 2 3 255 1.5 2 4\n").warnings, "look like colours");
+  expect_said(read("0.6 0.8 0 1.5 2 3\n0 1 0 1.5 2 4\n").warnings, "look like normals");
+  expect_said(read("12 1.5 2.5 3.5\n12 1.5 2.5 4.5\n").warnings, "intensity,x,y,z");
+  for (const char* usual : {"1.5 2 3 255 0 7\n", "0 0 1 255 0 7\n", "1 2 3 0 0 1\n", "10 2 3 4 5 6\n"})
+    EXPECT_TRUE(read(usual).warnings.empty()) << usual;
 }
 
 TEST(Pnezd, IsRecognisedAndSaid) {

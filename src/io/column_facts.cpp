@@ -78,6 +78,21 @@ bool all_differ(std::uint64_t count, const std::function<void(const std::functio
   return true;
 }
 
+std::string doubt_of_order(const ColumnFacts& facts, std::size_t columns) {
+  const auto are_coordinates = [&](std::size_t c) {  // three that are neither colours nor normals
+    return c + 3 <= columns && !(facts.are_whole(c) && facts.are_whole(c + 1) && facts.are_whole(c + 2)) && !facts.are_normals(c);
+  };
+  const std::string taken = "the first three columns are taken for x, y and z, and ";
+  const std::string remedy = "; if so, name the columns in a first line, for example ";
+  if (columns >= 6 && facts.are_colors(0) && (are_coordinates(3) || are_coordinates(4)))
+    return taken + "look like colours, whole numbers from 0 to 255" + remedy + "red,green,blue,x,y,z";
+  if (columns >= 6 && facts.are_normals(0) && are_coordinates(3))
+    return taken + "look like normals, all of length 1" + remedy + "nx,ny,nz,x,y,z";
+  if (columns >= 4 && facts.are_whole(0) && !facts.are_whole(1) && !facts.are_whole(2) && !facts.are_whole(3))
+    return taken + "the three after the first look more like coordinates" + remedy + "intensity,x,y,z";
+  return "";
+}
+
 void guess_names(std::vector<Property>& columns, const ColumnFacts& facts, std::size_t known) {
   const std::size_t count = columns.size();
   bool normals = false;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace g3r::io {
@@ -58,6 +59,10 @@ Arrangement find_arrangement(const ColumnFacts& facts, const std::vector<TextCol
 /// about `at_once` are in memory.
 bool all_differ(std::uint64_t count, const std::function<void(const std::function<void(double)>&)>& for_each_value,
                 std::size_t at_once = std::size_t{1} << 21);
+
+/// Without names the first three columns are x, y and z. What to do where they look like something else and the coordinates stand later,
+/// else "".
+std::string doubt_of_order(const ColumnFacts& facts, std::size_t columns);
 
 /// Names for columns without names, of which none holds text any more and the first `known` are named already: triples that look like
 /// normals or colours, else "scalar_4" and so on.

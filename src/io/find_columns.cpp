@@ -5,6 +5,7 @@
 #include "io/text_values.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <iterator>
 #include <string_view>
@@ -29,21 +30,6 @@ struct Words {
   bool like_numbers = false;  // some begin like a number
 };
 
-[[noreturn]] void fail_at_word(const Source& source, const Words& words) { fail_at_line(source, words.line, expected_number(words.first)); }
-
-// Which columns hold text; a word among numbers is an error.
-std::vector<TextColumn> find_text(const Source& source, std::uint64_t points, const std::vector<Words>& words) {
-  std::vector<TextColumn> text(words.size());
-  const Words* damage = nullptr;
-  for (std::size_t c = 0; c < words.size(); ++c) {
-    text[c].any = words[c].count != 0;
-    text[c].all = words[c].count == points && !words[c].like_numbers;
-    if (text[c].any && words[c].count * kLinesPerWord <= points && (damage == nullptr || words[c].line < damage->line)) damage = &words[c];
-  }
-  if (damage != nullptr) fail_at_word(source, *damage);
-  return text;
-}
-
 // Finds the columns of one text.
 class Finder {
  public:
@@ -54,17 +40,22 @@ class Finder {
 
   TextColumns find(const std::function<void(const double*)>& store) {
     const bool named = !shape_.header.names.empty();
+    const bool asks = !named || find_name("i") < shape_.columns;  // what i, j, k are
     ColumnFacts facts(shape_.columns);
     PointRows rows(text_, shape_, [&](std::size_t column, std::size_t line, std::string_view value) { note(column, line, value); });
     while (const double* row = rows.next()) {
       if (store) store(row);
-      if (!named) facts.add(row);
+      if (asks) facts.add(row);
     }
     found_.overflow = rows.overflow();
-    const std::vector<TextColumn> text = find_text(source_, shape_.points, words_);
-    if (named) name_by_header();
+    missing_ = rows.missing();
+    const std::vector<TextColumn> text = find_text();
+    if (named) name_by_header(facts);
     const std::size_t known = named ? shape_.columns : name_first_columns(facts, text);
     const std::size_t left = leave_out_text(known);
+    for (std::size_t c = 0; c < missing_.size(); ++c) missing_[c].count = words_[c].count == 0 ? missing_[c].count : 0;
+    const std::vector<std::string> missing = about_missing(shape_, missing_);
+    found_.warnings.insert(found_.warnings.end(), missing.begin(), missing.end());
     if (named) return std::move(found_);
     if (found_.kept.size() < shape_.columns && left < found_.kept.size()) facts = facts_of_kept();
     guess_names(found_.properties, facts, left);
@@ -72,6 +63,44 @@ class Finder {
   }
 
  private:
+  [[noreturn]] void fail_at_word(std::size_t column) const {
+    fail_at_line(source_, words_[column].line, expected_number(words_[column].first, " in " + column_text(shape_, column)));
+  }
+
+  // Which columns hold text; a word among numbers is an error.
+  [[nodiscard]] std::vector<TextColumn> find_text() const {
+    std::vector<TextColumn> text(words_.size());
+    std::size_t damage = words_.size();
+    for (std::size_t c = 0; c < words_.size(); ++c) {
+      const Words& words = words_[c];
+      text[c].any = words.count != 0;
+      text[c].all = text[c].any && words.count + missing_[c].count == shape_.points && !words.like_numbers;
+      if (text[c].any && words.count * kLinesPerWord <= shape_.points && (damage == words_.size() || words.line < words_[damage].line)) {
+        damage = c;
+      }
+    }
+    if (damage < words_.size()) fail_at_word(damage);
+    return text;
+  }
+
+  // A column that is no coordinate and holds no number is of no use.
+  [[nodiscard]] bool is_used(std::size_t column) const { return words_[column].count == 0 && missing_[column].count < shape_.points; }
+
+  // The column of this name in the header, or a column that is not there.
+  [[nodiscard]] std::size_t find_name(std::string_view name) const {
+    const std::vector<std::string>& names = shape_.header.names;
+    return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  }
+
+  // A coordinate needs numbers.
+  void require_numbers(std::size_t column) const {
+    if (words_[column].count != 0) fail_at_word(column);
+    if (missing_[column].count == shape_.points) {
+      fail_at_line(source_, missing_[column].line,
+                   "expected a coordinate in " + column_text(shape_, column) + ", found no number in any line");
+    }
+  }
+
   void note(std::size_t column, std::size_t line, std::string_view value) {
     Words& here = words_[column];
     if (here.count++ == 0) {
@@ -121,30 +150,65 @@ class Finder {
           "a first line, for example point,northing,easting,elevation");
     }
     for (std::size_t a = 0; a < 3; ++a) {
-      if (text[first + a].any) fail_at_word(source_, words_[first + a]);
+      require_numbers(first + a);
       found_.properties[first + a].name = kAxes[a];
     }
+    const std::string doubt = first == 0 && !shape_.counted ? doubt_of_order(facts, shape_.columns) : "";
+    if (!doubt.empty()) found_.warnings.push_back(doubt);
     return first + 3;
   }
 
+  // i, j and k are normals where they are vectors of length 1, else indices or what they may be.
+  void name_normals(std::vector<std::string>& names, const ColumnFacts& facts) const {
+    const std::size_t i = find_name("i");
+    if (i + 2 >= names.size() || names[i + 1] != "j" || names[i + 2] != "k" || find_name("nx") < names.size() || !facts.are_normals(i))
+      return;
+    for (std::size_t a = 0; a < 3; ++a) names[i + a] = std::string("n") + kAxes[a];
+  }
+
+  // The columns that are taken for x, y and z where the header does not name all three. If it names two, the third is the next column with
+  // numbers.
+  std::array<std::size_t, 3> choose_axes(const std::vector<std::string>& names) {
+    std::array<std::size_t, 3> axes{};
+    std::size_t named = 0;
+    std::size_t last = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      axes[a] = static_cast<std::size_t>(std::find(names.begin(), names.end(), kAxes[a]) - names.begin());
+      if (axes[a] == names.size()) continue;
+      ++named;
+      last = std::max(last, axes[a]);
+    }
+    std::vector<std::size_t> found = named == 2 ? std::vector<std::size_t>() : like_axes(names);
+    const bool by_name = !found.empty();
+    for (std::size_t c = named == 2 ? last + 1 : 0; c < names.size() && found.size() < 3; ++c) {
+      if (is_used(c)) found.push_back(c);
+    }
+    if (found.size() < (named == 2 ? 1 : 3))
+      fail(source_, "the header names no columns x, y and z, and fewer than three columns are numbers");
+    if (named == 2) {
+      *std::find(axes.begin(), axes.end(), names.size()) = found[0];
+    } else {
+      std::copy_n(found.begin(), 3, axes.begin());
+    }
+    found_.warnings.push_back(std::string("the header names no columns x, y and z: ") + (by_name || named == 2 ? "" : "the first three, ") +
+                              quote(shape_.header.theirs[axes[0]]) + ", " + quote(shape_.header.theirs[axes[1]]) + " and " +
+                              quote(shape_.header.theirs[axes[2]]) + (by_name || named == 2 ? "" : ",") + " are taken for them");
+    return axes;
+  }
+
   // Names the columns by the header. x, y and z must be numbers.
-  void name_by_header() {
+  void name_by_header(const ColumnFacts& facts) {
     std::vector<std::string> names = shape_.header.names;
+    name_normals(names, facts);
     if (!shape_.header.axes) {
-      std::vector<std::size_t> numbers;
-      for (std::size_t c = 0; c < names.size() && numbers.size() < 3; ++c) {
-        if (words_[c].count == 0) numbers.push_back(c);
-      }
-      if (numbers.size() < 3) fail(source_, "the header names no columns x, y and z, and fewer than three columns are numbers");
-      found_.warnings.push_back("the header names no columns x, y and z: the first three, " + quote(names[numbers[0]]) + ", " +
-                                quote(names[numbers[1]]) + " and " + quote(names[numbers[2]]) + ", are taken for them");
-      for (std::size_t a = 0; a < 3; ++a) names[numbers[a]] = kAxes[a];
+      const std::array<std::size_t, 3> axes = choose_axes(names);
+      for (std::size_t a = 0; a < 3; ++a) names[axes[a]] = kAxes[a];
     }
     make_distinct(names);
     for (std::size_t c = 0; c < names.size(); ++c) found_.properties[c].name = names[c];
     for (const char* axis : kAxes) {
       const auto column = static_cast<std::size_t>(std::find(names.begin(), names.end(), axis) - names.begin());
-      if (words_[column].count != 0) fail_at_word(source_, words_[column]);
+      require_numbers(column);
     }
   }
 
@@ -154,7 +218,7 @@ class Finder {
     std::vector<std::size_t>& kept = found_.kept;
     std::string names;
     for (std::size_t c = 0; c < words_.size(); ++c) {
-      if (words_[c].count == 0) {
+      if (is_used(c)) {
         kept.push_back(c);
         continue;
       }
@@ -163,12 +227,12 @@ class Finder {
       if (left_out > 1) names += ", ";
       names += std::to_string(c + 1);
       if (!found_.properties[c].name.empty()) names.append(" ").append(quote(found_.properties[c].name));
-      names.append(" (").append(quote(words_[c].first)).append(")");
+      names.append(" (").append(words_[c].count != 0 ? quote(words_[c].first) : "empty").append(")");
     }
     if (kept.size() == words_.size()) return known;
     const std::size_t more = words_.size() - kept.size() > kMostNamed ? words_.size() - kept.size() - kMostNamed : 0;
     if (more != 0) names += " and " + std::to_string(more) + " more";
-    found_.warnings.push_back("columns that hold text are not used: " + names);
+    found_.warnings.push_back("columns without numbers are not used: " + names);
     for (std::size_t k = 0; k < kept.size(); ++k) {
       if (k != kept[k]) found_.properties[k] = std::move(found_.properties[kept[k]]);
     }
@@ -180,6 +244,7 @@ class Finder {
   const Source& source_;
   const TextShape& shape_;
   std::vector<Words> words_;
+  std::vector<PointRows::Missing> missing_;
   TextColumns found_;
 };
 

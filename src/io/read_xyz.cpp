@@ -54,7 +54,12 @@ std::vector<std::string> warnings_of(const TextShape& shape, bool overflow) {
   if (shape.announced) {
     warnings.push_back("more points follow than the count line says (" + std::to_string(*shape.announced) + "): all are read");
   }
-  if (shape.header_differs) warnings.emplace_back("the header line has not as many columns as the points: it is not used");
+  if (shape.unused_headers > 0) {
+    const std::string lines = shape.unused_headers == 1 ? "a line" : std::to_string(shape.unused_headers) + " lines";
+    warnings.push_back(lines + " before the points, line " + std::to_string(shape.unused_line) + " " + quote(shape.unused_text) +
+                       (shape.unused_headers == 1 ? "" : " the first") +
+                       (shape.header.names.empty() ? ", not used: without a name for every column of the points" : ", not used"));
+  }
   if (overflow) warnings.emplace_back(kOverflow);
   if (shape.open_end) warnings.emplace_back(kOpenEnd);
   return warnings;
@@ -63,7 +68,7 @@ std::vector<std::string> warnings_of(const TextShape& shape, bool overflow) {
 // The text of a file, and the kept columns of its points.
 struct TextFile {
   TextFile(const RandomFile& file, std::uint64_t begin)
-      : source{{}, file.path()}, text(source, file, begin), shape(measure(text)), rows(text, shape, no_words(text)) {
+      : source{{}, file.path()}, text(source, file, begin), shape(measure(text)), rows(text, shape, no_words(text, shape)) {
     if (!shape.is_bare()) {
       columns = find_columns(text, shape);
       rows = PointRows(text, shape, [](std::size_t, std::size_t, std::string_view) {});  // find_columns() has seen the words
@@ -125,9 +130,10 @@ Cloud read_xyz(const Source& source) {
     fill_cloud(source, std::move(table), cloud);
   } else {
     cloud.positions.reserve(static_cast<std::size_t>(shape.points));
-    PointRows rows(text, shape, no_words(text));
+    PointRows rows(text, shape, no_words(text, shape));
     while (const double* row = rows.next()) cloud.positions.push_back({row[0], row[1], row[2]});
     overflow = rows.overflow();
+    cloud.warnings = about_missing(shape, rows.missing());
     cloud.property_names = {"x", "y", "z"};
   }
   if (shape.header.geographic) warn_about_degrees(cloud);

@@ -39,6 +39,11 @@ constexpr Signature kStrangers[] = {
     {"<!doctype"sv, "an HTML page; the download failed"},
     {"<html"sv, "an HTML page; the download failed"},
     {"<?xml"sv, "an XML file, which is no point format"},
+    {"# vtk DataFile"sv, "a VTK file; save it as PLY, for example with ParaView"},
+    {"  0\nSECTION"sv, "a DXF drawing; save its points as text, one a line"},
+    {"  0\r\nSECTION"sv, "a DXF drawing; save its points as text, one a line"},
+    {"0\nSECTION"sv, "a DXF drawing; save its points as text, one a line"},
+    {"0\r\nSECTION"sv, "a DXF drawing; save its points as text, one a line"},
     {"%PDF"sv, "a PDF file"},
     {"\x89HDF"sv, "an HDF5 file"},
     {"\xff\xfe"sv, "UTF-16 text; save it as UTF-8"},
@@ -87,6 +92,13 @@ bool starts_with_number(std::string_view line) {
   const std::size_t end = line.find_first_of(" \t,;");
   double value = 0;
   return parse_double(line.substr(0, end), value) || (!line.empty() && line.find_first_of("+-.0123456789") == 0);
+}
+
+// Whether files of this extension are lines of numbers, so that several lines of words may come first. Of others, which a damaged header
+// may begin, one may.
+bool is_table_name(std::string_view ext) {
+  constexpr std::array<std::string_view, 11> kTables = {"csv", "txt", "xyz", "asc", "dat", "pts", "neu", "tsv", "xyzrgb", "xyzi", "xyzn"};
+  return std::find(kTables.begin(), kTables.end(), ext) != kTables.end();
 }
 
 std::size_t count_fields(std::string_view line) {
@@ -183,9 +195,9 @@ Format recognise(const Source& source) {
   if (std::find(kObjKeywords.begin(), kObjKeywords.end(), word) != kObjKeywords.end()) return Format::kObj;
   const bool named = count_fields(line) >= 3;  // a header line of a table
   const auto is_data = [&] { return starts_with_number(line) || is_row(line); };
-  if (is_data() || (named && beginning.next(line) && is_data())) {
-    if (line.find('\0') == std::string_view::npos) return Format::kText;
-  }
+  const int headers = is_table_name(ext) ? kMostHeaderLines : named ? 1 : 0;
+  for (int k = 0; k < headers && !is_data() && beginning.next(line);) ++k;
+  if (is_data() && line.find('\0') == std::string_view::npos) return Format::kText;
   const bool binary = bytes.substr(0, 4096).find('\0') != std::string_view::npos;
   fail_at_byte(source, 0,
                "unknown format: expected " + magic_of(ext) + ", found " + (binary ? "binary data " : "") + quote(bytes.substr(0, 80)));

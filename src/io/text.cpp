@@ -188,8 +188,8 @@ std::uint64_t parse_count(const Source& source, std::size_t line, std::string_vi
   fail_at_line(source, line, "expected the " + what + " (a count: a decimal number from 0), " + problem + (token.empty() ? "" : kind));
 }
 
-std::string expected_number(std::string_view found) {
-  std::string text = "expected a number, found " + quote(found);
+std::string expected_number(std::string_view found, const std::string& where) {
+  std::string text = "expected a number, found " + quote(found) + where;
   if (found.find(',') != std::string_view::npos) return text + " (a decimal comma? write numbers with a point)";
   if (found.find_first_of("dD") != std::string_view::npos && found.find_first_of("0123456789") == 0) text += " (a Fortran exponent? use E)";
   if (found.find('\0') != std::string_view::npos) text += " (a NUL character)";

@@ -108,8 +108,8 @@ std::uint64_t parse_count(const Source& source, std::size_t line, std::string_vi
 inline constexpr const char* kOverflow = "a number is out of double's range: it is taken as infinite (not finite)";
 inline constexpr const char* kOpenEnd = "the last line has no line end: the file may be cut";
 
-/// `number` words, for messages: "expected a number, found "0,5" (a decimal comma? use a point)".
-std::string expected_number(std::string_view found);
+/// For messages: "expected a number, found "0,5" in column 2 (a decimal comma? use a point)". `where` stands after what was found.
+std::string expected_number(std::string_view found, const std::string& where = "");
 
 /// The shortest text that reads back as the same number.
 void append_number(std::string& text, double value);

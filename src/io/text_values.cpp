@@ -29,7 +29,7 @@ bool is_number(std::string_view value) {
   return parse_double(value, number);
 }
 
-// "5 0" between two commas: the commas are decimal ones.
+// Several numbers between two separators, as "5 0" where commas are decimal ones.
 bool are_numbers(std::string_view field) {
   Tokens parts(field);
   std::string_view part;
@@ -40,9 +40,23 @@ bool are_numbers(std::string_view field) {
   return count > 1;
 }
 
+// Whether tabs separate the values: at least three numbers stand between single ones, and no two numbers with a blank between them.
+bool has_tabs(std::string_view line) {
+  if (line.find('\t') == std::string_view::npos || line.find("\t\t") != std::string_view::npos) return false;
+  Values fields(line, '\t');
+  std::string_view field;
+  std::size_t numbers = 0;
+  while (fields.next(field)) {
+    if (are_numbers(field)) return false;
+    numbers += is_number(field) ? 1 : 0;
+  }
+  return numbers >= 3;
+}
+
 }  // namespace
 
 char separator_of(std::string_view line) {
+  if (has_tabs(line)) return '\t';
   if (has_separator(line, ';')) return ';';
   if (!has_separator(line, ',')) return ' ';
   Values fields(line, ',');
@@ -67,6 +81,14 @@ bool Values::next(std::string_view& value) {
   if (more_) rest_.remove_prefix(end + 1);
   return true;
 }
+
+bool is_missing(std::string_view value) {
+  if (value.empty()) return true;
+  const std::string word = value.size() <= 4 ? lower_case(value) : "";
+  return word == "na" || word == "n/a" || word == "null" || word == "none";
+}
+
+bool ends_with_separator(std::string_view line, char separator) { return separator != ' ' && !line.empty() && line.back() == separator; }
 
 std::size_t count_values(std::string_view line, char separator) {
   Values values(line, separator);

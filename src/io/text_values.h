@@ -8,8 +8,8 @@
 
 namespace g3r::io {
 
-/// What separates the values of a line: ';' where there is one; ',' if every comma stands between two values ("0,5 0,25" has decimal
-/// commas); else blanks (' ').
+/// What separates the values of a line: a tab where three numbers or more stand between tabs; ';' where there is one; ',' if every comma
+/// stands between two values ("0,5 0,25" has decimal commas); else blanks (' ').
 char separator_of(std::string_view line);
 
 /// The values of a line. Between separators that are not blanks a value may stand in double quotes, which are taken off and hide
@@ -25,6 +25,16 @@ class Values {
   char separator_;
   bool more_;
 };
+
+/// Whether the value stands for a number that is not there: an empty cell, or what programs write in its place (NA, N/A, null, none).
+bool is_missing(std::string_view value);
+
+/// Whether the line, without blanks at its end, ends with a separator that is no blank: Values takes it for the end of the last value, and
+/// where a line has one value less than others it was the end of an empty one.
+bool ends_with_separator(std::string_view line, char separator);
+
+/// Lines of words that may stand before the points: names of columns, units, what program wrote them.
+inline constexpr int kMostHeaderLines = 20;
 
 std::size_t count_values(std::string_view line, char separator);
 
