@@ -177,7 +177,7 @@ void add_tiles(CLI::App& app, Settings& s) {
       add_tile_step(*sub, s, "merge", TileStep::kMerge, "Write all points in their order with normals and confidence, or the mesh");
   for (CLI::App* step : {run, mesh, status, merge}) step->add_option("DIR", s.tile_folder, "The work folder")->required()->type_name("");
   merge->add_option("OUT", s.output, "Oriented cloud (.ply, .las, .laz), or mesh (.ply)")->required()->type_name("");
-  CLI::Option* mesh_flag = merge->add_flag("--mesh", s.merge_mesh, "Write the mesh instead of the points")->disable_flag_override();
+  CLI::Option* mesh_flag = merge->add_flag("--mesh", s.merge_mesh, "Write the mesh instead of the points");
   add_component_options(*merge, s.mesh_options);
   for (const char* name : {"--keep-largest", "--min-component", "--keep-all"}) merge->get_option(name)->needs(mesh_flag);
   add_console_options(*merge, s);
@@ -191,8 +191,7 @@ void add_view(CLI::App& app, Settings& s) {
   sub->add_option("--truth", s.truth, "Cloud with true normals in the same order: adds the map of errors")->type_name("GT");
   sub->add_option("--figures", s.figures, "Page: report of the run, to show beside the view")->type_name("FILE.json");
   sub->add_flag_callback(
-         "--z-up", [&s] { s.page.up = s.picture.up = Up::kZ; }, "The z axis points up instead of the y axis")
-      ->disable_flag_override();
+      "--z-up", [&s] { s.page.up = s.picture.up = Up::kZ; }, "The z axis points up instead of the y axis");
   sub->add_option_function<std::vector<std::string>>(
          "--layers",
          [&s](const std::vector<std::string>& names) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 namespace g3r::cli {
 
@@ -29,7 +31,12 @@ inline constexpr const char* kExitCodeHelp =
 /// The command line asks for something that cannot be; ends the program with kUsage.
 class UsageError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  /// `command`: the one whose help has more, with a blank before it, or "".
+  explicit UsageError(const std::string& what, std::string command = "") : std::runtime_error(what), command_(std::move(command)) {}
+  [[nodiscard]] const std::string& command() const { return command_; }
+
+ private:
+  std::string command_;
 };
 
 }  // namespace g3r::cli

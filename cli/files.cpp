@@ -29,7 +29,8 @@ void check_input(const std::string& path) {
 /// `g3r oriend scan.ply` asks for a file named oriend.
 void check_not_a_command(const std::string& input) {
   if (std::all_of(input.begin(), input.end(), [](char c) { return c >= 'a' && c <= 'z'; }) && !platform::exists(input)) {
-    throw UsageError("there is no file and no command named " + input);
+    const std::string option = input == "help" || input == "version" ? "; did you mean --" + input + "?" : "";
+    throw UsageError("there is no file and no command named " + input + option);
   }
 }
 

@@ -95,7 +95,7 @@ int run_program(const std::vector<std::string>& words) {
       return complain_of_input(settings->input, error.what());
     }
   } catch (const UsageError& error) {
-    return complain(kUsage, std::string(error.what()) + " (see g3r --help)");
+    return complain(kUsage, std::string(error.what()) + " (see g3r" + error.command() + " --help)");
   } catch (const InvalidInput& error) {
     return complain(kBadData, error.what());
   } catch (const IoError& error) {

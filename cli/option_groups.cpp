@@ -54,8 +54,7 @@ void add_console_options(CLI::App& app, Settings& s) {
   app.option_defaults()->group(kRunGroup);
   app.add_flag("-q,--quiet", s.quiet, "Say nothing but errors");
   app.add_flag_callback(
-         "--no-progress", [&s] { s.progress = false; }, "No progress bar")
-      ->disable_flag_override();
+      "--no-progress", [&s] { s.progress = false; }, "No progress bar");
   app.add_flag("-v,--verbose", s.verbosity, "Say more");
 }
 
@@ -86,8 +85,7 @@ void add_read_options(CLI::App& app, Settings& s) {
       ->check(range(0.0, 1.0))
       ->type_name("X");
   app.add_flag("--all-splats", s.read_options.all_splats,
-               "Gaussian splats: keep all, also faint ones, floaters and those inside, which no light from outside reaches")
-      ->disable_flag_override();
+               "Gaussian splats: keep all, also faint ones, floaters and those inside, which no light from outside reaches");
   app.add_option_function<std::vector<double>>(
          "--box",
          [&s](const std::vector<double>& sides) {
@@ -162,7 +160,6 @@ void add_finish_options(CLI::App& app, Settings& s) {
                           ->type_name("off|auto|X");
   app.add_flag_callback(
          "--open", [&o] { o.trim = MeshOptions::Trim::kAuto; }, "For open scans: the same as --trim auto")
-      ->disable_flag_override()
       ->excludes(trim);
   add_component_options(app, o);
   app.add_option("--faces", o.faces, "Simplify to about N triangles (default, or 0: off)")->check(range(std::size_t{0}))->type_name("N");

@@ -17,7 +17,7 @@
 #include "command_options.h"
 #include "exit_code.h"
 #include "help.h"
-#include "suggestions.h"
+#include "parse_errors.h"
 
 namespace g3r::cli {
 namespace {
@@ -108,6 +108,14 @@ void complete(const CLI::App& app, Settings& s) {
   if (std::count(written.begin(), written.end(), "-") > 1) throw UsageError("only one result can go to standard output");
 }
 
+/// Flags take no value: --quiet=no would be quiet.
+void refuse_values_of_flags(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) {
+    if (option->get_items_expected_max() == 0) option->disable_flag_override();
+  }
+  for (CLI::App* command : app.get_subcommands({})) refuse_values_of_flags(*command);
+}
+
 /// The library knows the grammar of --schedule and --harmonics; the plan of a tetrahedron tells before any file is read.
 void check_options(const Options& options) {
   const std::vector<Vec3> tetrahedron = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -138,18 +146,23 @@ std::optional<Settings> parse_command_line(int argc, const char* const* argv) {
   app.allow_windows_style_options(false);  // there /folder/file would be options
   app.require_subcommand(0, 1);
   add_commands(app, settings);
+  refuse_values_of_flags(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {
     app.exit(request, std::cout, std::cout);
     return std::nullopt;
-  } catch (const CLI::ExtrasError&) {
-    throw UsageError(about_extras(app));
   } catch (const CLI::ParseError& error) {
-    throw UsageError(error.what());
+    throw UsageError(about_parse_error(app, error), named_command(app));
+  } catch (const UsageError& error) {
+    throw UsageError(error.what(), named_command(app));
   }
-  complete(app, settings);
-  check_options(settings.options);
+  try {
+    complete(app, settings);
+    check_options(settings.options);
+  } catch (const UsageError& error) {
+    throw UsageError(error.what(), named_command(app));
+  }
   return settings;
 }
 

@@ -23,21 +23,6 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-/// "; did you mean WORD?" if one of the words is near, else nothing.
-std::string suggestion(const std::string& found, const std::vector<std::string>& words) {
-  constexpr std::size_t kNear = 2;  // Two letters are a slip; with more, words that mean something else are near.
-  std::string nearest;
-  std::size_t least = kNear + 1;
-  for (const std::string& word : words) {
-    const std::size_t distance = edit_distance(found, word);
-    if (distance < std::min(least, word.size() - 1)) {
-      least = distance;
-      nearest = word;
-    }
-  }
-  return nearest.empty() ? "" : "; did you mean " + nearest + "?";
-}
-
 /// " of g3r orient: it belongs to g3r IN OUT, g3r mesh" if other commands have the option, else nothing.
 std::string owners(const CLI::App& app, const CLI::App& command, const std::string& option) {
   std::string text;
@@ -52,10 +37,31 @@ std::string owners(const CLI::App& app, const CLI::App& command, const std::stri
 
 }  // namespace
 
+std::string suggestion(const std::string& found, const std::vector<std::string>& words) {
+  constexpr std::size_t kNear = 2;       // Two letters are a slip; with more, words that mean something else are near.
+  constexpr std::size_t kBeginning = 3;  // So many letters, of options with the dashes, are the beginning of a word.
+  std::string nearest;
+  std::size_t least = kNear + 1;
+  for (const std::string& word : words) {
+    const bool begins = found.size() >= kBeginning && word.compare(0, found.size(), found) == 0;
+    const std::size_t distance = begins ? 0 : edit_distance(found, word);
+    if (distance < std::min(least, word.size() - 1)) {
+      least = distance;
+      nearest = word;
+    }
+  }
+  return nearest.empty() ? "" : "; did you mean " + nearest + "?";
+}
+
+const CLI::App& deepest_command(const CLI::App& app) {
+  const CLI::App* command = &app;
+  for (auto parsed = app.get_subcommands(); !parsed.empty(); parsed = command->get_subcommands()) command = parsed.front();
+  return *command;
+}
+
 std::string about_extras(const CLI::App& app) {
   const std::string first = app.remaining(true).front();
-  const auto parsed = app.get_subcommands();
-  const CLI::App& command = parsed.empty() ? app : *parsed.front();
+  const CLI::App& command = deepest_command(app);
   if (first == "-o" || first == "--out" || first == "--output")
     return "unknown option " + first + ": the output stands after the input, without an option";
   if (first.size() > 1 && first.front() == '-') {
@@ -66,7 +72,7 @@ std::string about_extras(const CLI::App& app) {
     const std::string name = first.substr(0, first.find('='));
     return "unknown option " + first + owners(app, command, name) + suggestion(name, options);
   }
-  if (!parsed.empty()) return "one file too many for g3r " + command.get_name() + ": " + first;
+  if (&command != &app) return "one file too many for g3r " + command.get_name() + ": " + first;
   std::vector<std::string> names;
   std::string list;
   for (const CLI::App* other : app.get_subcommands({})) {

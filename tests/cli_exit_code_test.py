@@ -96,6 +96,45 @@ class ExitCodes(ProgramTest):
                 self.assertEqual(self.expect(USAGE, *arguments).out, b"")
         self.assertEqual(os.listdir(self.folder), ["ball.ply"])
 
+    def test_what_the_parser_refuses_is_said_with_the_remedy(self):
+        for arguments, words in (
+                (["orient"], "IN is missing: expected g3r orient IN OUT [options] (see g3r orient --help)"),
+                (["eval", "ball.ply"], "--truth is missing: expected g3r eval RESULT --truth GT"),
+                (["ball.ply", "--threads"], "--threads: expected a value, N, after it"),
+                (["ball.ply", "--threads", "1", "--threads", "2"], "--threads is given 2 times: expected once"),
+                (["ball.ply", "--box", "1,2"], "--box: expected X0,Y0,Z0,X1,Y1,Z1, found 2 values"),
+                (["ball.ply", "--box", "1,2,3,4,5,x"], "--box: expected X0,Y0,Z0,X1,Y1,Z1, found '1,2,3,4,5,x'"),
+                (["ball.ply", "--strict=no"], "--strict takes no value"), (["ball.ply", "--quiet=3"], "--quiet takes no value"),
+                (["ball.ply", "--open=3"], "--open takes no value"),
+                (["ball.ply", "--open", "--trim", "3"], "--trim excludes --open: give one of the two"),
+                (["tiles", "merge", "d", "o.ply", "--keep-all"], "--keep-all is of use only with --mesh: give it too"),
+                (["tiles"], "expected one of the commands plan, run, mesh, status, merge, found none"),
+                (["tiles", "plam", "a", "b"], "found 'plam'; did you mean plan?"),
+                (["tiles", "run", "d", "--worke", "1/2"], "did you mean --worker? (see g3r tiles run --help)"),
+                (["view", "a", "b", "c", "-o", "x.html"], "3 files: expected g3r view IN... --out OUT"),
+                (["ball.ply", "orient"], "expected the command 'orient' before its files"), (["ball.ply", "--h"], "did you mean --help?"),
+                (["orient", "--version"], "unknown option --version of g3r orient"), (["help"], "did you mean --help?")):
+            with self.subTest(arguments):
+                self.assertIn(words, self.expect(USAGE, *arguments).err)
+
+    def test_clouds_that_say_nothing_are_told(self):
+        corners = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+        for points in (corners, corners[:5], corners[:4] * 50, sphere(12), sphere(20)):
+            write_points(self.path("few.ply"), points)
+            for arguments in (["orient", "few.ply", "a.ply"], ["few.ply", "a.ply"]):
+                self.assertIn("--strict", self.expect(BAD_DATA, *arguments, "--strict").err)
+        self.assertIn("20 points are too few to show which side is outside", self.expect(OK, "orient", "few.ply", "a.ply").err)
+        for points, words in (([(i, 2 * i, 3 * i) for i in range(50)], "all points lie on one line"), ([(1, 2, 3)] * 50, "all points lie at the same place"),
+                              ([(1, 2, 3), (2, 2, 3)] * 50, "too few distinct points: 2"), (corners[:1], "too few points: 1 of 1"),
+                              (corners[:3], "too few points: 3 of 3")):
+            write_points(self.path("none.ply"), points)
+            self.assertIn(words, self.expect(BAD_DATA, "orient", "none.ply", "a.ply").err)
+
+    def test_what_las_cannot_hold_is_told(self):
+        with open(self.path("a.csv"), "w") as points:
+            points.write("x,y,z,intensity\n" + "".join("%.3f,%.3f,%.3f,0.5\n" % point for point in sphere(200)))
+        self.assertIn('warning: "intensity" becomes extra bytes "intensity_2"', self.expect(OK, "orient", "a.csv", "a.las").err)
+
     def test_an_option_of_another_command_names_its_owner(self):
         self.assertIn("it belongs to g3r IN OUT, g3r mesh", self.expect(USAGE, "orient", "ball.ply", "a.ply", "--open").err)
         self.assertIn("of g3r mesh: it belongs to", self.expect(USAGE, "mesh", "ball.ply", "a.ply", "--up", "+z").err)
