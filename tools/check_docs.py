@@ -2,12 +2,15 @@
 """Checks the documentation: links and their anchors, paths, columns, and words that the glossary does not have; that sources have
 none of these words either, in comments, messages and names, and that the pages which they name are there. Standard library only.
 
-    check_docs.py    prints FILE:LINE: what is wrong; exit code 1 if anything is
+    check_docs.py              prints FILE:LINE: what is wrong; exit code 1 if anything is
+    check_docs.py --help-of G3R          that docs/cli.md has what the program G3R says with --help
+    check_docs.py --write-help-of G3R    puts it there
 """
 
 import functools
 import pathlib
 import re
+import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -138,7 +141,37 @@ def source_complaints(line):
         yield f"\"{word.group(0)}\": the glossary has \"{plain}\""
 
 
+# --- the command line
+
+
+def help_of(program, *command):
+    return subprocess.run([program, *command, "--help"], capture_output=True, text=True, check=True).stdout.rstrip()
+
+
+def help_sections(program, *command):
+    """The help of a command, and of the commands that it lists."""
+    text = help_of(program, *command)
+    yield f"## {' '.join(('g3r', *command))}\n\n```text\n{text}\n```\n"
+    for name in re.findall(r"^  ([a-z]+) ", text.partition("\nCommands:")[2], re.M):
+        yield from help_sections(program, *command, name)
+
+
+def check_help(program, write):
+    """Compares the part of docs/cli.md between its marks with the program, or writes it."""
+    page = ROOT / "docs" / "cli.md"
+    text = page.read_text(encoding="utf-8")
+    begin, _, rest = text.partition("<!-- help -->\n")
+    _, _, end = rest.partition("<!-- /help -->")
+    right = begin + "<!-- help -->\n\n" + "\n".join(help_sections(program)) + "\n<!-- /help -->" + end
+    if write:
+        page.write_text(right, encoding="utf-8")
+    elif text != right:
+        sys.exit(f"docs/cli.md: not what the program says with --help; tools/check_docs.py --write-help-of {program} puts it there")
+
+
 def main():
+    if len(sys.argv) == 3 and sys.argv[1] in ("--help-of", "--write-help-of"):
+        return check_help(sys.argv[2], sys.argv[1] == "--write-help-of")
     found = [f"{path.relative_to(ROOT)}:{number}: {text}" for path in pages() for number, text in complaints(path)]
     found += [f"{path.relative_to(ROOT)}:{number}: {text}" for path, number, line in sources() for text in source_complaints(line)]
     print("\n".join(found) if found else f"{len(pages())} pages: links, columns and words are right")

@@ -11,7 +11,6 @@ if [ ! -x $environment/bin/mkdocs ]; then
   python3 -m venv --clear $environment
   $environment/bin/pip install --quiet --disable-pip-version-check 'mkdocs>=1.6,<2' 'mkdocs-material>=9.5,<10'
 fi
-[ -x "${G3R_PROGRAM:-build/release/cli/g3r}" ] || build release g3r_cli
 NO_MKDOCS_2_WARNING=1 $environment/bin/mkdocs build --strict --quiet
 if grep -rlE '<(script|link|img|iframe)[^>]+(src|href)="?(https?:)?//' --include=*.html build/site; then
   echo "these pages load something from the network" >&2

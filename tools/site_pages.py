@@ -1,25 +1,21 @@
 """Hooks of mkdocs: what the program, the sources and other files say already is taken from them, so that nothing is said twice.
 
-In a page, <!-- help --> becomes the text of `g3r --help`, <!-- python --> the docstrings and <!-- headers --> the public headers. The
-program is $G3R_PROGRAM, or the one of the release build.
+In a page, <!-- python --> becomes the docstrings and <!-- headers --> the public headers.
 """
 
 import ast
-import os
 import pathlib
 import posixpath
 import re
-import subprocess
 import textwrap
 
-from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 COPIES = {"README.md": "index.md", "CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md", "SECURITY.md": "security.md",
           "bench/README.md": "protocol.md"}
 LINK = re.compile(r"(!?)\[([^\]]*)\]\((?!https?:|#)([^)#\s]+)(#[^)]*)?\)")
-MARK = re.compile(r"<!-- (help|python|headers) -->")
+MARK = re.compile(r"<!-- (python|headers) -->")
 
 
 def on_files(files, config):
@@ -31,7 +27,7 @@ def on_files(files, config):
 def on_page_markdown(markdown, page, **_):
     copied = {page: source for source, page in COPIES.items()}
     source = copied.get(page.file.src_uri, "docs/" + page.file.src_uri)
-    makers = {"help": help_texts, "python": python_api, "headers": header_texts}
+    makers = {"python": python_api, "headers": header_texts}
     return relink(MARK.sub(lambda mark: makers[mark.group(1)](), markdown), source, page.file.src_uri)
 
 
@@ -52,24 +48,6 @@ def relink(markdown, source, page):
         return f"{image}[{text}]({posixpath.relpath(goal, posixpath.dirname(page) or '.')}{anchor or ''})"
 
     return LINK.sub(target, markdown)
-
-
-# --- the command line
-
-
-def help_texts():
-    program = os.environ.get("G3R_PROGRAM", ROOT / "build/release/cli/g3r")
-
-    def help_of(*command):
-        try:
-            return subprocess.run([program, *command, "--help"], capture_output=True, text=True, check=True).stdout.rstrip()
-        except OSError as error:
-            raise PluginError(f"the site needs the program: {error}") from None
-
-    text = help_of()
-    commands = re.findall(r"^  ([a-z]+) ", text[text.index("\nCommands:"):], re.M)
-    sections = [("g3r", text)] + [(f"g3r {command}", help_of(command)) for command in commands]
-    return "\n".join(f"## {title}\n\n```text\n{text}\n```\n" for title, text in sections)
 
 
 # --- Python
