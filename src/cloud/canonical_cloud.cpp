@@ -110,7 +110,7 @@ Frame frame_of(const Bounds& b) {
     side = std::max(side, b.high[a] - b.low[a]);
   }
   if (!std::isfinite(side)) throw InvalidInput("the extent of the coordinates is more than a double can hold; scale them down");
-  if (side <= 0) throw InvalidInput("all points are at the same place; at least 4 distinct points are needed");
+  if (side <= 0) throw InvalidInput("all points lie at the same place: at least 4 distinct points are needed");
   frame.scale = kBoxSide / side;
   if (!std::isfinite(frame.scale))
     throw InvalidInput("the extent is too small: the points are closer together than a double can resolve; scale them up");
@@ -154,7 +154,7 @@ void require_not_collinear(const std::vector<Vec3>& points) {
         std::hypot(d[1] * axis[2] - d[2] * axis[1], d[2] * axis[0] - d[0] * axis[2], d[0] * axis[1] - d[1] * axis[0]) / length;
     if (off_line > kLineThickness * length) return;
   }
-  throw InvalidInput("all points are collinear (on one line); a surface needs points around a volume");
+  throw InvalidInput("all points lie on one line (collinear): a surface needs points in all three directions");
 }
 
 }  // namespace
