@@ -18,9 +18,7 @@
 
 #include <g3r/g3r.h>
 
-#include <algorithm>
 #include <cstdint>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -30,15 +28,6 @@ namespace {
 void replace_areas(const Problem& problem, Stages& stages, Solution& solution) {
   if (!problem.replaces_areas()) return;
   solution.eta = area_vectors(problem.cloud.set, solution.refinement.normals, solution.open_surfaces, stages.cancel());
-}
-
-// Sides that no point is surer of than of a guess agree, as those of few points always do, and say nothing.
-void warn_of_guesses(const std::vector<float>& confidence, Stats& stats) {
-  constexpr float kGuess = 0.5F;
-  if (!stats.consistent || std::any_of(confidence.begin(), confidence.end(), [](float c) { return c > kGuess; })) return;
-  stats.consistent = false;
-  stats.warnings.push_back(std::to_string(confidence.size()) +
-                           " points are too few to show which side is outside: none is surer than a guess");
 }
 
 Orientation orient_in_arena(const PointsView& points, Known known, const Options& options, Stages& stages,
@@ -58,7 +47,7 @@ Orientation orient_in_arena(const PointsView& points, Known known, const Options
   replace_areas(problem, stages, solution);
   apply_hints(problem, options, solution, confidence, out.stats, stages.cancel());
   if (is_whole) warn_of_volume(problem, out.stats);
-  if (is_whole) warn_of_guesses(confidence, out.stats);
+  if (is_whole) warn_of_few_points(confidence, out.stats);
   add_outliers(problem, stages, solution, confidence);
   if (open != nullptr) *open = open_in_callers_order(problem.cloud, solution.open_surfaces);
   to_callers_order(problem.cloud, solution, confidence, out);

@@ -124,9 +124,10 @@ TEST(NewLas, BytesOfSeveralFieldsComeBackAsTheyWere) {
 }
 
 TEST(NewLas, CoordinatesKeepTheirDecimals) {
-  for (const char* text : {"36.354 86.43 -34.76\n-79.057 54.924 27.08\n", "500363.537 5000864.299 447.6026\n499209.429 5000549.242 370.7968\n",
-                           "0.018177 0.043215 0.01738\n-0.039529 0.027462 0.01354\n", "3000000.001 3000000.002 0\n3000000.003 3000000.004 1\n",
-                           "1 2 3\n4 5 6\n"}) {
+  for (const char* text :
+       {"36.354 86.43 -34.76\n-79.057 54.924 27.08\n", "500363.537 5000864.299 447.6026\n499209.429 5000549.242 370.7968\n",
+        "0.018177 0.043215 0.01738\n-0.039529 0.027462 0.01354\n", "3000000.001 3000000.002 0\n3000000.003 3000000.004 1\n",
+        "1 2 3\n4 5 6\n"}) {
     const Written las(text, "a.xyz");
     EXPECT_TRUE(las.warnings.empty()) << text << las.warnings[0];
     const Cloud cloud = read(las.bytes);

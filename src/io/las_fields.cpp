@@ -40,8 +40,7 @@ constexpr PartName kPartNames[] = {{"intensity", LasPart::kIntensity},
                                    {"returnnumbers", LasPart::kReturnNumbers}};
 
 // Names of fields that are no part.
-constexpr std::string_view kOtherNames[] = {"x",    "y",         "z",                 "red",                "green",
-                                            "blue", "bitfields", "rawclassification", "classificationflags"};
+constexpr std::string_view kOtherNames[] = {"x", "y", "z", "red", "green", "blue", "bitfields", "rawclassification", "classificationflags"};
 
 std::string letters_of(std::string_view name) {
   std::string letters;

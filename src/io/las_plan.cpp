@@ -138,8 +138,7 @@ LasPlace LasPlan::place(const Facts& facts, LasFamily family) const {
 
 void LasPlan::choose_family() {
   const auto is_new = [&](const Facts& facts) {
-    return facts.part == LasPart::kReturnNumbers ||
-           (!facts.fit(place(facts, LasFamily::kOld)) && facts.fit(place(facts, LasFamily::kNew)));
+    return facts.part == LasPart::kReturnNumbers || (!facts.fit(place(facts, LasFamily::kOld)) && facts.fit(place(facts, LasFamily::kNew)));
   };
   const bool is_long = count_ > std::numeric_limits<std::uint32_t>::max();  // which old formats cannot count
   family_ = is_long || std::any_of(facts_.begin(), facts_.end(), is_new) ? LasFamily::kNew : LasFamily::kOld;
@@ -148,7 +147,8 @@ void LasPlan::choose_family() {
 std::string LasPlan::misfit(const Facts& facts) const {
   LasPlace best = place(facts, LasFamily::kNew);
   if (best.bits == 0) best = place(facts, LasFamily::kOld);
-  if (best.bits == 0) return mixed_ ? "old and new point formats mean different things by it" : "return_flags or return_numbers hold the same";
+  if (best.bits == 0)
+    return mixed_ ? "old and new point formats mean different things by it" : "return_flags or return_numbers hold the same";
   if (best.bits == 64) return "LAS holds finite numbers there, and some are not";
   const double odd = !facts.whole ? facts.odd : facts.low < best.low ? facts.low : facts.high;
   return "LAS holds whole numbers from " + number_text(best.low) + " to " + number_text(best.high) + " there, found " + number_text(odd);
@@ -195,7 +195,8 @@ void LasPlan::choose_steps() {
     if (exact || !are_coarse(steps_[a].scale(), std::max(std::abs(low), std::abs(high)), precision_)) continue;
     rounded += (rounded.empty() ? "" : ", ") + std::string(kAxisNames[a]) + " to " + number_text(steps_[a].scale());
   }
-  if (!rounded.empty()) warnings_.push_back("coordinates are rounded (" + rounded + "): with all their digits they need more than the 32 bits of LAS");
+  if (!rounded.empty())
+    warnings_.push_back("coordinates are rounded (" + rounded + "): with all their digits they need more than the 32 bits of LAS");
 }
 
 void LasPlan::finish() {
@@ -233,7 +234,8 @@ std::array<std::uint64_t, 16> LasPlan::returns() const {
 }
 
 bool LasPlan::absolute_time() const {
-  return std::any_of(facts_.begin(), facts_.end(), [](const Facts& facts) { return facts.part == LasPart::kGpsTime && facts.high > kWeek; });
+  return std::any_of(facts_.begin(), facts_.end(),
+                     [](const Facts& facts) { return facts.part == LasPart::kGpsTime && facts.high > kWeek; });
 }
 
 }  // namespace g3r::io

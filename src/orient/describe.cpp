@@ -1,8 +1,10 @@
 #include "orient/describe.h"
 
 #include "cloud/noise.h"
+#include "cloud/sites.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
+#include "orient/confidence.h"
 #include "orient/memory_plan.h"
 
 #include <g3r/names.h>
@@ -71,6 +73,14 @@ void warn_of_volume(const Problem& problem, Stats& stats) {
   if (dimension(problem.cloud.set) < kVolume) return;
   stats.consistent = false;
   stats.warnings.emplace_back("the points fill a volume: there is no surface, or the noise hides it");
+}
+
+void warn_of_few_points(const std::vector<float>& confidence, Stats& stats) {
+  const auto shows = [](float c) { return c > kUndecided; };
+  if (!stats.consistent || confidence.size() >= kFewestSites || std::any_of(confidence.begin(), confidence.end(), shows)) return;
+  stats.consistent = false;
+  stats.warnings.push_back(std::to_string(confidence.size()) +
+                           " points are too few to show which side is outside: none is surer than a guess");
 }
 
 }  // namespace g3r

@@ -5,6 +5,8 @@
 
 #include <g3r/g3r.h>
 
+#include <vector>
+
 namespace g3r {
 
 /// Writes into `stats` how many points there are and what became of them, the box, spacing, noise and width of the kernels in the units of
@@ -15,5 +17,9 @@ void describe(const Problem& problem, const PointsView& points, const Options& o
 /// Calls the result inconsistent, with a warning, where the points fill a volume (dimension()): there is no surface then, or the noise
 /// hides it. Only of problems that are solved for on clusters: to estimate_noise() a volume looks like noise of 0.75 spacings and more.
 void warn_of_volume(const Problem& problem, Stats& stats);
+
+/// Calls the result inconsistent, with a warning, where the points are so few that no side can be certified (kFewestSites), and none is
+/// surer than a guess: sides of a few points agree as a rule, and say nothing. O(1).
+void warn_of_few_points(const std::vector<float>& confidence, Stats& stats);
 
 }  // namespace g3r
