@@ -8,6 +8,7 @@
 #include "base/median.h"
 #include "base/vector.h"
 #include "mesh/half_edges.h"
+#include "mesh/triangle.h"
 #include "mesh/used_vertices.h"
 
 #include <g3r/error.h>
@@ -63,11 +64,9 @@ class Topology {
     std::size_t forward = 0;
     for (std::size_t i = 0; i < count; ++i) {
       if (is_forward(mesh_, half_edges[i])) ++forward;
-      if (i == 0 || loop) continue;
-      triangles_.join(half_edges[0].corner / 3, half_edges[i].corner / 3);
-      corners_.join(corner_at(mesh_, half_edges[0], half_edges[0].low), corner_at(mesh_, half_edges[i], half_edges[0].low));
-      corners_.join(corner_at(mesh_, half_edges[0], half_edges[0].high), corner_at(mesh_, half_edges[i], half_edges[0].high));
+      if (!loop) triangles_.join(half_edges[0].corner / 3, half_edges[i].corner / 3);
     }
+    if (!loop) join_fans(mesh_, half_edges, count, corners_);
     if (loop || count != 2) ++edges_not_of_two_;
     if (count == 1 && !loop) ++boundary_edges_;
     if (loop || count > 2 || (count == 2 && forward != 1)) ++nonmanifold_edges_;
@@ -90,7 +89,7 @@ void measure(const Mesh& mesh, const Vec3& centre, MeshCheck& check) {
     const Vec3 a = subtract(mesh.vertices[t[0]], centre);
     const Vec3 b = subtract(mesh.vertices[t[1]], centre);
     const Vec3 c = subtract(mesh.vertices[t[2]], centre);
-    const Vec3 n = cross(subtract(b, a), subtract(c, a));
+    const Vec3 n = mesh::area_vector(a, b, c);
     check.volume += dot(a, n) / 6;  // div x = 3 integrated over the tetrahedron (centre, a, b, c)
     check.area += std::sqrt(dot(n, n)) / 2;
   }

@@ -2,6 +2,7 @@
 
 #include "base/pair_key.h"
 #include "mesh/constants.h"
+#include "mesh/counted_lists.h"
 #include "mesh/field_arcs.h"
 #include "mesh/minimal_edges.h"
 
@@ -18,27 +19,23 @@ std::vector<std::uint32_t> label_patches(const std::vector<CrossingEdge>& edges,
                                          DualSurface& surface) {
   const auto is_repeated = [&](std::uint32_t place) { return edges[edge_of(place)].is_repeated(turn_of(place)); };
   std::vector<std::uint32_t> patch(edges.size() * kQuadrants, kNone);
-  surface.patch_begin.assign(2, 0);
   for (std::uint32_t i = 0; i < patch.size(); ++i) {
     if (!complete(leaf_at(edges, i))) continue;
     const std::size_t root = places.find(i);
     if (root == i) {
       patch[i] = static_cast<std::uint32_t>(surface.patch_leaf.size());
       surface.patch_leaf.push_back(leaf_at(edges, i));
-      surface.patch_begin.push_back(0);
     } else {
       patch[i] = patch[root];
     }
-    if (!is_repeated(i)) ++surface.patch_begin[patch[i] + 2];
   }
   places = DisjointSets(0);
-  // Counted two places on, so that they are the beginnings once all are filled in.
-  for (std::size_t p = 2; p < surface.patch_begin.size(); ++p) surface.patch_begin[p] += surface.patch_begin[p - 1];
-  surface.patch_crossings.resize(surface.patch_begin.back());
-  for (std::uint32_t i = 0; i < patch.size(); ++i) {
-    if (patch[i] != kNone && !is_repeated(i)) surface.patch_crossings[surface.patch_begin[patch[i] + 1]++] = edge_of(i);
-  }
-  surface.patch_begin.pop_back();
+  const auto for_each_crossing = [&](const auto& use) {
+    for (std::uint32_t i = 0; i < patch.size(); ++i) {
+      if (patch[i] != kNone && !is_repeated(i)) use(patch[i], edge_of(i));
+    }
+  };
+  fill_lists(surface.patch_leaf.size(), for_each_crossing, surface.patch_begin, surface.patch_crossings);
   return patch;
 }
 

@@ -1,6 +1,7 @@
 // Polygons of the dual surface -> triangles.
 #include "base/vector.h"
 #include "mesh/field_contour.h"
+#include "mesh/triangle.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +22,7 @@ class DiagonalQuality {
 
  private:
   Vec3 unit_normal(const std::array<std::uint32_t, 3>& t) const {
-    Vec3 n = vector::cross(vector::subtract(positions_[t[1]], positions_[t[0]]), vector::subtract(positions_[t[2]], positions_[t[0]]));
+    Vec3 n = area_vector(positions_, t);
     const double length = std::sqrt(vector::dot(n, n));
     for (double& c : n) c = length > 0 ? c / length : 0;
     return n;

@@ -1,8 +1,9 @@
 // The half-edges of triangles, grouped by the edge that they share.
 #pragma once
 
+#include "base/disjoint_sets.h"
 #include "cpu/parallel.h"
-#include "mesh/constants.h"
+#include "mesh/counted_lists.h"
 
 #include <g3r/mesh.h>
 
@@ -40,15 +41,15 @@ void for_each_edge(const Mesh& mesh, const Group& group) {
     return HalfEdge{std::min(from, to), std::max(from, to), corner};
   };
   // By the lower vertex, then each vertex's few.
-  const std::size_t corners = 3 * mesh.triangles.size();
-  std::vector<std::size_t> first(mesh.vertices.size() + 2, 0);
-  for (std::size_t corner = 0; corner < corners; ++corner) ++first[half_edge_at(corner).low + 2];
-  for (std::size_t v = 2; v < first.size(); ++v) first[v] += first[v - 1];
-  std::vector<HalfEdge> half_edges(corners);
-  for (std::size_t corner = 0; corner < corners; ++corner) {
-    const HalfEdge half_edge = half_edge_at(corner);
-    half_edges[first[half_edge.low + 1]++] = half_edge;
-  }
+  std::vector<std::size_t> first;
+  std::vector<HalfEdge> half_edges;
+  const auto for_each_half_edge = [&](const auto& use) {
+    for (std::size_t corner = 0; corner < 3 * mesh.triangles.size(); ++corner) {
+      const HalfEdge half_edge = half_edge_at(corner);
+      use(half_edge.low, half_edge);
+    }
+  };
+  mesh::fill_lists(mesh.vertices.size(), for_each_half_edge, first, half_edges);
   parallel::for_blocks(mesh.vertices.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       std::sort(half_edges.begin() + static_cast<std::ptrdiff_t>(first[v]), half_edges.begin() + static_cast<std::ptrdiff_t>(first[v + 1]),
@@ -61,6 +62,22 @@ void for_each_edge(const Mesh& mesh, const Group& group) {
     group(half_edges.data() + begin, end - begin);
     begin = end;
   }
+}
+
+/// Joins the corners at an edge, of the same vertex and of triangles beside each other, so that all edges join the corners of each fan of
+/// triangles about a vertex. `half_edges`: all `count` of the edge. `corners`: one for each corner.
+inline void join_fans(const Mesh& mesh, const HalfEdge* half_edges, std::size_t count, DisjointSets& corners) {
+  for (std::size_t i = 1; i < count; ++i) {
+    for (const std::uint32_t v : {half_edges->low, half_edges->high})
+      corners.join(corner_at(mesh, half_edges[0], v), corner_at(mesh, half_edges[i], v));
+  }
+}
+
+/// The fans of triangles about the vertices, as sets of corners. O(V + F).
+inline DisjointSets fans_of(const Mesh& mesh) {
+  DisjointSets corners(3 * mesh.triangles.size());
+  for_each_edge(mesh, [&](const HalfEdge* half_edges, std::size_t count) { join_fans(mesh, half_edges, count, corners); });
+  return corners;
 }
 
 }  // namespace g3r

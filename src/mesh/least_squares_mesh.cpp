@@ -2,6 +2,7 @@
 
 #include "base/vector.h"
 #include "cpu/parallel.h"
+#include "mesh/counted_lists.h"
 #include "mesh/half_edges.h"
 
 #include <g3r/error.h>
@@ -33,19 +34,13 @@ double product(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 
 VertexRings vertex_rings(const Mesh& mesh) {
   VertexRings rings;
-  rings.begin.assign(mesh.vertices.size() + 2, 0);
   const auto for_each_neighbour = [&](const auto& use) {
     for_each_edge(mesh, [&](const HalfEdge* half_edges, std::size_t) {
       use(half_edges->low, half_edges->high);
       use(half_edges->high, half_edges->low);
     });
   };
-  // Counted two places on, so that they are the beginnings once all are filled in.
-  for_each_neighbour([&](std::uint32_t v, std::uint32_t) { ++rings.begin[v + 2]; });
-  for (std::size_t v = 2; v < rings.begin.size(); ++v) rings.begin[v] += rings.begin[v - 1];
-  rings.vertex.resize(rings.begin.back());
-  for_each_neighbour([&](std::uint32_t v, std::uint32_t other) { rings.vertex[rings.begin[v + 1]++] = other; });
-  rings.begin.pop_back();
+  fill_lists(mesh.vertices.size(), for_each_neighbour, rings.begin, rings.vertex);
   return rings;
 }
 

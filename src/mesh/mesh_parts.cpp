@@ -4,6 +4,7 @@
 #include "base/vector.h"
 #include "mesh/constants.h"
 #include "mesh/half_edges.h"
+#include "mesh/triangle.h"
 
 #include <algorithm>
 #include <array>
@@ -37,13 +38,7 @@ bool keep_triangles(Mesh& mesh, const std::vector<std::uint8_t>& keep) {
 // Gives every fan of triangles around a vertex its own vertex: corner c of triangle t is number 3 t + c, and corners at one vertex
 // belong together if their triangles share an edge at it.
 void split_fans(Mesh& mesh, std::vector<std::uint32_t>& source) {
-  DisjointSets corners(mesh.triangles.size() * 3);
-  for_each_edge(mesh, [&](const HalfEdge* half_edges, std::size_t count) {
-    for (std::size_t i = 1; i < count; ++i) {
-      for (const std::uint32_t v : {half_edges->low, half_edges->high})
-        corners.join(corner_at(mesh, half_edges[0], v), corner_at(mesh, half_edges[i], v));
-    }
-  });
+  DisjointSets corners = fans_of(mesh);
   std::vector<std::uint32_t> number(mesh.triangles.size() * 3, kNone);
   const std::vector<std::array<std::uint32_t, 3>> old = mesh.triangles;
   source.clear();
@@ -112,8 +107,7 @@ std::vector<Vec3> centres_of(const Mesh& mesh) {
 }
 
 double area_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
-  const Vec3& a = mesh.vertices[t[0]];
-  const Vec3 n = vector::cross(vector::subtract(mesh.vertices[t[1]], a), vector::subtract(mesh.vertices[t[2]], a));
+  const Vec3 n = area_vector(mesh.vertices, t);
   return 0.5 * std::hypot(n[0], n[1], n[2]);
 }
 

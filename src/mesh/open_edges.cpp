@@ -1,6 +1,7 @@
 #include "mesh/open_edges.h"
 
 #include "mesh/constants.h"
+#include "mesh/counted_lists.h"
 #include "mesh/minimal_edges.h"
 
 #include <algorithm>
@@ -9,16 +10,14 @@
 namespace g3r::mesh {
 namespace {
 
-// for_each_item(edge, use) calls use(i) for the items i of an edge. Counts, then fills.
+// for_each_item(edge, use) calls use(i) for the items i of an edge.
 template <class ForEachItem>
 EdgeLists list_edges(std::size_t items, const std::vector<MinimalEdge>& edges, const ForEachItem& for_each_item) {
   EdgeLists out;
-  out.begin.assign(items + 2, 0);
-  for (const MinimalEdge& e : edges) for_each_item(e, [&](std::size_t i) { ++out.begin[i + 2]; });
-  for (std::size_t i = 2; i < out.begin.size(); ++i) out.begin[i] += out.begin[i - 1];
-  out.edges.resize(out.begin.back());
-  for (std::uint32_t k = 0; k < edges.size(); ++k) for_each_item(edges[k], [&](std::size_t i) { out.edges[out.begin[i + 1]++] = k; });
-  out.begin.pop_back();
+  const auto for_each = [&](const auto& use) {
+    for (std::uint32_t k = 0; k < edges.size(); ++k) for_each_item(edges[k], [&](std::size_t i) { use(i, k); });
+  };
+  fill_lists(items, for_each, out.begin, out.edges);
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include "base/vector.h"
 #include "mesh/constants.h"
 #include "mesh/half_edges.h"
+#include "mesh/triangle.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,10 +25,6 @@ constexpr int kPasses = kRings * kRings;
 enum : std::uint8_t { kRim = 1 };
 
 using RimEdge = std::pair<std::uint32_t, std::uint32_t>;
-
-Vec3 normal_of(const std::vector<Vec3>& at, const std::array<std::uint32_t, 3>& t) {
-  return vector::cross(subtract(at[t[1]], at[t[0]]), subtract(at[t[2]], at[t[0]]));
-}
 
 // Edges with one triangle, as it runs along them.
 std::vector<RimEdge> boundary_of(const Mesh& mesh) {
@@ -66,7 +63,7 @@ class Rim {
     };
     for (const auto& [a, b] : boundary_) see(a, b), see(b, a);
     for (const auto& t : triangles_) {
-      const Vec3 n = normal_of(at, t);
+      const Vec3 n = area_vector(at, t);
       for (std::size_t k = 0; k < 3; ++k) {
         normal[t[k]] = add(normal[t[k]], n);
         if (mark_[t[k]] == kRim) continue;
@@ -110,7 +107,7 @@ void smooth_rims(Mesh& mesh, const std::function<std::vector<std::uint8_t>(const
   for (bool turned = true; turned;) {
     turned = false;
     for (const auto& t : rim.triangles()) {
-      if (dot(vector::normalised(normal_of(at, t)), vector::normalised(normal_of(mesh.vertices, t))) >= kSlant) continue;
+      if (dot(vector::normalised(area_vector(at, t)), vector::normalised(area_vector(mesh.vertices, t))) >= kSlant) continue;
       for (const std::uint32_t v : t) {
         turned = turned || at[v] != mesh.vertices[v];
         at[v] = mesh.vertices[v];

@@ -11,6 +11,7 @@
 #include "mesh/lines.h"
 #include "mesh/mesh_parts.h"
 #include "mesh/smooth_rims.h"
+#include "mesh/triangle.h"
 
 #include <g3r/error.h>
 
@@ -23,8 +24,6 @@
 
 namespace g3r::mesh {
 namespace {
-
-using Triangle = std::array<std::uint32_t, 3>;
 
 // How far from each point surface may be, in its own units. Farther than four spacings of the cloud nobody measured anything; where it is
 // sparse, but a surface, the gaps between its points are no holes.
@@ -74,8 +73,7 @@ std::vector<std::uint8_t> within(const Mesh& mesh, const std::vector<Vec3>& poin
 std::vector<Vec3> normals_of(const Mesh& mesh) {
   std::vector<Vec3> normals(mesh.vertices.size(), Vec3{0, 0, 0});
   for (const Triangle& t : mesh.triangles) {
-    const Vec3& a = mesh.vertices[t[0]];
-    const Vec3 n = vector::cross(vector::subtract(mesh.vertices[t[1]], a), vector::subtract(mesh.vertices[t[2]], a));
+    const Vec3 n = area_vector(mesh.vertices, t);
     for (const std::uint32_t v : t) normals[v] = vector::add(normals[v], n);
   }
   for (Vec3& n : normals) n = vector::normalised(n);
