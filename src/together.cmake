@@ -42,7 +42,7 @@ g3r_together(readers io/las io/las_fields io/las_plan io/point_text io/random_fi
              io/read_ply io/read_ptx io/splats)
 g3r_together(splats io/read_spz io/read_xyz io/recognise io/source io/splat_light io/splat_view io/subset io/table
              io/text io/write io/write_npy io/write_obj)
-g3r_together(writers io/column_facts io/column_names io/read_stl io/text_values io/tiles io/utf8 io/write_glb io/write_las io/write_off
+g3r_together(writers io/column_facts io/column_names io/read_stl io/text_values io/tiles io/utf8 io/write_glb io/write_off
              io/write_pcd io/write_ply io/write_stl io/write_xyz io/xml)
 
 g3r_together(tiles tiles/cells tiles/external_sort tiles/merge tiles/mesh_corners tiles/mesh_parts tiles/mesh_points tiles/mesh_records
@@ -58,4 +58,5 @@ g3r_together(lists io/ept_cells tiles/mesh_plan)
 
 # What has names in common with one of those above.
 g3r_together(headers gpu/opencl io/find_columns io/float_text io/gltf_file io/npy_header io/pcd_header io/ply_body io/write_las_new)
-g3r_together(grounds gpu/nvrtc io/ptx_scans mesh/coarsen mesh/corner_groups mesh/lines mesh/patch_components orient/noisy_jets orient/settings)
+g3r_together(grounds gpu/nvrtc io/ptx_scans io/write_las mesh/coarsen mesh/corner_groups mesh/lines mesh/patch_components orient/noisy_jets
+             orient/settings)
