@@ -184,9 +184,17 @@ void write_points(const Text& path, const std::shared_ptr<Cloud>& source, const 
   }
   const std::vector<Vec3> directions = copy_points(normals);
   const std::vector<float> trust = copy_values<float>(confidence);
-  const nb::gil_scoped_release release;
-  write_cloud(path, source ? *source : fresh, directions.empty() ? nullptr : &directions, trust.empty() ? nullptr : &trust,
-              WriteOptions{ascii, cloud_compare_names});
+  WriteOptions options{ascii, cloud_compare_names};
+  std::vector<std::string> warnings;
+  options.warnings = &warnings;
+  {
+    const nb::gil_scoped_release release;
+    write_cloud(path, source ? *source : fresh, directions.empty() ? nullptr : &directions, trust.empty() ? nullptr : &trust, options);
+  }
+  constexpr Py_ssize_t kCaller = 2;  // frames up: who called g3r.write()
+  for (const std::string& warning : warnings) {
+    if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), kCaller) < 0) throw nb::python_error();
+  }
 }
 
 Mesh copy_mesh(const std::optional<PointsArray>& vertices, const std::optional<Rows<std::uint32_t>>& faces,

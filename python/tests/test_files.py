@@ -43,6 +43,14 @@ def test_other_properties_of_a_file_are_kept(tmp_path, sphere):
     assert "intensity" in back.property_names and "nx" in back.property_names
 
 
+def test_what_a_format_cannot_hold_is_a_warning(tmp_path, sphere):
+    path = tmp_path / "in.csv"
+    path.write_text("x,y,z,intensity\n" + "".join("%.3f,%.3f,%.3f,0.5\n" % tuple(p) for p in sphere[:50]))
+    with pytest.warns(UserWarning, match="intensity") as warned:
+        g3r.write(tmp_path / "out.las", g3r.read(path))
+    assert warned[0].filename == __file__
+
+
 def test_scanner_positions_are_kept(tmp_path):
     scan = "1\n2\n5 6 {z}\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n5 6 {z} 1\n1 2 3 0.5\n4 5 6 0.5\n"
     path = tmp_path / "a.ptx"

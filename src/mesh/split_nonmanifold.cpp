@@ -8,7 +8,6 @@
 #include "base/vector.h"
 #include "cpu/parallel_sort.h"
 #include "mesh/constants.h"
-#include "mesh/cut_triangle.h"
 #include "mesh/half_edges.h"
 
 #include <algorithm>
@@ -127,6 +126,29 @@ std::vector<std::pair<std::size_t, std::size_t>> solid_wedges(std::vector<Leaf> 
   return pairs;
 }
 
+/// Appends triangle t, whose edges 01, 12, 20 are cut at the vertices `cut` (kNone: not cut), in one to four parts.
+void append_cut(std::array<std::uint32_t, 3> t, std::array<std::uint32_t, 3> cut, std::vector<std::array<std::uint32_t, 3>>& out) {
+  const auto cuts = std::count_if(cut.begin(), cut.end(), [](std::uint32_t c) { return c != kNone; });
+  if (cuts == 0) {
+    out.push_back(t);
+    return;
+  }
+  if (cuts == 3) {
+    out.insert(out.end(), {{t[0], cut[0], cut[2]}, {t[1], cut[1], cut[0]}, {t[2], cut[2], cut[1]}, {cut[0], cut[1], cut[2]}});
+    return;
+  }
+  // Turned so that edge 01 is cut and, of two cuts, the other is in edge 12.
+  while (cut[0] == kNone || (cuts == 2 && cut[1] == kNone)) {
+    std::rotate(t.begin(), t.begin() + 1, t.end());
+    std::rotate(cut.begin(), cut.begin() + 1, cut.end());
+  }
+  if (cuts == 1) {
+    out.insert(out.end(), {{t[0], cut[0], t[2]}, {cut[0], t[1], t[2]}});
+  } else {
+    out.insert(out.end(), {{cut[0], t[1], cut[1]}, {t[0], cut[0], cut[1]}, {t[0], cut[1], t[2]}});
+  }
+}
+
 /// Gives each solid wedge at an edge with more than two triangles a midpoint of its own.
 void split_edges(Mesh& mesh) {
   std::vector<std::uint32_t> cut;  // per corner: the vertex that cuts the half-edge beginning there
@@ -143,7 +165,7 @@ void split_edges(Mesh& mesh) {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   triangles.reserve(mesh.triangles.size());
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f)
-    mesh::append_cut(mesh.triangles[f], {cut[3 * f], cut[3 * f + 1], cut[3 * f + 2]}, triangles);
+    append_cut(mesh.triangles[f], {cut[3 * f], cut[3 * f + 1], cut[3 * f + 2]}, triangles);
   mesh.triangles = std::move(triangles);
 }
 
