@@ -15,7 +15,7 @@ struct PartName {
   LasPart part;
 };
 
-// Those of the LAS specification, of LASlib, laspy, PDAL and CloudCompare.
+// Those of the LAS specification, of LASlib, laspy, PDAL and CloudCompare, and the usual short one.
 constexpr PartName kPartNames[] = {{"intensity", LasPart::kIntensity},
                                    {"returnnumber", LasPart::kReturnNumber},
                                    {"numberofreturns", LasPart::kNumberOfReturns},
@@ -23,6 +23,7 @@ constexpr PartName kPartNames[] = {{"intensity", LasPart::kIntensity},
                                    {"scandirectionflag", LasPart::kScanDirection},
                                    {"edgeofflightline", LasPart::kEdgeOfFlightLine},
                                    {"classification", LasPart::kClassification},
+                                   {"class", LasPart::kClassification},
                                    {"synthetic", LasPart::kSynthetic},
                                    {"keypoint", LasPart::kKeyPoint},
                                    {"withheld", LasPart::kWithheld},
