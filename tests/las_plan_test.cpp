@@ -26,8 +26,8 @@ T number_at(const std::string& bytes, std::size_t at) {
 }
 
 // A LAS file of a text, and what its writer warned of.
-struct Written {
-  explicit Written(const std::string& text, const std::string& name = "a.csv") {
+struct WrittenLas {
+  explicit WrittenLas(const std::string& text, const std::string& name = "a.csv") {
     const samples::Folder folder;
     const std::string path = folder.path("a.las");
     WriteOptions options;
@@ -57,7 +57,7 @@ TEST(LasFields, AreNamedInManyWays) {
 }
 
 TEST(NewLas, NumbersThatFitBecomeFields) {
-  const Written las(
+  const WrittenLas las(
       "x,y,z,Intensity,classification,return_number,number_of_returns,GpsTime,red,green,blue,user_data,point_source_id,scan_angle\n"
       "0,0,0,65535,31,2,3,400000000.25,65535,300,0,7,4000,-12\n"
       "1,0,0,0,2,1,1,400000001.5,0,0,0,255,1,90\n");
@@ -78,7 +78,7 @@ TEST(NewLas, NumbersThatFitBecomeFields) {
 }
 
 TEST(NewLas, NumbersThatOnlyNewPointFormatsHoldAskForOne) {
-  const Written las("x,y,z,classification,return_number,nir\n0,0,0,64,9,5\n1,0,0,2,1,6\n");
+  const WrittenLas las("x,y,z,classification,return_number,nir\n0,0,0,64,9,5\n1,0,0,2,1,6\n");
   EXPECT_TRUE(las.warnings.empty()) << las.warnings[0];
   EXPECT_EQ(las.format, 8U);
   EXPECT_EQ(las.field<std::uint8_t>(0, 14), 9 + 16 * 9) << "of at least as many returns";
@@ -96,7 +96,7 @@ TEST(NewLas, NumbersThatDoNotFitAreExtraBytesAndSaidSo) {
                                     {"user_data", "nan"},
                                     {"scan_angle", "12.5"},
                                     {"gps_time", "nan"}}) {
-    const Written las("x,y,z," + std::string(name) + "\n0,0,0,1\n1,0,0," + value + "\n");
+    const WrittenLas las("x,y,z," + std::string(name) + "\n0,0,0,1\n1,0,0," + value + "\n");
     ASSERT_EQ(las.warnings.size(), 1U) << name;
     EXPECT_NE(las.warnings[0].find("\"" + std::string(name) + "\" becomes extra bytes \"" + name + "_2\""), std::string::npos)
         << las.warnings[0];
@@ -107,18 +107,18 @@ TEST(NewLas, NumbersThatDoNotFitAreExtraBytesAndSaidSo) {
 
 TEST(NewLas, BytesOfSeveralFieldsComeBackAsTheyWere) {
   // What g3r calls the bytes of LAS files of old and of new formats, as it writes them to a text.
-  const Written first("x,y,z,return_flags,classification\n0,0,0,153,66\n1,0,0,9,2\n");
+  const WrittenLas first("x,y,z,return_flags,classification\n0,0,0,153,66\n1,0,0,9,2\n");
   EXPECT_TRUE(first.warnings.empty());
   EXPECT_EQ(first.format, 0U);
   EXPECT_EQ(first.field<std::uint8_t>(0, 14), 153);
   EXPECT_EQ(first.field<std::uint8_t>(0, 15), 66) << "class 2, key point";
-  const Written second("x,y,z,return_numbers,return_flags,classification,scan_angle\n0,0,0,33,8,70,-3000\n1,0,0,17,0,2,3000\n");
+  const WrittenLas second("x,y,z,return_numbers,return_flags,classification,scan_angle\n0,0,0,33,8,70,-3000\n1,0,0,17,0,2,3000\n");
   EXPECT_TRUE(second.warnings.empty());
   EXPECT_EQ(second.format, 6U);
   EXPECT_EQ(second.field<std::uint8_t>(0, 14), 33);
   EXPECT_EQ(second.field<std::uint8_t>(0, 15), 8);
   EXPECT_EQ(second.field<std::int16_t>(0, 18), -3000);
-  const Written mixed("x,y,z,return_numbers,return_flags\n0,0,0,17,0\n1,0,0,0,9\n");
+  const WrittenLas mixed("x,y,z,return_numbers,return_flags\n0,0,0,17,0\n1,0,0,0,9\n");
   ASSERT_EQ(mixed.warnings.size(), 1U) << "the flags of both formats mean different things";
   EXPECT_EQ(mixed.field<std::uint8_t>(1, 15), 0);
 }
@@ -128,7 +128,7 @@ TEST(NewLas, CoordinatesKeepTheirDecimals) {
        {"36.354 86.43 -34.76\n-79.057 54.924 27.08\n", "500363.537 5000864.299 447.6026\n499209.429 5000549.242 370.7968\n",
         "0.018177 0.043215 0.01738\n-0.039529 0.027462 0.01354\n", "3000000.001 3000000.002 0\n3000000.003 3000000.004 1\n",
         "1 2 3\n4 5 6\n"}) {
-    const Written las(text, "a.xyz");
+    const WrittenLas las(text, "a.xyz");
     EXPECT_TRUE(las.warnings.empty()) << text << las.warnings[0];
     const Cloud cloud = read(las.bytes);
     EXPECT_EQ(cloud.positions, read(text, "a.xyz").positions) << text;
@@ -136,13 +136,13 @@ TEST(NewLas, CoordinatesKeepTheirDecimals) {
     again.erase(0, again.find('\n') + 1);
     EXPECT_EQ(again.substr(0, again.find(' ')), std::string(text).substr(0, std::string(text).find(' '))) << "the same digits";
   }
-  const Written las("36.354 86.43 -34.76\n-79.057 54.924 27.08\n", "a.xyz");
+  const WrittenLas las("36.354 86.43 -34.76\n-79.057 54.924 27.08\n", "a.xyz");
   EXPECT_EQ(number_at<double>(las.bytes, 131), 0.001);
   EXPECT_EQ(number_at<double>(las.bytes, 155), 0);
 }
 
 TEST(NewLas, CoordinatesThatNeedMoreDigitsAreRoundedAndSaidSo) {
-  const Written las("0.123456789 0 0\n5000000 1 1\n", "a.xyz");
+  const WrittenLas las("0.123456789 0 0\n5000000 1 1\n", "a.xyz");
   ASSERT_EQ(las.warnings.size(), 1U);
   EXPECT_NE(las.warnings[0].find("rounded (x to 0.01)"), std::string::npos) << las.warnings[0];
   EXPECT_NEAR(read(las.bytes).positions[0][0], 0.123456789, 0.005);
