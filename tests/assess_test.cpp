@@ -114,17 +114,17 @@ TEST(Assess, SidesOfOpenSurfacesAreAsSureAsTheirOutside) {
   }
 }
 
-// What is said of all sides holds for all: those that their surroundings speak against are counted.
-TEST(Assess, SaysHowManySidesAreNotConsistent) {
+// What is said of all sides holds for all: those that their surroundings do not show are counted.
+TEST(Assess, SaysForHowManySidesNothingIsShown) {
   const Problem problem = prepared(sphere().points);
-  for (const std::size_t against : {std::size_t{0}, kPoints / 20}) {
+  for (const std::size_t unshown : {std::size_t{0}, kPoints / 20}) {
     Solution solution = solution_of(problem, sphere().normals);
     solution.open_surfaces = open_part(kPoints, 0.9F);
-    for (std::size_t i = 0; i < against; ++i) solution.open_surfaces.certified[i] = 0.2F;
+    for (std::size_t i = 0; i < unshown; ++i) solution.open_surfaces.certified[i] = 0.2F;
     Stats stats;
     (void)assess(problem, std::move(solution), stats);
     EXPECT_TRUE(warns(stats, "their sides are consistent"));
-    EXPECT_EQ(warns(stats, "their sides are consistent but for 5 %"), against > 0);
+    EXPECT_EQ(warns(stats, "shows: not for 5 %"), unshown > 0);
   }
 }
 

@@ -46,6 +46,25 @@ TEST(Values, QuotesHideSeparators) {
   EXPECT_EQ(seen, (Names{R"(FENCE, 5"" WOOD)", "1.5", "x\"y", "\"open"}));
 }
 
+// A separator at the end of some lines, blanks where other lines have tabs, and points without a number are what hands and programs write.
+TEST(TextColumns, OfUnevenLinesAreRead) {
+  const Vec3 last{7, 8, 9};
+  EXPECT_EQ(read("1,2,3,\n4,5,6,\n7,8,9\n").positions.back(), last);
+  EXPECT_EQ(read("1\t2\t3\n7 8 9\n").positions.back(), last);
+  EXPECT_EQ(read("1\t2\t3\n7\t\t8\t9\n").positions.back(), last);
+  const Cloud gap = read("id,x,y,z\nP1,1,,3\nP2,7,8,9\n", "a.csv");
+  ASSERT_EQ(gap.positions.size(), 2U);
+  EXPECT_TRUE(std::isnan(gap.positions[0][1]));
+  EXPECT_EQ(gap.positions[1], last);
+}
+
+// What a warning calls x, y and z is what is taken.
+TEST(TextColumns, TakenForAxesAreThoseThatTheWarningNames) {
+  const Cloud cloud = read("x,POINT_X,POINT_Y,POINT_Z\n9,1,2,3\n9,4,5,6\n");
+  expect_said(cloud.warnings, "\"POINT_X\", \"POINT_Y\" and \"POINT_Z\" are taken for them");
+  EXPECT_EQ(cloud.positions[0], (Vec3{1, 2, 3}));
+}
+
 TEST(TextColumns, AreLeftOutAndNamed) {
   const Cloud cloud = read("x,y,z,label,i\n1,2,3,wall,7\n4,5,6,big roof,8\n");
   EXPECT_EQ(cloud.positions[1], (Vec3{4, 5, 6}));

@@ -75,7 +75,7 @@ struct WriteOptions {
   bool ascii = false;                         ///< text instead of binary where the format has both
   bool cloud_compare_names = false;           ///< name the confidence "scalar_confidence" so that CloudCompare shows it at once
   const std::atomic<bool>* cancel = nullptr;  ///< when it becomes true the writer leaves nothing behind and throws Cancelled
-  /// Points: gets a line for each thing that the format cannot hold as it is, and what became of it (null: nobody is told).
+  /// Points to LAS or LAZ: gets a line for each thing that these cannot hold as it is, and what became of it (null: nobody is told).
   std::vector<std::string>* warnings = nullptr;
 };
 

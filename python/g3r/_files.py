@@ -21,8 +21,8 @@ def write(path: Path, what: Any, faces: Any = None, *, normals: Any = None, conf
     normals, confidence, colors: one per point or vertex. A mesh takes no normals: they follow from its faces.
     cloud_compare_names: name the confidence "scalar_confidence", which CloudCompare shows at once.
 
-    Raises FileError, InputError (unknown extension, sizes that differ, a normal that is not finite). Warns (UserWarning) of what the format
-    cannot hold as it is, and says what became of it.
+    Raises FileError, InputError (unknown extension, sizes that differ, a normal that is not finite). Points to
+    LAS or LAZ: warns (UserWarning) of what these cannot hold as it is, and says what became of it.
     """
     name = os.fsdecode(path)
     if isinstance(what, Result):

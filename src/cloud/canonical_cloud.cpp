@@ -154,7 +154,7 @@ void require_not_collinear(const std::vector<Vec3>& points) {
         std::hypot(d[1] * axis[2] - d[2] * axis[1], d[2] * axis[0] - d[0] * axis[2], d[0] * axis[1] - d[1] * axis[0]) / length;
     if (off_line > kLineThickness * length) return;
   }
-  throw InvalidInput("all points lie on one line (collinear): a surface needs points in all three directions");
+  throw InvalidInput("all points lie on one line (collinear): a surface needs points beside that line");
 }
 
 }  // namespace

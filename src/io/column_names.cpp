@@ -141,8 +141,9 @@ std::vector<std::size_t> like_axes(const std::vector<std::string>& names) {
   const auto find = [&](const std::string& key) {
     return static_cast<std::size_t>(std::find(keys.begin(), keys.end(), key) - keys.begin());
   };
+  constexpr std::size_t kLongest = 256;  // of a name: every letter is tried in turn
   for (std::size_t c = 0; c < keys.size(); ++c) {
-    if (keys[c] == kNormalNames[0]) continue;
+    if (keys[c] == kNormalNames[0] || keys[c].size() > kLongest) continue;
     for (const std::string_view letters : kLetters) {
       for (std::size_t at = 0; (at = keys[c].find(letters[0], at)) != std::string::npos; ++at) {
         const std::size_t second = find(with_letter(keys[c], at, letters[1]));

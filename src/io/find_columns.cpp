@@ -138,6 +138,7 @@ class Finder {
       found_.warnings.emplace_back(
           "the columns look like point number, northing, easting, elevation and description (PNEZD) and are read so; if they are others, "
           "name them in a first line, for example point,x,y,z,description");
+      for (std::size_t a = 0; a < 3; ++a) require_numbers(1 + a);
       constexpr const char* kNames[] = {"point", "y", "x", "z", "description"};
       for (std::size_t c = 0; c < std::size(kNames); ++c) found_.properties[c].name = kNames[c];
       return std::size(kNames);
@@ -202,6 +203,9 @@ class Finder {
     name_normals(names, facts);
     if (!shape_.header.axes) {
       const std::array<std::size_t, 3> axes = choose_axes(names);
+      for (std::size_t a = 0; a < 3; ++a) {
+        for (std::size_t c = 0; c < names.size(); ++c) names[c] += names[c] == kAxes[a] && c != axes[a] ? "_2" : "";
+      }
       for (std::size_t a = 0; a < 3; ++a) names[axes[a]] = kAxes[a];
     }
     make_distinct(names);

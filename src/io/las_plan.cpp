@@ -149,6 +149,7 @@ std::string LasPlan::misfit(const Facts& facts) const {
   if (best.bits == 0) best = place(facts, LasFamily::kOld);
   if (best.bits == 0)
     return mixed_ ? "old and new point formats mean different things by it" : "return_flags or return_numbers hold the same";
+  if (facts.fit(best)) return "the point formats that other columns need hold it differently";
   if (best.bits == 64) return "LAS holds finite numbers there, and some are not";
   const double odd = !facts.whole ? facts.odd : facts.low < best.low ? facts.low : facts.high;
   return "LAS holds whole numbers from " + number_text(best.low) + " to " + number_text(best.high) + " there, found " + number_text(odd);

@@ -20,9 +20,13 @@ bool is_comment(std::string_view line) { return line[0] == '#' || line.substr(0,
 bool is_header(std::string_view line) {
   const char separator = separator_of(line);
   Values values(line, separator);
-  std::string_view first;
+  std::string_view value;
   double number = 0;
-  return values.next(first) && !is_like_number(first) && !parse_double(first, number) && count_numbers(line, separator) < 3;
+  if (!values.next(value) || is_like_number(value) || parse_double(value, number)) return false;
+  bool has_gap = false;
+  while (values.next(value)) has_gap = has_gap || is_missing(value);
+  const std::size_t numbers = count_numbers(line, separator);
+  return numbers < 3 && !(numbers == 2 && has_gap);  // a point may lack a number
 }
 
 bool are_distinct(std::vector<std::string> names) {
@@ -149,10 +153,17 @@ TextShape measure(const Text& text) {
   std::string_view line;
   std::string first_line;
   std::size_t first_number = 0;
+  std::size_t by_blanks = 0;  // columns, if tabs are no more than blanks
+  bool tabs_fit = true;
+  bool blanks_fit = true;
   while (lines.next(line)) {
     if (shape.points++ != 0) {
-      // A line without the separator at the end shows that those which have it end with an empty cell.
-      if (shape.open_rows && !ends_with_separator(line, shape.separator)) {
+      if (shape.separator == '\t') {
+        tabs_fit = tabs_fit && count_values(line, '\t') == shape.columns;
+        blanks_fit = blanks_fit && count_values(line, ' ') == by_blanks;
+      }
+      // A line with one more value and no separator at the end shows that those which have it there end with an empty cell.
+      if (shape.open_rows && !ends_with_separator(line, shape.separator) && count_values(line, shape.separator) > shape.columns) {
         shape.open_rows = false;
         ++shape.columns;
       }
@@ -161,9 +172,15 @@ TextShape measure(const Text& text) {
     shape.separator = separator_of(line);
     shape.columns = count_values(line, shape.separator);
     shape.open_rows = ends_with_separator(line, shape.separator);
+    by_blanks = count_values(line, ' ');
     first_number = lines.number();
     first_line = line.substr(0, kMostBytes);
     if (shape.columns > kMostColumns) refuse_columns(text.source(), first_number, line, shape);
+  }
+  if (shape.separator == '\t' && !tabs_fit && blanks_fit) {
+    shape.separator = ' ';
+    shape.columns = by_blanks;
+    shape.open_rows = false;
   }
   shape.counted = lines.counted();
   shape.announced = lines.announced();

@@ -29,7 +29,7 @@ void add_open_surfaces(const OpenSurfaces& surfaces, std::vector<float>& confide
   std::size_t open = 0;
   std::size_t undecided = 0;
   std::size_t agreed = 0;
-  std::size_t against = 0;  // points whose side what is around speaks against
+  std::size_t unshown = 0;  // points whose side what is around does not show
   for (std::size_t i = 0; i < surfaces.part.size(); ++i) {
     if (!surfaces.is_open(i)) {
       confidence[i] *= surfaces.certainty[i];
@@ -38,7 +38,7 @@ void add_open_surfaces(const OpenSurfaces& surfaces, std::vector<float>& confide
     confidence[i] = static_cast<float>(both_agree(surfaces.certainty[i], surfaces.held[i]));
     ++open;
     agreed += surfaces.agrees[i];
-    against += surfaces.certified[i] < kUndecided ? 1 : 0;
+    unshown += surfaces.certified[i] < kUndecided ? 1 : 0;
     undecided += surfaces.certainty[i] <= kUndecided ? 1 : 0;
   }
   if (open == 0) return;
@@ -47,8 +47,9 @@ void add_open_surfaces(const OpenSurfaces& surfaces, std::vector<float>& confide
   stats.undecided_share = static_cast<double>(undecided) / all;
   stats.warnings.push_back("open: " + percent(stats.open_share) + " of the points lie on surfaces without an inside; " +
                            (agreed < open  ? "their sides do not agree everywhere"
-                            : against == 0 ? "their sides are consistent"
-                                           : "their sides are consistent but for " + percent(static_cast<double>(against) / all)));
+                            : unshown == 0 ? "their sides are consistent"
+                                           : "their sides are consistent, as far as what is around them shows: not for " +
+                                                 percent(static_cast<double>(unshown) / all)));
 }
 
 // Sides of closed surfaces that their field does not show to be right are worth less, those on open ones that do not agree nothing. Where

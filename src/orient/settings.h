@@ -71,7 +71,8 @@ struct Settings {
   SumPlan sums;                    ///< of everything after it
 };
 
-/// The steps that a run is without: those that options leave out, and those that a method or a preset has not. Throws InvalidInput.
+/// The steps that a run is without: those that options leave out, and those that its method or preset would run but has not (what comes
+/// after kPolish goes with it). Throws InvalidInput.
 [[nodiscard]] StepSet steps_left_out(const Options& options);
 
 /// The noise of options in the cloud's frame, if it is given. Throws InvalidInput below 0.

@@ -44,6 +44,7 @@ class SolvedApart {
   void run() {
     std::map<std::uint32_t, std::vector<std::uint32_t>> parts = by_surface();
     if (parts.size() < 2) return;  // no open surface, or one that is all there is
+    all_looked_open_ = parts.count(OpenSurfaces::kNone) == 0;
     for (const auto& [surface, points] : parts) {
       // What encloses nothing is not closed by itself either.
       if (surface != OpenSurfaces::kNone && solution_.open_surfaces.certainty[surface] > kUndecided) solve_open(points);
@@ -77,7 +78,7 @@ class SolvedApart {
 
   // What is closed, and that is all of `some`, has to solve the equations.
   bool closed_converged(const std::vector<std::uint32_t>& some) {
-    if (some.size() == problem_.cloud.size()) return found_closed_;
+    if (some.size() == problem_.cloud.size()) return found_closed_ && (all_looked_open_ || all_converged_);
     if (!are_disturbed(some)) return found_closed_ && all_converged_;
     take(some, solve(part_of(problem_, some, options_), options_, stages_, stats_));
     return stats_.converged;
@@ -98,8 +99,9 @@ class SolvedApart {
   Stages& stages_;
   Stats& stats_;
   Solution& solution_;
-  bool all_converged_;        // the solve of everything
-  bool found_closed_ = true;  // and those of parts that looked open
+  bool all_converged_;            // the solve of everything
+  bool found_closed_ = true;      // and those of parts that looked open
+  bool all_looked_open_ = false;  // so that all that is closed was solved for again
 };
 
 }  // namespace
