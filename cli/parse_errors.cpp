@@ -81,10 +81,8 @@ std::string about_conversion(const CLI::App& app, const CLI::App& command, const
 
 std::string named_command(const CLI::App& app) {
   std::string name;
-  const CLI::App* command = &app;
-  for (auto parsed = app.get_subcommands(); !parsed.empty(); parsed = command->get_subcommands()) {
-    command = parsed.front();
-    name += " " + command->get_name();
+  for (const CLI::App* command = &deepest_command(app); command != &app; command = command->get_parent()) {
+    name = " " + command->get_name() + name;
   }
   return name;
 }
@@ -95,12 +93,13 @@ std::string about_parse_error(const CLI::App& app, const CLI::ParseError& error)
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) return about_extras(app);
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) return about_missing_part(app, command, message);
   if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) return about_conversion(app, command, message);
-  const std::size_t excludes = message.find(" excludes ");
-  if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr && excludes != std::string::npos)
-    return message.substr(0, excludes) + " excludes " + message.substr(excludes + 10) + ": give one of the two";
-  const std::size_t needs = message.find(" requires ");
-  if (dynamic_cast<const CLI::RequiresError*>(&error) != nullptr && needs != std::string::npos)
-    return message.substr(0, needs) + " is of use only with " + message.substr(needs + 10) + ": give it too";
+  // "--a excludes --b", "--a requires --b"
+  const auto about_pair = [&](const std::string& verb, const std::string& ours, const std::string& remedy) {
+    const std::size_t at = message.find(verb);
+    return at == std::string::npos ? message : message.substr(0, at) + ours + message.substr(at + verb.size()) + remedy;
+  };
+  if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr) return about_pair(" excludes ", " excludes ", ": give one of the two");
+  if (dynamic_cast<const CLI::RequiresError*>(&error) != nullptr) return about_pair(" requires ", " is of use only with ", ": give it too");
   const CLI::Option* option = named_option(app, command, message);
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr && option != nullptr)
     return about_counts(*option, usage_of(app, command));

@@ -49,6 +49,15 @@ struct WrittenLas {
   unsigned format = 0;
 };
 
+// Far from 0 as well: the offset taken off first would round twice.
+TEST(DecimalSteps, OfAValueAreThoseThatGiveIt) {
+  const io::DecimalSteps steps(1e-9, 5000000.498);
+  for (int k = -1000; k < 1000; ++k) {
+    const double count = 1000003.0 * k;
+    EXPECT_EQ(steps.steps(steps.value(count)), count);
+  }
+}
+
 TEST(LasFields, AreNamedInManyWays) {
   for (const char* name : {"gps_time", "GpsTime", "GPS time", "scalar_Gps_Time", "gpstime"})
     EXPECT_EQ(io::las_part(name), io::LasPart::kGpsTime) << name;

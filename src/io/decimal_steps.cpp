@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kExactWhole = 9007199254740992;  // 2^53: whole numbers up to here are doubles
 constexpr double kMostSteps = 2147483648;         // 2^31, of the numbers that LAS and EPT store
+constexpr int kMostExact = 22;                    // 10^22 is the largest power of ten that is a double
+constexpr double kRound = 1e6;                    // steps, of which offsets are a multiple: short numbers that people can read
 
 bool gives_back(double value, int decimals, Scalar precision) {
   const double power = power_of_ten(decimals);
@@ -30,7 +32,6 @@ double power_of_ten(int exponent) {
 }
 
 DecimalSteps::DecimalSteps(double scale, double offset) : scale_(scale), offset_(offset) {
-  constexpr int kMostExact = 22;  // 10^22 is the largest power of ten that is a double
   for (int decimals = 0; decimals <= kMostExact; ++decimals) {
     const double power = power_of_ten(decimals);
     if (scale != 1 / power) continue;
@@ -42,13 +43,16 @@ DecimalSteps::DecimalSteps(double scale, double offset) : scale_(scale), offset_
   }
 }
 
+double DecimalSteps::steps(double value) const {
+  return power_ > 0 ? std::nearbyint(value * power_) - shift_ : std::nearbyint((value - offset_) / scale_);
+}
+
 void Decimals::add(double value) {
   while (count_ <= kMost && !gives_back(value, count_, precision_)) ++count_;
 }
 
 std::optional<DecimalSteps> exact_steps(double low, double high, int decimals) {
   constexpr double kMostInt = std::numeric_limits<std::int32_t>::max();
-  constexpr double kRound = 1e6;  // steps, of which the offset is a multiple
   const double power = power_of_ten(decimals);
   const double first = std::nearbyint(low * power);
   const double last = std::nearbyint(high * power);
@@ -59,18 +63,21 @@ std::optional<DecimalSteps> exact_steps(double low, double high, int decimals) {
 }
 
 DecimalSteps fine_steps(double low, double high) {
-  constexpr double kSteps = 2e9;  // The extent has so many steps at most: the numbers of LAS have 32 bits, half of them negative.
-  const double extent = std::max(high - low, 1e-6 * std::max(std::abs(low), std::abs(high)));
+  constexpr double kSteps = 2e9;       // The extent has so many steps at most: the numbers of LAS have 32 bits, half of them negative.
+  constexpr double kLeastPart = 1e-6;  // of the coordinates: an extent below it gets no finer steps, whose offset would need more digits
+  constexpr int kOfNoExtent = -9;      // decimal exponent of the steps of points that are all at the origin
+  const double extent = std::max(high - low, kLeastPart * std::max(std::abs(low), std::abs(high)));
   const bool usual = extent > 0 && std::isfinite(extent);
-  const int exponent = usual ? static_cast<int>(std::ceil(std::log10(extent / kSteps))) : -9;
-  double scale = std::abs(exponent) <= 22 ? power_of_ten(exponent) : std::pow(10.0, exponent);
+  const int exponent = usual ? static_cast<int>(std::ceil(std::log10(extent / kSteps))) : kOfNoExtent;
+  double scale = std::abs(exponent) <= kMostExact ? power_of_ten(exponent) : std::pow(10.0, exponent);
   if (!(scale > 0)) scale = std::numeric_limits<double>::min();
-  double offset = std::floor((low / 2 + high / 2) / (scale * 1e6)) * (scale * 1e6);
-  if (exponent < 0 && exponent >= -22) {
+  const double middle = low / 2 + high / 2;
+  double offset = std::floor(middle / (scale * kRound)) * (scale * kRound);
+  if (exponent < 0 && exponent >= -kMostExact) {
     const double power = power_of_ten(-exponent);
-    offset = std::floor((low / 2 + high / 2) * (power / 1e6)) * 1e6 / power;
+    offset = std::floor(middle * (power / kRound)) * kRound / power;
   }
-  if (!std::isfinite(offset)) offset = low / 2 + high / 2;
+  if (!std::isfinite(offset)) offset = middle;
   return DecimalSteps(scale, offset);
 }
 

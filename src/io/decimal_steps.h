@@ -14,6 +14,8 @@ class DecimalSteps {
  public:
   explicit DecimalSteps(double scale = 1, double offset = 0);
   [[nodiscard]] double value(double steps) const { return power_ > 0 ? (steps + shift_) / power_ : steps * scale_ + offset_; }
+  /// The whole number of steps that is nearest to a value.
+  [[nodiscard]] double steps(double value) const;
   [[nodiscard]] double scale() const { return scale_; }
   [[nodiscard]] double offset() const { return offset_; }
 

@@ -177,8 +177,8 @@ std::string las_extra_vlr(std::size_t length) {
   return bytes;
 }
 
-std::int32_t las_steps(double value, double scale, double offset, const char* axis) {
-  const double steps = std::nearbyint((value - offset) / scale);
+std::int32_t las_steps(double value, const DecimalSteps& of, const char* axis) {
+  const double steps = of.steps(value);
   if (!(std::abs(steps) <= std::numeric_limits<std::int32_t>::max())) {
     throw InvalidInput(std::string("write_cloud: LAS cannot hold this ") + axis + " coordinate (not finite, or outside scale and offset)");
   }

@@ -76,6 +76,6 @@ std::string las_descriptor(const std::string& name, unsigned type, std::size_t o
 std::string las_extra_vlr(std::size_t length);
 
 /// The integer that a coordinate is stored as. Throws InvalidInput, with the name of the axis, if there is none.
-std::int32_t las_steps(double value, double scale, double offset, const char* axis);
+std::int32_t las_steps(double value, const DecimalSteps& of, const char* axis);
 
 }  // namespace g3r::io

@@ -205,8 +205,10 @@ void LasPlan::finish() {
   place_columns();
   name_extras();
   choose_steps();
-  const auto is_deep = [](const Facts& channel) { return channel.whole && channel.low >= 0 && channel.high <= 65535; };
-  const auto is_more = [](const Facts& channel) { return channel.high > 255; };
+  const auto is_deep = [](const Facts& channel) {
+    return channel.whole && channel.low >= 0 && channel.high <= std::numeric_limits<std::uint16_t>::max();
+  };
+  const auto is_more = [](const Facts& channel) { return channel.high > std::numeric_limits<std::uint8_t>::max(); };
   if (channels_.size() == 3 && std::all_of(channels_.begin(), channels_.end(), is_deep) &&
       std::any_of(channels_.begin(), channels_.end(), is_more)) {
     for (const Facts& channel : channels_) deep_colors_.push_back(channel.column);

@@ -65,7 +65,7 @@ struct TextShape {
 /// "column 3 "z"", or "column 3" where it has no name. Columns count from 0, texts from 1.
 std::string column_text(const TextShape& shape, std::size_t column);
 
-/// Reads the text once. Throws InvalidInput.
+/// Reads the text once. Tabs that leave lines with different columns are blanks, if blanks do not. Throws InvalidInput.
 TextShape measure(const Text& text);
 
 /// The numbers of the points.

@@ -33,7 +33,7 @@ void store_position(const PointData& data, std::size_t i, const LasHeader& heade
   for (std::size_t a = 0; a < 3; ++a) {
     const double value = data.cloud.positions[i][a];
     if (header.steps[a].value(load<std::int32_t>(record + 4 * a)) == value) continue;  // as it was in the file, to the bit
-    const std::int32_t steps = las_steps(value, header.scale[a], header.offset[a], kAxes[a]);
+    const std::int32_t steps = las_steps(value, header.steps[a], kAxes[a]);
     std::memcpy(record + 4 * a, &steps, sizeof steps);
   }
 }

@@ -84,8 +84,7 @@ class NewLas : public LasWriter {
   void put_position(const Vec3& position) {
     constexpr const char* kAxes[] = {"x", "y", "z"};
     for (std::size_t a = 0; a < 3; ++a) {
-      const DecimalSteps& steps = plan_.steps(a);
-      put(record_, 4 * a, las_steps(position[a], steps.scale(), steps.offset(), kAxes[a]));
+      put(record_, 4 * a, las_steps(position[a], plan_.steps(a), kAxes[a]));
     }
   }
 
@@ -99,10 +98,11 @@ class NewLas : public LasWriter {
   }
 
   void put_color(const std::array<std::uint8_t, 3>& color, Rows& rows) {
+    constexpr unsigned kTo16Bits = 257;  // times 255 it is 65535: white stays white
     const std::size_t at = las_color_offset(plan_.point_format());
     const std::vector<std::size_t>& deep = plan_.deep_colors();
     for (std::size_t c = 0; c < 3; ++c) {
-      put(record_, at + 2 * c, static_cast<std::uint16_t>(deep.empty() ? color[c] * 257 : rows.number(deep[c])));
+      put(record_, at + 2 * c, static_cast<std::uint16_t>(deep.empty() ? color[c] * kTo16Bits : rows.number(deep[c])));
     }
   }
 

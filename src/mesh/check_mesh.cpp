@@ -89,7 +89,7 @@ void measure(const Mesh& mesh, const Vec3& centre, MeshCheck& check) {
     const Vec3 a = subtract(mesh.vertices[t[0]], centre);
     const Vec3 b = subtract(mesh.vertices[t[1]], centre);
     const Vec3 c = subtract(mesh.vertices[t[2]], centre);
-    const Vec3 n = mesh::area_vector(a, b, c);
+    const Vec3 n = mesh::twice_area_vector(a, b, c);
     check.volume += dot(a, n) / 6;  // div x = 3 integrated over the tetrahedron (centre, a, b, c)
     check.area += std::sqrt(dot(n, n)) / 2;
   }

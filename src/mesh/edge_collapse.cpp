@@ -36,7 +36,7 @@ double EdgeCollapse::squared_length(std::uint32_t a, std::uint32_t b) const {
 Vec3 EdgeCollapse::normal_of(const std::array<std::uint32_t, 3>& triangle, std::uint32_t from, std::uint32_t to) const {
   std::array<Vec3, 3> p;
   for (std::size_t k = 0; k < 3; ++k) p[k] = mesh_.vertices[triangle[k] == from ? to : triangle[k]];
-  return area_vector(p[0], p[1], p[2]);
+  return twice_area_vector(p[0], p[1], p[2]);
 }
 
 void EdgeCollapse::find_neighbours(std::uint32_t v, std::vector<std::uint32_t>& neighbours) const {

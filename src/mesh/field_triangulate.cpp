@@ -22,7 +22,7 @@ class DiagonalQuality {
 
  private:
   Vec3 unit_normal(const std::array<std::uint32_t, 3>& t) const {
-    Vec3 n = area_vector(positions_, t);
+    Vec3 n = twice_area_vector(positions_, t);
     const double length = std::sqrt(vector::dot(n, n));
     for (double& c : n) c = length > 0 ? c / length : 0;
     return n;

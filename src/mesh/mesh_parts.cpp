@@ -107,7 +107,7 @@ std::vector<Vec3> centres_of(const Mesh& mesh) {
 }
 
 double area_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
-  const Vec3 n = area_vector(mesh.vertices, t);
+  const Vec3 n = twice_area_vector(mesh.vertices, t);
   return 0.5 * std::hypot(n[0], n[1], n[2]);
 }
 

@@ -77,7 +77,7 @@ bool separates(const Vec3& axis, const Corners& s, const Corners& t) {
 
 // Finds most pairs that do not meet, without exact arithmetic: planes parallel to s or through its edges. False where unsure.
 bool surely_apart(const Corners& s, const Corners& t) {
-  const Vec3 normal = mesh::area_vector(s[0], s[1], s[2]);
+  const Vec3 normal = mesh::twice_area_vector(s[0], s[1], s[2]);
   if (separates(normal, s, t) || separates(vector::scale(normal, -1), s, t)) return true;
   for (std::size_t k = 0; k < 3; ++k) {
     if (separates(vector::cross(vector::subtract(s[(k + 1) % 3], s[k]), normal), s, t)) return true;
@@ -93,7 +93,7 @@ bool touch_at_a_corner(const Corners& s, const Corners& t) {
   return std::any_of(s.begin(), s.end(), [&](const Vec3& p) { return std::find(t.begin(), t.end(), p) != t.end(); });
 }
 
-bool has_no_area(const Corners& t) { return mesh::area_vector(t[0], t[1], t[2]) == Vec3{0, 0, 0}; }
+bool has_no_area(const Corners& t) { return mesh::twice_area_vector(t[0], t[1], t[2]) == Vec3{0, 0, 0}; }
 
 // Rounded outward: the boxes of triangles that meet do too.
 mesh::FloatBox box_of(const Corners& t) {

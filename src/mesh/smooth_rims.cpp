@@ -63,7 +63,7 @@ class Rim {
     };
     for (const auto& [a, b] : boundary_) see(a, b), see(b, a);
     for (const auto& t : triangles_) {
-      const Vec3 n = area_vector(at, t);
+      const Vec3 n = twice_area_vector(at, t);
       for (std::size_t k = 0; k < 3; ++k) {
         normal[t[k]] = add(normal[t[k]], n);
         if (mark_[t[k]] == kRim) continue;
@@ -107,7 +107,7 @@ void smooth_rims(Mesh& mesh, const std::function<std::vector<std::uint8_t>(const
   for (bool turned = true; turned;) {
     turned = false;
     for (const auto& t : rim.triangles()) {
-      if (dot(vector::normalised(area_vector(at, t)), vector::normalised(area_vector(mesh.vertices, t))) >= kSlant) continue;
+      if (dot(vector::normalised(twice_area_vector(at, t)), vector::normalised(twice_area_vector(mesh.vertices, t))) >= kSlant) continue;
       for (const std::uint32_t v : t) {
         turned = turned || at[v] != mesh.vertices[v];
         at[v] = mesh.vertices[v];

@@ -13,11 +13,11 @@ namespace g3r::mesh {
 using Triangle = std::array<std::uint32_t, 3>;
 
 /// Twice the area times the normal of a triangle.
-inline Vec3 area_vector(const Vec3& a, const Vec3& b, const Vec3& c) {
+inline Vec3 twice_area_vector(const Vec3& a, const Vec3& b, const Vec3& c) {
   return vector::cross(vector::subtract(b, a), vector::subtract(c, a));
 }
-inline Vec3 area_vector(const std::vector<Vec3>& vertices, const Triangle& t) {
-  return area_vector(vertices[t[0]], vertices[t[1]], vertices[t[2]]);
+inline Vec3 twice_area_vector(const std::vector<Vec3>& vertices, const Triangle& t) {
+  return twice_area_vector(vertices[t[0]], vertices[t[1]], vertices[t[2]]);
 }
 
 }  // namespace g3r::mesh

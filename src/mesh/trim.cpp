@@ -73,7 +73,7 @@ std::vector<std::uint8_t> within(const Mesh& mesh, const std::vector<Vec3>& poin
 std::vector<Vec3> normals_of(const Mesh& mesh) {
   std::vector<Vec3> normals(mesh.vertices.size(), Vec3{0, 0, 0});
   for (const Triangle& t : mesh.triangles) {
-    const Vec3 n = area_vector(mesh.vertices, t);
+    const Vec3 n = twice_area_vector(mesh.vertices, t);
     for (const std::uint32_t v : t) normals[v] = vector::add(normals[v], n);
   }
   for (Vec3& n : normals) n = vector::normalised(n);

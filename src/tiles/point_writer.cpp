@@ -115,6 +115,8 @@ void PointWriter::write_header(const Manifest& manifest, Stages& stages) {
     merger_.emplace(clouds);
     like = Cloud();
     like.attributes = table_of(Attributes(), merger_->element());
+    const auto is_float = [](const Cloud& cloud) { return cloud.scalar == Scalar::kFloat32; };
+    if (std::all_of(clouds.begin(), clouds.end(), is_float)) like.scalar = Scalar::kFloat32;
     colored_ = std::any_of(clouds.begin(), clouds.end(), [](const Cloud& cloud) { return !cloud.colors.empty(); });
     if (las_file_ && colored_) like.colors.resize(1);
   } else if (las_file_ && like.attributes->dialect == Attributes::Dialect::kLas) {
