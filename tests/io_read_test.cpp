@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "io/las.h"
 #include "io/lzf.h"
 #include "io/text.h"
 #include "io_samples.h"
@@ -194,6 +195,40 @@ TEST(Gltf, NodesMoveTheirPoints) {
 TEST(Stl, EqualCornersAreOneVertex) {
   EXPECT_EQ(read(samples::written(samples::tetrahedron(), "a.stl")).positions.size(), 4U);
   EXPECT_EQ(read(samples::written(samples::tetrahedron(), "a.stl", {.ascii = true})).positions.size(), 4U);
+}
+
+// A LAS file whose only variable length record describes the coordinate system.
+std::string las_in(std::uint16_t record, const std::string& system) {
+  std::string las = samples::written(samples::helix(5), "a.las");
+  const auto header = io::load<std::uint16_t>(las.data() + io::las::kHeaderSize);
+  std::string vlr = std::string(2, '\0') + "LASF_Projection" + '\0' + samples::raw(record) +
+                    samples::raw(static_cast<std::uint16_t>(system.size())) + std::string(32, '\0') + system;
+  const auto points_at = io::load<std::uint32_t>(las.data() + io::las::kPointsAt);
+  io::las::put(las, io::las::kPointsAt, static_cast<std::uint32_t>(header + vlr.size()));
+  io::las::put(las, io::las::kVlrCount, std::uint32_t{1});
+  return las.substr(0, header) + vlr + las.substr(points_at);
+}
+
+TEST(Las, DegreesAreToldByTheCoordinateSystem) {
+  const std::string datum = R"(GEOGCS["WGS 84",DATUM["WGS_1984"]])";
+  const auto keys = [](std::uint16_t model) {
+    std::string text;
+    for (const int number : {1, 1, 0, 1, 1024, 0, 1, int{model}}) text += samples::raw(static_cast<std::uint16_t>(number));
+    return text;
+  };
+  const auto warned = [](const std::string& las) {
+    for (const std::string& warning : read(las).warnings) {
+      if (warning.find("longitude and latitude") != std::string::npos) return true;
+    }
+    return false;
+  };
+  EXPECT_TRUE(warned(las_in(io::las::kWkt, datum)));
+  EXPECT_TRUE(warned(las_in(io::las::kWkt, "COMPD_CS[\"with heights\"," + datum + ",VERT_CS[\"NAVD88\"]]")));
+  EXPECT_FALSE(warned(las_in(io::las::kWkt, "PROJCS[\"UTM zone 32N\"," + datum + "]")));
+  EXPECT_TRUE(warned(las_in(io::las::kGeoKeys, keys(2))));
+  EXPECT_FALSE(warned(las_in(io::las::kGeoKeys, keys(1))));
+  EXPECT_FALSE(warned(las_in(io::las::kGeoKeys, keys(2).substr(0, 15))));
+  EXPECT_FALSE(warned(samples::written(samples::helix(5), "a.las")));
 }
 
 TEST(Recognise, StrangersAreNamed) {

@@ -68,6 +68,24 @@ void describe_extra_bytes(std::string_view descriptors, LasHeader& header) {
   header.undescribed_bytes = header.record_bytes - at;
 }
 
+// Whether a coordinate system in OGC's Well-Known Text is geographic: it has a geographic one and does not project it.
+bool is_geographic_wkt(std::string_view wkt) {
+  const auto has = [&](std::string_view a, std::string_view b) {
+    return wkt.find(a) != std::string_view::npos || wkt.find(b) != std::string_view::npos;
+  };
+  return has("GEOGCS[", "GEOGCRS[") && !has("PROJCS[", "PROJCRS[");
+}
+
+// The same in GeoTIFF's keys: records of four 16-bit numbers, the first a header, the others key, place, count, value.
+bool is_geographic_keys(std::string_view keys) {
+  constexpr std::size_t kKey = 8;
+  constexpr unsigned kModelType = 1024, kGeographic = 2;
+  for (std::size_t at = kKey; at + kKey <= keys.size(); at += kKey) {
+    if (load<std::uint16_t>(keys.data() + at) == kModelType) return load<std::uint16_t>(keys.data() + at + 6) == kGeographic;
+  }
+  return false;
+}
+
 void read_vlrs(const Source& source, LasHeader& header) {
   std::size_t at = header.header_size;
   header.undescribed_bytes = header.record_bytes - kRecordSize[header.point_format];
@@ -84,6 +102,10 @@ void read_vlrs(const Source& source, LasHeader& header) {
       describe_extra_bytes(source.bytes.substr(at + kVlrHeader, length), header);
     }
     if (user == "laszip encoded" && record == kCompression && header.laszip_vlr == 0) header.laszip_vlr = at;
+    if (user == "LASF_Projection") {
+      const std::string_view system = source.bytes.substr(at + kVlrHeader, length);
+      header.geographic |= (record == kWkt && is_geographic_wkt(system)) || (record == kGeoKeys && is_geographic_keys(system));
+    }
     at += kVlrHeader + length;
   }
 }

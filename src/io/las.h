@@ -37,6 +37,7 @@ struct LasHeader {
   std::size_t undescribed_bytes = 0;  ///< extra bytes at the end of a record that no descriptor names
   std::size_t extra_vlr = 0;          ///< byte offset of the Extra Bytes record's header, 0 if there is none
   std::size_t laszip_vlr = 0;         ///< the same of the record that says how a LAZ file is compressed
+  bool geographic = false;            ///< x and y are longitude and latitude, says the coordinate system that the file names
 };
 
 /// Byte offsets in the public header block.
@@ -47,6 +48,8 @@ inline constexpr std::size_t kMinor = 25, kHeaderSize = 94, kPointsAt = 96, kVlr
 inline constexpr std::array<std::size_t, 11> kRecordSize = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
 inline constexpr unsigned kExtraBytes = 4;       // record id, user id "LASF_Spec"
 inline constexpr unsigned kCompression = 22204;  // record id, user id "laszip encoded"
+inline constexpr unsigned kWkt = 2112;           // record ids, user id "LASF_Projection"
+inline constexpr unsigned kGeoKeys = 34735;
 
 template <class T>
 void put(std::string& bytes, std::size_t at, T value) {

@@ -31,6 +31,10 @@ class LasRecords : public FixedRecords, public LasOrigin {
     }
   }
 
+  [[nodiscard]] std::vector<std::string> warnings() const override {
+    if (!header_.geographic) return {};
+    return {kDegrees};
+  }
   [[nodiscard]] LasOrigin* las() override { return this; }
   [[nodiscard]] const std::string& head() const override { return laz_ ? laz_->las_head() : head_; }
   void keep(std::string* records) override { kept_ = records; }

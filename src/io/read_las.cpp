@@ -95,6 +95,7 @@ Cloud read_las(const Source& source, const ReadOptions& options) {
   cloud.format = std::string("las 1.") += std::to_string(header.minor) + ", point format " + std::to_string(header.point_format);
   fill_cloud(source, table, cloud);
   check_against_header(source, header, cloud);
+  if (header.geographic) cloud.warnings.emplace_back(kDegrees);
   return cloud;
 }
 

@@ -39,14 +39,12 @@ std::shared_ptr<Attributes> read_table(const Text& text, const TextShape& shape,
   return Attributes::of_points(Attributes::Dialect::kText, std::move(points));
 }
 
-// Longitude and latitude beside heights in metres: a shape that nobody wants.
+// Where the numbers can be degrees.
 void warn_about_degrees(Cloud& cloud) {
   for (const Vec3& p : cloud.positions) {
     if (std::abs(p[0]) > 360 || std::abs(p[1]) > 90) return;
   }
-  cloud.warnings.emplace_back(
-      "x and y are longitude and latitude: where they are degrees the shape is distorted; project them first, for example with PDAL or "
-      "PROJ");
+  cloud.warnings.emplace_back(kDegrees);
 }
 
 std::vector<std::string> warnings_of(const TextShape& shape, bool overflow) {

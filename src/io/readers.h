@@ -14,6 +14,10 @@
 
 namespace g3r::io {
 
+/// What readers warn of whose x and y are longitude and latitude beside heights in metres: a shape that nobody wants.
+inline constexpr const char* kDegrees =
+    "x and y are longitude and latitude: where they are degrees the shape is distorted; project them first, for example with PDAL or PROJ";
+
 Cloud read_ply(const Source& source, const ReadOptions& options);
 Cloud read_pcd(const Source& source);
 Cloud read_npy(const Source& source);
