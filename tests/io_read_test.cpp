@@ -229,6 +229,9 @@ TEST(Las, DegreesAreToldByTheCoordinateSystem) {
   EXPECT_FALSE(warned(las_in(io::las::kGeoKeys, keys(1))));
   EXPECT_FALSE(warned(las_in(io::las::kGeoKeys, keys(2).substr(0, 15))));
   EXPECT_FALSE(warned(samples::written(samples::helix(5), "a.las")));
+  std::string projected = las_in(io::las::kWkt, datum);  // files name systems that their coordinates are not in
+  io::las::put(projected, io::las::kBounds, 500000.0);
+  EXPECT_FALSE(warned(projected));
 }
 
 TEST(Recognise, StrangersAreNamed) {

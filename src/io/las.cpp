@@ -86,6 +86,12 @@ bool is_geographic_keys(std::string_view keys) {
   return false;
 }
 
+// Whether the bounds that the header gives can be degrees: files name systems that their coordinates are not in.
+bool can_be_degrees(const Source& source) {
+  const auto bound = [&](std::size_t i) { return std::abs(load<double>(source.bytes.data() + kBounds + 8 * i)); };  // x, x, y, y, z, z
+  return bound(0) <= 360 && bound(1) <= 360 && bound(2) <= 90 && bound(3) <= 90;
+}
+
 void read_vlrs(const Source& source, LasHeader& header) {
   std::size_t at = header.header_size;
   header.undescribed_bytes = header.record_bytes - kRecordSize[header.point_format];
@@ -172,6 +178,7 @@ LasHeader read_las_header(const Source& source, std::uint64_t file_size) {
   }
   header.fields = standard_fields(format);
   read_vlrs(source, header);
+  header.geographic = header.geographic && can_be_degrees(source);
   return header;
 }
 

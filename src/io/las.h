@@ -37,7 +37,7 @@ struct LasHeader {
   std::size_t undescribed_bytes = 0;  ///< extra bytes at the end of a record that no descriptor names
   std::size_t extra_vlr = 0;          ///< byte offset of the Extra Bytes record's header, 0 if there is none
   std::size_t laszip_vlr = 0;         ///< the same of the record that says how a LAZ file is compressed
-  bool geographic = false;            ///< x and y are longitude and latitude, says the coordinate system that the file names
+  bool geographic = false;            ///< x and y are degrees: the coordinate system that the file names, and its bounds, say so
 };
 
 /// Byte offsets in the public header block.
