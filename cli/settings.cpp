@@ -33,9 +33,9 @@ constexpr const char* kIntroduction = R"(g3r: from an unoriented point cloud to 
 )";
 
 constexpr const char* kFormatHelp = R"(Reads PLY, XYZ/TXT/CSV/PTS, OBJ, OFF, PCD, NPY, LAS/LAZ, E57, PTX, SPZ, STL,
-glTF/GLB; the content tells which. Writes meshes as .ply .obj .stl .off .glb,
-points as .ply .xyz .txt .csv .pts .pcd .npy .las .laz .obj; the extension
-tells which.
+glTF/GLB, ASCII grids; the content tells which. Writes meshes as .ply .obj .stl
+.off .glb, points as .ply .xyz .txt .csv .pts .pcd .npy .las .laz .obj; the
+extension tells which.
 
 )";
 

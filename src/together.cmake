@@ -35,11 +35,10 @@ g3r_together(fair mesh/fair mesh/field_local_fit mesh/field_placement mesh/field
 g3r_together(trim mesh/field_points mesh/self_intersections mesh/separate_vertices mesh/simplify mesh/smooth_rims mesh/smooth_spacing
              mesh/split_nonmanifold mesh/untangle mesh/used_vertices mesh/point_parts mesh/regained_points)
 
-g3r_together(parts_of_readers io/cloud_from_table io/columns io/copc io/decimal_steps io/fixed_records io/gzip io/json io/lzf io/merger
-             io/number_type io/output_file io/ply_header io/ply_types io/point_stream io/polygons io/rows base/control_groups)
-g3r_together(readers io/las io/las_fields io/las_plan io/point_text io/random_file io/read io/read_gltf io/read_las io/read_npy io/read_obj
-             io/read_off io/read_pcd
-             io/read_ply io/read_ptx io/splats)
+g3r_together(parts_of_readers io/cloud_from_table io/columns io/copc io/decimal_steps io/fixed_records io/grid_header io/gzip io/json io/lzf
+             io/merger io/number_type io/output_file io/ply_header io/ply_types io/point_stream io/polygons io/rows base/control_groups)
+g3r_together(readers io/las io/las_fields io/las_plan io/point_text io/random_file io/read io/read_ascii_grid io/read_gltf io/read_las
+             io/read_npy io/read_obj io/read_off io/read_pcd io/read_ply io/read_ptx io/splats)
 g3r_together(splats io/read_spz io/read_xyz io/recognise io/source io/splat_light io/splat_view io/subset io/table
              io/text io/write io/write_npy io/write_obj)
 g3r_together(writers io/column_facts io/column_names io/read_stl io/text_values io/tiles io/utf8 io/write_glb io/write_off

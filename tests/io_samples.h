@@ -142,6 +142,18 @@ inline std::string ptx(std::size_t count) {
   return text;
 }
 
+/// An ASCII grid of two rows of heights of the helix; of the southern one every third has no value.
+inline std::string ascii_grid(std::size_t count) {
+  const Cloud cloud = helix(count);
+  std::string text =
+      "ncols " + std::to_string(count) + "\nnrows 2\nxllcorner 500000.25\nyllcorner 4600000\ncellsize 0.5\nNODATA_value -9999\n";
+  for (int row = 0; row < 2; ++row) {
+    for (std::size_t i = 0; i < count; ++i)
+      text += (row == 1 && i % 3 == 2 ? "-9999" : std::to_string(cloud.positions[i][2])) + (i + 1 < count ? " " : "\n");
+  }
+  return text;
+}
+
 /// gzip without compression.
 inline std::string gzip(const std::string& bytes) {
   std::string stream("\x1f\x8b\x08\0\0\0\0\0\0\xff", 10);
@@ -204,6 +216,7 @@ inline std::vector<Sample> all(std::size_t count = 12) {
   samples.push_back(sample("points.xyz", written(bare, "a.xyz"), "", false));
   samples.push_back(sample("points.csv", written(cloud, "a.csv"), "\n", false));
   samples.push_back(sample("scans.ptx", ptx(count), "5 6 7 1\n", false));
+  samples.push_back(sample("heights.asc", ascii_grid(count), "-9999\n", true));
   samples.push_back(sample("splats2.spz", gzip(unpacked_spz(count, 2)), "", true));
   Sample spz = sample("splats3.spz", gzip(unpacked_spz(count, 3)), "", true);
   spz.header = 31;  // of gzip, its block, and SPZ

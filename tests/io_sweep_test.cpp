@@ -122,6 +122,9 @@ TEST(Memory, FilesThatExpandMostKeepTheLaw) {
   std::string xyz;
   for (std::size_t i = 0; i < kPoints; ++i) xyz += "1 2 3 4\n";
   EXPECT_FALSE(read_exactly(xyz, "four.xyz").refused);
+  std::string grid = "ncols 1000\nnrows " + std::to_string(kPoints / 1000) + "\nxllcorner 0\nyllcorner 0\ncellsize 1\n";
+  for (std::size_t i = 0; i < kPoints; ++i) grid += "1 ";
+  EXPECT_EQ(read_exactly(grid, "ones.asc").cloud.positions.size(), kPoints);
   std::string json = R"({"asset":[)";
   for (std::size_t i = 0; i < kPoints; ++i) json += "0,";
   read_exactly(json + "0]}", "values.gltf");

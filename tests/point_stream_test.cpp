@@ -69,10 +69,14 @@ TEST(PointStream, MemoryDoesNotDependOnTheSizeOfTheFile) {
                                      << 20;  // a block of 1 MiB as in the file, as in the table and as points, or a LAZ chunk
   const Folder folder;
   const Cloud cloud = samples::helix(kMany);
-  for (const char* name : {"a.ply", "a.las", "a.laz", "a.npy", "a.pcd", "a.csv", "a.pts", "a.xyz", "a.ptx"}) {
+  for (const char* name : {"a.ply", "a.las", "a.laz", "a.npy", "a.pcd", "a.csv", "a.pts", "a.xyz", "a.ptx", "a.asc"}) {
     if (name == std::string("a.laz") && !io::laz_is_compiled()) continue;
     if (name == std::string("a.ptx")) {
       spill(folder.path(name), samples::ptx(kMany * 3 / 5));  // of the first of its two scans a third is left out
+    } else if (name == std::string("a.asc")) {
+      std::string grid = "ncols 1000\nnrows " + std::to_string(kMany / 1000) + "\nxllcorner 0\nyllcorner 0\ncellsize 1\n";
+      for (std::size_t i = 0; i < kMany; ++i) grid += "0.1000000000000000055511151231257827021" + std::string(i % 1000 == 999 ? "\n" : " ");
+      spill(folder.path(name), grid);
     } else {
       write_cloud(folder.path(name), cloud, nullptr, nullptr);
     }
@@ -109,7 +113,8 @@ std::vector<samples::Sample> texts(std::size_t count) {
   found.push_back({"a.pts", std::to_string(count) + "\n" + triples + std::to_string(count) + "\n" + triples, 0, true});
   for (const samples::Sample& sample : samples::all(count)) {
     const std::string& name = sample.name;
-    if (name.ends_with(".xyz") || name.ends_with(".csv") || name.ends_with(".pts") || name.ends_with(".ptx")) found.push_back(sample);
+    if (name.ends_with(".xyz") || name.ends_with(".csv") || name.ends_with(".pts") || name.ends_with(".ptx") || name.ends_with(".asc"))
+      found.push_back(sample);
   }
   return found;
 }

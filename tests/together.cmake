@@ -21,5 +21,5 @@ g3r_tests_together(tests_of_meshes coarsen edge_collapse fair field_arcs field_m
 g3r_tests_together(tests_of_parts field_contour handle_removal mesh_finish mesh_memory point_parts)
 g3r_tests_together(tests_of_shapes check_mesh metrics self_intersections split_nonmanifold untangle)
 g3r_tests_together(tests_of_fields crossings expansions facets field_denoise field_local_fit findings held_points scanner_files)
-g3r_tests_together(tests_of_files any_size base io_read io_write las_plan names platform splat_light table utf8 xml)
+g3r_tests_together(tests_of_files any_size ascii_grid base io_read io_write las_plan names platform splat_light table utf8 xml)
 g3r_tests_together(tests_of_counted io_sweep point_stream tiles tiles_mesh)

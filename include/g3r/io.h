@@ -56,7 +56,7 @@ struct ReadOptions {
 };
 
 /// Reads a cloud; the format is recognised by content, not by name. "-" reads standard input. A folder, or a pattern with * or ? that
-/// names no file itself, stands for all files of points in it (LAS, LAZ, PLY, PCD, E57, PTX, PTS, XYZ, CSV, NPY, SPZ; of a pattern,
+/// names no file itself, stands for all files of points in it (LAS, LAZ, PLY, PCD, E57, PTX, PTS, XYZ, CSV, ASC, NPY, SPZ; of a pattern,
 /// whatever it names), which become one cloud in the order of their names: properties of numbers that any of them has, 0 where one has
 /// not. An ept.json, or the folder that holds one, stands for the cells of its octree.
 /// O(file) time and memory. Throws IoError (not found, read error), InvalidInput (damaged, unknown or unusable; says where and what to do),

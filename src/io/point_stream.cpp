@@ -153,6 +153,7 @@ std::unique_ptr<PointStream> parsed_records(std::unique_ptr<RandomFile>& file, c
     const Format format = recognise(head);
     if (format == Format::kText) return stream_xyz(std::move(file), begin);
     if (format == Format::kPtx) return stream_ptx(std::move(file), begin);
+    if (format == Format::kAsciiGrid) return stream_ascii_grid(std::move(file), begin);
     if (format == Format::kE57) return stream_e57(std::move(file));
   } catch (const InvalidInput&) {
     if (whole || !file) throw;  // what is recognised is refused for good

@@ -45,6 +45,8 @@ Cloud read_as(Format format, const Source& source, const ReadOptions& options) {
       return read_stl(source, false);
     case Format::kPtx:
       return read_ptx(source);
+    case Format::kAsciiGrid:
+      return read_ascii_grid(source);
     case Format::kSpz:
       return read_spz(source, options);
     case Format::kText:

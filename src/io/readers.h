@@ -26,6 +26,7 @@ Cloud read_e57(const Source& source);
 Cloud read_glb(const Source& source);
 Cloud read_gltf(const Source& source);
 Cloud read_ptx(const Source& source);
+Cloud read_ascii_grid(const Source& source);
 Cloud read_spz(const Source& source, const ReadOptions& options);
 Cloud read_xyz(const Source& source);
 Cloud read_obj(const Source& source);
@@ -42,6 +43,7 @@ std::optional<StoredTable> find_npy_records(const Source& head, std::uint64_t fi
 /// has more columns than x y z; E57 is read for its checksums. Throw what the reader of the format throws, or next() does.
 std::unique_ptr<PointStream> stream_xyz(std::unique_ptr<RandomFile> file, std::uint64_t begin);
 std::unique_ptr<PointStream> stream_ptx(std::unique_ptr<RandomFile> file, std::uint64_t begin);
+std::unique_ptr<PointStream> stream_ascii_grid(std::unique_ptr<RandomFile> file, std::uint64_t begin);
 std::unique_ptr<PointStream> stream_e57(std::unique_ptr<RandomFile> file);
 
 Mesh read_ply_mesh(const Source& source);

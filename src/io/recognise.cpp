@@ -1,5 +1,6 @@
 #include "io/recognise.h"
 
+#include "io/grid_header.h"
 #include "io/gzip.h"
 #include "io/table.h"
 #include "io/text.h"
@@ -44,6 +45,9 @@ constexpr Signature kStrangers[] = {
     {"  0\r\nSECTION"sv, "a DXF drawing; save its points as text, one a line"},
     {"0\nSECTION"sv, "a DXF drawing; save its points as text, one a line"},
     {"0\r\nSECTION"sv, "a DXF drawing; save its points as text, one a line"},
+    {"DSAA"sv, "a Surfer grid; save it as an ASCII grid of Arc/Info, for example with GDAL"},
+    {"DSBB"sv, "a Surfer grid; save it as an ASCII grid of Arc/Info, for example with GDAL"},
+    {"DSRB"sv, "a Surfer grid; save it as an ASCII grid of Arc/Info, for example with GDAL"},
     {"%PDF"sv, "a PDF file"},
     {"\x89HDF"sv, "an HDF5 file"},
     {"\xff\xfe"sv, "UTF-16 text; save it as UTF-8"},
@@ -144,6 +148,7 @@ std::string magic_of(const std::string& ext) {
   if (ext == "e57") return "the E57 magic \"ASTM-E57\"";
   if (ext == "off") return "the OFF magic \"OFF\"";
   if (ext == "ptx") return "a PTX header (columns, rows, position, axes and matrix of a scan)";
+  if (ext == "grd") return "the header of an ASCII grid (ncols, nrows, xllcorner, yllcorner, cellsize)";
   if (ext == "spz") return "SPZ (gzip, with the magic \"NGSP\" inside)";
   if (ext == "pcd") return "a PCD header (\"# .PCD\", VERSION, FIELDS)";
   if (ext == "glb") return "the GLB magic \"glTF\"";
@@ -183,6 +188,7 @@ Format recognise(const Source& source) {
   if (bytes.substr(0, 6) == "# .PCD") return Format::kPcd;
   if (is_binary_stl(bytes, bytes.size())) return Format::kStlBinary;
   if (is_ptx(bytes)) return Format::kPtx;
+  if (is_ascii_grid(bytes)) return Format::kAsciiGrid;
 
   Beginning beginning(bytes);
   std::string_view line;

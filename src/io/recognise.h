@@ -7,7 +7,7 @@
 
 namespace g3r::io {
 
-enum class Format { kPly, kPcd, kNpy, kLas, kE57, kOff, kObj, kStlBinary, kStlText, kGlb, kGltf, kPtx, kSpz, kText };
+enum class Format { kPly, kPcd, kNpy, kLas, kE57, kOff, kObj, kStlBinary, kStlText, kGlb, kGltf, kPtx, kAsciiGrid, kSpz, kText };
 
 /// The format of the file that starts with these bytes. A UTF-8 byte order mark is skipped.
 /// Throws InvalidInput for an empty file and for everything that no reader takes, naming what it is where that can be told.

@@ -19,7 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 
 // No .txt and .obj: folders hold texts that are no points, and meshes.
-constexpr std::array<std::string_view, 11> kExtensions = {"las", "laz", "ply", "pcd", "e57", "ptx", "pts", "xyz", "csv", "npy", "spz"};
+constexpr std::array<std::string_view, 12> kExtensions = {"las", "laz", "ply", "pcd", "e57", "ptx",
+                                                          "pts", "xyz", "csv", "asc", "npy", "spz"};
 
 constexpr std::size_t kMostWarnings = 8;  // All files together give so many: a thousand with the same oddity would hide what is said else.
 
@@ -37,7 +38,7 @@ std::vector<std::string> files_of_folder(const std::string& path) {
   if (files.empty())
     throw IoError(
         IoError::Kind::kNotFound,
-        escape_text(path) + ": a folder without files of points (.las, .laz, .ply, .pcd, .e57, .ptx, .pts, .xyz, .csv, .npy, .spz)");
+        escape_text(path) + ": a folder without files of points (.las, .laz, .ply, .pcd, .e57, .ptx, .pts, .xyz, .csv, .asc, .npy, .spz)");
   std::sort(files.begin(), files.end());
   return files;
 }
