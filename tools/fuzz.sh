@@ -12,7 +12,7 @@ shift
 build sanitize fuzz
 programs=build/sanitize/fuzz
 if [ $# -eq 0 ]; then
-  set -- ply pcd npy las off obj stl gltf xyz ptx spz streams folders command_line pipeline
+  set -- ply pcd npy las off obj stl gltf xyz ptx grid spz streams folders command_line pipeline
   for reader in laz e57; do # where build/sanitize is configured to read them
     [ ! -e "$programs/fuzz_$reader" ] || set -- "$@" $reader
   done
