@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -74,6 +76,44 @@ TEST(SignGraph, DoesNotDependOnTheOrderOfTheEdges) {
   for (SignEdge& edge : graph.edges) std::swap(edge.a, edge.b);
   const Signs backwards = agree_on_signs(graph.sign.size(), graph.edges);
   EXPECT_EQ(forwards.sign, backwards.sign);
+}
+
+// The definition, on a matrix of sums: O(N^3). Only which nodes agree is the same, as a group may be turned as a whole.
+std::vector<std::int8_t> contracted_by_definition(std::size_t nodes, const std::vector<SignEdge>& edges) {
+  std::vector<std::vector<double>> sum(nodes, std::vector<double>(nodes, 0));
+  for (const SignEdge& edge : edges) {
+    sum[edge.a][edge.b] += edge.weight;
+    sum[edge.b][edge.a] += edge.weight;
+  }
+  std::vector<std::vector<std::size_t>> members(nodes);
+  for (std::size_t i = 0; i < nodes; ++i) members[i] = {i};
+  std::vector<std::int8_t> sign(nodes, 1);
+  for (;;) {
+    std::size_t first = 0, second = 0;
+    for (std::size_t a = 0; a < nodes; ++a) {
+      for (std::size_t b = a + 1; b < nodes; ++b) {
+        if (std::abs(sum[a][b]) > std::abs(sum[first][second])) std::tie(first, second) = std::pair(a, b);
+      }
+    }
+    if (sum[first][second] == 0) return sign;
+    const std::int8_t turn = sum[first][second] < 0 ? -1 : 1;
+    for (const std::size_t i : members[second]) sign[i] = static_cast<std::int8_t>(sign[i] * turn);
+    members[first].insert(members[first].end(), members[second].begin(), members[second].end());
+    sum[first][second] = sum[second][first] = 0;
+    for (std::size_t other = 0; other < nodes; ++other) {
+      sum[first][other] += turn * sum[second][other];
+      sum[other][first] = sum[first][other];
+      sum[second][other] = sum[other][second] = 0;
+    }
+  }
+}
+
+TEST(SignGraph, IsTheGreedyContraction) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Ring graph = ring(60, 7, 0.3, seed);
+    const std::vector<std::int8_t> expected = contracted_by_definition(graph.sign.size(), graph.edges);
+    EXPECT_EQ(share_wrong(agree_on_signs(graph.sign.size(), graph.edges).sign, expected), 0) << seed;
+  }
 }
 
 // Two square lattices, of 20 x 20 and of 30 x 30 nodes, and `bridges` edges between them of the given weight.

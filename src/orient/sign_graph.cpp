@@ -1,5 +1,7 @@
 #include "orient/sign_graph.h"
 
+#include "orient/pair_sums.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -7,7 +9,6 @@
 #include <functional>
 #include <queue>
 #include <tuple>
-#include <unordered_map>
 #include <utility>
 
 namespace g3r {
@@ -21,7 +22,7 @@ struct Contraction {
   bool operator<(const Contraction& other) const { return std::make_tuple(rank, other.a, other.b) < std::make_tuple(other.rank, a, b); }
 };
 
-// Groups of nodes and the sums of the weights between them.
+// Groups of nodes and the sums of the weights between them. A group is known by one of its nodes.
 class Contractor {
  public:
   // kTurned: the largest |sum| comes first, and of groups with a negative one the one that joins is turned. kKept: the largest sum over the
@@ -29,30 +30,23 @@ class Contractor {
   enum class Negative { kTurned, kKept };
 
   Contractor(std::size_t nodes, const std::vector<SignEdge>& edges, Negative negative)
-      : members_(nodes), sums_(nodes), turns_(negative == Negative::kTurned) {
+      : members_(nodes), others_(nodes), degree_(nodes, 0), sums_(edges.size()), turns_(negative == Negative::kTurned) {
     for (std::uint32_t i = 0; i < nodes; ++i) members_[i] = {i};
     for (const SignEdge& edge : edges) {
-      if (edge.a == edge.b) continue;
-      sums_[edge.a][edge.b] += edge.weight;
-      sums_[edge.b][edge.a] += edge.weight;
+      if (edge.a != edge.b) add(edge.a, edge.b, edge.weight);
     }
-    std::vector<Contraction> first;
-    for (std::uint32_t a = 0; a < nodes; ++a) {
-      for (const auto& [b, sum] : sums_[a]) {
-        if (a < b) first.push_back(waiting(a, b, sum));
-      }
-    }
-    waiting_ = std::priority_queue<Contraction>(std::less<Contraction>(), std::move(first));
+    first_.reserve(edges.size());
+    sums_.for_each([&](std::uint32_t a, std::uint32_t b, double sum) { first_.push_back(waiting(a, b, sum)); });
+    std::sort(first_.begin(), first_.end());
   }
 
-  // For every pair that becomes one: body(nodes of the group that is kept, of the one that joins it, sum of the weights between them).
+  // For every pair that becomes one, before it does: body(group that is kept, group that joins it, sum of the weights between them).
   template <class Body>
   void run(const Body& body) {
-    while (!waiting_.empty()) {
-      const Contraction next = waiting_.top();
-      waiting_.pop();
-      const auto found = sums_[next.a].find(next.b);
-      if (found == sums_[next.a].end() || found->second != next.sum) continue;  // the sum has changed since
+    while (!first_.empty() || !waiting_.empty()) {
+      const Contraction next = take();
+      const double* sum = sums_.find(next.a, next.b);
+      if (sum == nullptr || *sum != next.sum) continue;  // it has changed since
       const Contraction now = waiting(next.a, next.b, next.sum);
       if (now.rank == next.rank) {
         contract(next, body);
@@ -62,8 +56,8 @@ class Contractor {
     }
   }
 
-  // The nodes of every group that is left, under one of them; of the others: none.
-  [[nodiscard]] const std::vector<std::vector<std::uint32_t>>& members() const { return members_; }
+  // The nodes of a group; of one that has joined another: none.
+  [[nodiscard]] const std::vector<std::uint32_t>& members(std::uint32_t group) const { return members_[group]; }
 
  private:
   [[nodiscard]] Contraction waiting(std::uint32_t a, std::uint32_t b, double sum) const {
@@ -71,31 +65,60 @@ class Contractor {
     return {turns_ ? std::abs(sum) : sum / smaller, sum, std::min(a, b), std::max(a, b)};
   }
 
+  // The pair that comes next.
+  Contraction take() {
+    const bool is_first = waiting_.empty() || (!first_.empty() && waiting_.top() < first_.back());
+    const Contraction next = is_first ? first_.back() : waiting_.top();
+    is_first ? first_.pop_back() : waiting_.pop();
+    return next;
+  }
+
+  // Adds to the sum of two groups, and returns it.
+  double add(std::uint32_t a, std::uint32_t b, double weight) {
+    if (double* sum = sums_.find(a, b)) return *sum += weight;
+    sums_.add(a, b, weight);
+    for (const auto& [group, other] : {std::pair(a, b), std::pair(b, a)}) {
+      others_[group].push_back(other);
+      ++degree_[group];
+    }
+    return weight;
+  }
+
+  void remove(std::uint32_t a, std::uint32_t b) {
+    sums_.remove(a, b);
+    --degree_[a];
+    --degree_[b];
+  }
+
   // The group with fewer neighbours joins the other.
   template <class Body>
   void contract(const Contraction& pair, const Body& body) {
     std::uint32_t kept = pair.a;
     std::uint32_t joined = pair.b;
-    if (sums_[kept].size() < sums_[joined].size()) std::swap(kept, joined);
-    body(members_[kept], members_[joined], pair.sum);
+    if (degree_[kept] < degree_[joined]) std::swap(kept, joined);
+    body(kept, joined, pair.sum);
     const bool turned = turns_ && pair.sum < 0;
-    sums_[kept].erase(joined);
+    if (members_[kept].size() < members_[joined].size()) members_[kept].swap(members_[joined]);
     members_[kept].insert(members_[kept].end(), members_[joined].begin(), members_[joined].end());
     members_[joined] = {};
-    for (const auto& [other, sum] : sums_[joined]) {
-      if (other == kept) continue;
-      sums_[other].erase(joined);
-      const double together = sums_[kept][other] += turned ? -sum : sum;
-      sums_[other][kept] = together;
-      waiting_.push(waiting(kept, other, together));
+    remove(kept, joined);
+    for (const std::uint32_t other : others_[joined]) {
+      const double* between = members_[other].empty() ? nullptr : sums_.find(joined, other);
+      if (between == nullptr) continue;
+      const double sum = *between;
+      remove(joined, other);
+      waiting_.push(waiting(kept, other, add(kept, other, turned ? -sum : sum)));
     }
-    sums_[joined].clear();
+    others_[joined] = {};
   }
 
   std::vector<std::vector<std::uint32_t>> members_;
-  std::vector<std::unordered_map<std::uint32_t, double>> sums_;  // of the weights between two groups; of groups that have joined: none
+  std::vector<std::vector<std::uint32_t>> others_;  // groups with a sum; some have joined others since, and have none
+  std::vector<std::uint32_t> degree_;               // how many of them have one
+  PairSums sums_;  // of the weights between two groups; their number never grows, as those of a group that joins another become its sums
   bool turns_;
-  std::priority_queue<Contraction> waiting_;
+  std::vector<Contraction> first_;            // the pairs of the edges, the last comes first: most of all, and a heap of them is slow
+  std::priority_queue<Contraction> waiting_;  // those that came later
 };
 
 }  // namespace
@@ -103,11 +126,12 @@ class Contractor {
 Signs agree_on_signs(std::size_t nodes, const std::vector<SignEdge>& edges) {
   Signs out{std::vector<std::int8_t>(nodes, 1), std::vector<std::uint32_t>(nodes)};
   Contractor contractor(nodes, edges, Contractor::Negative::kTurned);
-  contractor.run([&](const std::vector<std::uint32_t>&, const std::vector<std::uint32_t>& joined, double sum) {
+  contractor.run([&](std::uint32_t, std::uint32_t joined, double sum) {
     if (sum >= 0) return;
-    for (const std::uint32_t i : joined) out.sign[i] = static_cast<std::int8_t>(-out.sign[i]);
+    for (const std::uint32_t i : contractor.members(joined)) out.sign[i] = static_cast<std::int8_t>(-out.sign[i]);
   });
-  for (const std::vector<std::uint32_t>& group : contractor.members()) {
+  for (std::uint32_t g = 0; g < nodes; ++g) {
+    const std::vector<std::uint32_t>& group = contractor.members(g);
     const std::uint32_t least = group.empty() ? 0 : *std::min_element(group.begin(), group.end());
     for (const std::uint32_t i : group) out.component[i] = least;
   }
@@ -115,7 +139,7 @@ Signs agree_on_signs(std::size_t nodes, const std::vector<SignEdge>& edges) {
 }
 
 std::vector<Hold> held_together(std::size_t nodes, const std::vector<SignEdge>& edges) {
-  std::vector<double> degree(nodes, 0);  // of the nodes of a group together, under its first node
+  std::vector<double> degree(nodes, 0);  // of the nodes of a group together
   std::vector<double> rim(nodes, 0);
   for (const SignEdge& edge : edges) {
     if (edge.a == edge.b) continue;
@@ -127,18 +151,18 @@ std::vector<Hold> held_together(std::size_t nodes, const std::vector<SignEdge>& 
   std::vector<Hold> hold(nodes);
   std::uint32_t groups = 0;
   Contractor contractor(nodes, edges, Contractor::Negative::kKept);
-  contractor.run([&](const std::vector<std::uint32_t>& kept, const std::vector<std::uint32_t>& joined, double sum) {
-    const std::vector<std::uint32_t>& smaller = kept.size() < joined.size() ? kept : joined;
-    const auto size = static_cast<double>(smaller.size());
-    const double node = degree[smaller.front()] / size;
-    const double holds = node > 0 ? std::clamp(rim[smaller.front()] / node, 0.0, std::sqrt(size)) : 0;
+  contractor.run([&](std::uint32_t kept, std::uint32_t joined, double sum) {
+    const std::uint32_t smaller = contractor.members(kept).size() < contractor.members(joined).size() ? kept : joined;
+    const auto size = static_cast<double>(contractor.members(smaller).size());
+    const double node = degree[smaller] / size;
+    const double holds = node > 0 ? std::clamp(rim[smaller] / node, 0.0, std::sqrt(size)) : 0;
     const auto chance = static_cast<float>(1 - (1 - holds / std::sqrt(size)) / (holds + 2));
     ++groups;
-    for (const std::uint32_t i : smaller) {
+    for (const std::uint32_t i : contractor.members(smaller)) {
       if (chance < hold[i].chance) hold[i] = {chance, groups};
     }
-    degree[kept.front()] += degree[joined.front()];
-    rim[kept.front()] += rim[joined.front()] - 2 * sum;
+    degree[kept] += degree[joined];
+    rim[kept] += rim[joined] - 2 * sum;
   });
   return hold;
 }
