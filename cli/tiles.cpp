@@ -101,6 +101,7 @@ Stats stats_of(const TileStatus& status, const Settings& settings) {
   stats.method = "energy";
   stats.converged = status.converged;
   stats.consistent = status.consistent;
+  stats.doubtful = status.doubtful;
   stats.open_share = status.open_share;
   stats.undecided_share = status.undecided_share;
   stats.planned_memory_bytes = status.worker_memory_bytes;

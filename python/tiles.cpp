@@ -19,7 +19,7 @@ using Text = std::string;
 // The members of TileStatus, in order.
 nb::tuple give_status(const TileStatus& s) {
   return nb::make_tuple(s.points, s.non_finite, s.tiles, s.done, s.coarse_points, s.largest_tile, s.work, s.worker_memory_bytes,
-                        s.disk_bytes, s.converged, s.consistent, s.open_share, s.undecided_share, s.warnings);
+                        s.disk_bytes, s.converged, s.consistent, s.doubtful, s.open_share, s.undecided_share, s.warnings);
 }
 
 nb::tuple plan(const std::vector<Text>& inputs, const Text& folder, const nb::dict& keywords, const nb::object& progress) {

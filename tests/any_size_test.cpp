@@ -5,6 +5,7 @@
 #include "temporary_folder.h"
 #include "tiles/external_sort.h"
 #include "tiles/manifest.h"
+#include "tiles/point_hash.h"
 #include "tiles/tile_cloud.h"
 
 #include <g3r/io.h>
@@ -73,6 +74,14 @@ TEST(PointStream, RefusesWhatReadCloudRefuses) {
     }
   }
   EXPECT_THROW((void)io::open_points(folder.file("none.ply")), IoError);
+}
+
+TEST(PointHash, IsThatOfThePlace) {
+  const Vec3 point{1, -2, 0.5};
+  EXPECT_EQ(tiles::point_hash({0.0, 1, 2}), tiles::point_hash({-0.0, 1, 2}));
+  EXPECT_EQ(tiles::point_hash({NAN, 1, 2}), tiles::point_hash({-NAN, 1, 2}));
+  EXPECT_NE(tiles::point_hash({1, 2, 3}), tiles::point_hash({2, 1, 3}));
+  EXPECT_NE(tiles::point_hash(tiles::point_hash(0, point), {}), tiles::point_hash(tiles::point_hash(0, {}), point));
 }
 
 TEST(ExternalSort, RunsGiveTheOrderOfOneSort) {
@@ -220,6 +229,27 @@ TEST_F(Tiles, APlanIsMadeOnceAndOnlyForItsInputs) {
   EXPECT_THROW((void)plan_tiles({folder_->file("in.ply")}, work, options), InvalidInput);
   write_points(folder_->file("other.ply"), shapes::sphere(kPoints).points);
   EXPECT_THROW((void)plan_tiles({folder_->file("other.ply")}, work, {}), InvalidInput);
+}
+
+// As many points in as many bytes, in another order: their normals would go to the wrong points.
+TEST_F(Tiles, OtherPointsInTheFileOfThePlanAreRefused) {
+  const TemporaryFolder folder;
+  const std::string in = folder.file("in.ply");
+  const std::string work = folder.file("work");
+  std::vector<Vec3> points = shapes::sphere(kPoints).points;
+  write_points(in, points);
+  TileOptions options;
+  options.tiles = kTiles;
+  (void)plan_tiles({in}, work, options);
+  (void)run_tiles(work);
+  std::reverse(points.begin(), points.end());
+  write_points(in, points);
+  EXPECT_THROW((void)plan_tiles({in}, work, options), InvalidInput);
+  EXPECT_THROW((void)merge_tiles(work, folder.file("out.ply")), InvalidInput);
+  EXPECT_FALSE(std::filesystem::exists(folder.file("out.ply")));
+  // What an earlier plan leaves is no result of the next one.
+  std::filesystem::remove(tiles::manifest_path(work));
+  EXPECT_EQ(plan_tiles({in}, work, options).done, 0U);
 }
 
 TEST_F(Tiles, DamagedFoldersAreRefused) {

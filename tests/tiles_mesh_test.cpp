@@ -304,6 +304,41 @@ TEST(SpacingSample, TellsTheSpacingOfCloudsOfAnySize) {
   }
 }
 
+TEST(SpacingSample, DependsOnThePlacesAlone) {
+  std::vector<Vec3> points = shapes::torus(200000, kRing, kTube, 4).points;  // more than it keeps
+  const auto spacing_of = [&] {
+    tiles::SpacingSample sample;
+    for (const Vec3& p : points) sample.add(p);
+    return sample.spacing();
+  };
+  const double spacing = spacing_of();
+  std::reverse(points.begin(), points.end());
+  points.insert(points.end(), points.begin(), points.begin() + 50000);
+  EXPECT_EQ(spacing_of(), spacing);
+}
+
+// Float coordinates so far from the origin that their steps are as large as triangles.
+TEST(TilesMeshFarAway, IsNotRounded) {
+  const TemporaryFolder folder;
+  const shapes::Surface s = shapes::torus(kPoints, kRing, kTube, 2);
+  Cloud cloud;
+  cloud.scalar = Scalar::kFloat32;
+  for (const Vec3& p : s.points) {
+    cloud.positions.push_back(
+        {static_cast<float>(20 * p[0] + 500000), static_cast<float>(20 * p[1] + 500000), static_cast<float>(20 * p[2])});
+  }
+  write_cloud(folder.file("in.ply"), cloud, nullptr, nullptr);
+  TileOptions options;
+  options.tiles = 2;
+  (void)plan_tiles({folder.file("in.ply")}, folder.file("work"), options);
+  write_normals(folder.file("work"), s.normals);
+  (void)mesh_tiles(folder.file("work"));
+  (void)merge_mesh(folder.file("work"), folder.file("out.ply"));
+  const Mesh mesh = read_mesh(folder.file("out.ply"));
+  const auto is_float = [](const Vec3& v) { return static_cast<float>(v[0]) == v[0] && static_cast<float>(v[1]) == v[1]; };
+  EXPECT_LT(std::count_if(mesh.vertices.begin(), mesh.vertices.end(), is_float), 0.01 * static_cast<double>(mesh.vertices.size()));
+}
+
 TEST_F(TilesMesh, RingsAreCellsAroundThePlacesOfATile) {
   const std::string work = folder_->file("work");
   const tiles::Manifest manifest = tiles::read_manifest(work);

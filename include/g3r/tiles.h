@@ -50,6 +50,7 @@ struct TileStatus {
   std::uint64_t disk_bytes = 0;           ///< planned, of the whole folder at its fullest
   bool converged = false;                 ///< of the thinned cloud, as in Stats; the sides follow it
   bool consistent = false;
+  bool doubtful = false;
   double open_share = 0;
   double undecided_share = 0;
   std::vector<std::string> warnings;

@@ -31,8 +31,9 @@ class Status(NamedTuple):
     disk_bytes: int
     """Planned, of the whole folder at its fullest."""
     converged: bool
-    """Of the thinned cloud, as in `Result.stats`; the sides follow it. So do the next three."""
+    """Of the thinned cloud, as in `Result.stats`; the sides follow it. So do the next four."""
     consistent: bool
+    doubtful: bool
     open_share: float
     undecided_share: float
     warnings: List[str]

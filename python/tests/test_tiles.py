@@ -46,7 +46,7 @@ def test_the_four_steps(whole, tmp_path):
     assert status.points == COUNT and status.non_finite == 0 and status.tiles == TILES and status.done == 0
     assert status.coarse_points < COUNT < status.largest_tile + status.coarse_points
     assert status.worker_memory_bytes > 0 and status.disk_bytes > 32 * COUNT and status.work > 1
-    assert status.converged and status.consistent and status.warnings == []
+    assert status.converged and status.consistent and not status.doubtful and status.warnings == []
     assert seen and all(0 <= f <= 1 for _, f in seen)
     with pytest.raises(g3r.InputError, match="2 of 2 tiles are not done"):
         g3r.tiles.merge(tmp_path / "work", tmp_path / "out.ply")

@@ -14,13 +14,15 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
+#include <string_view>
 #include <system_error>
 
 namespace g3r::tiles {
 namespace {
 
 constexpr const char* kSchema = "g3r.tiles";
-constexpr int kVersion = 4;
+constexpr int kVersion = 5;
 constexpr std::uint64_t kFewestThinned = 1000;                  // points of the thinnest file: fewer would save nothing
 constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 48U;  // sizes of files are numbers below; the manifest may be damaged
 
@@ -33,25 +35,51 @@ std::uint64_t size_of_file(const std::string& path) {
 }
 
 [[noreturn]] void fail(const std::string& folder, const std::string& what) {
-  throw InvalidInput(escape_text(manifest_path(folder)) + ": " + what + "; make the plan anew in another folder");
+  throw InvalidInput(escape_text(manifest_path(folder)) + ": " + what + "; remove the folder, and make the plan anew");
 }
 
-// Whether a file of a work folder has a name that a plan, its workers or a part of a sort gives.
+// Whether a file has a name that a plan, its workers or a part of a sort gives.
 bool is_of_plan(const std::string& name) {
-  const auto begins = [&](const char* with) { return name.rfind(with, 0) == 0; };
-  const bool ends = name.size() > 4 && name.compare(name.size() - 4, 4, ".bin") == 0;
-  const bool numbered = begins("points-") || begins("tile-") || begins("run-") || begins("mesh-");
-  return name == "manifest.json" || name == "cells.bin" || name == "coarse.bin" || name == "mesh.json" || (numbered && ends);
+  constexpr std::string_view kEnd = ".bin";
+  constexpr std::string_view kSingle[] = {"manifest.json", "mesh.json", "cells.bin", "coarse.bin"};
+  constexpr std::string_view kNumbered[] = {"points-",   "tile-",         "run-",          "mesh-points-",
+                                            "mesh-far-", "mesh-corners-", "mesh-patches-", "mesh-parts-"};
+  if (std::find(std::begin(kSingle), std::end(kSingle), name) != std::end(kSingle)) return true;
+  return std::any_of(std::begin(kNumbered), std::end(kNumbered), [&](std::string_view begin) {
+    if (!name.starts_with(begin) || !name.ends_with(kEnd) || name.size() <= begin.size() + kEnd.size()) return false;
+    return name.find_first_not_of("0123456789", begin.size()) == name.size() - kEnd.size();
+  });
+}
+
+// Of the first file that cannot be removed; the others are gone.
+std::error_code remove_files(const std::string& folder, std::string& name) {
+  std::error_code first;
+  const auto remove = [&](const std::filesystem::path& path) {
+    std::error_code error;
+    std::filesystem::remove(path, error);
+    if (!error || first) return;
+    first = error;
+    name = platform::name_of(path);
+  };
+  remove(platform::path_of(manifest_path(folder)));
+  if (first) return first;
+  std::error_code ignored;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(platform::path_of(folder), ignored)) {
+    if (is_of_plan(platform::name_of(entry.path().filename()))) files.push_back(entry.path());
+  }
+  for (const std::filesystem::path& file : files) remove(file);
+  return first;
 }
 
 Manifest parsed(const json& from) {
   Manifest m;
   from.at("asked").get_to(m.asked);
   for (const json& input : from.at("inputs"))
-    m.inputs.push_back({input.at("path"), whole_number(input.at("bytes")), whole_number(input.at("points"))});
+    m.inputs.push_back(
+        {input.at("path"), whole_number(input.at("bytes")), whole_number(input.at("points")), whole_number(input.at("hash"))});
   m.points = whole_number(from.at("points"));
   m.non_finite = whole_number(from.at("non_finite"));
-  from.at("single_precision").get_to(m.single_precision);
   from.at("low").get_to(m.bounds.low);
   from.at("high").get_to(m.bounds.high);
   from.at("centre").get_to(m.frame.centre);
@@ -66,6 +94,7 @@ Manifest parsed(const json& from) {
   m.disk = whole_number(from.at("disk_bytes"));
   from.at("converged").get_to(m.converged);
   from.at("consistent").get_to(m.consistent);
+  from.at("doubtful").get_to(m.doubtful);
   from.at("open_share").get_to(m.open_share);
   from.at("undecided_share").get_to(m.undecided_share);
   from.at("warnings").get_to(m.warnings);
@@ -134,11 +163,16 @@ void require_no_input(const Manifest& manifest, const std::string& output) {
   }
 }
 
-void remove_plan(const std::string& folder) {
-  std::error_code ignored;  // a folder that cannot be removed does no harm
-  for (const auto& entry : std::filesystem::directory_iterator(platform::path_of(folder), ignored)) {
-    if (is_of_plan(platform::name_of(entry.path().filename()))) std::filesystem::remove(entry.path(), ignored);
+void clear_folder(const std::string& folder) {
+  std::string name;
+  if (const std::error_code error = remove_files(folder, name)) {
+    throw IoError(IoError::Kind::kCannotCreate, "cannot remove " + escape_text(name) + ", of an earlier plan: " + error.message());
   }
+}
+
+void remove_plan(const std::string& folder) {
+  std::string name;
+  std::error_code ignored = remove_files(folder, name);         // a folder that cannot be removed does no harm
   std::filesystem::remove(platform::path_of(folder), ignored);  // nothing happens where files of others are in it
 }
 
@@ -163,7 +197,6 @@ void write_manifest(const std::string& folder, const Manifest& m) {
               {"asked", m.asked},
               {"points", m.points},
               {"non_finite", m.non_finite},
-              {"single_precision", m.single_precision},
               {"low", m.bounds.low},
               {"high", m.bounds.high},
               {"centre", m.frame.centre},
@@ -176,12 +209,14 @@ void write_manifest(const std::string& folder, const Manifest& m) {
               {"disk_bytes", m.disk},
               {"converged", m.converged},
               {"consistent", m.consistent},
+              {"doubtful", m.doubtful},
               {"open_share", m.open_share},
               {"undecided_share", m.undecided_share},
               {"warnings", m.warnings},
               {"inputs", json::array()},
               {"tiles", json::array()}};
-  for (const Input& input : m.inputs) out["inputs"].push_back({{"path", input.path}, {"bytes", input.bytes}, {"points", input.points}});
+  for (const Input& input : m.inputs)
+    out["inputs"].push_back({{"path", input.path}, {"bytes", input.bytes}, {"points", input.points}, {"hash", input.hash}});
   for (const Tile& tile : m.tiles) out["tiles"].push_back(json::array({tile.first_cell, tile.last_cell, tile.own, tile.solved}));
   io::OutputFile file(manifest_path(folder));
   file.write(out.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
@@ -258,6 +293,7 @@ TileStatus status_of(const std::string& folder, const Manifest& manifest) {
   status.disk_bytes = manifest.disk;
   status.converged = manifest.converged;
   status.consistent = manifest.consistent;
+  status.doubtful = manifest.doubtful;
   status.open_share = manifest.open_share;
   status.undecided_share = manifest.undecided_share;
   status.warnings = manifest.warnings;

@@ -21,6 +21,7 @@ struct Input {
   std::string path;
   std::uint64_t bytes = 0;
   std::uint64_t points = 0;
+  std::uint64_t hash = 0;  ///< of its points in their order: point_hash()
   bool operator==(const Input&) const = default;
 };
 
@@ -38,8 +39,7 @@ struct Manifest {
   std::vector<Input> inputs;
   std::uint64_t points = 0;      ///< of all inputs
   std::uint64_t non_finite = 0;  ///< of them
-  bool single_precision = false;
-  Box bounds;  ///< of the finite points
+  Box bounds;                    ///< of the finite points
   Frame frame;
   int level = 0;             ///< of the cells
   std::uint64_t stride = 1;  ///< every stride-th point is in the thinned cloud
@@ -48,8 +48,9 @@ struct Manifest {
   std::uint64_t limit = 0;  ///< bytes that a worker may take
   std::uint64_t worker_memory = 0;
   std::uint64_t disk = 0;
-  bool converged = false;  ///< of the thinned cloud, as the next three
+  bool converged = false;  ///< of the thinned cloud, as the next four
   bool consistent = false;
+  bool doubtful = false;
   double open_share = 0;
   double undecided_share = 0;
   std::vector<std::string> warnings;
@@ -84,7 +85,10 @@ void require_worker(const TileWorker& worker);
 /// Throws IoError where the output is an input of the plan, which would be gone before it was read.
 void require_no_input(const Manifest& manifest, const std::string& output);
 
-/// Removes the files of a plan and its tiles, and the folder if there is nothing else in it.
+/// Removes what plans, their tiles and meshes leave, so that a new plan takes none of it for its own. Other files stay. manifest.json goes
+/// first, so that the rest is no plan wherever this ends. Throws IoError.
+void clear_folder(const std::string& folder);
+/// The same, and the folder if there is nothing else in it. Does what can be done, and throws nothing.
 void remove_plan(const std::string& folder);
 
 /// Tiles of nearly equal numbers of points, cut between cells.

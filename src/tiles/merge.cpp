@@ -3,6 +3,7 @@
 #include "base/stages.h"
 #include "io/point_stream.h"
 #include "tiles/manifest.h"
+#include "tiles/point_hash.h"
 #include "tiles/point_writer.h"
 #include "tiles/records.h"
 
@@ -82,9 +83,9 @@ void require_done(const std::string& folder, const Manifest& m) {
                      " tiles are not done (" + missing + (count > 10 ? ", ..." : "") + "); g3r tiles run FOLDER does them");
 }
 
-void require_unchanged(const Input& input, bool right_count) {
+void require_unchanged(const Input& input, bool same_points) {
   std::error_code ignored;
-  if (std::filesystem::file_size(platform::path_of(input.path), ignored) == input.bytes && right_count) return;
+  if (std::filesystem::file_size(platform::path_of(input.path), ignored) == input.bytes && same_points) return;
   throw InvalidInput(escape_text(input.path) + ": not the file that the plan was made of; make the plan anew");
 }
 
@@ -107,9 +108,11 @@ MergedTiles merge(const std::string& folder, const Manifest& m, const std::strin
     const std::size_t block = PointWriter::block(*stream);
     writer.begin(*stream);
     std::uint64_t read = 0;
+    std::uint64_t hash = 0;
     for (stream->next(block, points, &records); !points.empty(); stream->next(block, points, &records)) {
       read += points.size();
       require_unchanged(input, read <= input.points);
+      for (const Vec3& p : points) hash = point_hash(hash, p);
       normals.assign(points.size(), Vec3{});
       confidence.assign(points.size(), 0);
       for (Cursor& cursor : cursors) {
@@ -126,7 +129,7 @@ MergedTiles merge(const std::string& folder, const Manifest& m, const std::strin
       begin += points.size();
       stages.progress(static_cast<double>(begin) / static_cast<double>(m.points));
     }
-    require_unchanged(input, read == input.points);
+    require_unchanged(input, read == input.points && hash == input.hash);
     writer.end(*stream);
   }
   writer.commit();

@@ -120,10 +120,9 @@ class KeptSurface {
 };
 
 std::string ply_header(const MeshFolder& folder, const Numbers& numbers) {
-  const std::string type = folder.manifest.single_precision ? "float" : "double";
   std::string text = "ply\nformat binary_little_endian 1.0\ncomment g3r " + std::string(version()) + ", " + std::to_string(folder.tiles()) +
                      " tiles\nelement vertex " + std::to_string(numbers.all_vertices) + "\n";
-  for (const char* axis : {"x", "y", "z"}) text += "property " + type + " " + axis + "\n";
+  for (const char* axis : {"x", "y", "z"}) text += std::string("property double ") + axis + "\n";
   return text + "element face " + std::to_string(numbers.triangles) + "\nproperty list uchar int vertex_indices\nend_header\n";
 }
 
@@ -131,12 +130,7 @@ void append_vertex(const MeshFolder& folder, const Vec3& unit, std::string& byte
   const Frame& frame = folder.manifest.frame;
   for (std::size_t a = 0; a < 3; ++a) {
     const double c = unit[a] / frame.scale + frame.centre[a];
-    const auto rounded = static_cast<float>(c);
-    if (folder.manifest.single_precision) {
-      bytes.append(reinterpret_cast<const char*>(&rounded), sizeof rounded);
-    } else {
-      bytes.append(reinterpret_cast<const char*>(&c), sizeof c);
-    }
+    bytes.append(reinterpret_cast<const char*>(&c), sizeof c);
   }
 }
 

@@ -16,6 +16,7 @@
 #include "tiles/external_sort.h"
 #include "tiles/fewest_tiles.h"
 #include "tiles/manifest.h"
+#include "tiles/point_hash.h"
 #include "tiles/records.h"
 #include "tiles/spacing_sample.h"
 #include "tiles/tile_cloud.h"
@@ -93,6 +94,15 @@ std::string asked_of(const TileOptions& options) {
   return text.str();
 }
 
+// point_hash() of the points of each file.
+std::vector<std::uint64_t> hashes_of(const std::vector<std::string>& files, int threads, Stages& stages) {
+  std::vector<std::uint64_t> hashes(files.size());
+  for_all_points(
+      files, {.threads = threads, .cancel = stages.cancel()}, [](std::size_t, const io::PointStream&) {},
+      [&](double share) { stages.progress(share); }, [&](std::size_t file, const Vec3& p) { hashes[file] = point_hash(hashes[file], p); });
+  return hashes;
+}
+
 // The points fill the frame as far as may be with cells of the mesh, halves of halves of the frame, of the size that they have in core.
 double scale_for(double longest_side, double spacing) {
   const double scale = kLongestSide / longest_side;
@@ -105,10 +115,9 @@ Manifest survey(const std::vector<std::string>& files, const TileOptions& option
   stages.begin("read");
   Manifest m;
   m.asked = asked_of(options);
-  m.single_precision = true;
   for (const std::string& file : files) {
     std::error_code ignored;  // of a file that is gone again; reading it says so
-    m.inputs.push_back({file, std::filesystem::file_size(platform::path_of(file), ignored), 0});
+    m.inputs.push_back({file, std::filesystem::file_size(platform::path_of(file), ignored)});
   }
   std::vector<std::uint64_t> non_finite(files.size());
   SpacingSample sample;
@@ -116,7 +125,6 @@ Manifest survey(const std::vector<std::string>& files, const TileOptions& option
   Vec3 high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
   std::size_t more_warnings = 0;
   const auto begin = [&](std::size_t file, const io::PointStream& stream) {
-    m.single_precision = stream.scalar() == Scalar::kFloat32 && m.single_precision;
     for (const std::string& warning : stream.warnings()) {
       if (m.warnings.size() < kMostWarnings) {
         m.warnings.push_back(escape_text(files[file]) + ": " + escape_text(warning));
@@ -130,6 +138,7 @@ Manifest survey(const std::vector<std::string>& files, const TileOptions& option
       [&](std::size_t file, const Vec3& p) {
         ++m.points;
         ++m.inputs[file].points;
+        m.inputs[file].hash = point_hash(m.inputs[file].hash, p);
         if (!vector::is_finite(p)) {
           ++m.non_finite;
           ++non_finite[file];
@@ -213,14 +222,18 @@ Cells sort_points(const std::vector<std::string>& files, const std::string& fold
   stages.begin("sort");
   ExternalSort sort(folder, m.frame, limit / 4, stages.cancel());
   std::uint64_t index = 0;
+  std::vector<std::uint64_t> hashes(files.size());
   for_all_points(
       files, {.threads = threads, .cancel = stages.cancel()}, [](std::size_t, const io::PointStream&) {},
       [&](double share) { stages.progress(share / 2); },
-      [&](std::size_t, const Vec3& p) {
+      [&](std::size_t file, const Vec3& p) {
+        hashes[file] = point_hash(hashes[file], p);
         if (vector::is_finite(p)) sort.add({p, index});
         ++index;
       });
-  if (index != m.points) throw InvalidInput("the inputs have changed while they were read: " + std::to_string(index) + " points now");
+  for (std::size_t f = 0; f < files.size(); ++f) {
+    if (hashes[f] != m.inputs[f].hash) throw InvalidInput(escape_text(files[f]) + ": has changed while it was read; make the plan again");
+  }
   std::vector<std::unique_ptr<io::OutputFile>> outputs;
   const std::vector<std::uint64_t> all_strides = strides(m.stride, m.sorted());
   for (const std::uint64_t stride : all_strides)
@@ -286,6 +299,7 @@ void solve_coarse(const std::string& folder, const TileOptions& options, Manifes
   out.commit();
   m.converged = coarse.stats.converged;
   m.consistent = coarse.stats.consistent;
+  m.doubtful = coarse.stats.doubtful;
   m.open_share = coarse.stats.open_share;
   m.undecided_share = coarse.stats.undecided_share;
   for (const std::string& warning : coarse.stats.warnings) m.warnings.push_back("thinned cloud: " + warning);
@@ -305,6 +319,7 @@ TileStatus make_plan(const std::vector<std::string>& files, const std::string& f
   m.stride = choose_stride(m.sorted(), limit);
   m.coarse_points = (m.sorted() + m.stride - 1) / m.stride;
   make_folder(folder);
+  clear_folder(folder);
   {
     const Cells cells = sort_points(files, folder, limit, options.threads, m, stages);
     choose_tiles(cells, options, limit, m);
@@ -315,6 +330,25 @@ TileStatus make_plan(const std::vector<std::string>& files, const std::string& f
   solve_coarse(folder, options, m, monitor);
   write_manifest(folder, m);
   return status_of(folder, m);
+}
+
+// The plan in the folder is of these options and files, and these of the points that they had.
+void require_same(const std::string& folder, const Manifest& there, const std::vector<std::string>& files, const TileOptions& options,
+                  const Monitor& monitor) {
+  bool same = there.asked == asked_of(options) && there.inputs.size() == files.size();
+  for (std::size_t f = 0; same && f < files.size(); ++f) {
+    std::error_code ignored;
+    same = there.inputs[f].path == files[f] && there.inputs[f].bytes == std::filesystem::file_size(platform::path_of(files[f]), ignored);
+  }
+  if (!same) throw InvalidInput(escape_text(folder) + ": holds the plan of other files or options; take another folder, or remove it");
+  Stages stages(monitor);
+  stages.begin("read");
+  const std::vector<std::uint64_t> hashes = hashes_of(files, options.threads, stages);
+  for (std::size_t f = 0; f < files.size(); ++f) {
+    if (hashes[f] == there.inputs[f].hash) continue;
+    throw InvalidInput(escape_text(files[f]) + ": its points are others than those of the plan in " + escape_text(folder) +
+                       "; take another folder, or remove it");
+  }
 }
 
 }  // namespace
@@ -328,12 +362,7 @@ TileStatus plan_tiles(const std::vector<std::string>& inputs, const std::string&
   const std::vector<std::string> files = tiles::files_of(inputs);
   if (tiles::has_manifest(folder)) {
     const tiles::Manifest there = tiles::read_manifest(folder);
-    bool same = there.asked == tiles::asked_of(options) && there.inputs.size() == files.size();
-    for (std::size_t f = 0; same && f < files.size(); ++f) {
-      std::error_code ignored;
-      same = there.inputs[f].path == files[f] && there.inputs[f].bytes == std::filesystem::file_size(platform::path_of(files[f]), ignored);
-    }
-    if (!same) throw InvalidInput(escape_text(folder) + ": holds the plan of other files or options; take another folder, or remove it");
+    tiles::require_same(folder, there, files, options, monitor);
     return tiles::status_of(folder, there);
   }
   return parallel::with_threads(options.threads, [&] { return tiles::make_plan(files, folder, options, monitor); });

@@ -1,11 +1,11 @@
 #include "tiles/spacing_sample.h"
 
-#include "base/hash.h"
 #include "base/median.h"
 #include "mesh/smooth_spacing.h"
+#include "tiles/point_hash.h"
 
-#include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace g3r::tiles {
 namespace {
@@ -16,13 +16,13 @@ constexpr std::size_t kFewest = 100;                  // that tell a spacing
 }  // namespace
 
 void SpacingSample::add(const Vec3& point) {
-  const auto stays = [this](std::uint64_t h) { return halvings_ == 0 || h >> (64U - static_cast<unsigned>(halvings_)) == 0; };
-  const std::uint64_t h = mixed(count_++);
-  if (!stays(h)) return;
-  kept_.emplace_back(h, point);
+  const std::uint64_t hash = point_hash(point);
+  if (hash > last_) return;
+  kept_.emplace(hash, point);
   if (kept_.size() <= kMost) return;
   ++halvings_;
-  std::erase_if(kept_, [&](const auto& kept) { return !stays(kept.first); });
+  last_ /= 2;
+  kept_.erase(kept_.upper_bound(last_), kept_.end());
 }
 
 double SpacingSample::spacing() const {
@@ -30,7 +30,7 @@ double SpacingSample::spacing() const {
   std::vector<Vec3> points;
   points.reserve(kept_.size());
   for (const auto& kept : kept_) points.push_back(kept.second);
-  return median(mesh::smooth_spacing(points)) * std::sqrt(static_cast<double>(kept_.size()) / static_cast<double>(count_));
+  return median(mesh::smooth_spacing(points)) * std::exp2(-0.5 * halvings_);
 }
 
 }  // namespace g3r::tiles
