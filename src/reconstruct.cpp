@@ -38,7 +38,7 @@ namespace {
 
 // The depth of screened Poisson in the paper preset, which is that of the comparisons in docs/evidence/meshes.md.
 constexpr int kPaperDepth = 10;
-// The bounds of coordinates and extents within which areas, volumes and their products are finite and greater than 0.
+// Limits of double: the bounds of coordinates and extents within which areas, volumes and their products are finite and greater than 0.
 constexpr double kLargestCoordinate = 1e50;
 constexpr double kLeastExtent = 1e-140;
 

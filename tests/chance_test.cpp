@@ -1,9 +1,14 @@
 // What chance puts on a slab: exact sums, also where the smallest of their terms are too small for a number.
 #include "cloud/chance.h"
 
+#include "cloud/constants.h"
+#include "cloud/exact_plane.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
+#include <numbers>
 
 namespace g3r {
 namespace {
@@ -34,6 +39,25 @@ TEST(ProvingNumber, IsFarAboveTheMeanOfManyPoints) {
   EXPECT_GE(proves, 16U);
   EXPECT_LE(proves, 19U);
   EXPECT_EQ(proving_number(3, 0.9, 1000), 4U);  // not even all do
+}
+
+// As many as determine the planes of a bend prove one of exact points, however many are looked at, and 4 a plane along a line of sight:
+// what find_exact_plane() and find_viewpoint() go by.
+TEST(ProvingNumber, OfExactPointsIsThatOfABend) {
+  const double by_chance = share_of_ball(kExactScatter / std::sqrt(kPlaneNeighbours / std::numbers::pi));
+  constexpr double kPairs = (kPatchNeighbours - 1) * (kPatchNeighbours - 2) / 2.0;
+  for (std::size_t n = kPlaneTerms; n <= kPlaneNeighbours; ++n) {
+    EXPECT_LE(proving_number(n - kPlaneTerms, by_chance, kPairs) + kPlaneTerms, kQuadraticTerms) << n;
+    if (n > kPlaneTerms) {
+      EXPECT_EQ(proving_number(n - 2, kExactScatter, kPlaneNeighbours), 2U) << n;
+    }
+  }
+}
+
+TEST(IsMajority, IsMoreThanHalf) {
+  EXPECT_FALSE(is_majority(5, 10));
+  EXPECT_TRUE(is_majority(6, 10));
+  EXPECT_FALSE(is_majority(0, 0));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "cloud/canonical_cloud.h"
 
 #include "base/vector.h"
+#include "cloud/constants.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
 
@@ -250,7 +251,7 @@ bool refit_frame(CanonicalCloud& cloud, std::vector<Vec3>& others) {
   const Bounds bounds = bounds_of(cloud.points());
   double side = 0;
   for (std::size_t a = 0; a < 3; ++a) side = std::max(side, bounds.high[a] - bounds.low[a]);
-  if (side >= kBoxSide / 2) return false;
+  if (side >= kClearlyLess * kBoxSide) return false;
   const Frame inner = frame_of(bounds);
   for (std::size_t a = 0; a < 3; ++a) cloud.frame.centre[a] += inner.centre[a] / cloud.frame.scale;
   cloud.frame.scale *= inner.scale;

@@ -11,6 +11,9 @@ namespace g3r {
 /// surfaces.
 inline constexpr double kFalseAlarms = 0.02;
 
+/// Whether these are more than half of all, numbers or shares: only one thing can be so of most.
+[[nodiscard]] inline bool is_majority(double some, double all) { return 2 * some > all; }
+
 /// Share of a ball that is no farther from a plane through its centre than `height` of its radii.
 [[nodiscard]] double share_of_ball(double height);
 

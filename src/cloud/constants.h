@@ -5,6 +5,8 @@
 
 namespace g3r {
 
+/// Of a size, up to which another one is clearly less: neither chance nor shape halves what should be as large.
+inline constexpr double kClearlyLess = 0.5;
 /// Points of less breadth (middle principal spread over the largest) lie along a line: it has planes all around, and any slope across it
 /// fits.
 inline constexpr double kLineBreadth = 0.15;
@@ -15,6 +17,13 @@ inline constexpr double kSamePatch = 0.9;
 inline constexpr double kSameSide = 0.5;
 /// Standard deviations from a surface within which its points lie, all but one in 80: fewer leave some out, more let in others.
 inline constexpr double kSigmas = 2.5;
+/// Standard deviations from one side of a noisy layer to the other.
+inline constexpr double kNoiseBreadth = 2 * kSigmas;
+/// From one scale to the next, of spacings, scatter and the widths that go with them.
+inline constexpr double kLevelRatio = 2;
+/// Scales, each kLevelRatio times as coarse as the one before, on which a surface is looked at: on fewer, noise, gaps between lines and
+/// strays hide it, on more it bends.
+inline constexpr std::size_t kScales = 3;
 /// On the squares of the unknowns of a fit, relative: points on a line leave some of them open. Above rounding, and far below what moves a
 /// fit.
 inline constexpr double kRidge = 1e-9;
@@ -24,12 +33,18 @@ inline constexpr std::size_t kPlaces = 2000;
 inline constexpr std::size_t kFewPlaces = 500;
 /// Nearest points that say what a surface is like at a place: fewer follow the noise or the sampling, more reach across walls.
 inline constexpr std::size_t kPatchNeighbours = 12;
+/// As many of each where they may be of two surfaces.
+inline constexpr std::size_t kTwoPatches = 2 * kPatchNeighbours;
 /// A neighbourhood is no larger part of a cloud than one in so many points: larger ones follow its shape.
 inline constexpr std::size_t kSmallPart = 16;
+/// Points of a cloud, at least, for neighbourhoods to be small parts of it: of fewer nothing is said about noise, dimension and sensors.
+inline constexpr std::size_t kFewestSurfacePoints = kSmallPart * kPatchNeighbours;
 /// So many times as many points of a surface reach twice as far.
 inline constexpr std::size_t kTwiceAsFar = 4;
 /// Reach in spacings of Gaussian weights over near points: without them CAD models have up to 1.13 times the error.
 inline constexpr double kWeightReach = 1.5;
+/// Points for every number of a fit to noisy points, at least: of fewer it follows the noise.
+inline constexpr std::size_t kPerTerm = 2;
 /// Monomials of u and v up to a degree: the numbers of a height field.
 constexpr std::size_t terms_of(std::size_t degree) { return (degree + 1) * (degree + 2) / 2; }
 /// Numbers of a plane.

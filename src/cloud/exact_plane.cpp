@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kSeeds = kPatchNeighbours - 1;         // nearest others that candidates pass through
 constexpr double kCandidates = kSeeds * (kSeeds - 1) / 2.0;  // pairs of them
-constexpr int kFewest = kQuadraticTerms;                     // points on a plane: fewer are on a bend, too
+constexpr int kFewest = kQuadraticTerms;                     // points on a plane: fewer are on a bend, too; so many of exact ones prove it
 
 // The nearest points of one, relative to it, itself first, in spacings.
 struct Around {
@@ -64,9 +64,6 @@ int proof(std::size_t count, double within) {
   const std::size_t others = count < 3 ? 0 : count - 3;
   return std::max(static_cast<int>(proving_number(others, share_by_chance(within), kCandidates)) + 3, kFewest);
 }
-
-// Whether so many are more than half: what needs them proves nothing, for another plane may hold as many.
-bool is_most(int some, std::size_t count) { return 2 * static_cast<std::size_t>(some) > count; }
 
 // The candidate that holds most points to within a distance.
 Candidate best_plane(const Around& around, const Vec3* towards, double within) {
@@ -124,7 +121,7 @@ Held fit_to_held(const std::vector<Vec3>& points, const std::vector<std::uint32_
 ExactPlane find_exact_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing, const Vec3* towards) {
   const Around around = around_first(points, index, spacing);
   const Candidate best = best_plane(around, towards, kExactScatter);
-  if (best.held < proof(around.count, kExactScatter)) return {};
+  if (best.held < kFewest) return {};
   const Held held = fit_to_held(points, index, around, best.normal, {0, 0, 0}, kExactScatter);
   return held.fit.breadth < kLineBreadth ? ExactPlane{} : held.plane();
 }
@@ -141,7 +138,7 @@ ExactPlane find_scattered_plane(const std::vector<Vec3>& points, const std::vect
   const Around around = around_first(points, index, spacing);
   const double within = kSigmas * scatter / spacing;
   const int needed = proof(around.count, within);
-  if (is_most(needed, around.count)) return {};
+  if (is_majority(needed, static_cast<double>(around.count))) return {};  // another plane may hold as many
   const Candidate best = best_plane(around, &towards, within);
   if (best.held < needed) return {};
   Held held;
@@ -159,10 +156,10 @@ LikeliestPlane find_likeliest_plane(const std::vector<Vec3>& points, const std::
   const Around around = around_first(points, index, spacing);
   LikeliestPlane found;
   double least = 1;
-  for (double scatter = kExactScatter;; scatter *= 2) {
+  for (double scatter = kExactScatter;; scatter *= kLevelRatio) {
     const double within = kSigmas * scatter;
     const int needed = proof(around.count, within);
-    if (is_most(needed, around.count)) break;
+    if (is_majority(needed, static_cast<double>(around.count))) break;
     const Candidate best = best_plane(around, nullptr, within);
     if (best.held < needed) continue;
     const double chance = chances_of_as_many(around.count - 3, share_by_chance(within))[static_cast<std::size_t>(best.held - 3)];

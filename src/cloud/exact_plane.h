@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cloud/constants.h"
+#include "cloud/spacing.h"
 
 #include <g3r/points.h>
 
@@ -11,8 +12,9 @@
 
 namespace g3r {
 
-/// Nearest points that a search for a plane looks at: the point itself, first, and 32 others.
-inline constexpr std::size_t kPlaneNeighbours = 33;
+/// Nearest points that a search for a plane looks at: the point itself, first, and 32 others, which reach twice as far as those that say
+/// how far apart points are.
+inline constexpr std::size_t kPlaneNeighbours = kTwiceAsFar * kClosest + 1;
 
 /// Points of a CAD model lie on its facets to rounding, and more of them on one plane than chance would put there prove it, however narrow
 /// the facet and however close the wall behind it.

@@ -26,8 +26,6 @@ namespace {
 constexpr double kFlattest = 0.02;
 // Quantile that shape lifts more than the flattest, and that of the layers that decides.
 constexpr double kFlat = 0.1;
-// Of the scatter that noise would leave in the flattest, or rounding in most neighbourhoods: less is shape, and noise leaves 0.56 or more.
-constexpr double kOfNoise = 0.5;
 // In spacings, of noise: less blurs nothing, and curvature leaves as much.
 constexpr double kLeast = 0.04;
 // In spacings, what height fields through kPatchNeighbours say where noise fills their balls.
@@ -149,8 +147,8 @@ bool on_exact_planes(const PointSet& set) {
 double scattered_noise(const PointSet& set, const Residuals& residuals) {
   const double spacing = set.spacing();
   const double flattest = residuals.scatter(kFlattest);
-  // Shape lifts the residuals of fewer points less, noise as much.
-  if (flattest < kLeast * spacing || Residuals(set, kClosest).scatter(kFlattest) < kOfNoise * residuals.scatter(kFlat)) return 0;
+  // Shape lifts the residuals of fewer points less, to at most 0.48 of the others, noise as much, to at least 0.56.
+  if (flattest < kLeast * spacing || Residuals(set, kClosest).scatter(kFlattest) < kClearlyLess * residuals.scatter(kFlat)) return 0;
   const double filled = flattest / (kSaturation * spacing);
   if (on_exact_planes(set)) return 0;
   const double layered = layered_noise(set);
@@ -212,32 +210,32 @@ double rounding_noise(const PointSet& set) {
   std::vector<Vec3> cubes;
   for (const Vec3& p : set.points()) cubes.push_back({p[0] / steps[0], p[1] / steps[1], p[2] / steps[2]});
   const double scatter = Residuals(PointSet(std::move(cubes)), kPatchNeighbours).scatter(0.5);
-  return scatter > kOfNoise * std::sqrt(kRoundingVariance) ? sigma : 0;
+  return scatter > kClearlyLess * std::sqrt(kRoundingVariance) ? sigma : 0;
 }
 
 double estimate_noise(const PointSet& set) {
-  if (set.size() < kSmallPart * kPatchNeighbours) return 0;
+  if (set.size() < kFewestSurfacePoints) return 0;
   const Residuals residuals(set, kPatchNeighbours);
   return std::max(scattered_noise(set, residuals), rounding_noise(set));
 }
 
 double largest_scatter(const PointSet& set) {
   const double spacing = set.spacing();
-  if (set.size() < kSmallPart * kPatchNeighbours || on_exact_planes(set)) return 0;
+  if (set.size() < kFewestSurfacePoints || on_exact_planes(set)) return 0;
   const double x = Residuals(set, kPatchNeighbours).scatter(kMostScattered);
   const double filled = std::min(x / (kSaturation * spacing), kMostFilled);
   return x / std::sqrt(1 - filled * filled * filled * filled);
 }
 
 double facet_scatter(const PointSet& set) {
-  if (set.size() < kSmallPart * kPatchNeighbours) return 0;
+  if (set.size() < kFewestSurfacePoints) return 0;
   const double spacing = set.spacing();
   const std::vector<double> scatters = at_some(set, kFewPlaces, kPlaneNeighbours, [&](const Vec3&, const auto& index, const auto&) {
     const LikeliestPlane found = find_likeliest_plane(set.points(), index, spacing);
     if (found.scatter == 0 || is_along_sight(set, index.front(), found.plane.normal)) return 0.0;
     return goes_on(set, found.plane, found.scatter * spacing) ? found.scatter : 0.0;
   });
-  std::map<double, std::size_t> counts;  // in steps of 2
+  std::map<double, std::size_t> counts;  // in steps of kLevelRatio
   for (const double s : scatters) {
     if (s > 0) ++counts[s];
   }
@@ -245,7 +243,7 @@ double facet_scatter(const PointSet& set) {
   double scatter = 0;
   for (auto step = counts.begin(); step != counts.end(); ++step) {
     const auto next = std::next(step);
-    const bool adjacent = next != counts.end() && next->first == 2 * step->first;
+    const bool adjacent = next != counts.end() && next->first == kLevelRatio * step->first;
     const std::size_t both = step->second + (adjacent ? next->second : 0);
     if (both <= most) continue;
     most = both;
@@ -255,7 +253,7 @@ double facet_scatter(const PointSet& set) {
 }
 
 double dimension(const PointSet& set) {
-  if (set.size() < kSmallPart * kPatchNeighbours) return 2;
+  if (set.size() < kFewestSurfacePoints) return 2;
   const std::size_t far = std::min(kTwiceAsFar * kLayerNeighbours, set.size() / kSmallPart);
   std::vector<double> found = at_some(set, kFewPlaces, far, [&](const Vec3&, const auto&, const std::vector<double>& squared) {
     const double ratio = squared.back() / squared[far / kTwiceAsFar];

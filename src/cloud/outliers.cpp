@@ -21,12 +21,10 @@ namespace {
 // Slabs are looked for among the 16 nearest of a point and twice as many so often, and half as thick as a share of their reach and twice
 // that so often. More neighbours see a surface among more strays, but bends are flat in few; what is flat is seen best in thin slabs, bends
 // and noise need thick ones.
-constexpr std::size_t kScales = 3;
 constexpr double kThinnest = 0.05;
 constexpr std::size_t slab_neighbours(std::size_t scale) { return (kSpacingNeighbours - 1) << scale; }
 constexpr double slab_thickness(std::size_t scale) { return kThinnest * static_cast<double>(std::size_t{1} << scale); }
-constexpr double kHeldWhole = 4;       // standard deviations of noise: a ball about a point of the layer holds all of it but its rim
-constexpr double kMostOutliers = 0.5;  // of the points: beyond, which of them are the surface is a choice
+constexpr double kHeldWhole = 4;  // standard deviations of noise: a ball about a point of the layer holds all of it but its rim
 
 // P(Poisson(mean) < count).
 double chance_of_fewer(std::size_t count, double mean) {
@@ -61,10 +59,9 @@ struct EvenSurface {
   }
 };
 
-// The least spacing, in medians, that can be an outlier's: of fewer points than kMostOutliers of all, kFalseAlarms are as far apart by
-// chance.
+// The least spacing, in medians, that can be an outlier's: of half of the points, kFalseAlarms are as far apart by chance.
 double least_spacing() {
-  return last_that([](double spacing) { return EvenSurface().share_beyond(spacing) > kFalseAlarms * kMostOutliers; });
+  return last_that([](double spacing) { return EvenSurface().share_beyond(spacing) > kFalseAlarms / 2; });
 }
 
 // Whether a slab through a point, and two of kClosest spread over a ball, holds more of those around than chance would put there if they
@@ -204,7 +201,8 @@ Outliers find_outliers(const PointSet& set, const std::vector<double>& relative_
   std::vector<double> spacing;
   for (const std::uint32_t i : strays) spacing.push_back(local[i] / typical);
   std::vector<std::uint32_t> chosen = choose(strays, spacing, {}, set.size());
-  const auto too_many = [&] { return static_cast<double>(chosen.size()) > kMostOutliers * static_cast<double>(set.size()); };
+  // Which of two halves is the surface is a choice.
+  const auto too_many = [&] { return is_majority(static_cast<double>(chosen.size()), static_cast<double>(set.size())); };
   if (chosen.empty() || too_many()) return {{}, noise, {}};
   double h = set.spacing();
   PointSet others;

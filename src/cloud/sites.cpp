@@ -21,8 +21,6 @@ namespace {
 
 // Distances of sites: the plane of a site is fitted to its neighbours and theirs, about 20 sites.
 constexpr double kReach = 2.5;
-// Times the (logarithmic) mean spacing around a site, its own at most: more is that of a stray, whose area would be that of its emptiness.
-constexpr double kIsolated = 1.5;
 
 // Cells of the size of the distance: whoever is nearer than that lies in the same or an adjacent one.
 class Grid {
@@ -204,7 +202,8 @@ Sites place_sites(const PointSet& set, double distance) {
 
 double Sites::side(std::size_t site) const {
   const double around = set.smoothed_spacing()[site];
-  return spacing()[site] > kIsolated * around ? around : spacing()[site];
+  // As far from the others as a site of the next scale is a stray, whose area would be that of its emptiness.
+  return spacing()[site] > kFirstDistance * around ? around : spacing()[site];
 }
 
 double surface_distance(const PointSet& set) {
@@ -212,7 +211,7 @@ double surface_distance(const PointSet& set) {
   const double spacing = set.spacing();
   const double length = static_cast<double>(points.size()) * spacing;  // of the lines that they are at most
   for (double distance = 0; distance * static_cast<double>(kFewestSites) < length;
-       distance = std::max(kFirstDistance * spacing, 2 * distance)) {
+       distance = std::max(kFirstDistance * spacing, kLevelRatio * distance)) {
     const std::size_t sites = distance > 0 ? static_cast<std::size_t>(length / distance) : points.size();
     const std::size_t step = std::max<std::size_t>(1, points.size() / std::min(kPlaces, sites));
     std::vector<double> breadth((points.size() + step - 1) / step);

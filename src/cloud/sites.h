@@ -11,14 +11,15 @@
 
 namespace g3r {
 
-/// Distance of the sites of the first thinned scale, in typical spacings; the next are twice as far apart each.
+/// Distance of the sites of the first thinned scale, in typical spacings; the next are kLevelRatio times as far apart each.
 inline constexpr double kFirstDistance = 1.5;
 /// Sites of a scale, at least: fewer say nothing of a surface.
 inline constexpr std::size_t kFewestSites = 30;
 /// Width in spacings of the sites of their field where there are none: narrower shows single ones.
 inline constexpr double kBetweenSites = 0.7;
 
-/// Spacings of the sites: walls and grooves farther apart than that are distinct in their field.
+/// Standard deviations between two equal Gaussians, up to which they add up to one peak: walls are distinct in the field of sites farther
+/// apart than so many spacings, kernels farther apart than so many of their widths, and noisy points than so many sigma.
 inline constexpr double kResolved = 2;
 
 struct Sites {

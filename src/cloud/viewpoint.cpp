@@ -21,8 +21,6 @@ constexpr int kMostPlanes = 3;
 // Of the places that could show it, those whose rows are in sight: planes through the axis of a camera hold its middle row and column from
 // any place on the axis, 2 of sqrt(N) rows; frames whose depths are in coarse steps have a sixth or more.
 constexpr double kFewestRows = 0.1;
-// Points whose neighbourhoods are small parts of the cloud.
-constexpr std::size_t kFewestSeen = kSmallPart * kPatchNeighbours;
 
 bool is_along(const Vec3& viewpoint, const Vec3& point, const Vec3& normal) {
   return std::abs(vector::dot(normal, vector::normalised(vector::subtract(viewpoint, point)))) <= kExactScatter;
@@ -158,8 +156,8 @@ class ViewpointSearch {
       index = beside_plane(index, plane.points);
     }
     if (index.size() <= kPlaneTerms) return Answer::kSilent;
+    // Two, beside the one and the other that the plane goes through: no place of 4 points or more has too few.
     const std::size_t proof = proving_number(index.size() - 2, kExactScatter, kPlaneNeighbours) + 2;
-    if (proof > index.size()) return Answer::kSilent;
     const Vec3 sight = sight_to(place, candidate);
     if (hides_another(index, sight)) return Answer::kNo;
     const std::vector<std::uint32_t> row = most_in_sight(index, sight);
@@ -198,7 +196,8 @@ class ViewpointSearch {
       nearest.push_back(std::sqrt(squared.back()));
     }
     const double typical = median(nearest);
-    const auto uneven = std::count_if(nearest.begin(), nearest.end(), [&](double d) { return d < typical / 2 || d > typical * 2; });
+    const auto uneven =
+        std::count_if(nearest.begin(), nearest.end(), [&](double d) { return d < kClearlyLess * typical || typical < kClearlyLess * d; });
     return static_cast<double>(uneven) <= kFalseAlarms * static_cast<double>(nearest.size());
   }
 
@@ -210,7 +209,7 @@ class ViewpointSearch {
 }  // namespace
 
 std::optional<Vec3> find_viewpoint(const PointSet& set, const Vec3& origin) {
-  if (set.size() < kFewestSeen) return std::nullopt;
+  if (set.size() < kFewestSurfacePoints) return std::nullopt;
   const ViewpointSearch search(set);
   Vec3 place = origin;
   std::size_t most = search.support(place);
@@ -225,7 +224,7 @@ std::optional<Vec3> find_viewpoint(const PointSet& set, const Vec3& origin) {
 }
 
 bool may_be_seen_from(const std::vector<Vec3>& points, const Vec3& place) {
-  if (points.size() < kFewestSeen) return false;
+  if (points.size() < kFewestSurfacePoints) return false;
   const std::vector<Vec3> sights = directions_from(place, points);
   const Neighbours tree(sights);
   std::vector<std::uint32_t> index;
@@ -244,7 +243,7 @@ bool may_be_seen_from(const std::vector<Vec3>& points, const Vec3& place) {
       if (k != i) around.push_back(nearest(k));
     }
     ++looked;
-    too_near += nearest(i) < median(around) / 2 ? 1 : 0;
+    too_near += nearest(i) < kClearlyLess * median(around) ? 1 : 0;
   }
   return static_cast<double>(too_near) <= kFalseAlarms * static_cast<double>(looked);
 }

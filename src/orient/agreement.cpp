@@ -2,6 +2,7 @@
 
 #include "base/vector.h"
 #include "cloud/constants.h"
+#include "orient/confidence.h"
 #include "solve/refine.h"
 #include "sum/fast_sum.h"
 
@@ -17,9 +18,7 @@ namespace {
 
 using vector::dot;
 
-constexpr std::size_t kScales = 3;     // that are tried: the rings of a spinning scanner and roofs need the coarsest
 constexpr std::size_t kAdjacent = 10;  // nearest sites that a site is connected with: 12 lead from a thin wall to the next under noise
-constexpr int kTurns = 3;              // rounds of the winding gradient
 // Site distances that are far: longer edges cross gaps, and where sides do not agree a field so wide sees what is around; wider ones turn
 // the rims of small surfaces.
 constexpr double kFar = 4;
@@ -46,7 +45,7 @@ std::vector<Vec3> areas_of(const Sites& sites, std::vector<Vec3> normals) {
 }
 
 Sites coarser_than(const PointSet& set, const Sites& sites) {
-  return place_sites(set, std::max(kFirstDistance * set.spacing(), 2 * sites.distance));
+  return place_sites(set, std::max(kFirstDistance * set.spacing(), kLevelRatio * sites.distance));
 }
 
 // Of all points, from the signs that the sites of one scale agree on.
@@ -58,7 +57,7 @@ std::vector<Vec3> by_agreement(const PointSet& set, const Sites& sites, const Su
   for (std::size_t s = 0; s < count; ++s) normals[s] = vector::scale(sites.axis[s], signs.sign[s]);
   const double spacing = sites.set.spacing();
   FastSum wide(sites.points(), Widths(kResolved * spacing), sums, cancel);
-  for (int turn = 0; turn < kTurns; ++turn) normals = refine_normals(wide, areas_of(sites, normals)).normals;
+  for (int turn = 0; turn < kMostRounds; ++turn) normals = refine_normals(wide, areas_of(sites, normals)).normals;
   // Directions from a narrower field, where its side is the same.
   const FastSum field(wide, Widths(kBetweenSites * spacing));
   std::vector<Vec3> sided(points.size());
@@ -114,6 +113,7 @@ std::vector<std::vector<Vec3>> sides_by_agreement(const PointSet& set, const Sit
                                                   const std::atomic<bool>* cancel) {
   std::vector<std::vector<Vec3>> all{by_agreement(set, finest, sums, cancel)};
   Sites sites = coarser_than(set, finest);
+  // The rings of a spinning scanner and roofs need the coarsest.
   while (all.size() < kScales && sites.size() >= kFewestSites) {
     std::vector<Vec3> normals = by_agreement(set, sites, sums, cancel);
     for (std::size_t i = 0; i < normals.size(); ++i) {

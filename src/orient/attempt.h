@@ -17,9 +17,6 @@ struct Attempt {
   Stats stats;
 };
 
-/// Of the doubt of one attempt (Oriented::doubt), up to which another one is taken: chance does not halve it.
-inline constexpr double kClearlyLess = 0.5;
-
 /// Describes the problem (describe()), solves it, open surfaces apart from the rest, and assesses the solution (assess()). What sensors
 /// have seen from known places faces them: open_to_views(), or solve_by_sight() without any equations. `points`: those that the problem is
 /// made of. Gives up the memory of what is not needed any more, unless polish_on_walls() needs it. Throws what require_memory() throws,

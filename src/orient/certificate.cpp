@@ -3,6 +3,7 @@
 #include "base/median.h"
 #include "base/vector.h"
 #include "cloud/chance.h"
+#include "cloud/constants.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
 #include "orient/settings.h"
@@ -17,12 +18,13 @@
 namespace g3r {
 namespace {
 
-// Distances of the probes beside a site, 1, 2, 4 and 8 spacings: walls are seen at the smaller ones, emptiness at the larger.
-constexpr std::size_t kProbes = 4;
-constexpr std::size_t kJumps = 3;  // of them, at which the jump is looked at: farther away the surface bends
+// Distances of the probes beside a site, 1, 2, 4 and 8 spacings: walls are seen at the smaller ones, at which the jump is looked at,
+// emptiness at the larger.
+constexpr std::size_t kProbes = kScales + 1;
 double distance_of(std::size_t probe) { return std::ldexp(1.0, static_cast<int>(probe)); }
 
-constexpr double kApart = 1.9;  // spacings between a probe and any site, so that the field there knows of no single ones
+constexpr double kOnSurface = 0.5;  // the winding number there, by mathematics
+constexpr double kApart = 1.9;      // spacings between a probe and any site, so that the field there knows of no single ones
 
 // The field of the sites with the normals of several hypotheses, at probes on either side of them. It has the width of the equations:
 // single sites are not seen at the nearest probes, walls of a spacing are.
@@ -76,17 +78,17 @@ class Probed {
 // What one distance adds to the mean over all of |1 - jump|, of the field times a factor.
 void add_defects(const std::vector<double>& w, double factor, std::vector<double>& defect) {
   const std::size_t count = defect.size();
-  for (std::size_t i = 0; i < count; ++i) defect[i] += std::abs(1 - factor * (w[i] - w[count + i])) / static_cast<double>(kJumps);
+  for (std::size_t i = 0; i < count; ++i) defect[i] += std::abs(1 - factor * (w[i] - w[count + i])) / static_cast<double>(kScales);
 }
 
-// Which of the probes so many spacings beside the sites are nearer to their own than to another surface: no site is half as far.
+// Which of the probes so many spacings beside the sites are nearer to their own than to another surface: no site is clearly nearer.
 std::vector<std::uint8_t> are_own(const Sites& sites, const std::vector<Vec3>& probes, double distance) {
   const std::size_t count = sites.size();
   const Neighbours& tree = sites.set.tree();
   std::vector<std::uint8_t> own(probes.size());
   parallel::for_blocks(probes.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      const double apart = distance / 2 * sites.spacing()[k % count];
+      const double apart = kClearlyLess * distance * sites.spacing()[k % count];
       double squared = apart * apart;
       own[k] = tree.nearest(probes[k], squared, UINT32_MAX) == UINT32_MAX ? 1 : 0;
     }
@@ -104,7 +106,7 @@ JumpDefects jump_defects(const Sites& sites, std::vector<std::vector<Vec3>> hypo
   if (hypotheses.empty()) return out;
   const Probed probed(sites, std::move(hypotheses), sums, cancel);
   std::vector<double> looked(count, 0);
-  for (std::size_t d = 0; d < kJumps; ++d) {
+  for (std::size_t d = 0; d < kScales; ++d) {
     const std::vector<Vec3> probes = probed.at(distance_of(d));
     const std::vector<std::uint8_t> own = are_own(sites, probes, distance_of(d));
     const std::vector<std::vector<double>> w = probed.windings(probes);
@@ -138,11 +140,11 @@ Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const 
   for (std::size_t d = 0; d < kProbes; ++d) {
     const std::vector<Vec3> probes = probed.at(distance_of(d));
     w[d] = std::move(probed.windings(probes).front());
-    if (d < kJumps) {
+    if (d < kScales) {
       add_defects(w[d], 1, out.jump_defect);
       for (std::size_t i = 0; i < count; ++i) out.jump[i] = std::max(out.jump[i], w[d][i] - w[d][count + i]);
     }
-    if (distance_of(d) < kApart) continue;  // its own site is too near
+    if (d == 0) continue;  // its own site is too near
     parallel::for_blocks(2 * count, parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         const double apart = kApart * spacing[k % count];
@@ -156,11 +158,11 @@ Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const 
   std::vector<double> inside;
   for (std::size_t d = 0; d < kProbes; ++d) {
     for (std::size_t k = 0; k < 2 * count; ++k) {
-      if (is_quiet[2 * count * d + k] != 0 && w[d][k] > 0.5) inside.push_back(w[d][k]);
+      if (is_quiet[2 * count * d + k] != 0 && w[d][k] > kOnSurface) inside.push_back(w[d][k]);
     }
   }
   const double factor = inside.empty() ? 1 : 1 / median(inside);
-  for (std::size_t d = 0; d < kJumps; ++d) add_defects(w[d], factor, out.scaled_defect);
+  for (std::size_t d = 0; d < kScales; ++d) add_defects(w[d], factor, out.scaled_defect);
   for (std::size_t d = 0; d < kProbes; ++d) {
     for (std::size_t k = 0; k < 2 * count; ++k) {
       if (is_quiet[2 * count * d + k] == 0) continue;
@@ -177,7 +179,7 @@ bool is_shown_better(double defect, double than) {
   if (defect >= than || defect >= 1) return false;
   const double first = (1 - defect) * than;
   const double second = defect * std::max(0.0, 1 - than);
-  return 2 * defect <= than || second <= kFalseAlarms * (first + second);
+  return defect <= kClearlyLess * than || second <= kFalseAlarms * (first + second);
 }
 
 }  // namespace g3r

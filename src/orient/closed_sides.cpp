@@ -1,6 +1,7 @@
 #include "orient/closed_sides.h"
 
 #include "base/vector.h"
+#include "cloud/chance.h"
 #include "cloud/constants.h"
 #include "orient/settings.h"
 #include "sum/direct_sum.h"
@@ -11,10 +12,9 @@
 namespace g3r {
 namespace {
 
-// Winding number of a closed part about a place inside it, at least: a street, half of it open, has about 1/2.
-constexpr double kInsideWinding = 0.25;
-// Of the cloud's extent along every axis, what closed parts span that surround the scanner.
-constexpr double kSpan = 0.5;
+// Winding number of a closed part about a place inside it, at least: the middle between the 0 of the outside and the 1/2 of a street, half
+// of which is open.
+constexpr double kInsideWinding = 0.5 / 2;
 
 // Winding numbers of the closed parts at some places.
 std::vector<double> winding_at(const HintedCloud& cloud, const std::vector<Vec3>& places, const std::atomic<bool>* cancel) {
@@ -34,7 +34,7 @@ bool spans_cloud(const HintedCloud& cloud) {
     if (cloud.patches.is_closed(i)) closed.extend(cloud.points[i]);
   }
   for (std::size_t a = 0; a < 3; ++a) {
-    if (!(closed.high[a] - closed.low[a] >= kSpan * (all.high[a] - all.low[a]))) return false;
+    if (!(closed.high[a] - closed.low[a] >= kClearlyLess * (all.high[a] - all.low[a]))) return false;
   }
   return true;
 }
@@ -55,7 +55,7 @@ double share_of_sensors_inside(const HintedCloud& cloud, const std::atomic<bool>
 void judge_by_sensors(const HintedCloud& cloud, const Votes& votes, HintEffect& effect, const std::atomic<bool>* cancel) {
   const bool each_known = !cloud.hints.sensor_of_point.empty();
   const double inside = share_of_sensors_inside(cloud, cancel);
-  bool against = each_known ? votes.share_against() >= kMostOf : inside > 0.5;
+  bool against = each_known ? votes.share_against() >= kMostOf : is_majority(inside, 1);
   // From outside a closed part, as much of it is seen from behind as from the front: only sensors inside, or those of the points, object.
   if (each_known || inside > 0) effect.contradicted_share = votes.share_against() > 1 - kMostOf ? votes.share_against() : 0;
   if (cloud.hints.seen_from_inside) {

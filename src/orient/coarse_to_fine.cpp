@@ -1,6 +1,7 @@
 #include "orient/coarse_to_fine.h"
 
 #include "base/vector.h"
+#include "cloud/chance.h"
 #include "orient/confidence.h"
 #include "orient/open_surfaces.h"
 #include "orient/polish.h"
@@ -87,7 +88,8 @@ bool is_mostly_open(const LevelCloud& cloud, const Settings& settings, const std
   std::vector<Vec3> sides = every(step, normals);
   const OpenSurfaces surfaces = find_open_surfaces(set, settings.noise, settings.sums, sides, stages.cancel());
   const auto closed = std::count(surfaces.part.begin(), surfaces.part.end(), OpenSurfaces::kNone);
-  return !surfaces.part.empty() && 2 * static_cast<std::size_t>(closed) < set.size();
+  const auto all = static_cast<double>(surfaces.part.size());
+  return is_majority(all - static_cast<double>(closed), all);
 }
 
 // What a solve starts from, how long it goes on, and whom it tells.

@@ -2,6 +2,7 @@
 
 #include "base/median.h"
 #include "base/vector.h"
+#include "cloud/constants.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
 
@@ -9,11 +10,6 @@
 #include <cmath>
 
 namespace g3r {
-namespace {
-
-constexpr double kFullSize = 0.5;  // share of the median from which a size no longer lowers the confidence
-
-}  // namespace
 
 std::vector<float> side_confidence(const std::vector<Vec3>& eta, const std::vector<Vec3>& normals, const std::vector<double>& jumps,
                                    const std::vector<double>& areas) {
@@ -23,8 +19,9 @@ std::vector<float> side_confidence(const std::vector<Vec3>& eta, const std::vect
     sizes[i] = vector::length(eta[i]);
     shares[i] = area > 0 ? sizes[i] / area : 0;
   });
-  const double full_share = kFullSize * median(shares);
-  const double full_jump = jumps.empty() ? 0 : kFullSize * median(jumps);
+  // Sizes that are not clearly less than most do not lower the confidence.
+  const double full_share = kClearlyLess * median(shares);
+  const double full_jump = jumps.empty() ? 0 : kClearlyLess * median(jumps);
   std::vector<float> confidence(eta.size(), 0.0F);
   parallel::for_all(eta.size(), [&](std::size_t i) {
     if (!(sizes[i] > 0)) return;

@@ -51,8 +51,9 @@ void limit_to_evidence(std::size_t points, std::vector<float>& confidence);
 inline constexpr double kDoubtful = 0.05;
 /// Share of the points on a doubtful side, from which facets or projected points are solved for, and once more: fewer are not worth it.
 inline constexpr double kMinMinority = 1e-3;
-/// Rounds of solving for facets, and of projecting points and polishing, at most: points on no facet come right only after those on facets,
-/// and what a third round has not turned a fourth does not either.
+/// Rounds of what goes on from its own result, at most: solving for facets, projecting points and polishing, taking the winding gradient
+/// for the normals. Points on no facet come right only after those on facets, and what a third round has not turned a fourth does not
+/// either.
 inline constexpr int kMostRounds = 3;
 /// Share of unsure points above which the orientation is called inconsistent.
 inline constexpr double kManyUnsure = 0.2;

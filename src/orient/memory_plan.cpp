@@ -26,6 +26,7 @@ struct Given {
 }  // namespace
 
 std::size_t planned_memory(const Settings& settings, std::size_t given, std::size_t used) {
+  // Bytes, measured.
   constexpr double kProgram = 12e6;    // code, libraries, thread stacks, queries of the certificate
   constexpr double kMatrices = 180;    // of the expansions, that the far pairs of a cloud share: measured
   constexpr double kPerUnknown = 330;  // while the equations are solved,

@@ -15,7 +15,7 @@ namespace {
 // The default on noisy input, sigma in spacings h: the field must not see single points. Kernels of a given number of sigma hide the
 // scatter of points, and blur walls as thin as that; below a spacing fewer points share the scatter, and walls matter more. So the width
 // grows with the square of sigma first and in proportion later, w = A s^2 / hypot(s, 1) for s = sigma / h.
-constexpr double kNoisyWidth = 2 * kSigmas;  // A, the noise's whole breadth in the end: more blurs walls, less turns shells in cavities
+constexpr double kNoisyWidth = kNoiseBreadth;  // A, the noise's whole breadth in the end: more blurs walls, less turns shells in cavities
 // Raw solutions fit the noise with every step, and the more noise there is the sooner: h / sigma times this many steps.
 constexpr double kStepsPerNoise = 7;
 // Noise turns the normal of a patch of side s by about sigma h / s^2: widths in proportion to sqrt(sigma h) leave one accuracy. Those in

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
 
 namespace g3r {
 namespace {
@@ -19,7 +18,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kBlock = parallel::kSmallBlock;  // points among which fits are shared
-constexpr double kWider = std::numbers::sqrt2;         // from one reach to the next: twice the area
 constexpr double kNormalWeight = 0.3;                  // the normals are those of a smooth field already: less leaves noise, more blurs
 constexpr double kShared = 0.25;                       // of the reach: how far a fit serves other points
 constexpr double kNoiseReach = 3;                      // spacings, of the fits that do: 4 takes detail for noise

@@ -39,7 +39,7 @@ std::vector<std::uint32_t> solved_points(const Solution& solution) {
 
 bool is_projected(const Problem& problem) {
   const double left = projected_noise(problem.noise, problem.spacing);
-  const bool halves_variance = 2 * left * left <= problem.noise * problem.noise;
+  const bool halves_variance = left * left <= kClearlyLess * problem.noise * problem.noise;
   const bool on_points = problem.line_distance == 0;
   return problem.noise > 0 && on_points && halves_variance && runs(problem, Step::kPolish) && runs(problem, Step::kProjection);
 }
@@ -61,8 +61,7 @@ bool polish_projected(const Problem& problem, const Options& options, Stages& st
     const std::vector<std::uint32_t> order = morton_order(points);  // that clusters and sums ask for
     points = values_at(order, points);
     const std::vector<double> here = values_at(order, relative);
-    // Kernels of width e see what is within 2 e as one.
-    const Clusters clusters = cluster_points(points, 2 * s.polish.epsilon.typical(), here);
+    const Clusters clusters = cluster_points(points, kResolved * s.polish.epsilon.typical(), here);  // which the kernels see as one
     Refinement start = mean_of_clusters(clusters, {values_at(order, refined.normals), values_at(order, refined.strength)});
     const Polished polished = polish_clusters({points, here, clusters}, s, std::move(start), stages);
     std::size_t turned = 0;

@@ -71,9 +71,7 @@ class PatchSides {
  private:
   [[nodiscard]] bool is_closed(std::size_t i) const { return patches_.is_closed(i); }
   // Of the side that the points themselves show.
-  [[nodiscard]] double certainty(std::size_t i) const {
-    return patches_.certainty.empty() ? 1 : std::max(0.5, static_cast<double>(patches_.certainty[i]));
-  }
+  [[nodiscard]] double certainty(std::size_t i) const { return patches_.certainty.empty() ? 1 : patches_.certainty[i]; }
   [[nodiscard]] bool is_choice(std::size_t i) const { return certainty(i) < 1; }
 
   // The votes on every patch, as its points are turned by now.
@@ -177,7 +175,7 @@ class PatchSides {
 
   // Of the pieces, what objects as a whole and hangs together with the rest by a few pairs of points only: in the crevice between a thing
   // and the ground, normals lead from the one to the inside of the other. It goes over if it has more votes than such pairs, and fewer
-  // pairs than half of the rim of a disc of as many points.
+  // clearly fewer pairs than the rim of a disc of as many points.
   void turn_hardly_joined(const std::vector<double>& votes) {
     DisjointSets regions(points_.size());
     for_adjacent([&](std::uint32_t i, std::uint32_t j) {
@@ -194,7 +192,7 @@ class PatchSides {
       const std::size_t region = regions.find(i);
       const double rim = links * std::sqrt(std::numbers::pi * static_cast<double>(sums[region].points));
       const bool squarely = sums[region].against > std::sqrt(kMostOpposed) * static_cast<double>(sums[region].points);
-      if (votes[i] < 0 && squarely && sums[region].against > seam[region] && seam[region] < rim / 2) effect_.turned[i] ^= 1;
+      if (votes[i] < 0 && squarely && sums[region].against > seam[region] && seam[region] < kClearlyLess * rim) effect_.turned[i] ^= 1;
     }
   }
 

@@ -19,7 +19,7 @@ bool is_in_box(const Vector3d& p) { return p.cwiseAbs().maxCoeff() <= 1; }
 
 }  // namespace
 
-double projection_reach(double noise, double spacing) { return kNarrowestReach / std::numbers::sqrt2 * std::sqrt(noise * spacing); }
+double projection_reach(double noise, double spacing) { return kNarrowestReach / kWider * std::sqrt(noise * spacing); }
 
 double projected_noise(double noise, double spacing) {
   const double kernel = std::sqrt(72 / (15 * std::numbers::pi));
@@ -36,7 +36,7 @@ std::vector<Vec3> project_points(const std::vector<Vec3>& points, const Neighbou
       const Vector3d normal = to_eigen(normals[i]);
       const double reach = projection_reach(noise, spacing[spacing.size() == 1 ? 0 : i]);
       side.gather(i, normal, reach, farthest);
-      if (side.members().size() < 2 * kQuadraticTerms) continue;
+      if (side.members().size() < kPerTerm * kQuadraticTerms) continue;
       Vector3d above;
       const double height = fit_quadratic_patch(side.members(), 0, reach / 2, 0).distance(Vector3d::Zero(), &above);
       if (!(above.dot(normal) > kSameSide)) continue;

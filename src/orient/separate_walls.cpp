@@ -2,6 +2,7 @@
 
 #include "orient/confidence.h"
 #include "orient/noise_settings.h"
+#include "orient/noisy_jets.h"
 #include "orient/walls.h"
 
 #include <cmath>
@@ -18,7 +19,7 @@ PlacesOnWalls walls_of(const Attempt& found, double noise) {
 
 }  // namespace
 
-double narrower(double noise) { return noise * std::exp2(-0.25); }
+double narrower(double noise) { return noise / std::sqrt(kWider); }
 
 Attempt separate_walls(Attempt found, const PointsView& points, const Options& options, Stages& stages) {
   const double noise = found.problem.noise;
@@ -34,6 +35,7 @@ Attempt separate_walls(Attempt found, const PointsView& points, const Options& o
     Attempt tried = attempt(with_noise(found.problem, hidden, options), points, options, stages);
     const PlacesOnWalls walls = walls_of(tried, noise);
     const double after = misfit(walls);
+    // Half of the points of merged walls turn.
     const bool separates =
         hides || turned_share(first, walls) >= kDoubtful / 2 || tried.oriented.doubt <= kClearlyLess * found.oriented.doubt;
     if (!separates || after >= before || tried.stats.open_share > 0) return found;

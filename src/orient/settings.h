@@ -92,8 +92,6 @@ inline constexpr double kEpsilon = 0.4;
 /// Width in spacings of the winding gradient that solves end with, and that finer ones start from: the field of the solution seen through
 /// the kernels of the solve once more, whose variances add. Narrower is noisy, wider rounds edges.
 inline constexpr double kRefinementWidth = std::numbers::sqrt2 * kEpsilon;
-/// From the spacing and the widths of a level of the solve to those of the next finer one.
-inline constexpr double kLevelRatio = 2;
 /// Accuracy of the sums of a solve that has a start: it gives the same normals with 2e-2 as with 1e-3, while one from 0 amplifies errors.
 inline constexpr double kContinuedAccuracy = 2e-2;
 /// Points of a coarse cloud, at least: fewer cost sides on thin parts, lose small open ones, and save little.

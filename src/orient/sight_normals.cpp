@@ -4,6 +4,7 @@
 #include "cloud/constants.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
+#include "orient/confidence.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -22,8 +23,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr std::size_t kSightNeighbours = 2 * kPatchNeighbours;  // noise of a spacing and more leaves fewer without a direction
-constexpr int kSightRounds = 4;                                 // of weights: from all points around to those of one surface
+constexpr int kSightRounds = 4;  // of weights: from all points around to those of one surface
 
 // What one sensor has seen.
 class Seen {
@@ -44,7 +44,7 @@ class Seen {
     std::vector<std::uint32_t> index;
     std::vector<double> squared;
     for (std::size_t k = begin; k < end; ++k) {
-      tree.nearest(sight_[k], kSightNeighbours, index, squared);
+      tree.nearest(sight_[k], kTwoPatches, index, squared);
       const Plane plane = fit_plane(index, squared);
       const double size = plane.m.norm();
       if (!(size > 0)) continue;
@@ -92,7 +92,7 @@ class Seen {
         const double rho = distance_[index[k]];
         const double along = rho * (rho * plane.m.dot(to_vector(sight_[index[k]])) - 1);
         residuals += (1 - squared[k] / reach) * likely[k] * along * along;
-        const double share = std::min(1.0, std::abs(along) / (2 * kSigmas * noise_));
+        const double share = std::min(1.0, std::abs(along) / (kNoiseBreadth * noise_));
         likely[k] = (1 - share * share) * (1 - share * share);
       }
       likely.front() = 1;  // it is of its own surface
@@ -114,7 +114,7 @@ SightNormals normals_by_sight(const PointSet& set, double noise, const std::atom
   const Views& views = set.views();
   std::vector<std::vector<std::uint32_t>> members(views.is_one() ? 1 : views.places.size());
   for (std::uint32_t i = 0; i < set.size(); ++i) members[views.is_one() ? 0 : views.of_point[i]].push_back(i);
-  SightNormals out{std::vector<Vec3>(set.size(), Vec3{0, 0, 0}), std::vector<float>(set.size(), 0.5F)};
+  SightNormals out{std::vector<Vec3>(set.size(), Vec3{0, 0, 0}), std::vector<float>(set.size(), kUndecided)};
   for (std::size_t v = 0; v < members.size(); ++v) {
     if (members[v].empty()) continue;
     const std::size_t count = members[v].size();

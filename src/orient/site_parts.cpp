@@ -11,11 +11,6 @@
 #include <utility>
 
 namespace g3r {
-namespace {
-
-constexpr double kNoiseScale = 2;  // standard deviations of the noise between sites, at least
-
-}  // namespace
 
 void make_room_for_sums(const PointSet& set) {
   if (set.size() > kMostSites) set.release_neighbours();
@@ -23,8 +18,8 @@ void make_room_for_sums(const PointSet& set) {
 
 double site_distance(std::size_t points, double spacing, double noise) {
   const double all = std::sqrt(static_cast<double>(points) / static_cast<double>(kMostSites));
-  const double least = std::max(kNoiseScale * noise, all > 1 ? kFirstDistance * all * spacing : 0);
-  return least < kFirstDistance / 2 * spacing ? 0 : std::max(kFirstDistance * spacing, least);
+  const double least = std::max(kResolved * noise, all > 1 ? kFirstDistance * all * spacing : 0);
+  return least < kFirstDistance / kLevelRatio * spacing ? 0 : std::max(kFirstDistance * spacing, least);
 }
 
 SiteParts::SiteParts(const PointSet& set, double noise, const SumPlan& sums, const std::atomic<bool>* cancel)

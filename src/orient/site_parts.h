@@ -15,7 +15,7 @@
 
 namespace g3r {
 
-/// Sites of the finest scale of the certificate, at most: more take long and say no more about sides.
+/// Sites of the finest scale of the certificate, at most, for the sake of time: more say no more about sides.
 inline constexpr std::size_t kMostSites = 200000;
 
 /// Gives back the neighbours of more points than that: sums that follow take more than these do. Up to there the certificate takes more

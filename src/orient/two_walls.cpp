@@ -41,7 +41,7 @@ template <typename Visit>
 void for_gains(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members, std::size_t places, Visit visit) {
   const std::vector<Vec3>& points = set.points();
   const Vec3 steps = set.rounding_steps();
-  for_some(set, sites, members, places, 2 * kPatchNeighbours, [&](std::uint32_t s, const std::vector<std::uint32_t>& index) {
+  for_some(set, sites, members, places, kTwoPatches, [&](std::uint32_t s, const std::vector<std::uint32_t>& index) {
     const double spacing = sites.spacing()[s];
     const double one = quadratic_residual(points, index.data(), index.size(), sites.axis[s], spacing);
     const TwoLayers two = fit_two_layers(points, index.data(), index.size(), sites.axis[s]);

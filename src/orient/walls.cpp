@@ -30,7 +30,7 @@ PlacesOnWalls fit_places(const PointSet& set, const std::vector<Vec3>& normals, 
     places.normals[k] = normals[i];
     SameSide side(set.points(), set.tree(), normals);
     side.gather(i, to_eigen(normals[i]), reach, kSigmas * noise);
-    if (side.members().size() < 2 * kQuadraticTerms) return;
+    if (side.members().size() < kPerTerm * kQuadraticTerms) return;
     const double found = residual(fit_quadratic_patch(side.members(), 0, reach / 2, 0), side.members()) / noise;
     if (found >= 0) places.residuals[k] = found;
   });
@@ -55,8 +55,8 @@ double turned_share(const PlacesOnWalls& before, const PlacesOnWalls& after) {
 }
 
 MeanExcess excess_about_walls(const PointSet& set, const std::vector<Vec3>& normals, double noise, double spacing) {
-  const double reach = 2 * projection_reach(noise, spacing);
-  const double depth = 2 * kSigmas * noise;
+  const double reach = kLevelRatio * projection_reach(noise, spacing);
+  const double depth = kNoiseBreadth * noise;
   const Vec3 steps = set.rounding_steps();
   const std::size_t stride = stride_of_places(set);
   std::vector<HeightMoments> at(count_of_places(set));
@@ -66,7 +66,7 @@ MeanExcess excess_about_walls(const PointSet& set, const std::vector<Vec3>& norm
     SameSide side(set.points(), set.tree(), normals);
     side.gather(i, to_eigen(normals[i]), reach, depth);
     const std::vector<std::uint32_t>& members = side.indices();
-    if (members.size() < 2 * kCubicTerms) return;
+    if (members.size() < kPerTerm * kCubicTerms) return;
     at[k] = height_moments(set.points(), members.data(), members.size(), normals[i], spacing, steps);
     held[k] = members.size();
   });
