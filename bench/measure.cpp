@@ -79,7 +79,7 @@ MeshRow score_reconstruction(const Mesh& mesh, const Mesh& truth, std::uint64_t 
   MeshRow row;
   row.check = check_mesh(mesh);
   row.check.self_intersections = count_self_intersections(mesh);
-  const MeshScore score = score_mesh(mesh, truth, kMeshSamples, seed);
+  const MeshScore score = score_mesh(mesh, truth, {kMeshSamples, seed});
   row.chamfer = score.chamfer;
   row.ae = score.ae;
   row.hausdorff = score.hausdorff;

@@ -75,6 +75,7 @@ void add_mesh(CLI::App& app, Settings& s) {
              "(default: estimated)");
   add_run_options(*sub, s);
   add_read_options(*sub, s);
+  add_memory_option(*sub, s, "If it would need more, for example 8G: refuse (default: what the container leaves)");
 }
 
 void add_eval(CLI::App& app, Settings& s) {

@@ -19,8 +19,9 @@ using Json = nlohmann::ordered_json;
 // Positions that went through a float file differ by 1e-7 of the box; points that are further apart than this are other points.
 constexpr double kSamePointShare = 1e-5;
 
-Cloud oriented_cloud(const std::string& path, const ReadOptions& options) {
+Cloud oriented_cloud(const std::string& path, const ReadOptions& options, Console& console) {
   Cloud cloud = read_cloud(path, options);
+  for (const std::string& warning : cloud.warnings) console.warn(escape_text(path) + ": " + warning);
   if (cloud.normals.empty()) throw InvalidInput(escape_text(path) + " has neither faces nor normals");
   return cloud;
 }
@@ -40,8 +41,8 @@ void warn_if_moved(const Cloud& result, const Cloud& truth, Console& console) {
 
 Json score_points(const Settings& settings, Session& session) {
   const ReadOptions options = session.cancellable(settings.read_options);
-  const Cloud result = oriented_cloud(settings.input, options);
-  const Cloud truth = oriented_cloud(settings.truth, options);
+  const Cloud result = oriented_cloud(settings.input, options, session.console());
+  const Cloud truth = oriented_cloud(settings.truth, options, session.console());
   if (result.positions.size() != truth.positions.size()) {
     throw InvalidInput("the result has " + counted(result.positions.size(), "point") + ", the truth " +
                        counted(truth.positions.size(), "point"));
@@ -53,8 +54,8 @@ Json score_points(const Settings& settings, Session& session) {
           {"pgp5", score.pgp5}, {"pgp10", score.pgp10}};
 }
 
-Json score_meshes(const Settings& settings, const Mesh& result, const Mesh& truth) {
-  const MeshScore score = score_mesh(result, truth, settings.sample_count, settings.seed, settings.distances);
+Json score_meshes(const Settings& settings, const Mesh& result, const Mesh& truth, const Monitor& monitor) {
+  const MeshScore score = score_mesh(result, truth, {settings.sample_count, settings.seed, settings.distances}, monitor);
   Json f_scores = Json::array();
   for (const FScore& f : score.f_scores) {
     f_scores.push_back({{"distance", f.distance}, {"precision", f.precision}, {"recall", f.recall}, {"f", f.f}});
@@ -69,10 +70,15 @@ Json score_meshes(const Settings& settings, const Mesh& result, const Mesh& trut
 
 int run_eval(const Settings& settings, Session& session) {
   const Json scores = session.stage("evaluate", [&] {
-    const auto result = mesh_if_any(settings.input);
-    const auto truth = mesh_if_any(settings.truth);
-    if (!result && !truth) return score_points(settings, session);
-    if (result && truth) return score_meshes(settings, *result, *truth);
+    const MeshIfAny result = mesh_if_any(settings.input), truth = mesh_if_any(settings.truth);
+    if (result.mesh && truth.mesh) return score_meshes(settings, *result.mesh, *truth.mesh, session.monitor());
+    const bool is_mixed = result.mesh || truth.mesh;
+    for (const std::string& refused : {result.refused, truth.refused}) {
+      if (refused.empty()) continue;
+      if (is_mixed) throw InvalidInput(refused);
+      session.console().warn("compared as points: " + refused);
+    }
+    if (!is_mixed) return score_points(settings, session);
     throw InvalidInput("one of the files is a mesh and the other is not: `g3r sample` makes points with true normals from a mesh");
   });
   session.console().clear_bar();

@@ -2,14 +2,17 @@
 
 #include "base/platform.h"
 #include "base/vector.h"
+#include "io/ept.h"
 #include "io/output_file.h"
 #include "io/source.h"
+#include "io/tiles.h"
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "exit_code.h"
@@ -56,6 +59,11 @@ void check_view_files(const Settings& settings) {
   inputs.push_back(settings.truth);
   inputs.push_back(settings.figures);
   for (const std::string& input : inputs) check_input(input);
+  std::error_code ignored;
+  if (!settings.figures.empty() && !std::filesystem::is_regular_file(platform::path_of(settings.figures), ignored)) {
+    throw IoError(IoError::Kind::kNotFound,
+                  "cannot read " + escape_text(settings.figures) + ": --figures is the file that --report of a run has written");
+  }
   check_text_output(settings.output, inputs);
 }
 
@@ -72,6 +80,19 @@ void check_result(const std::string& path, bool is_mesh, std::vector<std::string
     }
   }
   taken.push_back(path);
+}
+
+/// A folder, a pattern or a list stands for files, which a result must not be one of: the next run would take it for points.
+void check_not_read(const std::vector<std::string>& results, const std::string& input) {
+  if (input.empty() || input == "-" || !io::find_ept(input).empty()) return;
+  for (const std::string& file : io::find_tiles(input)) {
+    for (const std::string& result : results) {
+      if (!io::same_file(result, file)) continue;
+      throw IoError(IoError::Kind::kCannotCreate,
+                    "cannot create " + escape_text(result) + ": it is one of the files that " + escape_text(input) +
+                        " stands for, and would be read as points; write it elsewhere, or move it away first");
+    }
+  }
 }
 
 bool makes_mesh(Command command) { return command == Command::kReconstruct || command == Command::kMesh; }
@@ -92,6 +113,8 @@ void check_files(const Settings& settings) {
   for (const std::string& output : settings.outputs()) check_result(output, makes_mesh(settings.command), taken);
   if (!settings.oriented.empty()) check_result(settings.oriented, false, taken);
   check_text_output(settings.report, taken);
+  taken.erase(taken.begin());
+  check_not_read(taken, settings.input);
 }
 
 void check_points(const std::vector<Vec3>& points, const std::vector<std::string>& outputs) {
@@ -104,13 +127,15 @@ void check_points(const std::vector<Vec3>& points, const std::vector<std::string
   }
 }
 
-std::optional<Mesh> mesh_if_any(const std::string& path) {
+MeshIfAny mesh_if_any(const std::string& path) {
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(platform::path_of(path), ignored)) return std::nullopt;
+  if (!std::filesystem::is_regular_file(platform::path_of(path), ignored)) return {};
   try {
-    return read_mesh(path);
-  } catch (const InvalidInput&) {
-    return std::nullopt;
+    return {read_mesh(path), ""};
+  } catch (const io::NoFaces&) {
+    return {};
+  } catch (const InvalidInput& error) {
+    return {std::nullopt, error.what()};
   }
 }
 

@@ -11,14 +11,20 @@
 namespace g3r::cli {
 
 /// Throws what reading and writing would throw for the files of these settings, before any work: an input that cannot be opened
-/// (IoError), an output or report that cannot be created or is one of the inputs (IoError), an unknown extension (UsageError).
+/// (IoError), an output or report that cannot be created or is one of the inputs, those of a folder or pattern included (IoError), an
+/// unknown extension (UsageError).
 void check_files(const Settings& settings);
 
 /// Throws InvalidInput, before the work, where an output cannot hold the points as they are: LAS those that are not finite.
 void check_points(const std::vector<Vec3>& points, const std::vector<std::string>& outputs);
 
-/// The mesh in a file, or nothing if it holds no faces. A pipe cannot be read twice and is taken for points. Throws IoError.
-[[nodiscard]] std::optional<Mesh> mesh_if_any(const std::string& path);
+/// The mesh in a file, or nothing; `refused` says why if the file has faces.
+struct MeshIfAny {
+  std::optional<Mesh> mesh;
+  std::string refused;
+};
+/// A pipe cannot be read twice and is taken for points. Throws IoError.
+[[nodiscard]] MeshIfAny mesh_if_any(const std::string& path);
 
 /// Writes text to a file, whole or not at all, or to standard output for "-". Throws IoError.
 void write_text(const std::string& path, const std::string& text);

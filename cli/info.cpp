@@ -98,7 +98,8 @@ std::string plan_text(const Stats& stats) {
 
 int run_info(const Settings& settings, Session& session) {
   const Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, session.cancellable(settings.read_options)); });
-  const std::optional<Mesh> mesh = mesh_if_any(settings.input);
+  const MeshIfAny read = mesh_if_any(settings.input);
+  const std::optional<Mesh>& mesh = read.mesh;
   std::string text = file_text(settings, cloud);
   MeshCheck check;
   if (mesh) {
@@ -117,6 +118,7 @@ int run_info(const Settings& settings, Session& session) {
     stats.warnings.emplace_back(error.what());
   }
   stats.warnings.insert(stats.warnings.begin(), cloud.warnings.begin(), cloud.warnings.end());
+  if (!read.refused.empty()) stats.warnings.push_back("no mesh: " + read.refused);
   session.complete(stats);
   for (const std::string& warning : stats.warnings) session.console().warn(warning);
   session.console().clear_bar();

@@ -18,7 +18,8 @@ int run_reconstruct(const Settings& settings, Session& session) {
   std::vector<Vec3>().swap(cloud.normals);  // of no use here, and the new ones take as much
   Reconstruction result = reconstruct(cloud.positions, run_options(settings, cloud), settings.mesh_options, session.monitor());
   if (!cloud.colors.empty()) {
-    session.stage("carry", [&] { carry_attributes(result.mesh, cloud.positions, cloud.colors, result.orientation.confidence); });
+    session.stage("carry",
+                  [&] { carry_attributes(result.mesh, cloud.positions, cloud.colors, result.orientation.confidence, session.monitor()); });
   }
   session.stage("write", [&] {
     const WriteOptions options = session.cancellable(settings.write_options);

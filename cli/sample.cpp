@@ -1,8 +1,9 @@
 // g3r sample MESH OUT: points on a mesh, uniform by area, with the normals of their triangles.
+#include "mesh/used_vertices.h"
+
 #include <g3r/io.h>
 #include <g3r/metrics.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "commands.h"
@@ -11,15 +12,10 @@
 namespace g3r::cli {
 namespace {
 
-double box_diagonal(const std::vector<Vec3>& points) {
-  Vec3 low = points.front(), high = points.front();
-  for (const Vec3& p : points) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], p[a]);
-      high[a] = std::max(high[a], p[a]);
-    }
-  }
-  return std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
+// Of the surface: vertices that no triangle uses may be anywhere.
+double box_diagonal(const Mesh& mesh) {
+  const vector::Box box = box_of_used_vertices(mesh);
+  return std::hypot(box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]);
 }
 
 }  // namespace
@@ -27,8 +23,9 @@ double box_diagonal(const std::vector<Vec3>& points) {
 int run_sample(const Settings& settings, Session& session) {
   const Mesh mesh = session.stage("read", [&] { return read_mesh(settings.input); });
   const bool percent = settings.noise.unit == Length::Unit::kPercent;
-  const double noise = settings.noise.value * (percent ? box_diagonal(mesh.vertices) / 100 : 1);
-  Samples samples = session.stage("sample", [&] { return sample_mesh(mesh, settings.sample_count, settings.seed, noise); });
+  const double noise = settings.noise.value * (percent ? box_diagonal(mesh) / 100 : 1);
+  Samples samples =
+      session.stage("sample", [&] { return sample_mesh(mesh, settings.sample_count, settings.seed, noise, session.monitor()); });
   Cloud cloud;
   cloud.positions = std::move(samples.points);
   session.stage("write",

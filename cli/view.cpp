@@ -19,24 +19,31 @@
 namespace g3r::cli {
 namespace {
 
-void add_cloud(const std::string& path, const ReadOptions& options, Scene& scene) {
-  if (!scene.points.empty()) throw UsageError("view shows one cloud and one mesh; " + path + " is a second cloud");
+Cloud read_and_warn(const std::string& path, const ReadOptions& options, Console& console) {
   Cloud cloud = read_cloud(path, options);
+  for (const std::string& warning : cloud.warnings) console.warn(escape_text(path) + ": " + warning);
+  return cloud;
+}
+
+void add_cloud(const std::string& path, const ReadOptions& options, Scene& scene, Console& console) {
+  if (!scene.points.empty()) throw UsageError("view shows one cloud and one mesh; " + path + " is a second cloud");
+  Cloud cloud = read_and_warn(path, options, console);
   scene.points = std::move(cloud.positions);
   scene.normals = std::move(cloud.normals);
   scene.confidence = std::move(cloud.confidence);
   scene.colors = std::move(cloud.colors);
 }
 
-void add_file(const std::string& path, const ReadOptions& options, Scene& scene) {
-  std::optional<Mesh> mesh = mesh_if_any(path);
-  if (!mesh) return add_cloud(path, options, scene);
+void add_file(const std::string& path, const ReadOptions& options, Scene& scene, Console& console) {
+  auto [mesh, refused] = mesh_if_any(path);
+  if (!refused.empty()) console.warn("shown as points: " + refused);
+  if (!mesh) return add_cloud(path, options, scene, console);
   if (!scene.mesh.triangles.empty()) throw UsageError("view shows one cloud and one mesh; " + path + " is a second mesh");
   scene.mesh = std::move(*mesh);
 }
 
-void add_truth(const std::string& path, const ReadOptions& options, Scene& scene) {
-  Cloud truth = read_cloud(path, options);
+void add_truth(const std::string& path, const ReadOptions& options, Scene& scene, Console& console) {
+  Cloud truth = read_and_warn(path, options, console);
   if (truth.normals.empty()) throw InvalidInput(path + ": has no normals to compare with");
   if (truth.normals.size() != scene.points.size()) {
     throw InvalidInput(path + ": " + std::to_string(truth.normals.size()) + " points, but the cloud has " +
@@ -51,13 +58,15 @@ std::string read_text(const std::string& path) {
   return text.str();
 }
 
-Scene read_scene(const Settings& settings, const ReadOptions& options) {
+Scene read_scene(const Settings& settings, Session& session) {
+  const ReadOptions options = session.cancellable(settings.read_options);
+  Console& console = session.console();
   Scene scene;
   for (const std::string& path : settings.shown) {
     scene.title += (scene.title.empty() ? "" : ", ") + platform::name_of(platform::path_of(path).filename());
-    add_file(path, options, scene);
+    add_file(path, options, scene, console);
   }
-  if (!settings.truth.empty()) add_truth(settings.truth, options, scene);
+  if (!settings.truth.empty()) add_truth(settings.truth, options, scene, console);
   if (!settings.figures.empty()) scene.report = read_text(settings.figures);
   return scene;
 }
@@ -65,7 +74,7 @@ Scene read_scene(const Settings& settings, const ReadOptions& options) {
 }  // namespace
 
 int run_view(const Settings& settings, Session& session) {
-  const Scene scene = session.stage("read", [&] { return read_scene(settings, session.cancellable(settings.read_options)); });
+  const Scene scene = session.stage("read", [&] { return read_scene(settings, session); });
   const std::string bytes = session.stage("draw", [&] {
     if (io::extension(settings.output) != "png") return view_html(scene, settings.page);
     PictureOptions picture = settings.picture;

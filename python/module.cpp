@@ -117,7 +117,7 @@ nb::tuple reconstruct_points(const PointsArray& array, const std::optional<Rows<
   Reconstruction result;
   run_job(progress, [&](const Monitor& monitor) {
     result = reconstruct(points, options, mesh_options, monitor);
-    if (!point_colors.empty()) carry_attributes(result.mesh, points, point_colors, result.orientation.confidence);
+    if (!point_colors.empty()) carry_attributes(result.mesh, points, point_colors, result.orientation.confidence, {{}, monitor.cancel});
   });
   Orientation& o = result.orientation;
   const Text report = report_json(o.stats, &result.check);
@@ -235,10 +235,7 @@ nb::dict score_faces(const PointsArray& vertices, const Rows<std::uint32_t>& fac
   const Mesh mesh{copy_points(vertices), copy_rows<std::uint32_t>(faces), {}, {}};
   const Mesh truth{copy_points(true_vertices), copy_rows<std::uint32_t>(true_faces), {}, {}};
   MeshScore score;
-  {
-    const nb::gil_scoped_release release;
-    score = score_mesh(mesh, truth, samples, seed, distances);
-  }
+  run_job(nb::none(), [&](const Monitor& monitor) { score = score_mesh(mesh, truth, {samples, seed, distances}, monitor); });
   nb::dict out;
   out["cd"] = score.chamfer;
   out["ae_m"] = score.ae;

@@ -154,11 +154,17 @@ void turn(std::vector<Vec3>& vectors) {
   for (Vec3& v : vectors) v = {-v[0], -v[1], -v[2]};
 }
 
+// What making a mesh starts with and finds out.
+struct MeshRun {
+  mesh::LeftOut left_out;
+  MeshMemory memory;
+  double far_share = 0;  // of the surface, farther than mesh::kFarSpacings from every point
+};
+
 // Meshes in normalised units, so that georeferenced coordinates lose nothing, and maps back. What is inside out is meshed as the solid that
 // it surrounds, and the triangles are turned.
-// `far_share` (may be null): share of the surface farther than mesh::kFarSpacings from every point.
-Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor& monitor, mesh::LeftOut& left_out,
-               MeshMemory* memory = nullptr, double* far_share = nullptr) {
+Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor& monitor, MeshRun& run) {
+  mesh::LeftOut& left_out = run.left_out;
   for (Vec3& p : left_out.strays) p = oriented.cloud.frame.to_unit(p);
   if (!options.keep_all) {
     std::vector<Vec3> doubtful;
@@ -185,14 +191,14 @@ Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor
     mesh::finish_mesh(mesh, {points, directions, mesh::smooth_spacing(points)}, 0, normalised, left_out, monitor.cancel);
   } else {
     oriented.cloud.set.release_neighbours();  // the mesher has its own, of the points that it moves
-    mesh = field_mesh(oriented.cloud.points(), std::move(directions), field, normalised, monitor, memory, &left_out);
+    mesh = field_mesh(oriented.cloud.points(), std::move(directions), field, normalised, monitor, &run.memory, &left_out);
   }
   left_out.dropped.area /= frame.scale * frame.scale;
   if (mesh.triangles.empty()) throw InvalidInput("no surface found: the oriented points do not enclose a volume");
   if (inside_out) {
     for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
   }
-  if (far_share != nullptr) *far_share = mesh::far_share(mesh, oriented.cloud.points(), mesh::kFarSpacings);
+  run.far_share = mesh::far_share(mesh, oriented.cloud.points(), mesh::kFarSpacings);
   for (Vec3& v : mesh.vertices) {
     for (std::size_t a = 0; a < 3; ++a) v[a] = v[a] / frame.scale + frame.centre[a];
   }
@@ -226,6 +232,78 @@ std::size_t planned(const Stats& stats, const MeshOptions& chosen) {
   return std::max(stats.planned_memory_bytes, field_mesh_memory(stats.used, stats.spacing, stats.noise, stats.box_side, chosen.depth));
 }
 
+// What is doubtful of a mesh, and what its memory turned out to be. `options`: with the mesher chosen.
+void describe_mesh(const MeshCheck& check, const MeshRun& run, const MeshOptions& options, Stats& stats) {
+  stats.depth = options.depth;
+  stats.planned_memory_bytes = std::max(stats.planned_memory_bytes, run.memory.needed);
+  const bool is_trimmed = options.trim != MeshOptions::Trim::kOff;
+  if (run.far_share > kDoubtful) {
+    const bool is_noisy = stats.noise > mesh::kNoisy * stats.spacing;
+    stats.warnings.push_back(percent(run.far_share) + " of the surface is farther than " + short_number(mesh::kFarSpacings) +
+                             " spacings from any point: the cloud looks open" +
+                             (is_noisy ? ", as do two walls that are no farther apart than its noise" : "") + "; trim the mesh (--open)");
+    stats.doubtful = stats.doubtful || (run.far_share > kManyUnsure && !is_trimmed);
+  }
+  warn_of_topology(check, stats);
+  warn_of_faces(check.triangles, options.faces, stats.warnings);
+  const double widest = std::ldexp(mesh::kFinestCell, mesh::kMaxOctreeLevel) * stats.spacing;  // that the octree resolves
+  if (options.mesher == Mesher::kField && options.depth == 0 && stats.box_side > widest) {
+    stats.warnings.emplace_back(
+        "the cloud is more than 800,000 spacings wide, so the mesh is coarser than the points: mesh parts that are far apart one by one");
+  }
+  if ((!check.closed && !is_trimmed) || !check.manifold) {
+    stats.warnings.emplace_back(check.closed ? "the mesh is not manifold" : "the mesh is not closed");
+  }
+}
+
+// Points that have a normal, and unit normals.
+struct PointsWithNormals {
+  std::vector<Vec3> points, normals;
+  std::size_t non_finite = 0;  // points left out for a coordinate,
+  std::size_t undirected = 0;  // and others for a normal that is zero or not finite
+};
+
+PointsWithNormals with_normals(const PointsView& points, const PointsView& normals) {
+  PointsWithNormals out;
+  for (std::size_t i = 0; i < points.count; ++i) {
+    const Vec3 p = points[i], n = normals[i];
+    const double size = std::hypot(n[0], n[1], n[2]);
+    const bool is_place = vector::is_finite(p), is_direction = std::isfinite(size) && size > 0;
+    out.non_finite += is_place ? 0 : 1;
+    out.undirected += is_place && !is_direction ? 1 : 0;
+    if (!is_place || !is_direction) continue;
+    out.points.push_back(p);
+    out.normals.push_back({n[0] / size, n[1] / size, n[2] / size});
+  }
+  return out;
+}
+
+// What is known before the mesh. `given`: what `oriented` was made of.
+Stats describe_oriented(const PointsWithNormals& given, const OrientedCloud& oriented, const MeshOptions& options) {
+  const CanonicalCloud& cloud = oriented.cloud;
+  Stats stats;
+  stats.used = cloud.size();
+  stats.dropped_non_finite = given.non_finite;
+  stats.merged_duplicates = given.points.size() - cloud.size();
+  stats.points = given.points.size() + given.non_finite + given.undirected;
+  stats.box_centre = cloud.frame.centre;
+  stats.box_side = kBoxSide / cloud.frame.scale;
+  stats.spacing = cloud.frame.length_to_world(oriented.spacing);
+  stats.noise = cloud.frame.length_to_world(given_noise(options.noise, cloud, oriented.spacing).value_or(0));
+  stats.method = name_of(options.mesher);
+  stats.converged = true;  // nothing had to
+  stats.threads = parallel::thread_count(options.threads);
+  stats.planned_memory_bytes = planned(stats, options);
+  if (given.non_finite > 0) {
+    stats.warnings.push_back(std::to_string(given.non_finite) + " points with a non-finite coordinate were left out");
+  }
+  if (given.undirected > 0) {
+    stats.warnings.push_back(std::to_string(given.undirected) +
+                             " points with a normal of (0, 0, 0) or one that is not finite were left out");
+  }
+  return stats;
+}
+
 }  // namespace
 
 Stats plan(const PointsView& points, const Options& options, const MeshOptions& mesh_options) {
@@ -238,31 +316,30 @@ Stats plan(const PointsView& points, const Options& options, const MeshOptions& 
 }
 
 Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const MeshOptions& options, const Monitor& monitor,
-                   Dropped* dropped) {
+                   MeshReport* report) {
   if (points.count != normals.count) {
     throw InvalidInput(std::to_string(points.count) + " points but " + std::to_string(normals.count) + " normals");
   }
   if (options.threads < 0) throw InvalidInput("threads must be 0 (all cores) or positive");
   require_usable(options);
   require_meshable(points);
-  std::vector<Vec3> kept;
-  std::vector<Vec3> directions;
-  for (std::size_t i = 0; i < points.count; ++i) {
-    const Vec3 p = points[i];
-    const Vec3 n = normals[i];
-    const double size = std::hypot(n[0], n[1], n[2]);
-    if (!std::isfinite(p[0] + p[1] + p[2]) || !std::isfinite(size) || size <= 0) continue;
-    kept.push_back(p);
-    directions.push_back({n[0] / size, n[1] / size, n[2] / size});
-  }
+  MeshOptions chosen = options;
+  if (chosen.mesher == Mesher::kAuto) chosen.mesher = Mesher::kField;
+  PointsWithNormals given = with_normals(points, normals);
   return parallel::with_threads(options.threads, [&] {
-    const gpu::Scope device(options.device, kept.size());
-    OrientedCloud oriented = oriented_cloud(kept, directions);
-    std::vector<Vec3>().swap(kept);  // their memory is wanted
-    std::vector<Vec3>().swap(directions);
-    mesh::LeftOut left_out;
-    Mesh mesh = make_mesh(std::move(oriented), options, monitor, left_out);
-    if (dropped != nullptr) *dropped = left_out.dropped;
+    const gpu::Scope device(options.device, given.points.size());
+    OrientedCloud oriented = oriented_cloud(given.points, given.normals);
+    Stats stats = describe_oriented(given, oriented, chosen);
+    require_memory(stats.planned_memory_bytes, options.max_memory);
+    given = {};  // its memory is wanted
+    MeshRun run{{}, {options.max_memory, 0}};
+    Mesh mesh = make_mesh(std::move(oriented), chosen, monitor, run);
+    if (report == nullptr) return mesh;
+    report->check = check_mesh(mesh);
+    report->check.dropped = run.left_out.dropped;
+    describe_mesh(report->check, run, chosen, stats);
+    device.describe(stats);
+    report->stats = std::move(stats);
     return mesh;
   });
 }
@@ -272,7 +349,7 @@ Reconstruction reconstruct(const PointsView& points, const Options& options, con
   require_usable(mesh_options);
   require_meshable(points);
   const MeshOptions chosen = choose(mesh_options, options);
-  if (options.max_memory > 0) require_memory(plan(points, options, mesh_options).planned_memory_bytes, options);
+  if (options.max_memory > 0) require_memory(plan(points, options, mesh_options).planned_memory_bytes, options.max_memory);
   Reconstruction out;
   const gpu::Scope device(options.device, points.count);  // one for both steps
   out.orientation = orient(points, options, monitor);
@@ -280,40 +357,17 @@ Reconstruction reconstruct(const PointsView& points, const Options& options, con
   Stages stages(monitor);
   stages.time_device([&device] { return device.seconds(); });
   stages.begin("mesh");
-  double far = 0;
+  MeshRun run{{outliers_of(points, out.orientation), {}}, {options.max_memory, 0}};
   parallel::with_threads(options.threads, [&] {
     const gpu::Scope same_device(options.device, points.count);
     OrientedCloud oriented = oriented_cloud(points, out.orientation.normals, out.orientation.areas);
-    mesh::LeftOut left_out{outliers_of(points, out.orientation), {}};
-    MeshMemory memory{options.max_memory, 0};
-    out.mesh = make_mesh(std::move(oriented), chosen, monitor, left_out, &memory, &far);
-    std::size_t& planned_bytes = out.orientation.stats.planned_memory_bytes;
-    planned_bytes = std::max(planned_bytes, memory.needed);
+    out.mesh = make_mesh(std::move(oriented), chosen, monitor, run);
     out.check = check_mesh(out.mesh);
-    out.check.dropped = left_out.dropped;
-    carry_attributes(out.mesh, points, {}, out.orientation.confidence);
+    out.check.dropped = run.left_out.dropped;
+    carry_attributes(out.mesh, points, {}, out.orientation.confidence, {{}, monitor.cancel});
   });
   device.describe(out.orientation.stats);
-  if (far > kDoubtful) {
-    Stats& stats = out.orientation.stats;
-    const bool is_noisy = stats.noise > mesh::kNoisy * stats.spacing;
-    stats.warnings.push_back(percent(far) + " of the surface is farther than " + short_number(mesh::kFarSpacings) +
-                             " spacings from any point: the cloud looks open" +
-                             (is_noisy ? ", as do two walls that are no farther apart than its noise" : "") + "; trim the mesh (--open)");
-    stats.doubtful = stats.doubtful || (far > kManyUnsure && chosen.trim == MeshOptions::Trim::kOff);
-  }
-  warn_of_topology(out.check, out.orientation.stats);
-  warn_of_faces(out.mesh.triangles.size(), chosen.faces, out.orientation.stats.warnings);
-  const double widest = std::ldexp(mesh::kFinestCell, mesh::kMaxOctreeLevel) * out.orientation.stats.spacing;  // that the octree resolves
-  if (chosen.mesher == Mesher::kField && chosen.depth == 0 && out.orientation.stats.box_side > widest) {
-    out.orientation.stats.warnings.emplace_back(
-        "the cloud is more than 800,000 spacings wide, so the mesh is coarser than the points: mesh parts that are far apart one by one");
-  }
-  const bool trimmed = chosen.trim != MeshOptions::Trim::kOff;
-  if ((!out.check.closed && !trimmed) || !out.check.manifold) {
-    out.orientation.stats.warnings.emplace_back(out.check.closed ? "the mesh is not manifold" : "the mesh is not closed");
-  }
-  out.orientation.stats.depth = chosen.depth;
+  describe_mesh(out.check, run, chosen, out.orientation.stats);
   stages.finish(out.orientation.stats);
   return out;
 }

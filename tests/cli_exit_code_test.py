@@ -210,6 +210,19 @@ class ExitCodes(ProgramTest):
         self.assertTrue(self.bytes_of("ball.ply") == before)
         self.assertEqual(sorted(os.listdir(self.folder)), ["ball.ply", "folder.ply", "hard.ply", "link.ply"])
 
+    def test_a_result_among_the_files_that_are_read_is_73(self):
+        os.mkdir(self.path("scans"))
+        os.mkdir(self.path("scans/results"))
+        write_points(self.path("scans/ball.ply"), sphere(300))
+        self.expect(OK, "orient", "scans", "scans/out.ply")
+        for arguments in (["orient", "scans", "scans/out.ply"], ["orient", "scans/*.ply", "scans/out.ply"], ["scans", "scans/out.ply"],
+                          ["orient", "scans", "elsewhere.ply", "--also", "scans/out.ply"],
+                          ["scans", "elsewhere.ply", "--oriented", "scans/results/../out.ply"]):
+            with self.subTest(arguments):
+                self.assertIn("write it elsewhere", self.expect(CANNOT_CREATE, *arguments).err)
+        self.expect(OK, "orient", "scans/b*.ply", "scans/out.ply")
+        self.assertFalse(os.path.exists(self.path("elsewhere.ply")))
+
     @needs("users to drop to")
     def test_permissions_count(self):
         options = dropped_to_nobody()

@@ -35,6 +35,12 @@ class Measuring(ProgramTest):
         a, b = ([float(word) for line in self.bytes_of(name).splitlines() if not line.startswith(b"//") for word in line.split()]
                 for name in ("a.xyz", "b.xyz"))
         self.assertLess(max(abs(x - y) for x, y in zip(a, b)), 1e-9)
+        with open(self.path("cube.obj")) as file:
+            cube = file.read().replace("f 1 2", "v 1000 0 0\nf 1 2", 1)
+        with open(self.path("unused.obj"), "w") as file:
+            file.write(cube)
+        self.expect(OK, "sample", "unused.obj", "c.xyz", "--count", "100", "--noise", "1%")
+        self.assertEqual(self.bytes_of("c.xyz"), self.bytes_of("a.xyz"))
         for wrong in ("-1%", "2h", "auto"):
             self.expect(USAGE, "sample", "cube.obj", "c.xyz", "--count", "100", "--noise", wrong)
 
@@ -55,6 +61,14 @@ class Measuring(ProgramTest):
         self.assertEqual(score["f_scores"], [{"distance": d, "precision": 1, "recall": 1, "f": 1} for d in (0.01, 0.001)])
         self.expect(USAGE, "eval", "cube.obj", "--truth", "cube.obj", "--distances", "0")
         self.expect(BAD_DATA, "eval", "cube.obj", "--truth", "a.ply")
+
+    def test_why_a_mesh_is_refused_is_told(self):
+        with open(self.path("bad.off"), "w") as file:
+            file.write("OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 7\n")
+        for pair in (["bad.off", "--truth", "cube.obj"], ["cube.obj", "--truth", "bad.off"]):
+            self.assertIn("bad.off: face 1: face index out of range", self.expect(BAD_DATA, "eval", *pair).err)
+        self.assertIn("face index out of range", self.expect(OK, "info", "bad.off").err)
+        self.assertIn("neither faces", self.expect(BAD_DATA, "eval", "bad.off", "--truth", "bad.off").err)
 
     def test_folders_patterns_and_boxes(self):
         os.mkdir(self.path("tiles"))

@@ -82,6 +82,14 @@ class Memory(ProgramTest):
             self.expect(OK, *arguments, "--max-memory", str(plan))
             os.remove(self.path("out.ply"))
 
+    def test_a_mesh_of_oriented_points_beyond_the_limit_is_refused(self):
+        names = [("double", name) for name in ("x", "y", "z", "nx", "ny", "nz")]
+        write_ply(self.path("few.ply"), names, [(*p, *p) for p in sphere(20)])
+        result = self.expect(UNAVAILABLE, "mesh", "few.ply", "out.ply", "--depth", "12", "--max-memory", "1G")
+        self.assertIn("plan needs", result.err)
+        self.expect(OK, "mesh", "few.ply", "out.ply", "--depth", "6", "--max-memory", "1G", "--report", "r.json")
+        self.assertLess(self.json_of("r.json")["peak_memory_bytes"], self.json_of("r.json")["planned_memory_bytes"])
+
     def test_a_mesh_that_turns_out_larger_than_its_plan_is_refused(self):
         n = 40  # two layers, half a spacing apart
         layers = [(i / n, j / n, z) for i in range(n) for j in range(n) for z in (0, 0.5 / n)]

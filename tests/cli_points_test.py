@@ -66,6 +66,23 @@ class Points(ProgramTest):
                 self.assertTrue(mesh["closed"])
                 self.assertAlmostEqual(mesh["volume"], 4 / 3 * math.pi, delta=0.15)
 
+    def test_a_mesh_of_oriented_points_says_what_is_left_out_and_doubtful(self):
+        names = [("double", name) for name in ("x", "y", "z", "nx", "ny", "nz")]
+        ball = [(*p, *p) for p in sphere(thinned(2000))]
+        used = len(ball)
+        ball += [ball[0], (math.nan, 0, 0, 0, 0, 1), (0, 0, 1.01, 0, 0, 0), (0, 0, -1.01, math.nan, 0, 1)]
+        write_ply(self.path("ball.ply"), names, ball)
+        result = self.expect(OK, "mesh", "ball.ply", "out.ply", "--report", "r.json", "--strict")
+        report = self.json_of("r.json")["input"]
+        self.assertEqual((report["points"], report["used"], report["dropped_non_finite"], report["merged_duplicates"]), (used + 4, used, 1, 1))
+        self.assertIn("1 points with a non-finite coordinate", result.err)
+        self.assertIn("2 points with a normal of (0, 0, 0)", result.err)
+        floor = [(x, y, 0.01 * x * x, 0, 0, 1) for x in range(40) for y in range(40)]
+        write_ply(self.path("floor.ply"), names, floor)
+        self.assertIn("the cloud looks open", self.expect(BAD_DATA, "mesh", "floor.ply", "out.ply", "--report", "r.json", "--strict").err)
+        self.assertTrue(self.json_of("r.json")["doubtful"])
+        self.assertNotIn("the mesh is not closed", self.expect(OK, "mesh", "floor.ply", "out.ply", "--open", "--strict").err)
+
     def test_colours_and_confidence_reach_the_mesh(self):
         write_ply(self.path("in.ply"), [("double", "x"), ("double", "y"), ("double", "z"), ("uchar", "red"), ("uchar", "green"), ("uchar", "blue")],
                   [(*p, 200 if p[2] > 0 else 10, 7, 9) for p in sphere(1000)])

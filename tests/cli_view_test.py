@@ -45,6 +45,18 @@ class View(ProgramTest):
         self.expect(OK, "view", "ball.ply", "solid.off", "-o", "rows.png", "--tile", "32", "--layers", "points,mesh")
         self.assertEqual(struct.unpack(">II", self.read("rows.png")[16:24]), (128, 64))
 
+    def test_what_is_odd_in_a_file_is_told(self):
+        with open(self.path("bad.off"), "w") as file:
+            file.write(TETRAHEDRON.replace("3 1 2 3", "3 1 2 7"))
+        self.assertIn("out of range", self.expect(OK, "view", "bad.off", "-o", "look.html").err)
+        self.assertIn("levels", self.expect(OK, "view", "ball.ply", "--levels", "2", "-o", "look.html").err)
+        self.assertEqual(self.expect(OK, "view", "ball.ply", "-o", "look.html").err.count("warning"), 0)
+
+    def test_figures_are_a_file(self):
+        os.mkdir(self.path("folder"))
+        self.assertIn("--figures", self.expect(NO_INPUT, "view", "ball.ply", "--figures", "folder", "-o", "look.html").err)
+        self.assertFalse(os.path.exists(self.path("look.html")))
+
     def test_wrong_requests_are_refused_before_any_work(self):
         self.expect(USAGE, "view", "ball.ply")
         self.expect(USAGE, "view", "ball.ply", "-o", "look.gif")

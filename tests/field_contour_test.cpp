@@ -1,8 +1,10 @@
 // Manifold dual contouring: closed and 2-manifold for every octree and every sign pattern.
 #include "mesh/field_contour.h"
 
+#include <g3r/error.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <map>
 #include <random>
@@ -85,6 +87,16 @@ void expect_closed_manifold(const Mesh& mesh, const std::string& what) {
   const Topology t = topology(mesh);
   EXPECT_EQ(t.bad_edges, 0U) << what;
   EXPECT_EQ(t.bad_vertices, 0U) << what;
+}
+
+TEST(Octree, StopsWithinALevel) {
+  constexpr int kDeep = 5;
+  std::atomic<bool> cancel{false};
+  const auto split = [&](const g3r::mesh::OctreeNode& node) {
+    cancel = node.level == kDeep;
+    return node.level < kDeep ? g3r::mesh::Split::kYes : g3r::mesh::Split::kNo;
+  };
+  EXPECT_THROW(Octree({-1, -1, -1}, 2, {}, split, &cancel), g3r::Cancelled);
 }
 
 constexpr int kFields = kSanitized ? 300 : 2000;

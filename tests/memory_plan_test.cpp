@@ -37,11 +37,9 @@ TEST(PlannedMemory, GrowsWithEveryPointAndIsHeldToTheLimit) {
   EXPECT_LT(planned_memory(s, 2000, 1000), planned_memory(s, 2000, 2000));
   s.dense = true;
   EXPECT_GE(planned_memory(s, 1000, 1000), 9 * 1000 * 1000 * sizeof(double));
-  Options options;
-  EXPECT_NO_THROW(require_memory(std::size_t{1} << 50, options));  // 0: no limit
-  options.max_memory = 1000;
-  EXPECT_NO_THROW(require_memory(1000, options));
-  EXPECT_THROW(require_memory(1001, options), Unavailable);
+  EXPECT_NO_THROW(require_memory(std::size_t{1} << 50, 0));  // 0: no limit
+  EXPECT_NO_THROW(require_memory(1000, 1000));
+  EXPECT_THROW(require_memory(1001, 1000), Unavailable);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "base/median.h"
 #include "base/vector.h"
 #include "field_shapes.h"
+#include "mesh/component_support.h"
 #include "mesh/field_mesher.h"
 #include "mesh/mesh_parts.h"
 #include "mesh/simplify.h"
@@ -356,6 +357,67 @@ TEST(MeshFinish, ColoursAndConfidenceFollowTheNearestPoints) {
     }
   }
   EXPECT_THROW(carry_attributes(two.mesh, two.sample.points, {{1, 2, 3}}, {}), InvalidInput);
+}
+
+TEST(MeshFinish, ConfidencesThatAreNotFiniteTakeNoPart) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
+  const std::vector<Vec3> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {9, 0, 0}, {9, 1, 0}, {9, 0, 1}, {8, 0, 0}};
+  Mesh mesh;
+  mesh.vertices = {{0.1, 0.1, 0.1}, {9, 0.1, 0.1}};
+  carry_attributes(mesh, points, {}, {kNan, 0.75F, kInfinity, 0.75F, kNan, kNan, kNan, -kInfinity});
+  EXPECT_FLOAT_EQ(mesh.confidence[0], 0.75F);
+  EXPECT_EQ(mesh.confidence[1], 0);
+}
+
+// Of a grid most vertices have several points as far as the fourth.
+TEST(MeshFinish, AttributesDoNotDependOnTheOrderOfThePoints) {
+  constexpr std::uint32_t kSide = 6;
+  std::vector<Vec3> points;
+  Mesh mesh;
+  for (std::uint32_t i = 0; i < kSide * kSide * kSide; ++i) {
+    const Vec3 p{static_cast<double>(i % kSide), static_cast<double>(i / kSide % kSide), static_cast<double>(i / kSide / kSide)};
+    points.push_back(p);
+    if (i % 5 == 0) points.push_back(p);
+    mesh.vertices.push_back(vector::add(p, {0.5, 0.5, 0.5}));
+  }
+  std::vector<std::array<std::uint8_t, 3>> colors(points.size());
+  std::vector<float> confidence(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    colors[i] = {static_cast<std::uint8_t>(37 * i), static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(101 * i)};
+    confidence[i] = static_cast<float>(i) / static_cast<float>(points.size());
+  }
+  Mesh turned = mesh;
+  carry_attributes(mesh, points, colors, confidence);
+  std::reverse(points.begin(), points.end());
+  std::reverse(colors.begin(), colors.end());
+  std::reverse(confidence.begin(), confidence.end());
+  carry_attributes(turned, points, colors, confidence);
+  EXPECT_EQ(turned.colors, mesh.colors);
+  EXPECT_EQ(turned.confidence, mesh.confidence);
+}
+
+TEST(MeshFinish, PointsAtOnePlaceCountOnceWithTheirMean) {
+  const std::vector<Vec3> points = {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {0, 1, 0}, {0, 0, 0}};
+  Mesh mesh;
+  mesh.vertices = {{0, 0, 0}};
+  carry_attributes(mesh, points, {{0, 0, 30}, {200, 0, 0}, {90, 0, 30}, {200, 0, 0}, {0, 60, 30}}, {0, 0, 0.5F, 0, 1});
+  EXPECT_EQ(mesh.colors[0], (std::array<std::uint8_t, 3>{30, 20, 30}));
+  EXPECT_FLOAT_EQ(mesh.confidence[0], 0.5F);
+}
+
+TEST(MeshFinish, SpuriousComponentsAreNotAmongTheLargestThatAreKept) {
+  std::vector<mesh::Support> support(4);
+  for (std::size_t k = 0; k < support.size(); ++k) {
+    mesh::Support& of = support[k];
+    of.area = of.near_area = static_cast<double>(support.size() - k);
+    of.stands_for = of.stands_for_under_noise = of.points = 1000;
+  }
+  support[1].strays = 2000;  // more than its points
+  MeshOptions options;
+  options.keep_largest = 2;
+  Dropped dropped;
+  EXPECT_EQ(mesh::kept_components(support, options, 0, dropped), (std::vector<std::uint8_t>{1, 0, 1, 0}));
+  EXPECT_EQ(dropped.components, 1U);
 }
 
 }  // namespace

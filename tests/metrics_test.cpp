@@ -2,6 +2,7 @@
 #include <g3r/metrics.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <limits>
 #include <map>
 
@@ -138,6 +139,15 @@ TEST(SampleMesh, SameSeedSamePointsAndAnotherSeedOthers) {
   EXPECT_NE(sample_mesh(mesh, 500, 9).points, sample_mesh(mesh, 500, 10).points);
 }
 
+TEST(SampleMesh, AndScoresCanBeStopped) {
+  const Mesh mesh = shapes::cube();
+  std::atomic<bool> cancel{true};
+  EXPECT_THROW((void)sample_mesh(mesh, 10, 1, 0, {nullptr, &cancel}), Cancelled);
+  EXPECT_THROW((void)score_mesh(mesh, mesh, {10}, {nullptr, &cancel}), Cancelled);
+  const auto stop = [](std::string_view, double fraction) { return fraction < 0.1; };
+  EXPECT_THROW((void)sample_mesh(mesh, 1'000'000, 1, 0, {stop, nullptr}), Cancelled);
+}
+
 TEST(SampleMesh, SameBytesOnEveryMachine) {
   const Vec3 p = sample_mesh(shapes::tetrahedron(), 1, 42, 0.5).points[0];
   EXPECT_EQ(p, (Vec3{0.005489992287764117, 0.8336173602989057, -0.2797681489592497}));
@@ -238,7 +248,7 @@ TEST(TriangleTree, TrianglesWithoutAreaAreNeverTheClosest) {
 
 // Spheres of radius 1 and 1.1: every sample is 0.1 from the other, so that nothing is within less and all within more.
 TEST(ScoreMesh, FScoresCountWhatIsWithinADistance) {
-  const MeshScore score = score_mesh(shapes::sphere(1.1, 200), shapes::sphere(1, 200), 5000, 1, {0.09, 0.11});
+  const MeshScore score = score_mesh(shapes::sphere(1.1, 200), shapes::sphere(1, 200), {5000, 1, {0.09, 0.11}});
   ASSERT_EQ(score.f_scores.size(), 2U);
   EXPECT_EQ(score.f_scores[0].f, 0);
   EXPECT_EQ(score.f_scores[1].f, 1);
@@ -248,7 +258,7 @@ TEST(ScoreMesh, FScoresCountWhatIsWithinADistance) {
 // One of two spheres far apart: what is there is right, half is missing.
 TEST(ScoreMesh, PrecisionIsOfTheMeshAndRecallOfTheTruth) {
   const Mesh one = shapes::sphere(1, 60);
-  const FScore score = score_mesh(one, shapes::united(one, shapes::moved(one, {5, 0, 0})), 20000, 1, {0.01}).f_scores[0];
+  const FScore score = score_mesh(one, shapes::united(one, shapes::moved(one, {5, 0, 0})), {20000, 1, {0.01}}).f_scores[0];
   EXPECT_EQ(score.precision, 1);
   EXPECT_NEAR(score.recall, 0.5, 5 * 0.5 / std::sqrt(20000.0));  // five standard deviations
   EXPECT_NEAR(score.f, 2 * score.recall / (1 + score.recall), kRoundingOfScores);
@@ -257,12 +267,12 @@ TEST(ScoreMesh, PrecisionIsOfTheMeshAndRecallOfTheTruth) {
 // Normals that point the other way are consistent still.
 TEST(ScoreMesh, NormalConsistencyHasNoSides) {
   const Mesh mesh = shapes::cube();
-  EXPECT_NEAR(score_mesh(shapes::inverted(mesh), mesh, 2000, 1).normal_consistency, 1, 1e-12);
+  EXPECT_NEAR(score_mesh(shapes::inverted(mesh), mesh, {2000, 1}).normal_consistency, 1, 1e-12);
 }
 
 TEST(ScoreMesh, MeshAgainstItselfHasNoError) {
   const Mesh mesh = shapes::torus(1, 0.3, 40, 20);
-  const MeshScore score = score_mesh(mesh, mesh, 5000, 1);
+  const MeshScore score = score_mesh(mesh, mesh, {5000, 1});
   EXPECT_LT(score.chamfer, kRoundingOfScores);
   EXPECT_LT(score.hausdorff, kRoundingOfScores);
   EXPECT_LT(score.ae, kRoundingOfScores);
@@ -270,7 +280,7 @@ TEST(ScoreMesh, MeshAgainstItselfHasNoError) {
 
 TEST(ScoreMesh, ConcentricSpheresAreTheDifferenceOfRadiiApart) {
   const double facet = 1 - std::cos(shapes::kPi / 100);  // how far the facets of 200 slices lie inside the sphere
-  const MeshScore score = score_mesh(shapes::sphere(1.1, 200), shapes::sphere(1, 200), 20000, 1);
+  const MeshScore score = score_mesh(shapes::sphere(1.1, 200), shapes::sphere(1, 200), {20000, 1});
   EXPECT_NEAR(score.chamfer, 0.1, 3 * facet);
   EXPECT_NEAR(score.hausdorff, 0.1, 3 * facet);
   EXPECT_LT(score.ae, 1e-3);
@@ -278,13 +288,13 @@ TEST(ScoreMesh, ConcentricSpheresAreTheDifferenceOfRadiiApart) {
 
 TEST(ScoreMesh, InvertedMeshHasAngleErrorOne) {
   const Mesh mesh = shapes::sphere(1, 60);
-  EXPECT_NEAR(score_mesh(shapes::inverted(mesh), mesh, 5000, 1).ae, 1, 1e-12);
+  EXPECT_NEAR(score_mesh(shapes::inverted(mesh), mesh, {5000, 1}).ae, 1, 1e-12);
 }
 
 TEST(ScoreMesh, TranslatedPlaneIsAsFarAsTheTranslation) {
   const Mesh low = shapes::square(1, 0, 7);
   const Mesh high = shapes::square(1, 0.25, 3);
-  const MeshScore score = score_mesh(low, high, 5000, 1);
+  const MeshScore score = score_mesh(low, high, {5000, 1});
   EXPECT_NEAR(score.chamfer, 0.25, kRoundingOfScores);
   EXPECT_NEAR(score.hausdorff, 0.25, kRoundingOfScores);
   EXPECT_NEAR(score.ae, 0, kRoundingOfScores);
@@ -294,16 +304,16 @@ TEST(ScoreMesh, MissingPartShowsInOneDirectionOnly) {
   // Truth: two spheres 10 apart; mesh: one of them. Half of the true samples are about 8 away or more.
   const Mesh one = shapes::sphere(1, 40);
   const Mesh both = shapes::united(one, shapes::moved(one, {10, 0, 0}));
-  const MeshScore score = score_mesh(one, both, 5000, 1);
+  const MeshScore score = score_mesh(one, both, {5000, 1});
   EXPECT_GT(score.chamfer, 0.25 * 8);
   EXPECT_LT(score.chamfer, 0.25 * 10);
   EXPECT_NEAR(score.hausdorff, 10, 0.01);
 }
 
 TEST(ScoreMesh, BadInputIsRefused) {
-  EXPECT_THROW((void)score_mesh(shapes::cube(), shapes::cube(), 0), InvalidInput);
-  EXPECT_THROW((void)score_mesh(shapes::cube(), shapes::cube(), 10, 0, {0.0}), InvalidInput);
-  EXPECT_THROW((void)score_mesh(shapes::cube(), shapes::cube(), 10, 0, {kNan}), InvalidInput);
+  EXPECT_THROW((void)score_mesh(shapes::cube(), shapes::cube(), {0}), InvalidInput);
+  EXPECT_THROW((void)score_mesh(shapes::cube(), shapes::cube(), {10, 0, {0.0}}), InvalidInput);
+  EXPECT_THROW((void)score_mesh(shapes::cube(), shapes::cube(), {10, 0, {kNan}}), InvalidInput);
   EXPECT_THROW((void)score_mesh({}, shapes::cube()), InvalidInput);
   EXPECT_THROW((void)score_mesh(shapes::cube(), {}), InvalidInput);
 }

@@ -96,7 +96,7 @@ TEST(ScreenedPoisson, LargeCoordinatesAndOddUnitsGiveTheSameSurface) {
     for (Vec3& p : there.points) p = {p[0] * scale + offset[0], p[1] * scale + offset[1], p[2] * scale + offset[2]};
     Mesh back = reconstructed(there);
     for (Vec3& p : back.vertices) p = {(p[0] - offset[0]) / scale, (p[1] - offset[1]) / scale, (p[2] - offset[2]) / scale};
-    EXPECT_LT(score_mesh(back, at_origin, 5000).hausdorff, 0.01 * cell);  // the solver stops at a residual of 1e-3
+    EXPECT_LT(score_mesh(back, at_origin, {5000}).hausdorff, 0.01 * cell);  // the solver stops at a residual of 1e-3
   }
 }
 

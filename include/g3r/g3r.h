@@ -193,6 +193,7 @@ struct MeshOptions {
   Length noise;
   int threads = 0;  ///< of mesh_oriented(), 0: all cores; reconstruct() takes Options::threads. The result does not depend on it
   std::string device = "auto";  ///< of mesh_oriented(), see Options::device; reconstruct() takes that
+  std::size_t max_memory = 0;   ///< of mesh_oriented(), see Options::max_memory; reconstruct() takes that
 };
 
 /// A mesh together with the normals it was made from.
@@ -208,19 +209,26 @@ struct Reconstruction {
 [[nodiscard]] Reconstruction reconstruct(const PointsView& points, const Options& options = {}, const MeshOptions& mesh_options = {},
                                          const Monitor& monitor = {});
 
+/// What mesh_oriented() did and how it went.
+struct MeshReport {
+  Stats stats;      ///< as of reconstruct(), without what belongs to a solve and without times
+  MeshCheck check;  ///< of the mesh
+};
+
 /// Meshes points that already have outward normals: N points and N normals (any length but zero).
 /// Points with a non-finite coordinate or a zero normal are left out.
-/// The field mesher takes the areas from the spacing of the points. O(N log N) time, O(N) memory. `dropped` (may be null): what was left
-/// out for want of support. Throws InvalidInput (fewer than 4 points left, numbers that differ, an option out of range, no surface found),
-/// Cancelled, Unavailable (without the mesher or device that is asked for), std::bad_alloc.
+/// The field mesher takes the areas from the spacing of the points. O(N log N) time, O(N) memory. `report` (may be null) is filled in.
+/// Throws InvalidInput (fewer than 4 points left, numbers that differ, an option out of range, no surface found), Cancelled, Unavailable
+/// (without the mesher or device that is asked for, beyond max_memory), std::bad_alloc.
 [[nodiscard]] Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const MeshOptions& options = {},
-                                 const Monitor& monitor = {}, Dropped* dropped = nullptr);
+                                 const Monitor& monitor = {}, MeshReport* report = nullptr);
 
 /// Gives every vertex the mean colour and confidence of the 4 points nearest to it, weighed by 1 / distance^2, replacing what it had.
-/// N points, and N colours and confidences (either may be empty); points that are not finite take no part. O(V log N).
-/// Throws InvalidInput if the numbers differ.
+/// N points, and N colours and confidences (either may be empty). Points at one place count once, with the mean of what they have; points
+/// and confidences that are not finite take no part, and where all 4 have none it is 0. The result does not depend on the order of the
+/// points. O(N + V log N). Throws InvalidInput if the numbers differ, Cancelled.
 void carry_attributes(Mesh& mesh, const PointsView& points, const std::vector<std::array<std::uint8_t, 3>>& colors,
-                      const std::vector<float>& confidence);
+                      const std::vector<float>& confidence, const Monitor& monitor = {});
 
 /// What orient() would begin with, without solving: counts, box, spacing, noise, epsilon, memory plan. Where the result of that leaves many
 /// signs unsure, orient() tries another noise, and its report has the noise and epsilon of what it took. O(N log N). Throws InvalidInput

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <g3r/export.h>
+#include <g3r/g3r.h>
 #include <g3r/mesh.h>
 #include <g3r/points.h>
 
@@ -34,8 +35,15 @@ struct FScore {
   double f = 0;
 };
 
-/// Mesh against true mesh, both sampled uniformly by area with `samples` points from `seed`. Exact closest points; lengths in mesh units.
-/// O((F + samples) log F). Throws InvalidInput for a mesh that sample_mesh() does not take, a distance that is not above 0.
+/// What score_mesh() samples and asks.
+struct MeshScoreOptions {
+  std::size_t samples = 200000;        ///< points on each mesh, uniform by area, at least 1
+  std::uint64_t seed = 0;              ///< of the points
+  std::vector<double> distances = {};  ///< of the F-scores, in mesh units, above 0
+};
+
+/// Mesh against true mesh, both sampled. Exact closest points; lengths in mesh units. O((F + samples) log F).
+/// Throws InvalidInput for a mesh that sample_mesh() does not take, an option out of range; Cancelled.
 struct MeshScore {
   double chamfer = 0;             ///< CD: mean of the two one-sided mean distances to the other surface
   double ae = 0;                  ///< AE_m: mean (1 - n . n') / 2 over the same closest pairs, both directions
@@ -43,8 +51,7 @@ struct MeshScore {
   double normal_consistency = 0;  ///< mean |n . n'| over the pairs of AE_m (Mescheder et al., "Occupancy Networks", 2019)
   std::vector<FScore> f_scores;   ///< one for every distance, in their order
 };
-[[nodiscard]] MeshScore score_mesh(const Mesh& mesh, const Mesh& truth, std::size_t samples = 200000, std::uint64_t seed = 0,
-                                   const std::vector<double>& distances = {});
+[[nodiscard]] MeshScore score_mesh(const Mesh& mesh, const Mesh& truth, const MeshScoreOptions& options = {}, const Monitor& monitor = {});
 
 /// Points on a mesh, uniform by area, with the normals of their triangles.
 struct Samples {
@@ -53,7 +60,7 @@ struct Samples {
 };
 /// `noise`: standard deviation of an isotropic Gaussian displacement, in mesh units. The same seed gives the same bytes everywhere,
 /// and the same points under any noise. Triangles without area get none. O(F + count log F).
-/// Throws InvalidInput for a mesh without area, or with a triangle whose vertex does not exist, is not finite or beyond 1e50.
-[[nodiscard]] Samples sample_mesh(const Mesh& mesh, std::size_t count, std::uint64_t seed, double noise = 0);
+/// Throws InvalidInput for a mesh without area, or with a triangle whose vertex does not exist, is not finite or beyond 1e50; Cancelled.
+[[nodiscard]] Samples sample_mesh(const Mesh& mesh, std::size_t count, std::uint64_t seed, double noise = 0, const Monitor& monitor = {});
 
 }  // namespace g3r

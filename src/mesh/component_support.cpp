@@ -88,6 +88,7 @@ std::vector<std::uint8_t> kept_components(const std::vector<Support>& support, c
   const bool by_points = !options.min_component && !options.keep_all;
   const double least_points = least_points_of_a_part(strays);
   std::vector<std::uint8_t> keep(support.size(), 1);
+  std::size_t kept = 1;
   for (std::size_t k = 1; k < order.size(); ++k) {
     const Support& of = support[order[k]];
     const double stands_for = options.min_component ? of.stands_for : of.stands_for_under_noise;
@@ -95,8 +96,10 @@ std::vector<std::uint8_t> kept_components(const std::vector<Support>& support, c
       keep[order[k]] = 0;
       ++dropped.components;
       dropped.area += of.area;
-    } else if (options.keep_largest > 0 && k >= options.keep_largest) {
+    } else if (options.keep_largest > 0 && kept >= options.keep_largest) {
       keep[order[k]] = 0;
+    } else {
+      ++kept;
     }
   }
   return keep;

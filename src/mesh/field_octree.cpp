@@ -17,11 +17,17 @@ namespace {
 
 constexpr int kKeyBits = kMaxOctreeLevel + 1;  // A corner coordinate is 0 to 2^kMaxOctreeLevel, the last included.
 
+constexpr std::size_t kAskEvery = 4096;  // Cells between two looks at whether to go on: about a millisecond.
+
 constexpr std::uint32_t kLargestNode = std::numeric_limits<std::int32_t>::max();                           // a node's number has 31 bits,
 constexpr std::uint32_t kMostNodes = std::numeric_limits<std::uint32_t>::max() / kLatticeSize * kOctants;  // and a corner's place 32
 
 std::uint64_t corner_key(const std::array<std::uint32_t, 3>& c) {
   return (std::uint64_t{c[2]} << (2 * kKeyBits)) | (std::uint64_t{c[1]} << kKeyBits) | c[0];
+}
+
+void ask_each(std::size_t cell, const std::atomic<bool>* cancel) {
+  if (cell % kAskEvery == 0 && cancel != nullptr && cancel->load(std::memory_order_relaxed)) throw Cancelled();
 }
 
 // Nodes of one level still to be looked at, with the requests that touch each of them.
@@ -97,12 +103,13 @@ Octree::Octree(const Vec3& low, double side, const std::vector<RefineDisc>& requ
   families_.shrink_to_fit();
   leaf_nodes_.reserve(nodes_.size() - (nodes_.size() - 1) / kOctants);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    ask_each(i, cancel);
     if (nodes_[i].split != 0) continue;
     nodes_[i].next = static_cast<std::uint32_t>(leaf_nodes_.size()) & kLargestNode;
     leaf_nodes_.push_back(static_cast<std::uint32_t>(i));
     depth_ = std::max(depth_, static_cast<int>(level_of(static_cast<std::uint32_t>(i))));
   }
-  number_corners();
+  number_corners(cancel);
 }
 
 void Octree::refine(const std::vector<RefineDisc>& requests, const SplitRule& rule, const std::atomic<bool>* cancel) {
@@ -113,10 +120,10 @@ void Octree::refine(const std::vector<RefineDisc>& requests, const SplitRule& ru
   for (std::size_t i = 0; i < requests.size(); ++i) front.request[i] = static_cast<std::uint32_t>(i);
 
   for (int level = 0; level < kMaxOctreeLevel && !front.node.empty(); ++level) {
-    if (cancel != nullptr && cancel->load()) throw Cancelled();
     // Split every node that some request wants deeper.
     std::vector<std::size_t> split;
     for (std::size_t f = 0; f < front.node.size(); ++f) {
+      ask_each(f, cancel);
       const Split split_it = rule(node(front.node[f]));
       bool deeper = split_it == Split::kYes;
       for (std::size_t k = front.begin[f]; split_it == Split::kAsRequested && !deeper && k < front.begin[f + 1]; ++k)
@@ -136,7 +143,7 @@ void Octree::refine(const std::vector<RefineDisc>& requests, const SplitRule& ru
     const std::size_t children = split.size() * kOctants;
     next.node.resize(children);
     std::vector<std::vector<std::uint32_t>> lists(children);
-    parallel::for_blocks(split.size(), parallel::kSmallBlock, [&](std::size_t first, std::size_t last) {
+    const auto hand_on = [&](std::size_t first, std::size_t last) {
       for (std::size_t s = first; s < last; ++s) {
         const std::uint32_t base = next_of(front.node[split[s]]);
         for (std::uint32_t c = 0; c < kOctants; ++c) {
@@ -150,22 +157,26 @@ void Octree::refine(const std::vector<RefineDisc>& requests, const SplitRule& ru
           }
         }
       }
-    });
+    };
+    parallel::for_blocks(split.size(), parallel::kSmallBlock, hand_on, cancel);
     next.begin.assign(children + 1, 0);
     for (std::size_t c = 0; c < children; ++c) next.begin[c + 1] = next.begin[c] + lists[c].size();
     next.request.resize(next.begin[children]);
     for (std::size_t c = 0; c < children; ++c) {
+      ask_each(c, cancel);
       std::copy(lists[c].begin(), lists[c].end(), next.request.begin() + static_cast<std::ptrdiff_t>(next.begin[c]));
     }
     front = std::move(next);
   }
 }
 
-void Octree::number_corners() {
+void Octree::number_corners(const std::atomic<bool>* cancel) {
   family_corners_.resize(family(static_cast<std::uint32_t>(nodes_.size() - 1)) + 1);
   std::vector<std::uint64_t> keys;
   CornerTable table(leaf_nodes_.size());  // grows where there are more
-  for (const std::uint32_t leaf : leaf_nodes_) {
+  for (std::size_t number = 0; number < leaf_nodes_.size(); ++number) {
+    ask_each(number, cancel);
+    const std::uint32_t leaf = leaf_nodes_[number];
     const OctreeNode own = node(leaf);
     for (std::uint32_t c = 0; c < kOctants; ++c) {
       std::array<std::uint32_t, 3> g{};

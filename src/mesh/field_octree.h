@@ -121,7 +121,7 @@ class Octree {
   static std::size_t family(std::uint32_t node) { return node == 0 ? 0 : (node - 1) / kOctants; }
   static std::uint32_t sibling(std::uint32_t node) { return node == 0 ? 0 : (node - 1) % kOctants; }
   void refine(const std::vector<RefineDisc>& requests, const SplitRule& rule, const std::atomic<bool>* cancel);
-  void number_corners();
+  void number_corners(const std::atomic<bool>* cancel);
 
   Vec3 low_;
   double unit_ = 1;

@@ -47,7 +47,7 @@ double longest_side(const std::array<Vec3, 3>& corner) {
 // Which triangles have no place farther than the limits but what is cut off with a corner. Corners tell of small ones; of large ones the
 // middles of the sides and the centre are asked as well. `off`: which vertices are farther.
 std::vector<std::uint8_t> within(const Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>& limits,
-                                 const std::vector<std::uint8_t>& off) {
+                                 const std::vector<std::uint8_t>& off, const std::atomic<bool>* cancel) {
   // No place of a smaller triangle is much farther from a point than its corners.
   const double small = 0.5 * *std::min_element(limits.begin(), limits.end());
   std::vector<std::uint8_t> keep(mesh.triangles.size(), 1);
@@ -62,7 +62,8 @@ std::vector<std::uint8_t> within(const Mesh& mesh, const std::vector<Vec3>& poin
     places.push_back(centre_of(mesh, v));
     asker.resize(places.size(), t);
   }
-  const std::vector<double> distance = distance_to_points(places, points, [&](std::uint32_t i) { return limits[i]; });
+  const std::vector<double> distance = distance_to_points(
+      places, points, [&](std::uint32_t i) { return limits[i]; }, cancel);
   for (std::size_t k = 0; k < places.size(); ++k) {
     if (distance[k] > 1) keep[asker[k]] = 0;
   }
@@ -85,12 +86,12 @@ std::vector<Vec3> normals_of(const Mesh& mesh) {
 // with m and n the means of the offsets and normals of the points around it, weighed with the area that each stands for and a Gaussian of
 // width s = kGap spacings: at the rim of a flat half plane |m| = sqrt(2 / pi) s. Across creases m and n are parallel, at the edges of thin
 // parts n is short, and surface that closes the scan is turned away from n. What is farther than s from every point is past them too.
-std::vector<double> past_rims(const Mesh& mesh, const OrientedPoints& points) {
+std::vector<double> past_rims(const Mesh& mesh, const OrientedPoints& points, const std::atomic<bool>* cancel) {
   const std::vector<double> width = spacing_across_lines(points.positions, points.spacing);
   const std::vector<Vec3> normals = normals_of(mesh);
   const Neighbours neighbours(points.positions);
   std::vector<double> past(mesh.vertices.size());
-  parallel::for_blocks(past.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
+  const auto past_of = [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> near;
     std::vector<double> squared;
     for (std::size_t v = begin; v < end; ++v) {
@@ -115,7 +116,8 @@ std::vector<double> past_rims(const Mesh& mesh, const OrientedPoints& points) {
       const double aside = std::sqrt(vector::dot(across, across)) / (std::sqrt(2 / std::numbers::pi) * s);
       past[v] = std::max(far, aside + std::sqrt(vector::dot(n, n)) - vector::dot(n, normals[v]) - 1);
     }
-  });
+  };
+  parallel::for_blocks(past.size(), parallel::kSmallBlock, past_of, cancel);
   return past;
 }
 
@@ -170,18 +172,18 @@ void cut_off(Mesh& mesh, const std::vector<double>& past, const std::vector<std:
 
 }  // namespace
 
-void trim(Mesh& mesh, const OrientedPoints& points, const MeshOptions& options) {
+void trim(Mesh& mesh, const OrientedPoints& points, const MeshOptions& options, const std::atomic<bool>* cancel) {
   const std::vector<double> limits = limits_of(points.spacing, options);
   const auto limit = [&](std::uint32_t i) { return limits[i]; };
-  std::vector<double> past = distance_to_points(mesh.vertices, points.positions, limit);
+  std::vector<double> past = distance_to_points(mesh.vertices, points.positions, limit, cancel);
   for (double& d : past) d -= 1;
   std::vector<std::uint8_t> off(past.size());
   std::transform(past.begin(), past.end(), off.begin(), [](double d) { return d > 0 ? 1 : 0; });
-  std::vector<std::uint8_t> keep = within(mesh, points.positions, limits, off);
+  std::vector<std::uint8_t> keep = within(mesh, points.positions, limits, off, cancel);
   const auto is_set = [](std::uint8_t byte) { return byte != 0; };
   if (std::none_of(off.begin(), off.end(), is_set) && std::all_of(keep.begin(), keep.end(), is_set)) return;
   if (options.trim == MeshOptions::Trim::kAuto) {
-    const std::vector<double> rims = past_rims(mesh, points);
+    const std::vector<double> rims = past_rims(mesh, points, cancel);
     for (std::size_t v = 0; v < past.size(); ++v) past[v] = std::max(past[v], rims[v]);
     for (std::size_t t = 0; t < keep.size(); ++t) {
       for (const std::uint32_t v : mesh.triangles[t]) {
@@ -195,7 +197,7 @@ void trim(Mesh& mesh, const OrientedPoints& points, const MeshOptions& options) 
   if (mesh.triangles.empty()) throw InvalidInput("trimming removed the whole mesh: the trim distance is too small");
   smooth_rims(mesh, [&](const std::vector<Vec3>& places) {
     std::vector<std::uint8_t> near(places.size());
-    const std::vector<double> distance = distance_to_points(places, points.positions, limit);
+    const std::vector<double> distance = distance_to_points(places, points.positions, limit, cancel);
     std::transform(distance.begin(), distance.end(), near.begin(), [](double d) { return d <= 1 ? 1 : 0; });
     return near;
   });

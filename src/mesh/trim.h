@@ -5,6 +5,8 @@
 
 #include <g3r/g3r.h>
 
+#include <atomic>
+
 namespace g3r::mesh {
 
 /// Cuts off what is farther from every point than `trim_distance`, or (auto) than 4 spacings: of the cloud, or of the place where that is
@@ -12,7 +14,7 @@ namespace g3r::mesh {
 /// on as far for nothing: from there inwards (auto) all goes that is past the rims of the points, where as many of these are missing as on
 /// the other side of an edge, and what is turned away from their normals. The mesh is cut between its vertices, and its rims are smoothed
 /// (smooth_rims) within the same distances. Nothing happens to surface that is nowhere too far. `mesh`: without colours. O((F + N) log N).
-/// Throws InvalidInput if nothing would be left.
-void trim(Mesh& mesh, const OrientedPoints& points, const MeshOptions& options);
+/// Throws InvalidInput if nothing would be left; Cancelled.
+void trim(Mesh& mesh, const OrientedPoints& points, const MeshOptions& options, const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace g3r::mesh

@@ -16,15 +16,22 @@ namespace {
 constexpr std::uint64_t kPositionStream = 0;
 constexpr std::uint64_t kNoiseStream = 1;
 
+constexpr std::size_t kAskEvery = 65536;  // Samples between two looks at whether to go on: a few milliseconds.
+
 using vector::add;
 using vector::cross;
 using vector::dot;
 using vector::scale;
 using vector::subtract;
 
+void ask(const Monitor& monitor, std::size_t done, std::size_t count) {
+  if (monitor.cancel != nullptr && monitor.cancel->load(std::memory_order_relaxed)) throw Cancelled();
+  if (monitor.progress && !monitor.progress("sample", static_cast<double>(done) / static_cast<double>(count))) throw Cancelled();
+}
+
 }  // namespace
 
-Samples sample_mesh(const Mesh& mesh, std::size_t count, std::uint64_t seed, double noise) {
+Samples sample_mesh(const Mesh& mesh, std::size_t count, std::uint64_t seed, double noise, const Monitor& monitor) {
   if (!(noise >= 0) || !std::isfinite(noise)) throw InvalidInput("the noise of a sample must be finite and not negative");
   const vector::Box box = box_of_used_vertices(mesh);
   if (mesh.triangles.empty()) throw InvalidInput("a mesh without triangles cannot be sampled");
@@ -49,6 +56,7 @@ Samples sample_mesh(const Mesh& mesh, std::size_t count, std::uint64_t seed, dou
   Random position(seed, kPositionStream);
   Random displacement(seed, kNoiseStream);
   for (std::size_t i = 0; i < count; ++i) {
+    if (i % kAskEvery == 0) ask(monitor, i, count);
     // The first sum above the drawn value belongs to a triangle with an area.
     const auto drawn = std::upper_bound(area_up_to.begin(), area_up_to.end(), position.uniform() * total) - area_up_to.begin();
     const auto& t = mesh.triangles[std::min(static_cast<std::size_t>(drawn), mesh.triangles.size() - 1)];

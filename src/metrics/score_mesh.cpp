@@ -3,6 +3,7 @@
 #include <g3r/metrics.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <vector>
 
@@ -32,10 +33,11 @@ struct OneWay {
   }
 };
 
-OneWay compare(const Samples& samples, const TriangleTree& surface, const std::vector<double>& distances) {
+OneWay compare(const Samples& samples, const TriangleTree& surface, const std::vector<double>& distances, const std::atomic<bool>* cancel) {
   OneWay none;
   none.within.assign(distances.size(), 0);
   return parallel::sum_blocks(samples.points.size(), parallel::kBlock, none, [&](std::size_t begin, std::size_t end) {
+    if (cancel != nullptr && cancel->load(std::memory_order_relaxed)) throw Cancelled();
     OneWay sum = none;
     for (std::size_t i = begin; i < end; ++i) {
       const TriangleTree::Closest closest = surface.closest(samples.points[i]);
@@ -52,14 +54,16 @@ OneWay compare(const Samples& samples, const TriangleTree& surface, const std::v
 
 }  // namespace
 
-MeshScore score_mesh(const Mesh& mesh, const Mesh& truth, std::size_t samples, std::uint64_t seed, const std::vector<double>& distances) {
+MeshScore score_mesh(const Mesh& mesh, const Mesh& truth, const MeshScoreOptions& options, const Monitor& monitor) {
+  const std::vector<double>& distances = options.distances;
   for (const double d : distances) {
     if (!(d > 0)) throw InvalidInput("the distance of an F-score must be above 0");
   }
-  if (samples == 0) throw InvalidInput("the number of samples must be positive");
-  const OneWay to_truth = compare(sample_mesh(mesh, samples, seed), TriangleTree(truth), distances);
-  const OneWay to_mesh = compare(sample_mesh(truth, samples, seed), TriangleTree(mesh), distances);
-  const auto count = static_cast<double>(samples);
+  if (options.samples == 0) throw InvalidInput("the number of samples must be positive");
+  const auto samples_of = [&](const Mesh& of) { return sample_mesh(of, options.samples, options.seed, 0, monitor); };
+  const OneWay to_truth = compare(samples_of(mesh), TriangleTree(truth), distances, monitor.cancel);
+  const OneWay to_mesh = compare(samples_of(truth), TriangleTree(mesh), distances, monitor.cancel);
+  const auto count = static_cast<double>(options.samples);
   MeshScore score;
   score.chamfer = (to_truth.distance + to_mesh.distance) / (2 * count);
   score.ae = (to_truth.angle_error + to_mesh.angle_error) / (2 * count);

@@ -49,11 +49,10 @@ std::size_t planned_memory(const Settings& settings, std::size_t given, std::siz
   return whole_bytes(bytes);
 }
 
-void require_memory(std::size_t planned_bytes, const Options& options) {
-  if (options.max_memory == 0 || planned_bytes <= options.max_memory) return;
+void require_memory(std::size_t planned_bytes, std::size_t limit) {
+  if (limit == 0 || planned_bytes <= limit) return;
   throw Unavailable("the plan needs " + std::to_string(mebibytes_needed(planned_bytes)) + " MiB, the limit is " +
-                    std::to_string(mebibytes(options.max_memory)) +
-                    " MiB; raise the limit, thin the cloud, or lower the depth of the mesh");
+                    std::to_string(mebibytes(limit)) + " MiB; raise the limit, thin the cloud, or lower the depth of the mesh");
 }
 
 }  // namespace g3r

@@ -14,7 +14,7 @@ namespace g3r {
 /// open, 1.3.
 [[nodiscard]] std::size_t planned_memory(const Settings& settings, std::size_t given, std::size_t used);
 
-/// Throws Unavailable if the plan exceeds options.max_memory.
-void require_memory(std::size_t planned_bytes, const Options& options);
+/// Throws Unavailable if the plan exceeds the limit, 0: none.
+void require_memory(std::size_t planned_bytes, std::size_t limit);
 
 }  // namespace g3r
