@@ -82,6 +82,7 @@ class Memory(ProgramTest):
             self.expect(OK, *arguments, "--max-memory", str(plan))
             os.remove(self.path("out.ply"))
 
+    @unittest.skipIf(is_sanitized(), "a sanitizer takes memory")
     def test_a_mesh_of_oriented_points_beyond_the_limit_is_refused(self):
         names = [("double", name) for name in ("x", "y", "z", "nx", "ny", "nz")]
         write_ply(self.path("few.ply"), names, [(*p, *p) for p in sphere(20)])
