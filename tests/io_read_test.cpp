@@ -234,6 +234,23 @@ TEST(Las, DegreesAreToldByTheCoordinateSystem) {
   EXPECT_FALSE(warned(projected));
 }
 
+TEST(Las, AHeaderOfVersion13MayEndBeforeTheWaveforms) {
+  constexpr std::size_t kOldHeader = 227;
+  std::string las = samples::written(samples::helix(1), "a.las").substr(0, kOldHeader);
+  las[io::las::kMinor] = 3;
+  las[io::las::kPointFormat] = 0;
+  io::las::put(las, io::las::kHeaderSize, static_cast<std::uint16_t>(kOldHeader));
+  io::las::put(las, io::las::kPointsAt, static_cast<std::uint32_t>(kOldHeader));
+  io::las::put(las, io::las::kVlrCount, std::uint32_t{0});
+  io::las::put(las, io::las::kRecordBytes, static_cast<std::uint16_t>(io::las::kRecordSize[0]));
+  // The point begins where longer headers say where waveforms are, with the place of the second byte after it.
+  const std::uint64_t beyond = kOldHeader + io::las::kRecordSize[0] + 1;
+  las += samples::raw(beyond) + std::string(io::las::kRecordSize[0] - sizeof beyond, '\0') + "abc";
+  const Cloud cloud = read(las);
+  ASSERT_FALSE(cloud.warnings.empty());
+  EXPECT_NE(cloud.warnings[0].find("3 trailing"), std::string::npos) << cloud.warnings[0];
+}
+
 TEST(Recognise, StrangersAreNamed) {
   EXPECT_NE(message_of("").find("empty"), std::string::npos);
   EXPECT_NE(message_of("\x1f\x8b whatever").find("gzip"), std::string::npos);

@@ -9,15 +9,20 @@
 
 #include <sys/stat.h>
 
+#include "io/las.h"
 #include "io_samples.h"
 
 namespace g3r {
 namespace {
 
+using namespace std::string_literals;
+
 using samples::Folder;
 using samples::read;
 using samples::slurp;
 using samples::spill;
+using samples::value_of;
+using Names = std::vector<std::string>;
 
 template <class Call>
 void expect_io_error(IoError::Kind kind, const Call& call) {
@@ -125,6 +130,85 @@ TEST(Orient, WhatFollowsThePointsOfALasFileIsKeptAndFound) {
   std::memcpy(&extended, bytes.data() + 235, sizeof extended);
   EXPECT_EQ(bytes.substr(extended), "extended");
   EXPECT_EQ(bytes.substr(extended - 14, 2), "ab");  // before three floats
+}
+
+// A LAS file with these extra bytes in every record.
+std::string las_with(const std::string& descriptors, const std::string& extra, std::size_t count) {
+  Cloud plain;
+  plain.positions = samples::helix(count).positions;
+  const std::string las = samples::written(plain, "a.las");
+  constexpr std::size_t kHeader = 375;
+  constexpr std::size_t kRecord = 20;
+  std::string bytes = las.substr(0, kHeader) + io::las_extra_vlr(descriptors.size()) + descriptors;
+  io::las::put(bytes, io::las::kVlrCount, std::uint32_t{1});
+  io::las::put(bytes, io::las::kPointsAt, static_cast<std::uint32_t>(bytes.size()));
+  io::las::put(bytes, io::las::kRecordBytes, static_cast<std::uint16_t>(kRecord + extra.size()));
+  for (std::size_t i = 0; i < count; ++i) bytes += las.substr(kHeader + i * kRecord, kRecord) + extra;
+  return bytes;
+}
+
+// A descriptor with a scale and an offset.
+std::string scaled_descriptor(const std::string& name, unsigned type, double scale, double offset) {
+  std::string bytes = io::las_descriptor(name, type, 8 + 16);
+  io::las::put(bytes, 112, scale);
+  io::las::put(bytes, 136, offset);
+  return bytes;
+}
+
+// The cloud with normals and confidence in a LAS file, as it is read.
+Cloud oriented_las(const Cloud& cloud) {
+  const std::vector<Vec3> normals(cloud.positions.size(), Vec3{0, 0, 1});
+  const std::vector<float> confidence(cloud.positions.size(), 0.5F);
+  const Folder folder;
+  write_cloud(folder.path("a.las"), cloud, &normals, &confidence);
+  Cloud again = read_cloud(folder.path("a.las"));
+  EXPECT_EQ(again.normals, normals);
+  EXPECT_EQ(again.confidence, confidence);
+  EXPECT_TRUE(again.warnings.empty());
+  return again;
+}
+
+TEST(LasExtraBytes, ThatAreNoFloatsMakeRoomForOursUnderAnotherName) {
+  constexpr unsigned kUint8 = 1;
+  constexpr unsigned kInt16 = 4;
+  std::string descriptors = io::las_descriptor("confidence", kUint8, 0) + io::las_descriptor("confidence_2", kUint8, 0);
+  for (const char* name : {"NormalX", "NormalY", "NormalZ"}) descriptors += scaled_descriptor(name, kInt16, 0.5, 0);
+  const std::string extra = "\7\x8" + samples::raw(std::int16_t{1}) + samples::raw(std::int16_t{-2}) + samples::raw(std::int16_t{3});
+  const Cloud cloud = read(las_with(descriptors, extra, 5));
+  EXPECT_EQ(cloud.normals[4], (Vec3{0.5, -1, 1.5}));
+  const Cloud once = oriented_las(cloud);
+  const Names added(once.property_names.end() - 9, once.property_names.end());
+  EXPECT_EQ(added,
+            (Names{"confidence_3", "confidence_2", "NormalX_2", "NormalY_2", "NormalZ_2", "NormalX", "NormalY", "NormalZ", "confidence"}));
+  EXPECT_EQ(value_of(once, "confidence_3", 4), 7);
+  EXPECT_EQ(value_of(once, "confidence_2", 4), 8);
+  EXPECT_EQ(value_of(once, "NormalY_2", 4), -1);
+  EXPECT_EQ(oriented_las(once).property_names, once.property_names);
+}
+
+TEST(LasExtraBytes, OfArraysAreSeveralNumbers) {
+  constexpr unsigned kTwoUint16 = 13;
+  constexpr unsigned kThreeFloats = 29;
+  const std::string descriptors = io::las_descriptor("confidence", kTwoUint16, 0) + io::las_descriptor("vector", kThreeFloats, 0);
+  const std::string extra =
+      samples::raw(std::uint16_t{7}) + samples::raw(std::uint16_t{8}) + samples::raw(1.5F) + samples::raw(2.5F) + samples::raw(3.5F);
+  const Cloud cloud = read(las_with(descriptors, extra, 5));
+  EXPECT_EQ(value_of(cloud, "confidence_1", 4), 8);
+  EXPECT_EQ(value_of(cloud, "vector_2", 4), 3.5);
+  const Cloud once = oriented_las(cloud);
+  EXPECT_EQ(value_of(once, "confidence_2_1", 4), 8);
+  EXPECT_EQ(value_of(once, "vector_0", 4), 1.5);
+}
+
+TEST(LasExtraBytes, AreReadWithScaleAndOffsetAndKeptAsTheyAre) {
+  constexpr unsigned kInt16 = 4;
+  const std::string bytes =
+      las_with(scaled_descriptor("amplitude", kInt16, 0.01, 100) + io::las_descriptor("width", kInt16, 0), "\x39\x30\5\0"s, 5);
+  const Cloud cloud = read(bytes);
+  EXPECT_EQ(value_of(cloud, "amplitude", 4), 223.45);
+  EXPECT_EQ(value_of(cloud, "width", 4), 5);
+  EXPECT_EQ(samples::written(cloud, "a.las"), bytes);
+  EXPECT_EQ(value_of(read(samples::written(cloud, "a.ply")), "amplitude", 4), 223.45);
 }
 
 TEST(Write, ALocaleWithDecimalCommasChangesNothing) {

@@ -17,7 +17,7 @@ std::vector<LasField> standard_fields(unsigned format) {
   std::vector<LasField> fields;
   std::size_t at = 12;
   const auto add = [&](const char* name, Type type) {
-    fields.push_back({name, type, at});
+    fields.push_back({name, type, at, DecimalSteps()});
     at += size_of(type);
   };
   add("intensity", Type::kUint16);
@@ -47,23 +47,37 @@ std::vector<LasField> standard_fields(unsigned format) {
 constexpr Type kDescribedTypes[] = {Type::kUint8, Type::kInt8,   Type::kUint16, Type::kInt16,   Type::kUint32,
                                     Type::kInt32, Type::kUint64, Type::kInt64,  Type::kFloat32, Type::kFloat64};
 
-std::string fixed_text(std::string_view bytes) { return std::string(bytes.substr(0, bytes.find('\0'))); }
+// The scale and offset of one of the numbers that a descriptor describes.
+DecimalSteps steps_of(const char* descriptor, std::size_t number) {
+  constexpr unsigned kHasScale = 8;
+  constexpr unsigned kHasOffset = 16;
+  constexpr std::size_t kScaleAt = 112;
+  constexpr std::size_t kOffsetAt = 136;
+  const auto options = static_cast<unsigned char>(descriptor[3]);
+  const double scale = (options & kHasScale) != 0 ? load<double>(descriptor + kScaleAt + 8 * number) : 1;
+  const double offset = (options & kHasOffset) != 0 ? load<double>(descriptor + kOffsetAt + 8 * number) : 0;
+  if (!std::isfinite(scale) || scale == 0 || !std::isfinite(offset)) return DecimalSteps();  // never set, though the options say so
+  return DecimalSteps(scale, offset);
+}
 
-// Adds the fields that an Extra Bytes record describes.
+// Adds the fields that an Extra Bytes record describes. Types 11 to 30 are arrays of two or three numbers of types 1 to 10.
 void describe_extra_bytes(std::string_view descriptors, LasHeader& header) {
+  constexpr unsigned kTypes = std::size(kDescribedTypes);
+  constexpr unsigned kMostNumbers = 3;
   std::size_t at = kRecordSize[header.point_format];
   for (std::size_t d = 0; d + kDescriptor <= descriptors.size(); d += kDescriptor) {
-    const auto type = static_cast<unsigned char>(descriptors[d + 2]);
-    const auto options = static_cast<unsigned char>(descriptors[d + 3]);
-    std::size_t bytes = options;  // type 0: that many bytes without meaning
-    if (type >= 1 && type <= 10) {
-      bytes = size_of(kDescribedTypes[type - 1]);
-    } else if (type != 0 || bytes == 0) {
-      break;  // deprecated arrays: the rest stays undescribed
+    const char* descriptor = descriptors.data() + d;
+    const auto type = static_cast<unsigned char>(descriptor[2]);
+    const auto options = static_cast<unsigned char>(descriptor[3]);
+    if (type > kTypes * kMostNumbers || (type == 0 && options == 0)) break;
+    const Type number = kDescribedTypes[type == 0 ? 0 : (type - 1) % kTypes];
+    const std::size_t numbers = type == 0 ? options : (type - 1) / kTypes + 1;  // type 0: that many bytes without meaning
+    if (numbers * size_of(number) > header.record_bytes - at) break;
+    const std::string name = las_text(descriptors.substr(d + kLasNameAt, kLasNameBytes));
+    for (std::size_t k = 0; k < numbers; ++k, at += size_of(number)) {
+      if (type == 0) continue;
+      header.fields.push_back({numbers == 1 ? name : name + "_" + std::to_string(k), number, at, steps_of(descriptor, k)});
     }
-    if (bytes > header.record_bytes - at) break;
-    if (type != 0) header.fields.push_back({fixed_text(descriptors.substr(d + 4, 32)), kDescribedTypes[type - 1], at});
-    at += bytes;
   }
   header.undescribed_bytes = header.record_bytes - at;
 }
@@ -101,7 +115,7 @@ void read_vlrs(const Source& source, LasHeader& header) {
     const auto length = load<std::uint16_t>(source.bytes.data() + at + 20);
     if (length > header.points_at - at - kVlrHeader)
       fail_at_byte(source, at, "a variable length record of " + std::to_string(length) + " bytes does not fit before the points");
-    const std::string user = fixed_text(source.bytes.substr(at + 2, 16));
+    const std::string user = las_text(source.bytes.substr(at + 2, 16));
     const unsigned record = load<std::uint16_t>(source.bytes.data() + at + 18);
     if (user == "LASF_Spec" && record == kExtraBytes && header.extra_vlr == 0) {
       header.extra_vlr = at;
@@ -189,11 +203,13 @@ unsigned las_type_number(Type type) {
   return 0;
 }
 
+std::string las_text(std::string_view bytes) { return std::string(bytes.substr(0, bytes.find('\0'))); }
+
 std::string las_descriptor(const std::string& name, unsigned type, std::size_t options) {
   std::string bytes(kDescriptor, '\0');
   bytes[2] = static_cast<char>(type);
   bytes[3] = static_cast<char>(options);
-  bytes.replace(4, std::min(name.size(), kLasNameBytes), name, 0, kLasNameBytes);
+  bytes.replace(kLasNameAt, std::min(name.size(), kLasNameBytes), name, 0, kLasNameBytes);
   return bytes;
 }
 

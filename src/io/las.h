@@ -16,8 +16,12 @@ namespace g3r::io {
 /// One field of a point record.
 struct LasField {
   std::string name;
-  Type type;
+  Type type;           ///< as it is stored
   std::size_t offset;  ///< in the record
+  DecimalSteps steps;  ///< of extra bytes: scale and offset, with which they are no longer of this type
+  [[nodiscard]] bool is_scaled() const { return steps.scale() != 1 || steps.offset() != 0; }
+  /// Of the property that it becomes.
+  [[nodiscard]] Type read_type() const { return is_scaled() ? Type::kFloat64 : type; }
 };
 
 /// What is needed of a header, checked against the size of the file.
@@ -70,7 +74,11 @@ char* copy_las_record(const LasHeader& header, const char* record, char* to);
 /// LAS's number of a type (1..10) in an extra-bytes descriptor.
 unsigned las_type_number(Type type);
 
+inline constexpr std::size_t kLasNameAt = 4;      ///< byte offset of the name in an extra-bytes descriptor
 inline constexpr std::size_t kLasNameBytes = 32;  ///< of an extra-bytes descriptor
+
+/// The text in so many bytes, which ends at the first 0.
+std::string las_text(std::string_view bytes);
 
 /// An extra-bytes descriptor; type 0 with `options` bytes stands for bytes without meaning.
 std::string las_descriptor(const std::string& name, unsigned type, std::size_t options);

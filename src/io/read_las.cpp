@@ -1,5 +1,5 @@
 // LAS 1.0 to 1.4, all point formats (LAZ through unpack_laz()): coordinates as X scale + offset in double (decimal_steps.h), every other
-// field and described extra byte as a property.
+// field and described extra byte as a property, with the scale and offset of its descriptor.
 #include "io/cloud_from_table.h"
 #include "io/copc.h"
 #include "io/las.h"
@@ -28,7 +28,7 @@ void check_against_header(const Source& source, const LasHeader& header, Cloud& 
   const char* bytes = source.bytes.data();
   const std::uint64_t end = header.points_at + header.count * header.record_bytes;
   std::uint64_t next = source.bytes.size();
-  if (header.minor >= 3 && load<std::uint64_t>(bytes + las::kWaveform) >= end)
+  if (header.minor >= 3 && header.header_size >= las::kWaveform + 8 && load<std::uint64_t>(bytes + las::kWaveform) >= end)
     next = std::min(next, load<std::uint64_t>(bytes + las::kWaveform));
   if (header.minor == 4 && load<std::uint32_t>(bytes + las::kEvlrCount) != 0 && load<std::uint64_t>(bytes + las::kEvlrAt) >= end) {
     next = std::min(next, load<std::uint64_t>(bytes + las::kEvlrAt));
@@ -60,7 +60,7 @@ Attributes las_table(const LasHeader& header) {
   points.count = header.count;
   points.properties.reserve(3 + header.fields.size());
   for (const char* axis : {"x", "y", "z"}) points.add(axis, Type::kFloat64);
-  for (const LasField& field : header.fields) points.add(field.name, field.type);
+  for (const LasField& field : header.fields) points.add(field.name, field.read_type());
   make_unique(points.properties);
   return table;
 }
@@ -70,7 +70,15 @@ char* copy_las_record(const LasHeader& header, const char* record, char* to) {
     const double value = header.steps[a].value(load<std::int32_t>(record + 4 * a));
     std::memcpy(to, &value, sizeof value);
   }
-  for (const LasField& field : header.fields) to = std::copy_n(record + field.offset, size_of(field.type), to);
+  for (const LasField& field : header.fields) {
+    if (!field.is_scaled()) {
+      to = std::copy_n(record + field.offset, size_of(field.type), to);
+      continue;
+    }
+    const double value = field.steps.value(load_as_double(field.type, record + field.offset));
+    std::memcpy(to, &value, sizeof value);
+    to += sizeof value;
+  }
   return to;
 }
 

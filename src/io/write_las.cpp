@@ -1,5 +1,6 @@
 // LAS out, or LAZ, of clouds read from LAS: header, variable length records and every byte of every record stay; normals and confidence are
-// added as extra bytes (NormalX, NormalY, NormalZ, confidence). Other clouds: write_las_new.cpp.
+// added as extra bytes (NormalX, NormalY, NormalZ, confidence), or replace those that are floats; what else has such a name gets another.
+// Other clouds: write_las_new.cpp.
 #include "io/las.h"
 #include "io/las_output.h"
 #include "io/las_plan.h"
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 
 namespace g3r::io {
 
@@ -44,7 +46,7 @@ std::vector<Added> place_added(bool normals, bool confidence, const LasHeader& h
   std::vector<Added> added;
   const auto place = [&](const char* name, std::size_t axis) {
     for (const LasField& field : header.fields) {
-      if (field.name == name && is_float(field.type)) {
+      if (field.name == name && is_float(field.type) && !field.is_scaled()) {
         added.push_back({field.type, field.offset, axis});
         return;
       }
@@ -66,6 +68,28 @@ std::vector<Added> place_added(bool normals, bool confidence, const LasHeader& h
   return added;
 }
 
+// Renames the extra bytes in `described` that have a name of those in `descriptors`: readers stumble over two.
+void rename_twins(std::string& described, const std::string& descriptors) {
+  const auto name_of = [](const std::string& record, std::size_t at) {
+    return las_text(std::string_view(record).substr(at + kLasNameAt, kLasNameBytes));
+  };
+  const auto names = [&](const std::string& record) {
+    std::set<std::string> all;
+    for (std::size_t at = 0; at + kDescriptor <= record.size(); at += kDescriptor) all.insert(name_of(record, at));
+    return all;
+  };
+  const std::set<std::string> added = names(descriptors);
+  std::set<std::string> taken = names(described);
+  taken.insert(added.begin(), added.end());
+  for (std::size_t at = 0; at + kDescriptor <= described.size(); at += kDescriptor) {
+    const std::string name = name_of(described, at);
+    if (described[at + 2] == 0 || added.count(name) == 0) continue;
+    std::string free = name;
+    for (int number = 2; !taken.insert(free).second; ++number) free = name + "_" + std::to_string(number);
+    described.replace(at + kLasNameAt, free.size(), free);
+  }
+}
+
 // The header and variable length records of the source with room for the descriptors.
 std::string extended_header(std::string_view raw, const LasHeader& header, std::size_t record_bytes, const std::string& descriptors) {
   std::string text(raw.substr(0, header.points_at));
@@ -74,8 +98,10 @@ std::string extended_header(std::string_view raw, const LasHeader& header, std::
       const std::size_t length = load<std::uint16_t>(text.data() + header.extra_vlr + 20);
       if (length + descriptors.size() > std::numeric_limits<std::uint16_t>::max())
         throw InvalidInput("write_cloud: too many extra bytes for LAS");
+      std::string described = text.substr(header.extra_vlr + kVlrHeader, length);
+      rename_twins(described, descriptors);
       put(text, header.extra_vlr + 20, static_cast<std::uint16_t>(length + descriptors.size()));
-      text.insert(header.extra_vlr + kVlrHeader + length, descriptors);
+      text.replace(header.extra_vlr + kVlrHeader, length, described + descriptors);
     } else {
       text.insert(header.header_size, las_extra_vlr(descriptors.size()) + descriptors);
       put(text, kVlrCount, header.vlr_count + 1);
