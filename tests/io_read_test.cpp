@@ -14,6 +14,7 @@ namespace {
 
 using samples::message_of;
 using samples::read;
+using Names = std::vector<std::string>;
 
 TEST(Text, NumbersAreReadFromTheFirstToTheLastCharacter) {
   double v = 0;
@@ -183,6 +184,18 @@ TEST(Pcd, CompressedIsReadColumnByColumn) {
   const Cloud cloud = read(samples::compressed_pcd(9));
   ASSERT_EQ(cloud.positions.size(), 9U);
   EXPECT_EQ(cloud.positions[5], (Vec3{1, 2, 3}));
+}
+
+TEST(Npy, ColoursAreNoNormals) {
+  const Names normals = {"x", "y", "z", "nx", "ny", "nz"};
+  const Names colors = {"x", "y", "z", "red", "green", "blue"};
+  const Cloud bytes = read(samples::npy({{1, 2, 3, 200, 100, 0}, {4, 5, 6, 1, 0, 0}}));
+  EXPECT_EQ(bytes.property_names, colors);
+  EXPECT_EQ(bytes.colors[0], (std::array<std::uint8_t, 3>{200, 100, 0}));
+  EXPECT_EQ(read(samples::npy({{1, 2, 3, 65535, 257, 0}})).colors[0], (std::array<std::uint8_t, 3>{255, 1, 0}));
+  EXPECT_EQ(read(samples::npy({{1, 2, 3, 0, 1, 0}, {1, 2, 3, 0, 0, 1}})).property_names, normals);
+  EXPECT_EQ(read(samples::npy({{1, 2, 3, 40, 1, -30}})).property_names, normals);
+  EXPECT_EQ(read(samples::npy({{1, 2, 3, 70000, 0, 0}})).property_names, (Names{"x", "y", "z", "scalar_4", "scalar_5", "scalar_6"}));
 }
 
 TEST(Gltf, NodesMoveTheirPoints) {

@@ -104,6 +104,22 @@ inline std::string big_endian_ply(std::size_t count) {
   return bytes;
 }
 
+/// A header of NPY, not padded.
+inline std::string npy_header(const std::string& descr, std::size_t rows, const std::string& columns) {
+  const std::string header =
+      "{'descr': " + descr + ", 'fortran_order': False, 'shape': (" + std::to_string(rows) + "," + columns + "), }\n";
+  return std::string("\x93NUMPY\1\0", 8) + raw(static_cast<std::uint16_t>(header.size())) + header;
+}
+
+/// Rows of doubles.
+inline std::string npy(const std::vector<std::vector<double>>& rows) {
+  std::string bytes = npy_header("'<f8'", rows.size(), " " + std::to_string(rows[0].size()));
+  for (const std::vector<double>& row : rows) {
+    for (const double value : row) bytes += raw(value);
+  }
+  return bytes;
+}
+
 inline std::string compressed_pcd(std::size_t count) {
   std::string columns;
   for (int axis = 0; axis < 3; ++axis) {
@@ -189,11 +205,22 @@ inline std::string unpacked_spz(std::size_t count, std::uint32_t version, bool f
   return bytes + std::string(9 * count, '\x80');
 }
 
+inline std::vector<std::vector<double>> rows_with_colors(const Cloud& cloud) {
+  std::vector<std::vector<double>> rows;
+  for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
+    std::vector<double>& row = rows.emplace_back(cloud.positions[i].begin(), cloud.positions[i].end());
+    row.insert(row.end(), cloud.colors[i].begin(), cloud.colors[i].end());
+  }
+  return rows;
+}
+
 /// One file for every reader and variant.
 inline std::vector<Sample> all(std::size_t count = 12) {
   const Cloud cloud = helix(count);
   Cloud bare;
   bare.positions = cloud.positions;
+  Cloud oriented = bare;
+  oriented.normals = cloud.normals;
   const Mesh mesh = tetrahedron();
   const auto sample = [](std::string name, std::string bytes, std::string_view end_of_header, bool counted) {
     const std::size_t end = end_of_header.empty() ? 0 : bytes.find(end_of_header);
@@ -209,6 +236,8 @@ inline std::vector<Sample> all(std::size_t count = 12) {
   samples.push_back(sample("ascii.pcd", written(cloud, "a.pcd", {.ascii = true}), "DATA ascii\n", true));
   samples.push_back(sample("compressed.pcd", compressed_pcd(count), "compressed\n", true));
   samples.push_back(sample("array.npy", written(bare, "a.npy"), "}", true));
+  samples.push_back(sample("normals.npy", written(oriented, "a.npy"), "}", true));
+  samples.push_back(sample("colors.npy", npy(rows_with_colors(cloud)), "}", true));
   Sample las = sample("points.las", written(cloud, "a.las"), "", true);
   las.header = 375;
   samples.push_back(las);

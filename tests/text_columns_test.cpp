@@ -169,6 +169,32 @@ TEST(Order, OfColumnsWithoutNamesIsDoubtedWhereItLooksOdd) {
     EXPECT_TRUE(read(usual).warnings.empty()) << usual;
 }
 
+// Normals are no whole numbers above 1.
+TEST(Order, OfThreeWholeNumbersIsThatOfColours) {
+  const Cloud deep = read("1 2 3 40000 300 0\n4 5 6 65535 0 257\n");
+  EXPECT_EQ(deep.property_names, (Names{"x", "y", "z", "red", "green", "blue"}));
+  EXPECT_EQ(deep.colors[1], (std::array<std::uint8_t, 3>{255, 0, 1}));
+  expect_said(deep.warnings, "columns 4 to 6 are taken for red, green and blue of 16 bits");
+  EXPECT_EQ(read("1 2 3 70000 300 0\n").property_names, (Names{"x", "y", "z", "scalar_4", "scalar_5", "scalar_6"}));
+  EXPECT_EQ(read("1 2 3 -400 300 0\n").normals.size(), 1U);
+  EXPECT_EQ(read("1 2 3 0 0 1\n1 2 4 0 1 0\n").normals.size(), 2U);
+}
+
+TEST(Pts, HasTheIntensityBeforeTheColours) {
+  const std::string rows = "1.5 2 3 200 10 20 30\n4.5 5 6 7 11 21 31\n";
+  const Cloud counted = read("2\n" + rows);
+  EXPECT_EQ(counted.property_names, (Names{"x", "y", "z", "intensity", "red", "green", "blue"}));
+  EXPECT_EQ(counted.colors[0], (std::array<std::uint8_t, 3>{10, 20, 30}));
+  EXPECT_TRUE(counted.warnings.empty());
+  const Cloud bare = read(rows);
+  EXPECT_EQ(bare.property_names, (Names{"x", "y", "z", "red", "green", "blue", "scalar_7"}));
+  expect_said(bare.warnings, "x,y,z,intensity,red,green,blue");
+  EXPECT_EQ(read("1\n1 2 3 -500.5 10 20 30 0 0 1\n").property_names,
+            (Names{"x", "y", "z", "intensity", "red", "green", "blue", "nx", "ny", "nz"}));
+  EXPECT_EQ(read("1\n1 2 3 10 20 30 0 0 1\n").property_names, (Names{"x", "y", "z", "red", "green", "blue", "nx", "ny", "nz"}));
+  EXPECT_EQ(read("1\n1 2 3 0 0 1 9\n").property_names, (Names{"x", "y", "z", "nx", "ny", "nz", "scalar_7"}));
+}
+
 TEST(Pnezd, IsRecognisedAndSaid) {
   const Cloud cloud = read("1,5000.5,1000.25,7.5,GND\n7,5001,1001,8,\"EP, \"\"N\"\"\"\n");
   EXPECT_EQ(cloud.positions[0], (Vec3{1000.25, 5000.5, 7.5}));

@@ -17,7 +17,7 @@ void name_triple(std::vector<Property>& columns, std::size_t first, const std::a
 }  // namespace
 
 ColumnFacts::ColumnFacts(std::size_t columns)
-    : whole_(columns, true), channel_(columns, true), any_unit_(columns, false), any_other_(columns, false) {}
+    : whole_(columns, true), low_(columns, 0), high_(columns, 0), any_unit_(columns, false), any_other_(columns, false) {}
 
 void ColumnFacts::add(const double* row) {
   constexpr double kSlack = 0.01;  // Squared lengths of unit normals may be off by this: two decimals are common.
@@ -25,7 +25,8 @@ void ColumnFacts::add(const double* row) {
   for (std::size_t c = 0; c < columns; ++c) {
     if (!whole_[c]) continue;
     whole_[c] = row[c] == std::nearbyint(row[c]) && !std::isinf(row[c]);
-    channel_[c] = channel_[c] && whole_[c] && row[c] >= 0 && row[c] <= 255;
+    low_[c] = std::min(low_[c], row[c]);
+    high_[c] = std::max(high_[c], row[c]);
   }
   for (std::size_t c = 0; c + 3 <= columns; ++c) {
     if (any_other_[c]) continue;
@@ -43,7 +44,21 @@ void ColumnFacts::add(const double* row) {
   last_ = row[0];
 }
 
-bool ColumnFacts::are_colors(std::size_t column) const { return channel_[column] && channel_[column + 1] && channel_[column + 2]; }
+bool ColumnFacts::are_colors(std::size_t column) const { return are_bytes(column) && are_bytes(column + 1) && are_bytes(column + 2); }
+
+bool ColumnFacts::are_counts(std::size_t column) const {
+  bool beyond = false;
+  for (std::size_t c = column; c < column + 3; ++c) {
+    if (!are_levels(c, HUGE_VAL)) return false;
+    beyond = beyond || high_[c] > 1;
+  }
+  return beyond;
+}
+
+bool ColumnFacts::are_deep_colors(std::size_t column) const {
+  constexpr double kMost = 65535;
+  return are_counts(column) && are_levels(column, kMost) && are_levels(column + 1, kMost) && are_levels(column + 2, kMost);
+}
 
 bool ColumnFacts::count_points() const {
   constexpr std::uint64_t kLeast = 10;  // Fewer lines may count by chance.
@@ -93,18 +108,24 @@ std::string doubt_of_order(const ColumnFacts& facts, std::size_t columns) {
   return "";
 }
 
-void guess_names(std::vector<Property>& columns, const ColumnFacts& facts, std::size_t known) {
+std::string guess_names(std::vector<Property>& columns, const ColumnFacts& facts, std::size_t known, bool counted) {
   const std::size_t count = columns.size();
+  const bool alone = count == known + 3;
+  // The first may be an intensity before colours, where no normals are among these columns.
+  const bool later = count >= known + 4 && facts.are_colors(known + 1) && !facts.are_normals(known) &&
+                     (count < known + 6 || !facts.are_normals(known + 3));
   bool normals = false;
   bool colors = false;
   for (std::size_t c = known; c < count;) {
     const bool triple = c + 3 <= count;
     const bool unit = triple && !normals && facts.are_normals(c);
-    if (triple && !unit && !colors && facts.are_colors(c)) {
+    if (c == known && later && counted) {
+      columns[c++].name = "intensity";
+    } else if (triple && !unit && !colors && (facts.are_colors(c) || (alone && facts.are_deep_colors(c)))) {
       name_triple(columns, c, {"red", "green", "blue"});
       colors = true;
       c += 3;
-    } else if (unit || count == known + 3) {  // a triple alone that is no colour: normals of any length
+    } else if (unit || (alone && !facts.are_counts(c))) {  // a triple alone that is no colour: normals of any length
       name_triple(columns, c, {"nx", "ny", "nz"});
       normals = true;
       c += 3;
@@ -113,6 +134,13 @@ void guess_names(std::vector<Property>& columns, const ColumnFacts& facts, std::
       ++c;
     }
   }
+  const std::string taken =
+      "columns " + std::to_string(known + 1) + " to " + std::to_string(known + 3) + " are taken for red, green and blue";
+  if (colors && alone && !facts.are_colors(known))
+    return taken + " of 16 bits; if they are others, name the columns in a first line, for example x,y,z,intensity,returns,class";
+  if (colors && later && facts.are_bytes(known) && !counted)
+    return taken + "; if an intensity comes before the colours, name the columns in a first line: x,y,z,intensity,red,green,blue";
+  return "";
 }
 
 }  // namespace g3r::io

@@ -19,8 +19,14 @@ class ColumnFacts {
   void add(const double* row);
   /// Whether a column holds whole numbers.
   [[nodiscard]] bool are_whole(std::size_t column) const { return whole_[column]; }
+  /// Whether a column holds whole numbers 0..255.
+  [[nodiscard]] bool are_bytes(std::size_t column) const { return are_levels(column, 255); }
   /// Whether a column and the next two hold whole numbers 0..255.
   [[nodiscard]] bool are_colors(std::size_t column) const;
+  /// Whether a column and the next two hold whole numbers from 0 on, some above 1, as no normals do.
+  [[nodiscard]] bool are_counts(std::size_t column) const;
+  /// The same up to 65535: three such columns alone beside x, y and z are colours.
+  [[nodiscard]] bool are_deep_colors(std::size_t column) const;
   /// Whether a column and the next two hold vectors of length 1, or 0 here and there.
   [[nodiscard]] bool are_normals(std::size_t column) const { return any_unit_[column] && !any_other_[column]; }
   /// Whether the first column is 1 more from point to point, in more points than may be so by chance.
@@ -29,9 +35,14 @@ class ColumnFacts {
   [[nodiscard]] bool increase() const { return increase_; }
 
  private:
+  [[nodiscard]] bool are_levels(std::size_t column, double most) const {
+    return whole_[column] && low_[column] >= 0 && high_[column] <= most;
+  }
+
   std::uint64_t points_ = 0;
   std::vector<bool> whole_;
-  std::vector<bool> channel_;    // whole numbers 0..255
+  std::vector<double> low_;  // of columns of whole numbers
+  std::vector<double> high_;
   std::vector<bool> any_unit_;   // of the triple that begins at the column
   std::vector<bool> any_other_;  // neither 0 nor of length 1
   double last_ = 0;              // of the first column
@@ -65,7 +76,8 @@ bool all_differ(std::uint64_t count, const std::function<void(const std::functio
 std::string doubt_of_order(const ColumnFacts& facts, std::size_t columns);
 
 /// Names for columns without names, of which none holds text any more and the first `known` are named already: triples that look like
-/// normals or colours, else "scalar_4" and so on.
-void guess_names(std::vector<Property>& columns, const ColumnFacts& facts, std::size_t known);
+/// normals or colours, else "scalar_4" and so on. A text with a count of its points is PTS, where an intensity comes before the colours.
+/// Returns what may be wrong and what to do, else "".
+std::string guess_names(std::vector<Property>& columns, const ColumnFacts& facts, std::size_t known, bool counted);
 
 }  // namespace g3r::io

@@ -58,7 +58,8 @@ class Finder {
     found_.warnings.insert(found_.warnings.end(), missing.begin(), missing.end());
     if (named) return std::move(found_);
     if (found_.kept.size() < shape_.columns && left < found_.kept.size()) facts = facts_of_kept();
-    guess_names(found_.properties, facts, left);
+    const std::string doubt = guess_names(found_.properties, facts, left, shape_.counted);
+    if (!doubt.empty()) found_.warnings.push_back(doubt);
     return std::move(found_);
   }
 

@@ -175,7 +175,8 @@ std::unique_ptr<PointStream> open_points(const std::string& path, bool with_reco
   } else if (head.starts_with("# .PCD")) {
     stream = stored_records(std::move(file), find_pcd_records(source, size));
   } else if (head.starts_with("\x93NUMPY")) {
-    stream = stored_records(std::move(file), find_npy_records(source, size));
+    std::optional<StoredTable> stored = find_npy_records(source, *file);
+    stream = stored_records(std::move(file), std::move(stored));
   } else if (head.starts_with("LASF")) {
     stream = las_records(std::move(file), head, path);
   } else {

@@ -49,8 +49,8 @@ class PointStream {
 
 /// Opens a file of any format that read_cloud() reads. Read piece by piece are LAS, LAZ and COPC (chunk by chunk), binary PLY
 /// (little-endian, points first, no lists), binary PCD and NPY (little-endian, by rows), text (XYZ, CSV, PTS), PTX, ASCII grids and E57;
-/// of others the whole file is in memory until the stream is gone. Opening a text, PTX, grid or E57 reads it through. Of the options
-/// `threads` and `cancel` count. Throws like read_cloud().
+/// of others the whole file is in memory until the stream is gone. Opening a text, PTX, grid or E57 reads it through, and so does an NPY
+/// with colours. Of the options `threads` and `cancel` count. Throws like read_cloud().
 [[nodiscard]] std::unique_ptr<PointStream> open_points(const std::string& path, bool with_records = false, const ReadOptions& options = {});
 
 }  // namespace g3r::io

@@ -1,8 +1,10 @@
 // NPY: N x 3 or more, floats or integers, either byte order, row or column major; or structured with x, y, z.
 #include "io/cloud_from_table.h"
+#include "io/column_facts.h"
 #include "io/npy_header.h"
 #include "io/readers.h"
 
+#include <algorithm>
 #include <optional>
 
 namespace g3r::io {
@@ -19,12 +21,43 @@ float half_to_float(std::uint32_t bits) {
   return bits_as<float>(sign | (exponent + 112) << 23 | fraction << 13);
 }
 
-// By number: x y z, then nx ny nz where three more follow, then scalars.
+// What columns 4 to 6 of rows are named after, which takes their values.
+class FourthToSixth {
+ public:
+  explicit FourthToSixth(const Element& points) : type_(points.properties[0].type), stride_(points.stride()) {}
+  static bool exist(const Element& points) { return points.properties.size() >= kEnd; }
+
+  // Takes note of rows; says whether more of them can tell more.
+  bool add(const char* rows, std::size_t count) {
+    for (std::size_t i = 0; i < count && may_be_colors_; ++i, rows += stride_) {
+      double values[3];
+      for (std::size_t c = 0; c < 3; ++c) values[c] = load_as_double(type_, rows + (kFirst + c) * size_of(type_));
+      facts_.add(values);
+      may_be_colors_ = facts_.are_whole(0) && facts_.are_whole(1) && facts_.are_whole(2);
+    }
+    return may_be_colors_;
+  }
+
+  void name(std::vector<Property>& properties) const {
+    if (facts_.are_counts(0) && !facts_.are_deep_colors(0)) return;
+    constexpr const char* kNames[2][3] = {{"nx", "ny", "nz"}, {"red", "green", "blue"}};
+    for (std::size_t c = 0; c < 3; ++c) properties[kFirst + c].name = kNames[facts_.are_deep_colors(0) ? 1 : 0][c];
+  }
+
+ private:
+  static constexpr std::size_t kFirst = 3;
+  static constexpr std::size_t kEnd = 6;
+  Type type_;
+  std::size_t stride_;
+  ColumnFacts facts_{3};
+  bool may_be_colors_ = true;
+};
+
+// By number: x y z, then what FourthToSixth names, then scalars.
 void name_columns(std::vector<Property>& properties) {
-  constexpr const char* kNames[] = {"x", "y", "z", "nx", "ny", "nz"};
-  const std::size_t named = properties.size() >= 6 ? 6 : 3;
+  constexpr const char* kNames[] = {"x", "y", "z"};
   for (std::size_t c = 0; c < properties.size(); ++c) {
-    properties[c].name = c < named ? std::string(kNames[c]) : std::string("scalar_") += std::to_string(c + 1);
+    properties[c].name = c < 3 ? std::string(kNames[c]) : std::string("scalar_") += std::to_string(c + 1);
   }
 }
 
@@ -92,7 +125,31 @@ Element make_points(const Source& source, const NpyHeader& header, std::vector<s
     points.data = std::move(wide);
     for (Property& property : points.properties) property.type = Type::kFloat32;
   }
+  if (!header.is_structured() && FourthToSixth::exist(points)) {
+    FourthToSixth columns(points);
+    columns.add(points.data.data(), static_cast<std::size_t>(rows));
+    columns.name(points.properties);
+  }
   return points;
+}
+
+// Names columns 4 to 6 of rows that lie in a file.
+void name_stored(StoredTable& stored, const RandomFile& file) {
+  constexpr std::size_t kAtOnce = std::size_t{1} << 20;  // bytes of rows read at once
+  Element& points = stored.table.elements[0];
+  const std::size_t stride = points.stride();
+  FourthToSixth columns(points);
+  std::string rows;
+  std::uint64_t at = stored.begin;
+  for (std::uint64_t left = points.count; left > 0;) {
+    const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(left, std::max<std::size_t>(1, kAtOnce / stride)));
+    rows.resize(count * stride);
+    file.read(at, rows.data(), rows.size());
+    if (!columns.add(rows.data(), count)) break;
+    at += rows.size();
+    left -= count;
+  }
+  columns.name(points.properties);
 }
 
 }  // namespace
@@ -105,7 +162,7 @@ Cloud read_npy(const Source& source) {
   return cloud;
 }
 
-std::optional<StoredTable> find_npy_records(const Source& head, std::uint64_t file_size) {
+std::optional<StoredTable> find_npy_records(const Source& head, const RandomFile& file) {
   constexpr std::size_t kVersion = 6;  // byte; then the length of the header, in two bytes in version 1 and four in later ones
   constexpr std::size_t kLength = 8;
   if (head.bytes.size() < kLength + 4) return std::nullopt;
@@ -115,7 +172,10 @@ std::optional<StoredTable> find_npy_records(const Source& head, std::uint64_t fi
   const NpyHeader header = read_npy_header(head);
   Element points = describe_points(head, header);
   if (!header.is_in_rows() || header.big_endian || header.half) return std::nullopt;
-  return stored_table(Attributes::Dialect::kText, {}, std::move(points), header.body, file_size);
+  const bool named = header.is_structured() || !FourthToSixth::exist(points);
+  std::optional<StoredTable> stored = stored_table(Attributes::Dialect::kText, {}, std::move(points), header.body, file.size());
+  if (stored && !named) name_stored(*stored, file);
+  return stored;
 }
 
 }  // namespace g3r::io

@@ -37,7 +37,8 @@ Cloud read_stl(const Source& source, bool binary);
 /// all there. What these throw, the reader of the format throws too.
 std::optional<StoredTable> find_ply_records(const Source& head, std::uint64_t file_size);
 std::optional<StoredTable> find_pcd_records(const Source& head, std::uint64_t file_size);
-std::optional<StoredTable> find_npy_records(const Source& head, std::uint64_t file_size);
+/// Reads rows of six columns or more until it is known what columns 4 to 6 are.
+std::optional<StoredTable> find_npy_records(const Source& head, const RandomFile& file);
 
 /// The points of recognised files, some at a time; of a text, which begins at byte `begin`. Opening reads the text once, or twice where it
 /// has more columns than x y z; E57 is read for its checksums. Throw what the reader of the format throws, or next() does.
