@@ -91,6 +91,25 @@ TEST(Ply, FloatColoursMeanZeroToOne) {
       "green\nproperty float blue\nend_header\n";
   EXPECT_EQ(read(head + "0 0 0 1 0.5 0\n").colors[0], (std::array<std::uint8_t, 3>{255, 128, 0}));
   EXPECT_EQ(read(head + "0 0 0 255 7 0\n").colors[0], (std::array<std::uint8_t, 3>{255, 7, 0}));
+  EXPECT_EQ(read(head + "0 0 0 1.0001 0.5 0\n").colors[0], (std::array<std::uint8_t, 3>{255, 128, 0}));
+}
+
+TEST(Ply, WholeNumbersBeyondBytesAreColoursOf16Bits) {
+  const std::string point = "property int x\nproperty int y\nproperty int z\n";
+  for (const char* type : {"int", "uint", "ushort", "double"}) {
+    std::string head = "ply\nformat ascii 1.0\nelement vertex 1\n" + point;
+    for (const char* channel : {"red", "green", "blue"}) head += std::string("property ") + type + " " + channel + "\n";
+    EXPECT_EQ(read(head + "end_header\n0 0 0 65535 257 0\n").colors[0], (std::array<std::uint8_t, 3>{255, 1, 0})) << type;
+    EXPECT_EQ(read(head + "end_header\n0 0 0 255 7 0\n").colors[0], (std::array<std::uint8_t, 3>{255, 7, 0})) << type;
+  }
+}
+
+TEST(Ply, NormalsHaveManyNames) {
+  for (const char* name : {"n", "n_", "normal", "normal_"}) {
+    std::string head = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
+    for (const char* axis : {"x", "y", "z"}) head += std::string("property float ") + name + axis + "\n";
+    EXPECT_EQ(read(head + "end_header\n1 2 3 0 0 1\n").normals, (std::vector<Vec3>{{0, 0, 1}})) << name;
+  }
 }
 
 TEST(Ply, NormalsThatAreAllZeroAreNotOffered) {
@@ -197,6 +216,40 @@ TEST(Npy, ColoursAreNoNormals) {
   EXPECT_EQ(read(samples::npy({{1, 2, 3, 40, 1, -30}})).property_names, normals);
   EXPECT_EQ(read(samples::npy({{1, 2, 3, 70000, 0, 0}})).property_names, (Names{"x", "y", "z", "scalar_4", "scalar_5", "scalar_6"}));
 }
+
+TEST(Npy, PaddingIsLeftOutAndTruthIsANumber) {
+  const std::string padded =
+      samples::npy_header("[('x', '<f4'), ('', '|V4'), ('y', '<f8'), ('z', '<f4'), ('kept', '|b1'), ('', '|V3')]", 2, "");
+  const std::string row = samples::raw(1.0F) + "pad!" + samples::raw(2.0) + samples::raw(3.0F) + "\1" + "end";
+  const Cloud cloud = read(padded + row + row);
+  EXPECT_EQ(cloud.property_names, (Names{"x", "y", "z", "kept"}));
+  EXPECT_EQ(cloud.positions[1], (Vec3{1, 2, 3}));
+  EXPECT_EQ(samples::value_of(cloud, "kept", 1), 1);
+  const std::string big = samples::npy_header("[('c', '|u1'), ('x', '>f4'), ('y', '>f4'), ('z', '>f4')]", 1, "");
+  EXPECT_EQ(read(big + "\7" + samples::raw(1.0F, true) + samples::raw(2.0F, true) + samples::raw(3.0F, true)).positions[0],
+            (Vec3{1, 2, 3}));
+  EXPECT_NE(message_of(samples::npy_header("[('x', '>f4'), ('y', '<f4')]", 1, "")).find("in one byte order"), std::string::npos);
+  EXPECT_FALSE(message_of(samples::npy_header("[('x', '<f4'), ('name', '|S4')]", 1, "")).empty());
+}
+
+// The materials of a mesh may share its vertices.
+TEST(Gltf, PrimitivesOfOneMeshMayShareTheirPositions) {
+  std::string text = samples::text_gltf();
+  const std::string primitive = R"({"attributes":{"POSITION":0}})";
+  const std::size_t at = text.find(primitive);
+  for (int k = 0; k < 12; ++k) text.insert(at, primitive + ",");
+  EXPECT_EQ(read(text).positions, read(samples::text_gltf()).positions);
+}
+
+TEST(Off, ColoursAreOfOneKindInAllLines) {
+  const std::string head = "COFF\n2 0 0\n";
+  using Colors = std::vector<std::array<std::uint8_t, 3>>;
+  EXPECT_EQ(read(head + "0.5 0 0 0.8 0.4 0.2 1\n1 0 0 1 0 0 1\n").colors, (Colors{{204, 102, 51}, {255, 0, 0}}));
+  EXPECT_EQ(read(head + "0.5 0 0 1 0 0\n1 0 0 200 100 50\n").colors, (Colors{{1, 0, 0}, {200, 100, 50}}));
+  EXPECT_EQ(read(head + "0 0 0 1 0 0 0.5\n1 0 0 1 1 0 0.5\n").colors, (Colors{{1, 0, 0}, {1, 1, 0}}));
+}
+
+TEST(Obj, ColoursMayBeALittleAbove1) { EXPECT_EQ(read("v 0 0 0 1.0001 0.5 0\n").colors[0], (std::array<std::uint8_t, 3>{255, 128, 0})); }
 
 TEST(Gltf, NodesMoveTheirPoints) {
   const Cloud cloud = read(samples::text_gltf());

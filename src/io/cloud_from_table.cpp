@@ -25,9 +25,10 @@ void find_triple(const Element& points, const std::initializer_list<std::string_
   if (found[0] == kNone || found[1] == kNone || found[2] == kNone) std::fill_n(found, 3, kNone);
 }
 
-std::uint8_t to_channel(double value, double scale) {
-  const double level = std::nearbyint(value * scale);
-  return static_cast<std::uint8_t>(level >= 0 ? std::min(level, 255.0) : 0.0);
+// The whole number from 0 to `most` that is nearest.
+double to_level(double value, double most) {
+  const double level = std::nearbyint(value);
+  return level >= 0 ? std::min(level, most) : 0.0;
 }
 
 void require_positions(const Source& source, const Element& points) {
@@ -42,20 +43,23 @@ void require_positions(const Source& source, const Element& points) {
   }
 }
 
-// What brings a colour channel with this largest value to 0..255.
+}  // namespace
+
 double color_scale(Type type, double largest) {
-  if (!is_float(type) && type != Type::kUint16) return 1;
-  if (largest > 255) return 1.0 / 257;
-  return largest > 1 || type == Type::kUint16 ? 1 : 255;
+  constexpr double kSlack = 2;  // Floats of 0..1 may be above 1 here and there, by rounding or where light is strong.
+  if (size_of(type) == 1) return 1;
+  if (largest > 255) return 1.0 / kDeepSteps;
+  return is_float(type) && largest < kSlack ? 255 : 1;
 }
 
-}  // namespace
+std::uint8_t to_color(double value, double scale) { return static_cast<std::uint8_t>(to_level(value * scale, 255)); }
 
 Roles find_roles(const Element& points) {
   Roles roles{};
   const std::initializer_list<std::string_view> position[] = {{"x", "X"}, {"y", "Y"}, {"z", "Z"}};
-  const std::initializer_list<std::string_view> normal[] = {
-      {"nx", "normal_x", "NormalX"}, {"ny", "normal_y", "NormalY"}, {"nz", "normal_z", "NormalZ"}};
+  const std::initializer_list<std::string_view> normal[] = {{"nx", "normal_x", "NormalX", "normalx", "n_x"},
+                                                            {"ny", "normal_y", "NormalY", "normaly", "n_y"},
+                                                            {"nz", "normal_z", "NormalZ", "normalz", "n_z"}};
   const std::initializer_list<std::string_view> color[] = {
       {"red", "r", "diffuse_red"}, {"green", "g", "diffuse_green"}, {"blue", "b", "diffuse_blue"}};
   find_triple(points, position, roles.position);
@@ -63,7 +67,7 @@ Roles find_roles(const Element& points) {
   find_triple(points, color, roles.color);
   roles.packed_color = find_first(points, {"rgb", "rgba"});
   if (roles.packed_color != kNone && size_of(points.properties[roles.packed_color].type) != 4) roles.packed_color = kNone;
-  roles.confidence = find_first(points, {"confidence", "quality", "scalar_confidence", "scalar_quality"});
+  roles.confidence = find_first(points, {"confidence", "scalar_confidence", "quality", "scalar_quality"});
   return roles;
 }
 
@@ -92,19 +96,52 @@ void RecordColors::measure(const char* records, std::uint64_t count) {
 
 bool RecordColors::are_black() const {
   if (!channels_) return packed_bits_ == 0;
-  return std::all_of(largest_.begin(), largest_.end(), [&](double value) { return to_channel(value, scale_) == 0; });
+  return std::all_of(largest_.begin(), largest_.end(), [&](double value) { return to_color(value, scale_) == 0; });
+}
+
+bool RecordColors::agree(const std::vector<RecordColors*>& all) {
+  const auto is_deep = [](const RecordColors* colors) { return colors->scale_ < 1; };
+  for (const bool floats : {false, true}) {
+    std::vector<RecordColors*> alike;
+    for (RecordColors* colors : all) {
+      const bool deepens = colors->channels_ && colors->scale_ <= 1 && size_of(colors->first_type()) > 1;
+      if (deepens && is_float(colors->first_type()) == floats) alike.push_back(colors);
+    }
+    if (std::none_of(alike.begin(), alike.end(), is_deep)) continue;
+    for (RecordColors* colors : alike) colors->scale_ = 1.0 / kDeepSteps;
+  }
+  const bool deep = std::any_of(all.begin(), all.end(), is_deep);
+  for (RecordColors* colors : all) colors->deep_ = deep;
+  return deep;
+}
+
+std::array<double, 3> RecordColors::levels(const RecordLayout& layout, const char* record) const {
+  if (!channels_) {
+    const auto packed = load<std::uint32_t>(record + layout.offset(packed_));
+    return {static_cast<double>(packed >> 16 & 255U), static_cast<double>(packed >> 8 & 255U), static_cast<double>(packed & 255U)};
+  }
+  std::array<double, 3> levels{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    levels[c] = scale_ * load_as_double(points_.properties[channel_[c]].type, record + layout.offset(channel_[c]));
+  }
+  return levels;
+}
+
+std::array<std::uint16_t, 3> RecordColors::deep_color(const RecordLayout& layout, const char* record) const {
+  std::array<std::uint16_t, 3> color{};
+  const std::array<double, 3> exact = levels(layout, record);
+  for (std::size_t c = 0; c < 3; ++c) color[c] = static_cast<std::uint16_t>(to_level(exact[c] * kDeepSteps, 65535));
+  return color;
 }
 
 std::array<std::uint8_t, 3> RecordColors::color(const RecordLayout& layout, const char* record) const {
-  if (!channels_) {
-    const auto packed = load<std::uint32_t>(record + layout.offset(packed_));
-    return {static_cast<std::uint8_t>(packed >> 16), static_cast<std::uint8_t>(packed >> 8), static_cast<std::uint8_t>(packed)};
-  }
   std::array<std::uint8_t, 3> color{};
-  for (std::size_t c = 0; c < 3; ++c) {
-    const double value = load_as_double(points_.properties[channel_[c]].type, record + layout.offset(channel_[c]));
-    color[c] = to_channel(value, scale_);
+  std::array<double, 3> exact = levels(layout, record);
+  if (deep_) {
+    const std::array<std::uint16_t, 3> deep = deep_color(layout, record);
+    for (std::size_t c = 0; c < 3; ++c) exact[c] = static_cast<double>(deep[c]) / kDeepSteps;
   }
+  for (std::size_t c = 0; c < 3; ++c) color[c] = to_color(exact[c], 1);
   return color;
 }
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 namespace g3r::io {
 
@@ -22,7 +23,15 @@ struct Roles {
 /// Finds the roles. A role that needs three properties is given only if all three are there and none is a list or an array.
 Roles find_roles(const Element& points);
 
-/// The colours of records as 0..255. What brings a channel there depends on all records: floats may mean 0..1, floats and 16 bits 0..65535.
+inline constexpr int kDeepSteps = 257;  ///< levels of 16 bits in one of 8: white is 255 and 65535
+
+/// What brings a colour channel with this largest value to 0..255: floats may mean 0..1, all but bytes 0..65535.
+double color_scale(Type type, double largest);
+
+/// A colour channel as 0..255; what is beyond is cut off.
+std::uint8_t to_color(double value, double scale);
+
+/// The colours of records as 0..255. What brings a channel there depends on all records.
 class RecordColors {
  public:
   explicit RecordColors(const Element& points);
@@ -32,16 +41,25 @@ class RecordColors {
   void measure(const char* records, std::uint64_t count);
   /// Whether all that were measured are black: never set.
   [[nodiscard]] bool are_black() const;
+  /// Of records that become one cloud, all measured: channels that are alike, of whole numbers or of floats beyond 0..1, have 16 bits if
+  /// some have. Returns whether any have them.
+  static bool agree(const std::vector<RecordColors*>& all);
+  /// The colour as 0..65535.
+  [[nodiscard]] std::array<std::uint16_t, 3> deep_color(const RecordLayout& layout, const char* record) const;
   /// The colour of a record, which `layout` has laid out.
   [[nodiscard]] std::array<std::uint8_t, 3> color(const RecordLayout& layout, const char* record) const;
 
  private:
+  [[nodiscard]] Type first_type() const { return points_.properties[channel_[0]].type; }
+  [[nodiscard]] std::array<double, 3> levels(const RecordLayout& layout, const char* record) const;  // 0..255
+
   const Element& points_;
   std::array<std::size_t, 3> channel_{};
   bool channels_ = false;
   std::size_t packed_ = Element::npos;
   std::array<double, 3> largest_{};
   double scale_ = 1;
+  bool deep_ = false;  // deep_color() is what is kept
   std::uint32_t packed_bits_ = 0;
 };
 

@@ -125,7 +125,7 @@ std::string guess_names(std::vector<Property>& columns, const ColumnFacts& facts
       name_triple(columns, c, {"red", "green", "blue"});
       colors = true;
       c += 3;
-    } else if (unit || (alone && !facts.are_counts(c))) {  // a triple alone that is no colour: normals of any length
+    } else if (unit || (triple && alone && !facts.are_counts(c))) {  // a triple alone that is no colour: normals of any length
       name_triple(columns, c, {"nx", "ny", "nz"});
       normals = true;
       c += 3;

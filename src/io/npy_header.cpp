@@ -115,7 +115,8 @@ class NpyParser {
       field.name = std::string(text.string());
       text.expect(',');
       if (!text.at('\'') && !text.at('"')) text.fail_here("expected a plain dtype for every field of a structured dtype");
-      field.type = type(text.string());
+      const std::string_view kind = text.string();
+      if (!field.name.empty() || !padding(kind, field)) field.type = type(kind);
       if (text.take(',') && !text.at(')')) text.fail_here("arrays in a structured dtype are not read");
       text.expect(')');
       text.take(',');
@@ -125,13 +126,26 @@ class NpyParser {
     if (header_.half) text.fail_here("float16 in a structured dtype is not read");
   }
 
+  // "|V4": so many bytes without meaning, as NumPy aligns fields with.
+  static bool padding(std::string_view descr, Property& field) {
+    constexpr std::uint32_t kMostBytes = std::uint32_t{1} << 16;  // More is damage.
+    std::uint32_t bytes = 0;
+    if (descr.substr(0, 2) != "|V" || !parse_integer(descr.substr(2), bytes) || bytes == 0 || bytes > kMostBytes) return false;
+    field.type = Type::kUint8;
+    field.count = bytes;
+    return true;
+  }
+
   Type type(std::string_view descr) {
     if (descr.size() >= 2) {
       const char order = descr[0];
       const std::string_view code = descr.substr(1);
       const bool big = order == '>';
-      if ((order == '<' || big || order == '|' || order == '=') && !(!header_.fields.empty() && big != header_.big_endian)) {
-        header_.big_endian = big;
+      const bool ordered = order != '|';  // of numbers of one byte, of which true and false are two
+      if (!ordered && code == "b1") return Type::kUint8;
+      if ((order == '<' || big || order == '|' || order == '=') && !(ordered && ordered_ && big != header_.big_endian)) {
+        header_.big_endian = ordered ? big : header_.big_endian;
+        ordered_ = ordered_ || ordered;
         if (code == "f2") {
           header_.half = true;
           return Type::kUint16;  // the bits
@@ -139,8 +153,8 @@ class NpyParser {
         if (const std::optional<Type> known = type_named(code)) return *known;
       }
     }
-    fail(source_,
-         "expected the dtype f2, f4, f8, i1..i8 or u1..u8, found " + quote(descr) + " (object arrays are pickles and never loaded)");
+    fail(source_, "expected the dtype f2, f4, f8, i1..i8, u1..u8 or b1, in one byte order, found " + quote(descr) +
+                      " (object arrays are pickles and never loaded)");
   }
 
   // "f4", "u2" ...: the kind and the bytes.
@@ -168,9 +182,14 @@ class NpyParser {
   static constexpr std::size_t kMostFields = 10000;  // Nested types may repeat fields without end; more than this is damage.
   const Source& source_;
   NpyHeader header_;
+  bool ordered_ = false;  // a field has told the order of bytes
 };
 
 }  // namespace
+
+bool NpyHeader::is_padded() const {
+  return is_structured() && std::any_of(fields.begin(), fields.end(), [](const Property& field) { return field.name.empty(); });
+}
 
 NpyHeader read_npy_header(const Source& source) { return NpyParser(source).parse(); }
 

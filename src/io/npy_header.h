@@ -11,7 +11,7 @@
 namespace g3r::io {
 
 struct NpyHeader {
-  std::vector<Property> fields;  ///< one without a name for a plain array
+  std::vector<Property> fields;  ///< one without a name for a plain array; of structured ones such are padding
   bool big_endian = false;
   bool half = false;  ///< float16
   bool column_major = false;
@@ -19,6 +19,8 @@ struct NpyHeader {
   std::size_t body = 0;  ///< byte offset of the first value
 
   [[nodiscard]] bool is_structured() const { return !fields[0].name.empty() || fields.size() > 1; }
+  /// Whether padding lies between or after the fields of a structured array.
+  [[nodiscard]] bool is_padded() const;
   [[nodiscard]] bool is_in_rows() const { return !column_major || is_structured(); }
 };
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -73,10 +74,15 @@ class GltfReader {
     for (const Json& child : children->items) visit(file_.index(child, visited_.size(), "node"), transform, depth + 1, cloud);
   }
 
+  // Primitives of a mesh may share their positions.
   void add_mesh(const Json& mesh, const Matrix& transform, Cloud& cloud) {
+    const std::vector<Json>& accessors = file_.list("accessors");
+    std::set<std::size_t> added;
     for (const Json& primitive : file_.member(mesh, "primitives").items) {
       const Json* position = file_.member(primitive, "attributes").find("POSITION");
-      if (position != nullptr) add_positions(file_.item(file_.list("accessors"), *position, "accessor"), transform, cloud);
+      if (position == nullptr) continue;
+      const std::size_t accessor = file_.index(*position, accessors.size(), "accessor");
+      if (added.insert(accessor).second) add_positions(accessors[accessor], transform, cloud);
     }
   }
 

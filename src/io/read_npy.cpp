@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 namespace g3r::io {
 
@@ -97,6 +98,22 @@ std::string rows_of_columns(const char* from, std::size_t rows, const std::vecto
   return records;
 }
 
+// Without the fields that are padding.
+void drop_padding(Element& points) {
+  const std::vector<Property> fields = points.properties;
+  const std::string rows = std::move(points.data);
+  points.data.clear();
+  const char* from = rows.data();
+  for (std::uint64_t i = 0; i < points.count; ++i) {
+    for (const Property& field : fields) {
+      const std::size_t bytes = size_of(field.type) * field.count;
+      if (!field.name.empty()) points.data.append(from, bytes);
+      from += bytes;
+    }
+  }
+  std::erase_if(points.properties, [](const Property& field) { return field.name.empty(); });
+}
+
 // With their data; float16 becomes float32.
 Element make_points(const Source& source, const NpyHeader& header, std::vector<std::string>& warnings) {
   Element points = describe_points(source, header);
@@ -115,6 +132,7 @@ Element make_points(const Source& source, const NpyHeader& header, std::vector<s
   } else {
     points.data = rows_of_columns(body.data(), static_cast<std::size_t>(rows), points.properties);
   }
+  if (header.is_padded()) drop_padding(points);
   if (header.big_endian) swap_records(points);
   if (header.half) {
     std::string wide(bytes_of(2, size), '\0');
@@ -171,7 +189,7 @@ std::optional<StoredTable> find_npy_records(const Source& head, const RandomFile
   if (length > head.bytes.size() - kLength - 4) return std::nullopt;
   const NpyHeader header = read_npy_header(head);
   Element points = describe_points(head, header);
-  if (!header.is_in_rows() || header.big_endian || header.half) return std::nullopt;
+  if (!header.is_in_rows() || header.is_padded() || header.big_endian || header.half) return std::nullopt;
   const bool named = header.is_structured() || !FourthToSixth::exist(points);
   std::optional<StoredTable> stored = stored_table(Attributes::Dialect::kText, {}, std::move(points), header.body, file.size());
   if (stored && !named) name_stored(*stored, file);

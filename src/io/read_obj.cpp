@@ -1,10 +1,10 @@
 // Wavefront OBJ: v (with optional w or r g b), vn and f. Everything else is passed over; no other file is opened.
+#include "io/cloud_from_table.h"
 #include "io/polygons.h"
 #include "io/readers.h"
 #include "io/text.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace g3r::io {
 
@@ -64,13 +64,10 @@ bool parse_corner(std::string_view token, Corner& corner) {
 std::vector<std::array<std::uint8_t, 3>> to_bytes(const std::vector<std::array<float, 3>>& colors) {
   float largest = 0;
   for (const auto& color : colors) largest = std::max({largest, color[0], color[1], color[2]});
-  const float scale = largest > 1 ? 1.0F : 255.0F;
+  const double scale = color_scale(Type::kFloat32, static_cast<double>(largest));
   std::vector<std::array<std::uint8_t, 3>> bytes(colors.size());
   for (std::size_t i = 0; i < colors.size(); ++i) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      const float level = std::nearbyint(colors[i][c] * scale);
-      bytes[i][c] = static_cast<std::uint8_t>(level >= 0 ? std::min(level, 255.0F) : 0.0F);
-    }
+    for (std::size_t c = 0; c < 3; ++c) bytes[i][c] = to_color(static_cast<double>(colors[i][c]), scale);
   }
   return bytes;
 }

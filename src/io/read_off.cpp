@@ -1,10 +1,12 @@
 // OFF in text: OFF, COFF (colours), NOFF (normals) and both, as Geomview's manual describes them, with the counts on the first line or not.
+#include "io/cloud_from_table.h"
 #include "io/polygons.h"
 #include "io/readers.h"
 #include "io/text.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <vector>
 
 namespace g3r::io {
 
@@ -73,7 +75,8 @@ class OffParser {
     const auto count = static_cast<std::size_t>(vertices_);
     cloud.positions.reserve(count);
     if (normals_) cloud.normals.reserve(count);
-    if (colors_) cloud.colors.reserve(count);
+    channels_.clear();
+    if (colors_) channels_.reserve(count);
     std::string_view line;
     for (std::size_t i = 0; i < count; ++i) {
       if (!statements_.next(line)) {
@@ -81,6 +84,7 @@ class OffParser {
       }
       vertex(line, cloud);
     }
+    convert_colors(cloud);
     cloud.property_names = {"x", "y", "z"};
     if (normals_) cloud.property_names.insert(cloud.property_names.end(), {"nx", "ny", "nz"});
     if (colors_) cloud.property_names.insert(cloud.property_names.end(), {"red", "green", "blue"});
@@ -121,8 +125,11 @@ class OffParser {
     std::size_t found = 0;
     Tokens tokens(line);
     std::string_view token;
+    const std::size_t color = normals_ ? 6 : 3;
     while (tokens.next(token)) {
       if (found == 12) fail_here("more than 12 columns for a vertex");
+      const bool is_channel = colors_ && found >= color && found < color + 3;
+      points_ = points_ || (is_channel && token.find('.') != std::string_view::npos);
       if (!parse_double(token, numbers[found], &overflow_)) fail_here(expected_number(token));
       ++found;
     }
@@ -131,15 +138,21 @@ class OffParser {
     extra_columns_ = extra_columns_ || found > expected + (colors_ ? 1 : 0);  // alpha
     cloud.positions.push_back({numbers[0], numbers[1], numbers[2]});
     if (normals_) cloud.normals.push_back({numbers[3], numbers[4], numbers[5]});
-    if (colors_) {
-      const double* rgb = numbers + (normals_ ? 6 : 3);
-      // Geomview: whole numbers are 0..255, numbers with a point 0..1.
-      const double scale = line.find('.', static_cast<std::size_t>(line.find_last_of(" \t"))) != std::string_view::npos ? 255 : 1;
-      const auto channel = [&](double value) {
-        const double level = std::nearbyint(value * scale);
-        return static_cast<std::uint8_t>(level >= 0 ? std::min(level, 255.0) : 0.0);
-      };
-      cloud.colors.push_back({channel(rgb[0]), channel(rgb[1]), channel(rgb[2])});
+    if (!colors_) return;
+    std::array<float, 3>& rgb = channels_.emplace_back();
+    for (std::size_t c = 0; c < 3; ++c) {
+      store_double(Type::kFloat32, numbers[color + c], reinterpret_cast<char*>(&rgb[c]));
+      largest_ = std::max(largest_, rgb[c]);
+    }
+  }
+
+  // Geomview: whole numbers are 0..255, numbers with a point 0..1.
+  void convert_colors(Cloud& cloud) const {
+    const double scale = color_scale(points_ ? Type::kFloat32 : Type::kInt32, static_cast<double>(largest_));
+    cloud.colors.reserve(channels_.size());
+    for (const std::array<float, 3>& rgb : channels_) {
+      std::array<std::uint8_t, 3>& color = cloud.colors.emplace_back();
+      for (std::size_t c = 0; c < 3; ++c) color[c] = to_color(static_cast<double>(rgb[c]), scale);
     }
   }
 
@@ -153,6 +166,9 @@ class OffParser {
   bool colors_ = false;
   bool texture_ = false;
   bool overflow_ = false;
+  bool points_ = false;                         // some channels of colours have a decimal point
+  float largest_ = 0;                           // of the channels
+  std::vector<std::array<float, 3>> channels_;  // as in the file
   bool extra_columns_ = false;
 };
 
