@@ -285,6 +285,50 @@ TEST(Write, ExtraBytesOfLasHaveNamesOfTheirOwn) {
   }
 }
 
+// A float under the name is taken for that of an earlier run; what else has it is somebody's.
+TEST(Write, ConfidenceOfOthersIsKept) {
+  const std::string head = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
+  const Cloud cloud = read(head + "property uchar confidence\nproperty float quality\nend_header\n1 2 3 40 0.5\n");
+  EXPECT_EQ(cloud.confidence, std::vector<float>{40});
+  const std::vector<float> confidence(1, 0.25F);
+  for (const bool cloud_compare_names : {false, true}) {
+    const std::string kept = cloud_compare_names ? "confidence" : "confidence_2";
+    const std::string ours = cloud_compare_names ? "scalar_confidence" : "confidence";
+    const Folder folder;
+    const std::string path = folder.path("a.ply");
+    write_cloud(path, cloud, nullptr, &confidence, {.cloud_compare_names = cloud_compare_names});
+    for (int run = 0; run < 2; ++run) {
+      const Cloud again = read_cloud(path);
+      EXPECT_EQ(again.property_names, (Names{"x", "y", "z", kept, "quality", ours}));
+      EXPECT_EQ(value_of(again, kept, 0), 40);
+      EXPECT_EQ(value_of(again, "quality", 0), 0.5);
+      EXPECT_EQ(value_of(again, ours, 0), 0.25);
+      write_cloud(path, again, nullptr, &confidence, {.cloud_compare_names = cloud_compare_names});
+    }
+  }
+}
+
+// With alpha 255 the bits of a packed colour are those of no number.
+TEST(Write, PackedColoursSurviveAsText) {
+  const std::uint32_t opaque = 0xFFC86432;
+  const std::string bytes =
+      "VERSION .7\nFIELDS x y z rgb _id _ _\nSIZE 4 4 4 4 4 1 4\nTYPE F F F F U U U\nCOUNT 1 1 1 1 1 4 1\nWIDTH 1\nHEIGHT 1\nPOINTS "
+      "1\nDATA "
+      "binary\n" +
+      samples::raw(1.0F) + samples::raw(2.0F) + samples::raw(3.0F) + samples::raw(opaque) + samples::raw(7U) + samples::raw(0U) +
+      samples::raw(0U);
+  const Cloud cloud = read(bytes);
+  for (const bool ascii : {false, true}) {
+    const Cloud again = read(samples::written(cloud, "a.pcd", {.ascii = ascii}));
+    EXPECT_EQ(again.colors, (std::vector<std::array<std::uint8_t, 3>>{{200, 100, 50}})) << ascii;
+    EXPECT_EQ(again.property_names, (Names{"x", "y", "z", "rgb", "_id"})) << "without padding";
+    EXPECT_EQ(value_of(again, "_id", 0), 7);
+  }
+  EXPECT_NE(samples::written(cloud, "a.pcd", {.ascii = true}).find("1 2 3 " + std::to_string(opaque)), std::string::npos);
+  const Cloud helix = samples::helix(9);
+  EXPECT_EQ(read(samples::written(helix, "a.pcd", {.ascii = true})).colors, helix.colors);
+}
+
 TEST(Write, ConfidenceIsNamedForCloudCompareOnRequest) {
   const Cloud cloud = read(samples::written(samples::helix(4), "a.ply"));
   const std::vector<float> confidence(4, 1);

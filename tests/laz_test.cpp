@@ -5,6 +5,7 @@
 #include <random>
 
 #include "counting_allocator.h"
+#include "io/ept.h"
 #include "io/laz.h"
 #include "io/table.h"
 #include "laz_samples.h"
@@ -184,6 +185,7 @@ TEST(Ept, CellsOfLazAreOneCloud) {
   EXPECT_EQ(cloud.positions.size(), 50U);
   EXPECT_EQ(cloud.positions[20], samples::read(las_file(7, 30)).positions[0]);
   EXPECT_EQ(cloud.colors.size(), 50U);
+  merge_checks::expect_what_write_cloud_writes(folder.path(""), io::ept_files(folder.path("ept.json")));
   samples::spill(folder.path("ept-hierarchy/0-0-0-0.json"), R"({"0-0-0-0": 21})");
   EXPECT_THROW((void)read_cloud(folder.path("")), InvalidInput);
 }

@@ -235,6 +235,21 @@ TEST(PointWriter, WritesWhatWriteCloudWritesOfAFolder) {
   std::vector<std::string> inputs;
   for (const char* name : {"a.ply", "b.las", "c.csv", "d.ply"}) inputs.push_back(folder.path(name));
   expect_what_write_cloud_writes(folder.path(""), inputs);
+  write_cloud(folder.path("e.las"), read_cloud_bytes("x y z red green blue\n1 2 3 40000 300 0\n", 39, "a.txt"), nullptr, nullptr);
+  inputs.push_back(folder.path("e.las"));
+  spill(folder.path("f.csv"), "x,y,z,r,g,b,quality\n1,2,3,0.1,0.5,1,7\n");
+  inputs.push_back(folder.path("f.csv"));
+  expect_what_write_cloud_writes(folder.path(""), inputs);  // colours of 16 bits
+}
+
+TEST(PointWriter, KeepsTheCommentsOfOnePly) {
+  const Folder folder;
+  const std::string bytes = samples::written(samples::helix(9), "a.ply");
+  const std::size_t at = bytes.find("element");
+  for (const char* name : {"a.ply", "b.ply"})
+    spill(folder.path(name), bytes.substr(0, at) + "comment offset 5 6 7\nobj_info kept\n" + bytes.substr(at));
+  expect_what_write_cloud_writes(folder.path("a.ply"), {folder.path("a.ply")});
+  expect_what_write_cloud_writes(folder.path(""), {folder.path("a.ply"), folder.path("b.ply")});
 }
 
 }  // namespace

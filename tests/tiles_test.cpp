@@ -1,14 +1,17 @@
 // Folders and patterns as one cloud, and boxes of any file.
 #include <g3r/io.h>
+#include <g3r/tiles.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <vector>
 
 #include "counting_allocator.h"
+#include "io/ept.h"
 #include "io/file_lists.h"
 #include "io/table.h"
 #include "io_samples.h"
+#include "stream_checks.h"
 #include "tiles/fewest_tiles.h"
 
 namespace g3r {
@@ -44,6 +47,43 @@ TEST(Tiles, AFolderIsOneCloudInTheOrderOfNames) {
   EXPECT_EQ(value(cloud, "i", 4), 0);
   EXPECT_EQ(value(cloud, "return_flags", 4), 9);
   EXPECT_EQ(read(samples::written(cloud, "a.ply")).positions, cloud.positions);
+}
+
+// One file shows that levels are of 16 bits; the dark points of another are of the same kind.
+TEST(Tiles, ColoursOfAllFilesHaveOneDepth) {
+  using Color = std::array<std::uint8_t, 3>;
+  const Folder folder;
+  const auto las = [&](const std::string& name, const std::string& rows) {
+    write_cloud(folder.path(name), read("x y z red green blue\n" + rows), nullptr, nullptr);
+  };
+  las("a.las", "1 2 3 40000 300 0\n4 5 7 65535 1 2\n");
+  spill(folder.path("b.csv"), "x,y,z,red,green,blue\n1,2,3,1,0.5,0\n");
+  Cloud bytes = samples::helix(1);
+  bytes.colors[0] = {10, 128, 255};
+  write_cloud(folder.path("c.ply"), bytes, nullptr, nullptr);
+  const std::string dark = samples::written(read("x y z red green blue\n1 2 3 257 0 0\n"), "d.las");
+  spill(folder.path("d.las"), dark.substr(0, dark.size() - 6) + samples::raw(std::uint16_t{200}) + std::string(4, '\0'));
+  const Cloud cloud = read_cloud(folder.path(""));
+  EXPECT_EQ(cloud.colors, (std::vector<Color>{{156, 1, 0}, {255, 0, 0}, {255, 128, 0}, {10, 128, 255}, {1, 0, 0}}));
+  EXPECT_EQ(value(cloud, "green", 0), 300);
+  EXPECT_EQ(value(cloud, "green", 2), 32768);
+  EXPECT_EQ(value(cloud, "green", 3), 128 * 257);
+  EXPECT_EQ(value(cloud, "red", 4), 200);
+  const Cloud ply = read(samples::written(cloud, "a.ply"));
+  EXPECT_EQ(ply.colors, cloud.colors);
+  EXPECT_EQ(value(ply, "red", 0), 156) << "between formats colours become bytes";
+  EXPECT_EQ(value(read(samples::written(cloud, "a.las")), "green", 0), 300);
+  std::filesystem::remove(folder.path("a.las"));  // the only one with more than 8 bits
+  EXPECT_EQ(read_cloud(folder.path("")).colors[2], (Color{200, 0, 0}));
+}
+
+TEST(Tiles, WhatOthersCallConfidenceOrQualityIsKept) {
+  const Folder folder;
+  spill(folder.path("a.csv"), "x,y,z,quality\n1,2,3,7\n");
+  spill(folder.path("b.csv"), "x,y,z,confidence\n1,2,3,0.5\n");
+  const Cloud cloud = read_cloud(folder.path(""));
+  EXPECT_EQ(cloud.confidence, (std::vector<float>{0, 0.5F}));
+  EXPECT_EQ(value(cloud, "quality", 0), 7);
 }
 
 TEST(Tiles, APatternNamesItsFiles) {
@@ -212,6 +252,9 @@ TEST(Ept, CellsAreOneCloud) {
     EXPECT_EQ(value(cloud, "intensity", 2), 9);
     EXPECT_EQ(value(cloud, "gpstime", 2), 1e8 + 20);
   }
+  stream_checks::expect_what_read_cloud_gives(folder.path("ept.json"));
+  EXPECT_EQ(io::ept_files(folder.path("ept.json")), Names{folder.path("ept.json")});
+  EXPECT_FALSE(needs_tiles({folder.path("")}, 1000));
   ReadOptions options;
   options.levels = 1;
   EXPECT_EQ(read_cloud(folder.path(""), options).positions.size(), 2U);

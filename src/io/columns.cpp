@@ -56,13 +56,15 @@ class Planner {
 
   void from_table(const Element& points) {
     const Roles roles = find_roles(points);
+    const std::size_t ours = find_confidence(points);
     const bool same_dialect = data_.table->dialect == dialect_;
+    const bool padded = data_.table->dialect == Dialect::kPcd;
     for (std::size_t i = 0; i < points.properties.size(); ++i) {
       Column column;
       column.property = points.properties[i];
       column.in_table = i;
       const bool color = is_in(roles.color, i) || i == roles.packed_color;
-      if (column.property.list && !lists_) continue;
+      if ((column.property.list && !lists_) || (padded && column.property.name == "_")) continue;
       if (color && !same_dialect) {
         if (!has_color_ && !data_.cloud.colors.empty()) add_color();
         continue;
@@ -80,14 +82,26 @@ class Planner {
           column.from = Column::From::kNormal;
           if (!is_float(column.property.type)) column.property.type = Type::kFloat32;
         }
-      } else if (i == roles.confidence && data_.confidence != nullptr) {
+      } else if (i == ours && data_.confidence != nullptr) {
         has_confidence_ = true;
         column.from = Column::From::kConfidence;
-        if (!is_float(column.property.type)) column.property.type = Type::kFloat32;
         if (data_.options.cloud_compare_names) column.property.name = confidence_name();
+      } else if (data_.confidence != nullptr && column.property.name == confidence_name()) {
+        column.property.name += "_2";
       }
       add(std::move(column));
     }
+  }
+
+  // The confidence that is replaced.
+  static std::size_t find_confidence(const Element& points) {
+    for (const char* name : {"confidence", "scalar_confidence"}) {
+      const std::size_t found = points.find(name);
+      if (found == Element::npos) continue;
+      const Property& property = points.properties[found];
+      if (!property.list && property.count == 1 && is_float(property.type)) return found;
+    }
+    return Element::npos;
   }
 
   void add_color() {

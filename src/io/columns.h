@@ -1,4 +1,5 @@
-// What a point file gets: the properties of the cloud's table in their order, with normals and confidence replaced or added.
+// What a point file gets: the properties of the cloud's table in their order, with normals and confidence replaced or added. Replaced is a
+// confidence that is a float, as g3r writes it; another kind of number of this name gets another name. PCD's padding is left out.
 #pragma once
 
 #include "io/table.h"
@@ -10,7 +11,7 @@ namespace g3r::io {
 
 /// One property to write and where its value comes from.
 struct Column {
-  enum class From { kTable, kPosition, kNormal, kColor, kPackedColor, kConfidence };
+  enum class From { kTable, kTableBits, kPosition, kNormal, kColor, kPackedColor, kConfidence };  // kTableBits: whatever the type
   Property property;
   From from = From::kTable;
   std::size_t axis = 0;      ///< of a position, normal or colour

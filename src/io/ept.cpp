@@ -105,7 +105,7 @@ Cloud read_records(const Ept& ept, const Source& source, std::uint64_t count) {
     fail(source, "truncated or damaged: " + std::to_string(count) + " points of " + std::to_string(ept.record) + " bytes declared, found " +
                      std::to_string(source.bytes.size()) + " bytes");
   }
-  const std::shared_ptr<Attributes> table = Attributes::of_points(Attributes::Dialect::kPly);
+  const std::shared_ptr<Attributes> table = Attributes::of_points(Attributes::Dialect::kNone);
   Element& points = table->elements.back();
   points.count = count;
   for (const Dimension& dimension : ept.schema) {
@@ -127,8 +127,12 @@ Cloud read_records(const Ept& ept, const Source& source, std::uint64_t count) {
   return cloud;
 }
 
+std::string file_of(const Ept& ept, const EptCell& node) {
+  return platform::name_of(ept.folder / "ept-data" / (node.name() + (ept.binary ? ".bin" : ".laz")));
+}
+
 Cloud read_node(const Ept& ept, const EptCell& node, std::string& path) {
-  path = platform::name_of(ept.folder / "ept-data" / (node.name() + (ept.binary ? ".bin" : ".laz")));
+  path = file_of(ept, node);
   const std::string bytes = read_bytes(path);
   const Source source{bytes, path};
   if (ept.binary) return read_records(ept, source, node.points);
@@ -148,6 +152,16 @@ std::string find_ept(const std::string& path) {
   const fs::path there = platform::path_of(path);
   const fs::path file = fs::is_directory(there, ignored) ? there / "ept.json" : there;
   return file.filename() == "ept.json" && fs::is_regular_file(file, ignored) ? platform::name_of(file) : "";
+}
+
+std::vector<std::string> ept_files(const std::string& path) {
+  const std::string bytes = read_bytes(path);
+  const Ept ept = read_description(path, bytes);
+  if (ept.binary) return {path};
+  std::vector<std::string> files;
+  for (const EptCell& cell : find_ept_cells(ept.folder, ept.bounds, {})) files.push_back(file_of(ept, cell));
+  if (files.empty()) fail(ept.file, "no points");
+  return files;
 }
 
 Cloud read_ept(const std::string& path, const ReadOptions& options) {

@@ -1,7 +1,5 @@
 #include "io/merger.h"
 
-#include "io/cloud_from_table.h"
-
 #include <algorithm>
 #include <array>
 #include <string>
@@ -10,7 +8,7 @@ namespace g3r::io {
 
 namespace {
 
-// Those that positions, normals, colours and confidence come from.
+// Those that positions, normals and colours come from.
 std::vector<bool> special_properties(const Element& points) {
   const Roles roles = find_roles(points);
   std::vector<bool> special(points.properties.size());
@@ -23,13 +21,12 @@ std::vector<bool> special_properties(const Element& points) {
     mark(roles.color[a]);
   }
   mark(roles.packed_color);
-  mark(roles.confidence);
   return special;
 }
 
 }  // namespace
 
-Merger::Merger(const std::vector<Cloud>& clouds) {
+Merger::Merger(const std::vector<Cloud>& clouds, bool deep_colors) : deep_colors_(deep_colors) {
   const auto any = [&](const auto& has) { return std::any_of(clouds.begin(), clouds.end(), has); };
   using What = Column::What;
   const auto triple = [&](const std::array<const char*, 3>& names, Type type, What what) {
@@ -38,16 +35,19 @@ Merger::Merger(const std::vector<Cloud>& clouds) {
   const bool doubles = any([](const Cloud& c) { return c.scalar == Scalar::kFloat64; });
   triple({"x", "y", "z"}, doubles ? Type::kFloat64 : Type::kFloat32, What::kPosition);
   if (any([](const Cloud& c) { return !c.normals.empty(); })) triple({"nx", "ny", "nz"}, Type::kFloat64, What::kNormal);
-  if (any([](const Cloud& c) { return !c.colors.empty(); })) triple({"red", "green", "blue"}, Type::kUint8, What::kColor);
-  if (any([](const Cloud& c) { return !c.confidence.empty(); })) add("confidence", Type::kFloat32, {What::kConfidence, 0});
+  if (any([](const Cloud& c) { return !c.colors.empty(); })) {
+    triple({"red", "green", "blue"}, deep_colors ? Type::kUint16 : Type::kUint8, What::kColor);
+  }
   const std::size_t known = element_.properties.size();
   for (const Cloud& cloud : clouds) {
     if (cloud.attributes == nullptr) continue;
+    if (cloud.attributes->dialect != Attributes::Dialect::kPly) dialect_ = Attributes::Dialect::kNone;
     const Element& points = cloud.attributes->points();
     const std::vector<bool> special = special_properties(points);
     for (std::size_t i = 0; i < points.properties.size(); ++i) {
       const Property& property = points.properties[i];
       const std::size_t found = element_.find(property.name);
+      if (property.name == "_" && cloud.attributes->dialect == Attributes::Dialect::kPcd) continue;  // padding
       if (!special[i] && !property.list && property.count == 1 && (found == Element::npos || found >= known))
         add(property.name, property.type, {What::kProperty, 0});
     }
@@ -64,7 +64,7 @@ void Merger::add(const std::string& name, Type type, Column column) {
   }
 }
 
-void Merger::append(const Cloud& cloud) {
+void Merger::append(const Cloud& cloud, const RecordColors* colors) {
   const Element* points = cloud.attributes == nullptr ? nullptr : &cloud.attributes->points();
   std::vector<std::size_t> from(columns_.size(), Element::npos);
   for (std::size_t c = 0; points != nullptr && c < columns_.size(); ++c) {
@@ -77,7 +77,9 @@ void Merger::append(const Cloud& cloud) {
     if (record != nullptr) layout.seek(record);
     for (std::size_t c = 0; c < columns_.size(); ++c) {
       double value = 0;
-      if (from[c] != Element::npos) {
+      if (colors != nullptr && deep_colors_ && columns_[c].what == Column::What::kColor) {
+        value = colors->deep_color(layout, record)[columns_[c].axis];
+      } else if (from[c] != Element::npos) {
         value = load_as_double(points->properties[from[c]].type, record + layout.offset(from[c]));
       } else {
         value = own_value(cloud, columns_[c], i);
@@ -98,16 +100,14 @@ Element Merger::take() {
   return out;
 }
 
-double Merger::own_value(const Cloud& cloud, const Column& column, std::size_t i) {
+double Merger::own_value(const Cloud& cloud, const Column& column, std::size_t i) const {
   switch (column.what) {
     case Column::What::kPosition:
       return cloud.positions[i][column.axis];
     case Column::What::kNormal:
       return cloud.normals.empty() ? 0 : cloud.normals[i][column.axis];
     case Column::What::kColor:
-      return cloud.colors.empty() ? 0 : cloud.colors[i][column.axis];
-    case Column::What::kConfidence:
-      return cloud.confidence.empty() ? 0 : static_cast<double>(cloud.confidence[i]);
+      return cloud.colors.empty() ? 0 : cloud.colors[i][column.axis] * (deep_colors_ ? kDeepSteps : 1);
     case Column::What::kProperty:
       break;
   }

@@ -1,6 +1,7 @@
 #include "io/point_stream.h"
 
 #include "io/cloud_from_table.h"
+#include "io/ept.h"
 #include "io/fixed_records.h"
 #include "io/las.h"
 #include "io/laz.h"
@@ -164,6 +165,7 @@ std::unique_ptr<PointStream> parsed_records(std::unique_ptr<RandomFile>& file, c
 }  // namespace
 
 std::unique_ptr<PointStream> open_points(const std::string& path, bool with_records, const ReadOptions& options) {
+  if (!find_ept(path).empty()) return std::make_unique<WholeCloud>(path, with_records, options);
   auto file = std::make_unique<RandomFile>(path);
   std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(file->size(), kHead)), '\0');
   file->read(0, head.data(), head.size());

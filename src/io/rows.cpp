@@ -29,20 +29,31 @@ double Rows::number(std::size_t index, std::size_t k) {
       return data_.cloud.colors[point_][column.axis];
     case Column::From::kConfidence:
       return (*data_.confidence)[point_];
-    case Column::From::kPackedColor: {
-      const auto& c = data_.cloud.colors[point_];
-      return bits_as<float>(static_cast<std::uint32_t>(c[0]) << 16 | static_cast<std::uint32_t>(c[1]) << 8 | c[2]);
-    }
+    case Column::From::kPackedColor:
+      return bits_as<float>(packed_color());
     case Column::From::kTable:
+    case Column::From::kTableBits:
       break;
   }
   const Type type = data_.table->points().properties[column.in_table].type;
   return load_as_double(type, field(index) + k * size_of(type));
 }
 
+std::uint32_t Rows::packed_color() const {
+  const auto& c = data_.cloud.colors[point_];
+  return static_cast<std::uint32_t>(c[0]) << 16 | static_cast<std::uint32_t>(c[1]) << 8 | c[2];
+}
+
 void Rows::append_bytes(std::size_t index, std::string& bytes) {
   const Column& column = (*columns_)[index];
-  if (column.from == Column::From::kTable && data_.table->points().properties[column.in_table].type == column.property.type) {
+  if (column.from == Column::From::kPackedColor) {
+    const std::uint32_t bits = packed_color();
+    bytes.append(reinterpret_cast<const char*>(&bits), sizeof bits);
+    return;
+  }
+  const bool same_type =
+      column.from == Column::From::kTable && data_.table->points().properties[column.in_table].type == column.property.type;
+  if (same_type || column.from == Column::From::kTableBits) {
     bytes.append(field(index), layout_->bytes(column.in_table));
     return;
   }

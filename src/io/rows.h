@@ -5,6 +5,7 @@
 #include "io/output_file.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,8 @@ class Rows {
   [[nodiscard]] const char* field(std::size_t column) const { return record_ + layout_->offset((*columns_)[column].in_table); }
 
  private:
+  [[nodiscard]] std::uint32_t packed_color() const;  // the bits
+
   const PointData& data_;
   const std::vector<Column>* columns_;
   std::vector<RecordLayout> layout_storage_;

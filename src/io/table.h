@@ -70,8 +70,8 @@ class RecordLayout {
 
 class Attributes {
  public:
-  enum class Dialect { kPly, kPcd, kLas, kText };
-  Dialect dialect = Dialect::kPly;    ///< whose names the properties follow
+  enum class Dialect { kPly, kPcd, kLas, kText, kNone };
+  Dialect dialect = Dialect::kPly;    ///< whose names and kinds of colours the properties follow; kNone: of no format that is written
   std::vector<std::string> comments;  ///< PLY: whole lines, "comment ..." or "obj_info ..."
   std::vector<io::Element> elements;  ///< in the order of the file
   std::size_t vertex = 0;             ///< index of the element that holds the points

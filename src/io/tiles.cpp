@@ -8,7 +8,10 @@
 
 #include <algorithm>
 #include <array>
+#include <deque>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -54,6 +57,20 @@ std::vector<std::string> files_of_pattern(const std::string& path) {
   return files;
 }
 
+// The colours in the tables of clouds, measured; nothing of clouds whose table has none, or only black.
+std::deque<std::optional<RecordColors>> colors_of(const std::vector<Cloud>& clouds) {
+  std::deque<std::optional<RecordColors>> all;
+  for (const Cloud& cloud : clouds) {
+    std::optional<RecordColors>& colors = all.emplace_back();
+    if (cloud.colors.empty() || cloud.attributes == nullptr) continue;
+    const Element& points = cloud.attributes->points();
+    colors.emplace(points);
+    colors->measure(points.data.data(), points.count);
+    if (!colors->exist()) colors.reset();
+  }
+  return all;
+}
+
 void merge_scanners(const std::vector<Cloud>& clouds, Cloud& whole) {
   if (std::any_of(clouds.begin(), clouds.end(), [](const Cloud& c) { return c.sensor_positions.empty(); })) return;
   for (const Cloud& cloud : clouds) {
@@ -92,7 +109,7 @@ std::vector<std::string> find_tiles(const std::string& path) {
 
 void forget_las(Cloud& cloud) {
   if (cloud.attributes == nullptr || cloud.attributes->dialect != Attributes::Dialect::kLas) return;
-  cloud.attributes = Attributes::of_points(Attributes::Dialect::kPly, cloud.attributes->points());
+  cloud.attributes = Attributes::of_points(Attributes::Dialect::kNone, cloud.attributes->points());
 }
 
 Cloud merge_clouds(std::vector<Cloud>& clouds, const std::vector<std::string>& names, const std::string& path) {
@@ -101,10 +118,14 @@ Cloud merge_clouds(std::vector<Cloud>& clouds, const std::vector<std::string>& n
   whole.format = std::to_string(clouds.size()) + " files";
   const auto same = [&](const Cloud& cloud) { return cloud.format == clouds[0].format; };
   if (std::all_of(clouds.begin(), clouds.end(), same)) whole.format += " of " + clouds[0].format;
-  auto table = std::make_shared<Attributes>();
-  Merger merger(clouds);
-  for (const Cloud& cloud : clouds) merger.append(cloud);
-  table->elements.push_back(merger.take());
+  std::deque<std::optional<RecordColors>> colors = colors_of(clouds);
+  std::vector<RecordColors*> all;
+  for (std::optional<RecordColors>& of_cloud : colors) {
+    if (of_cloud) all.push_back(&*of_cloud);
+  }
+  Merger merger(clouds, RecordColors::agree(all));
+  for (std::size_t i = 0; i < clouds.size(); ++i) merger.append(clouds[i], colors[i] ? &*colors[i] : nullptr);
+  std::shared_ptr<Attributes> table = Attributes::of_points(merger.dialect(), merger.take());
   merge_scanners(clouds, whole);
   merge_warnings(clouds, names, whole);
   clouds.clear();

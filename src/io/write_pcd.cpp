@@ -1,5 +1,5 @@
 // PCD 0.7 out: binary, or ascii. A cloud read from PCD keeps its fields, their types and arrays, WIDTH, HEIGHT and VIEWPOINT; padding is
-// dropped.
+// dropped. As text packed colours are whole numbers, as PCL writes them: as floats many of them are no numbers.
 #include "io/text.h"
 #include "io/writers.h"
 
@@ -58,7 +58,13 @@ std::string header(const PointData& data, const std::vector<Column>& columns) {
 
 void write_pcd(const PointData& data, OutputFile& file) {
   std::vector<Column> columns = plan_columns(data, Attributes::Dialect::kPcd, false);
-  std::erase_if(columns, [](const Column& column) { return column.property.name.starts_with("_"); });
+  for (Column& column : columns) {
+    const Property& property = column.property;
+    const bool packed = (property.name == "rgb" || property.name == "rgba") && property.type == Type::kFloat32 && property.count == 1;
+    if (!packed || !data.options.ascii) continue;
+    column.property.type = Type::kUint32;
+    if (column.from == Column::From::kTable) column.from = Column::From::kTableBits;
+  }
   file.write(header(data, columns));
   write_rows(data, columns, file);
 }

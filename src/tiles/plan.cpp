@@ -4,6 +4,7 @@
 #include "base/vector.h"
 #include "base/whole_bytes.h"
 #include "cpu/parallel.h"
+#include "io/ept.h"
 #include "io/output_file.h"
 #include "io/point_stream.h"
 #include "io/tiles.h"
@@ -69,7 +70,8 @@ void for_all_points(const std::vector<std::string>& files, const ReadOptions& op
 std::vector<std::string> files_of(const std::vector<std::string>& inputs) {
   std::vector<std::string> files;
   for (const std::string& input : inputs) {
-    const std::vector<std::string> found = io::find_tiles(input);
+    const std::string ept = io::find_ept(input);
+    const std::vector<std::string> found = ept.empty() ? io::find_tiles(input) : io::ept_files(ept);
     if (found.empty()) files.push_back(input);
     files.insert(files.end(), found.begin(), found.end());
   }

@@ -14,14 +14,6 @@ constexpr std::size_t kMostPoints = std::size_t{1} << 18;    // written at once
 constexpr std::size_t kMostRecords = std::size_t{32} << 20;  // bytes of their records; larger gains no time
 constexpr std::size_t kListPoints = std::size_t{1} << 14;    // written at once where lists make records differ
 
-// A table of an element's properties with records in it.
-std::shared_ptr<Attributes> table_of(const Attributes& like, io::Element element) {
-  auto table = std::make_shared<Attributes>();
-  table->dialect = like.dialect;
-  table->elements.push_back(std::move(element));
-  return table;
-}
-
 }  // namespace
 
 std::size_t PointWriter::block(const io::PointStream& stream) {
@@ -33,7 +25,8 @@ void PointWriter::look_at(const Input& input, Stages& stages) {
   Part& part = parts_.emplace_back();
   const auto stream = io::open_points(input.path, true, {.cancel = stages.cancel()});
   const Attributes& table = stream->table();
-  part.table = table_of(table, table.points());
+  part.table = Attributes::of_points(table.dialect, table.points());
+  if (table.dialect == Attributes::Dialect::kPly) part.table->comments = table.comments;
   if (io::LasOrigin* las = stream->las(); las != nullptr && las_file_ && alone_) {
     from_las_ = true;
     path_ = input.path;
@@ -46,7 +39,6 @@ void PointWriter::look_at(const Input& input, Stages& stages) {
   part.cloud.scalar = stream->scalar();
   part.cloud.attributes = part.table;
   if (roles.normal[0] != io::Element::npos) part.cloud.normals.resize(1);
-  if (roles.confidence != io::Element::npos) part.cloud.confidence.resize(1);
   io::RecordColors colors(properties);
   if (!colors.exist()) return;
   const bool kept = alone_ && !las_file_ && table.dialect == Attributes::Dialect::kPly;  // as they are in the records
@@ -111,16 +103,20 @@ void PointWriter::write_header(const Manifest& manifest, Stages& stages) {
   Cloud like = parts_[0].cloud;
   if (!alone_) {
     std::vector<Cloud> clouds;
-    for (const Part& part : parts_) clouds.push_back(part.cloud);
-    merger_.emplace(clouds);
+    std::vector<io::RecordColors*> colors;
+    for (Part& part : parts_) {
+      clouds.push_back(part.cloud);
+      if (part.colors) colors.push_back(&*part.colors);
+    }
+    merger_.emplace(clouds, io::RecordColors::agree(colors));
     like = Cloud();
-    like.attributes = table_of(Attributes(), merger_->element());
+    like.attributes = Attributes::of_points(merger_->dialect(), merger_->element());
     const auto is_float = [](const Cloud& cloud) { return cloud.scalar == Scalar::kFloat32; };
     if (std::all_of(clouds.begin(), clouds.end(), is_float)) like.scalar = Scalar::kFloat32;
     colored_ = std::any_of(clouds.begin(), clouds.end(), [](const Cloud& cloud) { return !cloud.colors.empty(); });
-    if (las_file_ && colored_) like.colors.resize(1);
+    if (colored_) like.colors.resize(1);
   } else if (las_file_ && like.attributes->dialect == Attributes::Dialect::kLas) {
-    like.attributes = table_of(Attributes(), like.attributes->points());  // without what belongs to its header
+    like.attributes = Attributes::of_points(Attributes::Dialect::kNone, like.attributes->points());  // without what belongs to its header
   }
   const std::vector<Vec3> normals;
   const std::vector<float> confidence;
@@ -133,7 +129,7 @@ void PointWriter::write_header(const Manifest& manifest, Stages& stages) {
     return;
   }
   columns_ = io::ply_columns(data);
-  file_.write(io::ply_header(parts_[0].table->comments, manifest.points, columns_));
+  file_.write(io::ply_header(alone_ ? parts_[0].table->comments : std::vector<std::string>(), manifest.points, columns_));
 }
 
 void PointWriter::begin(io::PointStream& stream) {
@@ -158,16 +154,17 @@ Cloud PointWriter::make_cloud(const Part& part, const std::vector<Vec3>& points,
   io::Element element = part.table->points();
   element.count = points.size();
   element.data.swap(records);
-  cloud.attributes = table_of(*part.table, std::move(element));
+  cloud.attributes = Attributes::of_points(part.table->dialect, std::move(element));
   return cloud;
 }
 
 // The points with the properties that the file gets.
 Cloud PointWriter::as_written(std::size_t input, const std::vector<Vec3>& points, std::string& records) {
-  Cloud cloud = make_cloud(parts_[input], points, records);
+  const Part& part = parts_[input];
+  Cloud cloud = make_cloud(part, points, records);
   if (merger_) {
-    merger_->append(cloud);
-    cloud.attributes = table_of(Attributes(), merger_->take());
+    merger_->append(cloud, part.colors ? &*part.colors : nullptr);
+    cloud.attributes = Attributes::of_points(merger_->dialect(), merger_->take());
     if (colored_) cloud.colors.resize(points.size());  // of those that have none
   }
   return cloud;

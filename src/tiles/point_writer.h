@@ -47,7 +47,7 @@ class PointWriter {
  private:
   // What is known of an input without its points.
   struct Part {
-    std::shared_ptr<Attributes> table;
+    std::shared_ptr<Attributes> table;       // with the comments of a PLY
     std::optional<io::RecordColors> colors;  // if they are to be brought to 0..255, and are not all black
     Cloud cloud;                             // without points; members that the file has are not empty
   };
@@ -66,7 +66,7 @@ class PointWriter {
   std::string path_;       // of it
   std::string head_;       // what comes before its records
   std::string stored_;     // those of the points that are written next
-  bool colored_ = false;   // LAS of other inputs, some with colours
+  bool colored_ = false;   // several inputs, some with colours
   std::deque<Part> parts_;
   std::optional<io::Merger> merger_;  // of several inputs
   std::vector<io::Column> columns_;   // of PLY
