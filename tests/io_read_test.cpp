@@ -14,7 +14,7 @@ namespace {
 
 using samples::message_of;
 using samples::read;
-using Names = std::vector<std::string>;
+using Strings = std::vector<std::string>;
 
 TEST(Text, NumbersAreReadFromTheFirstToTheLastCharacter) {
   double v = 0;
@@ -206,15 +206,15 @@ TEST(Pcd, CompressedIsReadColumnByColumn) {
 }
 
 TEST(Npy, ColoursAreNoNormals) {
-  const Names normals = {"x", "y", "z", "nx", "ny", "nz"};
-  const Names colors = {"x", "y", "z", "red", "green", "blue"};
+  const Strings normals = {"x", "y", "z", "nx", "ny", "nz"};
+  const Strings colors = {"x", "y", "z", "red", "green", "blue"};
   const Cloud bytes = read(samples::npy({{1, 2, 3, 200, 100, 0}, {4, 5, 6, 1, 0, 0}}));
   EXPECT_EQ(bytes.property_names, colors);
   EXPECT_EQ(bytes.colors[0], (std::array<std::uint8_t, 3>{200, 100, 0}));
   EXPECT_EQ(read(samples::npy({{1, 2, 3, 65535, 257, 0}})).colors[0], (std::array<std::uint8_t, 3>{255, 1, 0}));
   EXPECT_EQ(read(samples::npy({{1, 2, 3, 0, 1, 0}, {1, 2, 3, 0, 0, 1}})).property_names, normals);
   EXPECT_EQ(read(samples::npy({{1, 2, 3, 40, 1, -30}})).property_names, normals);
-  EXPECT_EQ(read(samples::npy({{1, 2, 3, 70000, 0, 0}})).property_names, (Names{"x", "y", "z", "scalar_4", "scalar_5", "scalar_6"}));
+  EXPECT_EQ(read(samples::npy({{1, 2, 3, 70000, 0, 0}})).property_names, (Strings{"x", "y", "z", "scalar_4", "scalar_5", "scalar_6"}));
 }
 
 TEST(Npy, PaddingIsLeftOutAndTruthIsANumber) {
@@ -222,7 +222,7 @@ TEST(Npy, PaddingIsLeftOutAndTruthIsANumber) {
       samples::npy_header("[('x', '<f4'), ('', '|V4'), ('y', '<f8'), ('z', '<f4'), ('kept', '|b1'), ('', '|V3')]", 2, "");
   const std::string row = samples::raw(1.0F) + "pad!" + samples::raw(2.0) + samples::raw(3.0F) + "\1" + "end";
   const Cloud cloud = read(padded + row + row);
-  EXPECT_EQ(cloud.property_names, (Names{"x", "y", "z", "kept"}));
+  EXPECT_EQ(cloud.property_names, (Strings{"x", "y", "z", "kept"}));
   EXPECT_EQ(cloud.positions[1], (Vec3{1, 2, 3}));
   EXPECT_EQ(samples::value_of(cloud, "kept", 1), 1);
   const std::string big = samples::npy_header("[('c', '|u1'), ('x', '>f4'), ('y', '>f4'), ('z', '>f4')]", 1, "");

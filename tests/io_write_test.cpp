@@ -22,7 +22,7 @@ using samples::read;
 using samples::slurp;
 using samples::spill;
 using samples::value_of;
-using Names = std::vector<std::string>;
+using Strings = std::vector<std::string>;
 
 template <class Call>
 void expect_io_error(IoError::Kind kind, const Call& call) {
@@ -177,9 +177,9 @@ TEST(LasExtraBytes, ThatAreNoFloatsMakeRoomForOursUnderAnotherName) {
   const Cloud cloud = read(las_with(descriptors, extra, 5));
   EXPECT_EQ(cloud.normals[4], (Vec3{0.5, -1, 1.5}));
   const Cloud once = oriented_las(cloud);
-  const Names added(once.property_names.end() - 9, once.property_names.end());
-  EXPECT_EQ(added,
-            (Names{"confidence_3", "confidence_2", "NormalX_2", "NormalY_2", "NormalZ_2", "NormalX", "NormalY", "NormalZ", "confidence"}));
+  const Strings added(once.property_names.end() - 9, once.property_names.end());
+  EXPECT_EQ(added, (Strings{"confidence_3", "confidence_2", "NormalX_2", "NormalY_2", "NormalZ_2", "NormalX", "NormalY", "NormalZ",
+                            "confidence"}));
   EXPECT_EQ(value_of(once, "confidence_3", 4), 7);
   EXPECT_EQ(value_of(once, "confidence_2", 4), 8);
   EXPECT_EQ(value_of(once, "NormalY_2", 4), -1);
@@ -299,7 +299,7 @@ TEST(Write, ConfidenceOfOthersIsKept) {
     write_cloud(path, cloud, nullptr, &confidence, {.cloud_compare_names = cloud_compare_names});
     for (int run = 0; run < 2; ++run) {
       const Cloud again = read_cloud(path);
-      EXPECT_EQ(again.property_names, (Names{"x", "y", "z", kept, "quality", ours}));
+      EXPECT_EQ(again.property_names, (Strings{"x", "y", "z", kept, "quality", ours}));
       EXPECT_EQ(value_of(again, kept, 0), 40);
       EXPECT_EQ(value_of(again, "quality", 0), 0.5);
       EXPECT_EQ(value_of(again, ours, 0), 0.25);
@@ -321,7 +321,7 @@ TEST(Write, PackedColoursSurviveAsText) {
   for (const bool ascii : {false, true}) {
     const Cloud again = read(samples::written(cloud, "a.pcd", {.ascii = ascii}));
     EXPECT_EQ(again.colors, (std::vector<std::array<std::uint8_t, 3>>{{200, 100, 50}})) << ascii;
-    EXPECT_EQ(again.property_names, (Names{"x", "y", "z", "rgb", "_id"})) << "without padding";
+    EXPECT_EQ(again.property_names, (Strings{"x", "y", "z", "rgb", "_id"})) << "without padding";
     EXPECT_EQ(value_of(again, "_id", 0), 7);
   }
   EXPECT_NE(samples::written(cloud, "a.pcd", {.ascii = true}).find("1 2 3 " + std::to_string(opaque)), std::string::npos);
