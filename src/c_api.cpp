@@ -55,10 +55,11 @@ struct Request {
   g3r::Monitor monitor;
 };
 
-g3r::Length read_length(double value, g3r_unit unit, const char* name) {
+g3r::Length read_length(double value, g3r_unit unit, const std::string& name) {
   using Unit = g3r::Length::Unit;
   constexpr Unit kUnits[] = {Unit::kAuto, Unit::kInput, Unit::kPercent, Unit::kSpacing};
-  if (unit < G3R_UNIT_AUTO || unit > G3R_UNIT_SPACING) throw g3r::InvalidInput(std::string(name) + " is not a g3r_unit");
+  if (unit < G3R_UNIT_AUTO || unit > G3R_UNIT_SPACING) throw g3r::InvalidInput(name + "_unit is not a g3r_unit");
+  if (unit == G3R_UNIT_AUTO && value != 0) throw g3r::InvalidInput(name + " is given without its unit: set " + name + "_unit");
   return {kUnits[unit], value};
 }
 
@@ -89,8 +90,8 @@ Request read_options(const g3r_options* given, size_t points) {
   }
   Request request;
   request.options.preset = o.paper != 0 ? g3r::Preset::kPaper : g3r::Preset::kDefault;
-  request.options.epsilon = read_length(o.epsilon, o.epsilon_unit, "epsilon_unit");
-  request.options.noise = read_length(o.noise, o.noise_unit, "noise_unit");
+  request.options.epsilon = read_length(o.epsilon, o.epsilon_unit, "epsilon");
+  request.options.noise = read_length(o.noise, o.noise_unit, "noise");
   request.options.degree = o.degree;
   request.options.threads = o.threads;
   request.options.max_memory = o.max_memory;
@@ -145,6 +146,7 @@ void give(const g3r::TileStatus& from, g3r_tiles_info* info) {
   all.undecided_share = from.undecided_share;
   all.converged = from.converged ? 1 : 0;
   all.consistent = from.consistent ? 1 : 0;
+  all.doubtful = from.doubtful ? 1 : 0;
   std::memcpy(info, &all, std::min(info->size, sizeof all));
 }
 

@@ -239,6 +239,21 @@ TEST_F(Guest, LeavesHandlersAndTheLocaleAlone) {
   if (!german) GTEST_SKIP() << "no German locale on this machine (package locales): tried in the one that there is";
 }
 
+TEST_F(Guest, ALengthWithoutItsUnitIsRefused) {
+  const auto orient = library().find<decltype(g3r_orient)>("g3r_orient");
+  const auto complaint = library().find<decltype(g3r_last_error)>("g3r_last_error");
+  const std::vector<double> points = egg();
+  std::vector<double> normals(points.size());
+  g3r_options options;
+  library().find<decltype(g3r_options_init)>("g3r_options_init")(&options, sizeof options);
+  options.device = "cpu";
+  options.noise = 0.01;
+  EXPECT_EQ(orient(points.data(), kPoints, &options, normals.data(), nullptr, nullptr), G3R_INVALID_INPUT);
+  EXPECT_NE(std::string(complaint()).find("noise_unit"), std::string::npos) << complaint();
+  options.noise_unit = G3R_UNIT_INPUT;
+  EXPECT_EQ(orient(points.data(), kPoints, &options, normals.data(), nullptr, nullptr), G3R_OK) << complaint();
+}
+
 TEST_F(Guest, TilesAreFourCalls) {
   const auto init = library().find<decltype(g3r_options_init)>("g3r_options_init");
   const auto plan = library().find<decltype(g3r_tiles_plan)>("g3r_tiles_plan");
@@ -266,10 +281,13 @@ TEST_F(Guest, TilesAreFourCalls) {
   g3r_tiles_info info{};
   EXPECT_EQ(plan(inputs, 1, work.c_str(), 1, &options, &info), G3R_INVALID_INPUT);  // without its size
   info.size = sizeof info;
+  info.doubtful = 7;
   ASSERT_EQ(plan(inputs, 1, work.c_str(), 1, &options, &info), G3R_OK) << complaint();
   EXPECT_EQ(info.points, kTilePoints);
   EXPECT_EQ(info.tiles, 1U);
   EXPECT_EQ(info.done, 0U);
+  EXPECT_EQ(info.consistent, 1);
+  EXPECT_EQ(info.doubtful, 0);
   EXPECT_EQ(merge(work.c_str(), out.c_str(), nullptr), G3R_INVALID_INPUT);
   EXPECT_EQ(run(work.c_str(), 2, 1, &options, &info), G3R_INVALID_INPUT);
   ASSERT_EQ(run(work.c_str(), 1, 1, &options, nullptr), G3R_OK) << complaint();

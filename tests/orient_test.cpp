@@ -545,5 +545,24 @@ TEST(Field, IsOneInsideZeroOutsideWithTheRightGradient) {
   EXPECT_EQ(alone[0], w[1]);  // a query's value does not depend on the others
 }
 
+TEST(Field, LeavesOutWhatIsNotFinite) {
+  const Surface s = shapes::sphere(2000);
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  Orientation o;
+  o.normals = s.normals;
+  o.areas = s.areas;
+  o.normals[3][1] = kNan;
+  o.areas[7] = kNan;
+  o.areas[9] = std::numeric_limits<double>::infinity();
+  EXPECT_NEAR(Field(s.points, o).value(std::vector<Vec3>{{0, 0, 0}})[0], 1, 0.02);
+  o.areas.pop_back();
+  try {
+    (void)Field(s.points, o);
+    FAIL() << "fewer areas than points";
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("1999 areas"), std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace g3r

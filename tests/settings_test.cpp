@@ -48,6 +48,7 @@ TEST(ChooseSettings, RefusesOptionsThatContradictEachOther) {
   };
   refused([](Options& o) { o.degree = 2, o.harmonics = "1,x"; });
   refused([](Options& o) { o.degree = 2, o.method = Method::kEnergy; });
+  refused([](Options& o) { o.degree = -3; });
   refused([](Options& o) { o.solver = Solver::kDense; });
   refused([](Options& o) { o.condition_number = true; });
   refused([](Options& o) { o.tolerance = 1; });

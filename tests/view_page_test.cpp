@@ -134,6 +134,11 @@ TEST(ViewHtml, BrokenScenesAreRefused) {
   scene = full_scene(10);
   scene.mesh.triangles.push_back({0, 1, 1U << 30U});
   EXPECT_THROW((void)view_html(scene), InvalidInput);
+  scene = full_scene(10);
+  scene.mesh.confidence.assign(scene.mesh.vertices.size(), 1);
+  EXPECT_NO_THROW((void)view_html(scene));
+  scene.mesh.confidence.pop_back();
+  EXPECT_THROW((void)view_html(scene), InvalidInput);
 }
 
 #ifdef G3R_CHROMIUM

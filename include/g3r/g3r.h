@@ -247,7 +247,8 @@ void carry_attributes(Mesh& mesh, const PointsView& points, const std::vector<st
 class Field {
  public:
   /// From oriented points; `width` s in input units, 0: 0.55 spacings. `device`: where it is evaluated, see Options::device; it is held as
-  /// long as the field. Throws InvalidInput like orient(), Unavailable.
+  /// long as the field. Points of which the place, the normal or the area is not finite are left out. Throws InvalidInput like orient(),
+  /// and where no point has an area; Unavailable.
   Field(const PointsView& points, const Orientation& orientation, double width = 0, const std::string& device = "auto");
   ~Field();
   Field(Field&&) noexcept;

@@ -30,6 +30,7 @@ typedef enum g3r_status {
 /* Called on the calling thread with a stage and a fraction in [0, 1]; returning 0 cancels. */
 typedef int (*g3r_progress)(void* user, const char* stage, double fraction);
 
+/* Of a length. With G3R_UNIT_AUTO it is automatic and has to be 0: another number is refused, as its unit was forgotten. */
 typedef enum g3r_unit { G3R_UNIT_AUTO = 0, G3R_UNIT_INPUT = 1, G3R_UNIT_PERCENT = 2, G3R_UNIT_SPACING = 3 } g3r_unit;
 
 /* Fill with g3r_options_init() and change what you need; members are only ever added at the end. */
@@ -98,10 +99,11 @@ typedef struct g3r_tiles_info {
   uint64_t worker_memory_bytes; /* planned, of the largest tile */
   uint64_t disk_bytes;          /* planned, of the whole folder at its fullest */
   double work;                  /* points of all solves over the points */
-  double open_share;            /* of the thinned cloud, as the next three */
+  double open_share;            /* of the thinned cloud, as the next four */
   double undecided_share;
   int converged;
   int consistent;
+  int doubtful;
 } g3r_tiles_info;
 
 /* Plans `tiles` tiles (0: as few as the memory allows) of the points in `inputs` (input_count paths: files, folders, patterns). Of
@@ -116,7 +118,9 @@ G3R_C_API g3r_status g3r_tiles_run(const char* folder, size_t worker, size_t wor
 /* What is planned and done. */
 G3R_C_API g3r_status g3r_tiles_status(const char* folder, g3r_tiles_info* info);
 
-/* Writes one .ply, .las or .laz of all points in the order of the input, with normals and confidence. Of `options`: progress. */
+/* Writes one .ply, .las or .laz of all points in the order of the input, with normals and confidence. Of `options`: progress.
+ * What LAS cannot hold as it is, such as all digits of a coordinate, becomes what it can, and this function does not say so: callers who
+ * have to know use merge_tiles() (MergedTiles::warnings in g3r/tiles.h), `g3r tiles merge` or Python, or write a .ply. */
 G3R_C_API g3r_status g3r_tiles_merge(const char* folder, const char* output, const g3r_options* options);
 
 /* What a status means, one line. */

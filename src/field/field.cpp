@@ -34,7 +34,8 @@ struct Field::Impl {
 
 Field::Field(const PointsView& points, const Orientation& orientation, double width, const std::string& device) {
   if (orientation.normals.size() != points.count || orientation.areas.size() != points.count) {
-    throw InvalidInput("field: " + std::to_string(points.count) + " points but " + std::to_string(orientation.normals.size()) + " normals");
+    throw InvalidInput("field: " + std::to_string(points.count) + " points but " + std::to_string(orientation.normals.size()) +
+                       " normals and " + std::to_string(orientation.areas.size()) + " areas");
   }
   if (!(width >= 0) || !std::isfinite(width)) throw InvalidInput("field: the width must be 0 (automatic) or positive");
   gpu::Lease lease(device, points.count);

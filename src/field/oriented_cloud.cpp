@@ -1,8 +1,11 @@
 #include "field/oriented_cloud.h"
 
+#include "base/vector.h"
 #include "field/areas.h"
 
 #include <g3r/error.h>
+
+#include <cmath>
 
 namespace g3r {
 
@@ -10,7 +13,7 @@ OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& 
   std::vector<Vec3> kept;  // all but outliers, which have no area and may be far away
   std::vector<std::size_t> input;
   for (std::size_t i = 0; i < normals.size(); ++i) {
-    if (areas[i] == 0) continue;
+    if (areas[i] == 0 || !std::isfinite(areas[i]) || !vector::is_finite(normals[i])) continue;
     kept.push_back(points[i]);
     input.push_back(i);
   }

@@ -15,7 +15,8 @@ struct OrientedCloud {
   double spacing = 0;     ///< typical, normalised units
 };
 
-/// From N points, N unit normals and N areas in squared input units. Points without area are left out. Throws InvalidInput like
+/// From N points, N unit normals and N areas in squared input units. Points without area are left out, and those
+/// whose area or normal is not finite. Throws InvalidInput like
 /// canonical_cloud(), and where no point has an area.
 [[nodiscard]] OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& normals, const std::vector<double>& areas);
 /// The same with areas from the spacing of the points: area_vectors(). Duplicates share theirs.

@@ -80,7 +80,8 @@ void require_sound(const Options& options) {
   const bool green = method_of(options) == Method::kGreen;
   require(!harmonics_given || green, "degree and harmonics belong to the method green; leave them out with energy");
   require(options.degree < 0 || options.harmonics.empty(), "give either a degree or a list of harmonics, not both");
-  require(options.degree <= kMaxHarmonicDegree, "degree must be between 0 and " + std::to_string(kMaxHarmonicDegree));
+  require(options.degree >= -1 && options.degree <= kMaxHarmonicDegree,
+          "degree must be between 0 and " + std::to_string(kMaxHarmonicDegree));
   require(options.threads >= 0, "threads must be 0 (all cores) or positive");
   require(options.tolerance == -1 || (options.tolerance >= 0 && options.tolerance < 1), "tolerance must be in [0, 1)");
   require(options.epsilon.unit == Length::Unit::kAuto || (options.epsilon.value > 0 && std::isfinite(options.epsilon.value)),

@@ -24,6 +24,10 @@ Box check_scene(const Scene& scene) {
   const std::size_t vertices = scene.mesh.vertices.size();
   if (!scene.mesh.colors.empty() && scene.mesh.colors.size() != vertices)
     throw InvalidInput("view: the mesh has fewer colours than vertices");
+  if (!scene.mesh.confidence.empty() && scene.mesh.confidence.size() != vertices) {
+    throw InvalidInput("view: the mesh has " + std::to_string(scene.mesh.confidence.size()) + " confidences for " +
+                       std::to_string(vertices) + " vertices");
+  }
 
   Box box;
   const auto include = [&box](const Vec3& p) {
