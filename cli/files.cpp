@@ -132,7 +132,7 @@ MeshIfAny mesh_if_any(const std::string& path) {
   if (!std::filesystem::is_regular_file(platform::path_of(path), ignored)) return {};
   try {
     return {read_mesh(path), ""};
-  } catch (const io::NoFaces&) {
+  } catch (const NoFaces&) {
     return {};
   } catch (const InvalidInput& error) {
     return {std::nullopt, error.what()};

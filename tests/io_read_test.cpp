@@ -334,6 +334,14 @@ TEST(ReadMesh, PolygonsAreFansAndIndicesAreChecked) {
   EXPECT_EQ(mesh.triangles[1], (std::array<std::uint32_t, 3>{0, 2, 3}));
   const std::string bad = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n";
   EXPECT_THROW((void)read_mesh_bytes(bad.data(), bad.size(), "a.obj"), InvalidInput);
+  try {
+    (void)read_mesh_bytes(bad.data(), bad.size(), "a.obj");
+  } catch (const InvalidInput& error) {
+    EXPECT_EQ(dynamic_cast<const NoFaces*>(&error), nullptr);
+  }
+  for (const std::string text : {"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "1 2 3\n4 5 6\n"}) {
+    EXPECT_THROW((void)read_mesh_bytes(text.data(), text.size(), "a.obj"), NoFaces);
+  }
   const std::string relative = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n";
   EXPECT_EQ(read_mesh_bytes(relative.data(), relative.size(), "a.obj").triangles.size(), 1U);
 }

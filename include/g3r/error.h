@@ -21,6 +21,12 @@ class InvalidInput : public Error {
   using Error::Error;
 };
 
+/// A file that is no mesh: what read_mesh() throws where there are no faces, in contrast to faces that cannot be used.
+class NoFaces : public InvalidInput {
+ public:
+  using InvalidInput::InvalidInput;
+};
+
 /// A file could not be opened, read, created or written. what() names the file and the system's reason.
 class IoError : public Error {
  public:

@@ -161,9 +161,9 @@ Mesh read_mesh_bytes(const void* bytes, std::size_t size, const std::string& nam
       mesh = io::read_stl_mesh(source, false);
       break;
     default:
-      throw io::NoFaces(source, "not a mesh format: expected PLY, OBJ, OFF or STL");
+      io::fail_without_faces(source, "not a mesh format: expected PLY, OBJ, OFF or STL");
   }
-  if (mesh.triangles.empty()) throw io::NoFaces(source, "no faces: expected a mesh with at least one triangle");
+  if (mesh.triangles.empty()) io::fail_without_faces(source, "no faces: expected a mesh with at least one triangle");
   return mesh;
 }
 

@@ -98,7 +98,7 @@ Mesh read_ply_mesh(const Source& source) {
   const std::shared_ptr<Attributes> table = read_table(source, cloud);
   fill_cloud(source, table, cloud);
   const Faces faces(*table);
-  if (!faces.exist()) throw NoFaces(source, "no faces: a mesh needs an element \"face\" with a list \"vertex_indices\"");
+  if (!faces.exist()) fail_without_faces(source, "no faces: a mesh needs an element \"face\" with a list \"vertex_indices\"");
   if (!faces.are_integer_lists()) fail(source, "the property \"vertex_indices\" must be a list of integers");
 
   Mesh mesh;

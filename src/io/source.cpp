@@ -113,7 +113,7 @@ std::string quote(std::string_view text) {
 
 void fail(const Source& source, const std::string& what) { throw InvalidInput(escape_text(source.name) + ": " + what); }
 
-NoFaces::NoFaces(const Source& source, const std::string& what) : InvalidInput(escape_text(source.name) + ": " + what) {}
+void fail_without_faces(const Source& source, const std::string& what) { throw NoFaces(escape_text(source.name) + ": " + what); }
 
 void fail_at_byte(const Source& source, std::size_t offset, const std::string& what) {
   fail(source, "byte " + std::to_string(offset) + ": " + what);

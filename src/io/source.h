@@ -23,14 +23,9 @@ std::string quote(std::string_view text);
 
 /// Throw InvalidInput: file, place, and `what`: expected, found, hint.
 [[noreturn]] void fail(const Source& source, const std::string& what);
+[[noreturn]] void fail_without_faces(const Source& source, const std::string& what);  // NoFaces
 [[noreturn]] void fail_at_byte(const Source& source, std::size_t offset, const std::string& what);
 [[noreturn]] void fail_at_line(const Source& source, std::size_t line, const std::string& what);
-
-/// A file that is no mesh: what read_mesh() throws where there are no faces, in contrast to faces that cannot be used.
-class NoFaces : public InvalidInput {
- public:
-  NoFaces(const Source& source, const std::string& what);
-};
 
 /// The extension of a path in lower case, without the dot; "" if there is none.
 std::string extension(const std::string& path);
