@@ -24,6 +24,7 @@
 #include "arrays.h"
 #include "job.h"
 #include "options.h"
+#include "text.h"
 #include "tiles.h"
 
 namespace g3r::python {
@@ -35,7 +36,8 @@ using Text = std::string;
 template <class T>
 void take_choice(const nb::dict& from, const char* name, T& into) {
   if (!from.contains(name)) return;
-  const Text word = nb::cast<Text>(from[name]);
+  Text word;
+  take(from, name, word);
   const std::optional<T> value = parse<T>(word);
   if (!value) throw InvalidInput(Text(name) + " must be one of " + words<T>("'") + ", not '" + word + "'");
   into = *value;
@@ -66,6 +68,7 @@ Options read_options(const nb::dict& from) {
   take(from, "schedule", options.schedule);
   take(from, "tolerance", options.tolerance);
   take(from, "accuracy", options.accuracy);
+  take(from, "condition_number", options.condition_number);
   take(from, "threads", options.threads);
   take(from, "device", options.device);
   take(from, "max_memory", options.max_memory);
@@ -86,7 +89,13 @@ MeshOptions read_mesh_options(const nb::dict& from) {
   take_length(from, "noise", true, options.noise);
   take(from, "threads", options.threads);
   take(from, "device", options.device);
+  take(from, "max_memory", options.max_memory);
   return options;
+}
+
+// What is known of the points before the solve comes first.
+void prepend(const std::vector<Text>& warnings, Stats& stats) {
+  stats.warnings.insert(stats.warnings.begin(), warnings.begin(), warnings.end());
 }
 
 nb::tuple give_mesh(Mesh&& mesh) {
@@ -97,11 +106,12 @@ nb::tuple give_mesh(Mesh&& mesh) {
 }
 
 // (normals, areas, confidence, report)
-nb::tuple orient_points(const PointsArray& array, const nb::dict& keywords, const nb::object& progress) {
+nb::tuple orient_points(const PointsArray& array, const nb::dict& keywords, const std::vector<Text>& warnings, const nb::object& progress) {
   const PointsView points = points_view(array);
   const Options options = read_options(keywords);
   Orientation result;
   run_job(progress, [&](const Monitor& monitor) { result = orient(points, options, monitor); });
+  prepend(warnings, result.stats);
   const Text report = report_json(result.stats);
   return nb::make_tuple(give_rows(std::move(result.normals)), give_values(std::move(result.areas)),
                         give_values(std::move(result.confidence)), report);
@@ -109,7 +119,7 @@ nb::tuple orient_points(const PointsArray& array, const nb::dict& keywords, cons
 
 // (normals, areas, confidence, report, mesh)
 nb::tuple reconstruct_points(const PointsArray& array, const std::optional<Rows<std::uint8_t>>& colors, const nb::dict& keywords,
-                             const nb::object& progress) {
+                             const std::vector<Text>& warnings, const nb::object& progress) {
   const PointsView points = points_view(array);
   const Options options = read_options(keywords);
   const MeshOptions mesh_options = read_mesh_options(keywords);
@@ -120,6 +130,7 @@ nb::tuple reconstruct_points(const PointsArray& array, const std::optional<Rows<
     if (!point_colors.empty()) carry_attributes(result.mesh, points, point_colors, result.orientation.confidence, {{}, monitor.cancel});
   });
   Orientation& o = result.orientation;
+  prepend(warnings, o.stats);
   const Text report = report_json(o.stats, &result.check);
   return nb::make_tuple(give_rows(std::move(o.normals)), give_values(std::move(o.areas)), give_values(std::move(o.confidence)), report,
                         give_mesh(std::move(result.mesh)));
@@ -129,7 +140,9 @@ nb::tuple mesh_points(const PointsArray& array, const PointsArray& normals, cons
   const MeshOptions options = read_mesh_options(keywords);
   const PointsView points = points_view(array), directions = points_view(normals);
   Mesh mesh;
-  run_job(progress, [&](const Monitor& monitor) { mesh = mesh_oriented(points, directions, options, monitor); });
+  MeshReport report;
+  run_job(progress, [&](const Monitor& monitor) { mesh = mesh_oriented(points, directions, options, monitor, &report); });
+  warn_caller(report.stats.warnings);
   return give_mesh(std::move(mesh));
 }
 
@@ -156,23 +169,24 @@ auto field_gradient(const Field& field, const PointsArray& queries) {
   return give_rows(std::move(gradients));
 }
 
-std::shared_ptr<Cloud> read_points(const Text& path, double min_opacity, bool all_splats, const std::optional<std::array<double, 6>>& box,
-                                   int levels, int threads) {
+std::shared_ptr<Cloud> read_points(const nb::bytes& path, double min_opacity, bool all_splats,
+                                   const std::optional<std::array<double, 6>>& box, int levels, int threads) {
   ReadOptions options;
   options.min_opacity = min_opacity;
   options.all_splats = all_splats;
   if (box) options.box = Box{{(*box)[0], (*box)[1], (*box)[2]}, {(*box)[3], (*box)[4], (*box)[5]}};
   options.levels = levels;
   options.threads = threads;
+  const Text name = name_of(path);
   std::shared_ptr<Cloud> cloud;
   run_job(nb::none(), [&](const Monitor& monitor) {
     options.cancel = monitor.cancel;
-    cloud = std::make_shared<Cloud>(read_cloud(path, options));
+    cloud = std::make_shared<Cloud>(read_cloud(name, options));
   });
   return cloud;
 }
 
-void write_points(const Text& path, const std::shared_ptr<Cloud>& source, const std::optional<PointsArray>& positions,
+void write_points(const nb::bytes& path, const std::shared_ptr<Cloud>& source, const std::optional<PointsArray>& positions,
                   const std::optional<PointsArray>& normals, const std::optional<Rows<std::uint8_t>>& colors,
                   const std::optional<Values<float>>& confidence, bool ascii, bool cloud_compare_names) {
   Cloud fresh;
@@ -185,16 +199,14 @@ void write_points(const Text& path, const std::shared_ptr<Cloud>& source, const 
   const std::vector<Vec3> directions = copy_points(normals);
   const std::vector<float> trust = copy_values<float>(confidence);
   WriteOptions options{ascii, cloud_compare_names};
-  std::vector<std::string> warnings;
+  std::vector<Text> warnings;
   options.warnings = &warnings;
+  const Text name = name_of(path);
   {
     const nb::gil_scoped_release release;
-    write_cloud(path, source ? *source : fresh, directions.empty() ? nullptr : &directions, trust.empty() ? nullptr : &trust, options);
+    write_cloud(name, source ? *source : fresh, directions.empty() ? nullptr : &directions, trust.empty() ? nullptr : &trust, options);
   }
-  constexpr Py_ssize_t kCaller = 2;  // frames up: who called g3r.write()
-  for (const std::string& warning : warnings) {
-    if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), kCaller) < 0) throw nb::python_error();
-  }
+  warn_caller(warnings);
 }
 
 Mesh copy_mesh(const std::optional<PointsArray>& vertices, const std::optional<Rows<std::uint32_t>>& faces,
@@ -202,18 +214,20 @@ Mesh copy_mesh(const std::optional<PointsArray>& vertices, const std::optional<R
   return {copy_points(vertices), copy_rows<std::uint32_t>(faces), copy_rows<std::uint8_t>(colors), copy_values<float>(confidence)};
 }
 
-void write_faces(const Text& path, const PointsArray& vertices, const Rows<std::uint32_t>& faces,
+void write_faces(const nb::bytes& path, const PointsArray& vertices, const Rows<std::uint32_t>& faces,
                  const std::optional<Rows<std::uint8_t>>& colors, const std::optional<Values<float>>& confidence, bool ascii) {
   const Mesh mesh = copy_mesh(vertices, faces, colors, confidence);
+  const Text name = name_of(path);
   const nb::gil_scoped_release release;
-  write_mesh(path, mesh, WriteOptions{ascii, false});
+  write_mesh(name, mesh, WriteOptions{ascii, false});
 }
 
-nb::tuple read_faces(const Text& path) {
+nb::tuple read_faces(const nb::bytes& path) {
+  const Text name = name_of(path);
   Mesh mesh;
   {
     const nb::gil_scoped_release release;
-    mesh = read_mesh(path);
+    mesh = read_mesh(name);
   }
   return give_mesh(std::move(mesh));
 }
@@ -274,6 +288,8 @@ void translate_error(const std::exception_ptr& pointer, void* /*unused*/) {
   const auto raise = [](const char* name, const char* what) { PyErr_SetString(error_class(name).ptr(), what); };
   try {
     std::rethrow_exception(pointer);
+  } catch (const NoFaces& error) {
+    raise("NoFaces", error.what());
   } catch (const InvalidInput& error) {
     raise("InputError", error.what());
   } catch (const IoError& error) {
@@ -329,11 +345,12 @@ void bind(nb::module_& m) {
       .def_prop_ro("sensor_positions", [](nb::handle self) { return rows_of(self, nb::cast<const Cloud&>(self).sensor_positions); })
       .def_prop_ro("scan_of_point", [](nb::handle self) { return values_of(self, nb::cast<const Cloud&>(self).scan_of_point); })
       .def_ro("format", &Cloud::format)
-      .def_ro("property_names", &Cloud::property_names)
-      .def_ro("warnings", &Cloud::warnings);
+      .def_prop_ro("property_names", [](const Cloud& self) { return exact_texts(self.property_names); })
+      .def_prop_ro("warnings", [](const Cloud& self) { return printable(self.warnings); });
 
-  m.def("orient", &orient_points, nb::arg("points"), nb::arg("options"), nb::arg("progress").none());
-  m.def("reconstruct", &reconstruct_points, nb::arg("points"), nb::arg("colors").none(), nb::arg("options"), nb::arg("progress").none());
+  m.def("orient", &orient_points, nb::arg("points"), nb::arg("options"), nb::arg("warnings"), nb::arg("progress").none());
+  m.def("reconstruct", &reconstruct_points, nb::arg("points"), nb::arg("colors").none(), nb::arg("options"), nb::arg("warnings"),
+        nb::arg("progress").none());
   m.def("mesh", &mesh_points, nb::arg("points"), nb::arg("normals"), nb::arg("options"), nb::arg("progress").none());
   m.def("devices", &devices);
   m.def("build_info", &module_build_info);
@@ -352,7 +369,10 @@ void bind(nb::module_& m) {
         nb::arg("colors").none(), nb::arg("true_normals").none(), nb::arg("vertices").none(), nb::arg("faces").none(),
         nb::arg("vertex_colors").none(), nb::arg("vertex_confidence").none(), nb::arg("report"));
   m.def(
-      "write_file", [](const Text& path, const nb::bytes& data) { write_file(path, std::string(data.c_str(), data.size())); },
+      "write_file",
+      [](const nb::bytes& path, const nb::bytes& data) {
+        write_file(name_of(path), {data.c_str(), data.size()});
+      },
       nb::arg("path"), nb::arg("data"));
   m.def(
       "view_html",

@@ -1,12 +1,6 @@
 #include "options.h"
 
-#include <g3r/error.h>
 #include <g3r/names.h>
-
-#include <optional>
-#include <string>
-
-#include <nanobind/stl/string.h>
 
 namespace g3r::python {
 namespace {

@@ -5,40 +5,63 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from typing import Any, Dict, List, Optional
+from typing import Any, List, Optional
 
-from . import Error, InputError, __version__, read, read_mesh, show
+from . import Cloud, Error, InputError, View, __version__, _g3r, read
+from ._errors import NoFaces
+from ._view import DEFAULT_HEIGHT, DEFAULT_POINTS
 
 
-def _scene(paths: List[str]) -> Dict[str, Any]:
-    """Arguments of `show` for a cloud, a mesh, or one of each."""
-    scene: Dict[str, Any] = {}
+def _warn(text: str) -> None:
+    print(f"g3r: warning: {text}", file=sys.stderr)
+
+
+def _mesh_if_any(path: str) -> Any:
+    """Vertices, faces, colours and confidence; None for points."""
+    if not os.path.isfile(path):  # a folder, a pattern
+        return None
+    try:
+        return _g3r.read_mesh(os.fsencode(path))
+    except NoFaces:
+        return None
+    except InputError as error:
+        _warn(f"shown as points: {error}")
+        return None
+
+
+def _scene(paths: List[str]) -> _g3r.Scene:
+    """Of a cloud, a mesh, or one of each."""
+    cloud: Optional[Cloud] = None
+    mesh: Any = None
     for path in paths:
-        thing: Any
-        try:
-            kind, thing = "mesh", read_mesh(path)
-        except InputError:  # no faces: points
-            kind, thing = "what", read(path)
-        if kind in scene:
+        found = _mesh_if_any(path)
+        if (cloud if found is None else mesh) is not None:
             raise InputError(f"{path}: view shows one cloud and one mesh")
-        scene[kind] = thing
-    if "what" not in scene:
-        scene["what"], scene["faces"] = scene.pop("mesh")
-    return scene
+        if found is not None:
+            mesh = found
+            continue
+        cloud = read(path)
+        for warning in cloud.warnings:
+            _warn(f"{path}: {warning}")
+    points, normals, confidence, colors = (None,) * 4 if cloud is None else (cloud.points, cloud.normals, cloud.confidence, cloud.colors)
+    vertices, faces, vertex_colors, vertex_confidence = (None,) * 4 if mesh is None else mesh
+    title = os.fsencode(", ".join(os.path.basename(path) for path in paths)).decode(errors="backslashreplace")
+    return _g3r.scene(title, points, normals, confidence, colors, None, vertices, faces, vertex_colors, vertex_confidence, "")
 
 
 def main(arguments: Optional[List[str]] = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m g3r", description="Normals and meshes of point clouds: see help(g3r).")
     parser.add_argument("--version", action="version", version=f"g3r {__version__}")
     view = parser.add_subparsers(dest="command", required=True).add_parser("view", help="look at a cloud, a mesh, or one of each")
-    view.add_argument("inputs", nargs="+", metavar="IN", help="files of points or of a mesh")
+    view.add_argument("inputs", nargs="+", metavar="IN", help="files, folders or patterns of points, or a file of a mesh")
     view.add_argument("-o", "--out", help="page .html or picture .png; the browser opens if left out")
     view.add_argument("--z-up", action="store_true", help="the z axis points up instead of the y axis")
     options = parser.parse_args(arguments)
     try:
-        title = ", ".join(os.path.basename(path) for path in options.inputs)
-        page = show(**_scene(options.inputs), title=title, up="z" if options.z_up else "y", open=options.out is None)
-        if options.out is not None:
+        page = View(_scene(options.inputs), options.z_up, DEFAULT_POINTS, DEFAULT_HEIGHT)
+        if options.out is None:
+            page.open()
+        else:
             page.save(options.out)
     except Error as error:
         print(f"g3r: {error}", file=sys.stderr)

@@ -6,7 +6,8 @@ import json
 from typing import TYPE_CHECKING, Any, Callable, Dict, List, NamedTuple, Optional, Set, Tuple, Union, overload
 
 from . import _g3r
-from ._arrays import as_colors, as_points, member, whole
+from ._arrays import as_areas, as_colors, as_points, integer, member, opened, points_and_owner, truth, warn_of_file, whole
+from ._cloud import Cloud
 from ._errors import InputError
 from ._hints import HINTS, checked_numbers, take_hints
 from ._view import DEFAULT_HEIGHT, DEFAULT_POINTS, View
@@ -18,7 +19,10 @@ Progress = Callable[[str, float], Optional[bool]]
 """Called as progress(stage, fraction in [0, 1]); returning False cancels, anything else goes on."""
 
 _MESH_OPTIONS = {"mesher", "keep_largest", "min_component", "faces", "keep_all"}
-_METHOD_OPTIONS = {"noise", "method", "wnnc_widths", "harmonics", "solver", "schedule", "tolerance", "accuracy", "max_memory", "device"}
+_METHOD_OPTIONS = {"noise", "method", "wnnc_widths", "harmonics", "solver", "schedule", "tolerance", "accuracy", "condition_number",
+                   "max_memory", "device"}
+_KINDS: Dict[str, Callable[[str, Any], Any]] = {"keep_largest": whole, "faces": whole, "max_memory": whole, "keep_all": truth,
+                                                "condition_number": truth}
 
 
 def _options(epsilon: Union[str, float], degree: Optional[int], preset: str, threads: int, known: Set[str],
@@ -26,13 +30,15 @@ def _options(epsilon: Union[str, float], degree: Optional[int], preset: str, thr
     unknown = set(more) - known
     if unknown:
         raise TypeError(f"unknown option {sorted(unknown)[0]!r}; there are also {', '.join(sorted(known | HINTS))}")
-    for name in ("keep_largest", "faces", "max_memory"):
-        if name in more:
-            whole(name, more[name])
-    options = {"epsilon": epsilon, "preset": preset, "threads": int(threads), **more}
+    options = {"epsilon": epsilon, "preset": preset, "threads": integer("threads", threads), **_checked(more)}
     if degree is not None:
-        options["degree"] = int(degree)
+        options["degree"] = integer("degree", degree)
     return options
+
+
+def _checked(options: Dict[str, Any]) -> Dict[str, Any]:
+    """The options with counts and switches as the extension module takes them."""
+    return {name: _KINDS[name](name, value) if name in _KINDS else value for name, value in options.items()}
 
 
 def _depth(depth: Union[str, int]) -> Dict[str, Any]:
@@ -43,26 +49,35 @@ def _depth(depth: Union[str, int]) -> Dict[str, Any]:
     return {"depth": whole("depth", depth)}
 
 
-def _trim(trim: Union[None, str, float]) -> Dict[str, Any]:
-    if trim is None or trim == "off":
+def _trim(trim: Union[None, bool, str, float]) -> Dict[str, Any]:
+    import numpy as np
+
+    if isinstance(trim, (bool, np.bool_)):
+        trim = "auto" if trim else "off"
+    if trim is None or isinstance(trim, str) and trim == "off":
         return {}
-    if trim == "auto":
+    if isinstance(trim, str) and trim == "auto":
         return {"trim": "auto"}
-    if isinstance(trim, str):
-        raise InputError(f"trim must be None, 'auto' or a distance above 0 in input units, not {trim!r}")
-    return {"trim": "distance", "trim_distance": float(trim)}
+    try:
+        if not isinstance(trim, str):
+            return {"trim": "distance", "trim_distance": float(trim)}
+    except (TypeError, ValueError):
+        pass
+    raise InputError(f"trim must be None, 'auto' or a distance above 0 in input units, not {trim!r}")
 
 
 class Field:
     """The winding field of oriented points: about 1 inside, 0 outside, 1/2 on the surface. Call it with query points."""
 
     def __init__(self, points: Any, normals: Any, areas: Any, *, width: float = 0.0, device: str = "auto") -> None:
-        """`points`, `normals` (unit, outward): (n, 3); `areas`: (n,) in squared input units. `width` of the smoothing in input units,
-        0: 0.55 spacings. `device`: as in `run`, held as long as the field. O(n log n). Raises InputError, UnavailableError."""
+        """`points`, `normals` (unit, outward): (n, 3); `areas`: (n,) in squared input units. Points of which any of these is not finite
+        are left out. `width` of the smoothing in input units, 0: 0.55 spacings. `device`: as in `run`, held as long as the field.
+        O(n log n). Raises InputError, UnavailableError."""
         import numpy as np
 
-        self._field = _g3r.field(as_points(points), np.ascontiguousarray(as_points(normals, "normals"), dtype=np.float64),
-                                 np.ascontiguousarray(areas, dtype=np.float64), float(width), device)
+        array = as_points(points)
+        self._field = _g3r.field(array, np.ascontiguousarray(as_points(normals, "normals"), dtype=np.float64),
+                                 as_areas(areas, len(array)), float(width), device)
 
     def __call__(self, queries: Any) -> Floats:
         """The field at (q, 3) query points: (q,) float64. O(n + q log n). Ctrl-C works. Raises InputError."""
@@ -81,12 +96,15 @@ class Result:
     areas: (n,) float64, squared input units.
     vertices, faces: (v, 3) float64 and (m, 3) uint32, counter-clockwise seen from outside; None when run with mesh=False.
     vertex_colors, vertex_confidence: (v, 3) uint8 and (v,) float32, or None.
+    points, colors: those that `run` was given, (n, 3), colors uint8 or None; copies, unless they are of a `Cloud`.
     stats: the report as a dict, see docs/report.md.
     """
 
     def __init__(self, points: Points, normals: Floats, areas: Floats, confidence: Singles, report: str,
-                 mesh: Optional[Tuple[Floats, Indices, Optional[Bytes], Optional[Singles]]], device: str = "auto") -> None:
+                 mesh: Optional[Tuple[Floats, Indices, Optional[Bytes], Optional[Singles]]], device: str = "auto",
+                 colors: Optional[Bytes] = None) -> None:
         self.points = points
+        self.colors = colors
         self.normals = normals
         self.areas = areas
         self.confidence = confidence
@@ -113,8 +131,8 @@ class Result:
         return f"<g3r.Result: {len(self.normals)} normals, mean confidence {float(self.confidence.mean()):.3f}, {mesh}>"
 
     def _repr_html_(self) -> str:
-        scene = _g3r.scene("g3r", self.points, self.normals, self.confidence, None, None, self.vertices, self.faces, self.vertex_colors,
-                           self.vertex_confidence, self.report)
+        scene = _g3r.scene("g3r", self.points, self.normals, self.confidence, self.colors, None, self.vertices, self.faces,
+                           self.vertex_colors, self.vertex_confidence, self.report)
         return View(scene, False, DEFAULT_POINTS, DEFAULT_HEIGHT)._repr_html_()
 
 
@@ -161,15 +179,17 @@ def orient(points: Any, *, epsilon: Union[str, float] = "auto", degree: Optional
     """Consistent outward normals of an unoriented cloud of a closed surface.
 
     points: (n, 3) float32 or float64 of any strides, a path, or an object with points (Open3D, trimesh, PyVista, torch, g3r.Cloud).
-    The options are those of `run`. Returns (n, 3) unit normals in the order of the points.
+    The options are those of `run`. Returns (n, 3) unit normals in the order of the points. Warns (UserWarning) of what was odd about the
+    file that the points come from.
 
     Raises InputError (fewer than 4 distinct finite points, all on a line, an option out of range), Cancelled, MemoryError.
     """
-    points, hints = take_hints(points, more)
+    points, hints = take_hints(opened(points), more)
     options = _options(epsilon, degree, preset, threads, _METHOD_OPTIONS, more)
     array = as_points(points)
     options.update(checked_numbers(hints, len(array)))
-    return _g3r.orient(array, options, progress)[0]
+    warn_of_file(points)
+    return _g3r.orient(array, options, [], progress)[0]
 
 
 @overload
@@ -179,8 +199,10 @@ def reconstruct(points: Any, *, colors: Any, **options: Any) -> Tuple[Floats, In
 def reconstruct(points: Any, *, colors: Any = None, **options: Any) -> Any:
     """A watertight mesh of an unoriented cloud: V (v, 3) and F (m, 3); with `colors` (n, 3) also C (v, 3) as bytes.
 
-    Takes and raises what `run` does, and UnavailableError when this build has no mesher.
+    Takes and raises what `run` does, and UnavailableError when this build has no mesher. Warns as `orient` does.
     """
+    points = opened(points)
+    warn_of_file(points)
     result = run(points, colors=colors, **options)
     if colors is None:
         return result.vertices, result.faces
@@ -188,7 +210,7 @@ def reconstruct(points: Any, *, colors: Any = None, **options: Any) -> Any:
 
 
 def run(points: Any, *, colors: Any = None, epsilon: Union[str, float] = "auto", degree: Optional[int] = None, preset: str = "default",
-        depth: Union[str, int] = "auto", trim: Union[None, str, float] = None, mesh: bool = True, threads: int = 0,
+        depth: Union[str, int] = "auto", trim: Union[None, bool, str, float] = None, mesh: bool = True, threads: int = 0,
         progress: Optional[Progress] = None, **more: Any) -> Result:
     """Normals, confidence, areas, mesh, field and report of an unoriented cloud.
 
@@ -196,9 +218,9 @@ def run(points: Any, *, colors: Any = None, epsilon: Union[str, float] = "auto",
     degree: highest degree of the harmonic polynomials, 0..8; None: the preset's, 2.
     preset: "default", or "paper": the published method to the letter.
     depth: octree depth of the mesh, "auto" or 4..12.
-    trim: None, or for open scans "auto" (4 spacings) or a distance in input units: surface farther from every point is cut away.
+    trim: None, or for open scans "auto" (or True: 4 spacings) or a distance in input units: surface farther from every point is cut away.
     mesh: False leaves the mesh out.
-    colors: (n, 3), carried to the vertices.
+    colors: (n, 3), bytes or shares of 1, carried to the vertices.
     threads: 0 for all cores; the result does not depend on it.
     progress: called as progress(stage, fraction) on this thread; returning False cancels.
     faces: simplify the mesh to about this many triangles. keep_largest: keep only so many components. keep_all: True keeps surface that too
@@ -212,42 +234,55 @@ def run(points: Any, *, colors: Any = None, epsilon: Union[str, float] = "auto",
     seen_from_inside: True for rooms, tunnels, streets: normals face the side the scanner was on.
     flip: True turns every normal, after all other hints.
     device: where the sums run: "auto", "cpu", "gpu", or "gpu:N", number N of `devices()`. "auto" takes a GPU for many points.
-    Further options: mesher, min_component, method, wnnc_widths, harmonics, solver, schedule, tolerance, accuracy, max_memory, as in C++.
+    Further options: mesher, min_component, method, wnnc_widths, harmonics, solver, schedule, tolerance, accuracy, condition_number,
+        max_memory, as in C++.
+
+    stats["warnings"] begins with what was odd about the file that the points come from.
 
     O(n log n) time, O(n) memory. The interpreter lock is released; Ctrl-C works. Raises InputError, UnavailableError, Cancelled,
     MemoryError.
     """
-    points, hints = take_hints(points, more)
+    points, hints = take_hints(opened(points), more)
     options = _options(epsilon, degree, preset, threads, _METHOD_OPTIONS | _MESH_OPTIONS, more)
     options.update(_depth(depth))
     options.update(_trim(trim))
-    array = as_points(points)
+    array, shared = points_and_owner(points)
     options.update(checked_numbers(hints, len(array)))
     if colors is not None:
-        colors = as_colors(colors, len(array))
+        colors = as_colors(colors, len(array)).copy()
     device = options.get("device", "auto")
-    if not mesh:
-        normals, areas, confidence, report = _g3r.orient(array, options, progress)
-        return Result(array, normals, areas, confidence, report, None, device)
-    normals, areas, confidence, report, surface = _g3r.reconstruct(array, colors, options, progress)
-    return Result(array, normals, areas, confidence, report, surface, device)
+    warnings = points.warnings if isinstance(points, Cloud) else []
+    surface = None
+    if mesh:
+        normals, areas, confidence, report, surface = _g3r.reconstruct(array, colors, options, warnings, progress)
+    else:
+        normals, areas, confidence, report = _g3r.orient(array, options, warnings, progress)
+    return Result(array.copy() if shared else array, normals, areas, confidence, report, surface, device, colors)
 
 
-def mesh_oriented(points: Any, normals: Any = None, *, depth: Union[str, int] = "auto", mesher: str = "auto",
-                  noise: Union[str, float] = "auto", threads: int = 0, device: str = "auto",
+def mesh_oriented(points: Any, normals: Any = None, *, depth: Union[str, int] = "auto", trim: Union[None, bool, str, float] = None,
+                  mesher: str = "auto", noise: Union[str, float] = "auto", keep_largest: int = 0, min_component: Optional[float] = None,
+                  keep_all: bool = False, faces: int = 0, max_memory: int = 0, threads: int = 0, device: str = "auto",
                   progress: Optional[Progress] = None) -> Tuple[Floats, Indices]:
     """A mesh of points that already have outward normals: V (v, 3) and F (m, 3). `normals` may be left out if `points` has them.
 
     noise: standard deviation of the points from their surface, a number in input units, "X%" of the box diagonal or "Xh" point spacings;
     0: clean. Estimated unless given.
-    threads: 0 for all cores; the result does not depend on it. device: see `run`.
+    depth, trim, mesher, keep_largest, min_component, keep_all, faces, max_memory, threads, device, progress: see `run`.
 
+    Warns (UserWarning) of what was odd about the file that the points come from, and of what is doubtful about the mesh.
     O(n log n) time. Points that are not finite or whose normal is 0 are left out. Raises InputError (fewer than 4 points left, no surface),
     UnavailableError, Cancelled, MemoryError."""
+    points = opened(points)
     if normals is None:
         normals = member(points, "normals", "point_normals", "vertex_normals")
         if normals is None:
             raise InputError("there are no normals; g3r.reconstruct() takes points without them")
-    options = {"mesher": mesher, "threads": int(threads), "device": device, "noise": noise, **_depth(depth)}
-    vertices, faces, _, _ = _g3r.mesh(as_points(points), as_points(normals, "normals"), options, progress)
-    return vertices, faces
+    options = _checked({"mesher": mesher, "threads": integer("threads", threads), "device": device, "noise": noise,
+                        "keep_largest": keep_largest, "keep_all": keep_all, "faces": faces, "max_memory": max_memory})
+    if min_component is not None:
+        options["min_component"] = min_component
+    options.update({**_depth(depth), **_trim(trim)})
+    warn_of_file(points)
+    vertices, triangles, _, _ = _g3r.mesh(as_points(points), as_points(normals, "normals"), options, progress)
+    return vertices, triangles

@@ -6,19 +6,25 @@ NumPy is imported where it is first needed, so that `import g3r` does not wait f
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any
+import warnings
+from typing import TYPE_CHECKING, Any, Optional, Tuple
 
-from ._cloud import read
+from ._cloud import Cloud, read
 from ._errors import InputError
 
 if TYPE_CHECKING:
-    from ._types import Bytes, Indices, Points, Singles
+    from ._types import Bytes, Floats, Indices, Points, Singles
+
+_SHARE_SLACK = 0.01  # of colours that are shares: what rounding and resampling leave beyond 0 and 1
 
 
 def _plain(value: Any) -> Points:
-    """A tensor, a device array, a list: as an array, without a copy where there is one in memory already."""
+    """A tensor, a device array, a list: as an array, without a copy where there is one in memory already. Masked numbers are NaN."""
     import numpy as np
 
+    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value) and value.dtype.kind in "fiub":
+        filled: Points = np.ma.filled(value.astype(value.dtype if value.dtype.kind == "f" else np.float64), np.nan)
+        return filled
     if hasattr(value, "detach"):  # torch: drop the graph, come to the CPU
         value = value.detach()
     if hasattr(value, "cpu") and callable(value.cpu):
@@ -31,6 +37,15 @@ def _plain(value: Any) -> Points:
         return np.asarray(value)
     except (TypeError, ValueError) as error:
         raise InputError(f"cannot make an array of {type(value).__name__}: {error}") from None
+
+
+def _complete(value: Any, what: str) -> Points:
+    """As `_plain`, of what has no word for a number that is not there."""
+    import numpy as np
+
+    if np.ma.is_masked(value):
+        raise InputError(f"{what} must not be masked")
+    return _plain(value)
 
 
 def _is_array(value: Any) -> bool:
@@ -61,25 +76,71 @@ def _rows(value: Any, what: str) -> Points:
     return array
 
 
+def integer(name: str, value: Any, least: Optional[int] = None) -> int:
+    """An integer, of any type that holds one, `least` or more."""
+    try:
+        number = int(value)
+        if number == value and (least is None or number >= least):
+            return number
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise InputError(f"{name} must be an integer{'' if least is None else f', {least} or more'}, not {value!r}")
+
+
 def whole(name: str, value: Any) -> int:
     """An integer, 0 or more."""
-    if int(value) != value or value < 0:
-        raise InputError(f"{name} must be an integer, 0 or more, not {value!r}")
-    return int(value)
+    return integer(name, value, 0)
+
+
+def truth(name: str, value: Any) -> bool:
+    """True or False, of any type that equals one of them."""
+    try:
+        if value in (True, False):
+            return bool(value)
+    except ValueError:  # an array
+        pass
+    raise InputError(f"{name} must be True or False, not {value!r}")
+
+
+def opened(value: Any) -> Any:
+    """A path as the `Cloud` that it names; anything else as it is."""
+    return read(value) if isinstance(value, (str, bytes, os.PathLike)) else value
+
+
+def warn_of_file(value: Any) -> None:
+    """Warns the caller of a public function of what was odd about the file that a `Cloud` comes from."""
+    for warning in value.warnings if isinstance(value, Cloud) else []:
+        warnings.warn(warning, UserWarning, stacklevel=3)
+
+
+def faces_in(value: Any) -> Any:
+    """The faces that an object has; None if there are none. Of trimesh these are `faces`: its `triangles` are corners."""
+    for name in ("faces", "triangles"):
+        found = member(value, name)
+        if found is not None and _plain(found).dtype.kind in "iu":
+            return found
+    return None
 
 
 def as_points(value: Any, what: str = "points") -> Points:
     """(n, 3) float32 or float64 with adjacent coordinates; a view of the caller's memory where that is one already."""
+    return points_and_owner(value, what)[0]
+
+
+def points_and_owner(value: Any, what: str = "points") -> Tuple[Points, bool]:
+    """What `as_points` returns, and whether the caller may write to its memory."""
     import numpy as np
 
-    if isinstance(value, (str, bytes, os.PathLike)):
-        value = read(value)
+    value = opened(value)
+    read_only = isinstance(value, Cloud)
+    if isinstance(value, Cloud):
+        value = value.points
     if not _is_array(value):
         inner = member(value, "points", "vertices", "positions")
         if inner is None:
             raise InputError(f"{what}: cannot find points in an object of type {type(value).__name__}; pass an array of shape (n, 3)")
         value = inner
-    array = _rows(value, what)
+    given = array = _rows(value, what)
     if array.dtype.kind not in "fiub":
         raise InputError(f"{what} must be numbers, not {array.dtype}")
     if array.dtype not in (np.float32, np.float64) or not array.dtype.isnative:
@@ -88,19 +149,28 @@ def as_points(value: Any, what: str = "points") -> Points:
     aligned = array.flags.aligned and array.strides[0] % itemsize == 0
     if array.size and (array.strides[1] != itemsize or not aligned):
         array = array.copy(order="C")
-    return array
+    return array, not read_only and np.may_share_memory(array, given)
 
 
 def as_colors(value: Any, count: int, what: str = "colors") -> Bytes:
-    """(n, 3) bytes; numbers with a fraction are shares of 1, a fourth channel is dropped."""
+    """(n, 3) bytes; a fourth channel is dropped.
+
+    Integers are bytes. Floats are shares of 1, or, where they go beyond that and all are whole numbers of 0..255, bytes; NaN is 0.
+    """
     import numpy as np
 
-    array = _plain(value)
+    array = _complete(value, what)
     if array.ndim != 2 or array.shape[1] not in (3, 4) or array.shape[0] != count:
         raise InputError(f"{what} must be an array of shape ({count}, 3), not {array.shape}")
     array = array[:, :3]
     if array.dtype.kind == "f":
-        array = np.rint(255 * np.clip(np.nan_to_num(array), 0, 1))
+        finite = array[np.isfinite(array)]
+        if not ((finite < -_SHARE_SLACK) | (finite > 1 + _SHARE_SLACK)).any():
+            array = np.rint(255 * np.clip(np.nan_to_num(array), 0, 1))
+        elif (finite == np.rint(finite)).all() and ((finite >= 0) & (finite <= 255)).all():
+            array = np.clip(np.nan_to_num(array), 0, 255)
+        else:
+            raise InputError(f"{what} must be bytes (0..255) or shares (0..1)")
     elif array.dtype.kind not in "iu":
         raise InputError(f"{what} must be numbers, not {array.dtype}")
     if array.size and (array.min() < 0 or array.max() > 255):
@@ -108,21 +178,34 @@ def as_colors(value: Any, count: int, what: str = "colors") -> Bytes:
     return np.ascontiguousarray(array, dtype=np.uint8)
 
 
+def _values(value: Any, count: int, what: str) -> Points:
+    array = _complete(value, what)
+    if array.shape != (count,):
+        raise InputError(f"{what} must be an array of shape ({count},), not {array.shape}")
+    if array.dtype.kind not in "fiub":
+        raise InputError(f"{what} must be numbers, not {array.dtype}")
+    return array
+
+
 def as_values(value: Any, count: int, what: str) -> Singles:
     """(n,) float32."""
     import numpy as np
 
-    array = _plain(value)
-    if array.shape != (count,):
-        raise InputError(f"{what} must be an array of shape ({count},), not {array.shape}")
-    return np.ascontiguousarray(array, dtype=np.float32)
+    return np.ascontiguousarray(_values(value, count, what), dtype=np.float32)
+
+
+def as_areas(value: Any, count: int) -> Floats:
+    """(n,) float64."""
+    import numpy as np
+
+    return np.ascontiguousarray(_values(value, count, "areas"), dtype=np.float64)
 
 
 def as_faces(value: Any, vertices: int) -> Indices:
     """(m, 3) uint32 that name existing vertices. PyVista's padded list (3, a, b, c, 3, ...) is understood."""
     import numpy as np
 
-    array = _plain(value)
+    array = _complete(value, "faces")
     if array.ndim == 1 and array.size % 4 == 0 and np.all(array[::4] == 3):
         array = array.reshape(-1, 4)[:, 1:]
     if array.ndim != 2 or array.shape[1] != 3 or array.dtype.kind not in "iu":

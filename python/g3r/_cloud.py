@@ -15,7 +15,7 @@ Path = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
 
 
 class Cloud:
-    """A cloud as read from a file. Arrays are read-only views; each is None if the file does not have it."""
+    """A cloud as read from a file. Arrays are read-only views; each but the points is None if the file does not have it."""
 
     def __init__(self, native: _g3r.Cloud) -> None:
         self._native = native
@@ -23,7 +23,12 @@ class Cloud:
     @property
     def points(self) -> Floats:
         """(n, 3) float64, in the order of the file; points that are not finite are kept."""
-        return self._native.points
+        points = self._native.points
+        if points is not None:
+            return points
+        import numpy as np
+
+        return np.zeros((0, 3))
 
     @property
     def normals(self) -> Optional[Floats]:
@@ -57,7 +62,7 @@ class Cloud:
 
     @property
     def property_names(self) -> List[str]:
-        """As in the file, in its order."""
+        """As in the file, in its order; bytes that are no UTF-8 as surrogates, as `os.fsdecode` has them."""
         return self._native.property_names
 
     @property
@@ -101,10 +106,10 @@ def read(
     if levels is not None and levels < 1:
         raise InputError(f"levels: expected a number from 1, found {levels}")
     depth = 0 if levels is None else int(levels)
-    return Cloud(_g3r.read_cloud(os.fsdecode(path), float(min_opacity), bool(all_splats), sides, depth, int(threads)))
+    return Cloud(_g3r.read_cloud(os.fsencode(path), float(min_opacity), bool(all_splats), sides, depth, int(threads)))
 
 
 def read_mesh(path: Path) -> Tuple[Floats, Indices]:
     """Reads a triangle mesh (PLY, OBJ, OFF, STL): V (v, 3) and F (m, 3). Raises like `read`, and InputError if it has no face."""
-    vertices, faces, _, _ = _g3r.read_mesh(os.fsdecode(path))
+    vertices, faces, _, _ = _g3r.read_mesh(os.fsencode(path))
     return vertices, faces

@@ -44,7 +44,7 @@ def solve(folder: str, number: int, tiles: int, threads: int, device: str) -> Op
 
     try:
         _require_memory(worker, status(folder).worker_memory_bytes)
-        _g3r.tiles_run(folder, number, tiles, threads, device, wanted)
+        _g3r.tiles_run(os.fsencode(folder), number, tiles, threads, device, wanted)
     except (InputError, UnavailableError) as error:
         return error
     return None

@@ -9,6 +9,10 @@ class InputError(Error, ValueError):
     """The data or an option cannot be used: too few points, a damaged file, an option out of range."""
 
 
+class NoFaces(InputError):
+    """A file that is no mesh, in contrast to one whose faces cannot be used."""
+
+
 class FileError(Error, OSError):
     """A file could not be created, read or written. The text names the file and the system's reason."""
 

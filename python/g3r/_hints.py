@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import os
 from typing import Any, Dict, Tuple
 
-from ._arrays import _plain
-from ._cloud import Cloud, read
+from ._arrays import _plain, opened, truth
+from ._cloud import Cloud
 from ._errors import InputError
 
 HINTS = {"up", "sensor", "sensor_of_point", "inside", "seen_from_inside", "flip"}
@@ -38,19 +37,22 @@ def _numbers(value: Any, count: int) -> Any:
     array = _plain(value)
     if array.shape != (count,) or array.dtype.kind not in "iu":
         raise InputError(f"sensor_of_point must be integers of shape ({count},), not {array.dtype} of shape {array.shape}")
+    if array.size and array.max() > _NO_SENSOR:
+        raise InputError(f"sensor_of_point names a sensor {array.max()}")
     return np.ascontiguousarray(np.where(array < 0, _NO_SENSOR, array), dtype=np.uint32)
 
 
 def take_hints(points: Any, more: Dict[str, Any]) -> Tuple[Any, Dict[str, Any]]:
     """The points, read if they are a file that the hints are in, and the hints among `more` for the extension module."""
     given = {name: more.pop(name) for name in HINTS & set(more)}
-    hints: Dict[str, Any] = {name: bool(given[name]) for name in ("seen_from_inside", "flip") if name in given}
+    hints: Dict[str, Any] = {name: truth(name, given[name]) for name in ("seen_from_inside", "flip") if given.get(name) is not None}
     sensor, numbers = given.get("sensor"), given.get("sensor_of_point")
     if isinstance(sensor, str):
         if sensor != "file":
             raise InputError(f"sensor must be places or 'file', not {sensor!r}")
-        if isinstance(points, (str, bytes, os.PathLike)):
-            points = read(points)
+        if numbers is not None:
+            raise InputError("sensor_of_point belongs to sensors that are given: with sensor='file' the file says which saw each point")
+        points = opened(points)
         sensor = points.sensor_positions if isinstance(points, Cloud) else None
         if sensor is None:
             raise InputError("sensor='file': these points do not come from a file that says where the scanner stood")

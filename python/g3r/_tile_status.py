@@ -41,4 +41,4 @@ class Status(NamedTuple):
 
 def status(folder: Path) -> Status:
     """What is planned and done. Raises what `run` does."""
-    return Status(*_g3r.tiles_status(os.fsdecode(folder)))
+    return Status(*_g3r.tiles_status(os.fsencode(folder)))

@@ -27,7 +27,7 @@ class View:
         """Writes the page, or for a name that ends in .png four views as a picture. Raises OSError."""
         name = os.fsdecode(path)
         data = self.png() if name.lower().endswith(".png") else self.html.encode()
-        _g3r.write_file(name, data)
+        _g3r.write_file(os.fsencode(path), data)
 
     def png(self, tile: int = 600) -> bytes:
         """Four views as a PNG file, each `tile` pixels wide and high, 16 to 2048. Raises InputError."""

@@ -14,7 +14,7 @@ import os
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Sequence, Union
 
 from . import _g3r
-from ._arrays import whole
+from ._arrays import integer, whole
 from ._errors import InputError
 from ._hints import HINTS, take_hints
 from ._tile_status import Status, status
@@ -53,9 +53,10 @@ def plan(inputs: Union[Path, Sequence[Path]], folder: Path, *, max_memory: int =
     if hints.get("sensor_of_point") is not None or isinstance(hints.get("sensor"), str):
         raise InputError("tiles take no sensors of single points: sensor must be places")
     _, options = take_hints(None, hints)
-    options.update(max_memory=whole("max_memory", max_memory), tiles=whole("tiles", tiles), threads=int(threads), device=device)
+    options.update(max_memory=whole("max_memory", max_memory), tiles=whole("tiles", tiles), threads=integer("threads", threads),
+                   device=device)
     paths = [inputs] if isinstance(inputs, (str, bytes, os.PathLike)) else inputs
-    return Status(*_g3r.tiles_plan([os.fsdecode(path) for path in paths], os.fsdecode(folder), options, progress))
+    return Status(*_g3r.tiles_plan([os.fsencode(path) for path in paths], os.fsencode(folder), options, progress))
 
 
 def run(folder: Path, *, worker: int = 1, workers: int = 1, threads: int = 0, device: str = "auto",
@@ -65,7 +66,8 @@ def run(folder: Path, *, worker: int = 1, workers: int = 1, threads: int = 0, de
     threads: 0 for all cores. The interpreter lock is released; Ctrl-C works. Two workers that do the same tile do no harm. Raises
     InputError (no plan, a damaged one, a worker that is not 1 to workers), FileError, Cancelled.
     """
-    return Status(*_g3r.tiles_run(os.fsdecode(folder), whole("worker", worker), whole("workers", workers), int(threads), device, progress))
+    return Status(*_g3r.tiles_run(os.fsencode(folder), whole("worker", worker), whole("workers", workers), integer("threads", threads), device,
+                                  progress))
 
 
 def dask_run(folder: Path, client: Any = None, *, threads: int = 0, retries: int = 3, device: str = "auto",
@@ -85,14 +87,14 @@ def dask_run(folder: Path, client: Any = None, *, threads: int = 0, retries: int
     """
     from ._dask import run_tiles
 
-    return run_tiles(os.path.abspath(os.fsdecode(folder)), client, int(threads), whole("retries", retries), device, progress)
+    return run_tiles(os.path.abspath(os.fsdecode(folder)), client, integer("threads", threads), whole("retries", retries), device, progress)
 
 
 def merge(folder: Path, output: Path, *, progress: Optional[Progress] = None) -> Merged:
     """Writes one .ply, .las or .laz with the points in the order of the input, their normals and confidence, whole or not at all; see
     docs/tiles.md.
 
-    Reads the inputs once more. Raises InputError (tiles that are not done, inputs that have changed, another extension, points that LAS
+    Reads the inputs once more. Warns (UserWarning) of what LAS or LAZ cannot hold as it is, as `g3r.write` does. Raises InputError (tiles that are not done, inputs that have changed, another extension, points that LAS
     cannot hold), FileError, Cancelled.
     """
-    return Merged(*_g3r.tiles_merge(os.fsdecode(folder), os.fsdecode(output), progress))
+    return Merged(*_g3r.tiles_merge(os.fsencode(folder), os.fsencode(output), progress))

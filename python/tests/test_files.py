@@ -1,5 +1,8 @@
 """g3r.read, g3r.write, g3r.read_mesh, g3r.Cloud."""
 
+import os
+import sys
+
 import numpy as np
 import pytest
 from conftest import is_outward
@@ -49,6 +52,82 @@ def test_what_a_format_cannot_hold_is_a_warning(tmp_path, sphere):
     with pytest.warns(UserWarning, match="intensity") as warned:
         g3r.write(tmp_path / "out.las", g3r.read(path))
     assert warned[0].filename == __file__
+
+
+@pytest.fixture
+def odd(tmp_path, sphere):
+    """A file that the reader warns of: its coordinates are rounded to steps of its numbers."""
+    path = tmp_path / "odd.ply"
+    g3r.write(path, (0.5 * sphere + 4e6).astype(np.float32))
+    assert g3r.read(path).warnings
+    return path
+
+
+@pytest.mark.parametrize("how", [str, g3r.read])
+def test_what_the_reader_warns_of_is_told(odd, how, tmp_path):
+    given, told = how(str(odd)), g3r.read(odd).warnings
+    calls = [lambda: g3r.orient(given), lambda: g3r.show(given, open=False), lambda: g3r.reconstruct(given)]
+    if how is str:
+        calls.append(lambda: g3r.write(tmp_path / "copy.ply", given))
+    for call in calls:
+        with pytest.warns(UserWarning) as warned:
+            call()
+        assert [str(w.message) for w in warned] == told and {w.filename for w in warned} == {__file__}
+    for mesh in (False, True):
+        result = g3r.run(given, mesh=mesh)
+        assert result.stats["warnings"][:len(told)] == told and told[0] in result.report
+
+
+def test_mesh_oriented_takes_the_normals_of_a_file(odd, tmp_path, sphere):
+    path = tmp_path / "oriented.ply"
+    g3r.write(path, sphere, normals=sphere)
+    assert len(g3r.mesh_oriented(path)[1]) == len(g3r.mesh_oriented(g3r.read(path))[1]) > 0
+    g3r.write(path, g3r.read(odd), normals=sphere)
+    with pytest.warns(UserWarning) as warned:
+        g3r.mesh_oriented(path)
+    assert [str(w.message) for w in warned[:1]] == g3r.read(odd).warnings[:1] and warned[0].filename == __file__
+
+
+def test_a_path_is_written_with_all_it_has(tmp_path, sphere):
+    confidence = np.linspace(0, 1, len(sphere))
+    g3r.write(tmp_path / "src.ply", sphere, normals=sphere, confidence=confidence, colors=np.full(sphere.shape, 9))
+    g3r.write(tmp_path / "dst.ply", tmp_path / "src.ply")
+    assert g3r.read(tmp_path / "dst.ply").property_names == g3r.read(tmp_path / "src.ply").property_names
+
+
+@pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="names of files are UTF-8")
+def test_names_that_are_no_utf8(tmp_path, sphere):
+    folder = os.fsencode(tmp_path)
+    name = os.path.join(folder, b"scan\xe9.ply")
+    for path in (name, os.fsdecode(name)):
+        g3r.write(path, sphere)
+        assert os.listdir(folder) == [b"scan\xe9.ply"] and len(g3r.read(path)) == len(sphere)
+        assert g3r.orient(path).shape == sphere.shape
+        os.remove(name)
+        with pytest.raises(g3r.FileMissingError, match=r"scan\\xe9"):
+            g3r.read(path)
+        with pytest.raises(g3r.InputError, match="no plan of tiles"):
+            g3r.tiles.status(folder)
+    g3r.write(name, TETRAHEDRON)
+    assert len(g3r.read_mesh(name)[1]) == 4
+    g3r.show(TETRAHEDRON[0], faces=TETRAHEDRON[1], open=False).save(os.path.join(folder, b"\xe9.html"))
+    assert sorted(os.listdir(folder)) == [b"scan\xe9.ply", b"\xe9.html"]
+
+
+def test_properties_whose_names_are_no_utf8(tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_bytes(b"x,y,z,H\xf6he\n1,2,3,4\n5,6,7,8\n")
+    assert g3r.read(path).property_names[3] == b"H\xf6he".decode(errors="surrogateescape")
+
+
+def test_a_file_without_points(tmp_path):
+    path = tmp_path / "a.ply"
+    path.write_text("ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\nend_header\n")
+    cloud = g3r.read(path)
+    assert cloud.points.shape == (0, 3) and cloud.points.dtype == np.float64 and len(cloud) == 0 and "0 points" in repr(cloud)
+    for given in (path, cloud):
+        with pytest.raises(g3r.InputError, match="at least 4"):
+            g3r.orient(given)
 
 
 def test_scanner_positions_are_kept(tmp_path):
@@ -107,7 +186,9 @@ def test_a_result_is_written_as_its_mesh(tmp_path, result):
 def test_a_result_without_mesh_is_written_as_points(tmp_path, sphere):
     g3r.write(tmp_path / "a.ply", g3r.run(sphere, mesh=False))
     cloud = g3r.read(tmp_path / "a.ply")
-    assert is_outward(cloud.normals, sphere) and cloud.confidence is not None
+    assert is_outward(cloud.normals, sphere) and cloud.confidence is not None and cloud.colors is None
+    g3r.write(tmp_path / "a.ply", g3r.run(sphere, colors=np.full(sphere.shape, 9), mesh=False))
+    assert (g3r.read(tmp_path / "a.ply").colors == 9).all()
 
 
 def test_errors_name_the_file(tmp_path, sphere):

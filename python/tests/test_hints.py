@@ -41,6 +41,8 @@ def test_a_file_may_say_where_the_scanner_stood(terrain, tmp_path):
         assert (g3r.orient(points, sensor="file")[:, 2] < 0).all()
     with pytest.raises(g3r.InputError, match="do not come from a file"):
         g3r.orient(terrain, sensor="file")
+    with pytest.raises(g3r.InputError, match="sensor_of_point"):
+        g3r.orient(cloud, sensor="file", sensor_of_point=np.zeros(len(terrain), int))
 
 
 def test_closed_parts_are_turned_by_order(sphere):
@@ -61,6 +63,7 @@ def test_a_contradiction_is_a_warning(sphere):
     {"up": "w"}, {"up": [0, 0, 0]}, {"up": [1, 2]}, {"up": [[0, 0, 1], [0, 1, 0]]}, {"sensor": "here"}, {"sensor": [0, 0, np.nan]}, {"sensor": "file"},
     {"inside": [[1, 2]]}, {"sensor": [0, 0, 1], "sensor_of_point": [0, 0]}, {"sensor": [0, 0, 1], "sensor_of_point": np.ones(600, int)},
     {"sensor": [0, 0, 1], "sensor_of_point": np.zeros(600)},
+    {"sensor": [0, 0, 1], "sensor_of_point": np.full(600, 2**32)}, {"flip": "no"}, {"seen_from_inside": [True, False]},
 ])
 def test_hints_that_cannot_be_meant_are_refused(sphere, hint):
     with pytest.raises(g3r.InputError):

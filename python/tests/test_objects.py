@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import g3r
-from g3r._arrays import as_colors, as_faces, as_points, as_values
+from g3r._arrays import as_colors, as_faces, as_points, as_values, faces_in
 
 
 def same(value, sphere):
@@ -155,6 +155,31 @@ def test_colors():
             as_colors(wrong, 1)
 
 
+def test_whole_numbers_beyond_one_are_bytes():
+    np.testing.assert_array_equal(as_colors([[10.0, 200.0, 0.0], [255.0, np.nan, 1.0]], 2), [[10, 200, 0], [255, 0, 1]])
+    np.testing.assert_array_equal(as_colors([[-0.004, 1.004, np.nan]], 1), [[0, 255, 0]])
+    for wrong in ([[0.0, 0.5, 1.5]], [[0.0, 256.0, 1.0]], [[-1.0, 0.0, 0.0]], [[-0.5, 0.5, 0.5]]):
+        with pytest.raises(g3r.InputError, match="bytes .* or shares"):
+            as_colors(wrong, 1)
+
+
+def test_masked_numbers_are_no_points(sphere):
+    for dtype, expected in (("f4", "f4"), ("f8", "f8"), ("i4", "f8")):
+        masked = np.ma.array(np.full((3, 3), 7, dtype), mask=np.eye(3, dtype=bool))
+        points = as_points(masked)
+        assert points.dtype == expected and np.isnan(points.diagonal()).all() and (points[~np.eye(3, dtype=bool)] == 7).all()
+    assert np.shares_memory(as_points(np.ma.array(sphere)), sphere), "nothing is masked"
+
+
+def test_masked_attributes_are_refused():
+    mask = [[True, False, False]]
+    for refuse in (lambda: as_colors(np.ma.array([[1, 2, 3]], mask=mask), 1), lambda: as_faces(np.ma.array([[0, 1, 2]], mask=mask), 3),
+                   lambda: as_values(np.ma.array([1.0], mask=[True]), 1, "confidence")):
+        with pytest.raises(g3r.InputError, match="must not be masked"):
+            refuse()
+    np.testing.assert_array_equal(as_colors(np.ma.array([[1, 2, 3]]), 1), [[1, 2, 3]])
+
+
 def test_faces():
     np.testing.assert_array_equal(as_faces([[0, 1, 2]], 3), [[0, 1, 2]])
     np.testing.assert_array_equal(as_faces(np.array([3, 0, 1, 2, 3, 2, 1, 0]), 3), [[0, 1, 2], [2, 1, 0]])
@@ -163,8 +188,32 @@ def test_faces():
             as_faces(wrong, 3)
 
 
+def test_faces_of_an_object():
+    class Trimesh:  # trimesh.Trimesh: `triangles` are the corners of the faces
+        triangles = np.zeros((1, 3, 3))
+        faces = np.array([[0, 1, 2]])
+
+    class Open3D:  # open3d.geometry.TriangleMesh
+        triangles = [[0, 1, 2]]
+
+    class Points:
+        triangles = np.zeros((1, 3, 3))
+
+    assert faces_in(Trimesh()) is Trimesh.faces and faces_in(Open3D()) is Open3D.triangles and faces_in(Points()) is None
+
+
+def test_trimesh_is_a_mesh(tmp_path):
+    trimesh = pytest.importorskip("trimesh")
+    ball = trimesh.creation.icosphere()
+    g3r.write(tmp_path / "a.ply", ball)
+    assert len(g3r.read_mesh(tmp_path / "a.ply")[1]) == len(ball.faces)
+    assert '"mesh"' in g3r.show(ball, open=False).html
+
+
 def test_values():
     assert as_values([1, 0.5], 2, "confidence").dtype == np.float32
+    with pytest.raises(g3r.InputError):
+        as_values(["a", "b"], 2, "confidence")
     with pytest.raises(g3r.InputError):
         as_values([1, 0.5], 3, "confidence")
 

@@ -66,6 +66,22 @@ def test_arrays_outlive_the_result(sphere):
     normals[0] = 0  # owned and writable
 
 
+@pytest.mark.parametrize("given", [np.array, lambda p: p.astype(np.float32), lambda p: p.astype(np.float16), np.ndarray.tolist])
+def test_a_result_has_its_own_points_and_colors(sphere, given):
+    points, colors = given(sphere), np.full(sphere.shape, 9, np.uint8)
+    kept = np.array(points, np.float64)
+    result = g3r.run(points, colors=colors, mesh=False)
+    points[:], colors[:] = points[::-1], 0
+    np.testing.assert_array_equal(result.points, kept)
+    assert (result.colors == 9).all()
+
+
+def test_points_of_a_cloud_are_not_copied(tmp_path, sphere):
+    g3r.write(tmp_path / "a.ply", sphere)
+    cloud = g3r.read(tmp_path / "a.ply")
+    assert np.shares_memory(g3r.run(cloud, mesh=False).points, cloud.points)
+
+
 def test_reconstruct_gives_a_mesh_and_colors(sphere):
     vertices, faces = g3r.reconstruct(sphere)
     corner = vertices[faces]
@@ -79,8 +95,33 @@ def test_reconstruct_gives_a_mesh_and_colors(sphere):
 
 def test_mesh_options_are_taken(sphere, result):
     assert len(g3r.run(sphere, faces=200).faces) < len(result.faces)
-    for options in ({"trim": "auto"}, {"trim": 0.5}, {"keep_largest": 1}, {"min_component": 0}, {"keep_all": True}, {"depth": 5}, {"mesher": "field"}):
+    for options in ({"trim": "auto"}, {"trim": True}, {"trim": 0.5}, {"keep_largest": 1}, {"min_component": 0}, {"keep_all": True}, {"depth": 5},
+                    {"mesher": "field"}, {"faces": 500.0, "max_memory": 8e9, "keep_largest": 1.0, "keep_all": np.True_}):
         assert len(g3r.run(sphere, **options).faces) > 0
+        assert len(g3r.mesh_oriented(sphere, sphere, **options)[1]) > 0
+
+
+def test_trim_is_a_switch_too(sphere):
+    part = sphere[sphere[:, 2] > -0.5]
+    faces = {repr(trim): len(g3r.mesh_oriented(part, part, trim=trim, keep_all=True)[1]) for trim in (True, False, np.True_, "auto")}
+    assert faces["True"] == faces["'auto'"] == faces[repr(np.True_)] < faces["False"]
+
+
+def test_mesh_oriented_warns_of_what_is_doubtful(sphere):
+    part = sphere[sphere[:, 2] > 0]
+    with pytest.warns(UserWarning, match="trim") as warned:
+        g3r.mesh_oriented(part, part)
+    assert {w.filename for w in warned} == {__file__}
+    assert len(g3r.mesh_oriented(sphere, sphere, faces=200)[1]) <= 210
+    with pytest.raises(g3r.UnavailableError):
+        g3r.mesh_oriented(sphere, sphere, max_memory=1000)
+
+
+def test_the_condition_number_can_be_asked_for(sphere):
+    stats = g3r.run(sphere, mesh=False, method="green", solver="dense", condition_number=True).stats
+    assert stats["method"]["condition_number"] > 1
+    with pytest.raises(g3r.InputError, match="condition number"):
+        g3r.run(sphere, mesh=False, condition_number=True)
 
 
 def test_mesh_oriented(sphere):
@@ -111,6 +152,21 @@ def test_field_tells_inside_from_outside(result, sphere):
     np.testing.assert_array_equal(there(queries), same(queries))
     with pytest.raises(g3r.UnavailableError, match="there is no device gpu:999"):
         g3r.Field(sphere, result.normals, result.areas, device="gpu:999")
+
+
+def test_the_field_leaves_out_what_is_not_finite(result, sphere):
+    queries = [[0, 0, 0], [3, 0, 0]]
+    for values in ("normals", "areas"):
+        given = {"normals": result.normals.copy(), "areas": result.areas.copy()}
+        given[values][3] = np.nan
+        np.testing.assert_allclose(g3r.Field(sphere, **given)(queries), [1, 0], atol=0.15)
+    with pytest.raises(g3r.InputError, match="no point an area"):
+        g3r.Field(sphere, result.normals, np.full(len(sphere), np.inf))
+    for areas in (result.areas[:5], result.areas[:, None], 1.0, ["a"] * len(sphere)):
+        with pytest.raises(g3r.InputError, match="areas must be"):
+            g3r.Field(sphere, result.normals, areas)
+    with pytest.raises(g3r.InputError, match="5 normals"):
+        g3r.Field(sphere, result.normals[:5], result.areas)
 
 
 @pytest.mark.parametrize("options", [
@@ -160,6 +216,19 @@ def test_unusable_points_are_refused(points):
 def test_unusable_options_are_refused(sphere, options):
     with pytest.raises(g3r.InputError):
         g3r.run(sphere, **options)
+
+
+@pytest.mark.parametrize("option, value", [
+    ("degree", -3), ("degree", 2.9), ("threads", 2.7), ("threads", None), ("trim", [1]), ("trim", float("nan")), ("faces", "500"),
+    ("faces", None),
+    ("faces", float("nan")), ("faces", 1e30), ("faces", 10**30), ("max_memory", "8G"), ("keep_all", "no"), ("keep_all", None),
+    ("min_component", "a"), ("tolerance", "1e-3"), ("tolerance", None), ("accuracy", "x"), ("device", None), ("method", None),
+    ("harmonics", None),
+    ("schedule", 3), ("preset", None), ("flip", "no"), ("condition_number", 2),
+])
+def test_a_value_of_another_kind_is_refused_by_name(sphere, option, value):
+    with pytest.raises(g3r.InputError, match=option):
+        g3r.run(sphere, **{option: value})
 
 
 def test_unknown_options_are_a_type_error(sphere):

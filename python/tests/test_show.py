@@ -36,6 +36,23 @@ def test_vertices_with_faces_are_a_mesh():
     assert data["mesh"]["given"] == 1 and "color" in data["mesh"] and data["points"]["given"] == 0
 
 
+def test_a_mesh_has_its_confidence():
+    data = data_of(g3r.show([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]], faces=[[0, 1, 2]], confidence=[0, 0.5, 1], open=False))
+    assert "confidence" in data["mesh"]
+
+
+def test_another_mesh_does_not_have_the_colors_of_the_result(result):
+    for factor in (0.5, 2):
+        faces = result.faces[:int(len(result.faces) * factor)]
+        vertices = np.vstack([result.vertices, result.vertices + 3])
+        data = data_of(g3r.show(result, mesh=(vertices, faces), open=False))
+        assert "color" not in data["mesh"] and "confidence" not in data["mesh"]
+
+
+def test_colors_of_the_points_of_a_result_are_shown(sphere):
+    assert "color" in data_of(g3r.show(g3r.run(sphere, colors=np.full(sphere.shape, 9), mesh=False), open=False))["points"]
+
+
 def test_save_writes_a_page_or_a_picture(tmp_path, result):
     view = g3r.show(result, open=False)
     view.save(tmp_path / "look.html")
@@ -73,12 +90,34 @@ def test_the_command_shows_files(tmp_path, monkeypatch, capsys, result, sphere):
         assert main(["view", *inputs, "-o", str(tmp_path / "look.html")]) == 0
         page = (tmp_path / "look.html").read_text()
         assert ('"mesh":{' in page.replace(" ", "")) == (mesh in inputs)
+    assert main(["view", mesh, "-o", str(tmp_path / "look.html")]) == 0
+    page = (tmp_path / "look.html").read_text()
+    shown = json.loads(re.search(r'id="scene-data">(.*?)</script>', page, re.S).group(1))["mesh"]
+    assert "color" in shown and "confidence" in shown and shown["given"] == len(result.faces)
     assert main(["view", cloud, "-o", str(tmp_path / "look.png")]) == 0
     opened = []
     monkeypatch.setattr("webbrowser.open", opened.append)
     assert main(["view", cloud, "--z-up"]) == 0 and len(opened) == 1
     assert main(["view", cloud, cloud, "-o", "look.html"]) == 1 and main(["view", "nowhere.ply", "-o", "look.html"]) == 1
     assert "nowhere.ply" in capsys.readouterr().err
+
+
+def test_the_command_takes_folders_and_says_what_is_odd(tmp_path, capsys, sphere):
+    folder, out = tmp_path / "scans", str(tmp_path / "look.html")
+    folder.mkdir()
+    g3r.write(folder / "a.ply", sphere[:300])
+    g3r.write(folder / "b.ply", sphere[300:])
+    for inputs in (str(folder), str(folder / "*.ply")):
+        assert main(["view", inputs, "-o", out]) == 0
+        assert f'"given":{len(sphere)}' in (tmp_path / "look.html").read_text().replace(" ", "")
+    assert capsys.readouterr().err == ""
+    odd, damaged = tmp_path / "odd.ply", tmp_path / "damaged.off"
+    g3r.write(odd, (0.5 * sphere + 4e6).astype(np.float32))
+    assert main(["view", str(odd), "-o", out]) == 0
+    assert g3r.read(odd).warnings[0] in capsys.readouterr().err
+    damaged.write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n")
+    assert main(["view", str(damaged), "-o", out]) == 0
+    assert "shown as points" in capsys.readouterr().err
 
 
 def test_wrong_arguments(sphere):

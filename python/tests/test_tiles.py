@@ -78,6 +78,16 @@ def test_las_has_the_same_points(whole, tmp_path):
         g3r.tiles.merge(work, tmp_path / "out.xyz")
 
 
+def test_what_las_cannot_hold_is_a_warning(tmp_path):
+    path = tmp_path / "in.csv"
+    path.write_text("x,y,z,intensity\n" + "".join("%.4f,%.4f,%.4f,0.5\n" % tuple(p) for p in sphere_points(COUNT)))
+    g3r.tiles.plan(path, tmp_path / "work", tiles=1)
+    g3r.tiles.run(tmp_path / "work")
+    with pytest.warns(UserWarning, match="intensity") as warned:
+        g3r.tiles.merge(tmp_path / "work", tmp_path / "out.las")
+    assert warned[0].filename == __file__ and (tmp_path / "out.las").exists()
+
+
 def test_hints_are_part_of_the_plan(whole, tmp_path):
     g3r.tiles.plan(whole[0], tmp_path / "work", tiles=1, flip=True, up="+z", threads=1)
     with pytest.raises(g3r.InputError, match="plan of other files or options"):
