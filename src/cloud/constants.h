@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cstddef>
+#include <numbers>
 
 namespace g3r {
 
 /// Of a size, up to which another one is clearly less: neither chance nor shape halves what should be as large.
 inline constexpr double kClearlyLess = 0.5;
+/// Of votes or values, a majority that noise, hidden and grazing points do not make.
+inline constexpr double kMostOf = 2.0 / 3;
 /// Points of less breadth (middle principal spread over the largest) lie along a line: it has planes all around, and any slope across it
 /// fits.
 inline constexpr double kLineBreadth = 0.15;
@@ -21,6 +24,11 @@ inline constexpr double kSigmas = 2.5;
 inline constexpr double kNoiseBreadth = 2 * kSigmas;
 /// From one scale to the next, of spacings, scatter and the widths that go with them.
 inline constexpr double kLevelRatio = 2;
+/// From one reach of a fit to the next, twice its area; over an estimate of noise, what is clearly more than it.
+inline constexpr double kWider = std::numbers::sqrt2;
+/// In spacings, deviation of points from a height field up to which they lie on it: more takes rough surfaces for smooth ones, less
+/// rounding for roughness.
+inline constexpr double kSmoothScatter = 0.007;
 /// Scales, each kLevelRatio times as coarse as the one before, on which a surface is looked at: on fewer, noise, gaps between lines and
 /// strays hide it, on more it bends.
 inline constexpr std::size_t kScales = 3;

@@ -15,8 +15,9 @@
 namespace g3r {
 namespace {
 
-// Dimension from which points fill a volume: cubes and balls have 2.57 and more, surfaces under noise of 2 h at most 2.45.
-constexpr double kVolume = 2.55;
+// Dimension from which points fill a volume, midway between those of surfaces and of volumes: cubes and balls have 2.57 and more, surfaces
+// under noise of 2 h at most 2.45.
+constexpr double kVolume = (2 + 3) / 2.0;
 
 void describe_baseline(const Problem& problem, Stats& stats) {
   stats.epsilon = problem.cloud.frame.length_to_world(problem.baseline->epsilon);

@@ -22,8 +22,6 @@ namespace {
 
 // Cosine between the normals of a facet and of its seed: less lets facets follow curved surfaces.
 constexpr double kParallel = 0.9995;
-// c_f from which the side of a facet is certain: 0.5 leaves single facets wrong as a whole, 1 solves for nearly all.
-constexpr double kCertainSide = 0.8;
 
 // The normal of the first point of every facet, to whose side those of the others are turned.
 std::vector<Vec3> first_normals(const Facets& facets, const std::vector<Vec3>& normals) {
@@ -87,7 +85,8 @@ std::vector<Vec3> turned_to_first(const Facets& facets, std::vector<Vec3> normal
   return normals;
 }
 
-// Which points are on facets whose sides are unsure: their points disagree, or |c_f| of `eta`, on the side of the normals, is small.
+// Which points are on facets whose sides are unsure: their points disagree, or |c_f| of `eta`, on the side of the normals, is
+// less than kMostOf: with 0.5 single facets stay wrong as a whole, with 1 nearly all are solved for.
 std::vector<std::uint8_t> unsure_facets(const Facets& facets, const std::vector<double>& areas, const std::vector<Vec3>& turned,
                                         const std::vector<Vec3>& normals, const std::vector<Vec3>& eta) {
   std::vector<std::uint8_t> is_unsure(facets.count, 0);
@@ -95,7 +94,7 @@ std::vector<std::uint8_t> unsure_facets(const Facets& facets, const std::vector<
   for (std::size_t i = 0; i < normals.size(); ++i) {
     if (facets.of[i] == Facets::kNone) continue;
     const bool is_against = vector::dot(normals[i], turned[i]) < 0;
-    if (is_against || vector::dot(mean[i], normals[i]) < kCertainSide * areas[i]) is_unsure[facets.of[i]] = 1;
+    if (is_against || vector::dot(mean[i], normals[i]) < kMostOf * areas[i]) is_unsure[facets.of[i]] = 1;
   }
   std::vector<std::uint8_t> unsure(normals.size(), 0);
   for (std::size_t i = 0; i < unsure.size(); ++i) unsure[i] = facets.of[i] == Facets::kNone ? 0 : is_unsure[facets.of[i]];

@@ -32,7 +32,7 @@ struct Facets {
 /// One side for every facet. Single points of a wall thinner than the spacing cannot tell their side, the whole facet can: the energy
 /// form's equations are restricted to area vectors eta_i = c_f A_i n_i on facets, with one unknown c_f per facet, its n_i on one side, and
 /// free ones elsewhere, which is Galerkin's method with the orthogonal projector P onto these: P M P eta = P b, by conjugate gradients from
-/// `eta`. Facets are unsure whose points disagree or whose c_f is below 0.8 in `eta`; what is solved for are the points around them
+/// `eta`. Facets are unsure whose points disagree or whose c_f is below 2/3 in `eta`; what is solved for are the points around them
 /// (around_unsure()), the others are held. On unsure facets n_i gets the side of c_f, and eta_i becomes A_i n_i on all; the others stay.
 /// docs/math.md, "Facets". A_i: square of the smoothed_spacing(). `eta`, `normals`: in and out. Up to 60 products, 20 to 40 as a rule.
 void choose_facet_sides(const PointSet& set, const Settings& settings, const Facets& facets, std::vector<Vec3>& eta,

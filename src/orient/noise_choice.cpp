@@ -1,5 +1,6 @@
 #include "orient/noise_choice.h"
 
+#include "cloud/constants.h"
 #include "cloud/noise.h"
 #include "orient/confidence.h"
 #include "orient/noise_settings.h"
@@ -12,9 +13,6 @@
 namespace g3r {
 namespace {
 
-// Times the estimate, the scatter that speaks against it; times the larger of both, the noise that is tried: kernels have to hide all of
-// it.
-constexpr double kAboveScatter = 1.4;
 // The doubt that is left, of what there is, with more noise than the points speak for: noise hides thin walls and all doubt about them.
 constexpr double kHardlyAny = 0.2;
 // Points up to which shape looks like noise, so that none is tried too: with more it costs time and is never taken.
@@ -35,15 +33,17 @@ std::vector<OtherNoise> other_noises(const Problem& problem, const Oriented& fou
   const double scatter = largest_scatter(set);
   const double least = noise_of_clean_widths() * problem.spacing;  // less blurs no less, and leaves more unsure
   const double unsure = found.doubt - found.agreed;
+  // A scatter of kWider times the estimate speaks against it. What is tried is kWider times the larger of both: kernels have to hide all of
+  // it.
   std::vector<OtherNoise> noises;
   const double rounding = rounding_deviation(set);
   if (rounding > problem.noise) noises.push_back({rounding});
-  if (kAboveScatter * scatter <= least && unsure < kDoubtful) return noises;
+  if (kWider * scatter <= least && unsure < kDoubtful) return noises;
   if (set.size() <= kFewPoints && problem.noise > rounding_noise(set)) noises.push_back({0});
-  if (scatter > kAboveScatter * problem.noise) {
-    noises.push_back({std::max(kAboveScatter * scatter, least)});
+  if (scatter > kWider * problem.noise) {
+    noises.push_back({std::max(kWider * scatter, least)});
   } else if (problem.noise > 0 && unsure >= kDoubtful) {
-    noises.push_back({kAboveScatter * std::max(scatter, problem.noise), kHardlyAny});
+    noises.push_back({kWider * std::max(scatter, problem.noise), kHardlyAny});
   }
   return noises;
 }

@@ -7,15 +7,12 @@
 
 #include <atomic>
 #include <cstdint>
-#include <numbers>
 #include <vector>
 
 namespace g3r {
 
 /// First reach R over sqrt(s h) of fits to points that scatter by s and lie h apart: 3.6 leaves 5 % more of the error, 4.8 blurs detail.
 inline constexpr double kNarrowestReach = 4.2;
-/// From one reach to the next: twice the area.
-inline constexpr double kWider = std::numbers::sqrt2;
 
 /// The winding gradient of a noisy cloud has one width for all points: it blurs what is narrower and leaves noise where the surface is
 /// smooth. n_i becomes the normal above p_i of a quadratic height field fitted to the points on its side (n_j . n_i > 0.5) within a reach

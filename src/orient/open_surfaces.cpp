@@ -21,9 +21,8 @@ namespace {
 
 using vector::dot;
 
-constexpr double kNoJump = 0.6;       // mean jump defect of a part whose sides change from site to site, or of two walls
-constexpr double kNoJumpNoisy = 0.8;  // the same under noise
-constexpr double kEncloses = 0.7;     // enclosure under noise that no bowl up to a half sphere has, so that the part is a closed one
+// Mean jump defect, under noise, of a part whose sides change from site to site, or of two walls; without noise kMostOf.
+constexpr double kNoJumpNoisy = 0.8;
 
 bool any(const std::vector<std::uint8_t>& parts) {
   return std::any_of(parts.begin(), parts.end(), [](std::uint8_t part) { return part != 0; });
@@ -64,7 +63,7 @@ Verdict suspect(const SiteParts& parts, const Given& given, double noise) {
   for (std::uint32_t p = 0; p < count; ++p) {
     const std::vector<std::uint32_t>& part = parts.members(p);
     if (part.size() < kFewestSites) continue;
-    if (given.unrest[p] <= kUnrest && given.defect[p] <= (noise > 0 ? kNoJumpNoisy : kNoJump)) {
+    if (given.unrest[p] <= kUnrest && given.defect[p] <= (noise > 0 ? kNoJumpNoisy : kMostOf)) {
       verdict.restless[p] = restless_pieces(parts, p, given.of_sites.unrest, noise);
       verdict.is_open[p] = verdict.restless[p].empty() ? 0 : 1;
       continue;
@@ -106,15 +105,15 @@ void choose_hypotheses(const SiteParts& parts, const std::vector<std::vector<Vec
     const bool is_shown =
         is_shown_better(mean_over(restless, verdict.defects[verdict.best[p]]), mean_over(restless, given.of_sites.jump_defect));
     const bool is_better = given.unrest[p] > most_unrest || is_shown;
-    // Noise makes one wall of two: what encloses nearly everything is a closed surface whose thin parts it hides. So is what is at rest but
-    // for a place.
+    // Noise makes one wall of two: what encloses most of all directions, as no bowl up to a half sphere does, is a closed surface whose
+    // thin parts it hides. So is what is at rest but for a place.
     const bool in_pieces = restless.size() < parts.members(p).size();
-    const bool is_enclosed = (noise > 0 || in_pieces) && std::abs(verdict.enclosure[p]) >= kEncloses;
+    const bool is_enclosed = (noise > 0 || in_pieces) && std::abs(verdict.enclosure[p]) >= kMostOf;
     if (is_better && !is_enclosed) continue;
     verdict.is_open[p] = 0;
     verdict.is_doubtful[p] = given.unrest[p] > kUnrest ? 1 : 0;
     // What encloses little has no outside that tells which way to turn it.
-    const bool has_outside = std::abs(verdict.enclosure[p]) >= kEncloses;
+    const bool has_outside = std::abs(verdict.enclosure[p]) >= kMostOf;
     verdict.is_turned[p] = verdict.is_doubtful[p] != 0 && has_outside && verdict.defect[p] < given.defect[p] ? 1 : 0;
   }
 }

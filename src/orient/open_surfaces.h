@@ -36,15 +36,15 @@ struct OpenSurfaces {
 /// The equations are true of the boundary of a solid. A surface without an inside (terrain, one depth frame, a dental arch) satisfies them
 /// too, but with area vectors that lie in it or change their side from place to place. The field of the result shows it: beside a closed
 /// surface it is 0 or 1, beside an open one it is not (Certificate::unrest). So every connected part of the cloud (SiteParts) is tested,
-/// and where its unrest is above 0.08 or its jump defect above 0.6 (0.8 under noise), and its points do not lie on two walls close together
+/// and where its unrest is above 0.08 or its jump defect above 2/3 (0.8 under noise), and its points do not lie on two walls close together
 /// (on_two_walls()), it is tested without the closed parts, and the sides_by_agreement() of neighbours are tried, from the finest scale on
 /// which the samples are a surface (scan lines are one only across their gaps) on. A part that is at rest as a whole, but not in some
-/// pieces (restless_pieces()), is open too if a hypothesis halves the mean jump defect of these and its |e| is below 0.7. The hypothesis
+/// pieces (restless_pieces()), is open too if a hypothesis halves the mean jump defect of these and its |e| is below 2/3. The hypothesis
 /// with the least mean of JumpDefects::all + own is taken, of equal ones the finest: where layers are close to each other, so that a probe
 /// of one is behind the next, what no other surface disturbs counts twice. Where the defect of a site is above a half, in a groove narrower
 /// than the sampling for instance, the direction is that of a field four site spacings wide, which sees what is around, and the side of a
 /// point is not certified in full. Then normals are turned to the outside (face_outside()). e is SiteParts::enclosure(); under noise a part
-/// with |e| above 0.7 is closed: noise makes one wall of two, and what is left encloses nearly everything. Where it is neither at rest nor
+/// with |e| above 2/3 is closed: noise makes one wall of two, and what is left encloses nearly everything. Where it is neither at rest nor
 /// shown to be open, its sides are those of the best hypothesis where the normals of a site and those around it have one side, if the mean
 /// defect of the hypothesis is less than that of the solution. Where the solution stays as it is, certified_sides() says how far its field
 /// shows it to be right; all points of a cloud of fewer than 30 have 0. `noise`: standard deviation; `normals`: N unit vectors, in: the

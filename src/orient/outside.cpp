@@ -1,6 +1,7 @@
 #include "orient/outside.h"
 
 #include "base/vector.h"
+#include "cloud/constants.h"
 #include "orient/agreement.h"
 #include "orient/votes.h"
 

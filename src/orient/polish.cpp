@@ -1,6 +1,7 @@
 #include "orient/polish.h"
 
 #include "base/median.h"
+#include "cloud/constants.h"
 #include "cpu/parallel.h"
 #include "solve/energy_system.h"
 #include "solve/iterative_solver.h"
@@ -11,14 +12,6 @@
 #include <utility>
 
 namespace g3r {
-namespace {
-
-// The most that lengths of a winding gradient are raised by: on a surface that is closed they err by less, and on an open one, which has no
-// inside, W eta says nothing of them.
-constexpr double kMostFactor = 3;
-
-}  // namespace
-
 Widths local_widths(const KernelWidth& width, const Settings& settings, const std::vector<double>& spacing) {
   if (spacing.empty()) return Widths(width.typical());
   std::vector<double> widths(spacing.size());
@@ -35,7 +28,7 @@ void gradient_to_areas(FastSum& sum, const std::vector<double>& areas, std::vect
     for (double& c : gradient[i]) c *= scale;
   });
   const double winding = median(sum.winding(gradient));
-  const double factor = winding > 0 ? std::min(0.5 / winding, kMostFactor) : 1;
+  const double factor = winding > kRidge ? 0.5 / winding : 1;
   parallel::for_all(gradient.size(), [&](std::size_t i) {
     for (double& c : gradient[i]) c *= factor;
   });

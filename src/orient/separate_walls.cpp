@@ -1,5 +1,6 @@
 #include "orient/separate_walls.h"
 
+#include "cloud/constants.h"
 #include "orient/confidence.h"
 #include "orient/noise_settings.h"
 #include "orient/noisy_jets.h"

@@ -15,9 +15,6 @@
 
 namespace g3r {
 
-/// Of the votes, a majority that noise, hidden and grazing points do not make; less against a side is no contradiction.
-inline constexpr double kMostOf = 2.0 / 3;
-
 /// Votes on one side, of points that are turned together.
 struct Votes {
   double in_favour = 0;
