@@ -2,7 +2,6 @@
 
 #include "cloud/constants.h"
 #include "cloud/sites.h"
-#include "orient/confidence.h"
 #include "orient/open_surfaces.h"
 #include "sum/fast_sum.h"
 
@@ -46,8 +45,8 @@ class SolvedApart {
     if (parts.size() < 2) return;  // no open surface, or one that is all there is
     all_looked_open_ = parts.count(OpenSurfaces::kNone) == 0;
     for (const auto& [surface, points] : parts) {
-      // What encloses nothing is not closed by itself either.
-      if (surface != OpenSurfaces::kNone && solution_.open_surfaces.certainty[surface] > kUndecided) solve_open(points);
+      // What encloses no more than a bowl is not closed by itself either.
+      if (surface != OpenSurfaces::kNone && solution_.open_surfaces.certainty[surface] > kMostOf) solve_open(points);
     }
     parts = by_surface();
     stats_.converged = parts.count(OpenSurfaces::kNone) == 0 || closed_converged(parts[OpenSurfaces::kNone]);
