@@ -77,12 +77,12 @@ TEST(OtherNoises, MoreThanTheEstimateHasToLeaveHardlyAnyDoubtOrHideAllScatter) {
   const Problem clean = with_noise(scans, 0, {});
   const std::vector<OtherNoise> of_scatter = other_noises(clean, with_doubt(0.3));
   ASSERT_FALSE(of_scatter.empty());
-  EXPECT_EQ(of_scatter.back().noise, std::max(1.4 * scatter, least));
+  EXPECT_EQ(of_scatter.back().noise, std::max(kWider * scatter, least));
   EXPECT_EQ(of_scatter.back().most_doubt, kClearlyLess);
   const Problem noisy = with_noise(scans, 2 * scatter, {});
   const std::vector<OtherNoise> of_doubt = other_noises(noisy, with_doubt(0.3));
   ASSERT_FALSE(of_doubt.empty());
-  EXPECT_DOUBLE_EQ(of_doubt.back().noise, 1.4 * 2 * scatter);
+  EXPECT_DOUBLE_EQ(of_doubt.back().noise, kWider * 2 * scatter);
   EXPECT_LT(of_doubt.back().most_doubt, kClearlyLess);
 }
 

@@ -26,9 +26,6 @@ inline constexpr double kNoiseBreadth = 2 * kSigmas;
 inline constexpr double kLevelRatio = 2;
 /// From one reach of a fit to the next, twice its area; over an estimate of noise, what is clearly more than it.
 inline constexpr double kWider = std::numbers::sqrt2;
-/// In spacings, deviation of points from a height field up to which they lie on it: more takes rough surfaces for smooth ones, less
-/// rounding for roughness.
-inline constexpr double kSmoothScatter = 0.007;
 /// Scales, each kLevelRatio times as coarse as the one before, on which a surface is looked at: on fewer, noise, gaps between lines and
 /// strays hide it, on more it bends.
 inline constexpr std::size_t kScales = 3;

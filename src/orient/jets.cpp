@@ -1,6 +1,5 @@
 #include "orient/jets.h"
 
-#include "cloud/constants.h"
 #include "cloud/plane_fit.h"
 #include "cloud/quadratic_patch.h"
 #include "cloud/spacing.h"
@@ -14,6 +13,9 @@ namespace g3r {
 namespace {
 
 using Eigen::Vector3d;
+
+// Spacings, standard deviation of the heights about a jet: more takes rough surfaces for smooth ones.
+constexpr double kScatter = 0.007;
 
 bool spread_out(const std::vector<FitPoint>& members, const Vector3d& normal) {
   const Eigen::Matrix3d frame = tangent_frame(normal);
@@ -58,7 +60,7 @@ std::vector<std::uint8_t> fit_jets(const PointSet& set, std::vector<Vec3>& norma
       }
       if (members.size() <= kQuadraticTerms || !spread_out(members, normal)) continue;
       const QuadraticPatch patch = fit_quadratic_patch(members, 0, spacing[i], 0);
-      if (residual(patch, members) > kSmoothScatter * spacing[i]) continue;
+      if (residual(patch, members) > kScatter * spacing[i]) continue;
       Vector3d fitted;
       (void)patch.distance(Vector3d::Zero(), &fitted);
       if (fitted.dot(normal) <= kSamePatch) continue;

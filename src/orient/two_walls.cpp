@@ -18,6 +18,8 @@
 namespace g3r {
 namespace {
 
+// Site spacings: deviations from a height field below it are rounding, of which ratios say nothing.
+constexpr double kExact = 0.01;
 // The nearest points whose heights are tested for two walls that noise hides: fewer follow the noise, more the shape.
 constexpr std::size_t kNoisyPoints = 128;
 
@@ -43,7 +45,7 @@ void for_gains(const PointSet& set, const Sites& sites, const std::vector<std::u
     const double spacing = sites.spacing()[s];
     const double one = quadratic_residual(points, index.data(), index.size(), sites.axis[s], spacing);
     const TwoLayers two = fit_two_layers(points, index.data(), index.size(), sites.axis[s]);
-    const double exact = kSmoothScatter * spacing;  // ratios of less say nothing
+    const double exact = kExact * spacing;
     const bool thin = two.gap > 0 && two.gap < kResolved * spacing;
     double rounding = 0;
     for (std::size_t a = 0; a < 3; ++a) rounding += std::abs(sites.axis[s][a]) * steps[a];
