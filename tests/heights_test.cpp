@@ -98,6 +98,13 @@ TEST(HeightMoments, WallsAreTwoWhereTheMeanExcessIsNoChance) {
   EXPECT_FALSE(mean_excess({}, 1).may_be_two_walls());
 }
 
+// Of few patches the flatter half does not know how far chance carries their mean: a sphere under little noise has but some.
+TEST(HeightMoments, FewPatchesSayNothingOfWalls) {
+  const HeightMoments light{1, -1, 0};  // as of two walls
+  EXPECT_TRUE(mean_excess(std::vector<HeightMoments>(30, light), 30).is_two_walls());
+  EXPECT_FALSE(mean_excess(std::vector<HeightMoments>(29, light), 29).may_be_two_walls());
+}
+
 // Ground that takes two heights has light tails as two walls have, but neighbours take the same: the correlation is in
 // proportion to the share of shape, as far as neighbours are not beyond an edge.
 TEST(HeightMoments, StepsInTheGroundAreNoWalls) {

@@ -4,6 +4,7 @@
 #include "cloud/constants.h"
 #include "cloud/noise.h"
 #include "cloud/quadratic_patch.h"
+#include "cloud/sites.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -79,7 +80,7 @@ bool MeanExcess::may_be_two_walls() const { return mean < of_shape() + kExcess; 
 bool MeanExcess::is_two_walls() const { return may_be_two_walls() && mean < of_shape() - kSigmas * error; }
 
 MeanExcess mean_excess(const std::vector<HeightMoments>& places, double disjoint) {
-  if (places.empty()) return {};
+  if (places.size() < kFewestSites) return {};
   std::vector<double> squares;
   for (const HeightMoments& m : places) squares.push_back(m.mean_square);
   const double flat = median(std::move(squares));
@@ -95,8 +96,9 @@ MeanExcess mean_excess(const std::vector<HeightMoments>& places, double disjoint
     ++count;
   }
   const double mean = sum / count;
+  const double variance = std::max(0.0, sum_of_squares - count * mean * mean) / (count - 1);
   const double independent = count * std::min(1.0, disjoint / static_cast<double>(places.size()));
-  return {mean, std::sqrt(std::max(0.0, sum_of_squares / count - mean * mean) / independent), correlation / count};
+  return {mean, std::sqrt(variance / independent), correlation / count};
 }
 
 }  // namespace g3r
