@@ -62,7 +62,8 @@ class Fitter {
     for (double reach = first_reach(); reach > 0 && !is_widest; reach *= kWider) {
       if (!gather(i, axis, reach)) break;
       is_widest = side_.seen() >= std::min(kPlaces, points_.size());
-      if (side_.members().size() <= kQuadraticTerms) continue;
+      const std::size_t count = side_.members().size();
+      if (count <= kQuadraticTerms) continue;
       const QuadraticPatch patch = fit_quadratic_patch(side_.members(), 0, reach / 2, kNormalWeight);
       Vector3d fitted;
       (void)patch.distance(Vector3d::Zero(), &fitted);
@@ -70,7 +71,8 @@ class Fitter {
       const bool agrees =
           std::all_of(narrower_.begin(), narrower_.end(), [&](const Estimate& e) { return (e.normal - fitted).norm() <= e.deviation; });
       if (!agrees) break;
-      narrower_.push_back({fitted, noise_ * std::sqrt(6 / side_.weight()) / reach});
+      const double freedom = static_cast<double>(count - kQuadraticTerms) / static_cast<double>(count);
+      narrower_.push_back({fitted, noise_ * std::sqrt(6 / (side_.weight() * freedom)) / reach});
       best = {patch, reach};
       axis = fitted;
     }
