@@ -110,11 +110,8 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
                    in_canonical_order(problem.cloud, std::exchange(known.wanted, {}), std::uint8_t{0}, any)};
   problem.spacing = typical_spacing(spacing_before_thinning(set.local_spacing(), problem.known.relative_spacing));
   const std::optional<double> given = known_noise(problem.spacing);
-  if (set.views().known()) {
-    problem.view_noise = given ? *given : largest_scatter(set);
-  } else {
-    problem.noise = given ? *given : noise ? *noise : estimate_noise(set);
-  }
+  if (set.views().known()) problem.view_noise = given ? *given : largest_scatter(set);
+  problem.noise = given ? *given : noise ? *noise : estimate_noise(set);
   if (!contains(without, Step::kSites)) problem.line_distance = surface_distance(set);
   choose_scales_and_scatter(problem, options);
   if (!options.wnnc_widths.empty() && options.method != Method::kWnnc) throw InvalidInput("wnnc_widths belong to the method wnnc");

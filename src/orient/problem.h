@@ -21,7 +21,7 @@ struct Problem {
   std::vector<Vec3> outliers;  ///< taken out of the cloud; their indices follow those of its points
   double outlier_share = 0;    ///< of the whole cloud; that of its parts, which are among its outliers, too
   double spacing = 0;          ///< typical_spacing()
-  double noise = 0;          ///< given_noise() or estimate_noise(); 0 where Views are known, and with them sides: no kernel has to be wide
+  double noise = 0;            ///< given_noise() or estimate_noise()
   double view_noise = 0;     ///< given_noise() or largest_scatter() where sides are known: only directions follow it, and each its place's
   double scatter = 0;        ///< facet_scatter(), where planes are fitted
   double line_distance = 0;  ///< surface_distance(): 0, or the distance of the sites that are solved for where the samples are lines
