@@ -87,6 +87,10 @@ std::string place_text(const Vec3& place) {
   return text;
 }
 
+bool is_given(const HintStats& hints, const std::string& name) {
+  return std::find(hints.given.begin(), hints.given.end(), name) != hints.given.end();
+}
+
 void show_summary(const Settings& settings, Console& console, const Stats& stats, const MeshCheck* mesh) {
   console.say(line("input", input_text(settings, stats)));
   if (stats.spacing > 0) console.say(line("scale", scale_text(stats)));
@@ -95,7 +99,9 @@ void show_summary(const Settings& settings, Console& console, const Stats& stats
     console.say(line("solve", solve_text(stats)));
     console.say(line("normals", "mean confidence " + short_number(stats.confidence_mean, 2) + ", " +
                                     exact_percent(stats.confidence_below_half) + " of the points below 0.5"));
-    if (stats.hints.viewpoint) console.say(line("camera", "at " + place_text(*stats.hints.viewpoint) + ", as the rows of pixels show"));
+    if (stats.hints.viewpoint && !is_given(stats.hints, "sensor")) {
+      console.say(line("camera", "at " + place_text(*stats.hints.viewpoint) + ", as the rows of pixels show"));
+    }
   }
   if (mesh != nullptr) console.say(line("mesh", mesh_text(*mesh)));
   console.say(line("time", time_text(stats)));

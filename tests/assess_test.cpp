@@ -147,14 +147,30 @@ TEST(SummariseSides, AreConsistentWhereNoWarningSaysTheContrary) {
     const OpenSurfaces surfaces = open_part(kPoints / 2, 1);
     const std::vector<float> all(kPoints, confidence);
     Stats stats;
-    summarise_sides(surfaces, all, stats);
+    summarise_sides(surfaces, all, {}, stats);
     warn_of_unsure(surfaces, all, stats);
     EXPECT_NEAR(stats.confidence_mean, confidence, 1e-6);
     EXPECT_EQ(stats.consistent, confidence > 0.5F);
     EXPECT_EQ(warns(stats, "not consistent"), !stats.consistent);
-    stats.undecided_share = 0.3;
-    summarise_sides(surfaces, all, stats);
-    EXPECT_FALSE(stats.consistent);
+  }
+}
+
+// Points whose side is a choice and of which neighbours are no proof either count once; those that a hint has decided are no choice.
+TEST(SummariseSides, CountsEveryDoubtfulPointOnce) {
+  for (const std::size_t open : {kPoints * 15 / 100, kPoints / 4}) {
+    const OpenSurfaces surfaces = open_part(open, 0.5F);
+    std::vector<float> confidence(kPoints, 0.95F);
+    std::fill(confidence.begin(), confidence.begin() + 100, 0.4F);
+    Stats stats;
+    summarise_sides(surfaces, confidence, {}, stats);
+    EXPECT_DOUBLE_EQ(stats.undecided_share, static_cast<double>(open) / kPoints);
+    EXPECT_DOUBLE_EQ(stats.confidence_below_half, 0.1);
+    EXPECT_EQ(stats.consistent, open < kPoints / 5);
+    std::vector<std::uint8_t> decided(kPoints, 0);
+    std::fill(decided.begin() + 100, decided.begin() + 200, std::uint8_t{1});
+    summarise_sides(surfaces, confidence, decided, stats);
+    EXPECT_DOUBLE_EQ(stats.undecided_share, static_cast<double>(open < 200 ? 100 : open - 100) / kPoints);
+    EXPECT_TRUE(stats.consistent);
   }
 }
 

@@ -48,7 +48,11 @@ class Hints(ProgramTest):
         write_points(self.path("frame.ply"), self.depth_frame())
         self.expect(OK, "orient", "frame.ply", "out.ply", "--sensor", "0,0,0", "--report", "r.json")
         self.assertGreaterEqual(self.facing("out.ply", (0, 0, 0)), 0.995)
-        self.assertEqual(self.json_of("r.json")["hints"]["given"], ["sensor"])
+        hints = self.json_of("r.json")["hints"]
+        self.assertEqual((hints["given"], hints["viewpoint"]), (["sensor"], [0, 0, 0]))
+        self.assertGreater(hints["turned_share"], 0.5)
+        self.assertIn("as the rows of pixels show", self.expect(OK, "orient", "frame.ply", "out.ply", "--strict").err)
+        self.assertNotIn("rows of pixels", self.expect(OK, "orient", "frame.ply", "out.ply", "--sensor", "0,0,0").err)
         self.expect(OK, "orient", "frame.ply", "out.ply", "--sensor", "0,0,0", "--flip")
         self.assertLessEqual(self.facing("out.ply", (0, 0, 0)), 0.005)
 
@@ -56,7 +60,8 @@ class Hints(ProgramTest):
         random_ = random.Random(5)
         plan = [(2 * random_.random() - 1, 2 * random_.random() - 1) for _ in range(thinned(2000))]
         write_points(self.path("terrain.ply"), [(x, y, 0.1 * math.sin(4 * x) * math.cos(3 * y)) for x, y in plan])
-        self.assertIn("is a choice", self.expect(OK, "orient", "terrain.ply", "out.ply").err)
+        self.assertIn("is a choice: the one that faces up", self.expect(OK, "orient", "terrain.ply", "out.ply").err)
+        self.assertIn("is a choice: the one that faces down", self.expect(OK, "orient", "terrain.ply", "out.ply", "--flip").err)
         ups = (("0.1,0,-3", (0, 0, -9)), ("+z", (0, 0, 9)), ("-z", (0, 0, -9)))
         for up, place in ups[:1] if is_sanitized() else ups:
             result = self.expect(OK, "orient", "terrain.ply", "out.ply", "--up", up, "--report", "r.json", "--strict")
@@ -84,8 +89,8 @@ class Hints(ProgramTest):
 
     def test_a_contradiction_is_told_and_turns_nothing(self):
         write_points(self.path("ball.ply"), sphere(1000))
-        result = self.expect(OK, "orient", "ball.ply", "out.ply", "--inside", "0,0,5", "--up", "x")
-        self.assertIn("0,0,5 is not inside", result.err)
+        result = self.expect(OK, "orient", "ball.ply", "out.ply", "--inside", "0,0,-3", "--up", "x")
+        self.assertIn("hint inside: 0,0,-3 is not inside", result.err)
         self.assertIn("hint up: it decides nothing", result.err)
         self.assertEqual(self.facing("out.ply", (0, 0, 0)), 0)
         self.assertNotIn("hint", self.expect(OK, "orient", "ball.ply", "out.ply", "--inside", "0,0,0.5", "--sensor", "0,0,5").err)

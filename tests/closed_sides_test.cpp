@@ -65,8 +65,21 @@ TEST(JudgeClosedParts, InsideThatIsOutsideIsTold) {
   Sides sides;
   sides.add_sphere({0, 0, 0}, 1);
   EXPECT_FALSE(sides.follow({.inside = {{0.2, 0, 0}}}).inside_that_is_outside);
-  EXPECT_EQ(sides.follow({.inside = {{0.2, 0, 0}, {2, 0, 0}}}).inside_that_is_outside, (Vec3{2, 0, 0}));
+  EXPECT_EQ(sides.follow({.inside = {{0.2, 0, 0}, {2, 0, 0}}}).inside_that_is_outside, 1U);
   EXPECT_GT(dot(sides.normals.front(), sides.points.front()), 0.9);
+}
+
+// A place inside a closed part says nothing of an open surface beside it; one that is beneath that, all else.
+TEST(JudgeClosedParts, InsideOneOfThemHasNoVoteElsewhere) {
+  for (const Vec3& inside : {Vec3{0, 0, 4}, Vec3{0, 0, -3}, Vec3{0, 0, 3}}) {
+    Sides sides;
+    sides.add_sphere({0, 0, 4}, 0.5);
+    sides.add_square({0, 0, 0}, 2, 1, 0);
+    const HintEffect effect = sides.follow({.inside = {{0, 0, 4.1}, inside}});
+    EXPECT_EQ(effect.inside_that_is_outside.has_value(), inside[2] != 4);
+    EXPECT_EQ(effect.decided.back(), inside[2] != 4 ? 1 : 0);
+    EXPECT_EQ(sides.normals.back()[2], inside[2] == 3 ? -1 : 1);
+  }
 }
 
 // Seen from inside, a closed room faces in; what stands in an open one keeps its outside, and the walls face the middle.

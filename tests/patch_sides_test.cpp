@@ -117,6 +117,20 @@ TEST(DecidePatches, WhatIsSeenEdgeOnIsAsSureAsItIsHeld) {
   EXPECT_NEAR(squarely.confidence.back(), (1 + std::sqrt(0.5)) / 2, 0.01);
 }
 
+// What a camera has seen at a grazing angle faces it: a doubt, but no choice, unless the camera is known of some points only.
+TEST(DecidePatches, NoSideOfWhatHasAllBeenSeenIsAChoice) {
+  for (const bool seen : {false, true}) {
+    Sides sides;
+    sides.add_square({0, 0, 0}, 2, -1, 0);
+    sides.patches.held.assign(400, 0.6F);
+    sides.patches.seen = seen;
+    const HintEffect effect = sides.follow({.sensors = {{8, 0, 1}}});
+    EXPECT_EQ(std::count(effect.decided.begin(), effect.decided.end(), 1), seen ? 400 : 0);
+    EXPECT_EQ(sides.normals.front(), (Vec3{0, 0, 1}));
+    EXPECT_LT(sides.confidence.front(), 2.0F / 3);
+  }
+}
+
 // Several hints that agree are no surer than sure.
 TEST(DecidePatches, NoConfidenceIsAboveOne) {
   Sides sides;

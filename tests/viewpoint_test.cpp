@@ -139,6 +139,19 @@ TEST(Viewpoint, EveryPointFacesTheCamera) {
   }
 }
 
+// What the camera sees at a grazing angle faces it as well, which is no choice, and the middle of the cloud is no better place.
+TEST(Viewpoint, LeavesNoChoiceOfAFloor) {
+  const std::vector<Vec3> points = frame([](double, double v) { return v > 0.06 ? 0.3 / v : 5; });
+  const Orientation seen = orient(points);
+  ASSERT_TRUE(seen.stats.hints.viewpoint);
+  EXPECT_EQ(seen.stats.undecided_share, 0);
+  EXPECT_TRUE(seen.stats.consistent);
+  for (const std::string& warning : seen.stats.warnings) EXPECT_EQ(warning.find("is a choice"), std::string::npos) << warning;
+  Options options;
+  options.hints.seen_from_inside = true;
+  EXPECT_EQ(orient(points, options).normals, seen.normals);
+}
+
 // A box of 8 x 6 x 4 with a pillar, as a scanner at this place in it sees them, on a grid of angles, with noise along the lines of sight.
 std::vector<Vec3> panorama(double sigma, const Vec3& place = {0, 0, 0}) {
   shapes::Random random(11);
@@ -180,6 +193,8 @@ TEST(Viewpoint, APanoramaFacesTheScannerThatIsNamed) {
     }
     EXPECT_LT(away, points.size() / 200) << sigma;
     EXPECT_GT(seen.stats.confidence_mean, 0.8) << sigma;
+    EXPECT_GT(seen.stats.hints.settled_share, 0.4) << sigma;  // a room without a hint faces the walls
+    EXPECT_EQ(seen.stats.hints.given, std::vector<std::string>{"sensor"}) << sigma;
   }
 }
 

@@ -26,11 +26,11 @@ struct Hints {
   std::vector<Vec3> sensors{};
   /// Empty, or for every point an index into `sensors`, or kNoSensor.
   std::vector<std::uint32_t> sensor_of_point{};
-  /// Points inside the solid.
+  /// Points inside the solid: open surfaces face away from the nearest one that no closed part encloses.
   std::vector<Vec3> inside{};
-  /// Rooms, tunnels, streets: normals face the side the scanner was on, which is that of `sensors`, or without them the middle of the
-  /// cloud. Closed parts that enclose a sensor, or span half of the cloud along every axis, are turned too; what they surround keeps facing
-  /// it.
+  /// Rooms, tunnels, streets: normals face the side the scanner was on, which is that of `sensors`, without them the place of a camera that
+  /// the points show (HintStats::viewpoint), or else the middle of the cloud. Closed parts that enclose a sensor, or span half of the cloud
+  /// along every axis, are turned too; what they surround keeps facing it.
   bool seen_from_inside = false;
   /// Turns every normal, after all other hints.
   bool flip = false;
@@ -39,12 +39,12 @@ struct Hints {
 /// What the hints did. Shares of all points that were used, 0..1.
 struct HintStats {
   std::vector<std::string> given;  ///< of "up", "sensor", "inside", "seen_from_inside", "flip"
-  double settled_share = 0;        ///< their side was a choice and is one no longer
-  double turned_share = 0;         ///< turned by a hint, flip included
+  double settled_share = 0;        ///< a hint decides their side, which was a choice, or what has seen them all, whatever it was
+  double turned_share = 0;         ///< turned by a hint, flip included, or to face what has seen all
   double agreement = 0;            ///< share of the votes on decided parts that agree with the side they got; 0 if none was
   /// The place from which one camera or scanner has seen all points: of depth frames, as the lines of sight show (rows and columns of
-  /// pixels), or a single sensor that was given, where nothing hides anything from there. Every point faces it unless another hint says
-  /// what it faces.
+  /// pixels), or a single sensor that was given, where nothing hides anything from there. Every point faces it unless `up` or `inside`
+  /// say otherwise.
   std::optional<Vec3> viewpoint{};
   double contradicted_share = 0;  ///< share of the votes on closed parts that were against their side; 0 up to 1/3, which is usual
 };

@@ -4,6 +4,7 @@
 #include "orient/assess.h"
 #include "orient/confidence.h"
 #include "orient/hints.h"
+#include "orient/open_to_views.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,16 +32,6 @@ Hints in_frame(const Hints& given, const CanonicalCloud& cloud) {
   return hints;
 }
 
-// The share of the points whose side is a choice that no hint decided.
-double share_of_choices(const OpenSurfaces& surfaces, const std::vector<std::uint8_t>& decided) {
-  std::size_t choices = 0;
-  for (std::size_t i = 0; i < surfaces.part.size(); ++i) {
-    const bool is_decided = !decided.empty() && decided[i] != 0;
-    choices += surfaces.is_open(i) && surfaces.certainty[i] <= kUndecided && !is_decided ? 1 : 0;
-  }
-  return surfaces.part.empty() ? 0 : static_cast<double>(choices) / static_cast<double>(surfaces.part.size());
-}
-
 Patches patches_of(const OpenSurfaces& surfaces) {
   Patches patches;
   patches.of = surfaces.part;
@@ -63,7 +54,22 @@ std::vector<std::string> names_of(const Hints& hints) {
   return names;
 }
 
-void warn(const HintEffect& effect, const Hints& hints, const CanonicalCloud& cloud, bool any_open, Stats& stats) {
+// Shares, with what views have decided before any vote: sides that they turned, or all, where these come from the lines of sight alone.
+void count_sides(const HintEffect& effect, const Problem& problem, const Solution& solution, bool flip, HintStats& hints) {
+  std::vector<std::uint8_t> turned = effect.turned, decided = effect.decided;
+  turned.resize(problem.cloud.size(), 0);
+  decided.resize(problem.cloud.size(), 0);
+  if (is_seen_in_noise(problem)) std::fill(decided.begin(), decided.end(), std::uint8_t{1});
+  for (std::size_t i = 0; i < solution.turned_to_views.size(); ++i) {
+    turned[i] ^= solution.turned_to_views[i];
+    decided[i] |= solution.turned_to_views[i];
+  }
+  hints.turned_share = flip ? 1 - share(turned) : share(turned);
+  hints.settled_share = share(decided);
+}
+
+// `given`: in the coordinates of the caller.
+void warn(const HintEffect& effect, const Hints& given, bool any_open, Stats& stats) {
   const std::string against = percent(effect.contradicted_share);
   if (effect.contradicted_share > 0 && effect.closed_parts_turned) {
     stats.warnings.push_back("hint sensor: the scanner stood inside the closed parts, and " + against +
@@ -73,43 +79,52 @@ void warn(const HintEffect& effect, const Hints& hints, const CanonicalCloud& cl
                              " of whose votes say that they face away from the scanner; they keep their sides");
   }
   if (effect.inside_that_is_outside) {
-    const Vec3 place = cloud.frame.to_world(*effect.inside_that_is_outside);
-    stats.warnings.push_back("hint inside: " + in_words(place) + " is not inside the closed parts; they keep their sides");
+    stats.warnings.push_back("hint inside: " + in_words(given.inside[*effect.inside_that_is_outside]) +
+                             " is not inside the closed parts; they keep their sides");
   }
-  if (hints.up && !any_open) stats.warnings.emplace_back("hint up: it decides nothing, as no part of the cloud is open");
+  if (given.up && !any_open) stats.warnings.emplace_back("hint up: it decides nothing, as no part of the cloud is open");
+}
+
+void warn_of_choices(const Hints& given, Stats& stats) {
+  if (stats.undecided_share == 0) return;
+  std::string side;
+  if (vote(given)) {
+    side = given.flip ? "the other hints left as it was and --flip turned" : "the hints left as it was";
+  } else {
+    side = given.flip ? "faces down (-z), turned by --flip" : "faces up (+z)";
+    side += "; a hint decides it (--up, --sensor)";
+  }
+  stats.warnings.push_back("which side of " + percent(stats.undecided_share) + " of the points is the outside is a choice: the one that " +
+                           side);
 }
 
 }  // namespace
 
 void apply_hints(const Problem& problem, const Options& options, Solution& solution, std::vector<float>& confidence, Stats& stats,
                  const std::atomic<bool>* cancel) {
-  Patches patches = patches_of(solution.open_surfaces);
-  patches.seen = problem.cloud.set.views().known();
-  Hints hints = in_frame(options.hints, problem.cloud);
-  stats.hints.given = names_of(hints);
-  if (const Views& views = problem.cloud.set.views(); views.is_one()) {
+  const Hints& given = options.hints;
+  Hints hints = in_frame(given, problem.cloud);
+  stats.hints.given = names_of(given);
+  const Views& views = problem.cloud.set.views();
+  if (views.is_one()) {
     stats.hints.viewpoint = problem.cloud.frame.to_world(views.places.front());
-    if (!vote(hints)) hints.sensors = views.places;
+    const bool says_otherwise = hints.up || !hints.inside.empty();
+    if (hints.sensors.empty() && (hints.seen_from_inside || !says_otherwise)) hints.sensors = views.places;
   }
+  Patches patches = patches_of(solution.open_surfaces);
+  patches.seen = views.known() && hints.sensors == views.places;
   HintEffect effect;
   if (vote(hints) || hints.flip) {
     const SidedPoints sided{solution.refinement.normals, solution.eta, confidence};
     effect = follow_hints({problem.cloud.points(), problem.cloud.set.near(), problem.spacing, patches, hints, sided}, cancel);
   }
-  const double turned = share(effect.turned);
-  stats.hints.turned_share = hints.flip ? 1 - turned : turned;
-  stats.hints.settled_share = share(effect.decided);
+  count_sides(effect, problem, solution, hints.flip, stats.hints);
   stats.hints.agreement = effect.agreement;
   stats.hints.contradicted_share = effect.contradicted_share;
-  stats.undecided_share = share_of_choices(solution.open_surfaces, effect.decided);
-  summarise_sides(solution.open_surfaces, confidence, stats);
+  summarise_sides(solution.open_surfaces, confidence, effect.decided, stats);
   warn_of_unsure(solution.open_surfaces, confidence, stats);
-  warn(effect, hints, problem.cloud, stats.open_share > 0, stats);
-  if (stats.undecided_share > 0) {
-    stats.warnings.push_back(
-        "which side of " + percent(stats.undecided_share) + " of the points is the outside is a choice: the one that " +
-        (stats.hints.given.empty() ? "faces up (+z); a hint decides it (--up, --sensor)" : "the hints left as it was"));
-  }
+  warn(effect, given, stats.open_share > 0, stats);
+  warn_of_choices(given, stats);
 }
 
 }  // namespace g3r

@@ -27,7 +27,6 @@ std::vector<float> confidence_of_solution(const Problem& problem, const Solution
 void add_open_surfaces(const OpenSurfaces& surfaces, std::vector<float>& confidence, Stats& stats) {
   if (surfaces.part.empty()) return;
   std::size_t open = 0;
-  std::size_t undecided = 0;
   std::size_t agreed = 0;
   std::size_t unshown = 0;  // points whose side what is around does not show
   for (std::size_t i = 0; i < surfaces.part.size(); ++i) {
@@ -39,12 +38,10 @@ void add_open_surfaces(const OpenSurfaces& surfaces, std::vector<float>& confide
     ++open;
     agreed += surfaces.agrees[i];
     unshown += surfaces.certified[i] < kUndecided ? 1 : 0;
-    undecided += surfaces.certainty[i] <= kUndecided ? 1 : 0;
   }
   if (open == 0) return;
   const auto all = static_cast<double>(confidence.size());
   stats.open_share = static_cast<double>(open) / all;
-  stats.undecided_share = static_cast<double>(undecided) / all;
   stats.warnings.push_back("open: " + percent(stats.open_share) + " of the points lie on surfaces without an inside; " +
                            (agreed < open  ? "their sides do not agree everywhere"
                             : unshown == 0 ? "their sides are consistent"
@@ -108,16 +105,26 @@ Oriented assess(const Problem& problem, Solution solution, Stats& stats) {
   if (!stats.converged) {
     stats.warnings.emplace_back("the solver did not reach its tolerance; normals may be less accurate");
   }
-  summarise_sides(surfaces, out.confidence, stats);
+  summarise_sides(surfaces, out.confidence, {}, stats);
   return out;
 }
 
-void summarise_sides(const OpenSurfaces& surfaces, const std::vector<float>& confidence, Stats& stats) {
+void summarise_sides(const OpenSurfaces& surfaces, const std::vector<float>& confidence, const std::vector<std::uint8_t>& decided,
+                     Stats& stats) {
   double sum = 0;
-  for (const float c : confidence) sum += static_cast<double>(c);
-  stats.confidence_mean = sum / static_cast<double>(confidence.size());
+  std::size_t choices = 0;
+  std::size_t doubtful = 0;  // a choice, unsure, or both
+  for (std::size_t i = 0; i < confidence.size(); ++i) {
+    sum += static_cast<double>(confidence[i]);
+    const bool is_choice = surfaces.is_choice(i) && (decided.empty() || decided[i] == 0);
+    choices += is_choice ? 1 : 0;
+    doubtful += is_choice || is_unsure(surfaces, confidence, i) ? 1 : 0;
+  }
+  const auto all = static_cast<double>(confidence.size());
+  stats.confidence_mean = sum / all;
   stats.confidence_below_half = unsure_share(confidence);
-  stats.consistent = unsure_share(surfaces, confidence) + stats.undecided_share <= kManyUnsure;
+  stats.undecided_share = static_cast<double>(choices) / all;
+  stats.consistent = static_cast<double>(doubtful) / all <= kManyUnsure;
 }
 
 void warn_of_unsure(const OpenSurfaces& surfaces, const std::vector<float>& confidence, Stats& stats) {

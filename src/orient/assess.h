@@ -7,6 +7,7 @@
 
 #include <g3r/g3r.h>
 
+#include <cstdint>
 #include <vector>
 
 namespace g3r {
@@ -31,12 +32,14 @@ struct Oriented {
 ///   - limit_to_evidence().
 /// The last three are left out with Step::kCertificate, and `doubt` is from before them: it asks what the solution says of itself. Adds to
 /// `stats` the mean confidence and the shares of unsure, open and undecided points, and whether the result is consistent, which it is where
-/// no more than a fifth of the points (kManyUnsure) are unsure or undecided; warns of what is doubtful. Where everything is open nothing
-/// depends on the solver, and it counts as converged. O(N).
+/// no more than a fifth of the points (kManyUnsure) are unsure, undecided or both; warns of what is doubtful. Where everything is open
+/// nothing depends on the solver, and it counts as converged. O(N).
 [[nodiscard]] Oriented assess(const Problem& problem, Solution solution, Stats& stats);
 
-/// Sets the mean confidence, the share of unsure points, and `consistent` with stats.undecided_share as it is. O(N).
-void summarise_sides(const OpenSurfaces& surfaces, const std::vector<float>& confidence, Stats& stats);
+/// Sets the mean confidence, the shares of unsure points and of those whose side is a choice, and `consistent`. `decided`: N, those that
+/// are none any more, as hints decide them; empty: none. O(N).
+void summarise_sides(const OpenSurfaces& surfaces, const std::vector<float>& confidence, const std::vector<std::uint8_t>& decided,
+                     Stats& stats);
 
 /// Warns where more than a fifth of the points are unsure: once, of the final sides. O(N).
 void warn_of_unsure(const OpenSurfaces& surfaces, const std::vector<float>& confidence, Stats& stats);

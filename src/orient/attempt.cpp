@@ -20,7 +20,7 @@ Solution solve_problem(const Problem& problem, const Options& options, Stages& s
   Solution solution =
       problem.line_distance > 0 ? solve_on_sites(problem, options, stages, stats) : solve_parts(problem, options, stages, stats);
   if (const Views& views = problem.cloud.set.views(); views.known()) {
-    open_to_views(views, problem.cloud.points(), solution.open_surfaces, solution.refinement.normals, solution.eta);
+    open_to_views(views, problem.cloud.points(), solution);
   }
   return solution;
 }

@@ -6,7 +6,6 @@
 #include "orient/settings.h"
 #include "sum/direct_sum.h"
 
-#include <algorithm>
 #include <vector>
 
 namespace g3r {
@@ -39,6 +38,8 @@ bool spans_cloud(const HintedCloud& cloud) {
   return true;
 }
 
+bool is_inside(double winding) { return winding >= kInsideWinding; }
+
 // Share of the sensors that stand inside closed parts. Of many, which are along a path, every so-manieth tells.
 double share_of_sensors_inside(const HintedCloud& cloud, const std::atomic<bool>* cancel) {
   const std::vector<Vec3>& sensors = cloud.hints.sensors;
@@ -47,7 +48,7 @@ double share_of_sensors_inside(const HintedCloud& cloud, const std::atomic<bool>
   const std::size_t step = (sensors.size() + kFewPlaces - 1) / kFewPlaces;
   for (std::size_t s = 0; s < sensors.size(); s += step) some.push_back(sensors[s]);
   double inside = 0;
-  for (const double w : winding_at(cloud, some, cancel)) inside += w >= kInsideWinding ? 1 : 0;
+  for (const double w : winding_at(cloud, some, cancel)) inside += is_inside(w) ? 1 : 0;
   return inside / static_cast<double>(some.size());
 }
 
@@ -71,20 +72,24 @@ void judge_by_sensors(const HintedCloud& cloud, const Votes& votes, HintEffect& 
 
 }  // namespace
 
-void judge_closed_parts(const HintedCloud& cloud, Voters& voters, HintEffect& effect, const std::atomic<bool>* cancel) {
+std::vector<std::size_t> inside_no_closed_part(const HintedCloud& cloud, const std::atomic<bool>* cancel) {
   const std::vector<Vec3>& places = cloud.hints.inside;
+  std::vector<std::size_t> outside;
+  if (places.empty()) return outside;
+  const std::vector<double> winding = winding_at(cloud, places, cancel);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    if (!is_inside(winding[k])) outside.push_back(k);
+  }
+  return outside;
+}
+
+void judge_closed_parts(const HintedCloud& cloud, Voters& voters, HintEffect& effect, const std::atomic<bool>* cancel) {
   Votes votes;
-  bool has_closed = false;
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     if (!cloud.patches.is_closed(i)) continue;
-    has_closed = true;
     votes.add(voters.seen(i, cloud.sided.normals[i]));
   }
   if (votes.total() > 0 || cloud.hints.seen_from_inside) judge_by_sensors(cloud, votes, effect, cancel);
-  if (places.empty() || !has_closed) return;
-  const std::vector<double> winding = winding_at(cloud, places, cancel);
-  const auto least = std::min_element(winding.begin(), winding.end());
-  if (*least < kInsideWinding) effect.inside_that_is_outside = places[static_cast<std::size_t>(least - winding.begin())];
 }
 
 }  // namespace g3r

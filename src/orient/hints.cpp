@@ -28,8 +28,16 @@ void require_finite(const std::vector<Vec3>& places, const std::string& name) {
 HintEffect follow_hints(const HintedCloud& cloud, const std::atomic<bool>* cancel) {
   const std::size_t count = cloud.points.size();
   if (!has_any(cloud.hints) || count == 0) return {};
-  Voters voters(cloud.points, cloud.hints);
   HintEffect effect;
+  bool has_closed = false;
+  for (std::size_t i = 0; i < count && !has_closed; ++i) has_closed = cloud.patches.is_closed(i);
+  Hints voting = cloud.hints;
+  voting.inside.clear();
+  for (const std::size_t k : inside_no_closed_part(cloud, cancel)) {
+    if (has_closed && voting.inside.empty()) effect.inside_that_is_outside = k;
+    voting.inside.push_back(cloud.hints.inside[k]);
+  }
+  Voters voters(cloud.points, voting);
   effect.decided.assign(count, 0);
   effect.turned.assign(count, 0);
   decide_patches(cloud, voters, effect);

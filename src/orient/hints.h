@@ -49,14 +49,15 @@ struct HintEffect {
   double agreement = 0;               ///< share of the votes on decided patches that agree with the side they got; 0: none was decided
   double contradicted_share = 0;      ///< share of the votes on closed parts that were against their side; 0 if too few to matter
   bool closed_parts_turned = false;   ///< `contradicted_share` is that from before
-  std::optional<Vec3> inside_that_is_outside;  ///< of Hints::inside, one that no closed part encloses although there are such parts
+  std::optional<std::size_t>
+      inside_that_is_outside;  ///< index in Hints::inside of one that no closed part encloses, if there are such parts
 };
 
 /// Follows the hints of a cloud, given in the coordinates of its points, `sensor_of_point` in their order: patches take the side that most
-/// of the votes of their points are for (decide_patches()), and closed parts, which have one side, are turned where they surround the
-/// sensors (judge_closed_parts()). Then turns the normals and area vectors of the points that this turns, and by `flip` those of all others
-/// instead. O(N log(sensors) + N k), O(N) for each of at most 500 sensors, and all sensors for each open point that none of them sees from
-/// the front. Throws Cancelled.
+/// of the votes of their points are for (decide_patches()), where a place inside a closed part has no vote, and closed parts, which have
+/// one side, are turned where they surround the sensors (judge_closed_parts()). Then turns the normals and area vectors of the points that
+/// this turns, and by `flip` those of all others instead. O(N log(sensors) + N k), O(N) for each of at most 500 sensors, and all sensors
+/// for each open point that none of them sees from the front. Throws Cancelled.
 [[nodiscard]] HintEffect follow_hints(const HintedCloud& cloud, const std::atomic<bool>* cancel = nullptr);
 
 /// Throws InvalidInput for hints that cannot be meant for `count` points: a vector that is not finite, a direction of no length, a number

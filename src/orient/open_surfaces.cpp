@@ -194,13 +194,14 @@ void OpenSurfaces::put(const std::vector<std::uint32_t>& some, const OpenSurface
   }
 }
 
+bool is_unsure(const OpenSurfaces& surfaces, const std::vector<float>& confidence, std::size_t i) {
+  const bool not_shown = !surfaces.is_open(i) && confidence[i] == kUndecided && confidence.size() >= kFewestSites;
+  return confidence[i] < kUndecided || not_shown;
+}
+
 double unsure_share(const OpenSurfaces& surfaces, const std::vector<float>& confidence) {
   std::size_t unsure = 0;
-  for (std::size_t i = 0; i < confidence.size(); ++i) {
-    const bool is_open = surfaces.is_open(i);
-    const bool not_shown = !is_open && confidence[i] == kUndecided && confidence.size() >= kFewestSites;
-    unsure += confidence[i] < kUndecided || not_shown ? 1 : 0;
-  }
+  for (std::size_t i = 0; i < confidence.size(); ++i) unsure += is_unsure(surfaces, confidence, i) ? 1 : 0;
   return static_cast<double>(unsure) / static_cast<double>(confidence.size());
 }
 

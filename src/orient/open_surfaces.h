@@ -28,6 +28,8 @@ struct OpenSurfaces {
 
   /// Whether point i lies on an open surface; also of points beyond N, such as outliers, which do not.
   [[nodiscard]] bool is_open(std::size_t i) const { return i < part.size() && part[i] != kNone; }
+  /// Whether nothing shows which side of the open surface that point i lies on is the outside.
+  [[nodiscard]] bool is_choice(std::size_t i) const { return is_open(i) && certainty[i] <= kUndecided; }
 
   /// Takes what was found for some of the N points (ascending) without the others.
   void put(const std::vector<std::uint32_t>& some, const OpenSurfaces& here);
@@ -52,9 +54,11 @@ struct OpenSurfaces {
 [[nodiscard]] OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan& sums, std::vector<Vec3>& normals,
                                               const std::atomic<bool>* cancel = nullptr);
 
-/// Share of the points that could face either way: confidence below a half, or a half on closed surfaces, whose sides are no choice and
-/// which nothing shows to be right. Where there are fewer than 30 points nothing can show it, and a half is no reason. `confidence`: of the
-/// N points.
+/// Whether point i could face either way: confidence below a half, or a half on closed surfaces, whose sides are no choice and which
+/// nothing shows to be right. Where there are fewer than 30 points nothing can show it, and a half is no reason. `confidence`: of the N
+/// points.
+[[nodiscard]] bool is_unsure(const OpenSurfaces& surfaces, const std::vector<float>& confidence, std::size_t i);
+/// Share of the points that are so. O(N).
 [[nodiscard]] double unsure_share(const OpenSurfaces& surfaces, const std::vector<float>& confidence);
 
 }  // namespace g3r

@@ -59,7 +59,7 @@ class PatchSides {
       const double alone = (1 + std::min(own, 1.0)) / 2;
       const double side = std::max(both_agree(both_say(shown, agreement), held), alone);
       sided_.confidence[i] = static_cast<float>(side) * (patches_.agreed.empty() ? 1 : patches_.agreed[i]);
-      effect_.decided[i] = side >= kMostOf ? 1 : 0;
+      effect_.decided[i] = all_seen() || side >= kMostOf ? 1 : 0;
       if (effect_.decided[i] == 0) continue;
       agreed += agreement;
       ++all;
@@ -72,6 +72,8 @@ class PatchSides {
   [[nodiscard]] bool is_closed(std::size_t i) const { return patches_.is_closed(i); }
   // Of the side that the points themselves show.
   [[nodiscard]] double certainty(std::size_t i) const { return patches_.certainty.empty() ? 1 : patches_.certainty[i]; }
+  // Then a grazing view leaves a doubt, but no choice.
+  [[nodiscard]] bool all_seen() const { return patches_.seen && !hints_.sensors.empty(); }
   [[nodiscard]] bool is_choice(std::size_t i) const { return certainty(i) < 1; }
 
   // The votes on every patch, as its points are turned by now.

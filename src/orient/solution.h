@@ -8,6 +8,7 @@
 
 #include <g3r/g3r.h>
 
+#include <cstdint>
 #include <vector>
 
 namespace g3r {
@@ -17,6 +18,7 @@ struct Solution {
   std::vector<Vec3> eta;  ///< area vectors
   Refinement refinement;  ///< normals, and the jump of the field they come from (empty without a refinement)
   OpenSurfaces open_surfaces;
+  std::vector<std::uint8_t> turned_to_views{};  ///< N: 1 where open_to_views() has turned a side; empty: nowhere
 };
 
 /// Solves for all points of a problem together, with its method and settings, on the points or on clusters of them. Adds the iterations and
