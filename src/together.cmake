@@ -7,7 +7,7 @@ function(g3r_together group)
 endfunction()
 set_target_properties(g3r PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 
-g3r_together(cloud cloud/canonical_cloud cloud/chance cloud/clusters cloud/exact_plane cloud/neighbours cloud/plane_fit cloud/point_set
+g3r_together(cloud cloud/canonical_cloud cloud/chance cloud/clusters cloud/exact_plane cloud/far_points cloud/neighbours cloud/plane_fit cloud/point_set
              cloud/quadratic_patch cloud/spacing tree/octree tree/far_pairs tree/interaction_lists tree/traversal tree/tree_parts
              expansions/expansions sum/direct_sum)
 g3r_together(layers cloud/layers cloud/noise expansions/m2l_matrices sum/sum_plan solve/green_system solve/refine metrics/sample_mesh

@@ -1,11 +1,14 @@
 // Outliers and uneven density: what is left out, what is not, and that normals do not suffer.
 #include "cloud/outliers.h"
 
+#include "base/vector.h"
 #include "cloud/canonical_cloud.h"
+#include "cloud/far_points.h"
 #include "cloud/neighbours.h"
 #include "cloud/spacing.h"
 #include "shapes.h"
 
+#include <g3r/error.h>
 #include <g3r/g3r.h>
 #include <gtest/gtest.h>
 
@@ -177,21 +180,78 @@ TEST(Outliers, FarStrayPointsChangeNothing) {
   for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(winding[i], expected[i], 1e-3);
 }
 
+// What is left out is numbered after the cloud, whose frame and points are those that it has without.
 TEST(Outliers, TheFrameFollowsWhatIsLeft) {
-  std::vector<Vec3> points = shapes::torus(200, 0.6, 0.25, 1).points;
-  points.push_back({100, 0, 0});
-  CanonicalCloud cloud = canonical_cloud(points);
-  std::vector<Vec3> others = remove_points(cloud, {cloud.point_of[200]});
-  ASSERT_TRUE(refit_frame(cloud, others));
-  EXPECT_FALSE(refit_frame(cloud, others));
-  const std::vector<std::uint64_t> codes = morton_codes(cloud.points());
-  EXPECT_TRUE(std::is_sorted(codes.begin(), codes.end()));
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::uint32_t p = cloud.point_of[i];
-    const Vec3& unit = p < 200 ? cloud.points()[p] : others[p - 200];
-    const Vec3 expected = cloud.frame.to_unit(points[i]);
-    for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(unit[a], expected[a], 1e-11);
+  const std::vector<Vec3> torus = shapes::torus(200, 0.6, 0.25, 1).points;
+  std::vector<Vec3> points = torus;
+  points.insert(points.begin() + 50, {{100, 0, 0}, {-1e30, 0, 0}, {100, 0, 0}, {std::nan(""), 0, 0}, {-2e30, 0, 0}});
+  std::vector<std::uint8_t> left_out(points.size(), 0);
+  std::fill(left_out.begin() + 50, left_out.begin() + 55, std::uint8_t{1});
+  std::vector<Vec3> others;
+  const CanonicalCloud cloud = canonical_cloud(points, left_out, others), alone = canonical_cloud(torus);
+  EXPECT_EQ(cloud.points(), alone.points());
+  EXPECT_EQ(cloud.frame.to_world(others.back()), (Vec3{100, 0, 0}));
+  ASSERT_EQ(others.size(), 3U);
+  EXPECT_EQ(std::vector<std::uint32_t>(cloud.point_of.begin() + 50, cloud.point_of.begin() + 55),
+            (std::vector<std::uint32_t>{202, 201, 202, kNoPoint, 200}));
+  EXPECT_EQ(std::vector<std::uint32_t>(cloud.multiplicity.begin() + 200, cloud.multiplicity.end()), (std::vector<std::uint32_t>{1, 1, 2}));
+  EXPECT_EQ(cloud.non_finite, 1U);
+  for (const Vec3& place : {others[0], others[1]}) EXPECT_LT(place[0], -1e15);
+  EXPECT_FALSE(is_small_in_frame(cloud));
+}
+
+// However far away and wherever in the list: the others have the bytes that they have alone.
+TEST(FarPoints, ChangeNothing) {
+  const std::vector<Vec3> sphere = shapes::sphere(2000).points;
+  const Orientation alone = orient(sphere);
+  for (const double distance : {1e8, 1e12, 1e13, 1e14, 1e15, 1e30, 1e38, 1e300}) {
+    for (const std::size_t far : {std::size_t{1}, std::size_t{3}}) {
+      std::vector<Vec3> points = sphere;
+      for (std::size_t a = 0; a < far; ++a) {
+        Vec3 place{0, 0.3 * distance, 0};
+        place[a] = distance;
+        points.insert(points.begin() + static_cast<std::ptrdiff_t>(a * 500), place);
+      }
+      const Orientation with = orient(points);
+      EXPECT_EQ(with.stats.outliers, far) << distance;
+      EXPECT_EQ(with.stats.merged_duplicates, 0U) << distance;
+      std::vector<Vec3> normals;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        EXPECT_TRUE(vector::is_finite(with.normals[i]));
+        if (std::abs(points[i][1]) < 2 && std::abs(points[i][0]) < 2 && std::abs(points[i][2]) < 2) normals.push_back(with.normals[i]);
+      }
+      EXPECT_EQ(normals, alone.normals) << distance;
+    }
   }
+}
+
+// Places that say that nothing was measured, of most points or a third of them; in no other cloud is a point too far.
+TEST(FarPoints, AreFoundAmongMany) {
+  shapes::Random random(3);
+  std::vector<Vec3> points = shapes::sphere(2000).points;
+  EXPECT_TRUE(far_points(points).empty());
+  std::vector<Vec3> copies = points, spread = points, near = points;
+  copies.insert(copies.end(), 5000, Vec3{1e30, 1e30, 1e30});
+  near.insert(near.end(), 5000, Vec3{1e3, 5e6, 0});
+  for (int i = 0; i < 900; ++i) spread.push_back({1e30 * random.uniform(-1, 1), 1e30 * random.uniform(-1, 1), 1e30});
+  EXPECT_TRUE(far_points(near).empty());
+  for (const std::vector<Vec3>& cloud : {copies, spread}) {
+    const std::vector<std::uint8_t> marks = far_points(cloud);
+    ASSERT_EQ(marks.size(), cloud.size());
+    for (std::size_t i = 0; i < marks.size(); ++i) EXPECT_EQ(marks[i], i < 2000 ? 0 : 1);
+    std::vector<Vec3> reversed(cloud.rbegin(), cloud.rend());
+    EXPECT_EQ(far_points(reversed), std::vector<std::uint8_t>(marks.rbegin(), marks.rend()));
+    EXPECT_EQ(orient(cloud).stats.outliers, cloud.size() == 7000 ? 1U : 900U);
+  }
+}
+
+// A line is told as one, also where a stray is beside it.
+TEST(FarPoints, DoNotMakeAPlaneOfALine) {
+  std::vector<Vec3> line;
+  for (int i = 0; i < 300; ++i) line.push_back({0.01 * i, 0, 0});
+  EXPECT_THROW((void)orient(line), InvalidInput);
+  line.push_back({1, 5, 2});
+  EXPECT_THROW((void)orient(line), InvalidInput);
 }
 
 // Where points lie closer their areas are smaller, which is no reason for doubt.

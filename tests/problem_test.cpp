@@ -108,6 +108,15 @@ TEST(WithNoise, ChangesTheNoiseAndNothingOfTheCloud) {
   EXPECT_EQ(with_noise(problem, 0, {}).settings.epsilon.typical(), problem.settings.epsilon.typical());
 }
 
+// Parts and sites of a cloud are among its outliers, which the settings go by.
+TEST(OnSites, KnowsTheOutliersOfTheCloud) {
+  Problem problem = prepared(shapes::sphere(600).points);
+  problem.outlier_share = 0.1;
+  const Problem on = on_sites(problem, place_sites(problem.cloud.set, 1.5 * problem.spacing), {});
+  EXPECT_EQ(on.outlier_share, 0.1);
+  EXPECT_EQ(part_of(problem, {0, 100, 200, 300, 400, 500}, {}).outlier_share, 0.1);
+}
+
 TEST(PartOf, IsTheWholeOfAllPointsAndHasTheirPlacesOfSome) {
   const Problem problem = prepared(shapes::sphere(600).points);
   std::vector<std::uint32_t> all, third;

@@ -224,6 +224,14 @@ TEST(Viewpoint, EveryPointOfSeveralScansFacesItsScanner) {
   }
 }
 
+// A scanner of which no point is left, as outside --box, is no reason to forget the others.
+TEST(Viewpoint, AScannerWithoutPointsSaysNothing) {
+  const std::vector<Vec3> points = panorama(0.01);
+  const std::vector<std::uint32_t> first(points.size(), 0);
+  EXPECT_TRUE(may_be_seen(points, {{{0, 0, 0}, {30, 0, 0}}, first}));
+  EXPECT_FALSE(may_be_seen(points, {{{0, 0, -40}, {30, 0, 0}}, first}));
+}
+
 // A scanner beside a solid cannot have seen what lies behind its front.
 TEST(Viewpoint, ASolidIsNotSeenFromOnePlace) {
   const std::vector<Vec3> sphere = shapes::sphere(4000).points;

@@ -7,17 +7,23 @@
 
 #include <g3r/error.h>
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <string>
+#include <utility>
 
 namespace g3r {
 namespace {
 
 constexpr std::size_t kFewestPoints = 4;  // fewer cannot enclose a volume
 constexpr double kLineThickness = 1e-12;  // distance from a line over its length, below which points count as collinear: rounding
+// From the middle of the frame along an axis, at most, of points that are left out: from farther the cloud is one point, and powers of the
+// distance leave the range of double.
+constexpr double kFarthest = 1 / std::numeric_limits<double>::epsilon();
 
 // Ones in groups of so many bits, each group at three times the place that it would have without gaps.
 constexpr std::uint64_t groups_of(int bits) {
@@ -93,10 +99,12 @@ struct Bounds {
   }
 };
 
-Bounds bounds_of(const PointsView& points) {
+// Of the finite points that are not marked in `left_out`.
+Bounds bounds_of(const PointsView& points, const std::vector<std::uint8_t>& left_out = {}) {
   return parallel::sum_blocks(points.count, parallel::kBlock, Bounds{}, [&](std::size_t begin, std::size_t end) {
     Bounds b;
     for (std::size_t i = begin; i < end; ++i) {
+      if (!left_out.empty() && left_out[i] != 0) continue;
       if (const Vec3 p = points[i]; vector::is_finite(p)) b += {p, p, 1};
     }
     return b;
@@ -140,8 +148,39 @@ Vec3 longest(const std::vector<Vec3>& points, const Of& of) {
       .vector;
 }
 
+// A place that is left out: in its direction, however far it is.
+Vec3 to_unit_within_reach(const Frame& frame, const Vec3& p) {
+  const Vec3 half =
+      vector::subtract(vector::scale(p, 0.5), vector::scale(frame.centre, 0.5));  // the whole may be beyond the range of double
+  const double largest = std::max({std::abs(half[0]), std::abs(half[1]), std::abs(half[2])});
+  if (largest <= kFarthest / 2 / frame.scale) return frame.to_unit(p);
+  return vector::scale(vector::scale(half, 1 / largest), kFarthest);
+}
+
+// Numbers the places of the points that are left out after those of the cloud, in the order of their coordinates.
+std::vector<Vec3> add_left_out(const PointsView& points, const std::vector<std::uint8_t>& left_out, CanonicalCloud& cloud) {
+  std::vector<std::pair<Vec3, std::uint32_t>> places;
+  for (std::uint32_t i = 0; i < left_out.size(); ++i) {
+    if (left_out[i] != 0 && vector::is_finite(points[i])) places.emplace_back(points[i], i);
+  }
+  std::sort(places.begin(), places.end());
+  std::vector<Vec3> others;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const auto& [place, i] = places[k];
+    if (k == 0 || place != places[k - 1].first) {
+      others.push_back(to_unit_within_reach(cloud.frame, place));
+      cloud.multiplicity.push_back(0);
+    }
+    ++cloud.multiplicity.back();
+    cloud.point_of[i] = static_cast<std::uint32_t>(cloud.multiplicity.size() - 1);
+  }
+  return others;
+}
+
+}  // namespace
+
 // Distance of all points from the line through their mean and the point farthest from it.
-void require_not_collinear(const std::vector<Vec3>& points) {
+void require_not_collinear(const std::vector<Vec3>& points, std::size_t outliers) {
   Vec3 mean{0, 0, 0};
   for (const Vec3& p : points) {
     for (std::size_t a = 0; a < 3; ++a) mean[a] += p[a] / static_cast<double>(points.size());
@@ -155,10 +194,9 @@ void require_not_collinear(const std::vector<Vec3>& points) {
         std::hypot(d[1] * axis[2] - d[2] * axis[1], d[2] * axis[0] - d[0] * axis[2], d[0] * axis[1] - d[1] * axis[0]) / length;
     if (off_line > kLineThickness * length) return;
   }
-  throw InvalidInput("all points lie on one line (collinear): a surface needs points beside that line");
+  const std::string but = outliers == 0 ? "" : " but " + std::to_string(outliers) + (outliers == 1 ? " outlier" : " outliers");
+  throw InvalidInput("all points" + but + " lie on one line (collinear): a surface needs points beside that line");
 }
-
-}  // namespace
 
 std::uint64_t spread_bits(std::uint64_t v) {
   constexpr std::uint64_t kGrid = (std::uint64_t{1} << kGridBits) - 1;
@@ -207,20 +245,28 @@ std::vector<std::uint32_t> morton_order(const std::vector<Vec3>& unit_points) {
 }
 
 CanonicalCloud canonical_cloud(const PointsView& points) {
+  std::vector<Vec3> none;
+  CanonicalCloud cloud = canonical_cloud(points, {}, none);
+  require_not_collinear(cloud.points());
+  return cloud;
+}
+
+CanonicalCloud canonical_cloud(const PointsView& points, const std::vector<std::uint8_t>& left_out, std::vector<Vec3>& others) {
   if (points.count >= kNoPoint) throw InvalidInput("more than 4294967294 points; split the cloud");
-  const Bounds bounds = bounds_of(points);
+  const Bounds bounds = bounds_of(points, left_out);
   if (bounds.finite_points < kFewestPoints) {
     throw InvalidInput("too few points: " + std::to_string(bounds.finite_points) + " of " + std::to_string(points.count) +
                        " are finite, at least 4 distinct points are needed");
   }
   CanonicalCloud cloud;
   cloud.frame = frame_of(bounds);
-  cloud.non_finite = points.count - bounds.finite_points;
 
   std::vector<std::uint32_t> input;
   input.reserve(bounds.finite_points);
   for (std::size_t i = 0; i < points.count; ++i) {
-    if (vector::is_finite(points[i])) input.push_back(static_cast<std::uint32_t>(i));
+    const bool is_place = vector::is_finite(points[i]);
+    cloud.non_finite += is_place ? 0 : 1;
+    if (is_place && (left_out.empty() || left_out[i] == 0)) input.push_back(static_cast<std::uint32_t>(i));
   }
   const std::size_t n = input.size();
   std::vector<Vec3> unit(n);
@@ -243,36 +289,15 @@ CanonicalCloud canonical_cloud(const PointsView& points) {
   if (cloud.size() < kFewestPoints) {
     throw InvalidInput("too few distinct points: " + std::to_string(cloud.size()) + " (the rest are duplicates), at least 4 are needed");
   }
-  require_not_collinear(cloud.points());
+  others = add_left_out(points, left_out, cloud);
   return cloud;
 }
 
-bool refit_frame(CanonicalCloud& cloud, std::vector<Vec3>& others) {
+bool is_small_in_frame(const CanonicalCloud& cloud) {
   const Bounds bounds = bounds_of(cloud.points());
   double side = 0;
   for (std::size_t a = 0; a < 3; ++a) side = std::max(side, bounds.high[a] - bounds.low[a]);
-  if (side >= kClearlyLess * kBoxSide) return false;
-  const Frame inner = frame_of(bounds);
-  for (std::size_t a = 0; a < 3; ++a) cloud.frame.centre[a] += inner.centre[a] / cloud.frame.scale;
-  cloud.frame.scale *= inner.scale;
-  std::vector<Vec3> unit(cloud.size());
-  for (std::size_t i = 0; i < unit.size(); ++i) unit[i] = inner.to_unit(cloud.points()[i]);
-  for (Vec3& p : others) p = inner.to_unit(p);
-  const std::vector<std::uint32_t> order = morton_order(unit);
-  const std::vector<std::uint32_t> multiplicity = cloud.multiplicity;
-  std::vector<std::uint32_t> renumbered(cloud.size());
-  std::vector<Vec3> sorted(cloud.size());
-  for (std::uint32_t k = 0; k < cloud.size(); ++k) {
-    const std::uint32_t i = order[k];
-    sorted[k] = unit[i];
-    cloud.multiplicity[k] = multiplicity[i];
-    renumbered[i] = k;
-  }
-  cloud.set = PointSet(std::move(sorted));
-  for (std::uint32_t& p : cloud.point_of) {
-    if (p < renumbered.size()) p = renumbered[p];
-  }
-  return true;
+  return side < kClearlyLess * kBoxSide;
 }
 
 bool is_flat(const CanonicalCloud& cloud) {

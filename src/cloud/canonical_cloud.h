@@ -56,9 +56,9 @@ inline constexpr int kGridBits = std::numeric_limits<std::uint64_t>::digits / 3;
 /// Indices that sort points of [-1, 1]^3 canonically. O(N).
 [[nodiscard]] std::vector<std::uint32_t> morton_order(const std::vector<Vec3>& unit_points);
 
-/// Fits the frame anew, and sorts anew, where the points fill less than half of its longest side because far ones have been taken out: the
-/// grid and the kernels have to resolve what is left. `others`, in the unit frame, move with it. Returns whether it did. O(N).
-bool refit_frame(CanonicalCloud& cloud, std::vector<Vec3>& others);
+/// Whether the points fill less than half of the longest side of their frame, because far ones have been taken out: the grid and the
+/// kernels have to resolve what is left. O(N).
+[[nodiscard]] bool is_small_in_frame(const CanonicalCloud& cloud);
 
 /// Whether all points lie in one plane, within kLeastSpacing: nothing says which side is outside. O(N).
 [[nodiscard]] bool is_flat(const CanonicalCloud& cloud);
@@ -66,5 +66,14 @@ bool refit_frame(CanonicalCloud& cloud, std::vector<Vec3>& others);
 /// Centres, scales, drops non-finite points, merges exact duplicates and sorts. O(N).
 /// Throws InvalidInput for fewer than 4 distinct finite points, or points that are all on one line.
 [[nodiscard]] CanonicalCloud canonical_cloud(const PointsView& points);
+
+/// The same of the points that are not marked in `left_out` (N, or empty: none is), on a line or not. `others`: out, the distinct finite
+/// places of those that are, in the unit frame or, beyond 2^52 in it, in their direction; point_of and multiplicity number them after those
+/// of the cloud. What is left out changes nothing of the cloud. O(N + n log n) for n that are left out.
+[[nodiscard]] CanonicalCloud canonical_cloud(const PointsView& points, const std::vector<std::uint8_t>& left_out,
+                                             std::vector<Vec3>& others);
+
+/// Throws InvalidInput if all of these points are on one line. `outliers`: that have been left out, for the message. O(N).
+void require_not_collinear(const std::vector<Vec3>& points, std::size_t outliers = 0);
 
 }  // namespace g3r

@@ -252,7 +252,7 @@ bool may_be_seen(const std::vector<Vec3>& points, const Views& views) {
   std::vector<std::vector<Vec3>> seen(views.places.size());
   for (std::size_t i = 0; i < points.size(); ++i) seen[views.of_point.empty() ? 0 : views.of_point[i]].push_back(points[i]);
   for (std::size_t k = 0; k < seen.size(); ++k) {
-    if (!may_be_seen_from(seen[k], views.places[k])) return false;
+    if (!seen[k].empty() && !may_be_seen_from(seen[k], views.places[k])) return false;
   }
   return true;
 }

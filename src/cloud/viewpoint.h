@@ -31,7 +31,7 @@ namespace g3r {
 /// are nearer. Not so for points that have been thinned at random. False for fewer than 192 points. O(N log N).
 [[nodiscard]] bool may_be_seen_from(const std::vector<Vec3>& points, const Vec3& place);
 
-/// The same of several: each at its place, of at least 192 points. `views`: known, of the N points and in their frame. O(N log N).
+/// The same of several: each at its place, of at least 192 points or none. `views`: known, of the N points and in their frame. O(N log N).
 [[nodiscard]] bool may_be_seen(const std::vector<Vec3>& points, const Views& views);
 
 /// Whether a plane through a point of the set holds the line of sight to it, from where PointSet::views() says, to the precision of exact

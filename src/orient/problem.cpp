@@ -1,5 +1,6 @@
 #include "orient/problem.h"
 
+#include "cloud/far_points.h"
 #include "cloud/noise.h"
 #include "cloud/outliers.h"
 #include "cloud/spacing.h"
@@ -38,6 +39,13 @@ std::vector<T> in_canonical_order(const CanonicalCloud& cloud, const std::vector
     if (cloud.point_of[i] < out.size()) out[cloud.point_of[i]] = merge(out[cloud.point_of[i]], values[i]);
   }
   return out;
+}
+
+// Marks of the caller's points that are outliers.
+std::vector<std::uint8_t> taken_out(const CanonicalCloud& cloud) {
+  std::vector<std::uint8_t> marks(cloud.point_of.size());
+  for (std::size_t i = 0; i < marks.size(); ++i) marks[i] = cloud.point_of[i] >= cloud.size() && cloud.point_of[i] != kNoPoint ? 1 : 0;
+  return marks;
 }
 
 // What tiles know of their points, which they hand over in an order of their own: of duplicates the last counts.
@@ -80,14 +88,16 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
   require_sound(options.hints, points.count);
   Problem problem;
   stages.begin("build");
-  problem.cloud = canonical_cloud(points);
-  stages.check();
   const StepSet without = steps_left_out(options);
+  bool outliers_wanted = !contains(without, Step::kOutliers);
+  std::vector<std::uint8_t> left_out;  // of the caller's points, for the frame to resolve the others
+  if (outliers_wanted) left_out = far_points(points);
+  problem.cloud = canonical_cloud(points, left_out, problem.outliers);
+  stages.check();
   const auto known_noise = [&](double spacing) {
     const std::optional<double> given = given_noise(options.noise, problem.cloud, spacing);
     return given || !contains(without, Step::kNoise) ? given : 0;
   };
-  bool outliers_wanted = !contains(without, Step::kOutliers);
   std::optional<double> noise;
   while (outliers_wanted) {
     const std::vector<double> relative_spacing = last_in_canonical_order(problem.cloud, known.relative_spacing);
@@ -96,8 +106,12 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
     if (found.indices.empty()) break;
     std::vector<Vec3> removed = remove_points(problem.cloud, found.indices, found.others);
     problem.outliers.insert(problem.outliers.begin(), removed.begin(), removed.end());
-    outliers_wanted = refit_frame(problem.cloud, problem.outliers);  // far ones may have hidden nearer ones
+    outliers_wanted = is_small_in_frame(problem.cloud);  // far ones may have hidden nearer ones
+    if (!outliers_wanted) break;
+    left_out = taken_out(problem.cloud);
+    problem.cloud = canonical_cloud(points, left_out, problem.outliers);
   }
+  require_not_collinear(problem.cloud.points(), problem.outliers.size());
   const auto all = static_cast<double>(problem.cloud.size() + problem.outliers.size());
   problem.outlier_share = static_cast<double>(problem.outliers.size()) / all;
   if (known.gradient.empty() && !contains(without, Step::kViewpoint)) {
@@ -134,6 +148,7 @@ Problem on_sites(const Problem& problem, const Sites& sites, const Options& opti
   coarse.cloud.frame = problem.cloud.frame;
   coarse.cloud.set = sites.set;
   coarse.spacing = sites.set.spacing();
+  coarse.outlier_share = problem.outlier_share;
   const std::optional<double> given = given_noise(options.noise, problem.cloud, problem.spacing);
   coarse.noise = given ? *given : !runs(problem, Step::kNoise) ? 0 : estimate_noise(sites.set);
   choose_scales_and_scatter(coarse, options);
