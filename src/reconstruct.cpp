@@ -3,6 +3,7 @@
 #include "base/number_text.h"
 #include "base/stages.h"
 #include "base/vector.h"
+#include "cloud/far_points.h"
 #include "cpu/parallel.h"
 #include "field/oriented_cloud.h"
 #include "field/winding_sampler.h"
@@ -261,7 +262,24 @@ struct PointsWithNormals {
   std::vector<Vec3> points, normals;
   std::size_t non_finite = 0;  // points left out for a coordinate,
   std::size_t undirected = 0;  // and others for a normal that is zero or not finite
+  std::vector<Vec3> far;       // left out with their normals: far_points()
 };
+
+void leave_out_far(PointsWithNormals& given) {
+  const std::vector<std::uint8_t> is_far = far_points(given.points);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < is_far.size(); ++i) {
+    if (is_far[i] != 0) {
+      given.far.push_back(given.points[i]);
+      continue;
+    }
+    given.points[kept] = given.points[i];
+    given.normals[kept++] = given.normals[i];
+  }
+  if (is_far.empty()) return;
+  given.points.resize(kept);
+  given.normals.resize(kept);
+}
 
 PointsWithNormals with_normals(const PointsView& points, const PointsView& normals) {
   PointsWithNormals out;
@@ -275,6 +293,7 @@ PointsWithNormals with_normals(const PointsView& points, const PointsView& norma
     out.points.push_back(p);
     out.normals.push_back({n[0] / size, n[1] / size, n[2] / size});
   }
+  leave_out_far(out);
   return out;
 }
 
@@ -284,8 +303,9 @@ Stats describe_oriented(const PointsWithNormals& given, const OrientedCloud& ori
   Stats stats;
   stats.used = cloud.size();
   stats.dropped_non_finite = given.non_finite;
-  stats.merged_duplicates = given.points.size() - cloud.size();
-  stats.points = given.points.size() + given.non_finite + given.undirected;
+  stats.outliers = given.far.size();
+  stats.merged_duplicates = given.points.size() - oriented.undirected - cloud.size();
+  stats.points = given.points.size() + given.non_finite + given.undirected + given.far.size();
   stats.box_centre = cloud.frame.centre;
   stats.box_side = kBoxSide / cloud.frame.scale;
   stats.spacing = cloud.frame.length_to_world(oriented.spacing);
@@ -300,6 +320,10 @@ Stats describe_oriented(const PointsWithNormals& given, const OrientedCloud& ori
   if (given.undirected > 0) {
     stats.warnings.push_back(std::to_string(given.undirected) +
                              " points with a normal of (0, 0, 0) or one that is not finite were left out");
+  }
+  if (oriented.undirected > 0) {
+    stats.warnings.push_back(std::to_string(oriented.undirected) +
+                             " points at places where normals are opposite and cancel out were left out");
   }
   return stats;
 }
@@ -331,8 +355,8 @@ Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const Me
     OrientedCloud oriented = oriented_cloud(given.points, given.normals);
     Stats stats = describe_oriented(given, oriented, chosen);
     require_memory(stats.planned_memory_bytes, options.max_memory);
+    MeshRun run{{std::move(given.far), {}}, {options.max_memory, 0}};
     given = {};  // its memory is wanted
-    MeshRun run{{}, {options.max_memory, 0}};
     Mesh mesh = make_mesh(std::move(oriented), chosen, monitor, run);
     if (report == nullptr) return mesh;
     report->check = check_mesh(mesh);
