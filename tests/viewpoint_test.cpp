@@ -141,7 +141,10 @@ TEST(Viewpoint, EveryPointFacesTheCamera) {
 
 // What the camera sees at a grazing angle faces it as well, which is no choice, and the middle of the cloud is no better place.
 TEST(Viewpoint, LeavesNoChoiceOfAFloor) {
-  const std::vector<Vec3> points = frame([](double, double v) { return v > 0.06 ? 0.3 / v : 5; });
+  const std::vector<Vec3> points = frame([](double u, double v) {  // a ball at (0, 0, 2) on a floor before a wall
+    const double ray = 1 + u * u + v * v, inside = 4 - ray * (4 - 0.09);
+    return inside > 0 ? (2 - std::sqrt(inside)) / ray : v > 0.06 ? 0.3 / v : 5;
+  });
   const Orientation seen = orient(points);
   ASSERT_TRUE(seen.stats.hints.viewpoint);
   EXPECT_EQ(seen.stats.undecided_share, 0);
