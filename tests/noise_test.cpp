@@ -254,6 +254,23 @@ TEST(Noise, OfRastersAndScanLinesIsFound) {
   }
 }
 
+double fine_noise_of(const Surface& s) { return fine_noise(PointSet(s.points)) / PointSet(s.points).spacing(); }
+
+// Below the least that kernels have to hide: known on smooth surfaces and on planes, not where shape is as large.
+TEST(FineNoise, IsThatOfSmoothSurfacesAndNotShape) {
+  for (const double sigma : {0.005, 0.01, 0.02, 0.03}) {
+    Surface smooth = shapes::sphere(10000);
+    shapes::scatter(smooth, sigma * std::sqrt(4 * std::numbers::pi / 10000));
+    EXPECT_NEAR(fine_noise_of(smooth) / sigma, 1.1, 0.15) << sigma;  // the spacing is a little less
+  }
+  Surface noisy = shapes::sphere(10000);
+  shapes::scatter(noisy, 0.1 * std::sqrt(4 * std::numbers::pi / 10000));
+  EXPECT_EQ(fine_noise_of(noisy), 0);  // that is no fine noise
+  EXPECT_EQ(fine_noise_of(shapes::sphere(10000)), 0);
+  EXPECT_EQ(fine_noise_of(shapes::torus(1500, 0.6, 0.1, 6)), 0);
+  EXPECT_EQ(fine_noise_of(shapes::plates(6, 0.6, 0.7, 0.7, 0.02)), 0);
+}
+
 double scatter_of(const Surface& s) { return largest_scatter(PointSet(s.points)); }
 
 TEST(Scatter, IsTheNoiseWhereThatIsEven) {

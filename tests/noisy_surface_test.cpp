@@ -114,13 +114,13 @@ TEST(FitNoisySurface, SmoothsDirectionsUnderNoiseOnly) {
   EXPECT_EQ(torus.solution.refinement.normals, before);
 }
 
-// Directions of a smooth surface come from as many points as hide the noise: from 0.1 to 0.4 spacings of it they are equally good, with no
-// step where another way of fitting ends. With planes above the scatter of the facets the error is five times as large at 0.3.
+// Directions of a smooth surface come from as many points as hide the noise, with no step where another way of fitting ends: at 0.04 the
+// kernels of clean clouds, at 0.128 planes that facets scatter about, at 0.35 the narrowest noisy kernels.
 TEST(FitNoisySurface, ErrorsOfASphereHaveNoStep) {
-  for (const double sigma : {0.1, 0.15, 0.2, 0.3, 0.4}) {
+  for (const double sigma : {0.01, 0.02, 0.03, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4}) {
     Surface s = shapes::sphere(10000);
     shapes::scatter(s, sigma * std::sqrt(4 * std::numbers::pi / 10000));
-    EXPECT_LT(shapes::angle_error(orient(s.points).normals, s.normals), 0.0006) << sigma;
+    EXPECT_LT(shapes::angle_error(orient(s.points).normals, s.normals), 0.001) << sigma;
   }
 }
 

@@ -219,6 +219,17 @@ double estimate_noise(const PointSet& set) {
   return std::max(scattered_noise(set, residuals), rounding_noise(set));
 }
 
+double fine_noise(const PointSet& set) {
+  if (set.size() < kFewestSurfacePoints) return 0;
+  const double spacing = set.spacing();
+  const Residuals residuals(set, kPatchNeighbours);
+  const double flattest = residuals.scatter(kFlattest);
+  const bool is_exact = flattest <= kExactScatter * spacing || on_exact_planes(set);
+  // Noise is as large among three times as many points, shape clearly larger.
+  const bool is_shape = kWider * Residuals(set, kClosest).scatter(0.5) <= Residuals(set, kTwoPatches).scatter(0.5);
+  return is_exact || is_shape || flattest >= kLeast * spacing ? 0 : flattest;
+}
+
 double largest_scatter(const PointSet& set) {
   const double spacing = set.spacing();
   if (set.size() < kFewestSurfacePoints || on_exact_planes(set)) return 0;

@@ -54,7 +54,7 @@ void describe(const Problem& problem, const PointsView& points, const Options& o
   stats.box_centre = cloud.frame.centre;
   stats.box_side = kBoxSide / cloud.frame.scale;
   stats.spacing = cloud.frame.length_to_world(problem.spacing);
-  stats.noise = cloud.frame.length_to_world(std::max(problem.noise, problem.view_noise));
+  stats.noise = cloud.frame.length_to_world(cloud.set.views().known() ? std::max(problem.noise, problem.direction_noise) : problem.noise);
   stats.epsilon = cloud.frame.length_to_world(settings.epsilon.typical());
   stats.preset = name_of(options.preset);
   stats.method = name_of(settings.method);

@@ -86,12 +86,12 @@ bool polish_projected(const Problem& problem, const Options& options, Stages& st
 }
 
 void fit_noisy_surface(const Problem& problem, Stages& stages, Solution& solution) {
-  const double noise = std::max(problem.noise, problem.view_noise);
+  const double noise = std::max(problem.noise, problem.direction_noise);
   if (noise == 0 || !runs(problem, Step::kPolish) || !runs(problem, Step::kNoisyJets)) return;
   fit_noisy_jets(problem.cloud.set, noise, problem.known.wanted, solution.refinement.normals, stages.cancel());
   std::vector<std::uint8_t> none(problem.cloud.size(), 0);
   // Facets whose points scatter less than the noise of all are chance, or beside what is noisy.
-  if (problem.noise > 0 && problem.noise <= problem.scatter && runs(problem, Step::kPlanes))
+  if (noise <= problem.scatter && runs(problem, Step::kPlanes))
     fit_planes(problem.cloud.set, problem.scatter, none, solution.refinement.normals);
 }
 

@@ -41,13 +41,13 @@ void open_to_views(const Views& views, const std::vector<Vec3>& points, Solution
 bool is_seen_in_noise(const Problem& problem) {
   const bool is_ours = problem.settings.method == Method::kEnergy && problem.line_distance == 0;
   return is_ours && runs(problem, Step::kPolish) && problem.cloud.set.views().known() &&
-         problem.view_noise > noise_of_clean_widths() * problem.spacing;
+         problem.direction_noise > noise_of_clean_widths() * problem.spacing;
 }
 
 Solution solve_by_sight(const Problem& problem, Stages& stages, Stats& stats) {
   stages.begin("solve");
   const PointSet& set = problem.cloud.set;
-  SightNormals seen = normals_by_sight(set, problem.view_noise, stages.cancel());
+  SightNormals seen = normals_by_sight(set, problem.direction_noise, stages.cancel());
   Solution out;
   out.refinement.normals = std::move(seen.normals);
   for (std::size_t i = 0; i < set.size(); ++i) {

@@ -124,8 +124,9 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
                    in_canonical_order(problem.cloud, std::exchange(known.wanted, {}), std::uint8_t{0}, any)};
   problem.spacing = typical_spacing(spacing_before_thinning(set.local_spacing(), problem.known.relative_spacing));
   const std::optional<double> given = known_noise(problem.spacing);
-  if (set.views().known()) problem.view_noise = given ? *given : largest_scatter(set);
+  if (set.views().known()) problem.direction_noise = given ? *given : largest_scatter(set);
   problem.noise = given ? *given : noise ? *noise : estimate_noise(set);
+  if (problem.noise == 0 && !given && !set.views().known()) problem.direction_noise = fine_noise(set);
   if (!contains(without, Step::kSites)) problem.line_distance = surface_distance(set);
   choose_scales_and_scatter(problem, options);
   if (!options.wnnc_widths.empty() && options.method != Method::kWnnc) throw InvalidInput("wnnc_widths belong to the method wnnc");
@@ -169,7 +170,7 @@ Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, 
   part.cloud.set = PointSet(std::move(points), std::move(views));
   part.spacing = typical_spacing(spacing_before_thinning(part.cloud.set.local_spacing(), part.known.relative_spacing));
   part.noise = problem.noise;
-  part.view_noise = problem.view_noise;
+  part.direction_noise = problem.direction_noise;
   part.outlier_share = problem.outlier_share;
   Options same = options;
   if (options.epsilon.unit == Length::Unit::kPercent) {  // of the whole cloud's box

@@ -22,10 +22,11 @@ struct Problem {
   double outlier_share = 0;    ///< of the whole cloud; that of its parts, which are among its outliers, too
   double spacing = 0;          ///< typical_spacing()
   double noise = 0;            ///< given_noise() or estimate_noise()
-  double view_noise = 0;     ///< given_noise() or largest_scatter() where sides are known: only directions follow it, and each its place's
-  double scatter = 0;        ///< facet_scatter(), where planes are fitted
-  double line_distance = 0;  ///< surface_distance(): 0, or the distance of the sites that are solved for where the samples are lines
-  Known known;               ///< of the points of the cloud, in its order
+  double direction_noise = 0;  ///< the largest that directions follow, each its place's: largest_scatter() where Views are known; without
+                               ///< noise that kernels have to hide, fine_noise()
+  double scatter = 0;          ///< facet_scatter(), where planes are fitted
+  double line_distance = 0;    ///< surface_distance(): 0, or the distance of the sites that are solved for where the samples are lines
+  Known known;                 ///< of the points of the cloud, in its order
   Settings settings;
 
   /// Whether the points are exact, so that steps follow the local spacing and prove directions from the points alone.
