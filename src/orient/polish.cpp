@@ -28,6 +28,7 @@ void gradient_to_areas(FastSum& sum, const std::vector<double>& areas, std::vect
     for (double& c : gradient[i]) c *= scale;
   });
   const double winding = median(sum.winding(gradient));
+  // Of a flat surface W eta is rounding, which says nothing of lengths.
   const double factor = winding > kRidge ? 0.5 / winding : 1;
   parallel::for_all(gradient.size(), [&](std::size_t i) {
     for (double& c : gradient[i]) c *= factor;
