@@ -49,6 +49,15 @@ def _scene(paths: List[str]) -> _g3r.Scene:
     return _g3r.scene(title, points, normals, confidence, colors, None, vertices, faces, vertex_colors, vertex_confidence, "")
 
 
+def _check_output(out: str, inputs: List[str]) -> None:
+    """Refuses what is no page and no picture, and what would replace an input."""
+    if os.path.splitext(out)[1].lower() not in (".html", ".png"):
+        raise InputError(f"{out}: view writes .html or .png")
+    for path in inputs:
+        if os.path.exists(path) and os.path.exists(out) and os.path.samefile(path, out):
+            raise InputError(f"{out}: is an input too; choose another output")
+
+
 def main(arguments: Optional[List[str]] = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m g3r", description="Normals and meshes of point clouds: see help(g3r).")
     parser.add_argument("--version", action="version", version=f"g3r {__version__}")
@@ -58,6 +67,8 @@ def main(arguments: Optional[List[str]] = None) -> int:
     view.add_argument("--z-up", action="store_true", help="the z axis points up instead of the y axis")
     options = parser.parse_args(arguments)
     try:
+        if options.out is not None:
+            _check_output(options.out, options.inputs)
         page = View(_scene(options.inputs), options.z_up, DEFAULT_POINTS, DEFAULT_HEIGHT)
         if options.out is None:
             page.open()

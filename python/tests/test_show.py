@@ -1,6 +1,7 @@
 """g3r.show, g3r.View."""
 
 import json
+import os
 import re
 
 import numpy as np
@@ -118,6 +119,21 @@ def test_the_command_takes_folders_and_says_what_is_odd(tmp_path, capsys, sphere
     damaged.write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n")
     assert main(["view", str(damaged), "-o", out]) == 0
     assert "shown as points" in capsys.readouterr().err
+
+
+def test_the_command_replaces_no_input(tmp_path, capsys, sphere):
+    cloud, link = tmp_path / "cloud.ply", tmp_path / "cloud.html"
+    g3r.write(cloud, sphere)
+    before = cloud.read_bytes()
+    for out in ("cloud.ply", "look", "look.gif", "look.html.gz"):
+        assert main(["view", str(cloud), "-o", str(tmp_path / out)]) == 1
+        assert "view writes .html or .png" in capsys.readouterr().err
+    os.link(cloud, link)
+    assert main(["view", str(cloud), "-o", str(link)]) == 1
+    assert "is an input too" in capsys.readouterr().err
+    assert cloud.read_bytes() == before and sorted(path.name for path in tmp_path.iterdir()) == ["cloud.html", "cloud.ply"]
+    assert main(["view", str(cloud), "-o", str(tmp_path / "LOOK.PNG")]) == 0
+    assert (tmp_path / "LOOK.PNG").read_bytes().startswith(b"\x89PNG")
 
 
 def test_wrong_arguments(sphere):
