@@ -15,6 +15,7 @@
 #include "commands.h"
 #include "exit_code.h"
 #include "files.h"
+#include "text.h"
 
 namespace g3r::cli {
 namespace {
@@ -75,11 +76,17 @@ Scene read_scene(const Settings& settings, Session& session) {
 
 int run_view(const Settings& settings, Session& session) {
   const Scene scene = session.stage("read", [&] { return read_scene(settings, session); });
+  const bool picture = io::extension(settings.output) == "png";
+  const std::size_t triangles = scene.mesh.triangles.size();
+  if (!picture && triangles > settings.page.max_triangles) {
+    session.console().warn("the mesh is not in the page: it has " + counted(triangles, "triangle") + ", and a page shows " +
+                           with_commas(settings.page.max_triangles) + " at most; a picture (.png) shows them all");
+  }
   const std::string bytes = session.stage("draw", [&] {
-    if (io::extension(settings.output) != "png") return view_html(scene, settings.page);
-    PictureOptions picture = settings.picture;
-    picture.threads = settings.options.threads;
-    const std::vector<std::uint8_t> png = view_png(scene, picture);
+    if (!picture) return view_html(scene, settings.page);
+    PictureOptions options = settings.picture;
+    options.threads = settings.options.threads;
+    const std::vector<std::uint8_t> png = view_png(scene, options);
     return std::string(png.begin(), png.end());
   });
   session.stage("write", [&] { write_text(settings.output, bytes); });

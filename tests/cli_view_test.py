@@ -57,6 +57,23 @@ class View(ProgramTest):
         self.assertIn("--figures", self.expect(NO_INPUT, "view", "ball.ply", "--figures", "folder", "-o", "look.html").err)
         self.assertFalse(os.path.exists(self.path("look.html")))
 
+    def test_figures_are_a_report_of_g3r(self):
+        for text in ('{"warnings": []}', "[]", "[" * 1_000_000, '{"schema": "g3r.report", "a": ' + "[" * 1_000_000 + "]" * 1_000_000 + "}"):
+            with open(self.path("other.json"), "w") as file:
+                file.write(text)
+            self.assertIn("report", self.expect(BAD_DATA, "view", "ball.ply", "--figures", "other.json", "-o", "look.html").err)
+            self.assertFalse(os.path.exists(self.path("look.html")))
+
+    def test_a_mesh_too_large_for_a_page_is_told(self):
+        count = 3_000_001
+        header = f"ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n" \
+                 f"element face {count}\nproperty list uchar int vertex_indices\nend_header\n"
+        with open(self.path("large.ply"), "wb") as file:
+            file.write(header.encode() + struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0) + struct.pack("<B3i", 3, 0, 1, 2) * count)
+        self.assertIn("3,000,001 triangles", self.expect(OK, "view", "large.ply", "-o", "look.html").err)
+        mesh = self.data(self.read("look.html"))["mesh"]
+        self.assertEqual((mesh["given"], mesh["shown"]), (count, 0))
+
     def test_wrong_requests_are_refused_before_any_work(self):
         self.expect(USAGE, "view", "ball.ply")
         self.expect(USAGE, "view", "ball.ply", "-o", "look.gif")

@@ -1,6 +1,7 @@
 // The page: its text, and (where a Chromium is installed) its life in a real browser without a display.
 #include "view_scenes.h"
 
+#include <g3r/g3r.h>
 #include <g3r/view.h>
 
 #include "view/pack.h"
@@ -118,10 +119,37 @@ TEST(ViewHtml, LoadsNothingFromElsewhere) {
 TEST(ViewHtml, TextFromFilesCannotBecomeMarkup) {
   Scene scene = testing::torus_points(10);
   scene.title = "</title></script><script>alert(1)</script>{{data}}\xff";
-  scene.report = R"({"warnings": ["</script><script>alert(2)</script>"]})";
+  scene.report = R"({"schema": "g3r.report", "warnings": ["</script><script>alert(2)</script>"]})";
   const std::string page = view_html(scene);
   EXPECT_EQ(page.find("<script>alert"), std::string::npos);
   EXPECT_EQ(data_of(page)["report"]["warnings"][0], "</script><script>alert(2)</script>");
+}
+
+TEST(ViewHtml, OnlyAReportIsTakenForOne) {
+  Scene scene = testing::torus_points(10);
+  for (const char* other :
+       {"[]", "3", "null", "{}", R"({"schema": "g3r.tiles"})", R"({"schema": ["g3r.report"]})", R"([{"schema": "g3r.report"}])"}) {
+    scene.report = other;
+    EXPECT_THROW((void)view_html(scene), InvalidInput) << other;
+  }
+  scene.report = report_json({});
+  EXPECT_EQ(data_of(view_html(scene))["report"]["schema"], "g3r.report");
+}
+
+// view: as deep as a report may nest, and far deeper than the stack would hold.
+TEST(ViewHtml, DeeplyNestedReportsAreRefused) {
+  Scene scene = testing::torus_points(10);
+  const auto nested = [](std::size_t depth) {
+    return R"({"schema": "g3r.report", "deep": )" + std::string(depth, '[') + std::string(depth, ']') + "}";
+  };
+  scene.report = nested(60);
+  EXPECT_NO_THROW((void)view_html(scene));
+  for (const std::size_t depth : {100U, 1000000U}) {
+    scene.report = nested(depth);
+    EXPECT_THROW((void)view_html(scene), InvalidInput) << depth;
+  }
+  scene.report = std::string(1000000, '[');
+  EXPECT_THROW((void)view_html(scene), InvalidInput);
 }
 
 TEST(ViewHtml, SameBytesTwice) { EXPECT_EQ(view_html(full_scene(500)), view_html(full_scene(500))); }
@@ -215,7 +243,26 @@ TEST(ViewBrowser, EveryModeDrawsWhatItShouldAndEveryInputWorks) {
   EXPECT_EQ(texts["title"], "torus");
   EXPECT_NE(texts["note"].get<std::string>().find("showing 18"), std::string::npos) << texts["note"];
   EXPECT_NE(texts["figures"].get<std::string>().find("careful <here>"), std::string::npos);
+  EXPECT_EQ(seen.selftest["formats"]["percent"], (Json{"100 %", "50 %", "10 %", "99.9 %", "1.23 %", "0 %"}));
+  EXPECT_EQ(seen.selftest["formats"]["time"],
+            (Json{"1.2 ms", "50 ms", "100 ms", "2.5 s", "99.4 s", "2 min 0 s", "60 min 0 s", "120 min 0 s"}));
   EXPECT_EQ(seen.selftest["requests"], 0);
+}
+
+TEST(ViewBrowser, AMeshTooLargeForThePageLeavesItsFigures) {
+  PageOptions options;
+  options.max_triangles = 1;
+  Scene scene = full_scene(0);
+  scene.report =
+      R"({"schema": "g3r.report", "confidence": {"mean": 0, "below_half": 0}, "method": {"solver": ""}, "mesh": {"faces": 4096}})";
+  const Visit seen = visit(view_html(scene, options));
+  EXPECT_EQ(seen.console, "");
+  ASSERT_TRUE(seen.selftest.is_object()) << "the page did not come up";
+  const auto& note = seen.selftest["texts"]["note"].get_ref<const std::string&>();
+  EXPECT_NE(note.find("the mesh is too large for this page"), std::string::npos) << note;
+  const auto& figures = seen.selftest["texts"]["figures"].get_ref<const std::string&>();
+  EXPECT_NE(figures.find("triangles"), std::string::npos) << figures;
+  EXPECT_EQ(figures.find("confidence"), std::string::npos) << "of a run without normals: " << figures;
 }
 
 #endif

@@ -107,6 +107,9 @@
     title: document.title, heading: document.querySelector('h1').textContent, note: document.getElementById('thinned').textContent,
     figures: document.getElementById('figures').textContent, legend: document.getElementById('legend').textContent,
   };
+  result.formats = {
+    percent: [1, 0.5, 0.1, 0.999, 0.01234, 0].map(percent), time: [0.0012345, 0.05, 0.0999, 2.5, 99.4, 119.6, 3599.7, 7200].map(time),
+  };
   result.requests = performance.getEntriesByType('resource').length;
   const out = document.createElement('pre');
   out.id = 'selftest';

@@ -43,7 +43,8 @@ struct PageOptions {
 
 /// One HTML document that shows the scene: before (grey), after (outside blue, inside red), needles, confidence, colours, error map,
 /// mesh (shaded, wireframe), section plane, figures of the report. About 9 bytes per point and per vertex, 16 per triangle, times 4/3.
-/// Throws InvalidInput: nothing to show, sizes that differ, a triangle that names no vertex, a report that is not JSON.
+/// Throws InvalidInput: nothing to show, sizes that differ, a triangle that names no vertex, a report that is not
+/// one of report_json().
 [[nodiscard]] std::string view_html(const Scene& scene, const PageOptions& options = {});
 
 /// What a picture shows of the scene.

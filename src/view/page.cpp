@@ -97,6 +97,21 @@ Json mesh_json(const Mesh& mesh, const view::Box& box, std::size_t most) {
   return json;
 }
 
+// The report as a value. What nests deeper than any report is refused, as writing it would use up the stack.
+Json parse_report(const std::string& text) {
+  constexpr int kDeepest = 64;  // Reports need four.
+  const auto shallow = [](int depth, Json::parse_event_t, const Json&) {
+    if (depth > kDeepest) throw InvalidInput("view: the report is nested too deeply");
+    return true;
+  };
+  Json report = Json::parse(text, shallow, false);
+  if (report.is_discarded()) throw InvalidInput("view: the report is not JSON");
+  const auto schema = report.is_object() ? report.find("schema") : report.end();
+  if (schema == report.end() || *schema != "g3r.report")
+    throw InvalidInput("view: the report is not one of g3r: its schema is not g3r.report");
+  return report;
+}
+
 // JSON that may stand inside a <script> element: no "<" is left in it.
 std::string script_safe(const Json& json) {
   std::string safe;
@@ -150,11 +165,7 @@ std::string fill(std::string_view page, const std::vector<std::pair<std::string_
 
 std::string view_html(const Scene& scene, const PageOptions& options) {
   const view::Box box = view::check_scene(scene);
-  Json report = nullptr;
-  if (!scene.report.empty()) {
-    report = Json::parse(scene.report, nullptr, false);
-    if (report.is_discarded()) throw InvalidInput("view: the report is not JSON");
-  }
+  const Json report = scene.report.empty() ? Json(nullptr) : parse_report(scene.report);
   const std::string title = scene.title.empty() ? "g3r" : scene.title;
   const Json json = {{"title", title},
                      {"version", std::string(version())},

@@ -23,7 +23,8 @@ class Viewer {
       points && points.color && ['colors', 'Colours'], mesh && ['mesh', 'Mesh'],
     ].filter(Boolean);
     const dark = window.matchMedia && matchMedia('(prefers-color-scheme: dark)').matches;
-    this.state = {mode: this.modes[mesh ? this.modes.length - 1 : Math.min(1, this.modes.length - 1)][0], meshMode: mesh && mesh.color ? 'colors' : 'plain',
+    const [mode] = this.modes[mesh ? this.modes.length - 1 : Math.min(1, this.modes.length - 1)] || ['none'];  // none: a mesh too large, alone
+    this.state = {mode, meshMode: mesh && mesh.color ? 'colors' : 'plain',
                   compare: false, divider: 0.5, needles: false, wireframe: false, overlay: false, spin: false, size: 1, needleLength: 1,
                   axis: -1, cut: 0.5, flip: false, theme: dark ? 'dark' : 'light', up: this.scene.up};
     this.pose = {};

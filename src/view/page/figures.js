@@ -10,9 +10,13 @@ function figure(value) {
   const size = Math.abs(value);
   return size >= 1e5 || size < 1e-3 ? value.toExponential(2) : String(Number(value.toPrecision(4)));
 }
-const percent = share => (100 * share).toPrecision(3).replace(/\.?0+$/, '') + ' %';
+const percent = share => Number((100 * share).toPrecision(3)) + ' %';
 const bytes = count => count >= 1e9 ? (count / 1e9).toFixed(2) + ' GB' : (count / 1e6).toFixed(0) + ' MB';
-const time = seconds => seconds < 0.1 ? (1000 * seconds).toPrecision(2) + ' ms' : seconds >= 100 ? Math.floor(seconds / 60) + ' min ' + Math.round(seconds % 60) + ' s' : figure(seconds) + ' s';
+function time(seconds) {
+  if (seconds < 0.1) return Number((1000 * seconds).toPrecision(2)) + ' ms';
+  const whole = Math.round(seconds);
+  return whole >= 100 ? Math.floor(whole / 60) + ' min ' + whole % 60 + ' s' : figure(seconds) + ' s';
+}
 
 function element(tag, text, className) {
   const node = document.createElement(tag);
@@ -81,8 +85,8 @@ function addReport(parent, report) {
     input.used !== undefined && ['points used', figure(input.used)],
     input.dropped_non_finite > 0 && ['not finite', figure(input.dropped_non_finite), 'bad'],
     input.merged_duplicates > 0 && ['duplicates', figure(input.merged_duplicates)],
-    confidence.mean !== undefined && ['mean confidence', figure(confidence.mean)],
-    confidence.below_half !== undefined && ['unsure of the side', percent(confidence.below_half || 0)],
+    method.solver && confidence.mean !== undefined && ['mean confidence', figure(confidence.mean)],
+    method.solver && confidence.below_half !== undefined && ['unsure of the side', percent(confidence.below_half || 0)],
     method.solver && ['solver', method.solver],
     report.converged !== undefined && ['converged', figure(report.converged), report.converged ? 'good' : 'bad'],
     scales.spacing > 0 && ['point spacing', figure(scales.spacing)],
@@ -164,6 +168,7 @@ function showLegend(scene, state, palette) {
     error: () => [ramp('error', 'right', 'opposite')],
     colors: () => [element('span', 'colours of the points')],
     mesh: () => [dot(palette.mesh, 'outside'), dot(palette.inside, 'inside')],
+    none: () => [],
   }[state.mode]();
   if (state.needles && scene.points && scene.points.normal && state.mode !== 'before' && scene.needleStep > 1) {
     items.push(element('span', `needles: 1 point in ${group(scene.needleStep)}`));
