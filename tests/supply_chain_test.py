@@ -5,11 +5,16 @@ Run by ctest with G3R_SOURCE, the folder of the sources, and G3R_BUILT, programs
 be empty).
 """
 
+import hashlib
 import json
 import os
+import pathlib
 import re
+import shutil
 import subprocess
 import sys
+import tarfile
+import tempfile
 import unittest
 
 SOURCE = os.environ["G3R_SOURCE"]
@@ -63,15 +68,111 @@ class SupplyChain(unittest.TestCase):
             self.assertTrue({relation["spdxElementId"], relation["relatedSpdxElement"]} <= known)
 
     def test_every_download_of_the_sources_has_a_checksum(self):
-        fetches = re.findall(r"^fetch .*$", text_of("tools/sources.sh"), re.MULTILINE)
-        self.assertGreaterEqual(len(fetches), 2)
+        fetches = re.findall(r"^ *fetch \w+ from_.*$", text_of("tools/sources.sh"), re.MULTILINE)
+        self.assertEqual(len(fetches), len(re.findall(r"\bfetch \w+ from_", text_of("tools/sources.sh"))))
+        self.assertEqual(len(fetches), 8)
         for line in fetches:
             self.assertRegex(line, r"\b[0-9a-f]{64}\b")
+        helpers = [line for line in text_of("tools/sources_helpers.txt").splitlines() if not line.startswith("#")]
+        self.assertGreaterEqual(len(helpers), 4)
+        for line in helpers:
+            self.assertRegex(line, r"^[\w-]+==[\w.]+(; .*)? --hash=sha256:[0-9a-f]{64}$")
 
     def test_what_is_built_names_no_folder_of_this_machine(self):
         for path in BUILT:
             with open(path, "rb") as file:
                 self.assertNotIn(os.fsencode(SOURCE), file.read(), path)
+
+
+# Stands for python3, which makes an environment with this as its pip. It takes archives from $ARCHIVES and keeps what it was called with.
+PYTHON = """#!/bin/bash
+if [ "$1 $2" = "-m venv" ]; then
+  mkdir -p "$3/bin" && cp "$0" "$3/bin/pip"
+  exit
+fi
+echo "$@" >> "$ARCHIVES/calls"
+[[ " $* " == *" download "* ]] || exit 0
+while [ $# -gt 1 ]; do
+  case $1 in
+    --dest) folder=$2 ;;
+    -r) cat "$2" >> "$ARCHIVES/calls" && wanted=$(sed 's/==\\(\\S*\\).*/-\\1.tar.gz/' "$2") ;;
+  esac
+  shift
+done
+cp "$ARCHIVES/$wanted" "$folder" || { echo "ERROR: no such package" && echo && exit 1; }
+"""
+
+
+@unittest.skipUnless(shutil.which("sha256sum"), "tools/sources.sh needs coreutils")
+class Sources(unittest.TestCase):
+    """tools/sources.sh with archives and a pip of this test."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        for name in ("tools", "bin", "archives"):
+            (self.folder / name).mkdir()
+        (self.folder / "bin" / "python3").write_text(PYTHON)
+        (self.folder / "bin" / "python3").chmod(0o755)
+        shutil.copy(os.path.join(SOURCE, "tools", "sources_helpers.txt"), self.folder / "tools")
+        script = text_of("tools/sources.sh")
+        self.sums = {}
+        for name, path in (("laszip-0.3.0", "src/vendor/LASzip-1/%s"), ("pye57-0.4.19", "libE57Format/%s")):
+            archive = self.folder / "archives" / (name + ".tar.gz")
+            with tarfile.open(archive, "w:gz") as tar:
+                for file in ("src/a.cpp", "include/a.h", "COPYING.txt", "test/no.cpp"):
+                    tar.addfile(tarfile.TarInfo(name + "/" + path % file))
+            self.sums[name] = hashlib.sha256(archive.read_bytes()).hexdigest()
+            script = re.sub(re.escape(archive.name) + " [0-9a-f]{64}", archive.name + " " + self.sums[name], script)
+        (self.folder / "tools" / "sources.sh").write_text(script)
+
+    def run_script(self, cache):
+        return subprocess.run(["bash", "tools/sources.sh"], cwd=self.folder, capture_output=True, text=True,
+                              env={**os.environ, "G3R_CACHE": str(cache), "ARCHIVES": str(self.folder / "archives"),
+                                   "PATH": str(self.folder / "bin") + os.pathsep + os.environ["PATH"]})
+
+    def kept(self):
+        return sorted(path.name for path in (self.folder / "build" / "sources").rglob("*") if path.is_file())
+
+    def test_what_runs_has_a_checksum_first(self):
+        done = self.run_script(self.folder / "cache")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(self.kept(), ["COPYING.txt", "COPYING.txt", "a.cpp", "a.cpp", "a.h", "a.h", "checksum", "checksum"])
+        calls = (self.folder / "archives" / "calls").read_text().splitlines()
+        for call in calls:
+            if " install " in call or " download " in call:
+                self.assertIn(" --require-hashes ", call)
+        for name, checksum in self.sums.items():
+            self.assertIn(name.replace("-", "==") + " --hash=sha256:" + checksum, calls)
+        self.assertEqual(len(list((self.folder / "cache").iterdir())), 2)
+
+    def test_a_cache_that_cannot_be_written_costs_nothing(self):
+        (self.folder / "file").write_text("")
+        done = self.run_script(self.folder / "file" / "cache")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("a.cpp", self.kept())
+
+    def test_failures_say_what_failed(self):
+        laszip, pye57 = (self.folder / "archives" / (name + ".tar.gz") for name in self.sums)
+        laszip.unlink()
+        pye57.write_bytes(pye57.read_bytes() + b"more")
+        done = self.run_script(self.folder / "cache")
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, r"LAZ: .*laszip-0.3.0.tar.gz .* cannot be fetched: ERROR: no such package")
+        self.assertRegex(done.stderr, r"E57: .*pye57-0.4.19.tar.gz has another checksum")
+        self.assertFalse((self.folder / "cache").exists())
+
+    def test_an_archive_of_other_files_cannot_be_unpacked(self):
+        for name in self.sums:
+            archive = self.folder / "archives" / (name + ".tar.gz")
+            script = self.folder / "tools" / "sources.sh"
+            archive.write_bytes(b"no archive")
+            script.write_text(script.read_text().replace(self.sums[name], hashlib.sha256(b"no archive").hexdigest()))
+        done = self.run_script(self.folder / "cache")
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, r"LAZ: .* cannot be unpacked")
+        self.assertFalse((self.folder / "build" / "sources" / "laszip").exists())
 
 
 if __name__ == "__main__":
