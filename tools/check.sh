@@ -4,12 +4,17 @@
 #   format    clang-format has nothing to change in any source.
 #   spelling  codespell (from PyPI, into build/check-environment the first time) knows no word of the sources and pages as a misspelling.
 #   tidy      clang-tidy has nothing to say of the sources that differ from BASE (by default where this branch left origin/main or main, or
-#             the commit before, on main itself), compiled as in build/sanitize. Of a large change it takes the sources that changed most.
+#             the commit before, on main itself), compiled as in build/sanitize, but each by itself. Of a large change it takes the sources
+#             that changed most.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . tools/prepare.sh
 most_tidied=12 # half a minute each on a slow core: more would take longer than the tests
 codespell=2.4.3
+database=build/check-tidy # how sources are compiled; nothing is built there
+# Sources of other systems, of other options and of other projects, which that build does not have.
+elsewhere='_windows\.cpp$|^src/(cpu/parallel_serial|gpu/library_none|io/float_text_c|mesh/screened_poisson)\.cpp$'
+elsewhere+='|^tests/(consumer/.*|guest_test|together_main)\.cpp$'
 
 fix=
 if [ "${1:-}" = --fix ]; then
@@ -57,29 +62,45 @@ base() {
   git rev-parse --quiet --verify 'HEAD~1^{commit}' || true
 }
 
-# compiled_sources BASE: the sources in build/sanitize that differ from the commit or whose header does, the most changed first.
-compiled_sources() {
+# changed_sources BASE: the sources that differ from the commit or whose header does, the most changed first.
+changed_sources() {
   git diff --numstat --diff-filter=d "$1" -- '*.cpp' '*.h' | sort -k1,1nr -k3 | cut -f3 | sed 's/\.h$/.cpp/' | awk '!seen[$0]++' |
     while read -r source; do
-      if grep -qF "\"file\": \"$PWD/$source\"" build/sanitize/compile_commands.json; then echo "$source"; fi
+      if [ -e "$source" ]; then echo "$source"; fi
     done
 }
 
+# is_compiled SOURCE: whether the build has it.
+is_compiled() { grep -qF "\"file\": \"$PWD/$1\"" "$database/compile_commands.json"; }
+
 check_tidy() {
-  local commit sources
+  local commit source sources=() left_out=() unknown=()
   commit=$(base)
   if [ -z "$commit" ]; then
     echo "tidy: left out, as there is no history to compare with"
     return
   fi
-  if [ ! -e build/sanitize/compile_commands.json ]; then build sanitize g3r; fi
-  mapfile -t sources < <(compiled_sources "$commit")
+  cmake --preset sanitize -B "$database" -DG3R_TOGETHER=OFF -DG3R_PRECOMPILE=OFF --log-level=WARNING > /dev/null
+  while read -r source; do
+    if is_compiled "$source"; then
+      sources+=("$source")
+    elif [[ $source =~ ^(src|cli|tests)/ && ! $source =~ $elsewhere ]]; then
+      unknown+=("$source")
+    else
+      left_out+=("$source")
+    fi
+  done < <(changed_sources "$commit")
+  if [ ${#unknown[@]} -gt 0 ]; then
+    echo "tidy: no build has these sources, so that they cannot be checked: ${unknown[*]}" >&2
+    return 1
+  fi
+  if [ ${#left_out[@]} -gt 0 ]; then echo "tidy: of other builds, left out: ${left_out[*]}"; fi
   if [ ${#sources[@]} -gt $most_tidied ]; then
     echo "tidy: ${#sources[@]} sources differ from ${commit:0:12}; these are left out: ${sources[*]:$most_tidied}"
     sources=("${sources[@]:0:$most_tidied}")
   fi
   if [ ${#sources[@]} -gt 0 ]; then
-    printf '%s\0' "${sources[@]}" | xargs -0 -n 1 -P "$(nproc)" clang-tidy --quiet -p build/sanitize
+    printf '%s\0' "${sources[@]}" | xargs -0 -n 1 -P "$(nproc)" clang-tidy --quiet -p "$database"
   fi
   echo "tidy: ${#sources[@]} sources"
 }
