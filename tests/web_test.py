@@ -146,6 +146,22 @@ class Web(ProgramTest):
         self.browser.value("at('cloud-format').value = 'ply'")
         self.assertEqual([line.split()[:4] for line in text.splitlines()], [line.split()[:4] for line in self.bytes_of("native.xyz").splitlines()])
 
+    def test_what_readers_and_writers_warn_of_is_shown(self):
+        self.again()
+        # Far from the origin for its numbers, with intensities that LAS has no field for.
+        write_ply(self.path("far.ply"), [("float", c) for c in ("x", "y", "z", "intensity")], [[*(4e4 + x for x in p), 0.5] for p in torus(2000)])
+        self.expect(OK, "orient", "far.ply", "native.ply", "--report", "native.json")
+        self.drop(self.path("far.ply"))
+        self.assertEqual(self.finish(), "result", self.failure())
+        self.assertIn("coordinates in float32", self.report()["warnings"][0])
+        self.assertEqual(self.report()["warnings"][0], self.json_of("native.json")["warnings"][0])
+        self.assertIn("coordinates in float32",
+                      self.browser.wait("document.getElementById('figures') && document.getElementById('figures').textContent", place="iframe"))
+        self.browser.download("at('cloud-format').value = 'las'; at('save-cloud').click()", "far_normals.las")
+        self.assertIn("intensity", self.browser.value("at('note').textContent"))
+        self.browser.download("at('cloud-format').value = 'ply'; at('save-cloud').click()", "far_normals.ply")
+        self.assertEqual(self.browser.value("at('note').textContent"), "")
+
     def test_cancelling_is_immediate_and_leaves_the_page_as_it_was(self):
         self.again()
         write_ply(self.path("large.ply"), [("double", c) for c in "xyz"], torus(100_000))

@@ -37,6 +37,7 @@ struct Session {
 };
 Session session;
 std::string message;
+std::string warnings;  // what the file written last could not take as it is
 
 template <class Work>
 bool succeeds(const Work& work) {
@@ -80,6 +81,13 @@ struct Request {
   Up up = Up::kZ;
 };
 
+// The reader's warnings come first, as in the program's report.
+void report(const MeshCheck* check = nullptr) {
+  std::vector<std::string>& all = session.orientation.stats.warnings;
+  all.insert(all.begin(), session.cloud.warnings.begin(), session.cloud.warnings.end());
+  session.report = report_json(session.orientation.stats, check);
+}
+
 void solve(const Request& request) {
   Options options;
   options.device = "cpu";
@@ -87,7 +95,7 @@ void solve(const Request& request) {
   const std::vector<Vec3>& points = session.cloud.positions;
   if (!request.mesh) {
     session.orientation = orient(points, options, monitor());
-    session.report = report_json(session.orientation.stats);
+    report();
     return;
   }
   MeshOptions mesh_options;
@@ -96,7 +104,7 @@ void solve(const Request& request) {
   if (!session.cloud.colors.empty()) carry_attributes(made.mesh, points, session.cloud.colors, made.orientation.confidence);
   session.orientation = std::move(made.orientation);
   session.mesh = std::move(made.mesh);
-  session.report = report_json(session.orientation.stats, &made.check);
+  report(&made.check);
 }
 
 void show(const Request& request) {
@@ -120,9 +128,20 @@ void run(const Request& request) {
   show_progress("read", 0);
   session.cloud = read_cloud(request.path);
   solve(request);
-  std::vector<std::string>& warnings = session.orientation.stats.warnings;
-  warnings.insert(warnings.begin(), session.cloud.warnings.begin(), session.cloud.warnings.end());
   show(request);
+}
+
+void save(const std::string& path, bool mesh) {
+  std::vector<std::string> lines;
+  WriteOptions options;
+  options.warnings = &lines;
+  warnings.clear();
+  if (mesh) {
+    write_mesh(path, session.mesh, options);
+  } else {
+    write_cloud(path, session.cloud, &session.orientation.normals, &session.orientation.confidence, options);
+  }
+  for (const std::string& line : lines) warnings += (warnings.empty() ? "" : "; ") + line;
 }
 
 }  // namespace
@@ -139,15 +158,11 @@ EMSCRIPTEN_KEEPALIVE int web_run(const char* path, int mesh, int trim, int z_up,
 
 /// Writes the mesh, or the cloud with its normals, to `path`, in the format that its extension names.
 EMSCRIPTEN_KEEPALIVE int web_save(const char* path, int mesh) {
-  const auto work = [&] {
-    if (mesh != 0) return g3r::write_mesh(path, g3r::session.mesh);
-    const g3r::Orientation& made = g3r::session.orientation;
-    g3r::write_cloud(path, g3r::session.cloud, &made.normals, &made.confidence);
-  };
-  return g3r::succeeds(work) ? 1 : 0;
+  return g3r::succeeds([&] { g3r::save(path, mesh != 0); }) ? 1 : 0;
 }
 
 EMSCRIPTEN_KEEPALIVE const char* web_message() { return g3r::message.c_str(); }
+EMSCRIPTEN_KEEPALIVE const char* web_warnings() { return g3r::warnings.c_str(); }
 EMSCRIPTEN_KEEPALIVE const char* web_report() { return g3r::session.report.c_str(); }
 EMSCRIPTEN_KEEPALIVE const char* web_page() { return g3r::session.page.data(); }
 EMSCRIPTEN_KEEPALIVE std::size_t web_page_size() { return g3r::session.page.size(); }

@@ -50,7 +50,10 @@ const receive = {
     at('mesh-tools').hidden = !state.mesh;
     show('result');
   },
-  saved({name, bytes}) { download(name, bytes, 'application/octet-stream'); },
+  saved({name, bytes, warnings}) {
+    at('note').textContent = warnings;
+    download(name, bytes, 'application/octet-stream');
+  },
   failed({message, broken}) {
     if (broken) endWorker();
     // A file that could not be written leaves the result as it is, unless the worker that holds it is gone.

@@ -46,7 +46,7 @@ const actions = {
     if (!library.ccall('web_save', 'number', ['string', 'number'], [path, flag(mesh)])) throw new Error(library.ccall('web_message', 'string'));
     const bytes = library.FS.readFile(path);
     library.FS.unlink(path);
-    postMessage({kind: 'saved', name, bytes: bytes.buffer}, [bytes.buffer]);
+    postMessage({kind: 'saved', name, bytes: bytes.buffer, warnings: library.ccall('web_warnings', 'string')}, [bytes.buffer]);
   },
 };
 
