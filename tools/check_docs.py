@@ -86,13 +86,18 @@ def anchors(path):
     return found
 
 
+def is_left_out(goal):
+    """Whether a path is, or is in, a folder that this tree lacks, as source archives do."""
+    return any(folder in (goal, *goal.parents) and not folder.exists() for folder in LEFT_OUT)
+
+
 def broken_links(path, line):
     for target in LINK.findall(re.sub(r"`[^`]*`", "", line)):
         if re.match(r"\w+:", target):
             continue
         file, _, anchor = target.partition("#")
         goal = (path.parent / file).resolve() if file else path
-        if any(folder in goal.parents and not folder.exists() for folder in LEFT_OUT):
+        if is_left_out(goal):
             continue
         if not goal.exists():
             yield f"link to {target}, which does not exist"
@@ -102,7 +107,7 @@ def broken_links(path, line):
 
 def missing_paths(line):
     """Files and folders that a page names in `code` and that do not exist; NAME stands for any."""
-    return [path for path in PATH.findall(line) if "NAME" not in path and not (ROOT / path).exists()]
+    return [path for path in PATH.findall(line) if "NAME" not in path and not (ROOT / path).exists() and not is_left_out(ROOT / path)]
 
 
 def complaints(path):
@@ -134,7 +139,7 @@ def sources():
 def source_complaints(line):
     """Pages that a line of a source names and that do not exist, and private words."""
     for page in NAMED.findall(line):
-        if not (ROOT / page).exists():
+        if not (ROOT / page).exists() and not is_left_out(ROOT / page):
             yield f"{page} does not exist"
     for word in PRIVATE_NAME.finditer(line):
         plain = next(plain for private, plain in PRIVATE_NAMES.items() if re.match(private, line[word.start():], re.I))
