@@ -3,6 +3,10 @@
 # builds the program, with threads and without, compares the bytes of their results, and tries the page in a Chromium without a display.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+if [ $# -gt 1 ] || [ "${1:-test}" != test ]; then
+  echo "usage: tools/web.sh [test]" >&2
+  exit 64
+fi
 . tools/prepare.sh
 for program in emcc ${1:+chromium}; do
   if ! command -v "$program" > /dev/null; then

