@@ -43,7 +43,8 @@ class OBJECT_OT_point_cloud_to_mesh(bpy.types.Operator):
         try:
             import g3r
         except ImportError as error:
-            self.report({"ERROR"}, f"The Python package g3r cannot be loaded ({error}): install it with {sys.executable} -m pip install")
+            self.report({"ERROR"}, f"The Python package g3r cannot be loaded ({error}): install its wheel with "
+                        f"{sys.executable} -m pip install --no-deps WHEEL; docs/integrations.md says where it comes from")
             return {"CANCELLED"}
         source = context.object
         points, color_name, colors = points_of(source.evaluated_get(context.evaluated_depsgraph_get()))
@@ -77,7 +78,7 @@ def points_of(source):
         if attribute.domain == "POINT" and attribute.data_type in {"FLOAT_COLOR", "BYTE_COLOR"}:
             rgba = np.empty((len(points), 4), np.float32)
             attribute.data.foreach_get("color_srgb", rgba.ravel())
-            return points, attribute.name, rgba[:, :3]
+            return points, attribute.name, np.clip(rgba[:, :3], 0, 1)  # colours that shine are above 1
     return points, None, None
 
 

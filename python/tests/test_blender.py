@@ -133,6 +133,22 @@ def test_colors_are_kept(sphere, kind):
     np.testing.assert_allclose(rgba[x < -0.2], np.tile((0, 0.2, 1, 1), ((x < -0.2).sum(), 1)), atol=0.01)
 
 
+@pytest.mark.parametrize("brightest", [1.5, 200])
+def test_colors_that_shine_are_white(sphere, brightest):
+    source = add_points(sphere)
+    colors = source.data.color_attributes.new("paint", "FLOAT_COLOR", "POINT")
+    shares = np.full((len(sphere), 4), brightest, np.float32)
+    shares[sphere[:, 0] < 0, :3] = -0.5
+    colors.data.foreach_set("color_srgb", shares.ravel())
+    assert bpy.ops.object.g3r_point_cloud_to_mesh() == {"FINISHED"}
+    thing, _, _ = made()
+    rgba = np.empty((len(thing.data.vertices), 4), np.float32)
+    thing.data.color_attributes["paint"].data.foreach_get("color_srgb", rgba.ravel())
+    x = np.array([v.co.x for v in thing.data.vertices])
+    np.testing.assert_allclose(rgba[x > 0.2, :3], 1, atol=0.01)
+    np.testing.assert_allclose(rgba[x < -0.2, :3], 0, atol=0.01)
+
+
 def test_options_are_obeyed(sphere):
     source = add_points(sphere)
 
