@@ -38,6 +38,16 @@ write_basic_package_version_file(g3r-config-version.cmake COMPATIBILITY SameMino
 install(FILES "${PROJECT_BINARY_DIR}/g3r-config.cmake" "${PROJECT_BINARY_DIR}/g3r-config-version.cmake" cmake/FindHighway.cmake
         DESTINATION ${config_dir} COMPONENT development)
 file(RELATIVE_PATH G3R_PC_TO_PREFIX "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")  # the installed tree can be moved
+# What the archive needs; named as libraries, as packages required there would be asked of those who link the shared library too.
+set(needs ${CMAKE_CXX_IMPLICIT_LINK_LIBRARIES})
+list(FILTER needs INCLUDE REGEX "^(std)?c\\+\\+")
+list(PREPEND needs png z hwy)
+if(G3R_THREADING)
+  list(PREPEND needs tbb)
+endif()
+list(APPEND needs m dl pthread)
+list(TRANSFORM needs PREPEND "-l")
+list(JOIN needs " " G3R_PC_PRIVATE)
 configure_file(cmake/g3r.pc.in g3r.pc @ONLY)
 install(FILES "${PROJECT_BINARY_DIR}/g3r.pc" DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
 install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)

@@ -48,11 +48,25 @@ class Dependencies(unittest.TestCase):
         self.assertEqual(set(matches(r"build/sources/(\w+)/\*", "packaging/debian/copyright")), set(NAMES) | FORMATS)
         self.assertEqual(set(re.findall(r'"(\w+)": \("', text_of("tools/sbom.py"))), set(NAMES) | FORMATS)
 
+    def test_licences_are_those_of_debian(self):
+        spdx = {"Expat": "MIT", "BSD-3-clause": "BSD-3-Clause", "libpng-2.0": "Libpng"}
+        found = {}
+        for files, licence in matches(r"^Files: (.*(?:\n .*)*)\nCopyright: .*\nLicense: (\S+)$", "packaging/debian/copyright"):
+            for folder in re.findall(r"build/sources/(\w+)/", files):
+                found.setdefault(folder, set()).add(spdx.get(licence, licence))
+        named = dict(re.findall(r'"(\w+)": \("[^"]+", "([^"]+)"\)', text_of("tools/sbom.py")))
+        self.assertEqual({folder: set(licences.split(" AND ")) for folder, licences in named.items()}, found)
+
     def test_packagers_name_these(self):
         conda = text_of("packaging/conda/meta.yaml").split("\n  host:\n")[1].split("\n  run:\n")[0]
         self.assertEqual(set(re.findall(r"^ +- (\S+)", conda, re.MULTILINE)) - TOOLS, libraries(0))
         debian = re.search(r"^Build-Depends: (.*(?:\n .*)*)", text_of("packaging/debian/control"), re.MULTILINE).group(1)
         self.assertEqual({one.split()[0] for one in debian.split(",")} - TOOLS, libraries(1))
+        # What g3r-config.cmake and g3r.pc name for the archive; the others are headers that nobody includes from g3r's.
+        development = text_of("packaging/debian/control").split("\nPackage: libg3r-dev\n")[1]
+        development = re.search(r"^Depends: (.*(?:\n .*)*)", development, re.MULTILINE).group(1)
+        linked = {NAMES[name][1] for name in NAMES if name not in ("eigen", "json")}
+        self.assertEqual({one.split()[0] for one in development.split(",")} - {"libg3r0.2", "${misc:Depends}"}, linked)
         self.assertEqual(set(text_of("packages.txt").split()) - TOOLS - OF_TESTS, libraries(1))
         self.assertEqual(set(matches(r'^ +(?:depends_on|uses_from_macos) "([^"]+)"', "packaging/homebrew/g3r.rb")) - TOOLS, libraries(2))
         vcpkg = json.loads(text_of("packaging/vcpkg/g3r/vcpkg.json"))

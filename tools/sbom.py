@@ -14,8 +14,8 @@ import re
 import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-# Name and licence of what tools/sources.sh brings, by its folder.
-SOURCES = {"laszip": ("LASzip", "Apache-2.0"), "e57": ("libE57Format", "BSL-1.0"), "tbb": ("oneTBB", "Apache-2.0"),
+# Name and licence of what tools/sources.sh brings, by its folder. libE57Format has CRC++ (BSD-3-Clause) inside.
+SOURCES = {"laszip": ("LASzip", "Apache-2.0"), "e57": ("libE57Format", "BSL-1.0 AND MIT AND BSD-3-Clause"), "tbb": ("oneTBB", "Apache-2.0"),
            "highway": ("Highway", "Apache-2.0"), "png": ("libpng", "Libpng"),
            "zlib": ("zlib", "Zlib"), "eigen": ("Eigen", "MPL-2.0"), "json": ("nlohmann-json", "MIT")}
 

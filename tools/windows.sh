@@ -1,7 +1,8 @@
 #!/bin/bash
 # tools/windows.sh [TEST...]: g3r for Windows on x86-64, made on Debian 12 with its MinGW-w64 and all other libraries inside
-# (cmake/toolchains/windows.cmake): build/windows/cli/g3r.exe. Then the tests that are named run under Wine, by default those of files
-# and their ends; tests/CMakeLists.txt says which need POSIX. Installs what is missing, as root or with sudo.
+# (cmake/toolchains/windows.cmake): build/windows/cli/g3r.exe, which goes with build/windows/licences. Then the tests that are named run
+# under Wine, by default those of files and their ends; tests/CMakeLists.txt says which need POSIX. Installs what is missing, as root or with
+# sudo.
 # Not part of .ci/run.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -26,6 +27,7 @@ google_test "$prefix" "${toolchain[@]}"
 cmake --log-level=WARNING "${toolchain[@]}" -S . -B build/windows -DG3R_BUNDLED=ON -DG3R_INSTALL=OFF -DG3R_BUILD_BENCH=OFF \
   -DG3R_BUILD_EXAMPLES=OFF -DG3R_PRECOMPILE=ON -DCMAKE_CROSSCOMPILING_EMULATOR=/usr/lib/wine/wine64
 cmake --build build/windows --target "${targets[@]}"
+cmake --install build/windows --component licences --prefix build/windows/licences
 
 # Wine takes names of files as the locale writes them.
 export WINEPREFIX=$PWD/build/wine WINEDEBUG=-all WINEDLLOVERRIDES='mscoree=;mshtml=' LC_ALL=C.UTF-8

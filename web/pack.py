@@ -1,7 +1,10 @@
-"""pack.py G3R_WEB.js G3R.html: page.html with the style, the scripts and the library in it, so that it is one file that needs no other."""
+"""pack.py G3R_WEB.js G3R.html NAME=LICENCE...: page.html with the style, the scripts, the library and the texts of the licences in it, so that
+it is one file that needs no other.
+"""
 
 import base64
 import gzip
+import html
 import pathlib
 import sys
 
@@ -12,13 +15,15 @@ def in_script(text):
 
 
 def main():
-    glue, output = map(pathlib.Path, sys.argv[1:])
+    glue, output = map(pathlib.Path, sys.argv[1:3])
+    licences = [licence.partition("=") for licence in sys.argv[3:]]
     here = pathlib.Path(__file__).parent
     library = gzip.compress(glue.with_suffix(".wasm").read_bytes(), 9, mtime=0)
     parts = {
         "style": (here / "page.css").read_text(),
         "worker": in_script(glue.read_text() + "\n" + (here / "worker.js").read_text()),
         "library": base64.b64encode(library).decode(),
+        "licences": html.escape("\n\n".join("%s\n\n%s" % (name, pathlib.Path(file).read_text()) for name, _, file in licences)),
         "page": in_script((here / "page.js").read_text()),
     }
     page = (here / "page.html").read_text()

@@ -28,6 +28,18 @@ foreach(kind static shared)
   run(${CMAKE_CTEST_COMMAND} --test-dir ${BUILD}/consumer/${kind} --output-on-failure --no-tests=error)
 endforeach()
 
+# Within another project g3r is the library alone: nothing that only the program needs is asked for.
+run(${CMAKE_COMMAND} -S ${SOURCE}/parent -B ${BUILD}/consumer/parent -G ${GENERATOR} -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=${CXX}
+    -DCMAKE_DISABLE_FIND_PACKAGE_CLI11=ON)
+
+# What is copied from a build without install rules goes with its licences.
+run(${CMAKE_COMMAND} -S ${SOURCE}/../.. -B ${BUILD}/consumer/copied -G ${GENERATOR} -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=${CXX}
+    -DG3R_INSTALL=OFF -DG3R_BUILD_CLI=OFF -DG3R_BUILD_TESTS=OFF -DG3R_BUILD_BENCH=OFF -DG3R_BUILD_EXAMPLES=OFF)
+run(${CMAKE_COMMAND} --install ${BUILD}/consumer/copied --component licences --prefix ${BUILD}/consumer/copied/prefix)
+if(NOT EXISTS "${BUILD}/consumer/copied/prefix/share/doc/g3r/LICENSE")
+  message(FATAL_ERROR "no licence goes with a program that is copied")
+endif()
+
 # The shared library shows the public names and no other.
 execute_process(COMMAND nm -D --defined-only -C ${library} OUTPUT_VARIABLE names COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "[^\n]+\n" names "${names}")
