@@ -16,8 +16,8 @@ unset PYTHONPATH # of a build of the Python package, around this
 # has_checksum FILE SUM
 has_checksum() { [ -e "$1" ] && echo "$2  $1" | sha256sum --check --status; }
 
-# from_pypi NAME-VERSION.tar.gz SUM: the source distribution to $work. pip asks a package's build system for its name before it hands it over,
-# and holds what it runs against checksums first: the archive, and the build systems (tools/sources_helpers.txt).
+# from_pypi NAME-VERSION.tar.gz SUM: the source distribution to $work, also where it is for newer Pythons. pip asks a package's build system
+# for its name before it hands it over, and holds what it runs against checksums first: the archive, and what tools/sources_helpers.txt names.
 from_pypi() {
   local archive=${1%.tar.gz}
   if [ ! -x "$work/environment/bin/pip" ]; then
@@ -26,7 +26,8 @@ from_pypi() {
   local pip=("$work/environment/bin/pip" --quiet --disable-pip-version-check --retries 1 --timeout 10)
   "${pip[@]}" install --no-deps --only-binary :all: --require-hashes -r tools/sources_helpers.txt || return 1
   echo "${archive%-*}==${archive##*-} --hash=sha256:$2" > "$work/requirement.txt" || return 1
-  "${pip[@]}" download --no-deps --no-build-isolation --no-binary :all: --require-hashes --dest "$work" -r "$work/requirement.txt"
+  "${pip[@]}" download --no-deps --ignore-requires-python --no-build-isolation --no-binary :all: --require-hashes \
+    --dest "$work" -r "$work/requirement.txt"
 }
 
 # apt ARGUMENT...: apt-get with lists of its own, of the packages and the sources of the system's Debian, so that the system's own stay as they are.
