@@ -224,7 +224,7 @@ double fine_noise(const PointSet& set) {
   const double spacing = set.spacing();
   const Residuals residuals(set, kPatchNeighbours);
   const double flattest = residuals.scatter(kFlattest);
-  if (flattest <= kExactScatter * spacing || flattest >= kLeast * spacing) return 0;
+  if (flattest <= kExactScatter * spacing || flattest >= kWider * kLeast * spacing) return 0;
   // Noise is as large among three times as many points, shape clearly larger.
   const bool is_shape = kWider * Residuals(set, kClosest).scatter(0.5) <= Residuals(set, kTwoPatches).scatter(0.5);
   return is_shape || on_exact_planes(set) ? 0 : flattest;

@@ -33,8 +33,9 @@ inline constexpr double kRoundingCumulant = rounding_moment(4) - 3 * kRoundingVa
 [[nodiscard]] double estimate_noise(const PointSet& set);
 
 /// The noise of a cloud for which that is less than 0.04 h, and so called none: kernels hide it, directions need not follow it. That of the
-/// flattest 2 % of 12 points; 0 where the points are exact to 0.001 h or 40 % of them on exact planes, and where shape explains as much:
-/// in the median place 24 points scatter at least sqrt(2) times as much as 8. Units and cost as above.
+/// flattest 2 % of 12 points, up to sqrt(2) 0.04 h, as layers may show less; 0 where it is more, where the points are exact to 0.001 h or
+/// 40 % of them on exact planes, and where shape explains as much: in the median place 24 points scatter at least sqrt(2) times as much
+/// as 8. Units and cost as above.
 [[nodiscard]] double fine_noise(const PointSet& set);
 
 /// Standard deviation of what rounding all three coordinates to steps q leaves, as in voxels: the root of the mean of q_a^2 / 12, 0 where
