@@ -210,6 +210,51 @@ TEST(DecidePatches, PiecesOfAPatchAgree) {
   for (std::size_t i = 800; i < sides.points.size(); ++i) EXPECT_GT(dot(sides.normals[i], between({-2.1, 0, 0}, sides.points[i])), 0.9);
 }
 
+// A wall beside the ground that is all but upright: what holds it says more of its side than up does.
+TEST(DecidePatches, APieceIsTurnedByVotesThatOutweighWhatHoldsIt) {
+  for (const double held : {0.5, 0.75, 1.0}) {
+    for (const double lean : {0.05, 0.8}) {
+      Sides sides;
+      sides.add_square({0, 0, 0}, 2, 1, 0);
+      sides.add_square({5, 0, 0}, 0, 1, 0);
+      for (std::size_t i = 400; i < 800; ++i) sides.normals[i] = {std::sqrt(1 - lean * lean), 0, -lean};
+      sides.patches.held.assign(800, 1);
+      std::fill(sides.patches.held.begin() + 400, sides.patches.held.end(), static_cast<float>(held));
+      const HintEffect effect = sides.follow({.up = Vec3{0, 0, 1}});
+      // Two votes of the chances (1 - lean) / 2 and `held`; what is joined by nothing and leans far goes over in any case.
+      const bool is_turned = (1 - lean) / 2 + held < 1 || lean > 0.5;
+      EXPECT_EQ(effect.turned[600] != 0, is_turned) << held << ' ' << lean;
+      if (!is_turned) {
+        EXPECT_NEAR(sides.confidence[600], both_agree(1 / (1 + lean), held), 1e-6) << lean;
+      } else {
+        EXPECT_NEAR(sides.confidence[600], std::max(1 - held, (1 + lean) / 2), 1e-6) << held;
+      }
+    }
+  }
+}
+
+// What stands in a room is seen from where the scanner was, which is not the middle of what it saw.
+TEST(DecidePatches, TheMiddleOfARoomSaysNothingOfWhatStandsInIt) {
+  Sides room;
+  for (const std::size_t axis : {0U, 1U, 2U}) {
+    for (const double side : {-1.0, 1.0}) {
+      Vec3 centre{0, 0, 0};
+      centre[axis] = side;
+      room.add_square(centre, axis, -side, 0);
+    }
+  }
+  const std::size_t walls = room.points.size();
+  for (int i = 0; i < 8; ++i) {
+    for (int j = 0; j < 8; ++j) room.add({0.5, 0.1 * i - 0.35, 0.1 * j - 0.35}, {1, 0, 0}, 0, true);
+  }
+  room.patches.held.assign(room.points.size(), 1);
+  std::fill(room.patches.held.begin() + static_cast<std::ptrdiff_t>(walls), room.patches.held.end(), 0.9F);
+  (void)room.follow({.seen_from_inside = true});
+  EXPECT_EQ(room.normals.front(), (Vec3{1, 0, 0}));
+  EXPECT_EQ(room.normals.back(), (Vec3{1, 0, 0}));
+  EXPECT_LE(room.confidence.back(), 0.9F);
+}
+
 // A thing on the ground that normals of the crevice between them lead into from behind faces the sensor too; few points are between.
 TEST(DecidePatches, WhatIsJoinedByACreviceAloneFacesTheSensor) {
   Sides sides;

@@ -55,9 +55,8 @@ class PatchSides {
       const double agreement = 1 - patches[patches_.of[i]].share_against();
       const double shown = patch_turned[i] != 0 ? 1 - certainty(i) : certainty(i);
       const double own = effect_.turned[i] != 0 ? -votes[i] : votes[i];
-      const double held = patches_.held.empty() ? 1 : patches_.held[i];
-      const double alone = (1 + std::min(own, 1.0)) / 2;
-      const double side = std::max(both_agree(both_say(shown, agreement), held), alone);
+      const bool with_patch = effect_.turned[i] == patch_turned[i];
+      const double side = std::max(both_agree(both_say(shown, agreement), with_patch ? held(i) : 1 - held(i)), chance(own));
       sided_.confidence[i] = static_cast<float>(side) * (patches_.agreed.empty() ? 1 : patches_.agreed[i]);
       effect_.decided[i] = all_seen() || side >= kMostOf ? 1 : 0;
       if (effect_.decided[i] == 0) continue;
@@ -75,6 +74,12 @@ class PatchSides {
   // Then a grazing view leaves a doubt, but no choice.
   [[nodiscard]] bool all_seen() const { return patches_.seen && !hints_.sensors.empty(); }
   [[nodiscard]] bool is_choice(std::size_t i) const { return certainty(i) < 1; }
+
+  // Chance that a point has the side of the rest of its patch.
+  [[nodiscard]] double held(std::size_t i) const { return patches_.held.empty() ? 1 : patches_.held[i]; }
+
+  // Of the side of what this is the vote on, by itself.
+  [[nodiscard]] double chance(double vote) const { return voters_.only_from_middle() ? kUndecided : (1 + std::min(vote, 1.0)) / 2; }
 
   // The votes on every patch, as its points are turned by now.
   [[nodiscard]] std::map<std::uint32_t, Votes> votes_on_patches(const std::vector<double>& votes) const {
@@ -172,7 +177,7 @@ class PatchSides {
       if (joined(i, j)) pieces.join(i, j);
     });
     turn_objecting(pieces, votes);
-    turn_hardly_joined(votes);
+    if (!voters_.only_from_middle()) turn_hardly_joined(votes);
   }
 
   // Of the pieces, what objects as a whole and hangs together with the rest by a few pairs of points only: in the crevice between a thing
@@ -208,12 +213,19 @@ class PatchSides {
     return sums;
   }
 
-  // Turns the pieces that two thirds of their votes are against, and the votes of their points.
+  // Turns the pieces whose votes say more against their side than what holds them says for it, and the votes of their points: by the mean
+  // vote v and the mean chance c that a point has the side of its patch, both_say((1 + v) / 2, c) is a half or less. The middle of a scene
+  // only decides where nothing else does.
   void turn_objecting(DisjointSets& pieces, std::vector<double>& votes) {
     const std::vector<Votes> sums = sums_of(pieces, votes);
+    std::vector<double> held_of(points_.size(), 0);
+    for (std::uint32_t i = 0; i < points_.size(); ++i) held_of[pieces.find(i)] += held(i);
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
-      const Votes& piece = sums[pieces.find(i)];
-      if (is_closed(i) || !piece.count() || piece.share_against() < kMostOf) continue;
+      const std::size_t piece = pieces.find(i);
+      const auto count = static_cast<double>(sums[piece].points);
+      const double vote = (sums[piece].in_favour - sums[piece].against) / count;
+      if (is_closed(i) || !sums[piece].count() || vote >= 0) continue;
+      if (chance(vote) + held_of[piece] / count > 1) continue;
       effect_.turned[i] ^= 1;
       votes[i] = -votes[i];
     }

@@ -60,6 +60,9 @@ class Voters {
   /// What a sensor, or the middle that stands for one, says of point i with this normal.
   [[nodiscard]] double seen(std::size_t i, const Vec3& normal);
 
+  /// Whether a middle stands for the sensors: where most of a scene is seen from, which tells nothing of what stands in it.
+  [[nodiscard]] bool only_from_middle() const { return middle_ && !up_ && hints_.inside.empty(); }
+
   /// What all hints say of it together.
   [[nodiscard]] double vote(std::size_t i, const Vec3& normal);
 
