@@ -177,6 +177,8 @@ TEST(Xyz, ColoursOf16BitsAreScaled) {
 TEST(Xyz, TheErrorNamesFileLineAndFind) {
   const std::string message = message_of("0 0 0\n1 1 1\n0,5 0,25 0,1\n", "a\nb.xyz");
   EXPECT_EQ(message, "a\\x0ab.xyz: line 3: expected a number, found \"0,5\" in column 1 (a decimal comma? write numbers with a point)");
+  const std::string quoted = message_of("x,y,z\n\"0,5\",\"0,25\",\"0,1\"\n", "a.csv");
+  EXPECT_EQ(quoted, "a.csv: line 2: expected a number, found \"0,5\" in column 1 \"x\" (a decimal comma? write numbers with a point)");
   EXPECT_NE(message_of("3\n0 0 0\n1 1 1\n").find("expected 3 points"), std::string::npos);
 }
 

@@ -91,8 +91,9 @@ bool is_off_magic(std::string_view word) {
 // A line of a table: three numbers, wherever they stand.
 bool is_row(std::string_view line) { return count_numbers(line, separator_of(line)) >= 3; }
 
-// Whether the line starts with a number, whatever separates it from the next.
+// Whether the line starts with a number, in quotes or not, whatever separates it from the next.
 bool starts_with_number(std::string_view line) {
+  if (!line.empty() && line[0] == '"') line.remove_prefix(1);
   const std::size_t end = line.find_first_of(" \t,;");
   double value = 0;
   return parse_double(line.substr(0, end), value) || (!line.empty() && line.find_first_of("+-.0123456789") == 0);
