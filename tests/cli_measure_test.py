@@ -60,7 +60,8 @@ class Measuring(ProgramTest):
         score = json.loads(self.expect(OK, "eval", "cube.obj", "--truth", "cube.obj", "--distances", "0.01,1e-3", "--samples", "2000").out)
         self.assertEqual(score["f_scores"], [{"distance": d, "precision": 1, "recall": 1, "f": 1} for d in (0.01, 0.001)])
         self.expect(USAGE, "eval", "cube.obj", "--truth", "cube.obj", "--distances", "0")
-        self.expect(BAD_DATA, "eval", "cube.obj", "--truth", "a.ply")
+        for pair in (["cube.obj", "--truth", "a.ply"], ["a.ply", "--truth", "cube.obj"]):
+            self.assertIn("no faces were read from a.ply", self.expect(BAD_DATA, "eval", *pair).err)
 
     def test_why_a_mesh_is_refused_is_told(self):
         with open(self.path("bad.off"), "w") as file:
@@ -78,6 +79,11 @@ class Measuring(ProgramTest):
             text = self.expect(OK, "info", name).out.decode()
             self.assertIn("2 files of xyz", text)
             self.assertIn("18", text)
+        with open(self.path("both.list"), "w") as file:
+            file.write("tiles/a.xyz\ntiles/b.xyz\n")
+        result = self.expect(OK, "info", "both.list")
+        self.assertIn("2 files of xyz", result.out.decode())
+        self.assertNotIn("no mesh", result.err)
         text = self.expect(OK, "info", "tiles", "--box", "-1,-1,-1,1,9,0.5").out.decode()
         self.assertIn("x 0 to 1, y 0 to 2, z 0 to 0", text)
         self.expect(BAD_DATA, "info", "tiles", "--box", "5,5,5,6,6,6")
