@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdlib>
 #include <limits>
+#include <string>
 
 #include <gtest/gtest.h>
 #include <png.h>
@@ -168,6 +169,29 @@ TEST(ViewPng, OnePointIsAPicture) {
   Scene scene;
   scene.points = {{1e6, 2, 3}};
   EXPECT_NO_THROW((void)view_png(scene, small()));
+}
+
+TEST(ViewPng, WhatALayerLacksIsSaid) {
+  Scene scene = testing::torus_points(10);
+  const auto message = [&](Layer layer) {
+    try {
+      (void)view_png(scene, small({layer}));
+    } catch (const InvalidInput& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(message(Layer::kMesh), "view: the layer mesh needs a mesh");
+  scene.true_normals.clear();
+  EXPECT_EQ(message(Layer::kError), "view: the layer error needs true normals to compare with (--truth)");
+  scene.normals.clear();
+  scene.confidence.clear();
+  scene.colors.clear();
+  EXPECT_EQ(message(Layer::kNormals), "view: the layer normals needs a cloud with normals: `g3r orient` adds them");
+  EXPECT_EQ(message(Layer::kConfidence), "view: the layer confidence needs a cloud with confidence: `g3r orient` adds it");
+  EXPECT_EQ(message(Layer::kColors), "view: the layer colors needs a cloud with colours");
+  EXPECT_EQ(message(Layer::kError), "view: the layer error needs a cloud with normals: `g3r orient` adds them");
+  EXPECT_EQ(message(Layer::kPoints), "");
 }
 
 TEST(ViewPng, BrokenScenesAreRefused) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include <Eigen/Geometry>
 
@@ -211,15 +212,22 @@ void draw_points(Canvas& canvas, const Camera& camera, const Scene& scene, Layer
   }
 }
 
+// What a layer needs and the scene lacks, "" if it lacks nothing.
+std::string lacking(const Scene& scene, Layer layer) {
+  if (layer == Layer::kMesh) return scene.mesh.triangles.empty() ? "the layer mesh needs a mesh" : "";
+  if (scene.points.empty()) return "all layers but mesh need a cloud";
+  const std::string orients = ": `g3r orient` adds ";
+  if (layer == Layer::kNormals && scene.normals.empty()) return "the layer normals needs a cloud with normals" + orients + "them";
+  if (layer == Layer::kConfidence && scene.confidence.empty()) return "the layer confidence needs a cloud with confidence" + orients + "it";
+  if (layer == Layer::kColors && scene.colors.empty()) return "the layer colors needs a cloud with colours";
+  if (layer == Layer::kError && scene.normals.empty()) return "the layer error needs a cloud with normals" + orients + "them";
+  if (layer == Layer::kError && scene.true_normals.empty()) return "the layer error needs true normals to compare with (--truth)";
+  return "";
+}
+
 void require_layer(const Scene& scene, Layer layer) {
-  const bool points = !scene.points.empty();
-  bool have = points;
-  if (layer == Layer::kMesh) have = !scene.mesh.triangles.empty();
-  if (layer == Layer::kNormals) have = points && !scene.normals.empty();
-  if (layer == Layer::kConfidence) have = points && !scene.confidence.empty();
-  if (layer == Layer::kColors) have = points && !scene.colors.empty();
-  if (layer == Layer::kError) have = points && !scene.normals.empty() && !scene.true_normals.empty();
-  if (!have) throw InvalidInput("view: a layer was asked for that the scene has no data for");
+  const std::string lacks = lacking(scene, layer);
+  if (!lacks.empty()) throw InvalidInput("view: " + lacks);
 }
 
 Layer best_layer(const Scene& scene) {
