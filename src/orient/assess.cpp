@@ -45,8 +45,8 @@ void add_open_surfaces(const OpenSurfaces& surfaces, std::vector<float>& confide
   stats.warnings.push_back("open: " + percent(stats.open_share) + " of the points lie on surfaces without an inside; " +
                            (agreed < open  ? "their sides do not agree everywhere"
                             : unshown == 0 ? "their sides are consistent"
-                                           : "their sides are consistent; what is around " + percent(static_cast<double>(unshown) / all) +
-                                                 " of the points does not show it"));
+                                           : "their sides are consistent, but the neighbours of " +
+                                                 percent(static_cast<double>(unshown) / all) + " of the points do not confirm theirs"));
 }
 
 // Sides of closed surfaces that their field does not show to be right are worth less, those on open ones that do not agree nothing. Where
