@@ -2,7 +2,10 @@
 // what the library throws.
 #pragma once
 
+#include <g3r/error.h>
+
 #include <optional>
+#include <string>
 
 #include "session.h"
 #include "settings.h"
@@ -23,5 +26,16 @@ int run_tiles(const Settings& settings, Session& session);
 [[nodiscard]] std::optional<int> orient_in_tiles(const Settings& settings, Session& session);
 /// The same of run_reconstruct(), which has a mesh in the end. Neither can they with options of the mesh.
 [[nodiscard]] std::optional<int> reconstruct_in_tiles(const Settings& settings, Session& session);
+/// What tiles would need, for the message where a run in core was refused; "" where --max-memory allows it or they cannot be.
+[[nodiscard]] std::string what_tiles_need(const Settings& settings, bool mesh);
+/// work(), in core; what it refuses (Unavailable) says what tiles would need.
+template <class Work>
+auto in_core(const Settings& settings, bool mesh, const Work& work) {
+  try {
+    return work();
+  } catch (const Unavailable& error) {
+    throw Unavailable(error.what() + what_tiles_need(settings, mesh));
+  }
+}
 
 }  // namespace g3r::cli

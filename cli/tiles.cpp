@@ -1,5 +1,6 @@
 // g3r tiles plan, run, mesh, status, merge; and g3r orient and g3r IN OUT with --max-memory where the cloud does not fit.
 #include "base/platform.h"
+#include "cpu/parallel.h"
 #include "io/source.h"
 #include "tiles/manifest.h"
 
@@ -73,6 +74,13 @@ bool is_default_method(const Options& o) {
          o.accuracy == -1 && !o.condition_number;
 }
 
+// Whether these can be read more than once: a file, a folder, or a pattern of names.
+bool has_files(const std::string& input) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(platform::path_of(input), ignored) ||
+         std::filesystem::is_directory(platform::path_of(input), ignored) || input.find_first_of("*?") != std::string::npos;
+}
+
 // Whether tiles can do what is asked for, and end in a file with one of these extensions.
 bool can_be_tiled(const Settings& s, std::initializer_list<const char*> extensions) {
   const std::string extension = "." + io::extension(s.output);
@@ -81,19 +89,32 @@ bool can_be_tiled(const Settings& s, std::initializer_list<const char*> extensio
   const ReadOptions& read = s.read_options;
   const bool whole_input =
       s.input != "-" && !read.box && read.levels == 0 && !read.all_splats && read.min_opacity == ReadOptions{}.min_opacity;
-  std::error_code ignored;
-  const bool has_files = std::filesystem::is_regular_file(platform::path_of(s.input), ignored) ||
-                         std::filesystem::is_directory(platform::path_of(s.input), ignored) ||
-                         s.input.find_first_of("*?") != std::string::npos;
-  return simple_output && whole_input && has_files && !s.sensors_of_file && is_default_method(s.options);
+  return simple_output && whole_input && has_files(s.input) && !s.sensors_of_file && is_default_method(s.options);
 }
 
 bool can_be_meshed(const MeshOptions& o) {
   return o.mesher != Mesher::kPoisson && o.depth == 0 && o.trim == MeshOptions::Trim::kOff && o.faces == 0;
 }
 
-Stats stats_of(const TileStatus& status, const Settings& settings) {
+// In the order and words of reports in core.
+std::vector<std::string> hints_given(const Hints& hints) {
+  std::vector<std::string> names;
+  if (hints.up) names.emplace_back("up");
+  if (!hints.sensors.empty()) names.emplace_back("sensor");
+  if (!hints.inside.empty()) names.emplace_back("inside");
+  if (hints.seen_from_inside) names.emplace_back("seen_from_inside");
+  if (hints.flip) names.emplace_back("flip");
+  return names;
+}
+
+Stats stats_of(const TileStatus& status, const std::string& folder, const Settings& settings) {
   Stats stats;
+  const auto [low, high] = tiles::read_manifest(folder).bounds;
+  for (std::size_t a = 0; a < 3; ++a) {
+    stats.box_centre[a] = low[a] + (high[a] - low[a]) / 2;
+    stats.box_side = std::max(stats.box_side, high[a] - low[a]);
+  }
+  stats.hints.given = hints_given(settings.options.hints);
   stats.points = status.points;
   stats.used = status.points - status.non_finite;
   stats.dropped_non_finite = status.non_finite;
@@ -105,9 +126,32 @@ Stats stats_of(const TileStatus& status, const Settings& settings) {
   stats.open_share = status.open_share;
   stats.undecided_share = status.undecided_share;
   stats.planned_memory_bytes = status.worker_memory_bytes;
-  stats.threads = settings.options.threads;
+  stats.threads = parallel::thread_count(settings.options.threads);
   stats.warnings = status.warnings;
   return stats;
+}
+
+// Plans in the folder, and refuses what cannot be before any tile is solved: then no plan stays, which another limit would not go on with.
+void plan_or_refuse(const Settings& settings, const std::string& folder, bool mesh, const Monitor& monitor) {
+  bool is_ours = false;
+  const auto give_up = [&] {
+    if (!tiles::has_manifest(folder) || (is_ours && tiles_status(folder).done == 0)) tiles::remove_plan(folder);
+  };
+  try {
+    (void)plan_tiles({settings.input}, folder, tile_options(settings), monitor);
+    is_ours = true;
+    if (mesh) {
+      (void)planned_mesh_memory(folder);
+    } else {
+      check_merge(folder, settings.output);
+    }
+  } catch (const Unavailable&) {
+    give_up();
+    throw;
+  } catch (const InvalidInput&) {
+    give_up();
+    throw;
+  }
 }
 
 // Plans and solves beside the output; `merge` writes it, and says what of it is worth a warning. Then the folder goes.
@@ -117,15 +161,9 @@ int work_in_tiles(const Settings& settings, Session& session, bool mesh, const M
   session.console().say("more than --max-memory in one piece: tiles, in " + escape_text(folder) +
                         "; where this ends early, the same command goes on");
   const Monitor monitor = session.monitor();
-  (void)plan_tiles({settings.input}, folder, tile_options(settings), monitor);
-  // What cannot be is refused before the tiles are solved.
-  if (mesh) {
-    (void)planned_mesh_memory(folder);
-  } else {
-    check_merge(folder, settings.output);
-  }
+  plan_or_refuse(settings, folder, mesh, monitor);
   const TileStatus status = g3r::run_tiles(folder, worker_of(settings), monitor);
-  Stats stats = stats_of(status, settings);
+  Stats stats = stats_of(status, folder, settings);
   const std::string left_out = merge(folder, monitor, stats);
   tiles::remove_plan(folder);
   stats.warnings.push_back("beyond --max-memory in one piece: worked in " + counted(status.tiles, "tile") +
@@ -178,6 +216,13 @@ int run_tiles(const Settings& settings, Session& session) {
     }
   }
   return kOk;
+}
+
+std::string what_tiles_need(const Settings& settings, bool mesh) {
+  if (settings.options.max_memory == 0 || !has_files(settings.input)) return "";
+  if (!needs_tiles({settings.input}, settings.options.max_memory, mesh)) return "";
+  return std::string("; tiles take any size, but need a ") + (mesh ? ".ply" : ".ply, .las or .laz") +
+         " for OUT and none of the options that docs/tiles.md lists";
 }
 
 std::optional<int> orient_in_tiles(const Settings& settings, Session& session) {

@@ -354,7 +354,7 @@ Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const Me
     const gpu::Scope device(options.device, given.points.size());
     OrientedCloud oriented = oriented_cloud(given.points, given.normals);
     Stats stats = describe_oriented(given, oriented, chosen);
-    require_memory(stats.planned_memory_bytes, options.max_memory);
+    require_memory(stats.planned_memory_bytes, options.max_memory, true);
     MeshRun run{{std::move(given.far), {}}, {options.max_memory, 0}};
     given = {};  // its memory is wanted
     Mesh mesh = make_mesh(std::move(oriented), chosen, monitor, run);
@@ -373,7 +373,7 @@ Reconstruction reconstruct(const PointsView& points, const Options& options, con
   require_usable(mesh_options);
   require_meshable(points);
   const MeshOptions chosen = choose(mesh_options, options);
-  if (options.max_memory > 0) require_memory(plan(points, options, mesh_options).planned_memory_bytes, options.max_memory);
+  if (options.max_memory > 0) require_memory(plan(points, options, mesh_options).planned_memory_bytes, options.max_memory, true);
   Reconstruction out;
   const gpu::Scope device(options.device, points.count);  // one for both steps
   out.orientation = orient(points, options, monitor);

@@ -14,6 +14,7 @@ from cli_support import *
 
 COUNT = 8200  # few more than tiles take
 LARGE_COUNT = 200_000  # of a cloud that fits a limit in tiles and does not in core
+FEWER = 100_000, "80M"  # points and a limit of which the same is true, but not of their mesh
 KILLS = int(os.environ.get("G3R_TILE_KILLS", "2"))
 
 
@@ -102,8 +103,12 @@ class Tiles(ProgramTest):
         """Until the sort: the tiles themselves are those of the other tests."""
         write_points(self.path("large.ply"), sphere(LARGE_COUNT))
         arguments = ["orient", "large.ply", "out.PLY", "--max-memory", "130M"]
-        self.expect(UNAVAILABLE, *arguments, "--ascii")  # which tiles do not write
-        self.expect(UNAVAILABLE, *arguments[1:], "--open")  # of a mesh neither
+        refused = self.expect(UNAVAILABLE, *arguments, "--ascii")  # which tiles do not write
+        self.assertIn("tiles take any size, but need a .ply, .las or .laz for OUT", refused.err)
+        self.assertNotIn("depth", refused.err)
+        refused = self.expect(UNAVAILABLE, *arguments[1:], "--open")  # of a mesh neither
+        self.assertIn("tiles take any size, but need a .ply for OUT", refused.err)
+        self.assertIn("g3r works in tiles where it can", self.expect(OK, "info", "large.ply", "--max-memory", "130M").err)
         process = self.start(*arguments, "-v", preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
         guard = threading.Timer(120, process.kill)
         guard.start()
@@ -119,6 +124,30 @@ class Tiles(ProgramTest):
         self.assertIn(b"g3r: sort\n", stages)
         self.assertFalse(os.path.exists(self.path("out.PLY")))
         self.assertTrue(os.path.exists(self.path("out.PLY.tiles/points-1.bin")))
+
+    def test_what_is_refused_before_a_tile_is_solved_leaves_no_plan(self):
+        """Another limit would not go on with it."""
+        count, limit = FEWER
+        write_points(self.path("fewer.ply"), sphere(count))
+        self.assertIn("tiles of this mesh need", self.expect(UNAVAILABLE, "fewer.ply", "mesh.ply", "--max-memory", limit).err)
+        self.assertIn("tiles of this cloud need", self.expect(UNAVAILABLE, "orient", "fewer.ply", "out.ply", "--max-memory", "70M").err)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["fewer.ply", "in.ply"])
+
+    @unittest.skipIf(is_sanitized(), "the tiles are those of the other tests")
+    def test_the_report_says_what_tiles_know(self):
+        count, limit = FEWER
+        write_points(self.path("fewer.ply"), sphere(count, 2.0, (5, 6, 7)))
+        self.expect(OK, "orient", "fewer.ply", "out.ply", "--max-memory", limit, "--up", "+z", "--threads", "1", "--report", "r.json")
+        report = self.json_of("r.json")
+        self.assertEqual(report["input"]["points"], count)
+        self.assertEqual(report["hints"]["given"], ["up"])
+        self.assertEqual(report["threads"], 1)
+        self.assertAlmostEqual(report["scales"]["box_side"], 4, delta=1e-3)
+        for axis, centre in enumerate((5, 6, 7)):
+            self.assertAlmostEqual(report["scales"]["box_centre"][axis], centre, delta=1e-3)
+        self.assertTrue(report["converged"] and report["consistent"])
+        self.assertGreater(report["confidence"]["mean"], 0.9)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["fewer.ply", "in.ply", "out.ply", "r.json"])
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <string>
 
 namespace g3r {
 namespace {
@@ -37,9 +38,16 @@ TEST(PlannedMemory, GrowsWithEveryPointAndIsHeldToTheLimit) {
   EXPECT_LT(planned_memory(s, 2000, 1000), planned_memory(s, 2000, 2000));
   s.dense = true;
   EXPECT_GE(planned_memory(s, 1000, 1000), 9 * 1000 * 1000 * sizeof(double));
-  EXPECT_NO_THROW(require_memory(std::size_t{1} << 50, 0));  // 0: no limit
-  EXPECT_NO_THROW(require_memory(1000, 1000));
-  EXPECT_THROW(require_memory(1001, 1000), Unavailable);
+  EXPECT_NO_THROW(require_memory(std::size_t{1} << 50, 0, false));  // 0: no limit
+  EXPECT_NO_THROW(require_memory(1000, 1000, true));
+  for (const bool makes_mesh : {false, true}) {
+    try {
+      require_memory(1001, 1000, makes_mesh);
+      ADD_FAILURE();
+    } catch (const Unavailable& error) {
+      EXPECT_EQ(std::string(error.what()).find("depth") != std::string::npos, makes_mesh);  // only a mesh has one
+    }
+  }
 }
 
 }  // namespace

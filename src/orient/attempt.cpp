@@ -36,7 +36,7 @@ void release(const Problem& problem, Solution& solution) {
 Attempt attempt(Problem problem, const PointsView& points, const Options& options, Stages& stages) {
   Attempt out{std::move(problem), {}, {}, {}};
   describe(out.problem, points, options, out.solved);
-  require_memory(out.solved.planned_memory_bytes, options.max_memory);
+  require_memory(out.solved.planned_memory_bytes, options.max_memory, false);
   const PointSet& set = out.problem.cloud.set;
   static_cast<void>(set.smoothed_spacing());  // what solve and areas need of the neighbours,
   static_cast<void>(set.spacing());           // and what the certificate does

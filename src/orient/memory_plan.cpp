@@ -49,10 +49,11 @@ std::size_t planned_memory(const Settings& settings, std::size_t given, std::siz
   return whole_bytes(bytes);
 }
 
-void require_memory(std::size_t planned_bytes, std::size_t limit) {
+void require_memory(std::size_t planned_bytes, std::size_t limit, bool makes_mesh) {
   if (limit == 0 || planned_bytes <= limit) return;
   throw Unavailable("the plan needs " + std::to_string(mebibytes_needed(planned_bytes)) + " MiB, the limit is " +
-                    std::to_string(mebibytes(limit)) + " MiB; raise the limit, thin the cloud, or lower the depth of the mesh");
+                    std::to_string(mebibytes(limit)) + " MiB; raise the limit" +
+                    (makes_mesh ? ", thin the cloud, or lower the depth of the mesh" : " or thin the cloud"));
 }
 
 }  // namespace g3r

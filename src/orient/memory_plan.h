@@ -14,7 +14,7 @@ namespace g3r {
 /// open, 1.3.
 [[nodiscard]] std::size_t planned_memory(const Settings& settings, std::size_t given, std::size_t used);
 
-/// Throws Unavailable if the plan exceeds the limit, 0: none.
-void require_memory(std::size_t planned_bytes, std::size_t limit);
+/// Throws Unavailable if the plan, with that of a mesh where one is made, exceeds the limit, 0: none.
+void require_memory(std::size_t planned_bytes, std::size_t limit, bool makes_mesh);
 
 }  // namespace g3r
