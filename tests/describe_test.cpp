@@ -56,6 +56,36 @@ TEST(Describe, LengthsAreInTheUnitsOfThePoints) {
   EXPECT_EQ(larger.planned_memory_bytes, stats.planned_memory_bytes);
 }
 
+// A solve from 0 has wider kernels than one that starts from fewer points, unless the width is given.
+TEST(Describe, EpsilonIsThatOfTheSolve) {
+  const std::vector<Vec3> few = shapes::sphere(2000).points;
+  const std::vector<Vec3> many = shapes::sphere(40'000).points;
+  const auto spacings = [](const Stats& stats) { return stats.epsilon / stats.spacing; };
+  EXPECT_NEAR(spacings(described(few)), 0.5, 1e-9);
+  EXPECT_NEAR(spacings(described(many)), 0.4, 1e-9);
+  Options options;
+  options.epsilon = {Length::Unit::kSpacing, 0.45};
+  EXPECT_NEAR(spacings(described(few, options)), 0.45, 1e-9);
+}
+
+// A grid of pixels on a plane that a camera at the origin looks at: what scatters about it is rounding.
+TEST(Describe, RoundingIsNoNoiseOfAScanner) {
+  std::vector<Vec3> pixels;
+  for (int i = 0; i < 60; ++i) {
+    for (int j = 0; j < 60; ++j) {
+      const double u = (i - 30) / 60.0, v = (j - 30) / 60.0;
+      const double depth = 3 / (1 + 0.3 * u + 0.2 * v);
+      pixels.push_back({u * depth, v * depth, depth});
+    }
+  }
+  Options options;
+  options.hints.sensors = {{0, 0, 0}};
+  const Problem problem = problems::prepared(pixels, options);
+  ASSERT_TRUE(problem.cloud.set.views().known());
+  EXPECT_GT(problem.direction_noise, 0);
+  EXPECT_EQ(described(pixels, options).noise, 0);
+}
+
 TEST(Describe, EarlierMethodsTakeTheirOwnMemory) {
   const std::vector<Vec3> points = shapes::sphere(2000).points;
   Options options;

@@ -1,5 +1,6 @@
 #include "orient/describe.h"
 
+#include "cloud/exact_plane.h"
 #include "cloud/noise.h"
 #include "cloud/sites.h"
 #include "cloud/spacing.h"
@@ -18,6 +19,12 @@ namespace {
 // Dimension from which points fill a volume, midway between those of surfaces and of volumes: cubes and balls have 2.57 and more, surfaces
 // under noise of 2 h at most 2.45.
 constexpr double kVolume = (2 + 3) / 2.0;
+
+// The noise that directions by known lines of sight follow; exact places leave rounding of it.
+double noise_of_sight(const Problem& problem) {
+  const bool is_noise = problem.cloud.set.views().known() && problem.direction_noise > kExactScatter * problem.spacing;
+  return is_noise ? problem.direction_noise : 0;
+}
 
 void describe_baseline(const Problem& problem, Stats& stats) {
   stats.epsilon = problem.cloud.frame.length_to_world(problem.baseline->epsilon);
@@ -54,15 +61,16 @@ void describe(const Problem& problem, const PointsView& points, const Options& o
   stats.box_centre = cloud.frame.centre;
   stats.box_side = kBoxSide / cloud.frame.scale;
   stats.spacing = cloud.frame.length_to_world(problem.spacing);
-  stats.noise = cloud.frame.length_to_world(cloud.set.views().known() ? std::max(problem.noise, problem.direction_noise) : problem.noise);
-  stats.epsilon = cloud.frame.length_to_world(settings.epsilon.typical());
+  const bool is_coarse = starts_coarse(settings, cloud.size());
+  stats.noise = cloud.frame.length_to_world(std::max(problem.noise, noise_of_sight(problem)));
+  stats.epsilon = cloud.frame.length_to_world((is_coarse ? settings.epsilon : settings.coarsest_epsilon).typical());
   stats.preset = name_of(options.preset);
   stats.method = name_of(settings.method);
   stats.solver = name_of(settings.dense ? Solver::kDense : Solver::kConjugateGradient);
   stats.harmonics = settings.method == Method::kGreen ? format_harmonics(settings.harmonics) : "1,x,y,z";
   stats.sums = settings.dense || settings.sums.direct ? "direct" : "hierarchical";
   stats.accuracy = settings.sums.direct ? 0 : settings.accuracy;
-  stats.tolerance = starts_coarse(settings, cloud.size()) ? settings.continued_tolerance : settings.tolerance;
+  stats.tolerance = is_coarse ? settings.continued_tolerance : settings.tolerance;
   stats.threads = parallel::thread_count(options.threads);
   stats.planned_memory_bytes = planned_memory(settings, points.count, cloud.size());
   if (problem.baseline) describe_baseline(problem, stats);
