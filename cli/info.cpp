@@ -78,14 +78,18 @@ std::string mesh_text(const MeshCheck& check) {
                             ", longest side over height at most " + short_number(check.max_aspect));
 }
 
+std::string in_spacings(double length, double spacing) {
+  return short_number(length) + (spacing > 0 ? " (" + short_number(length / spacing, 2) + " spacings)" : "");
+}
+
 std::string plan_text(const Stats& stats) {
   std::string text;
   if (stats.dropped_non_finite > 0) text += line("not finite", with_commas(stats.dropped_non_finite) + " would be left out");
   if (stats.outliers > 0) text += line("outliers", with_commas(stats.outliers) + " would be left out");
   if (stats.merged_duplicates > 0) text += line("duplicates", with_commas(stats.merged_duplicates) + " would be merged");
   text += line("spacing", short_number(stats.spacing));
-  text += line("epsilon", short_number(stats.epsilon) +
-                              (stats.spacing > 0 ? " (" + short_number(stats.epsilon / stats.spacing, 2) + " spacings)" : std::string()));
+  if (stats.noise > 0) text += line("noise", in_spacings(stats.noise, stats.spacing));
+  text += line("epsilon", in_spacings(stats.epsilon, stats.spacing));
   if (stats.depth > 0) text += line("depth", std::to_string(stats.depth));
   text += line("method", escape_text(stats.method) + ", " + stats.solver + ", harmonics " + escape_text(stats.harmonics));
   const std::vector<std::string> devices = device_lines();
@@ -111,7 +115,8 @@ int run_info(const Settings& settings, Session& session) {
     stats = session.stage("plan", [&] { return plan(cloud.positions, settings.options, settings.mesh_options); });
     text += plan_text(stats);
     if (settings.options.max_memory > 0 && stats.planned_memory_bytes > settings.options.max_memory) {
-      stats.warnings.push_back("more than the " + bytes(settings.options.max_memory) + " of --max-memory: g3r would refuse");
+      stats.warnings.push_back("more than the " + bytes(settings.options.max_memory) +
+                               " of --max-memory: g3r works in tiles where it can (docs/tiles.md), and refuses where it cannot");
     }
   } catch (const InvalidInput& error) {
     stats.points = cloud.positions.size();

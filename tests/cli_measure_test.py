@@ -6,6 +6,7 @@ Run by ctest with G3R_PROGRAM set to the program.
 import json
 import math
 import os
+import random
 import sys
 import unittest
 
@@ -109,6 +110,9 @@ class Measuring(ProgramTest):
         text = self.expect(OK, "info", "cube.obj").out.decode()
         for words in ("cube.obj", "8", "12 triangles", "closed", "genus 0", "no triangles intersect", "smallest 45 degrees", "x 0 to 2"):
             self.assertIn(words, text)
+        chance = random.Random(1)
+        write_xyz(self.path("noisy.xyz"), [[c * chance.gauss(1, 0.02) for c in p] for p in sphere(2000)])
+        self.assertRegex(self.expect(OK, "info", "noisy.xyz").out.decode(), r"noise +0\.0\d+ \(0\.\d+ spacings\)")
         write_xyz(self.path("two.xyz"), [(0, 0, 0), (1, 1, 1)])
         result = self.expect(OK, "info", "two.xyz")
         self.assertIn("warning", result.err)
