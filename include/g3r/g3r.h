@@ -79,7 +79,7 @@ struct Options {
   /// Standard deviation of the points from their surface, of each coordinate; 0: clean. Method energy only. If it is given, reconstruct()
   /// hands it to the field mesher.
   Length noise;
-  int degree = -1;          ///< highest degree of the harmonic polynomials, 0..8; -1: preset's (2)
+  int degree = -1;          ///< of method green, which giving one selects: highest degree of the harmonic polynomials, 0..8; -1: 2
   std::string harmonics;    ///< subset instead of a degree: "1,x,y,z", "degree:0-2", "x,y,z,xy"
   std::string wnnc_widths;  ///< method wnnc: "density", or the authors' "clean", "scan", "noise-0.25", "noise-0.5", "noise-1", "sparse"
   Solver solver = Solver::kAuto;
@@ -150,7 +150,7 @@ struct Orientation {
   std::vector<Vec3> normals;      ///< N unit outward normals; (0, 0, 0) only for points that are not finite
   std::vector<double> areas;      ///< N areas in squared input units (a duplicate carries its share); 0 for non-finite points,
                                   ///< infinite where the square is more than a double holds (extents beyond 1e154)
-  std::vector<float> confidence;  ///< N values in [0, 1]: 1 = sure of the side, 0 = could be inside-out. docs/math.md says how
+  std::vector<float> confidence;  ///< N values in [0, 1]: 1 = sure of the side, 0.5 = a choice, 0 = most likely wrong
   Stats stats;
 };
 

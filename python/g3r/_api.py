@@ -92,7 +92,7 @@ class Result:
     """What `run` returns.
 
     normals: (n, 3) float64, unit and outward, in the order of the points; (0, 0, 0) only for points that are not finite.
-    confidence: (n,) float32 in [0, 1]; 1 = sure of the side, 0 = could be inside-out.
+    confidence: (n,) float32 in [0, 1]; 1 = sure of the side, 0.5 = a choice, 0 = most likely wrong.
     areas: (n,) float64, squared input units.
     vertices, faces: (v, 3) float64 and (m, 3) uint32, counter-clockwise seen from outside; None when run with mesh=False.
     vertex_colors, vertex_confidence: (v, 3) uint8 and (v,) float32, or None.
@@ -215,7 +215,7 @@ def run(points: Any, *, colors: Any = None, epsilon: Union[str, float] = "auto",
     """Normals, confidence, areas, mesh, field and report of an unoriented cloud.
 
     epsilon: width of the mollifier: "auto", a number in input units, "0.5%" of the diagonal, "0.8h" point spacings.
-    degree: highest degree of the harmonic polynomials, 0..8; None: the preset's, 2.
+    degree: of method "green", which giving one selects: highest degree of the harmonic polynomials, 0..8; None: 2.
     preset: "default", or "paper": the published method to the letter.
     depth: octree depth of the mesh, "auto" or 4..12.
     trim: None, or for open scans "auto" (or True: 4 spacings) or a distance in input units: surface farther from every point is cut away.

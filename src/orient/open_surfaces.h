@@ -41,7 +41,7 @@ struct OpenSurfaces {
 /// and where its unrest is above 0.08 or its jump defect above 2/3 (0.8 under noise), and its points do not lie on two walls close together
 /// (on_two_walls()), it is tested without the closed parts, and the sides_by_agreement() of neighbours are tried, from the finest scale on
 /// which the samples are a surface (scan lines are one only across their gaps) on. A part that is at rest as a whole, but not in some
-/// pieces (restless_pieces()), is open too if a hypothesis halves the mean jump defect of these and its |e| is below 2/3. The hypothesis
+/// pieces (restless_pieces()), is open too if a hypothesis is_shown_better() there and its |e| is below 2/3. The hypothesis
 /// with the least mean of JumpDefects::all + own is taken, of equal ones the finest: where layers are close to each other, so that a probe
 /// of one is behind the next, what no other surface disturbs counts twice. Where the defect of a site is above a half, in a groove narrower
 /// than the sampling for instance, the direction is that of a field four site spacings wide, which sees what is around, and the side of a

@@ -26,8 +26,8 @@ inline std::vector<double> scaled(double factor, std::vector<double> values) {
 
 /// Area vectors from a winding gradient: directions kept, lengths linear up to the median and constant beyond, so that thin parts whose
 /// sides the gradient cannot distinguish start near zero and not on the wrong side; times `areas`, what one point stands for (one for
-/// each, or one for all). One factor makes the median of W eta 1/2, what it is on the true surface; it is 3 at most, because an open
-/// surface has no inside. One sweep of `sum`.
+/// each, or one for all). One factor makes the median of W eta 1/2, what it is on the true surface; it is 1 where W eta is only
+/// rounding, as on a flat surface. One sweep of `sum`.
 void gradient_to_areas(FastSum& sum, const std::vector<double>& areas, std::vector<Vec3>& gradient);
 
 struct Polished {
