@@ -145,13 +145,19 @@ TEST(HeightMoments, KnownStepsAreTakenOff) {
   EXPECT_NEAR(known, 0, 0.2);
 }
 
-// Whatever the rounding of their singular equations.
+// Whatever the direction of the line and the rounding of its singular equations.
 TEST(HeightMoments, PointsOnALineHaveNone) {
   shapes::Random random(3);
-  std::vector<Vec3> points;
-  for (int i = 0; i < 40; ++i) points.push_back({random.uniform(-1, 1), 0, 0.1 * random.normal()});
-  const HeightMoments m = moments(points);
-  EXPECT_TRUE(std::isfinite(m.mean_square) && std::isfinite(m.excess)) << m.mean_square << " " << m.excess;
+  for (const double angle : {0.0, 0.5, std::numbers::pi / 4}) {
+    std::vector<Vec3> points;
+    for (int i = 0; i < 40; ++i) {
+      const double along = random.uniform(-1, 1);
+      points.push_back({along * std::cos(angle), along * std::sin(angle), 0.1 * random.normal()});
+    }
+    const HeightMoments m = moments(points);
+    EXPECT_EQ(m.mean_square, 0) << angle;
+    EXPECT_EQ(m.excess, 0) << angle;
+  }
 }
 
 }  // namespace

@@ -18,6 +18,9 @@ namespace {
 
 constexpr Eigen::Index kColumns = kCubicTerms;
 constexpr double kExcess = -0.2;  // of the kurtosis of walls 1.35 standard deviations apart
+// Columns keep this share of their squares beside those to their left: the ridge leaves 1 to 6 of itself where points on a line or a conic
+// determine them, and random points and grids keep 1e4 times as much.
+constexpr double kLeastOwn = 10 * kRidge;
 
 // Columns 1 and 2 are the places across the normal, and whitened^T whitened is what the fit takes.
 double correlation_of_adjacent(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& whitened, const Eigen::VectorXd& residual) {
@@ -55,6 +58,7 @@ HeightMoments height_moments(const std::vector<Vec3>& points, const std::uint32_
   normal_equations.diagonal() *= 1 + kRidge;
   const Eigen::LLT<Eigen::Matrix<double, kColumns, kColumns>> factors(normal_equations);
   if (factors.info() != Eigen::Success) return {};
+  if (!((factors.matrixLLT().diagonal().array().square() / normal_equations.diagonal().array()).minCoeff() > kLeastOwn)) return {};
   const Eigen::VectorXd residual = heights - columns * factors.solve(columns.transpose() * heights);
   const Eigen::MatrixXd whitened = factors.matrixL().solve(columns.transpose());  // column k has the squared length 1 - M_kk
   const double square = residual.squaredNorm();
