@@ -42,6 +42,16 @@ double up_to_sign(const std::vector<Vec3>& normals, const std::vector<Vec3>& tru
   return sum / static_cast<double>(truth.size());
 }
 
+// The six ends of the axes as sites of the unit sphere.
+Sites ends_of_axes(double distance) {
+  Sites sites;
+  sites.distance = distance;
+  sites.axis = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  sites.set = PointSet(sites.axis);
+  sites.flatness.assign(6, 0);
+  return sites;
+}
+
 // Two radial normals of a sphere are mirror images of each other: n_i . n_j - 2 (n_i . e)(n_j . e) = 1, but for the errors of the planes.
 TEST(AdjacentSites, AgreeOnASphereWhereTheirAxesFaceTheSameWay) {
   const Sites sites = place_sites(PointSet(shapes::sphere(2000).points), 0);
@@ -56,13 +66,9 @@ TEST(AdjacentSites, AgreeOnASphereWhereTheirAxesFaceTheSameWay) {
   }
 }
 
-// The six ends of the axes: whatever the angle, radial normals of a sphere are mirror images, and the weight is that of their distance.
+// Whatever the angle, radial normals of a sphere are mirror images, and the weight is that of their distance.
 TEST(AdjacentSites, AreMirrorImagesOnEveryArc) {
-  Sites sites;
-  sites.distance = 1.5;
-  sites.axis = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-  sites.set = PointSet(sites.axis);
-  sites.flatness.assign(6, 0);
+  const Sites sites = ends_of_axes(1.5);
   const std::vector<SignEdge> edges = adjacent_sites(sites);
   EXPECT_EQ(edges.size(), 15U);
   for (const SignEdge& edge : edges) {
@@ -71,13 +77,12 @@ TEST(AdjacentSites, AreMirrorImagesOnEveryArc) {
   }
 }
 
-TEST(AdjacentSites, DoNotCrossGaps) {
-  const std::size_t n = 1000;
-  std::vector<Vec3> points = shapes::sphere(n, 0.4, {-0.5, 0, 0}).points;
-  for (const Vec3& p : shapes::sphere(n, 0.4, {0.75, 0, 0}).points) points.push_back(p);
-  for (const SignEdge& edge : adjacent_sites(place_sites(PointSet(points), 0))) {
-    EXPECT_GT(points[edge.a][0] * points[edge.b][0], 0);
-  }
+// Neighbours on an arc are sqrt(2) apart, 3.5 distances; the opposite ends 5.
+TEST(AdjacentSites, CrossNoGapOfMoreThanFourDistances) {
+  Sites sites = ends_of_axes(0.4);
+  EXPECT_EQ(adjacent_sites(sites).size(), 12U);
+  sites.distance = 0.35;
+  EXPECT_EQ(adjacent_sites(sites).size(), 0U);
 }
 
 TEST(AtSites, AreTheMeansOfTheirPointsOrTheAxis) {

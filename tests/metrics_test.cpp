@@ -270,6 +270,13 @@ TEST(ScoreMesh, NormalConsistencyHasNoSides) {
   EXPECT_NEAR(score_mesh(shapes::inverted(mesh), mesh, {2000, 1}).normal_consistency, 1, 1e-12);
 }
 
+TEST(ScoreMesh, NormalConsistencyIsTheMeanCosineOfTheLines) {
+  const Mesh level = shapes::square(1, 0, 1);
+  Mesh tilted = level;
+  for (Vec3& p : tilted.vertices) p = {0.5 * p[0], p[1], std::sqrt(0.75) * p[0]};  // by 60 degrees
+  EXPECT_NEAR(score_mesh(tilted, level, {500, 1}).normal_consistency, 0.5, 1e-12);
+}
+
 TEST(ScoreMesh, MeshAgainstItselfHasNoError) {
   const Mesh mesh = shapes::torus(1, 0.3, 40, 20);
   const MeshScore score = score_mesh(mesh, mesh, {5000, 1});
