@@ -46,15 +46,5 @@ TEST(DenseSolver, RefusesSingularAndHugeSystems) {
   EXPECT_THROW(static_cast<void>(solve_dense(std::vector<Vec3>(kMostDensePoints + 1), 1e-3, HarmonicValues{}, false)), InvalidInput);
 }
 
-TEST(Schedule, IsParsedOrRefused) {
-  const std::vector<Steps> steps = parse_schedule("20 sd 60 cg");
-  ASSERT_EQ(steps.size(), 2U);
-  EXPECT_EQ(steps[0].count, 20);
-  EXPECT_EQ(steps[1].kind, StepKind::kConjugateGradient);
-  for (const char* bad : {"", "sd", "20", "20 xx", "-1 cg", "20 sd 5", "1e3 cg", "20 sd,60 cg"}) {
-    EXPECT_THROW(static_cast<void>(parse_schedule(bad)), InvalidInput) << bad;
-  }
-}
-
 }  // namespace
 }  // namespace g3r

@@ -1,14 +1,18 @@
-// The energy system: the same for every unit of length, with a weight of the winding number in cubed lengths.
+// The energy system: the same for every unit of length, with a weight of the winding number in cubed lengths, and semidefinite.
 #include "solve/energy_system.h"
 
 #include "cloud/canonical_cloud.h"
 #include "orient/settings.h"
 #include "shapes.h"
+#include "sum/direct_sum.h"
 #include "sum/fast_sum.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 namespace g3r {
 namespace {
@@ -52,6 +56,31 @@ TEST(EnergySystem, IsWeightedAlikeForEverySpacing) {
     const Settings narrow = choose_settings({}, cloud, h / 4, noise * h / 4, 0);
     EXPECT_NEAR(wide.winding_weight / narrow.winding_weight, 64, 1e-9) << noise;
     EXPECT_NEAR(wide.polish.winding_weight / narrow.polish.winding_weight, 64, 1e-9) << noise;
+  }
+}
+
+// Of any points and any widths, also where each point has its own: the symbol of a pair is that of one width, times exp(-e_i^2 k^2 / 4) for
+// either point. Without e^2 g beside Phi it is negative along k.
+TEST(EnergySystem, StokesIsSymmetricAndPositiveSemidefinite) {
+  constexpr std::size_t kPoints = 50;
+  shapes::Random random(6);
+  std::vector<Vec3> points(kPoints);
+  std::vector<double> own(kPoints);
+  for (Vec3& p : points) p = {random.uniform(-1, 1), random.uniform(-1, 1), 0.1 * random.uniform(-1, 1)};
+  for (double& w : own) w = std::pow(10, random.uniform(-2, 0.5));
+  for (const Widths& widths : {Widths(0.01), Widths(0.3), Widths(5.0), Widths(own)}) {
+    Eigen::MatrixXd s(3 * kPoints, 3 * kPoints);
+    for (std::size_t column = 0; column < 3 * kPoints; ++column) {
+      std::vector<Vec3> eta(kPoints, Vec3{0, 0, 0});
+      eta[column / 3][column % 3] = 1;
+      const std::vector<Vec3> product = direct_sum::stokes_single_layer(points, widths, eta);
+      for (std::size_t row = 0; row < 3 * kPoints; ++row) {
+        s(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) = product[row / 3][row % 3];
+      }
+    }
+    EXPECT_LT((s - s.transpose()).norm(), 1e-14 * s.norm());
+    const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(s, Eigen::EigenvaluesOnly).eigenvalues();
+    EXPECT_GT(values.minCoeff(), -1e-13 * values.maxCoeff()) << widths[0];
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include "cloud/canonical_cloud.h"
 #include "cpu/parallel.h"
+#include "kernels/kernel_polynomials.h"
 #include "sanitized.h"
 #include "shapes.h"
 #include "sum/direct_sum.h"
@@ -10,6 +11,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -180,6 +183,37 @@ TEST(FastSum, QueriesMayBeFarAway) {
     const double nothing = std::numeric_limits<double>::quiet_NaN();
     EXPECT_TRUE(std::isnan(sum.winding_at(eta, {{0, nothing, 0}})[0]));
   }
+}
+
+// The largest relative errors within the reach, over 1/(4 pi), of phi, g, h and b.
+template <class T, Precision kPrecision>
+std::array<double, 4> polynomial_errors() {
+  using P = Polynomials<T, kPrecision>;
+  std::array<double, 4> worst{};
+  for (int i = 0; i <= 2000; ++i) {
+    const double s = kReachSquared<T> * i / 2000, w = kMapScale<T> * s / (s + kMapPole) - 1;
+    const KernelValues k = mollified_kernels(s, 1);
+    const std::array<double, 4> truth{k.single_layer, k.double_layer, k.stokeslet, k.gradient};
+    const std::array<const T*, 4> coefficients{P::kSingleLayer, P::kDoubleLayer, P::kStokeslet, P::kGradient};
+    for (std::size_t f = 0; f < 4; ++f) {
+      double sum = 0;
+      for (int d = P::kDegree; d >= 0; --d) sum = sum * w + static_cast<double>(coefficients[f][d]);
+      worst[f] = std::max(worst[f], std::abs(kInv4Pi * sum / truth[f] - 1));
+    }
+  }
+  return worst;
+}
+
+TEST(KernelPolynomials, AreAsNearAsIsSaid) {
+  const std::array<double, 4> full = polynomial_errors<float, Precision::kFull>();  // coefficients rounded to float count
+  const std::array<double, 4> rough = polynomial_errors<float, Precision::kRough>();
+  for (std::size_t f = 0; f < 3; ++f) {
+    EXPECT_LT(full[f], 1e-6) << f;
+    EXPECT_LT(rough[f], 2.2e-5) << f;
+  }
+  EXPECT_LT(full[3], 2e-6);  // b is off by more
+  EXPECT_LT(rough[3], kRoughPolynomialError);
+  for (const double error : polynomial_errors<double, Precision::kFull>()) EXPECT_LT(error, 1e-12);  // that of the definitions
 }
 
 }  // namespace

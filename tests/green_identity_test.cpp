@@ -1,11 +1,17 @@
 // Green's third identity on surfaces with known normals: what the discrete operators must reproduce.
 #include "sum/direct_sum.h"
 
+#include "kernels/kernels.h"
 #include "sanitized.h"
 #include "shapes.h"
 #include "solve/harmonics.h"
 
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <utility>
 
 namespace g3r {
 namespace {
@@ -92,6 +98,36 @@ TEST(GreenIdentity, StokesSingleLayerAnnihilatesTheNormals) {
   EXPECT_LT(size(4000, false), 0.01);
   EXPECT_LT(size(4000, false), size(500, false) / 2);
   EXPECT_GT(size(4000, true), 0.1);
+}
+
+// Phi, g, b and h are one kernel and its derivatives, also where the series ends; beyond the reaches they are the plain ones (math.md).
+TEST(Kernels, AreDerivativesOfOneAnother) {
+  for (const double e : {0.02, 1.0, 7.0}) {
+    for (const double widths : {1e-3, 0.1, 0.4999, 0.5001, 1.0, 2.5, 6.0}) {
+      const double rho = widths * e, step = 1e-4 * rho;
+      const KernelValues k = mollified_kernels(rho * rho, e);
+      const KernelValues less = mollified_kernels((rho - step) * (rho - step), e), more = mollified_kernels((rho + step) * (rho + step), e);
+      const double slope = 2 * step * rho;
+      if (widths > 0.05) {  // where rounding of the differences does not count
+        EXPECT_NEAR((less.single_layer - more.single_layer) / slope / k.double_layer, 1, 1e-6) << widths;
+        EXPECT_NEAR((less.double_layer - more.double_layer) / slope / k.gradient, 1, 1e-6) << widths;
+      }
+      EXPECT_NEAR((k.double_layer - e * e * k.gradient) / k.stokeslet, 1, 1e-10) << widths;
+      EXPECT_NEAR((4 * k.single_layer) / (3 * (k.single_layer + e * e * k.double_layer) + rho * rho * k.stokeslet), 1, 1e-12) << widths;
+    }
+  }
+  const KernelValues at_0 = mollified_kernels(0, 1);
+  const double c = kInv4Pi * std::sqrt(2 / std::numbers::pi);
+  EXPECT_DOUBLE_EQ(at_0.single_layer, c);
+  EXPECT_DOUBLE_EQ(at_0.double_layer, c / 3);
+  EXPECT_DOUBLE_EQ(at_0.gradient, c / 5);
+  EXPECT_DOUBLE_EQ(at_0.stokeslet, 2 * c / 15);
+  for (const auto& [reach, off] : {std::pair{4.0, 7e-3}, {5.0, 1.5e-4}, {7.0, 2.3e-9}}) {
+    const KernelValues k = mollified_kernels(reach * reach, 1);
+    EXPECT_NEAR(k.gradient / (3 * kInv4Pi / std::pow(reach, 5)), 1, off) << reach;
+    EXPECT_NEAR(k.double_layer / (kInv4Pi / std::pow(reach, 3)), 1, off) << reach;
+    EXPECT_NEAR(k.single_layer / (kInv4Pi / reach), 1, off) << reach;
+  }
 }
 
 }  // namespace
