@@ -1,4 +1,6 @@
 // Areas of oriented points: they add up to the surface, and their field is 1 inside and 0 outside.
+#include "field/areas.h"
+
 #include <g3r/g3r.h>
 
 #include <gtest/gtest.h>
@@ -23,6 +25,17 @@ std::vector<Vec3> hollow_ball(std::size_t n, double sigma) {
     points.push_back(p);
   }
   return points;
+}
+
+// The level of either side becomes one half, as far as the bounds of the factor go.
+TEST(AreaFactor, MakesTheLevelOneHalfWithinItsBounds) {
+  for (const double level : {0.39, 0.5, 1.0, 1.49}) {
+    EXPECT_DOUBLE_EQ(area_factor(level) * level, 0.5);
+    EXPECT_EQ(area_factor(-level), area_factor(level));
+  }
+  EXPECT_DOUBLE_EQ(area_factor(100), 1.0 / 3);
+  EXPECT_EQ(area_factor(0.1), 1.3);
+  EXPECT_EQ(area_factor(0), 1.3);
 }
 
 // Solved vectors become shorter under noise, each as it comes, and then w is 0.7 in gaps where it should be 0.

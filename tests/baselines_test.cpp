@@ -113,6 +113,24 @@ TEST(StretchedWinding, AdjointIsTheAdjoint) {
   expect_adjoint(winding.apply(eta), winding.adjoint(q), eta, q);
 }
 
+// But for the sources beyond 8 widths.
+TEST(StretchedWinding, RowNormsAreThoseOfTheMatrix) {
+  const CanonicalCloud cloud = canonical_cloud(shapes::torus(300, 0.6, 0.25, 5).points);
+  StretchedWinding sum(cloud.points(), {1, 2, 0.5}, 0.1, sum_plan(0, cloud.size()), nullptr);
+  std::vector<double> truth(cloud.size(), 0);
+  for (std::size_t column = 0; column < 3 * cloud.size(); ++column) {
+    std::vector<Vec3> eta(cloud.size(), Vec3{0, 0, 0});
+    eta[column / 3][column % 3] = 1;
+    const std::vector<double> entries = sum.apply(eta);
+    for (std::size_t row = 0; row < truth.size(); ++row) truth[row] += entries[row] * entries[row];
+  }
+  const std::vector<double> norms = sum.row_norms();
+  for (std::size_t row = 0; row < truth.size(); ++row) {
+    EXPECT_LE(norms[row], truth[row] * (1 + 1e-5)) << row;
+    EXPECT_GE(norms[row], truth[row] * 0.95) << row;
+  }
+}
+
 TEST(GaussSystem, IsLinearAndSymmetric) {
   const CanonicalCloud cloud = bumpy_cloud();
   GaussSystem system(cloud.points(), {{3, 1, 1}, {1, 1, 1}}, 0.02, 0.05, sum_plan(1e-2, cloud.size()), nullptr);

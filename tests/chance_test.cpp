@@ -54,6 +54,13 @@ TEST(ProvingNumber, OfExactPointsIsThatOfABend) {
   }
 }
 
+TEST(ShareOfBall, IsThatOfASlab) {
+  EXPECT_EQ(share_of_ball(0), 0);
+  EXPECT_EQ(share_of_ball(1), 1);
+  EXPECT_EQ(share_of_ball(2), 1);
+  EXPECT_NEAR(share_of_ball(0.5), 0.6875, 1e-15);
+}
+
 TEST(IsMajority, IsMoreThanHalf) {
   EXPECT_FALSE(is_majority(5, 10));
   EXPECT_TRUE(is_majority(6, 10));

@@ -29,6 +29,18 @@ TEST(Clusters, PartitionThePoints) {
   for (std::size_t c = 1; c < codes.size(); ++c) EXPECT_LT(codes[c - 1], codes[c]);
 }
 
+// Cells are of a quarter for any side from there to a half, and each point is the mean of its own.
+TEST(Clusters, AreCentroidsOfCellsOfNoMoreThanTheSide) {
+  const std::vector<Vec3> points{{0.01, 0.01, 0.01}, {0.03, 0.01, 0.01}, {0.24, 0.01, 0.01}, {0.26, 0.01, 0.01}, {0.49, 0.01, 0.01}};
+  for (const double side : {0.25, 0.3, 0.4999}) {
+    const Clusters clusters = cluster_points(points, side);
+    EXPECT_EQ(clusters.cluster_of, (std::vector<std::uint32_t>{0, 0, 0, 1, 1})) << side;
+    ASSERT_EQ(clusters.points.size(), 2U);
+    EXPECT_NEAR(clusters.points[0][0], 0.28 / 3, 1e-15);
+    EXPECT_NEAR(clusters.points[1][0], 0.375, 1e-15);
+  }
+}
+
 // Points that stand for more area count for as much in their cell.
 TEST(Clusters, CountTheAreasOfTheirPoints) {
   const CanonicalCloud cloud = canonical_cloud(shapes::torus(3000, 0.6, 0.25, 1).points);

@@ -55,6 +55,11 @@ TEST(FindExactPlane, OfTwoEqualOnesFacesTheDirectionAskedFor) {
   }
 }
 
+TEST(BesidePlane, AreTheFirstAndThoseThatItDoesNotHold) {
+  EXPECT_EQ(beside_plane({7, 3, 9, 4}, {7, 9}), (std::vector<std::uint32_t>{7, 3, 4}));
+  EXPECT_EQ(beside_plane({7}, {}), (std::vector<std::uint32_t>{7}));
+}
+
 TEST(FindExactPlane, IsNotProvedByALineOrByACurvedSurface) {
   std::vector<Vec3> line;
   for (int i = 0; i < 20; ++i) line.push_back({0.01 * i, 0.02 * i, -0.01 * i});

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -66,6 +67,22 @@ TEST(GradientToAreas, HaveTheWindingNumberOfASurfaceWhateverTheGradientsSize) {
     EXPECT_NEAR(length(other[i]), length(eta[i]), 1e-6 * length(eta[i]));
     EXPECT_NEAR(vector::dot(vector::normalised(eta[i]), ball.truth[i]), 1, 1e-12);  // directions stay
   }
+}
+
+// Gradients of the lengths 1, 2, ..., 5, of the median 3, at points that stand for one or four areas.
+TEST(GradientToAreas, AreLinearUpToTheMedianAndConstantBeyond) {
+  const Ball ball;
+  FastSum sum(ball.cloud.points(), Widths(ball.settings.epsilon.typical()), ball.settings.sums);
+  std::vector<Vec3> eta = ball.truth;
+  std::vector<double> areas, expected;
+  for (std::size_t i = 0; i < eta.size(); ++i) {
+    const double size = 1 + static_cast<double>(i % 5);
+    eta[i] = vector::scale(eta[i], size);
+    areas.push_back(i % 2 == 0 ? 1 : 4);
+    expected.push_back(areas.back() * std::min(1.0, size / 3));
+  }
+  gradient_to_areas(sum, areas, eta);
+  for (std::size_t i = 0; i < eta.size(); ++i) EXPECT_NEAR(length(eta[i]) / length(eta[2]), expected[i] / expected[2], 1e-12) << i;
 }
 
 TEST(Polish, BringsDirectionsNearerToTheTruth) {

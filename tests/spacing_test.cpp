@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <vector>
 
@@ -43,9 +44,17 @@ TEST(TypicalSpacing, IsNotMovedByAFewFarPoints) {
   EXPECT_NEAR(typical_spacing(local_spacing(points)), h, 1e-12);
 }
 
-TEST(SmoothedSpacing, KeepsWhatIsTheSameEverywhere) {
-  const std::vector<std::uint32_t> near(17 * 40, 7);
-  for (const double h : smoothed_spacing(std::vector<double>(40, 0.3), near)) EXPECT_NEAR(h, 0.3, 1e-14);
+TEST(SmoothedSpacing, IsTheGeometricMeanOfTheSixteenNearest) {
+  std::vector<double> local(17, 1);
+  std::vector<std::uint32_t> near;
+  for (std::size_t i = 0; i < 17; ++i) {
+    for (std::uint32_t k = 0; k < 17; ++k) near.push_back(static_cast<std::uint32_t>((i + k) % 17));
+  }
+  local[0] = 1 << 16;
+  const std::vector<double> h = smoothed_spacing(local, near);
+  EXPECT_NEAR(h[0], 2, 1e-12);
+  EXPECT_NEAR(h[1], 1, 1e-12);
+  EXPECT_NEAR(h[16], 2, 1e-12);
 }
 
 TEST(SmoothSpacing, OfAGridIsThatOfItsDiagonalNeighbours) {

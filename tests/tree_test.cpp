@@ -1,3 +1,4 @@
+#include "base/vector.h"
 #include "cloud/canonical_cloud.h"
 #include "shapes.h"
 #include "sum/target_shells.h"
@@ -48,6 +49,22 @@ TEST(Octree, NodesHoldThePointsOfTheirCubesAndLeavesFew) {
       begin = tree.nodes[c].end;
     }
     EXPECT_EQ(begin, node.end);
+  }
+}
+
+TEST(Octree, KnowsTheFarthestPointAndTheWidestKernelOfANode) {
+  const CanonicalCloud cloud = uneven_cloud();
+  shapes::Random random(4);
+  std::vector<double> widths(cloud.size());
+  for (double& w : widths) w = random.uniform(0.001, 0.1);
+  for (const OctreeNode& node : build_octree(cloud.points(), morton_codes(cloud.points()), widths, kLeafPoints).nodes) {
+    double radius = 0, width = 0;
+    for (std::size_t p = node.begin; p < node.end; ++p) {
+      radius = std::max(radius, vector::length(vector::subtract(cloud.points()[p], node.centre())));
+      width = std::max(width, widths[p]);
+    }
+    EXPECT_NEAR(node.radius, radius, 1e-14);
+    EXPECT_EQ(node.width, width);
   }
 }
 

@@ -26,7 +26,7 @@ class StretchedWinding {
   std::vector<double> apply(const std::vector<Vec3>& eta);
   /// W_S^T q: N vectors.
   std::vector<Vec3> adjoint(const std::vector<double>& q);
-  /// Squared norm of every row of W_S, from the sources within 8 widths: the rest adds less than 2 %. N values > 0.
+  /// Squared norm of every row of W_S, from the sources within 8 widths: the rest adds less than 5 %. N values > 0.
   [[nodiscard]] std::vector<double> row_norms() const;
 
  private:
