@@ -147,14 +147,16 @@ TEST(FieldMesher, RandomNormalsStillGiveAClosedManifold) {
 
 TEST(FieldMesher, ScaleAndShiftOfTheInputMoveTheMeshAlong) {
   const OrientedSample s = sphere_sample(1000, 1, 4);
-  OrientedSample big = s;
-  for (Vec3& p : big.points) {
-    for (double& c : p) c *= 1024;
-  }
+  const auto moved = [](const Vec3& p) { return Vec3{1024 * p[0] + 1048576, 1024 * p[1] - 2097152, 1024 * p[2] + 524288}; };
+  const auto back = [](const Vec3& p) { return Vec3{(p[0] - 1048576) / 1024, (p[1] + 2097152) / 1024, (p[2] - 524288) / 1024}; };
+  OrientedSample far = s;
+  std::transform(s.points.begin(), s.points.end(), far.points.begin(), moved);
   const Mesh a = field_mesh(s.points, s.normals, DistanceSampler([](const Vec3& p) { return norm(p) - 1; }, 0.1));
-  const Mesh b = field_mesh(big.points, big.normals, DistanceSampler([](const Vec3& p) { return norm(p) / 1024 - 1; }, 0.1));
+  const Mesh b = field_mesh(far.points, far.normals, DistanceSampler([&](const Vec3& p) { return norm(back(p)) - 1; }, 0.1));
   ASSERT_EQ(a.triangles, b.triangles);
-  for (std::size_t i = 0; i < a.vertices.size(); ++i) EXPECT_NEAR(a.vertices[i][0] * 1024, b.vertices[i][0], 1e-6);
+  for (std::size_t i = 0; i < a.vertices.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(moved(a.vertices[i])[k], b.vertices[i][k], 1e-6);
+  }
 }
 
 TEST(FieldMesher, RepeatedPointsAndOutliersDoNoHarm) {
