@@ -78,8 +78,11 @@ class Streams(ProgramTest):
     def test_the_locale_changes_nothing(self):
         locales = self.path("locales")
         os.mkdir(locales)
+        made = os.path.join(locales, "de_DE.UTF-8")
         if shutil.which("localedef"):
-            subprocess.run(["localedef", "-i", "de_DE", "-f", "UTF-8", os.path.join(locales, "de_DE.UTF-8")], capture_output=True)
+            subprocess.run(["localedef", "-i", "de_DE", "-f", "UTF-8", made], capture_output=True)
+        if not os.path.isdir(made):
+            self.skipTest("this system has no source of a German locale")
         german = {**os.environ, "LOCPATH": locales, "LC_ALL": "de_DE.UTF-8", "LANG": "de_DE.UTF-8"}
         self.expect(OK, "orient", "ball.ply", "plain.xyz", "--report", "-")
         result = self.expect(OK, "orient", "ball.ply", "german.xyz", "--report", "-", env=german)

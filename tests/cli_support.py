@@ -144,7 +144,9 @@ class ProgramTest(unittest.TestCase):
 
     def expect(self, code, *arguments, **options):
         """Runs the program and checks its exit code. A failure must say why, and any end must leave no temporary file."""
+        before = set(os.listdir(self.folder))
         result = self.run_g3r(*arguments, **options)
+        self.assertEqual([name for name in os.listdir(self.folder) if name.endswith(".g3r.tmp") and name not in before], [])
         self.assertEqual(result.code, code, "g3r %s\n%s" % (" ".join(arguments), result.err))
         if code not in (OK, BAD_DATA) or "--strict" not in arguments and code != OK:
             self.assertTrue(result.err.startswith("g3r: ") or "\ng3r: " in result.err, result.err)

@@ -93,12 +93,39 @@ def test_reconstruct_gives_a_mesh_and_colors(sphere):
     assert carried.dtype == np.uint8 and (carried == [0, 255, 0]).all()
 
 
-def test_mesh_options_are_taken(sphere, result):
-    assert len(g3r.run(sphere, faces=200).faces) < len(result.faces)
-    for options in ({"trim": "auto"}, {"trim": True}, {"trim": 0.5}, {"keep_largest": 1}, {"min_component": 0}, {"keep_all": True}, {"depth": 5},
-                    {"mesher": "field"}, {"faces": 500.0, "max_memory": 8e9, "keep_largest": 1.0, "keep_all": np.True_}):
-        assert len(g3r.run(sphere, **options).faces) > 0
-        assert len(g3r.mesh_oriented(sphere, sphere, **options)[1]) > 0
+@pytest.mark.parametrize("options, components", [
+    ({}, 2), ({"keep_largest": 1}, 1), ({"keep_largest": 1.0}, 1), ({"keep_largest": 2}, 2), ({"min_component": 0}, 2), ({"min_component": 400}, 1),
+    ({"mesher": "field"}, 2), ({"max_memory": 8e9}, 2),
+])
+def test_mesh_options_are_taken(sphere, options, components):
+    points = np.concatenate([sphere, [3, 0, 0] + 0.4 * sphere_points(200)])
+    normals = np.concatenate([sphere, sphere_points(200)])
+    result = g3r.run(points, **options)
+    assert result.stats["mesh"]["components"] == components
+    vertices, _ = g3r.mesh_oriented(points, normals, **options)
+    assert (vertices[:, 0].max() > 2) == (components == 2)
+
+
+def test_keep_all_keeps_what_few_points_hold(sphere):
+    few = sphere_points(7)
+    points, normals = np.concatenate([sphere, [-2, 0, 0] + 0.15 * few]), np.concatenate([sphere, few])
+    for keep_all in (False, True, np.True_):
+        assert (g3r.mesh_oriented(points, normals, keep_all=keep_all)[0][:, 0].min() < -1.5) == keep_all
+
+
+def test_the_size_of_a_mesh_is_taken(sphere):
+    for run in (lambda **options: g3r.run(sphere, **options).faces, lambda **options: g3r.mesh_oriented(sphere, sphere, **options)[1]):
+        for faces in (200, 500.0):
+            assert len(run(faces=faces)) == pytest.approx(faces, abs=10)
+        assert len(run(depth=5)) < len(run(depth=6)) / 3
+    assert g3r.run(sphere, depth=5).stats["scales"]["depth"] == 5
+
+
+def test_trim_is_taken(sphere):
+    part = sphere[sphere[:, 2] > -0.5]
+    for trim in ("auto", True, 0.5):
+        assert not g3r.run(part, trim=trim).stats["mesh"]["closed"]
+    assert g3r.run(part).stats["mesh"]["closed"]
 
 
 def test_trim_is_a_switch_too(sphere):
@@ -169,13 +196,49 @@ def test_the_field_leaves_out_what_is_not_finite(result, sphere):
         g3r.Field(sphere, result.normals[:5], result.areas)
 
 
-@pytest.mark.parametrize("options", [
-    {"epsilon": 0.05}, {"epsilon": "0.5%"}, {"epsilon": "0.8h"}, {"epsilon": "0.03n"}, {"noise": 0}, {"noise": "0.2h"}, {"noise": "auto"}, {"degree": 1}, {"preset": "paper"}, {"solver": "cg"}, {"method": "energy"},
-    {"method": "wnnc", "wnnc_widths": "sparse"}, {"method": "agr"}, {"method": "pgr"},
-    {"threads": 1}, {"device": "cpu"}, {"tolerance": 1e-2}, {"accuracy": 1e-2}, {"harmonics": "1,x,y,z"},
+def value_in(stats, path):
+    """What stats say at "a.b"; as "a.b/c.d" the ratio of two numbers."""
+    if "/" in path:
+        above, below = path.split("/")
+        return value_in(stats, above) / value_in(stats, below)
+    for name in path.split("."):
+        stats = stats[name]
+    return len(stats) if isinstance(stats, list) else stats
+
+
+DIAGONAL = 2 * 3**0.5  # of the box of the unit sphere
+
+
+@pytest.mark.parametrize("options, expected", [
+    ({"epsilon": 0.05}, {"scales.epsilon": 0.05}),
+    ({"epsilon": "0.5%"}, {"scales.epsilon": 0.005 * DIAGONAL}),
+    ({"epsilon": "0.8h"}, {"scales.epsilon/scales.spacing": 0.8}),
+    ({"epsilon": "0.03n"}, {"scales.epsilon/scales.box_side": 0.03 * 0.55}),
+    ({"noise": 0}, {"scales.noise": 0}),
+    ({"noise": "0.2h"}, {"scales.noise/scales.spacing": 0.2}),
+    ({"noise": "auto"}, {"scales.noise": 0}),
+    ({"degree": 1}, {"method.name": "green", "method.harmonics": "degree:0-1"}),
+    ({"harmonics": "1,x,y,z"}, {"method.name": "green", "method.harmonics": "1,x,y,z"}),
+    ({"preset": "paper"}, {"method.name": "green", "method.preset": "paper", "iterations": 80}),
+    ({"solver": "cg"}, {"method.solver": "cg"}),
+    ({"schedule": "3 cg", "tolerance": 0}, {"iterations": 3}),
+    ({"method": "energy"}, {"method.name": "energy"}),
+    ({"method": "wnnc", "wnnc_widths": "sparse"}, {"method.name": "wnnc", "method.solver": "wnnc", "iterations": 40}),
+    ({"method": "agr"}, {"method.name": "agr"}),
+    ({"method": "pgr"}, {"method.name": "pgr"}),
+    ({"threads": 1}, {"threads": 1}),
+    ({"device": "cpu"}, {"device.name": "cpu"}),
+    ({"tolerance": 1e-2}, {"method.tolerance": 1e-2}),
 ])
-def test_every_option_is_taken(sphere, options):
-    assert is_outward(g3r.orient(sphere, **options), sphere)
+def test_every_option_is_taken(sphere, options, expected):
+    result = g3r.run(sphere, mesh=False, **options)
+    assert is_outward(result.normals, sphere)
+    for path, value in expected.items():
+        assert value_in(result.stats, path) == (value if isinstance(value, str) else pytest.approx(value, rel=2e-3)), path
+
+
+def test_the_accuracy_of_sums_is_taken():
+    assert g3r.run(sphere_points(6000), mesh=False, accuracy=1e-2).stats["method"]["accuracy"] == 1e-2
 
 
 def test_build_info():
