@@ -35,6 +35,8 @@ MESH_SCHEMA = {"vertices": int, "faces": int, "components": int, "closed": bool,
 
 class Report(ProgramTest):
     def assert_schema(self, value, schema, where=""):
+        if where != "seconds.":  # further stages may follow
+            self.assertEqual(set(value), set(schema), where)
         for key, kind in schema.items():
             self.assertIn(key, value, where)
             if isinstance(kind, dict):
@@ -44,31 +46,50 @@ class Report(ProgramTest):
             elif kind is not None:
                 self.assertIs(type(value[key]), kind, where + key)
 
+    def assert_report(self, report, mesh):
+        """Every field of the schema and no other, with a mesh or null."""
+        self.assertEqual(report["mesh"] is not None, mesh)
+        if mesh:
+            self.assert_schema(report["mesh"], MESH_SCHEMA, "mesh.")
+        self.assert_schema({key: value for key, value in report.items() if key != "mesh"}, REPORT_SCHEMA)
+        self.assertEqual(len(report["scales"]["box_centre"]), 3)
+        for step in report["iterations"]:
+            self.assertEqual(set(step), {"kind", "residual"})
+            self.assertIn(step["kind"], ("sd", "cg", "wnnc"))
+            self.assertGreaterEqual(step["residual"], 0)
+
     def test_every_field_is_there_and_documented(self):
         write_points(self.path("ball.ply"), sphere(500))
         self.expect(OK, "orient", "ball.ply", "out.ply", "--report", "r.json")
-        report = self.json_of("r.json")
-        self.assert_schema(report, REPORT_SCHEMA)
-        self.assertEqual(set(report), set(REPORT_SCHEMA) | {"mesh"})
-        self.assertIsNone(report["mesh"])
-        self.assertEqual(len(report["scales"]["box_centre"]), 3)
-        for step in report["iterations"]:
-            self.assertIn(step["kind"], ("sd", "cg"))
-            self.assertGreaterEqual(step["residual"], 0)
+        self.assert_report(self.json_of("r.json"), mesh=False)
         with open(DOCS) as file:
             text = file.read()
         for group, fields in list(REPORT_SCHEMA.items()) + [("mesh", MESH_SCHEMA)]:
             for name in [group] + list(fields if isinstance(fields, dict) else []):
                 self.assertRegex(text, r"[`.]%s\b" % name)
 
+    def test_every_command_and_method_has_every_field(self):
+        write_points(self.path("ball.ply"), sphere(500))
+        self.expect(OK, "orient", "ball.ply", "oriented.ply")
+        self.expect(OK, "mesh", "oriented.ply", "mesh.ply", "--report", "mesh.json")
+        self.assert_report(self.json_of("mesh.json"), mesh=True)
+        self.expect(OK, "info", "ball.ply", "--report", "info.json")
+        self.assert_report(self.json_of("info.json"), mesh=False)
+        self.expect(OK, "info", "mesh.ply", "--report", "info.json")
+        self.assert_report(self.json_of("info.json"), mesh=True)
+        for options in (["--method", "wnnc"], ["--method", "agr"], ["--method", "pgr"], ["--method", "green"], ["--preset", "paper"],
+                        ["--up", "+z"]):
+            self.expect(OK, "orient", "ball.ply", "out.ply", "--report", "r.json", *options)
+            report = self.json_of("r.json")
+            self.assert_report(report, mesh=False)
+            self.assertIn(report["method"]["preset" if "--preset" in options else "name"], options + ["energy"])
+
     def test_the_mesh_is_described(self):
         write_points(self.path("ball.ply"), sphere(2000))
         self.expect(OK, "ball.ply", "--report", "r.json")
         self.assertTrue(os.path.exists(self.path("ball.mesh.ply")))
         report = self.json_of("r.json")
-        self.assert_schema(report, REPORT_SCHEMA)
-        self.assert_schema(report["mesh"], MESH_SCHEMA)
-        self.assertEqual(set(report["mesh"]), set(MESH_SCHEMA))
+        self.assert_report(report, mesh=True)
         self.assertTrue(report["mesh"]["closed"] and report["mesh"]["manifold"])
         self.assertEqual((report["mesh"]["components"], report["mesh"]["genus"]), (1, 0))
         self.assertAlmostEqual(report["mesh"]["volume"], 4 / 3 * math.pi, delta=0.15)

@@ -251,6 +251,18 @@ TEST(Off, ColoursAreOfOneKindInAllLines) {
   EXPECT_EQ(read(head + "0 0 0 1 0 0 0.5\n1 0 0 1 1 0 0.5\n").colors, (Colors{{1, 0, 0}, {1, 1, 0}}));
 }
 
+TEST(Off, NormalsStandBeforeColours) {
+  for (const char* text : {"NOFF\n2 0 0\n5 0 0 0 0 1\n6 0 0 0 -1 0\n", "CNOFF\n2 0 0\n5 0 0 0 0 1 200 100 50\n6 0 0 0 -1 0 1 2 3\n",
+                           "CNOFF\n2 0 0\n5 0 0 0 0 1 200 100 50 255\n6 0 0 0 -1 0 1 2 3 255\n"}) {
+    const Cloud cloud = read(text);
+    EXPECT_EQ(cloud.positions, (std::vector<Vec3>{{5, 0, 0}, {6, 0, 0}})) << text;
+    EXPECT_EQ(cloud.normals, (std::vector<Vec3>{{0, 0, 1}, {0, -1, 0}})) << text;
+    if (text[0] == 'C') {
+      EXPECT_EQ(cloud.colors, (std::vector<std::array<std::uint8_t, 3>>{{200, 100, 50}, {1, 2, 3}})) << text;
+    }
+  }
+}
+
 TEST(Obj, ColoursMayBeALittleAbove1) { EXPECT_EQ(read("v 0 0 0 1.0001 0.5 0\n").colors[0], (std::array<std::uint8_t, 3>{255, 128, 0})); }
 
 TEST(Gltf, NodesMoveTheirPoints) {

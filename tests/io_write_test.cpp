@@ -329,6 +329,21 @@ TEST(Write, PackedColoursSurviveAsText) {
   EXPECT_EQ(read(samples::written(helix, "a.pcd", {.ascii = true})).colors, helix.colors);
 }
 
+// PLY has no integers of 64 bits.
+TEST(Write, IntegersOf64BitsBecomeDoublesOfPly) {
+  const std::string head = samples::npy_header("[('x', '<f4'), ('y', '<f4'), ('z', '<f4'), ('id', '<i8')]", 1, "");
+  const std::string npy =
+      head + samples::raw(1.0F) + samples::raw(2.0F) + samples::raw(3.0F) + samples::raw(std::int64_t{-9007199254740992});
+  const std::string pcd =
+      "VERSION .7\nFIELDS x y z id\nSIZE 4 4 4 8\nTYPE F F F U\nCOUNT 1 1 1 1\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA ascii\n"
+      "1 2 3 9007199254740992\n";
+  for (const auto& [bytes, id] : {std::pair{npy, -9007199254740992.0}, {pcd, 9007199254740992.0}}) {
+    const std::string ply = samples::written(read(bytes), "a.ply");
+    EXPECT_NE(ply.find("property double id\n"), std::string::npos) << ply.substr(0, 200);
+    EXPECT_EQ(samples::value_of(read(ply), "id", 0), id);
+  }
+}
+
 TEST(Write, ConfidenceIsNamedForCloudCompareOnRequest) {
   const Cloud cloud = read(samples::written(samples::helix(4), "a.ply"));
   const std::vector<float> confidence(4, 1);

@@ -98,6 +98,19 @@ TEST(NewLas, NumbersThatOnlyNewPointFormatsHoldAskForOne) {
   EXPECT_TRUE(read(las.bytes).warnings.empty());
 }
 
+TEST(NewLas, FlagsBecomeBits) {
+  const WrittenLas old("x,y,z,classification,synthetic,key_point,withheld\n0,0,0,2,1,0,1\n1,0,0,2,0,1,0\n");
+  EXPECT_TRUE(old.warnings.empty()) << old.warnings[0];
+  EXPECT_EQ(old.format, 0U);
+  EXPECT_EQ(old.field<std::uint8_t>(0, 15), 2 + 32 + 128);
+  EXPECT_EQ(old.field<std::uint8_t>(1, 15), 2 + 64);
+  const WrittenLas extended("x,y,z,synthetic,key_point,withheld,overlap,scanner_channel\n0,0,0,1,0,1,1,2\n1,0,0,0,1,0,0,3\n");
+  EXPECT_TRUE(extended.warnings.empty()) << extended.warnings[0];
+  EXPECT_EQ(extended.format, 6U);
+  EXPECT_EQ(extended.field<std::uint8_t>(0, 15), 1 + 4 + 8 + 16 * 2);
+  EXPECT_EQ(extended.field<std::uint8_t>(1, 15), 2 + 16 * 3);
+}
+
 TEST(NewLas, NumbersThatDoNotFitAreExtraBytesAndSaidSo) {
   for (const auto& [name, value] : {std::pair<const char*, const char*>{"intensity", "0.25"},
                                     {"classification", "300"},

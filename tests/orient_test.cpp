@@ -53,6 +53,15 @@ TEST(Orient, FindsTheOutsideOfEveryTopology) {
   }
 }
 
+// An eighth of the spacing squared, an eighth of the angle.
+TEST(Orient, AnglesFallInProportionToThePoints) {
+  const auto angle = [](std::size_t n) {
+    const Surface s = shapes::ellipsoid(n, 0.9, 0.6, 0.45);
+    return std::sqrt(shapes::angle_error(orient(s.points).normals, s.normals));
+  };
+  EXPECT_LT(angle(16000), angle(2000) / 4);
+}
+
 TEST(Orient, PaperPresetOrientsCleanShapes) {
   Options options;
   options.preset = Preset::kPaper;

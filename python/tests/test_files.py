@@ -26,6 +26,15 @@ def test_points_come_back(tmp_path, sphere):
     assert str(len(sphere)) in repr(cloud)
 
 
+def test_numpy_reads_the_text(tmp_path, sphere):
+    confidence = np.linspace(0, 1, len(sphere), dtype=np.float32)
+    for name in ("a.xyz", "a.txt"):
+        g3r.write(tmp_path / name, sphere, normals=sphere, confidence=confidence)
+        columns = np.loadtxt(tmp_path / name, comments="//")
+        np.testing.assert_array_equal(columns[:, :3], sphere)
+        np.testing.assert_array_equal(columns[:, 3:].astype(np.float32), np.column_stack([sphere, confidence]).astype(np.float32))
+
+
 def test_views_of_a_cloud_are_read_only_and_keep_it_alive(tmp_path, sphere):
     path = tmp_path / "a.ply"
     g3r.write(path, sphere)
