@@ -1,8 +1,8 @@
 // Pair sums by SIMD: sources in the lanes, targets one by one. One instruction set per machine, chosen at run time (Highway).
 //
 // All kernels are unnormalised (without 1/(4 pi)). Precision T: float, added in double every 1536 sources or fewer, or double throughout.
-// Relative error of one kernel evaluation: 1e-6 (float), 1e-14 (double), or up to NearTask::kernel_error (float), see docs/math.md,
-// "Mollified kernels by polynomials".
+// Relative error of one kernel evaluation: 1e-6 (float; b, of the gradient: 5e-6), 1e-14 (double), or up to NearTask::kernel_error (float),
+// see docs/math.md, "Mollified kernels by polynomials".
 #pragma once
 
 #include <cstddef>
