@@ -56,6 +56,20 @@ class Hints(ProgramTest):
         self.expect(OK, "orient", "frame.ply", "out.ply", "--sensor", "0,0,0", "--flip")
         self.assertLessEqual(self.facing("out.ply", (0, 0, 0)), 0.005)
 
+    def test_half_of_a_ball_is_a_choice_until_a_hint_decides(self):
+        random_ = random.Random(7)
+        ball = []
+        for _ in range(thinned(2000)):
+            z, turn = -random_.random(), 2 * math.pi * random_.random()
+            ball.append((math.sqrt(1 - z * z) * math.cos(turn), math.sqrt(1 - z * z) * math.sin(turn), z))
+        write_points(self.path("half.ply"), ball)
+        said = self.expect(BAD_DATA, "orient", "half.ply", "out.ply", "--strict").err
+        self.assertIn("is a choice: the one that bends outward where one does, else faces up", said)
+        self.assertGreater(self.facing("out.ply", (0, 0, -9)), 0.5)
+        for place, hint in (((0, 0, -99), ("--sensor", "0,0,-99")), ((0, 0, 0), ("--seen-from-inside",))):
+            self.expect(OK, "orient", "half.ply", "out.ply", "--strict", *hint)
+            self.assertGreater(self.facing("out.ply", place), 0.97)
+
     def test_terrain_faces_up_whatever_up_is(self):
         random_ = random.Random(5)
         plan = [(2 * random_.random() - 1, 2 * random_.random() - 1) for _ in range(thinned(2000))]

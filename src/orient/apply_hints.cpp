@@ -85,14 +85,20 @@ void warn(const HintEffect& effect, const Hints& given, bool any_open, Stats& st
   if (given.up && !any_open) stats.warnings.emplace_back("hint up: it decides nothing, as no part of the cloud is open");
 }
 
-void warn_of_choices(const Hints& given, Stats& stats) {
+// Of open parts that bend the side that encloses less was taken, of others the one that faces up.
+void warn_of_choices(const OpenSurfaces& surfaces, const Hints& given, Stats& stats) {
   if (stats.undecided_share == 0) return;
   std::string side;
   if (vote(given)) {
     side = given.flip ? "the other hints left as it was and --flip turned" : "the hints left as it was";
   } else {
-    side = given.flip ? "faces down (-z), turned by --flip" : "faces up (+z)";
-    side += "; a hint decides it (--up, --sensor)";
+    bool any_bends = false;
+    for (std::size_t i = 0; i < surfaces.part.size() && !any_bends; ++i) {
+      any_bends = surfaces.is_choice(i) && surfaces.certainty[i] > kUndecided;
+    }
+    if (any_bends) side = given.flip ? "bends inward where one does, else " : "bends outward where one does, else ";
+    side += given.flip ? "faces down (-z), turned by --flip" : "faces up (+z)";
+    side += "; a hint decides it (--up, --sensor, --seen-from-inside)";
   }
   stats.warnings.push_back("which side of " + percent(stats.undecided_share) + " of the points is the outside is a choice: the one that " +
                            side);
@@ -124,7 +130,7 @@ void apply_hints(const Problem& problem, const Options& options, Solution& solut
   summarise_sides(solution.open_surfaces, confidence, effect.decided, stats);
   warn_of_unsure(solution.open_surfaces, confidence, stats);
   warn(effect, given, stats.open_share > 0, stats);
-  warn_of_choices(given, stats);
+  warn_of_choices(solution.open_surfaces, given, stats);
 }
 
 }  // namespace g3r

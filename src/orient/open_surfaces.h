@@ -1,6 +1,7 @@
 // Sides and directions where the surface has no inside.
 #pragma once
 
+#include "cloud/constants.h"
 #include "cloud/point_set.h"
 #include "orient/confidence.h"
 #include "orient/settings.h"
@@ -28,8 +29,9 @@ struct OpenSurfaces {
 
   /// Whether point i lies on an open surface; also of points beyond N, such as outliers, which do not.
   [[nodiscard]] bool is_open(std::size_t i) const { return i < part.size() && part[i] != kNone; }
-  /// Whether nothing shows which side of the open surface that point i lies on is the outside.
-  [[nodiscard]] bool is_choice(std::size_t i) const { return is_open(i) && certainty[i] <= kUndecided; }
+  /// Whether hardly anything shows which side of the open surface that point i lies on is the outside: the corner of a room encloses as
+  /// much as half of a thing.
+  [[nodiscard]] bool is_choice(std::size_t i) const { return is_open(i) && static_cast<double>(certainty[i]) < kMostOf; }
 
   /// Takes what was found for some of the N points (ascending) without the others.
   void put(const std::vector<std::uint32_t>& some, const OpenSurfaces& here);
