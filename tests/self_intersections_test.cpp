@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <random>
 
@@ -90,6 +91,24 @@ TEST(SelfIntersections, FoundFarFromTheOrigin) {
     m.triangles.push_back({first + 3, first + 4, first + 5});
   }
   EXPECT_EQ(count_self_intersections(m), 20U);
+}
+
+// Coordinates of a projection: 4,000 km from the origin every triangle of this mesh is smaller than the last digit of float.
+TEST(SelfIntersections, TakeNoLongerFarFromTheOrigin) {
+  Mesh here = shapes::united(shapes::sphere(1, 300), shapes::moved(shapes::sphere(1, 300), {0.5, 0, 0}));
+  for (Vec3& v : here.vertices) {
+    for (double& c : v) c = std::ldexp(std::round(std::ldexp(c, 24)), -24);  // moving rounds nothing
+  }
+  const auto seconds = [](const Mesh& mesh, std::size_t& count) {
+    const auto start = std::chrono::steady_clock::now();
+    count = count_self_intersections(mesh);
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  std::size_t count = 0, far_count = 0;
+  const double near = seconds(here, count), far = seconds(shapes::moved(here, {0x1p19, 0x1p22, 0x1p8}), far_count);
+  EXPECT_GT(count, 100U);
+  EXPECT_EQ(far_count, count);
+  EXPECT_LT(far, 5 * near + 1);
 }
 
 TEST(SelfIntersections, CleanShapesHaveNone) {

@@ -95,14 +95,15 @@ bool touch_at_a_corner(const Corners& s, const Corners& t) {
 
 bool has_no_area(const Corners& t) { return mesh::twice_area_vector(t[0], t[1], t[2]) == Vec3{0, 0, 0}; }
 
-// Rounded outward: the boxes of triangles that meet do too.
-mesh::FloatBox box_of(const Corners& t) {
+// About `middle`, so that far from the origin boxes are no larger than triangles. Rounding keeps the order of coordinates: the boxes of
+// triangles that meet do too.
+mesh::FloatBox box_of(const Corners& t, const Vec3& middle) {
   vector::Box exact;
   for (const Vec3& p : t) exact.extend(p);
   mesh::FloatBox box;
   for (std::size_t k = 0; k < 3; ++k) {
-    box.low[k] = std::nextafter(static_cast<float>(exact.low[k]), -std::numeric_limits<float>::infinity());
-    box.high[k] = std::nextafter(static_cast<float>(exact.high[k]), std::numeric_limits<float>::infinity());
+    box.low[k] = std::nextafter(static_cast<float>(exact.low[k] - middle[k]), -std::numeric_limits<float>::infinity());
+    box.high[k] = std::nextafter(static_cast<float>(exact.high[k] - middle[k]), std::numeric_limits<float>::infinity());
   }
   return box;
 }
@@ -122,6 +123,8 @@ std::vector<TrianglePair> self_intersections(const Mesh& mesh, const std::atomic
   for (Vec3& v : vertices) {
     for (double& c : v) c = std::ldexp(c, exponent);
   }
+  Vec3 middle = box.centre();
+  for (double& c : middle) c = std::ldexp(c, exponent);
   const auto corners = [&](std::size_t f) {
     const auto& t = mesh.triangles[f];
     return Corners{vertices[t[0]], vertices[t[1]], vertices[t[2]]};
@@ -134,7 +137,7 @@ std::vector<TrianglePair> self_intersections(const Mesh& mesh, const std::atomic
     const Corners t = corners(f);
     if (has_no_area(t)) continue;
     with_area.push_back(f);
-    boxes.push_back(box_of(t));
+    boxes.push_back(box_of(t, middle));
   }
   const BoxTree tree(std::move(boxes));
   const std::vector<BoxTree::PairJob> jobs = tree.pair_jobs();
