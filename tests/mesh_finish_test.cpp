@@ -396,6 +396,28 @@ TEST(MeshFinish, AttributesDoNotDependOnTheOrderOfThePoints) {
   EXPECT_EQ(turned.confidence, mesh.confidence);
 }
 
+// As scanners mark what did not come back: in a frame with such a point all others are at one place.
+TEST(MeshFinish, AttributesDoNotFeelPointsThatAreTooFarAway) {
+  TwoSpheres two = two_spheres();
+  std::vector<Vec3> points = two.sample.points;
+  std::vector<std::array<std::uint8_t, 3>> colors;
+  std::vector<float> confidence;
+  for (const Vec3& p : points) {
+    colors.push_back(p[2] > 0 ? std::array<std::uint8_t, 3>{255, 0, 10} : std::array<std::uint8_t, 3>{0, 255, 10});
+    confidence.push_back(p[2] > 0 ? 1.0F : 0.0F);
+  }
+  carry_attributes(two.mesh, points, colors, confidence);
+  for (const double far : {1e18, 3.4e38}) {
+    points.push_back({far, far, far});
+    colors.push_back({0, 0, 0});
+    confidence.push_back(0);
+    Mesh mesh = two.mesh;
+    carry_attributes(mesh, points, colors, confidence);
+    EXPECT_EQ(mesh.colors, two.mesh.colors) << far;
+    EXPECT_EQ(mesh.confidence, two.mesh.confidence) << far;
+  }
+}
+
 TEST(MeshFinish, PointsAtOnePlaceCountOnceWithTheirMean) {
   const std::vector<Vec3> points = {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {0, 1, 0}, {0, 0, 0}};
   Mesh mesh;

@@ -225,8 +225,9 @@ struct MeshReport {
 
 /// Gives every vertex the mean colour and confidence of the 4 points nearest to it, weighed by 1 / distance^2, replacing what it had.
 /// N points, and N colours and confidences (either may be empty). Points at one place count once, with the mean of what they have; points
-/// and confidences that are not finite take no part, and where all 4 have none it is 0. The result does not depend on the order of the
-/// points. O(N + V log N). Throws InvalidInput if the numbers differ, Cancelled.
+/// and confidences that are not finite take no part, nor do points so far from the others that double precision cannot hold both; where
+/// all 4 have no confidence it is 0. The result does not depend on the order of the points. O(N + V log N). Throws InvalidInput if the
+/// numbers differ, Cancelled.
 void carry_attributes(Mesh& mesh, const PointsView& points, const std::vector<std::array<std::uint8_t, 3>>& colors,
                       const std::vector<float>& confidence, const Monitor& monitor = {});
 

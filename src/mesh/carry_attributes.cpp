@@ -1,5 +1,6 @@
 #include "base/vector.h"
 #include "cloud/canonical_cloud.h"
+#include "cloud/far_points.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
 #include "mesh/constants.h"
@@ -23,7 +24,7 @@ constexpr std::size_t kPoints = 4;
 
 std::uint8_t rounded(double value) { return static_cast<std::uint8_t>(std::lround(value)); }
 
-// Distinct finite points in canonical order, so that what is equally near is the same for every order of the input.
+// Distinct finite points, but for far_points(), in canonical order, so that what is equally near is the same for every order of the input.
 struct Carriers {
   std::vector<Vec3> points;
   std::vector<Color> colors;      // empty, or the mean of those at each place
@@ -52,9 +53,10 @@ float mean_of(std::vector<float>& values) {
 }
 
 Carriers carriers_of(const PointsView& points, const std::vector<Color>& colors, const std::vector<float>& confidence) {
+  const std::vector<std::uint8_t> is_far = far_points(points);
   std::vector<std::uint32_t> finite;
   for (std::size_t i = 0; i < points.count; ++i) {
-    if (vector::is_finite(points[i])) finite.push_back(static_cast<std::uint32_t>(i));
+    if (vector::is_finite(points[i]) && (is_far.empty() || is_far[i] == 0)) finite.push_back(static_cast<std::uint32_t>(i));
   }
   const std::vector<Vec3> unit = in_unit_box(points, finite);
   const std::vector<std::uint32_t> order = morton_order(unit);
