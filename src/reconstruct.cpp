@@ -39,9 +39,10 @@ namespace {
 
 // The depth of screened Poisson in the paper preset, which is that of the comparisons in docs/evidence/meshes.md.
 constexpr int kPaperDepth = 10;
-// Limits of double: the bounds of coordinates and extents within which areas, volumes and their products are finite and greater than 0.
+// Limits of double: the bounds of coordinates and extents within which volumes, areas and their squares, also of triangles with sides of a
+// ten-millionth, are finite and have all their digits.
 constexpr double kLargestCoordinate = 1e50;
-constexpr double kLeastExtent = 1e-140;
+constexpr double kLeastExtent = 1e-70;
 
 // Throws before the work what the mesh could not be measured with. O(N).
 void require_meshable(const PointsView& points) {
@@ -61,7 +62,7 @@ void require_meshable(const PointsView& points) {
     extent = std::max(extent, high - low);
   }
   if (largest > kLargestCoordinate) throw InvalidInput("coordinates beyond 1e50 cannot be meshed; scale them down");
-  if (extent > 0 && extent < kLeastExtent) throw InvalidInput("an extent below 1e-140 cannot be meshed; scale the coordinates up");
+  if (extent > 0 && extent < kLeastExtent) throw InvalidInput("an extent below 1e-70 cannot be meshed; scale the coordinates up");
 }
 
 // Refuses before any work what the mesher would refuse after most of it.

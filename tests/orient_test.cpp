@@ -489,7 +489,7 @@ TEST(Confidence, RanksWrongSidesOnNoisyData) {
 // Normals are told at any scale; a mesh is refused before the work where its area and volume could not be.
 TEST(Reconstruct, RefusesWhatCannotBeMeasured) {
   const Surface s = shapes::sphere(500, 1);
-  for (const double scale : {1e60, 1e-150}) {
+  for (const double scale : {1e60, 1e-71, 1e-150}) {
     std::vector<Vec3> points = s.points;
     for (Vec3& p : points) p = vector::scale(p, scale);
     EXPECT_THROW((void)reconstruct(points), InvalidInput);

@@ -205,7 +205,7 @@ struct Reconstruction {
 
 /// Orients a cloud and meshes it: outward, closed unless trimmed, in input units. O(N log N) time, O(N) memory, of which the mesher takes
 /// most (Stats::planned_memory_bytes). Throws like orient(), InvalidInput for mesh options out of range, InvalidInput for coordinates
-/// beyond 1e50 or an extent below 1e-140, of which areas and volumes cannot be told, and Unavailable when built without a mesher.
+/// beyond 1e50 or an extent below 1e-70, of which areas and volumes cannot be told, and Unavailable when built without a mesher.
 [[nodiscard]] Reconstruction reconstruct(const PointsView& points, const Options& options = {}, const MeshOptions& mesh_options = {},
                                          const Monitor& monitor = {});
 
