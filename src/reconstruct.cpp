@@ -18,6 +18,7 @@
 #include "mesh/regained_points.h"
 #include "mesh/screened_poisson.h"
 #include "mesh/separate_vertices.h"
+#include "mesh/simplify.h"
 #include "mesh/smooth_spacing.h"
 #include "orient/confidence.h"
 #include "orient/memory_plan.h"
@@ -197,10 +198,11 @@ Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor
   }
   left_out.dropped.area /= frame.scale * frame.scale;
   if (mesh.triangles.empty()) throw InvalidInput("no surface found: the oriented points do not enclose a volume");
+  run.far_share = mesh::far_share(mesh, oriented.cloud.points(), mesh::kFarSpacings);
+  if (options.faces > 0) mesh::simplify(mesh, options.faces, monitor.cancel);
   if (inside_out) {
     for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
   }
-  run.far_share = mesh::far_share(mesh, oriented.cloud.points(), mesh::kFarSpacings);
   for (Vec3& v : mesh.vertices) {
     for (std::size_t a = 0; a < 3; ++a) v[a] = v[a] / frame.scale + frame.centre[a];
   }
@@ -243,7 +245,8 @@ void describe_mesh(const MeshCheck& check, const MeshRun& run, const MeshOptions
     const bool is_noisy = stats.noise > mesh::kNoisy * stats.spacing;
     stats.warnings.push_back(percent(run.far_share) + " of the surface is farther than " + short_number(mesh::kFarSpacings) +
                              " spacings from any point: the cloud looks open" +
-                             (is_noisy ? ", as do two walls that are no farther apart than its noise" : "") + "; trim the mesh (--open)");
+                             (is_noisy ? ", as do two walls that are no farther apart than its noise" : "") +
+                             (is_trimmed ? "" : "; trim the mesh (--open)"));
     stats.doubtful = stats.doubtful || (run.far_share > kManyUnsure && !is_trimmed);
   }
   warn_of_topology(check, stats);

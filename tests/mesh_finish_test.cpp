@@ -265,6 +265,27 @@ TEST(MeshFinish, TrimmingClosedDataChangesNothing) {
   EXPECT_EQ(before.triangles, two.mesh.triangles);
 }
 
+// A ball in 12 lines, which are more than twice as far apart as the spacing along them would let surface reach.
+TEST(MeshFinish, TheWayToTheNextLineIsNoHole) {
+  constexpr int kLines = 12, kPerLine = 400;
+  OrientedSample lines;
+  for (int i = 0; i < kLines; ++i) {
+    const double z = 0.97 * (2.0 * i / (kLines - 1) - 1), r = std::sqrt(1 - z * z);
+    for (int j = 0; j < kPerLine; ++j) {
+      const double angle = 2 * M_PI * j / kPerLine;
+      lines.points.push_back({r * std::cos(angle), r * std::sin(angle), z});
+    }
+  }
+  lines.normals = lines.points;
+  Mesh mesh = field_mesh(sphere_sample(4000, 1, 1).points, sphere_sample(4000, 1, 1).normals,
+                         DistanceSampler([](const Vec3& p) { return norm(p) - 1; }, 0.1));
+  EXPECT_LT(mesh::far_share(mesh, lines.points, 4), 0.01);
+  MeshOptions options;
+  options.trim = MeshOptions::Trim::kAuto;
+  finish(mesh, points_of(lines.points, lines.normals), options);
+  EXPECT_GT(check_mesh(mesh).area, 0.95 * 4 * M_PI);
+}
+
 TEST(MeshFinish, TrimDistanceMustBePositiveAndLeaveSomething) {
   TwoSpheres two = two_spheres();
   MeshOptions options;

@@ -3,8 +3,8 @@
 #include "base/median.h"
 #include "mesh/component_support.h"
 #include "mesh/distance_to_points.h"
+#include "mesh/lines.h"
 #include "mesh/mesh_parts.h"
-#include "mesh/simplify.h"
 #include "mesh/smooth_spacing.h"
 #include "mesh/trim.h"
 
@@ -28,15 +28,18 @@ void drop_components(Mesh& mesh, const std::vector<Vec3>& points, const std::vec
 }  // namespace
 
 double far_share(const Mesh& mesh, const std::vector<Vec3>& points, double spacings) {
-  const std::vector<double> spacing = smooth_spacing(points);
-  const std::vector<double> distance = distance_to_points(centres_of(mesh), points, [&](std::uint32_t i) { return spacings * spacing[i]; });
-  double far = 0, total = 0;
-  for (std::size_t t = 0; t < distance.size(); ++t) {
-    const double area = area_of(mesh, mesh.triangles[t]);
-    total += area;
-    if (distance[t] > 1) far += area;
-  }
-  return total > 0 ? far / total : 0;
+  const std::vector<double> along = smooth_spacing(points);
+  const auto share = [&](const std::vector<double>& spacing) {
+    const std::vector<double> distance = distance_to_points(centres_of(mesh), points, [&](std::uint32_t i) { return spacings * spacing[i]; });
+    double far = 0, total = 0;
+    for (std::size_t t = 0; t < distance.size(); ++t) {
+      const double area = area_of(mesh, mesh.triangles[t]);
+      total += area;
+      if (distance[t] > 1) far += area;
+    }
+    return total > 0 ? far / total : 0;
+  };
+  return share(along) > 0 ? share(spacing_across_lines(points, along)) : 0;
 }
 
 void finish_mesh(Mesh& mesh, const OrientedPoints& points, double noise, const MeshOptions& options, LeftOut& left_out,
@@ -47,7 +50,6 @@ void finish_mesh(Mesh& mesh, const OrientedPoints& points, double noise, const M
   if (mesh.triangles.empty()) return;
   if (options.trim != MeshOptions::Trim::kOff) trim(mesh, points, options, cancel);
   drop_components(mesh, points.positions, points.spacing, noise, options, left_out);
-  if (options.faces > 0) simplify(mesh, options.faces, cancel);
 }
 
 }  // namespace g3r::mesh

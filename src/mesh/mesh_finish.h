@@ -1,4 +1,4 @@
-// What is done to a closed mesh before it is returned: trimming, dropping components, simplifying.
+// What is done to a closed mesh before it is returned or simplified: trimming, dropping components.
 #pragma once
 
 #include "mesh/field_local_fit.h"
@@ -16,10 +16,11 @@ struct LeftOut {
   Dropped dropped;
 };
 
-/// Share of the mesh's area whose triangles have their centre farther than `spacings` local spacings from every point. O(F log N).
+/// Share of the mesh's area whose triangles have their centre farther than `spacings` local spacings, of points in lines those across
+/// the lines, from every point. Not of simplified meshes, whose triangles are larger. O((F + N) log N).
 [[nodiscard]] double far_share(const Mesh& mesh, const std::vector<Vec3>& points, double spacings);
 
-/// Trims, drops components and simplifies as the options ask; `trim_distance` is in the units of the mesh. A closed 2-manifold stays
+/// Trims and drops components as the options ask; `trim_distance` is in the units of the mesh. A closed 2-manifold stays
 /// closed unless trimmed, and 2-manifold always. Throws InvalidInput if an option is out of range or nothing would be left; Cancelled.
 /// `noise`: standard deviation of the points about the surface, in spacings; `left_out`: the points
 /// that were left out before, to which the components that kept_components() leaves out are added.

@@ -26,9 +26,10 @@ namespace g3r::mesh {
 namespace {
 
 // How far from each point surface may be, in its own units. Farther than four spacings of the cloud nobody measured anything; where it is
-// sparse, but a surface, the gaps between its points are no holes.
-std::vector<double> limits_of(const std::vector<double>& spacing, const MeshOptions& options) {
-  if (options.trim == MeshOptions::Trim::kDistance) return std::vector<double>(spacing.size(), options.trim_distance);
+// sparse, but a surface, the gaps between its points are no holes, nor are those between lines.
+std::vector<double> limits_of(const OrientedPoints& points, const MeshOptions& options) {
+  if (options.trim == MeshOptions::Trim::kDistance) return std::vector<double>(points.spacing.size(), options.trim_distance);
+  const std::vector<double> spacing = spacing_across_lines(points.positions, points.spacing);
   const double typical = median(spacing);
   std::vector<double> limits(spacing.size());
   for (std::size_t i = 0; i < limits.size(); ++i) limits[i] = std::max(kFarSpacings * std::min(spacing[i], typical), kGap * spacing[i]);
@@ -173,7 +174,7 @@ void cut_off(Mesh& mesh, const std::vector<double>& past, const std::vector<std:
 }  // namespace
 
 void trim(Mesh& mesh, const OrientedPoints& points, const MeshOptions& options, const std::atomic<bool>* cancel) {
-  const std::vector<double> limits = limits_of(points.spacing, options);
+  const std::vector<double> limits = limits_of(points, options);
   const auto limit = [&](std::uint32_t i) { return limits[i]; };
   std::vector<double> past = distance_to_points(mesh.vertices, points.positions, limit, cancel);
   for (double& d : past) d -= 1;
