@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -16,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Positions that went through a float file differ by 1e-7 of the box; points that are further apart than this are other points.
+// Points that are farther apart than this share of the box, and what float files round, are other points.
 constexpr double kSamePointShare = 1e-5;
 
 Cloud oriented_cloud(const std::string& path, const ReadOptions& options, Console& console) {
@@ -27,11 +28,22 @@ Cloud oriented_cloud(const std::string& path, const ReadOptions& options, Consol
 }
 
 void warn_if_moved(const Cloud& result, const Cloud& truth, Console& console) {
-  double scale = 0;
-  for (const Vec3& p : truth.positions) scale = std::max({scale, std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
+  double side = 0, largest = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Vec3& p : truth.positions) {
+      if (!std::isfinite(p[a])) continue;
+      low = std::min(low, p[a]);
+      high = std::max(high, p[a]);
+    }
+    if (low > high) continue;
+    side = std::max(side, high - low);
+    largest = std::max({largest, -low, high});
+  }
+  const double allowed = kSamePointShare * side + 2 * static_cast<double>(std::numeric_limits<float>::epsilon()) * largest;
   for (std::size_t i = 0; i < truth.positions.size(); ++i) {
     for (std::size_t a = 0; a < 3; ++a) {
-      if (std::abs(result.positions[i][a] - truth.positions[i][a]) > kSamePointShare * scale) {
+      if (std::abs(result.positions[i][a] - truth.positions[i][a]) > allowed) {
         console.warn("point " + std::to_string(i) + " is not where the truth has it: are these the same points in the same order?");
         return;
       }

@@ -72,6 +72,20 @@ class Measuring(ProgramTest):
         self.assertIn("face index out of range", self.expect(OK, "info", "bad.off").err)
         self.assertIn("neither faces", self.expect(BAD_DATA, "eval", "bad.off", "--truth", "bad.off").err)
 
+    def test_another_order_is_told_also_far_from_the_origin(self):
+        def write(name, rows, offset):
+            with open(self.path(name), "w") as file:
+                file.writelines(" ".join(repr(x + o) for x, o in zip(p, offset)) + " 0 0 1\n" for p in rows)
+
+        rows = [(20.0 * (i % 3), 20.0 * (i // 3 % 3), 10.0 * (i // 9)) for i in range(27)]
+        for offset in ((0, 0, 0), (500000, 5200000, 300)):
+            write("truth.xyz", rows, offset)
+            write("turned.xyz", rows[::-1], offset)
+            write("rounded.xyz", [[x + 0.04 * (offset[1] > 0) for x in p] for p in rows], offset)  # as float rounds 5,200,000
+            said = "is not where the truth has it"
+            self.assertIn(said, self.expect(OK, "eval", "turned.xyz", "--truth", "truth.xyz").err)
+            self.assertNotIn(said, self.expect(OK, "eval", "rounded.xyz", "--truth", "truth.xyz").err)
+
     def test_folders_patterns_and_boxes(self):
         os.mkdir(self.path("tiles"))
         write_xyz(self.path("tiles/a.xyz"), [(x, y, 0) for x in range(3) for y in range(3)])
