@@ -153,30 +153,60 @@ void regain_points(OrientedCloud& oriented, std::vector<Vec3>& strays, const std
   oriented.spacing = cloud.set.spacing();
 }
 
+// A frame of its own for what is left where strays made the old one much larger, which may not resolve its spacing. Areas follow the
+// spacing.
+void fit_frame(OrientedCloud& oriented, std::vector<Vec3>& strays) {
+  if (!is_small_in_frame(oriented.cloud)) return;
+  const Frame old = oriented.cloud.frame;
+  const std::vector<double> old_spacing = oriented.cloud.set.smoothed_spacing();
+  std::vector<Vec3> points = oriented.cloud.points();
+  for (Vec3& p : points) p = old.to_world(p);
+  CanonicalCloud cloud = canonical_cloud(PointsView(points));
+  std::vector<Vec3> eta(cloud.size(), Vec3{0, 0, 0});
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint32_t k = cloud.point_of[i];
+    const double growth = cloud.set.smoothed_spacing()[k] / old_spacing[i];
+    eta[k] = vector::add(eta[k], vector::scale(oriented.eta[i], growth * growth));
+  }
+  for (Vec3& p : strays) p = cloud.frame.to_unit(old.to_world(p));
+  oriented.spacing = cloud.set.spacing();
+  oriented.cloud = std::move(cloud);
+  oriented.eta = std::move(eta);
+}
+
 void turn(std::vector<Vec3>& vectors) {
   for (Vec3& v : vectors) v = {-v[0], -v[1], -v[2]};
 }
 
 // What making a mesh starts with and finds out.
 struct MeshRun {
-  mesh::LeftOut left_out;
+  mesh::Found found;
   MeshMemory memory;
   double far_share = 0;  // of the surface, farther than mesh::kFarSpacings from every point
+  // Of the points that the mesh was made of, input units.
+  Vec3 box_centre{0, 0, 0};
+  double box_side = 0, spacing = 0, noise = 0;
 };
+
+// Whether the octree does not resolve the spacing.
+bool is_too_wide(double box_side, double spacing, const MeshOptions& options) {
+  return options.mesher == Mesher::kField && options.depth == 0 && box_side > std::ldexp(mesh::kFinestCell, mesh::kMaxOctreeLevel) * spacing;
+}
 
 // Meshes in normalised units, so that georeferenced coordinates lose nothing, and maps back. What is inside out is meshed as the solid that
 // it surrounds, and the triangles are turned.
 Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor& monitor, MeshRun& run) {
-  mesh::LeftOut& left_out = run.left_out;
-  for (Vec3& p : left_out.strays) p = oriented.cloud.frame.to_unit(p);
+  mesh::Found& found = run.found;
+  for (Vec3& p : found.strays) p = oriented.cloud.frame.to_unit(p);
   if (!options.keep_all) {
     std::vector<Vec3> doubtful;
     leave_out(oriented, mesh::held_points(oriented.cloud.points(), directions_of(oriented.eta), monitor.cancel), doubtful);
-    regain_points(oriented, left_out.strays, monitor.cancel);
-    left_out.strays.insert(left_out.strays.end(), doubtful.begin(), doubtful.end());
-    leave_out(oriented, mesh::points_of_parts(oriented.cloud.set, left_out.strays), left_out.strays);
+    regain_points(oriented, found.strays, monitor.cancel);
+    found.strays.insert(found.strays.end(), doubtful.begin(), doubtful.end());
+    leave_out(oriented, mesh::points_of_parts(oriented.cloud.set, found.strays), found.strays);
+    fit_frame(oriented, found.strays);
   }
-  left_out.dropped.points = left_out.strays.size();
+  found.dropped.points = found.strays.size();
   const WindingSampler field(oriented, monitor.cancel);
   const bool inside_out = is_inside_out(oriented, field);
   if (inside_out) turn(oriented.eta);
@@ -191,13 +221,21 @@ Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor
     mesh = mesh_with_poisson(oriented, directions, options.depth);
     normalised.min_component = 0;  // spurious components of screened Poisson are part of its result
     const std::vector<Vec3>& points = oriented.cloud.points();
-    mesh::finish_mesh(mesh, {points, directions, mesh::smooth_spacing(points)}, 0, normalised, left_out, monitor.cancel);
+    mesh::finish_mesh(mesh, {points, directions, mesh::smooth_spacing(points)}, 0, normalised, found, monitor.cancel);
   } else {
     oriented.cloud.set.release_neighbours();  // the mesher has its own, of the points that it moves
-    mesh = field_mesh(oriented.cloud.points(), std::move(directions), field, normalised, monitor, &run.memory, &left_out);
+    mesh = field_mesh(oriented.cloud.points(), std::move(directions), field, normalised, monitor, &run.memory, &found);
   }
-  left_out.dropped.area /= frame.scale * frame.scale;
-  if (mesh.triangles.empty()) throw InvalidInput("no surface found: the oriented points do not enclose a volume");
+  found.dropped.area /= frame.scale * frame.scale;
+  run.box_centre = frame.centre;
+  run.box_side = frame.length_to_world(kBoxSide);
+  run.spacing = frame.length_to_world(oriented.spacing);
+  run.noise = frame.length_to_world(noise.value_or(found.noise));
+  if (mesh.triangles.empty()) {
+    throw InvalidInput(is_too_wide(run.box_side, run.spacing, options)
+                           ? "no surface found: the cloud is more than 800,000 spacings wide; mesh parts that are far apart one by one"
+                           : "no surface found: the oriented points do not enclose a volume");
+  }
   run.far_share = mesh::far_share(mesh, oriented.cloud.points(), mesh::kFarSpacings);
   if (options.faces > 0) mesh::simplify(mesh, options.faces, monitor.cancel);
   if (inside_out) {
@@ -236,6 +274,35 @@ std::size_t planned(const Stats& stats, const MeshOptions& chosen) {
   return std::max(stats.planned_memory_bytes, field_mesh_memory(stats.used, stats.spacing, stats.noise, stats.box_side, chosen.depth));
 }
 
+// Points without surface, and surface without points.
+void warn_of_missing(const mesh::Found& found, Stats& stats) {
+  if (found.bare_points > kDoubtful) {
+    stats.warnings.push_back(percent(found.bare_points) +
+                             " of the points have no surface near them: parts whose points are much closer together than is usual, or points "
+                             "that are no surface; mesh such parts one by one");
+  }
+  if (found.pointless_area > kDoubtful) {
+    stats.warnings.push_back(percent(found.pointless_area) +
+                             " of the surface is of parts that no point is on: normals of one part of the cloud face the other way");
+  }
+  stats.doubtful = stats.doubtful || std::max(found.bare_points, found.pointless_area) > kManyUnsure;
+}
+
+void warn_of_trimming(const MeshCheck& check, const MeshOptions& options, Stats& stats) {
+  if (options.trim == MeshOptions::Trim::kOff) return;
+  const bool by_distance = options.trim == MeshOptions::Trim::kDistance;
+  if (check.closed) {
+    stats.warnings.push_back("nothing was cut away: no surface is farther than " +
+                             (by_distance ? short_number(options.trim_distance) : short_number(mesh::kFarSpacings) + " spacings") +
+                             " from the points");
+  }
+  if (by_distance && options.trim_distance < mesh::kGap * stats.spacing) {
+    stats.warnings.push_back("trimmed at " + short_number(options.trim_distance) +
+                             ", which is less than the gaps between the points and leaves holes: " + short_number(mesh::kFarSpacings) +
+                             " spacings are " + short_number(mesh::kFarSpacings * stats.spacing));
+  }
+}
+
 // What is doubtful of a mesh, and what its memory turned out to be. `options`: with the mesher chosen.
 void describe_mesh(const MeshCheck& check, const MeshRun& run, const MeshOptions& options, Stats& stats) {
   stats.depth = options.depth;
@@ -249,10 +316,11 @@ void describe_mesh(const MeshCheck& check, const MeshRun& run, const MeshOptions
                              (is_trimmed ? "" : "; trim the mesh (--open)"));
     stats.doubtful = stats.doubtful || (run.far_share > kManyUnsure && !is_trimmed);
   }
+  warn_of_missing(run.found, stats);
+  warn_of_trimming(check, options, stats);
   warn_of_topology(check, stats);
   warn_of_faces(check.triangles, options.faces, stats.warnings);
-  const double widest = std::ldexp(mesh::kFinestCell, mesh::kMaxOctreeLevel) * stats.spacing;  // that the octree resolves
-  if (options.mesher == Mesher::kField && options.depth == 0 && stats.box_side > widest) {
+  if (is_too_wide(stats.box_side, stats.spacing, options)) {
     stats.warnings.emplace_back(
         "the cloud is more than 800,000 spacings wide, so the mesh is coarser than the points: mesh parts that are far apart one by one");
   }
@@ -364,7 +432,11 @@ Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const Me
     Mesh mesh = make_mesh(std::move(oriented), chosen, monitor, run);
     if (report == nullptr) return mesh;
     report->check = check_mesh(mesh);
-    report->check.dropped = run.left_out.dropped;
+    report->check.dropped = run.found.dropped;
+    stats.box_centre = run.box_centre;
+    stats.box_side = run.box_side;
+    stats.spacing = run.spacing;
+    stats.noise = run.noise;
     describe_mesh(report->check, run, chosen, stats);
     device.describe(stats);
     report->stats = std::move(stats);
@@ -391,7 +463,7 @@ Reconstruction reconstruct(const PointsView& points, const Options& options, con
     OrientedCloud oriented = oriented_cloud(points, out.orientation.normals, out.orientation.areas);
     out.mesh = make_mesh(std::move(oriented), chosen, monitor, run);
     out.check = check_mesh(out.mesh);
-    out.check.dropped = run.left_out.dropped;
+    out.check.dropped = run.found.dropped;
     carry_attributes(out.mesh, points, {}, out.orientation.confidence, {{}, monitor.cancel});
   });
   device.describe(out.orientation.stats);

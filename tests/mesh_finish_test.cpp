@@ -80,7 +80,7 @@ mesh::OrientedPoints upper_half(const OrientedSample& sample, double radius = 10
 }
 
 void finish(Mesh& mesh, const mesh::OrientedPoints& points, const MeshOptions& options, double noise = 0) {
-  mesh::LeftOut nothing;
+  mesh::Found nothing;
   mesh::finish_mesh(mesh, points, noise, options, nothing);
 }
 
@@ -245,14 +245,14 @@ TEST(MeshFinish, LargestIsWhatPointsHold) {
 TEST(MeshFinish, PartsAmongStraysAreChance) {
   for (const std::size_t strays : {std::size_t{100}, std::size_t{300}}) {
     TwoSpheres two = two_spheres();
-    mesh::LeftOut left_out;
+    mesh::Found found;
     for (std::size_t i = 0; i < strays; ++i) {
       const Vec3& p = two.sample.points[2000 + i % 180];
-      left_out.strays.push_back({p[0], p[1], p[2] + 0.02 + 1e-4 * static_cast<double>(i)});
+      found.strays.push_back({p[0], p[1], p[2] + 0.02 + 1e-4 * static_cast<double>(i)});
     }
-    mesh::finish_mesh(two.mesh, points_of(two.sample.points), 0, {}, left_out);
-    EXPECT_EQ(left_out.dropped.components, strays == 300 ? 1U : 0U);
-    EXPECT_NEAR(left_out.dropped.area, strays == 300 ? 1.13 : 0, 0.1);
+    mesh::finish_mesh(two.mesh, points_of(two.sample.points), 0, {}, found);
+    EXPECT_EQ(found.dropped.components, strays == 300 ? 1U : 0U);
+    EXPECT_NEAR(found.dropped.area, strays == 300 ? 1.13 : 0, 0.1);
   }
 }
 

@@ -18,7 +18,7 @@ g3r_tests_together(tests_of_clouds certificate chance clusters clustered_polish 
 g3r_tests_together(tests_of_sums adjoint coarse_to_fine dense_solver energy_system fast_sum harmonics heights iterative_solver memory_plan part_system polish refine
                                  pair_sums scattered_planes settings sign_graph tree)
 g3r_tests_together(tests_of_meshes coarsen edge_collapse fair field_arcs field_mesher field_scenes)
-g3r_tests_together(tests_of_parts field_contour handle_removal mesh_finish mesh_memory point_parts)
+g3r_tests_together(tests_of_parts field_contour handle_removal mesh_finish mesh_memory mesh_report point_parts)
 g3r_tests_together(tests_of_shapes check_mesh metrics self_intersections split_nonmanifold untangle)
 g3r_tests_together(tests_of_fields crossings expansions facets field_denoise field_local_fit findings held_points scanner_files)
 g3r_tests_together(tests_of_files any_size ascii_grid base io_read io_write las_plan names platform splat_light table utf8 xml)

@@ -78,6 +78,12 @@ void add_points(const Mesh& mesh, const std::vector<std::uint32_t>& component, c
   }
 }
 
+double bare_share(const Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>& spacing, double scatter) {
+  const std::vector<std::uint32_t> held_by =
+      nearest_of(mesh.vertices, points, [&](std::size_t i) { return std::pow(kFarSpacings * (spacing[i] + scatter), 2); });
+  return static_cast<double>(std::count(held_by.begin(), held_by.end(), kNone)) / static_cast<double>(points.size());
+}
+
 std::vector<std::uint8_t> kept_components(const std::vector<Support>& support, const MeshOptions& options, std::size_t strays,
                                           Dropped& dropped) {
   std::vector<std::size_t> order(support.size());

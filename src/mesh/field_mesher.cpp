@@ -144,7 +144,7 @@ void check_input(const std::vector<Vec3>& points, const std::vector<Vec3>& norma
 }  // namespace
 
 Mesh field_mesh(const std::vector<Vec3>& points, std::vector<Vec3> normals, const FieldSampler& sampler, const MeshOptions& options,
-                const Monitor& monitor, MeshMemory* memory, mesh::LeftOut* left_out) {
+                const Monitor& monitor, MeshMemory* memory, mesh::Found* found) {
   check_input(points, normals, options);
   report(monitor, Done::kNothing);
   Prepared prepared;
@@ -164,8 +164,10 @@ Mesh field_mesh(const std::vector<Vec3>& points, std::vector<Vec3> normals, cons
   // A depth that was asked for is the size of triangles that was asked for.
   if (options.depth == 0) mesh::coarsen(mesh, prepared.points.positions, size, monitor.cancel);
   mesh::soften_thorns(mesh, mesh::untangle(mesh, monitor.cancel), monitor.cancel);
-  mesh::LeftOut nothing;
-  mesh::finish_mesh(mesh, prepared.points, prepared.noise, options, left_out != nullptr ? *left_out : nothing, monitor.cancel);
+  mesh::Found nothing;
+  mesh::Found& out = found != nullptr ? *found : nothing;
+  out.noise = prepared.noise * prepared.typical;
+  mesh::finish_mesh(mesh, prepared.points, prepared.noise, options, out, monitor.cancel);
   report(monitor, Done::kAll);
   return mesh;
 }

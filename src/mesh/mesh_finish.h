@@ -10,10 +10,13 @@
 
 namespace g3r::mesh {
 
-/// What was left out for want of support.
-struct LeftOut {
-  std::vector<Vec3> strays;  ///< places of points that no surface goes through
-  Dropped dropped;
+/// What is found out while a mesh is made.
+struct Found {
+  std::vector<Vec3> strays;   ///< places of points that no surface goes through
+  Dropped dropped;            ///< for want of support
+  double noise = 0;           ///< standard deviation of the points that is smoothed over, a length
+  double bare_points = 0;     ///< share of the points without surface near them, bare_share(); 0 where options ask for less than all
+  double pointless_area = 0;  ///< share of the area that is of parts which no point holds
 };
 
 /// Share of the mesh's area whose triangles have their centre farther than `spacings` local spacings, of points in lines those across
@@ -22,9 +25,9 @@ struct LeftOut {
 
 /// Trims and drops components as the options ask; `trim_distance` is in the units of the mesh. A closed 2-manifold stays
 /// closed unless trimmed, and 2-manifold always. Throws InvalidInput if an option is out of range or nothing would be left; Cancelled.
-/// `noise`: standard deviation of the points about the surface, in spacings; `left_out`: the points
-/// that were left out before, to which the components that kept_components() leaves out are added.
-void finish_mesh(Mesh& mesh, const OrientedPoints& points, double noise, const MeshOptions& options, LeftOut& left_out,
+/// `noise`: standard deviation of the points about the surface, in spacings; `found`: the points that were left out before, to which the
+/// rest is added.
+void finish_mesh(Mesh& mesh, const OrientedPoints& points, double noise, const MeshOptions& options, Found& found,
                  const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace g3r::mesh

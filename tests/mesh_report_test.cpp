@@ -1,0 +1,156 @@
+// What mesh_oriented() says of a mesh: lengths of the points that it was made of, and warnings of what is missing or guessed.
+#include <g3r/error.h>
+#include <g3r/g3r.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "base/vector.h"
+#include "field_shapes.h"
+
+namespace g3r {
+namespace {
+
+using testing::OrientedSample;
+using testing::sphere_sample;
+
+// The typical distance of n random points of a unit sphere.
+double spacing_on_sphere(std::size_t n) { return std::sqrt(4 * M_PI / static_cast<double>(n)); }
+
+OrientedSample joined(OrientedSample one, const OrientedSample& other) {
+  one.points.insert(one.points.end(), other.points.begin(), other.points.end());
+  one.normals.insert(one.normals.end(), other.normals.begin(), other.normals.end());
+  return one;
+}
+
+OrientedSample with_sphere(const OrientedSample& sample, std::size_t n, double radius, double x) {
+  OrientedSample other = sphere_sample(n, radius, 2);
+  for (Vec3& p : other.points) p[0] += x;
+  return joined(sample, other);
+}
+
+OrientedSample moved_along_normals(OrientedSample sample, double noise) {
+  std::mt19937_64 rng(3);
+  std::normal_distribution<double> normal(0, noise);
+  for (std::size_t i = 0; i < sample.points.size(); ++i) {
+    sample.points[i] = vector::add(sample.points[i], vector::scale(sample.normals[i], normal(rng)));
+  }
+  return sample;
+}
+
+struct Reported {
+  MeshReport report;
+  Mesh mesh;
+
+  explicit Reported(const OrientedSample& sample, const MeshOptions& options = {})
+      : mesh(mesh_oriented(sample.points, sample.normals, options, {}, &report)) {}
+
+  [[nodiscard]] bool warns(const std::string& words) const {
+    const auto& warnings = report.stats.warnings;
+    return std::any_of(warnings.begin(), warnings.end(), [&](const std::string& w) { return w.find(words) != std::string::npos; });
+  }
+};
+
+// The leaves of the octree are no finer than a sixteenth of the usual ones.
+TEST(MeshReport, PointsWithoutSurfaceAreTold) {
+  const OrientedSample large = sphere_sample(2000, 1, 1);
+  const Reported lost(with_sphere(large, 2000, 0.001, 3)), found(with_sphere(large, 2000, 0.1, 3));
+  EXPECT_EQ(lost.report.check.components, 1U);
+  EXPECT_TRUE(lost.warns("50 % of the points have no surface near them"));
+  EXPECT_TRUE(lost.report.stats.doubtful);
+  EXPECT_EQ(found.report.check.components, 2U);
+  EXPECT_TRUE(found.report.stats.warnings.empty());
+  EXPECT_FALSE(found.report.stats.doubtful);
+}
+
+// A spiral over the unit sphere about (x, 0, 0), as even as its points can be.
+OrientedSample spiral(std::size_t n, double x, double outward) {
+  OrientedSample out;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double z = 1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(n), r = std::sqrt(1 - z * z);
+    const double angle = M_PI * (1 + std::sqrt(5.0)) * (static_cast<double>(i) + 0.5);
+    const Vec3 d{r * std::cos(angle), r * std::sin(angle), z};
+    out.points.push_back(vector::add(d, {x, 0, 0}));
+    out.normals.push_back(vector::scale(d, outward));
+  }
+  return out;
+}
+
+// Of two spheres, one with normals that face inward, that one is a hollow of a ball whose outside no point is on.
+TEST(MeshReport, PartsWithoutPointsAreTold) {
+  const Reported opposite(joined(spiral(1000, 0, 1), spiral(1000, 3, -1))), same(joined(spiral(1000, 0, 1), spiral(1000, 3, 1)));
+  EXPECT_TRUE(opposite.warns("of the surface is of parts that no point is on"));
+  EXPECT_TRUE(opposite.report.stats.doubtful);
+  EXPECT_TRUE(same.report.stats.warnings.empty());
+}
+
+TEST(MeshReport, FewTrianglesDoNotLookOpen) {
+  MeshOptions options;
+  options.faces = 20;
+  const Reported coarse(sphere_sample(3000, 1, 1), options);
+  EXPECT_EQ(coarse.report.check.triangles, 20U);
+  EXPECT_TRUE(coarse.report.stats.warnings.empty());
+  EXPECT_FALSE(coarse.report.stats.doubtful);
+}
+
+// In a frame that a stray makes five million times as large the spacing is below what it resolves.
+TEST(MeshReport, StraysDoNotMakeTheScale) {
+  OrientedSample sample = sphere_sample(4000, 1, 1);
+  MeshOptions options;
+  options.noise = {Length::Unit::kSpacing, 0.5};
+  const Reported without(sample, options);
+  sample.points.push_back({1e7, 0, 0});
+  sample.normals.push_back({1, 0, 0});
+  const Reported with(sample, options);
+  EXPECT_EQ(with.report.check.dropped.points, 1U);
+  EXPECT_NEAR(with.report.stats.spacing, without.report.stats.spacing, 1e-6);
+  EXPECT_NEAR(with.report.stats.noise, without.report.stats.noise, 1e-6);
+  EXPECT_NEAR(with.report.stats.box_side, 2, 0.01);
+  EXPECT_NEAR(vector::length(with.report.stats.box_centre), 0, 0.01);
+  EXPECT_EQ(with.mesh.vertices.size(), without.mesh.vertices.size());
+  EXPECT_TRUE(with.report.stats.warnings.empty());
+}
+
+TEST(MeshReport, HasTheNoiseThatIsSmoothedOver) {
+  const OrientedSample clean = sphere_sample(5000, 1, 1);
+  EXPECT_EQ(Reported(clean).report.stats.noise, 0);
+  const double noise = 0.5 * spacing_on_sphere(clean.points.size());
+  EXPECT_NEAR(Reported(moved_along_normals(clean, noise)).report.stats.noise, noise, 0.2 * noise);
+}
+
+TEST(MeshReport, TrimmingThatCutsNothingOrTooMuchIsTold) {
+  const OrientedSample sphere = sphere_sample(3000, 1, 1);
+  MeshOptions options;
+  options.trim = MeshOptions::Trim::kAuto;
+  const Reported closed(sphere, options);
+  EXPECT_TRUE(closed.warns("nothing was cut away: no surface is farther than 4 spacings"));
+  EXPECT_FALSE(closed.report.stats.doubtful);
+  OrientedSample half;
+  for (std::size_t i = 0; i < sphere.points.size(); ++i) {
+    if (sphere.points[i][2] < 0) continue;
+    half.points.push_back(sphere.points[i]);
+    half.normals.push_back(sphere.normals[i]);
+  }
+  EXPECT_TRUE(Reported(half, options).report.stats.warnings.empty());
+  options.trim = MeshOptions::Trim::kDistance;
+  for (const double spacings : {0.7, 4.0}) {
+    options.trim_distance = spacings * spacing_on_sphere(sphere.points.size());
+    EXPECT_EQ(Reported(half, options).warns("less than the gaps between the points"), spacings < 1);
+  }
+}
+
+TEST(MeshReport, PartsThatAreTooFarApartAreNamedAsSuch) {
+  const OrientedSample apart = with_sphere(sphere_sample(300, 1, 1), 300, 1, 1e7);
+  try {
+    (void)mesh_oriented(apart.points, apart.normals);
+    ADD_FAILURE() << "it has a mesh";
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("800,000 spacings wide"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace g3r
