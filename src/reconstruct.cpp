@@ -17,6 +17,7 @@
 #include "mesh/point_parts.h"
 #include "mesh/regained_points.h"
 #include "mesh/screened_poisson.h"
+#include "mesh/self_intersections.h"
 #include "mesh/separate_vertices.h"
 #include "mesh/simplify.h"
 #include "mesh/smooth_spacing.h"
@@ -182,7 +183,8 @@ void turn(std::vector<Vec3>& vectors) {
 struct MeshRun {
   mesh::Found found;
   MeshMemory memory;
-  double far_share = 0;  // of the surface, farther than mesh::kFarSpacings from every point
+  double far_share = 0;           // of the surface, farther than mesh::kFarSpacings from every point
+  std::size_t new_crossings = 0;  // pairs of triangles that intersect since there are fewer
   // Of the points that the mesh was made of, input units.
   Vec3 box_centre{0, 0, 0};
   double box_side = 0, spacing = 0, noise = 0;
@@ -190,7 +192,8 @@ struct MeshRun {
 
 // Whether the octree does not resolve the spacing.
 bool is_too_wide(double box_side, double spacing, const MeshOptions& options) {
-  return options.mesher == Mesher::kField && options.depth == 0 && box_side > std::ldexp(mesh::kFinestCell, mesh::kMaxOctreeLevel) * spacing;
+  return options.mesher == Mesher::kField && options.depth == 0 &&
+         box_side > std::ldexp(mesh::kFinestCell, mesh::kMaxOctreeLevel) * spacing;
 }
 
 // Meshes in normalised units, so that georeferenced coordinates lose nothing, and maps back. What is inside out is meshed as the solid that
@@ -237,7 +240,12 @@ Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor
                            : "no surface found: the oriented points do not enclose a volume");
   }
   run.far_share = mesh::far_share(mesh, oriented.cloud.points(), mesh::kFarSpacings);
-  if (options.faces > 0) mesh::simplify(mesh, options.faces, monitor.cancel);
+  if (options.faces > 0 && mesh.triangles.size() > options.faces) {
+    const std::size_t crossings = mesh::self_intersections(mesh, monitor.cancel).size();
+    mesh::simplify(mesh, options.faces, monitor.cancel);
+    const std::size_t left = mesh::self_intersections(mesh, monitor.cancel).size();
+    run.new_crossings = left > crossings ? left - crossings : 0;
+  }
   if (inside_out) {
     for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
   }
@@ -277,9 +285,10 @@ std::size_t planned(const Stats& stats, const MeshOptions& chosen) {
 // Points without surface, and surface without points.
 void warn_of_missing(const mesh::Found& found, Stats& stats) {
   if (found.bare_points > kDoubtful) {
-    stats.warnings.push_back(percent(found.bare_points) +
-                             " of the points have no surface near them: parts whose points are much closer together than is usual, or points "
-                             "that are no surface; mesh such parts one by one");
+    stats.warnings.push_back(
+        percent(found.bare_points) +
+        " of the points have no surface near them: parts whose points are much closer together than is usual, or points "
+        "that are no surface; mesh such parts one by one");
   }
   if (found.pointless_area > kDoubtful) {
     stats.warnings.push_back(percent(found.pointless_area) +
@@ -319,7 +328,7 @@ void describe_mesh(const MeshCheck& check, const MeshRun& run, const MeshOptions
   warn_of_missing(run.found, stats);
   warn_of_trimming(check, options, stats);
   warn_of_topology(check, stats);
-  warn_of_faces(check.triangles, options.faces, stats.warnings);
+  warn_of_faces(check.triangles, options.faces, run.new_crossings, stats.warnings);
   if (is_too_wide(stats.box_side, stats.spacing, options)) {
     stats.warnings.emplace_back(
         "the cloud is more than 800,000 spacings wide, so the mesh is coarser than the points: mesh parts that are far apart one by one");

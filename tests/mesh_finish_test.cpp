@@ -350,10 +350,10 @@ TEST(MeshFinish, SimplifyingLeavesTetrahedraAtLeast) {
   EXPECT_EQ(two.mesh.triangles.size(), 8U);
   EXPECT_TRUE(check_mesh(two.mesh).closed && check_mesh(two.mesh).manifold);
   std::vector<std::string> warnings;
-  warn_of_faces(two.mesh.triangles.size(), 1, warnings);
+  warn_of_faces(two.mesh.triangles.size(), 1, 0, warnings);
   EXPECT_EQ(warnings.size(), 1U);
-  warn_of_faces(two.mesh.triangles.size(), 8, warnings);
-  warn_of_faces(two.mesh.triangles.size(), 0, warnings);
+  warn_of_faces(two.mesh.triangles.size(), 8, 0, warnings);
+  warn_of_faces(two.mesh.triangles.size(), 0, 0, warnings);
   EXPECT_EQ(warnings.size(), 1U);
 }
 

@@ -96,6 +96,16 @@ TEST(MeshReport, FewTrianglesDoNotLookOpen) {
   EXPECT_FALSE(coarse.report.stats.doubtful);
 }
 
+// A shell of two spheres, and so few triangles that those of one pierce those of the other.
+TEST(MeshReport, TrianglesThatCrossWhenTheyAreFewAreTold) {
+  const OrientedSample shell = joined(sphere_sample(6000, 1, 1), sphere_sample(5400, 0.95, 2, -1));
+  MeshOptions options;
+  options.faces = 8000;
+  EXPECT_TRUE(Reported(shell, options).report.stats.warnings.empty());
+  options.faces = 200;
+  EXPECT_TRUE(Reported(shell, options).warns("more than before simplifying"));
+}
+
 // In a frame that a stray makes five million times as large the spacing is below what it resolves.
 TEST(MeshReport, StraysDoNotMakeTheScale) {
   OrientedSample sample = sphere_sample(4000, 1, 1);

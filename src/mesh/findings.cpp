@@ -119,7 +119,11 @@ void warn_of_topology(const MeshCheck& check, Stats& stats) {
   }
 }
 
-void warn_of_faces(std::size_t triangles, std::size_t faces, std::vector<std::string>& warnings) {
+void warn_of_faces(std::size_t triangles, std::size_t faces, std::size_t new_crossings, std::vector<std::string>& warnings) {
+  if (new_crossings > 0) {
+    warnings.push_back("so few triangles intersect each other: " + std::to_string(new_crossings) +
+                       (new_crossings == 1 ? " pair" : " pairs") + " more than before simplifying; ask for more triangles");
+  }
   if (faces == 0 || triangles <= faces) return;
   warnings.push_back(std::to_string(triangles) + " triangles instead of " + std::to_string(faces) +
                      ": fewer would open the mesh or change its parts or handles; keep the largest part, or ask for more");

@@ -25,7 +25,8 @@ void warn_of_sampling(const CanonicalCloud& cloud, const std::vector<Vec3>& norm
 /// that are resolved have more.
 void warn_of_topology(const MeshCheck& check, Stats& stats);
 
-/// A warning where more triangles are left than `faces` (0: no limit) asks for, as fewer would change what the surface is.
-void warn_of_faces(std::size_t triangles, std::size_t faces, std::vector<std::string>& warnings);
+/// Warnings where more triangles are left than `faces` (0: no limit) asks for, as fewer would change what the surface is, and where pairs
+/// of them intersect that did not when there were more.
+void warn_of_faces(std::size_t triangles, std::size_t faces, std::size_t new_crossings, std::vector<std::string>& warnings);
 
 }  // namespace g3r
