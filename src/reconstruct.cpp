@@ -282,13 +282,14 @@ std::size_t planned(const Stats& stats, const MeshOptions& chosen) {
   return std::max(stats.planned_memory_bytes, field_mesh_memory(stats.used, stats.spacing, stats.noise, stats.box_side, chosen.depth));
 }
 
+bool is_noisy(const Stats& stats) { return stats.noise > mesh::kNoisy * stats.spacing; }
+
 // Points without surface, and surface without points.
 void warn_of_missing(const mesh::Found& found, Stats& stats) {
   if (found.bare_points > kDoubtful) {
     stats.warnings.push_back(
-        percent(found.bare_points) +
-        " of the points have no surface near them: parts whose points are much closer together than is usual, or points "
-        "that are no surface; mesh such parts one by one");
+        percent(found.bare_points) + " of the points have no surface near them: parts whose points are much closer together than is usual" +
+        (is_noisy(stats) ? ", or that are thinner than the noise" : "") + ", or points that are no surface; mesh such parts one by one");
   }
   if (found.pointless_area > kDoubtful) {
     stats.warnings.push_back(percent(found.pointless_area) +
@@ -318,10 +319,9 @@ void describe_mesh(const MeshCheck& check, const MeshRun& run, const MeshOptions
   stats.planned_memory_bytes = std::max(stats.planned_memory_bytes, run.memory.needed);
   const bool is_trimmed = options.trim != MeshOptions::Trim::kOff;
   if (run.far_share > kDoubtful) {
-    const bool is_noisy = stats.noise > mesh::kNoisy * stats.spacing;
     stats.warnings.push_back(percent(run.far_share) + " of the surface is farther than " + short_number(mesh::kFarSpacings) +
                              " spacings from any point: the cloud looks open" +
-                             (is_noisy ? ", as do two walls that are no farther apart than its noise" : "") +
+                             (is_noisy(stats) ? ", as do two walls that are no farther apart than its noise" : "") +
                              (is_trimmed ? "" : "; trim the mesh (--open)"));
     stats.doubtful = stats.doubtful || (run.far_share > kManyUnsure && !is_trimmed);
   }
