@@ -89,5 +89,37 @@ TEST(Sites, LinesBecomeASurfaceAcrossTheirGaps) {
   }
 }
 
+// A square of which one half is lines, ten times as far apart as their points, and the other random points as dense as along a line.
+TEST(Sites, LinesHaveTheirDistanceAndTheRestHasNone) {
+  shapes::Random random(5);
+  std::vector<Vec3> points;
+  for (int line = 0; line < 10; ++line) {
+    for (int i = 0; i < 100; ++i) points.push_back({-0.95 + 0.1 * line, -0.5 + 0.01 * (i + random.uniform(0, 0.1)), 0});
+  }
+  for (int i = 0; i < 10000; ++i) points.push_back({random.uniform(0.05, 1.05), random.uniform(-0.5, 0.5), 0});
+  const PointSet cloud = in_order(points);
+  const std::vector<double> distance = surface_distances(cloud);
+  ASSERT_EQ(distance.size(), cloud.size());
+  const Sites sites = place_sites(cloud, distance);
+  std::vector<std::size_t> points_of(sites.size(), 0);
+  for (const std::uint32_t s : sites.site_of) ++points_of[s];
+  std::size_t dense = 0;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3& p = cloud.points()[i];
+    if (p[0] > 0.1) {
+      ++dense;
+      kept += distance[i] == 0 && sites.points()[sites.site_of[i]] == p ? 1 : 0;
+    } else if (p[0] < -0.1) {
+      EXPECT_GT(distance[i], 0.03) << p[0];
+      EXPECT_LT(distance[i], 0.2) << p[0];
+      EXPECT_GT(points_of[sites.site_of[i]], 2U) << p[0];
+    }
+  }
+  EXPECT_GT(static_cast<double>(kept), 0.99 * static_cast<double>(dense));  // few random ones are like lines
+  for (const Vec3& axis : sites.axis) EXPECT_GT(std::abs(axis[2]), 0.999);
+  EXPECT_TRUE(surface_distances(in_order(shapes::sphere(3000).points)).empty());
+}
+
 }  // namespace
 }  // namespace g3r

@@ -35,7 +35,7 @@ shapes::Surface circles(int count) {
 TEST(SolveOnSites, ScanLinesOfASphereFaceOutwards) {
   const shapes::Surface s = circles(40);
   const Problem problem = problems::prepared(s.points);
-  ASSERT_GT(problem.line_distance, 0);
+  ASSERT_FALSE(problem.line_distance.empty());
   const Monitor monitor;
   Stages stages(monitor);
   Stats stats;
@@ -49,6 +49,62 @@ TEST(SolveOnSites, ScanLinesOfASphereFaceOutwards) {
   for (std::size_t i = 0; i < truth.size(); ++i) area += vector::dot(found.eta[i], truth[i]);
   const double world = 1 / (problem.cloud.frame.scale * problem.cloud.frame.scale);
   EXPECT_NEAR(area * world, 4 * std::numbers::pi, 0.2 * 4 * std::numbers::pi);  // that of every site is shared by its points
+}
+
+// A street that a spinning scanner sees: rings on the ground, and a facade beside it that is sampled densely.
+shapes::Surface street() {
+  shapes::Surface s;
+  for (int ring = 0; ring < 24; ++ring) {
+    const double radius = 2 * std::pow(1.1, ring);
+    for (int i = 0; i < 500; ++i) {
+      const double turn = 2 * std::numbers::pi * i / 500;
+      const Vec3 p{radius * std::cos(turn), radius * std::sin(turn), 0};
+      if (p[1] > 3) continue;
+      s.points.push_back(p);
+      s.normals.push_back({0, 0, 1});
+    }
+  }
+  shapes::Random random(4);
+  for (int i = 0; i < 15000; ++i) {
+    s.points.push_back({random.uniform(-4, 4), 3, random.uniform(0, 3)});
+    s.normals.push_back({0, -1, 0});
+  }
+  return s;
+}
+
+// Up decides the ground, and the facade hangs together with it. Its points are sites, and keep the exact directions of a plane.
+TEST(SolveOnSites, LinesBesideASurfaceShareItsSide) {
+  const shapes::Surface s = street();
+  Options options;
+  options.hints.up = Vec3{0, 0, 1};
+  const Orientation found = orient(s.points, options);
+  EXPECT_GT(shapes::share_correct(found.normals, s.normals), 0.99);
+  EXPECT_GT(found.stats.confidence_mean, 0.9);
+  std::size_t exact = 0;
+  std::size_t facade = 0;
+  for (std::size_t i = 0; i < s.points.size(); ++i) {
+    if (s.normals[i][1] == 0 || s.points[i][2] < 0.3) continue;
+    ++facade;
+    exact += found.normals[i][1] < -1 + 1e-12 ? 1 : 0;
+  }
+  EXPECT_GT(static_cast<double>(exact), 0.99 * static_cast<double>(facade));
+}
+
+// Wires that are hardly broader than their spacing look like lines in part, and are closed.
+TEST(SolveOnSites, WiresBesideASurfaceAreSolvedForOnTheirPoints) {
+  shapes::Surface s = shapes::sphere(12000);
+  const shapes::Surface wire = shapes::torus(700, 2, 0.015, 3);
+  s.points.insert(s.points.end(), wire.points.begin(), wire.points.end());
+  s.normals.insert(s.normals.end(), wire.normals.begin(), wire.normals.end());
+  Problem problem = problems::prepared(s.points);
+  ASSERT_FALSE(problem.line_distance.empty());
+  EXPECT_FALSE(problem.is_lines());
+  const Monitor monitor;
+  Stages stages(monitor);
+  Stats stats;
+  const Solution found = solve_with_lines(problem, {}, stages, stats);
+  EXPECT_TRUE(problem.line_distance.empty());
+  EXPECT_GT(shapes::share_correct(found.refinement.normals, problems::in_its_order(problem, s.normals)), 0.99);
 }
 
 // The method that is taken by itself, named, is the same run.

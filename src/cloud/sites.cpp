@@ -3,6 +3,7 @@
 #include "base/median.h"
 #include "base/vector.h"
 #include "cloud/canonical_cloud.h"
+#include "cloud/chance.h"
 #include "cloud/constants.h"
 #include "cloud/exact_plane.h"
 #include "cpu/parallel.h"
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <unordered_map>
 #include <utility>
@@ -166,19 +168,32 @@ void gather(const std::vector<Vec3>& points, const std::vector<Vec3>& seeds, Sit
   for (std::size_t i = 0; i < points.size(); ++i) sites.site_of[i] = rank[nearest[i]];
 }
 
-}  // namespace
+// Whether most of the points near point i lie along a line: that have a plane of less than this breadth.
+template <class Breadth>
+bool is_in_lines(const PointSet& set, std::size_t i, const Breadth& breadth) {
+  const std::size_t stride = set.near_count();
+  const auto first = set.near().begin() + static_cast<std::ptrdiff_t>(i * stride);
+  const auto narrow =
+      std::count_if(first, first + static_cast<std::ptrdiff_t>(stride), [&](std::uint32_t j) { return breadth(j) < kFacetBreadth; });
+  return 2 * static_cast<std::size_t>(narrow) > stride;
+}
 
-Sites place_sites(const PointSet& set, double distance) {
-  const std::vector<Vec3>& points = set.points();
-  Sites sites;
-  sites.distance = distance;
-  if (distance > 0) {
-    gather(points, taken_points(points, distance), sites);
-  } else {
-    sites.set = set;
-    sites.site_of.resize(points.size());
-    std::iota(sites.site_of.begin(), sites.site_of.end(), std::uint32_t{0});
-  }
+// Whether more of some 500 points do than by chance.
+bool has_lines(const PointSet& set) {
+  const std::size_t step = std::max<std::size_t>(1, set.size() / kFewPlaces);
+  std::vector<std::uint8_t> in_lines((set.size() + step - 1) / step);
+  static_cast<void>(set.near());  // made before the loop
+  parallel::for_blocks(in_lines.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
+    Planes planes(set, 0);
+    const auto breadth = [&](std::uint32_t j) { return planes.at_point(j).breadth; };
+    for (std::size_t k = begin; k < end; ++k) in_lines[k] = is_in_lines(set, k * step, breadth) ? 1 : 0;
+  });
+  const auto count = std::count(in_lines.begin(), in_lines.end(), std::uint8_t{1});
+  return static_cast<double>(count) > kFalseAlarms * static_cast<double>(in_lines.size());
+}
+
+// The planes of sites, through points of the set within reach, or through the nearest where all of these are the sites.
+void fit_planes(const PointSet& set, double distance, Sites& sites) {
   const std::size_t count = sites.size();
   sites.axis.resize(count);
   sites.flatness.resize(count);
@@ -197,6 +212,37 @@ Sites place_sites(const PointSet& set, double distance) {
       sites.breadth[s] = plane.breadth;
     }
   });
+}
+
+}  // namespace
+
+Sites place_sites(const PointSet& set, double distance) {
+  const std::vector<Vec3>& points = set.points();
+  Sites sites;
+  sites.distance = distance;
+  if (distance > 0) {
+    gather(points, taken_points(points, distance), sites);
+  } else {
+    sites.set = set;
+    sites.site_of.resize(points.size());
+    std::iota(sites.site_of.begin(), sites.site_of.end(), std::uint32_t{0});
+  }
+  fit_planes(set, distance, sites);
+  return sites;
+}
+
+Sites place_sites(const PointSet& set, const std::vector<double>& distance) {
+  const std::vector<Vec3>& points = set.points();
+  std::map<double, std::vector<Vec3>> alike;
+  for (std::size_t i = 0; i < points.size(); ++i) alike[distance[i]].push_back(points[i]);
+  std::vector<Vec3> seeds;
+  for (const auto& [apart, some] : alike) {
+    const std::vector<Vec3> taken = apart > 0 ? taken_points(some, apart) : some;
+    seeds.insert(seeds.end(), taken.begin(), taken.end());
+  }
+  Sites sites;
+  gather(points, seeds, sites);
+  fit_planes(sites.set, 0, sites);
   return sites;
 }
 
@@ -223,6 +269,37 @@ double surface_distance(const PointSet& set) {
     return distance == 0 || taken_points(points, distance).size() >= kFewestSites ? distance : 0;
   }
   return 0;
+}
+
+std::vector<double> surface_distances(const PointSet& set) {
+  const std::size_t count = set.size();
+  if (const double distance = surface_distance(set); distance > 0) return std::vector<double>(count, distance);
+  if (!has_lines(set)) return {};
+  const double first = kFirstDistance * set.spacing();
+  std::vector<double> out(count, 0);
+  std::vector<std::uint32_t> in_lines(count);  // that are, seen from sites as far apart as now
+  std::iota(in_lines.begin(), in_lines.end(), std::uint32_t{0});
+  for (double distance = 0; in_lines.size() >= kFewestSites;) {
+    std::vector<Vec3> some;
+    for (const std::uint32_t i : in_lines) some.push_back(set.points()[i]);
+    const Sites sites = place_sites(distance > 0 ? PointSet(std::move(some)) : set, distance);
+    if (sites.size() < kFewestSites) break;
+    const double next = std::max(first, kLevelRatio * distance);
+    std::vector<std::uint8_t> are_lines(sites.size());
+    for (std::size_t s = 0; s < sites.size(); ++s) {
+      are_lines[s] = is_in_lines(sites.set, s, [&](std::uint32_t j) { return sites.breadth[j]; }) ? 1 : 0;
+    }
+    std::vector<std::uint32_t> still;
+    for (std::size_t k = 0; k < in_lines.size(); ++k) {
+      if (are_lines[sites.site_of[k]] == 0) continue;
+      still.push_back(in_lines[k]);
+      if (distance > 0) out[in_lines[k]] = next;  // what is no line at the first scale has points enough
+    }
+    if (distance == first && static_cast<double>(still.size()) <= kFalseAlarms * static_cast<double>(count)) return {};
+    in_lines = std::move(still);
+    distance = next;
+  }
+  return out;
 }
 
 }  // namespace g3r

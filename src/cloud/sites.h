@@ -44,9 +44,18 @@ struct Sites {
 /// `distance` >= 0. O(N log N).
 [[nodiscard]] Sites place_sites(const PointSet& set, double distance);
 
+/// The same with a distance of its own for every point, of which only a few are different: 0 where it is a site itself. No planes.
+[[nodiscard]] Sites place_sites(const PointSet& set, const std::vector<double>& distance);
+
 /// The least distance of sites at which the samples are a surface and not lines: 0, or 1.5, 3, 6 ... typical spacings, such that the median
 /// breadth of the planes is a half or more. Scan lines are a surface only as seen across the gaps between them. Looks at about 2000
 /// places, at fewer where lines would have fewer sites; 0 where there would be fewer than 30. O(N) for every distance.
 [[nodiscard]] double surface_distance(const PointSet& set);
+
+/// Of every point the distance of sites at which the samples around it are a surface. That of all where half of the cloud is lines; else,
+/// where more than 2 % are, that of each place, as a spinning scanner samples the street in rings and a facade beside it densely: it grows
+/// from 0 as above for the points of the sites around which most planes have a breadth of less than a half. Empty: they are a surface
+/// everywhere. O(N log N).
+[[nodiscard]] std::vector<double> surface_distances(const PointSet& set);
 
 }  // namespace g3r

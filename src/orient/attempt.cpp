@@ -6,7 +6,6 @@
 #include "orient/open_to_views.h"
 #include "orient/site_parts.h"
 #include "orient/solution.h"
-#include "orient/solve_apart.h"
 #include "orient/solve_on_sites.h"
 
 #include <utility>
@@ -15,10 +14,9 @@
 namespace g3r {
 namespace {
 
-Solution solve_problem(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
+Solution solve_problem(Problem& problem, const Options& options, Stages& stages, Stats& stats) {
   if (is_seen_in_noise(problem)) return solve_by_sight(problem, stages, stats);
-  Solution solution =
-      problem.line_distance > 0 ? solve_on_sites(problem, options, stages, stats) : solve_parts(problem, options, stages, stats);
+  Solution solution = solve_with_lines(problem, options, stages, stats);
   if (const Views& views = problem.cloud.set.views(); views.known()) {
     open_to_views(views, problem.cloud.points(), solution);
   }

@@ -19,7 +19,7 @@ constexpr double kHardlyAny = 0.2;
 constexpr std::size_t kFewPoints = 2500;
 
 bool may_try_noises(const Problem& problem, const Options& options) {
-  const bool on_points = problem.line_distance == 0;  // sites have a noise of their own
+  const bool on_points = problem.line_distance.empty();  // sites have a noise of their own
   const bool sides_known = problem.cloud.set.views().known();
   return on_points && !sides_known && options.epsilon.unit == Length::Unit::kAuto && options.noise.unit == Length::Unit::kAuto &&
          options.schedule.empty() && runs(problem, Step::kNoise) && runs(problem, Step::kNoiseChoice);

@@ -40,7 +40,7 @@ std::vector<std::uint32_t> solved_points(const Solution& solution) {
 bool is_projected(const Problem& problem) {
   const double left = projected_noise(problem.noise, problem.spacing);
   const bool halves_variance = left * left <= kClearlyLess * problem.noise * problem.noise;
-  const bool on_points = problem.line_distance == 0;
+  const bool on_points = problem.line_distance.empty();
   return problem.noise > 0 && on_points && halves_variance && runs(problem, Step::kPolish) && runs(problem, Step::kProjection);
 }
 

@@ -39,7 +39,7 @@ void open_to_views(const Views& views, const std::vector<Vec3>& points, Solution
 }
 
 bool is_seen_in_noise(const Problem& problem) {
-  const bool is_ours = problem.settings.method == Method::kEnergy && problem.line_distance == 0;
+  const bool is_ours = problem.settings.method == Method::kEnergy && !problem.is_lines();
   return is_ours && runs(problem, Step::kPolish) && problem.cloud.set.views().known() &&
          problem.direction_noise > noise_of_clean_widths() * problem.spacing;
 }

@@ -127,7 +127,7 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
   if (set.views().known()) problem.direction_noise = given ? *given : largest_scatter(set);
   problem.noise = given ? *given : noise ? *noise : estimate_noise(set);
   if (problem.noise == 0 && !given && !set.views().known()) problem.direction_noise = fine_noise(set);
-  if (!contains(without, Step::kSites)) problem.line_distance = surface_distance(set);
+  if (!contains(without, Step::kSites)) problem.line_distance = surface_distances(set);
   choose_scales_and_scatter(problem, options);
   if (!options.wnnc_widths.empty() && options.method != Method::kWnnc) throw InvalidInput("wnnc_widths belong to the method wnnc");
   if (is_baseline(options.method)) {

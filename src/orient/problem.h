@@ -10,6 +10,7 @@
 
 #include <g3r/g3r.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -25,12 +26,16 @@ struct Problem {
   double direction_noise = 0;  ///< the largest that directions follow, each its place's: largest_scatter() where Views are known; without
                                ///< noise that kernels have to hide, fine_noise()
   double scatter = 0;          ///< facet_scatter(), where planes are fitted
-  double line_distance = 0;    ///< surface_distance(): 0, or the distance of the sites that are solved for where the samples are lines
-  Known known;                 ///< of the points of the cloud, in its order
+  std::vector<double> line_distance;  ///< surface_distances(): N, of the sites that lines are solved for on, 0 elsewhere; empty: no lines
+  Known known;                        ///< of the points of the cloud, in its order
   Settings settings;
 
   /// Whether the points are exact, so that steps follow the local spacing and prove directions from the points alone.
   [[nodiscard]] bool is_clean() const { return noise == 0 && !contains(settings.without, Step::kPolish); }
+  /// Whether all of the samples are lines.
+  [[nodiscard]] bool is_lines() const {
+    return !line_distance.empty() && std::find(line_distance.begin(), line_distance.end(), 0.0) == line_distance.end();
+  }
   /// Whether the areas that are returned come from the spacing: the solve is for normals, and the lengths of its vectors vary with the
   /// sample. Earlier methods keep theirs.
   [[nodiscard]] bool replaces_areas() const { return !contains(settings.without, Step::kAreas); }
