@@ -55,6 +55,9 @@ TEST(ChooseSettings, RefusesOptionsThatContradictEachOther) {
   refused([](Options& o) { o.threads = -1; });
   refused([](Options& o) { o.epsilon = {Length::Unit::kInput, 0}; });
   refused([](Options& o) { o.noise = {Length::Unit::kInput, 0}, o.preset = Preset::kPaper; });
+  for (const Method method : {Method::kGreen, Method::kWnnc, Method::kAgr, Method::kPgr}) {
+    refused([method](Options& o) { o.noise = {Length::Unit::kSpacing, 1}, o.method = method; });
+  }
 }
 
 TEST(GivenNoise, IsTheSameLengthInEveryUnit) {

@@ -6,6 +6,7 @@
 #include "orient/noise_settings.h"
 
 #include <g3r/error.h>
+#include <g3r/names.h>
 
 #include <algorithm>
 #include <bit>
@@ -86,8 +87,10 @@ void require_sound(const Options& options) {
   require(options.tolerance == -1 || (options.tolerance >= 0 && options.tolerance < 1), "tolerance must be in [0, 1)");
   require(options.epsilon.unit == Length::Unit::kAuto || (options.epsilon.value > 0 && std::isfinite(options.epsilon.value)),
           "epsilon must be a positive number");
-  require(options.noise.unit == Length::Unit::kAuto || (!green && options.preset != Preset::kPaper),
-          "noise belongs to the method energy of the default preset");
+  const bool paper = options.preset == Preset::kPaper;
+  require(options.noise.unit == Length::Unit::kAuto || (method_of(options) == Method::kEnergy && !paper),
+          "noise belongs to the method energy of the default preset; leave it out with " +
+              (paper ? "the preset paper" : std::string(name_of(method_of(options)))));
   require(options.solver != Solver::kDense || green, "the dense solver belongs to the method green");
 }
 
