@@ -258,6 +258,50 @@ TEST(OpenSurfaces, OfFewPointsNoSideIsSure) {
   EXPECT_GT(*std::min_element(more.confidence.begin(), more.confidence.end()), 0.9F);
 }
 
+// `count` times the shape, in rows 4 wide and `apart` from each other.
+Surface rows_of(const Surface& shape, int count, double apart) {
+  Surface all;
+  for (int k = 0; k < count; ++k) {
+    Surface one = shape;
+    for (Vec3& p : one.points) p = {p[0] + apart * (k % 4), p[1] + apart * (k / 4 % 4), p[2] + apart * (k / 16)};
+    all = shapes::join(all, one);
+  }
+  return all;
+}
+
+// Alone each is a cloud of too few points. Their sides are a choice, and the field of these patches jumps all the same: a confidence of
+// 0.76.
+TEST(OpenSurfaces, OfPartsOfFewPointsNoSideIsSure) {
+  shapes::Random random(1);
+  for (const int side : {3, 4}) {
+    Surface patch;
+    for (int k = 0; k < side * side; ++k) {
+      patch.points.push_back({0.1 * (k % side + random.uniform(-0.3, 0.3)), 0.1 * (k / side + random.uniform(-0.3, 0.3)), 0});
+      patch.normals.push_back({0, 0, 1});
+      patch.areas.push_back(0.01);
+    }
+    const Surface patches = rows_of(patch, 64, 1.5);
+    const Surface scene = shapes::join(patches, shapes::sphere(2000, 1.2, {-6, 0, 0}));
+    const Orientation o = orient(scene.points);
+    const auto end = o.confidence.begin() + static_cast<std::ptrdiff_t>(patches.points.size());
+    EXPECT_LE(*std::max_element(o.confidence.begin(), end), 0.5F) << side;
+    EXPECT_GT(*std::min_element(end, o.confidence.end()), 0.9F) << side;
+    EXPECT_FALSE(o.stats.consistent) << side;
+  }
+}
+
+TEST(OpenSurfaces, BeadsBesideALargePartAreSure) {
+  const double spacing = 1.2 * std::sqrt(4 * std::numbers::pi / 2000);
+  for (const std::size_t count : {40, 100}) {
+    const Surface bead = shapes::sphere(count, spacing * std::sqrt(static_cast<double>(count) / (4 * std::numbers::pi)));
+    const Surface scene = shapes::join(rows_of(bead, 16, 1.5), shapes::sphere(2000, 1.2, {-6, 0, 0}));
+    const Orientation o = orient(scene.points);
+    EXPECT_EQ(shapes::share_correct(o.normals, scene.normals), 1) << count;
+    EXPECT_GT(*std::min_element(o.confidence.begin(), o.confidence.end()), 0.6F) << count;
+    EXPECT_TRUE(o.stats.consistent) << count;
+  }
+}
+
 TEST(OpenSurfaces, SolidsHaveNone) {
   for (const Surface& s : {shapes::sphere(3000), shapes::torus(5000, 0.6, 0.25, 2),
                            shapes::join(shapes::sphere(4000, 0.8), shapes::sphere(2000, 0.5), true)}) {

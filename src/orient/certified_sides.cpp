@@ -1,6 +1,7 @@
 #include "orient/certified_sides.h"
 
 #include "base/vector.h"
+#include "cloud/sites.h"
 #include "cloud/spacing.h"
 #include "orient/agreement.h"
 
@@ -46,9 +47,10 @@ std::vector<float> certified_sides(const SiteParts& parts, const Certificate& ce
   std::vector<float> out(normals.size(), 0);
   for (std::size_t i = 0; i < normals.size(); ++i) {
     const std::uint32_t s = parts.sites().site_of[i];
-    if (dot(normals[i], mean[s]) <= 0) continue;
+    const std::uint32_t part = parts.of_point(i);
+    if ((exact && parts.members(part).size() < kFewestSites) || dot(normals[i], mean[s]) <= 0) continue;
     const double jump = is_thinned ? 1 - certificate.scaled_defect[s] : certificate.jump[s];
-    const double restless = std::min(1.0, unrest[parts.of_point(i)] / (is_thinned ? kUnrestNoisy : kUnrest));
+    const double restless = std::min(1.0, unrest[part] / (is_thinned ? kUnrestNoisy : kUnrest));
     out[i] = static_cast<float>((exact ? 1 : one_way[s]) * std::clamp(jump, 0.0, 1.0) * (1 - restless * restless));
   }
   return out;

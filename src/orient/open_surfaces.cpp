@@ -195,7 +195,7 @@ void OpenSurfaces::put(const std::vector<std::uint32_t>& some, const OpenSurface
 }
 
 bool is_unsure(const OpenSurfaces& surfaces, const std::vector<float>& confidence, std::size_t i) {
-  const bool not_shown = !surfaces.is_open(i) && confidence[i] == kUndecided && confidence.size() >= kFewestSites;
+  const bool not_shown = !surfaces.is_open(i) && confidence[i] <= kUndecided && confidence.size() >= kFewestSites;
   return confidence[i] < kUndecided || not_shown;
 }
 
