@@ -73,8 +73,9 @@ Orientation orient_from(const PointsView& points, Known known, const Options& op
   });
 }
 
-Stats plan(const PointsView& points, const Options& options) {
-  const Monitor monitor;
+Stats plan(const PointsView& points, const Options& options) { return plan_of(points, options, {}); }
+
+Stats plan_of(const PointsView& points, const Options& options, const Monitor& monitor) {
   Stages stages(monitor);
   return parallel::with_threads(options.threads, [&] {
     Stats stats;

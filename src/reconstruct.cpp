@@ -24,6 +24,7 @@
 #include "orient/confidence.h"
 #include "orient/memory_plan.h"
 #include "orient/settings.h"
+#include "orient/start.h"
 #include "sum/device_scope.h"
 
 #include <g3r/g3r.h>
@@ -458,7 +459,10 @@ Reconstruction reconstruct(const PointsView& points, const Options& options, con
   require_usable(mesh_options);
   require_meshable(points);
   const MeshOptions chosen = choose(mesh_options, options);
-  if (options.max_memory > 0) require_memory(plan(points, options, mesh_options).planned_memory_bytes, options.max_memory, true);
+  if (options.max_memory > 0) {
+    const Stats stats = plan_of(points, options, {{}, monitor.cancel});  // whose progress is not that of the run
+    require_memory(planned(stats, chosen), options.max_memory, true);
+  }
   Reconstruction out;
   const gpu::Scope device(options.device, points.count);  // one for both steps
   out.orientation = orient(points, options, monitor);

@@ -411,6 +411,16 @@ TEST(Orient, StopsWhenAsked) {
   EXPECT_THROW(static_cast<void>(orient(points, {}, stopped)), Cancelled);
 }
 
+// A plan of a great cloud takes seconds.
+TEST(Reconstruct, StopsBeforeItsPlan) {
+  const std::atomic<bool> stop{true};
+  Monitor stopped;
+  stopped.cancel = &stop;
+  Options options;
+  options.max_memory = 1;
+  EXPECT_THROW(static_cast<void>(reconstruct(shapes::torus(2000, 0.6, 0.25, 1).points, options, {}, stopped)), Cancelled);
+}
+
 // Distances that no float, and whose squares no double, can hold.
 TEST(Orient, PointsOfEveryMagnitudeGiveNumbers) {
   std::vector<Vec3> points;

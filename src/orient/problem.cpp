@@ -103,6 +103,7 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
     const std::vector<double> relative_spacing = last_in_canonical_order(problem.cloud, known.relative_spacing);
     Outliers found = find_outliers(problem.cloud.set, relative_spacing, known_noise(problem.cloud.set.spacing()));
     noise = found.noise;
+    stages.check();
     if (found.indices.empty()) break;
     std::vector<Vec3> removed = remove_points(problem.cloud, found.indices, found.others);
     problem.outliers.insert(problem.outliers.begin(), removed.begin(), removed.end());
@@ -116,6 +117,7 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
   problem.outlier_share = static_cast<double>(problem.outliers.size()) / all;
   if (known.gradient.empty() && !contains(without, Step::kViewpoint)) {
     problem.cloud.set.set_views(find_views(problem.cloud, options.hints));
+    stages.check();
   }
   const PointSet& set = problem.cloud.set;
   const auto any = [](std::uint8_t a, std::uint8_t b) { return std::max(a, b); };
@@ -123,12 +125,16 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
                    last_in_canonical_order(problem.cloud, std::exchange(known.relative_spacing, {})),
                    in_canonical_order(problem.cloud, std::exchange(known.wanted, {}), std::uint8_t{0}, any)};
   problem.spacing = typical_spacing(spacing_before_thinning(set.local_spacing(), problem.known.relative_spacing));
+  stages.check();
   const std::optional<double> given = known_noise(problem.spacing);
   if (set.views().known()) problem.direction_noise = given ? *given : largest_scatter(set);
   problem.noise = given ? *given : noise ? *noise : estimate_noise(set);
   if (problem.noise == 0 && !given && !set.views().known()) problem.direction_noise = fine_noise(set);
+  stages.check();
   if (!contains(without, Step::kSites)) problem.line_distance = surface_distances(set);
+  stages.check();
   choose_scales_and_scatter(problem, options);
+  stages.check();
   if (!options.wnnc_widths.empty() && options.method != Method::kWnnc) throw InvalidInput("wnnc_widths belong to the method wnnc");
   if (is_baseline(options.method)) {
     const double epsilon = options.epsilon.unit == Length::Unit::kAuto ? 0 : problem.settings.epsilon.typical();

@@ -26,4 +26,7 @@ struct Known {
 [[nodiscard]] Orientation orient_from(const PointsView& points, Known known, const Options& options, const Monitor& monitor,
                                       std::vector<std::uint8_t>* open = nullptr);
 
+/// plan(points, options) that can be cancelled. Throws Cancelled. src/pipeline.cpp.
+[[nodiscard]] Stats plan_of(const PointsView& points, const Options& options, const Monitor& monitor);
+
 }  // namespace g3r
