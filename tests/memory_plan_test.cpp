@@ -38,6 +38,9 @@ TEST(PlannedMemory, GrowsWithEveryPointAndIsHeldToTheLimit) {
   EXPECT_LT(planned_memory(s, 2000, 1000), planned_memory(s, 2000, 2000));
   s.dense = true;
   EXPECT_GE(planned_memory(s, 1000, 1000), 9 * 1000 * 1000 * sizeof(double));
+  EXPECT_LT(planned_memory(s, 1000, 1000), 2 * 9 * 1000 * 1000 * sizeof(double));
+  s.condition_number = true;
+  EXPECT_GE(planned_memory(s, 1000, 1000), 2 * 9 * 1000 * 1000 * sizeof(double));
   EXPECT_NO_THROW(require_memory(std::size_t{1} << 50, 0, false));  // 0: no limit
   EXPECT_NO_THROW(require_memory(1000, 1000, true));
   for (const bool makes_mesh : {false, true}) {

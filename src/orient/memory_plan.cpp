@@ -45,7 +45,8 @@ std::size_t planned_memory(const Settings& settings, std::size_t given, std::siz
   const double matrix = terms * terms * (sums.double_precision ? sizeof(double) : sizeof(float));
   const double expansions = sums.direct ? 0 : kMatrices * matrix;
   double bytes = kProgram + expansions + static_cast<double>(given * sizeof(Given)) + std::max(solve, certificate);
-  if (settings.dense) bytes += 3 * unknowns * 3 * unknowns * sizeof(double);
+  const double matrices = settings.condition_number ? 2 : 1;  // of the dense system, and the copy that is brought to three diagonals
+  if (settings.dense) bytes += matrices * 3 * unknowns * 3 * unknowns * sizeof(double);
   return whole_bytes(bytes);
 }
 

@@ -103,7 +103,8 @@ void choose_equations(const Options& options, std::size_t points, Settings& s) {
   }
   const bool small = options.preset == Preset::kPaper && green && options.schedule.empty() && points <= kPaperDensePoints;
   s.dense = options.solver == Solver::kDense || (options.solver == Solver::kAuto && small);
-  require(!options.condition_number || s.dense, "the condition number is that of the dense system: set the solver to dense");
+  s.condition_number = options.condition_number;
+  require(!s.condition_number || s.dense, "the condition number is that of the dense system: set the solver to dense");
 }
 
 // Of clean points.

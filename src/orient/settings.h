@@ -46,6 +46,7 @@ struct Settings {
   StepSet without;  ///< steps_left_out()
   Method method = Method::kEnergy;
   bool dense = false;
+  bool condition_number = false;    ///< of the dense system, whose matrix it takes once more
   std::vector<Harmonic> harmonics;  ///< green only
   double winding_weight = 0;        ///< energy: l, length^3
   double spacing = 0;
