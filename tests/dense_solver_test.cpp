@@ -39,10 +39,9 @@ TEST(DenseSolver, AgreesWithConjugateGradientsAtConvergence) {
   EXPECT_LT(std::sqrt(difference / size), 1e-4);
 }
 
-TEST(DenseSolver, RefusesSingularAndHugeSystems) {
+TEST(DenseSolver, KnowsSingularAndRefusesHugeSystems) {
   const CanonicalCloud cloud = canonical_cloud(shapes::sphere(60).points);
-  EXPECT_THROW(static_cast<void>(solve_dense(cloud.points(), 1e-3, evaluate_harmonics(parse_harmonics("1"), cloud.points()), false)),
-               InvalidInput);
+  EXPECT_TRUE(solve_dense(cloud.points(), 1e-3, evaluate_harmonics(parse_harmonics("1"), cloud.points()), false).eta.empty());
   EXPECT_THROW(static_cast<void>(solve_dense(std::vector<Vec3>(kMostDensePoints + 1), 1e-3, HarmonicValues{}, false)), InvalidInput);
 }
 

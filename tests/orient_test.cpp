@@ -421,6 +421,30 @@ TEST(Reconstruct, StopsBeforeItsPlan) {
   EXPECT_THROW(static_cast<void>(reconstruct(shapes::torus(2000, 0.6, 0.25, 1).points, options, {}, stopped)), Cancelled);
 }
 
+// Clumps far smaller than the least epsilon: the rows of their points are the same to rounding.
+TEST(Orient, ThePaperSolvesForClumpsByConjugateGradients) {
+  shapes::Random random(3);
+  Surface clumps;
+  for (const Vec3& centre : shapes::sphere(40).points) {
+    for (int k = 0; k < 10; ++k) {
+      clumps.points.push_back(
+          {centre[0] + random.uniform(0, 1e-11), centre[1] + random.uniform(0, 1e-11), centre[2] + random.uniform(0, 1e-11)});
+    }
+  }
+  Options options;
+  options.preset = Preset::kPaper;
+  const Orientation o = orient(clumps.points, options);
+  EXPECT_EQ(o.stats.solver, "cg");
+  EXPECT_FALSE(o.stats.iterations.empty());
+  options.solver = Solver::kDense;
+  try {
+    (void)orient(clumps.points, options);
+    ADD_FAILURE();
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("too close together"), std::string::npos);
+  }
+}
+
 // Distances that no float, and whose squares no double, can hold.
 TEST(Orient, PointsOfEveryMagnitudeGiveNumbers) {
   std::vector<Vec3> points;

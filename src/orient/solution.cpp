@@ -13,6 +13,9 @@
 #include "solve/iterative_solver.h"
 #include "sum/fast_sum.h"
 
+#include <g3r/error.h>
+#include <g3r/names.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -34,20 +37,32 @@ Solution solve_by_baseline(const Problem& problem, Stages& stages, Stats& stats)
   return {std::move(result.eta), {std::move(result.normals), std::move(result.strength)}, {}};
 }
 
+Solution solve_by_steps(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
+  const Settings& s = problem.settings;
+  Solved solved = solve_coarse_to_fine(problem.cloud.points(), s, stages, relative_spacing(problem, options), problem.known.gradient);
+  record(s, solved.result, stats);
+  return {std::move(solved.result.eta), std::move(solved.refinement), {}};
+}
+
 // Area vectors, and their refinement unless its width is 0.
 Solution solve_equations(const Problem& problem, const Options& options, Stages& stages, Stats& stats) {
   const Settings& s = problem.settings;
   const std::vector<Vec3>& points = problem.cloud.points();
   stages.begin("solve");
-  if (!s.dense) {
-    Solved solved = solve_coarse_to_fine(points, s, stages, relative_spacing(problem, options), problem.known.gradient);
-    record(s, solved.result, stats);
-    return {std::move(solved.result.eta), std::move(solved.refinement), {}};
-  }
+  if (!s.dense) return solve_by_steps(problem, options, stages, stats);
   const HarmonicValues u = evaluate_harmonics(s.harmonics, points);
   DenseResult dense = solve_dense(points, s.epsilon.typical(), u, options.condition_number, stages.cancel());
-  stats.converged = true;
   stats.condition_number = dense.condition_number;
+  if (dense.eta.empty()) {
+    if (options.solver == Solver::kDense) {
+      throw InvalidInput(
+          "the normal matrix is singular: points are too close together for epsilon, or these harmonics are too few; use the solver cg, or "
+          "harmonics of degree:0-2");
+    }
+    stats.solver = name_of(Solver::kConjugateGradient);
+    return solve_by_steps(problem, options, stages, stats);
+  }
+  stats.converged = true;
   Solution solution;
   solution.eta = std::move(dense.eta);
   stages.begin("refine");

