@@ -143,6 +143,20 @@ TEST(Noise, PointsInAVolumeHaveNoSurface) {
                           [](const std::string& w) { return w.find("volume") != std::string::npos; }));
 }
 
+// Every point is looked at, and 16 neighbours of each.
+TEST(Dimension, IsThatOfTheNeighboursOfItsDefinition) {
+  const std::vector<Vec3> points = shapes::sphere(260).points;
+  std::vector<double> found;
+  for (const Vec3& p : points) {
+    std::vector<double> distance;
+    for (const Vec3& q : points) distance.push_back(std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]));
+    std::sort(distance.begin(), distance.end());  // the first is the point itself
+    found.push_back(std::log(4) / std::log(distance[16] / distance[4]));
+  }
+  std::sort(found.begin(), found.end());
+  EXPECT_NEAR(dimension(PointSet(points)), found[found.size() / 2], 1e-9);
+}
+
 TEST(Noise, IsEstimatedAndNotMistakenForShape) {
   shapes::Random random(4);
   const Surface clean = shapes::torus(8000, 0.6, 0.25, 6);

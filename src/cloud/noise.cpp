@@ -266,9 +266,12 @@ double facet_scatter(const PointSet& set) {
 double dimension(const PointSet& set) {
   if (set.size() < kFewestSurfacePoints) return 2;
   const std::size_t far = std::min(kTwiceAsFar * kLayerNeighbours, set.size() / kSmallPart);
-  std::vector<double> found = at_some(set, kFewPlaces, far, [&](const Vec3&, const auto&, const std::vector<double>& squared) {
-    const double ratio = squared.back() / squared[far / kTwiceAsFar];
-    return ratio > 1 ? 2 * std::log(kTwiceAsFar) / std::log(ratio) : 0.0;
+  const std::size_t near = far / kTwiceAsFar;
+  const double times = std::log(static_cast<double>(far) / static_cast<double>(near));
+  // The first of a point's nearest is the point itself.
+  std::vector<double> found = at_some(set, kFewPlaces, far + 1, [&](const Vec3&, const auto&, const std::vector<double>& squared) {
+    const double ratio = squared[far] / squared[near];
+    return ratio > 1 ? 2 * times / std::log(ratio) : 0.0;
   });
   found.erase(std::remove(found.begin(), found.end(), 0.0), found.end());
   return found.empty() ? 2 : quantile(std::move(found), 0.5);
