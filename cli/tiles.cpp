@@ -2,6 +2,7 @@
 #include "base/platform.h"
 #include "cpu/parallel.h"
 #include "io/source.h"
+#include "orient/hints.h"
 #include "tiles/manifest.h"
 
 #include <g3r/g3r.h>
@@ -96,17 +97,6 @@ bool can_be_meshed(const MeshOptions& o) {
   return o.mesher != Mesher::kPoisson && o.depth == 0 && o.trim == MeshOptions::Trim::kOff && o.faces == 0;
 }
 
-// In the order and words of reports in core.
-std::vector<std::string> hints_given(const Hints& hints) {
-  std::vector<std::string> names;
-  if (hints.up) names.emplace_back("up");
-  if (!hints.sensors.empty()) names.emplace_back("sensor");
-  if (!hints.inside.empty()) names.emplace_back("inside");
-  if (hints.seen_from_inside) names.emplace_back("seen_from_inside");
-  if (hints.flip) names.emplace_back("flip");
-  return names;
-}
-
 Stats stats_of(const TileStatus& status, const std::string& folder, const Settings& settings) {
   Stats stats;
   const auto [low, high] = tiles::read_manifest(folder).bounds;
@@ -114,7 +104,7 @@ Stats stats_of(const TileStatus& status, const std::string& folder, const Settin
     stats.box_centre[a] = low[a] + (high[a] - low[a]) / 2;
     stats.box_side = std::max(stats.box_side, high[a] - low[a]);
   }
-  stats.hints.given = hints_given(settings.options.hints);
+  stats.hints.given = names_of(settings.options.hints);
   stats.points = status.points;
   stats.used = status.points - status.non_finite;
   stats.dropped_non_finite = status.non_finite;

@@ -44,16 +44,6 @@ Patches patches_of(const OpenSurfaces& surfaces) {
 // Whether they say which side is seen, or is outside.
 bool vote(const Hints& hints) { return hints.up || !hints.sensors.empty() || !hints.inside.empty() || hints.seen_from_inside; }
 
-std::vector<std::string> names_of(const Hints& hints) {
-  std::vector<std::string> names;
-  if (hints.up) names.emplace_back("up");
-  if (!hints.sensors.empty()) names.emplace_back("sensor");
-  if (!hints.inside.empty()) names.emplace_back("inside");
-  if (hints.seen_from_inside) names.emplace_back("seen_from_inside");
-  if (hints.flip) names.emplace_back("flip");
-  return names;
-}
-
 // Shares, with what views have decided before any vote: sides that they turned, or all, where these come from the lines of sight alone.
 void count_sides(const HintEffect& effect, const Problem& problem, const Solution& solution, bool flip, HintStats& hints) {
   std::vector<std::uint8_t> turned = effect.turned, decided = effect.decided;

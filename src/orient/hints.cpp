@@ -50,6 +50,16 @@ HintEffect follow_hints(const HintedCloud& cloud, const std::atomic<bool>* cance
   return effect;
 }
 
+std::vector<std::string> names_of(const Hints& hints) {
+  std::vector<std::string> names;
+  if (hints.up) names.emplace_back("up");
+  if (!hints.sensors.empty()) names.emplace_back("sensor");
+  if (!hints.inside.empty()) names.emplace_back("inside");
+  if (hints.seen_from_inside) names.emplace_back("seen_from_inside");
+  if (hints.flip) names.emplace_back("flip");
+  return names;
+}
+
 void require_sound(const Hints& hints, std::size_t count) {
   require_finite(hints.sensors, "sensor");
   require_finite(hints.inside, "inside");

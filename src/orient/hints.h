@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace g3r {
@@ -59,6 +60,9 @@ struct HintEffect {
 /// this turns, and by `flip` those of all others instead. O(N log(sensors) + N k), O(N) for each of at most 500 sensors, and all sensors
 /// for each open point that none of them sees from the front. Throws Cancelled.
 [[nodiscard]] HintEffect follow_hints(const HintedCloud& cloud, const std::atomic<bool>* cancel = nullptr);
+
+/// The names of the hints that are given, as reports have them.
+[[nodiscard]] std::vector<std::string> names_of(const Hints& hints);
 
 /// Throws InvalidInput for hints that cannot be meant for `count` points: a vector that is not finite, a direction of no length, a number
 /// of a sensor that there is not.

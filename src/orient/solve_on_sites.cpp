@@ -22,7 +22,6 @@
 #include <vector>
 
 namespace g3r {
-
 namespace {
 
 // Normals of the points from those of the sites, and from their field where it has fewer sites than points.
