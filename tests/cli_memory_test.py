@@ -5,6 +5,8 @@ Run by ctest with G3R_PROGRAM set to the program.
 """
 
 import json
+import math
+import random
 import re
 import resource
 import sys
@@ -20,6 +22,8 @@ BALLAST = 256 << 20  # bytes of the process that starts the program
 PLANNED = (3000, 5000, 20000)  # points whose plan is held against the peak
 HELD = 1.1  # peak over plan, at most
 OVER = 1.3  # plan over peak, at most
+OPEN = 40000  # points of an open surface
+HELD_OPEN = 1.33  # peak over plan of such, at most: sides that neighbours agree on take more than those of the equations
 GROUP_LIMITS = ("memory.limit_in_bytes", "memory.max")  # of the two versions of control groups
 
 
@@ -68,6 +72,15 @@ class Memory(ProgramTest):
                 share = report["peak_memory_bytes"] / report["planned_memory_bytes"]
                 self.assertLess(share, HELD)
                 self.assertGreater(share, 1 / OVER)
+
+    @unittest.skipIf(is_sanitized(), "a sanitizer takes memory")
+    def test_open_surfaces_take_little_more_than_the_plan(self):
+        rng = random.Random(3)
+        places = [(rng.uniform(-1, 1), rng.uniform(-1, 1)) for _ in range(OPEN)]
+        write_points(self.path("hills.ply"), [(x, y, 0.15 * math.sin(5 * x) * math.cos(4 * y)) for x, y in places])
+        report = self.report("hills.ply")
+        self.assertEqual(report["open_share"], 1)
+        self.assertLess(report["peak_memory_bytes"] / report["planned_memory_bytes"], HELD_OPEN)
 
     def test_a_plan_beyond_the_limit_is_refused_before_the_solve(self):
         self.expect(OK, "ball.ply", "mesh.ply", "--report", "r.json")

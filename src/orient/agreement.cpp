@@ -106,7 +106,7 @@ std::vector<Hold> held_by_neighbours(const Sites& sites, const std::vector<Vec3>
     const bool is_turned = (dot(normals[edge.a], sites.axis[edge.a]) < 0) != (dot(normals[edge.b], sites.axis[edge.b]) < 0);
     if (is_turned) edge.weight = -edge.weight;
   }
-  return held_together(sites.size(), edges);
+  return held_together(sites.size(), std::move(edges));
 }
 
 std::vector<std::vector<Vec3>> sides_by_agreement(const PointSet& set, const Sites& finest, const SumPlan& sums,

@@ -31,7 +31,7 @@ std::size_t planned_memory(const Settings& settings, std::size_t given, std::siz
   constexpr double kMatrices = 180;    // of the expansions, that the far pairs of a cloud share: measured
   constexpr double kPerUnknown = 330;  // while the equations are solved,
   constexpr double kBase = 255;        // or what stays of it while sides are certified,
-  constexpr double kPerSite = 400;     // and what each of the sites then takes;
+  constexpr double kPerSite = 430;     // and what each of the sites then takes: of closed clouds 400, of open ones 600;
   constexpr double kMoved = 100;       // under noise, besides, points that are moved onto their surface
   constexpr double kFilled = 0.7;      // as many as a maximal sample of points so far apart has, in squares of that side
   const std::size_t harmonics = settings.method == Method::kGreen ? settings.harmonics.size() : 0;

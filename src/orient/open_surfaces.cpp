@@ -141,7 +141,7 @@ void turn_doubtful(const SiteParts& parts, const std::vector<Vec3>& best, const 
   }
 }
 
-// The normals of open parts, with their outside where they have one. `best`: as above, and `wide`: as seen from afar.
+// The normals of open parts, whichever way they face. `best`: as above, and `wide`: as seen from afar.
 OpenSurfaces take(const SiteParts& parts, const std::vector<Vec3>& best, const std::vector<Vec3>& wide, const Verdict& verdict,
                   std::vector<float> certified, std::vector<Vec3>& normals) {
   OpenSurfaces found;
@@ -160,7 +160,6 @@ OpenSurfaces take(const SiteParts& parts, const std::vector<Vec3>& best, const s
     normals[i] = agreed < kUndecided ? wide[i] : best[i];
     found.certified[i] = static_cast<float>(std::clamp(agreed / kUndecided, 0.0, 1.0));
   }
-  if (any(verdict.is_open)) face_outside(parts, verdict.is_open, verdict.enclosure, normals, found);
   return found;
 }
 
@@ -229,10 +228,15 @@ OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan
   const bool are_turned = any(verdict.is_turned);
   if (are_turned) turn_doubtful(parts, best, verdict, normals);
   std::vector<float> shown = certified_sides(parts, are_turned ? parts.test(normals) : given.of_sites, normals, noise == 0);
+  given = {};  // the graph of the outside wants its memory, and that of the hypotheses
   OpenSurfaces found;
   if (any(verdict.is_open) || any(verdict.is_doubtful)) {
-    const std::vector<Vec3> wide = best.empty() ? best : seen_from_afar(set, parts.sites(), best, sums, cancel);
+    std::vector<Vec3> wide = best.empty() ? best : seen_from_afar(set, parts.sites(), best, sums, cancel);
     found = take(parts, best, wide, verdict, std::move(shown), normals);
+    std::vector<Vec3>().swap(best);
+    std::vector<Vec3>().swap(wide);
+    std::vector<std::vector<double>>().swap(verdict.defects);
+    if (any(verdict.is_open)) face_outside(parts, verdict.is_open, verdict.enclosure, normals, found);
   } else {
     found.certified = std::move(shown);
   }

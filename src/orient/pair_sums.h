@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -10,11 +9,11 @@
 namespace g3r {
 
 /// A number for each of some pairs of different nodes: a hash table with linear probing (Knuth, The Art of Computer Programming 3, 6.4),
-/// half full at most: 32 bytes a pair or 64. All is O(1) but for_each().
+/// half full at most: 32 bytes a pair. All is O(1) but for_each().
 class PairSums {
  public:
   /// For that many pairs at a time.
-  explicit PairSums(std::size_t most_pairs) : slots_(std::bit_ceil(2 * most_pairs + 2)) {}
+  explicit PairSums(std::size_t most_pairs) : slots_(2 * most_pairs + 2) {}
 
   /// The number of the pair, null if it has none; valid until a pair is added or removed. A pair may be given either way round.
   [[nodiscard]] double* find(std::uint32_t a, std::uint32_t b) {
@@ -34,7 +33,7 @@ class PairSums {
     std::size_t hole = place(key_of(a, b));
     for (std::size_t at = next(hole); slots_[at].key != kFree; at = next(at)) {
       const std::size_t wanted = first_place(slots_[at].key);
-      if (((at - wanted) & mask()) >= ((at - hole) & mask())) {
+      if (distance(wanted, at) >= distance(hole, at)) {
         slots_[hole] = slots_[at];
         hole = at;
       }
@@ -58,11 +57,12 @@ class PairSums {
   };
 
   static std::uint64_t key_of(std::uint32_t a, std::uint32_t b) { return std::uint64_t{std::min(a, b)} << 32U | std::max(a, b); }
-  [[nodiscard]] std::size_t mask() const { return slots_.size() - 1; }
-  [[nodiscard]] std::size_t next(std::size_t at) const { return (at + 1) & mask(); }
+  [[nodiscard]] std::size_t next(std::size_t at) const { return at + 1 < slots_.size() ? at + 1 : 0; }
+  // Slots from one to another, on from the last to the first.
+  [[nodiscard]] std::size_t distance(std::size_t from, std::size_t to) const { return to >= from ? to - from : to + slots_.size() - from; }
   [[nodiscard]] std::size_t first_place(std::uint64_t key) const {
     constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15U;  // 2^64 over the golden ratio: neighbours are scattered
-    return static_cast<std::size_t>((key * kGolden) >> 32U) & mask();
+    return static_cast<std::size_t>((((key * kGolden) >> 32U) * slots_.size()) >> 32U);
   }
   // Where the pair is, or is to be put.
   [[nodiscard]] std::size_t place(std::uint64_t key) const {

@@ -29,13 +29,15 @@ class Contractor {
   // number of nodes of the smaller group comes first, so that what a few edges hold comes last, and none is turned.
   enum class Negative { kTurned, kKept };
 
-  Contractor(std::size_t nodes, const std::vector<SignEdge>& edges, Negative negative)
+  // Gives back the edges before the pairs take their memory.
+  Contractor(std::size_t nodes, std::vector<SignEdge> edges, Negative negative)
       : members_(nodes), others_(nodes), degree_(nodes, 0), sums_(edges.size()), turns_(negative == Negative::kTurned) {
     for (std::uint32_t i = 0; i < nodes; ++i) members_[i] = {i};
     for (const SignEdge& edge : edges) {
       if (edge.a != edge.b) add(edge.a, edge.b, edge.weight);
     }
     first_.reserve(edges.size());
+    std::vector<SignEdge>().swap(edges);
     sums_.for_each([&](std::uint32_t a, std::uint32_t b, double sum) { first_.push_back(waiting(a, b, sum)); });
     std::sort(first_.begin(), first_.end());
   }
@@ -123,9 +125,9 @@ class Contractor {
 
 }  // namespace
 
-Signs agree_on_signs(std::size_t nodes, const std::vector<SignEdge>& edges) {
+Signs agree_on_signs(std::size_t nodes, std::vector<SignEdge> edges) {
   Signs out{std::vector<std::int8_t>(nodes, 1), std::vector<std::uint32_t>(nodes)};
-  Contractor contractor(nodes, edges, Contractor::Negative::kTurned);
+  Contractor contractor(nodes, std::move(edges), Contractor::Negative::kTurned);
   contractor.run([&](std::uint32_t, std::uint32_t joined, double sum) {
     if (sum >= 0) return;
     for (const std::uint32_t i : contractor.members(joined)) out.sign[i] = static_cast<std::int8_t>(-out.sign[i]);
@@ -138,7 +140,7 @@ Signs agree_on_signs(std::size_t nodes, const std::vector<SignEdge>& edges) {
   return out;
 }
 
-std::vector<Hold> held_together(std::size_t nodes, const std::vector<SignEdge>& edges) {
+std::vector<Hold> held_together(std::size_t nodes, std::vector<SignEdge> edges) {
   std::vector<double> degree(nodes, 0);  // of the nodes of a group together
   std::vector<double> rim(nodes, 0);
   for (const SignEdge& edge : edges) {
@@ -150,7 +152,7 @@ std::vector<Hold> held_together(std::size_t nodes, const std::vector<SignEdge>& 
   }
   std::vector<Hold> hold(nodes);
   std::uint32_t groups = 0;
-  Contractor contractor(nodes, edges, Contractor::Negative::kKept);
+  Contractor contractor(nodes, std::move(edges), Contractor::Negative::kKept);
   contractor.run([&](std::uint32_t kept, std::uint32_t joined, double sum) {
     const std::uint32_t smaller = contractor.members(kept).size() < contractor.members(joined).size() ? kept : joined;
     const auto size = static_cast<double>(contractor.members(smaller).size());

@@ -25,7 +25,7 @@ struct Signs {
 /// lifted multicuts", ICCV 2015; for orientation the same graph as in Hoppe et al. 1992, whose spanning tree trusts single edges where this
 /// asks all edges between two groups). Ties go to the smaller nodes, so the result does not depend on the order of the edges; parallel
 /// edges add up. `nodes` = N. O(E log E).
-[[nodiscard]] Signs agree_on_signs(std::size_t nodes, const std::vector<SignEdge>& edges);
+[[nodiscard]] Signs agree_on_signs(std::size_t nodes, std::vector<SignEdge> edges);
 
 /// How surely a node has the side of the rest of its component.
 struct Hold {
@@ -40,7 +40,7 @@ struct Hold {
 /// that holds, and the share m = 1 - k / sqrt(n) that is missing, the chance is 1 - m / (k + 2): the rule of succession (Laplace 1774) for
 /// k observations that agree, as far as there could be more. It is a half where nothing holds a group, and 1 where its rim is whole. A node
 /// has the least chance of the groups that it was in. O(E log E).
-[[nodiscard]] std::vector<Hold> held_together(std::size_t nodes, const std::vector<SignEdge>& edges);
+[[nodiscard]] std::vector<Hold> held_together(std::size_t nodes, std::vector<SignEdge> edges);
 
 /// Share of the weight that the signs contradict: sum of |w_ij| with w_ij s_i s_j < 0 over sum |w_ij|; 0 without edges. O(E).
 [[nodiscard]] double frustration(const std::vector<SignEdge>& edges, const std::vector<std::int8_t>& sign);
