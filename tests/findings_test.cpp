@@ -10,6 +10,7 @@
 #include "cloud/neighbours.h"
 #include "cloud/spacing.h"
 #include "field_shapes.h"
+#include "shapes.h"
 
 namespace g3r {
 namespace {
@@ -75,6 +76,22 @@ TEST(Findings, RoundingThatCountsAsNoiseNeedsNoAdvice) {
   const OrientedSample voxels = rounded(sphere_sample(6000, 1, 1), 0.02, 0);
   EXPECT_NE(warnings_of(voxels, 0.001).front().find("smooth over them with a noise of 0.0058 or more"), std::string::npos);
   EXPECT_NE(warnings_of(voxels, 0.006).front().find("spacings), which are smoothed over as noise of 0.006"), std::string::npos);
+}
+
+// A plate whose sides are not told apart looks like terraces; its rim shows that it is none.
+TEST(Findings, ThinPlatesAreNotRounded) {
+  shapes::Random random(2);
+  OrientedSample plate;
+  for (int i = 0; i < 6000; ++i) {
+    const bool at_rim = i % 20 == 0;
+    const double height = 0.02;
+    plate.points.push_back({at_rim ? 1 : random.uniform(-1, 1), random.uniform(-1, 1),
+                            at_rim                   ? random.uniform(0, height)
+                            : random.uniform() < 0.5 ? 0
+                                                     : height});
+    plate.normals.push_back(at_rim ? Vec3{1, 0, 0} : Vec3{0, 0, 1});
+  }
+  EXPECT_EQ(warnings_of(plate), std::vector<std::string>{});
 }
 
 TEST(Findings, OrdinaryCloudsAreNotAccused) {

@@ -61,8 +61,9 @@ inline constexpr double kRoundingCumulant = rounding_moment(4) - 3 * kRoundingVa
 /// estimate_noise() is 0, and that of walls closer together than the sampling. 0 for fewer than 192 points. About 20 ms.
 [[nodiscard]] double facet_scatter(const PointSet& set);
 
-/// Along each axis, the step of which all coordinates are multiples, at least 0.04 typical spacings; 0 where there is none. Same units as
-/// the points. O(N log N).
+/// Along each axis, the least step between coordinates, not counting those up to 0.001 typical spacings; 0 where it is 0.04 spacings or
+/// less, or there are fewer than 5 values. Others need not be multiples of it: those of depths that are rounded as disparities are not.
+/// Same units as the points. O(N log N).
 [[nodiscard]] Vec3 rounding_steps(const std::vector<Vec3>& points, double spacing);
 
 /// How the number of points grows with the distance from one, as its power: about 2 on a surface, noisy or not, nearly 3 in a volume (2.6

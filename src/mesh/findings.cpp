@@ -89,7 +89,7 @@ void warn_of_sampling(const CanonicalCloud& cloud, const std::vector<Vec3>& norm
   double largest = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double step = terrace_step(cloud.set, normals, axis);
-    if (step == 0) continue;
+    if (step == 0 || cloud.set.rounding_steps()[axis] == 0) continue;  // of a thin wall, the other side is a step away
     axes += (axes.empty() ? "" : ", ") + std::string(1, "xyz"[axis]);
     largest = std::max(largest, step);
   }

@@ -16,7 +16,8 @@ namespace g3r {
 ///   - sampling in lines: where a quarter of the points lie along a curve with their 8 nearest;
 ///   - rounded coordinates: where surface across an axis is in terraces. Of the pairs of near points that face the same way along the axis,
 ///     5 to 90 % have exactly the same coordinate, and the others' differ by a step of 0.15 to 4 spacings. Not where half of these points
-///     are at walls or gaps, as those of slats.
+///     are at walls or gaps, as those of slats, nor where coordinates of other points are between the steps (rounding_steps()), as at the
+///     rims of thin walls.
 ///   - two surfaces that cross (mesh/crossings.h): parts whose points were put together, or scans that do not fit.
 /// `normals`: unit. O(N).
 void warn_of_sampling(const CanonicalCloud& cloud, const std::vector<Vec3>& normals, Stats& stats);
