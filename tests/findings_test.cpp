@@ -78,7 +78,7 @@ TEST(Findings, RoundingThatCountsAsNoiseNeedsNoAdvice) {
   EXPECT_NE(warnings_of(voxels, 0.006).front().find("spacings), which are smoothed over as noise of 0.006"), std::string::npos);
 }
 
-// A plate whose sides are not told apart looks like terraces; its rim shows that it is none.
+// A plate whose sides are not distinguished looks like terraces; its rim shows that it is none.
 TEST(Findings, ThinPlatesAreNotRounded) {
   shapes::Random random(2);
   OrientedSample plate;
