@@ -14,7 +14,7 @@ from cli_support import *
 
 COUNT = 8200  # few more than tiles take
 LARGE_COUNT = 200_000  # of a cloud that fits a limit in tiles and does not in core
-FEWER = 100_000, "80M"  # points and a limit of which the same is true, but not of their mesh
+FEWER = 100_000, "84M"  # points and a limit of which the same is true, but not of their mesh
 KILLS = int(os.environ.get("G3R_TILE_KILLS", "2"))
 
 
