@@ -46,8 +46,8 @@ struct TwoSpheres {
 
 // Made once: most tests start from them.
 const TwoSpheres& two_spheres() {
-  static const TwoSpheres kMade;
-  return kMade;
+  static const TwoSpheres made;
+  return made;
 }
 
 // For every vertex of the boundary the next one.
@@ -396,7 +396,9 @@ TEST(MeshFinish, AttributesDoNotDependOnTheOrderOfThePoints) {
   std::vector<Vec3> points;
   Mesh mesh;
   for (std::uint32_t i = 0; i < kSide * kSide * kSide; ++i) {
-    const Vec3 p{static_cast<double>(i % kSide), static_cast<double>(i / kSide % kSide), static_cast<double>(i / kSide / kSide)};
+    const int row = i / kSide;
+    const int layer = row / kSide;
+    const Vec3 p{static_cast<double>(i % kSide), static_cast<double>(row % kSide), static_cast<double>(layer)};
     points.push_back(p);
     if (i % 5 == 0) points.push_back(p);
     mesh.vertices.push_back(vector::add(p, {0.5, 0.5, 0.5}));

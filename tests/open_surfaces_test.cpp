@@ -263,7 +263,9 @@ Surface rows_of(const Surface& shape, int count, double apart) {
   Surface all;
   for (int k = 0; k < count; ++k) {
     Surface one = shape;
-    for (Vec3& p : one.points) p = {p[0] + apart * (k % 4), p[1] + apart * (k / 4 % 4), p[2] + apart * (k / 16)};
+    const int row = k / 4;
+    const int layer = k / 16;
+    for (Vec3& p : one.points) p = {p[0] + apart * (k % 4), p[1] + apart * (row % 4), p[2] + apart * layer};
     all = shapes::join(all, one);
   }
   return all;
@@ -276,7 +278,8 @@ TEST(OpenSurfaces, OfPartsOfFewPointsNoSideIsSure) {
   for (const int side : {3, 4}) {
     Surface patch;
     for (int k = 0; k < side * side; ++k) {
-      patch.points.push_back({0.1 * (k % side + random.uniform(-0.3, 0.3)), 0.1 * (k / side + random.uniform(-0.3, 0.3)), 0});
+      const int row = k / side;
+      patch.points.push_back({0.1 * (k % side + random.uniform(-0.3, 0.3)), 0.1 * (row + random.uniform(-0.3, 0.3)), 0});
       patch.normals.push_back({0, 0, 1});
       patch.areas.push_back(0.01);
     }

@@ -17,6 +17,7 @@ namespace {
 PointSet in_order(const std::vector<Vec3>& points) {
   const std::vector<std::uint32_t> order = morton_order(points);
   std::vector<Vec3> sorted;
+  sorted.reserve(order.size());
   for (const std::uint32_t i : order) sorted.push_back(points[i]);
   return PointSet(std::move(sorted));
 }

@@ -281,6 +281,7 @@ std::vector<double> surface_distances(const PointSet& set) {
   std::iota(in_lines.begin(), in_lines.end(), std::uint32_t{0});
   for (double distance = 0; in_lines.size() >= kFewestSites;) {
     std::vector<Vec3> some;
+    some.reserve(in_lines.size());
     for (const std::uint32_t i : in_lines) some.push_back(set.points()[i]);
     const Sites sites = place_sites(distance > 0 ? PointSet(std::move(some)) : set, distance);
     if (sites.size() < kFewestSites) break;
