@@ -44,7 +44,8 @@ struct Sites {
 /// `distance` >= 0. O(N log N).
 [[nodiscard]] Sites place_sites(const PointSet& set, double distance);
 
-/// The same with a distance of its own for every point, of which only a few are different: 0 where it is a site itself. No planes.
+/// The same with a distance of its own for every point, N values of which only a few are different: 0 where it is a site itself. The planes
+/// are those through the 12 nearest sites.
 [[nodiscard]] Sites place_sites(const PointSet& set, const std::vector<double>& distance);
 
 /// The least distance of sites at which the samples are a surface and not lines: 0, or 1.5, 3, 6 ... typical spacings, such that the median
@@ -52,10 +53,10 @@ struct Sites {
 /// places, at fewer where lines would have fewer sites; 0 where there would be fewer than 30. O(N) for every distance.
 [[nodiscard]] double surface_distance(const PointSet& set);
 
-/// Of every point the distance of sites at which the samples around it are a surface. That of all where half of the cloud is lines; else,
-/// where more than 2 % are, that of each place, as a spinning scanner samples the street in rings and a facade beside it densely: it grows
-/// from 0 as above for the points of the sites around which most planes have a breadth of less than a half. Empty: they are a surface
-/// everywhere. O(N log N).
+/// N values: of every point the distance of sites at which the samples around it are a surface. That of all where half of the cloud is
+/// lines; else that of each place, as a spinning scanner samples the street in rings and a facade beside it densely: it grows from 0 as
+/// above for the points of the sites around which most planes have a breadth of less than a half, and stays 0 where those of sites 1.5
+/// spacings apart have more. Empty where at most 2 % of the points are lines then: they are a surface everywhere. O(N log N).
 [[nodiscard]] std::vector<double> surface_distances(const PointSet& set);
 
 }  // namespace g3r
