@@ -11,7 +11,7 @@ g3r_together(cloud cloud/canonical_cloud cloud/chance cloud/clusters cloud/exact
              cloud/quadratic_patch cloud/spacing tree/octree tree/far_pairs tree/interaction_lists tree/traversal tree/tree_parts
              expansions/expansions sum/direct_sum)
 g3r_together(layers cloud/layers cloud/noise expansions/m2l_matrices sum/sum_plan solve/green_system solve/refine metrics/sample_mesh
-             cloud/viewpoint solve/part_system)
+             cloud/viewpoint cloud/wires solve/part_system)
 g3r_together(sums cloud/outliers sum/fast_sum sum/solve_on_device sum/sum_engine sum/sum_geometry sum/sum_passes sum/target_shells
              solve/energy_system solve/harmonics baselines/baseline baselines/gauss_system baselines/hard_cutoff baselines/near_pairs
              baselines/stretched_winding baselines/wnnc field/areas)

@@ -6,6 +6,7 @@
 #include "cloud/chance.h"
 #include "cloud/constants.h"
 #include "cloud/exact_plane.h"
+#include "cloud/wires.h"
 #include "cpu/parallel.h"
 
 #include <Eigen/Eigenvalues>
@@ -273,8 +274,10 @@ double surface_distance(const PointSet& set) {
 
 std::vector<double> surface_distances(const PointSet& set) {
   const std::size_t count = set.size();
-  if (const double distance = surface_distance(set); distance > 0) return std::vector<double>(count, distance);
-  if (!has_lines(set)) return {};
+  const double distance_of_all = surface_distance(set);
+  if (distance_of_all == 0 && !has_lines(set)) return {};
+  if (are_wires(set)) return {};
+  if (distance_of_all > 0) return std::vector<double>(count, distance_of_all);
   const double first = kFirstDistance * set.spacing();
   std::vector<double> out(count, 0);
   std::vector<std::uint32_t> in_lines(count);  // that are, seen from sites as far apart as now

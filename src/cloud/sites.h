@@ -56,7 +56,8 @@ struct Sites {
 /// N values: of every point the distance of sites at which the samples around it are a surface. That of all where half of the cloud is
 /// lines; else that of each place, as a spinning scanner samples the street in rings and a facade beside it densely: it grows from 0 as
 /// above for the points of the sites around which most planes have a breadth of less than a half, and stays 0 where those of sites 1.5
-/// spacings apart have more. Empty where at most 2 % of the points are lines then: they are a surface everywhere. O(N log N).
+/// spacings apart have more. Empty where at most 2 % of the points are lines then, and where lines are wires (are_wires()): they are a
+/// surface everywhere. O(N log N).
 [[nodiscard]] std::vector<double> surface_distances(const PointSet& set);
 
 }  // namespace g3r
