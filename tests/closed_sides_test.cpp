@@ -100,5 +100,26 @@ TEST(JudgeClosedParts, SeenFromInside) {
   }
 }
 
+// Two unsure squares beside a sure one, seen from above: every second point of one of them, and all of the sure one, face away.
+TEST(JudgeClosedParts, UnsurePointsFaceTheSensorsThatSeeThemAndSureOnesKeepTheirSides) {
+  Sides sides;
+  sides.add_square({0, 0, 0}, 2, 1, Patches::kNone, false);
+  sides.add_square({3, 0, 0}, 2, 1, Patches::kNone, false);
+  sides.add_square({6, 0, 0}, 2, -1, Patches::kNone, false);
+  for (std::size_t i = 0; i < 800; ++i) sides.confidence[i] = 0.2F;
+  for (std::size_t i = 0; i < 400; i += 2) sides.normals[i] = {0, 0, -1};
+  Sides around = sides;
+  const HintEffect effect = sides.follow({.sensors = {{3, 0, 20}, {-3, 0, 20}}});
+  for (std::size_t i = 0; i < 1200; ++i) {
+    EXPECT_EQ(effect.turned[i] != 0, i < 400 && i % 2 == 0) << i;
+    EXPECT_EQ(sides.normals[i][2], i < 800 ? 1 : -1) << i;
+    EXPECT_EQ(sides.confidence[i] == 1, i >= 800) << i;
+    EXPECT_GT(sides.confidence[i], 0.9) << i;
+  }
+  // Seen from both sides, either side of a point may have been seen.
+  around.follow({.sensors = {{3, 0, 20}, {3, 0, -20}}});
+  for (std::size_t i = 0; i < 800; ++i) EXPECT_EQ(around.confidence[i], 0.2F) << i;
+}
+
 }  // namespace
 }  // namespace g3r

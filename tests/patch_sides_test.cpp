@@ -187,6 +187,21 @@ TEST(DecidePatches, OfOneViewNothingIsSeenSquarelyFromBehind) {
   }
 }
 
+// What faces away from every scanner is turned where its patch holds it less than that.
+TEST(DecidePatches, WhatFacesAwayAndIsNotHeldIsTurned) {
+  Sides sides;
+  sides.add_sphere({0, 0, 0}, 1, -0.5, 0, true);
+  const std::vector<Vec3> outward = sides.normals;
+  for (const Vec3& n : outward) sides.patches.held.push_back(n[0] > 0 ? 1.0F : 0.7F);
+  const HintEffect effect = sides.follow({.sensors = {{0, 0, 1000}}});
+  for (std::size_t i = 0; i < outward.size(); ++i) {
+    const double z = outward[i][2];
+    if (std::abs(z) < 0.01 || std::abs(z + 0.4) < 0.01) continue;  // edge-on, and at the limit
+    EXPECT_EQ(effect.turned[i] != 0, outward[i][0] <= 0 && 0.7 + (1 + z) / 2 < 1) << z;
+    EXPECT_LE(sides.confidence[i], z < 0 ? (1 + std::abs(z)) / 2 + 0.01 : 1) << z;
+  }
+}
+
 // Where the points decide the side of a patch, it takes two thirds of the votes to turn it.
 TEST(DecidePatches, AKnownSideIsTurnedByTwoThirds) {
   for (const double least_z : {-0.5, -0.9}) {

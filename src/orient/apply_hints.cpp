@@ -118,6 +118,7 @@ void apply_hints(const Problem& problem, const Options& options, Solution& solut
   stats.hints.agreement = effect.agreement;
   stats.hints.contradicted_share = effect.contradicted_share;
   summarise_sides(solution.open_surfaces, confidence, effect.decided, stats);
+  if (effect.contradicted_share > kUndecided && !effect.closed_parts_turned) stats.consistent = false;
   warn_of_unsure(solution.open_surfaces, confidence, stats);
   warn(effect, given, stats.open_share > 0, stats);
   warn_of_choices(solution.open_surfaces, given, stats);

@@ -3,9 +3,12 @@
 #include "base/vector.h"
 #include "cloud/chance.h"
 #include "cloud/constants.h"
+#include "orient/confidence.h"
 #include "orient/settings.h"
 #include "sum/direct_sum.h"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace g3r {
@@ -70,6 +73,46 @@ void judge_by_sensors(const HintedCloud& cloud, const Votes& votes, HintEffect& 
   }
 }
 
+// Of the cosines under which the sensors that may have seen a point see its front, the one nearest to edge-on where they have one sign: of
+// the other side it has the other sign. 0 where they do not, and where none may have seen it.
+double seen_by_all(const HintedCloud& cloud, std::size_t i, const Vec3& normal) {
+  const Hints& hints = cloud.hints;
+  if (!hints.sensor_of_point.empty()) {
+    const std::uint32_t sensor = hints.sensor_of_point[i];
+    return sensor == kNoSensor ? 0 : seen_from(hints.sensors[sensor], cloud.points[i], normal);
+  }
+  if (hints.sensors.empty()) return 0;
+  double least = 1, most = -1;
+  for (const Vec3& sensor : hints.sensors) {
+    const double seen = seen_from(sensor, cloud.points[i], normal);
+    least = std::min(least, seen);
+    most = std::max(most, seen);
+    if (least < 0 && most > 0) return 0;
+  }
+  return most < 0 ? most : least;
+}
+
+// `right`, how often the sensors agree with the sides of such points, is the chance of a side before its own vote.
+void face_sensors(const HintedCloud& cloud, HintEffect& effect) {
+  std::vector<std::uint32_t> unsure;
+  std::vector<double> seen;
+  Votes votes;
+  for (std::uint32_t i = 0; i < cloud.points.size(); ++i) {
+    if (!cloud.patches.is_closed(i) || cloud.sided.confidence[i] >= kUndecided) continue;
+    unsure.push_back(i);
+    seen.push_back((effect.turned[i] != 0 ? -1 : 1) * seen_by_all(cloud, i, cloud.sided.normals[i]));
+    votes.add(seen.back());
+  }
+  const double right = 1 - votes.share_against();
+  for (std::size_t k = 0; k < unsure.size(); ++k) {
+    if (seen[k] == 0) continue;
+    const double side = both_say(right, (1 + seen[k]) / 2);
+    if (side < kUndecided) effect.turned[unsure[k]] ^= 1;
+    const double chance = std::min(std::max(side, 1 - side), (1 + std::abs(seen[k])) / 2);
+    if (chance >= kMostOf) cloud.sided.confidence[unsure[k]] = static_cast<float>(chance);
+  }
+}
+
 }  // namespace
 
 std::vector<std::size_t> inside_no_closed_part(const HintedCloud& cloud, const std::atomic<bool>* cancel) {
@@ -90,6 +133,7 @@ void judge_closed_parts(const HintedCloud& cloud, Voters& voters, HintEffect& ef
     votes.add(voters.seen(i, cloud.sided.normals[i]));
   }
   if (votes.total() > 0 || cloud.hints.seen_from_inside) judge_by_sensors(cloud, votes, effect, cancel);
+  face_sensors(cloud, effect);
 }
 
 }  // namespace g3r

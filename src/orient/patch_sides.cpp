@@ -64,7 +64,7 @@ class PatchSides {
       ++all;
     }
     if (all > 0) effect_.agreement = agreed / all;
-    judge_backs();
+    judge_backs(patch_turned);
   }
 
  private:
@@ -151,14 +151,16 @@ class PatchSides {
   }
 
   // A scanner sees fronts: what faces away from all that may have seen it has the wrong side or the wrong direction, so that the side is a
-  // choice at a horizon, and certainly wrong where it would be seen squarely from behind. Where all have been seen, that is turned.
-  void judge_backs() {
+  // choice at a horizon, and certainly wrong where it would be seen squarely from behind. Where all have been seen, that is turned, and
+  // elsewhere what the rest of its patch does not hold more than that.
+  void judge_backs(const std::vector<std::uint8_t>& patch_turned) {
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
       const std::optional<double> seen = is_closed(i) ? std::nullopt : best_seen(i);
       if (!seen || *seen >= 0) continue;
-      const bool squarely = patches_.seen && -*seen > std::sqrt(kMostOpposed);
-      if (squarely) effect_.turned[i] ^= 1;
-      sided_.confidence[i] = std::min(sided_.confidence[i], static_cast<float>((1 + (squarely ? -*seen : *seen)) / 2));
+      const double holds = effect_.turned[i] == patch_turned[i] ? held(i) : 1 - held(i);
+      const bool wrong = patches_.seen ? -*seen > std::sqrt(kMostOpposed) : holds + (1 + *seen) / 2 < 1;
+      if (wrong) effect_.turned[i] ^= 1;
+      sided_.confidence[i] = std::min(sided_.confidence[i], static_cast<float>((1 + (wrong ? -*seen : *seen)) / 2));
     }
   }
 
