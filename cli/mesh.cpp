@@ -19,7 +19,8 @@ int run_mesh(const Settings& settings, Session& session) {
   options.max_memory = run.max_memory;
   MeshReport report;
   Mesh mesh = session.stage("mesh", [&] { return mesh_oriented(cloud.positions, cloud.normals, options, session.monitor(), &report); });
-  session.stage("carry", [&] { carry_attributes(mesh, cloud.positions, cloud.colors, cloud.confidence, session.monitor()); });
+  session.stage("carry",
+                [&] { carry_attributes(mesh, cloud.positions, cloud.colors, cloud.confidence, session.monitor(), cloud.normals); });
   session.stage("write", [&] {
     for (const std::string& output : settings.outputs()) write_mesh(output, mesh, session.cancellable(settings.write_options));
   });

@@ -19,8 +19,10 @@ int run_reconstruct(const Settings& settings, Session& session) {
   Reconstruction result = in_core(
       settings, true, [&] { return reconstruct(cloud.positions, run_options(settings, cloud), settings.mesh_options, session.monitor()); });
   if (!cloud.colors.empty()) {
-    session.stage("carry",
-                  [&] { carry_attributes(result.mesh, cloud.positions, cloud.colors, result.orientation.confidence, session.monitor()); });
+    session.stage("carry", [&] {
+      carry_attributes(result.mesh, cloud.positions, cloud.colors, result.orientation.confidence, session.monitor(),
+                       result.orientation.normals);
+    });
   }
   session.stage("write", [&] {
     const WriteOptions options = session.cancellable(settings.write_options);

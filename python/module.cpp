@@ -127,7 +127,9 @@ nb::tuple reconstruct_points(const PointsArray& array, const std::optional<Rows<
   Reconstruction result;
   run_job(progress, [&](const Monitor& monitor) {
     result = reconstruct(points, options, mesh_options, monitor);
-    if (!point_colors.empty()) carry_attributes(result.mesh, points, point_colors, result.orientation.confidence, {{}, monitor.cancel});
+    if (!point_colors.empty()) {
+      carry_attributes(result.mesh, points, point_colors, result.orientation.confidence, {{}, monitor.cancel}, result.orientation.normals);
+    }
   });
   Orientation& o = result.orientation;
   prepend(warnings, o.stats);

@@ -477,7 +477,7 @@ Reconstruction reconstruct(const PointsView& points, const Options& options, con
     out.mesh = make_mesh(std::move(oriented), chosen, monitor, run);
     out.check = check_mesh(out.mesh);
     out.check.dropped = run.found.dropped;
-    carry_attributes(out.mesh, points, {}, out.orientation.confidence, {{}, monitor.cancel});
+    carry_attributes(out.mesh, points, {}, out.orientation.confidence, {{}, monitor.cancel}, out.orientation.normals);
   });
   device.describe(out.orientation.stats);
   describe_mesh(out.check, run, chosen, out.orientation.stats);

@@ -450,6 +450,51 @@ TEST(MeshFinish, PointsAtOnePlaceCountOnceWithTheirMean) {
   EXPECT_FLOAT_EQ(mesh.confidence[0], 0.5F);
 }
 
+// A layer of vertices facing up, over another one facing down, so close that the nearest points are often those of the other.
+TEST(MeshFinish, AttributesDoNotGoThroughThinWalls) {
+  constexpr std::uint32_t kSide = 12;
+  constexpr double kThickness = 0.2;
+  std::vector<Vec3> points, normals;
+  std::vector<std::array<std::uint8_t, 3>> colors;
+  std::vector<float> confidence;
+  Mesh mesh;
+  for (const bool up : {true, false}) {
+    const double z = up ? kThickness : 0, shift = up ? 0 : 0.5;
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (std::uint32_t k = 0; k < kSide * kSide; ++k) {
+      const std::uint32_t i = k % kSide, j = k / kSide;
+      points.push_back({i + shift, j + shift, z});
+      normals.push_back({0, 0, up ? 2.0 : -2.0});
+      colors.push_back(up ? std::array<std::uint8_t, 3>{200, 0, 0} : std::array<std::uint8_t, 3>{0, 0, 200});
+      confidence.push_back(up ? 1.0F : 0.5F);
+      mesh.vertices.push_back({i + shift + 0.3, j + shift + 0.4, z});
+      if (i + 1 == kSide || j + 1 == kSide) continue;
+      const std::uint32_t a = first + k, b = a + 1, c = a + kSide, d = c + 1;
+      mesh.triangles.push_back(up ? std::array<std::uint32_t, 3>{a, b, d} : std::array<std::uint32_t, 3>{a, d, b});
+      mesh.triangles.push_back(up ? std::array<std::uint32_t, 3>{a, d, c} : std::array<std::uint32_t, 3>{a, c, d});
+    }
+  }
+  const auto mixed = [&] {
+    return std::count_if(mesh.colors.begin(), mesh.colors.end(), [](const auto& c) { return c[0] != 0 && c[2] != 0; });
+  };
+  carry_attributes(mesh, points, colors, confidence);
+  EXPECT_GT(mixed(), kSide * kSide);
+  carry_attributes(mesh, points, colors, confidence, {}, normals);
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    EXPECT_EQ(mesh.colors[v], v < mesh.vertices.size() / 2 ? colors.front() : colors.back());
+    EXPECT_EQ(mesh.confidence[v], v < mesh.vertices.size() / 2 ? 1.0F : 0.5F);
+  }
+  // Where all that is near faces away it is taken all the same, as where no normals are known.
+  const std::vector<Vec3> down(points.size(), Vec3{0, 0, -1});
+  const std::vector<std::array<std::uint8_t, 3>> of_all = [&] {
+    carry_attributes(mesh, points, colors, confidence);
+    return mesh.colors;
+  }();
+  carry_attributes(mesh, points, colors, confidence, {}, down);
+  EXPECT_TRUE(std::equal(of_all.begin(), of_all.end(), mesh.colors.begin()));
+  EXPECT_THROW(carry_attributes(mesh, points, colors, confidence, {}, std::vector<Vec3>{{0, 0, 1}}), InvalidInput);
+}
+
 TEST(MeshFinish, SpuriousComponentsAreNotAmongTheLargestThatAreKept) {
   std::vector<mesh::Support> support(4);
   for (std::size_t k = 0; k < support.size(); ++k) {

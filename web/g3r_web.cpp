@@ -101,7 +101,9 @@ void solve(const Request& request) {
   MeshOptions mesh_options;
   mesh_options.trim = request.trim ? MeshOptions::Trim::kAuto : MeshOptions::Trim::kOff;
   Reconstruction made = reconstruct(points, options, mesh_options, monitor());
-  if (!session.cloud.colors.empty()) carry_attributes(made.mesh, points, session.cloud.colors, made.orientation.confidence);
+  if (!session.cloud.colors.empty()) {
+    carry_attributes(made.mesh, points, session.cloud.colors, made.orientation.confidence, {}, made.orientation.normals);
+  }
   session.orientation = std::move(made.orientation);
   session.mesh = std::move(made.mesh);
   report(&made.check);

@@ -226,10 +226,11 @@ struct MeshReport {
 /// Gives every vertex the mean colour and confidence of the 4 points nearest to it, weighed by 1 / distance^2, replacing what it had.
 /// N points, and N colours and confidences (either may be empty). Points at one place count once, with the mean of what they have; points
 /// and confidences that are not finite take no part, nor do points so far from the others that double precision cannot hold both; where
-/// all 4 have no confidence it is 0. The result does not depend on the order of the points. O(N + V log N). Throws InvalidInput if the
-/// numbers differ, Cancelled.
+/// all 4 have no confidence it is 0. With `normals` (N outward ones, or none) the 4 are on the side of a wall or gap that the vertex is on:
+/// where points that face away are among them, it is the nearest up to 4 of the 16 nearest that do not, if there are any. The result does
+/// not depend on the order of the points. O(N + V log N). Throws InvalidInput if the numbers differ, Cancelled.
 void carry_attributes(Mesh& mesh, const PointsView& points, const std::vector<std::array<std::uint8_t, 3>>& colors,
-                      const std::vector<float>& confidence, const Monitor& monitor = {});
+                      const std::vector<float>& confidence, const Monitor& monitor = {}, const PointsView& normals = {});
 
 /// What orient() would begin with, without solving: counts, box, spacing, noise, epsilon, memory plan. Where the result of that leaves many
 /// signs unsure, orient() tries another noise, and its report has the noise and epsilon of what it took. O(N log N). Throws InvalidInput

@@ -111,6 +111,16 @@ double area_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
   return 0.5 * std::hypot(n[0], n[1], n[2]);
 }
 
+std::vector<Vec3> vertex_normals(const Mesh& mesh) {
+  std::vector<Vec3> normals(mesh.vertices.size(), Vec3{0, 0, 0});
+  for (const auto& t : mesh.triangles) {
+    const Vec3 n = twice_area_vector(mesh.vertices, t);
+    for (const std::uint32_t v : t) normals[v] = vector::add(normals[v], n);
+  }
+  for (Vec3& n : normals) n = vector::normalised(n);
+  return normals;
+}
+
 void remove_components(Mesh& mesh, const Components& components, const std::vector<std::uint8_t>& keep) {
   std::vector<std::uint8_t> keep_triangle(mesh.triangles.size());
   for (std::size_t t = 0; t < keep_triangle.size(); ++t) keep_triangle[t] = keep[components.of[t]];

@@ -21,6 +21,8 @@ struct Components {
 /// Of every triangle.
 [[nodiscard]] std::vector<Vec3> centres_of(const Mesh& mesh);
 [[nodiscard]] double area_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle);
+/// Of every vertex, the mean of the triangles around it by area; unit, (0, 0, 0) where there is none.
+[[nodiscard]] std::vector<Vec3> vertex_normals(const Mesh& mesh);
 
 /// Removes the components of which keep[component] == 0, and vertices that are no longer used. Order is kept, so a closed manifold stays
 /// one. O(V + F).

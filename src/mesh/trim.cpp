@@ -71,17 +71,6 @@ std::vector<std::uint8_t> within(const Mesh& mesh, const std::vector<Vec3>& poin
   return keep;
 }
 
-// Of the triangles around each vertex.
-std::vector<Vec3> normals_of(const Mesh& mesh) {
-  std::vector<Vec3> normals(mesh.vertices.size(), Vec3{0, 0, 0});
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3 n = twice_area_vector(mesh.vertices, t);
-    for (const std::uint32_t v : t) normals[v] = vector::add(normals[v], n);
-  }
-  for (Vec3& n : normals) n = vector::normalised(n);
-  return normals;
-}
-
 // How far past the rims of the points each vertex is: 0 at a rim, -1 amid points.
 //   past = |m x n| / (sqrt(2 / pi) s) + |n| - n . (normal of the vertex) - 1
 // with m and n the means of the offsets and normals of the points around it, weighed with the area that each stands for and a Gaussian of
@@ -89,7 +78,7 @@ std::vector<Vec3> normals_of(const Mesh& mesh) {
 // parts n is short, and surface that closes the scan is turned away from n. What is farther than s from every point is past them too.
 std::vector<double> past_rims(const Mesh& mesh, const OrientedPoints& points, const std::atomic<bool>* cancel) {
   const std::vector<double> width = spacing_across_lines(points.positions, points.spacing);
-  const std::vector<Vec3> normals = normals_of(mesh);
+  const std::vector<Vec3> normals = vertex_normals(mesh);
   const Neighbours neighbours(points.positions);
   std::vector<double> past(mesh.vertices.size());
   const auto past_of = [&](std::size_t begin, std::size_t end) {
