@@ -7,6 +7,7 @@
 #include "cpu/parallel.h"
 #include "field/oriented_cloud.h"
 #include "field/winding_sampler.h"
+#include "mesh/component_support.h"
 #include "mesh/constants.h"
 #include "mesh/field_mesher.h"
 #include "mesh/field_octree.h"
@@ -184,6 +185,7 @@ void turn(std::vector<Vec3>& vectors) {
 struct MeshRun {
   mesh::Found found;
   MeshMemory memory;
+  mesh::Unmet unmet{};            // 0 where options ask for less than all of the surface
   double far_share = 0;           // of the surface, farther than mesh::kFarSpacings from every point
   std::size_t new_crossings = 0;  // pairs of triangles that intersect since there are fewer
   // Of the points that the mesh was made of, input units.
@@ -195,6 +197,10 @@ struct MeshRun {
 bool is_too_wide(double box_side, double spacing, const MeshOptions& options) {
   return options.mesher == Mesher::kField && options.depth == 0 &&
          box_side > std::ldexp(mesh::kFinestCell, mesh::kMaxOctreeLevel) * spacing;
+}
+
+bool asks_for_all(const MeshOptions& options) {
+  return options.trim == MeshOptions::Trim::kOff && options.depth == 0 && options.keep_largest == 0 && !options.min_component;
 }
 
 // Meshes in normalised units, so that georeferenced coordinates lose nothing, and maps back. What is inside out is meshed as the solid that
@@ -214,6 +220,7 @@ Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor
   const WindingSampler field(oriented, monitor.cancel);
   const bool inside_out = is_inside_out(oriented, field);
   if (inside_out) turn(oriented.eta);
+  const std::vector<Vec3>& points = oriented.cloud.points();
   std::vector<Vec3> directions = directions_of(oriented.eta);
   const Frame& frame = oriented.cloud.frame;
   MeshOptions normalised = options;
@@ -224,11 +231,10 @@ Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor
   if (options.mesher == Mesher::kPoisson) {
     mesh = mesh_with_poisson(oriented, directions, options.depth);
     normalised.min_component = 0;  // spurious components of screened Poisson are part of its result
-    const std::vector<Vec3>& points = oriented.cloud.points();
     mesh::finish_mesh(mesh, {points, directions, mesh::smooth_spacing(points)}, 0, normalised, found, monitor.cancel);
   } else {
     oriented.cloud.set.release_neighbours();  // the mesher has its own, of the points that it moves
-    mesh = field_mesh(oriented.cloud.points(), std::move(directions), field, normalised, monitor, &run.memory, &found);
+    mesh = field_mesh(points, std::move(directions), field, normalised, monitor, &run.memory, &found);
   }
   found.dropped.area /= frame.scale * frame.scale;
   run.box_centre = frame.centre;
@@ -240,7 +246,10 @@ Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor
                            ? "no surface found: the cloud is more than 800,000 spacings wide; mesh parts that are far apart one by one"
                            : "no surface found: the oriented points do not enclose a volume");
   }
-  run.far_share = mesh::far_share(mesh, oriented.cloud.points(), mesh::kFarSpacings);
+  run.far_share = mesh::far_share(mesh, points, mesh::kFarSpacings);
+  if (asks_for_all(options)) {
+    run.unmet = mesh::unmet_points(mesh, points, directions_of(oriented.eta), mesh::smooth_spacing(points), found.noise);
+  }
   if (options.faces > 0 && mesh.triangles.size() > options.faces) {
     const std::size_t crossings = mesh::self_intersections(mesh, monitor.cancel).size();
     mesh::simplify(mesh, options.faces, monitor.cancel);
@@ -285,18 +294,23 @@ std::size_t planned(const Stats& stats, const MeshOptions& chosen) {
 
 bool is_noisy(const Stats& stats) { return stats.noise > mesh::kNoisy * stats.spacing; }
 
-// Points without surface, and surface without points.
-void warn_of_missing(const mesh::Found& found, Stats& stats) {
-  if (found.bare_points > kDoubtful) {
+// Points without surface, or with that of the other side, and surface without points.
+void warn_of_missing(const mesh::Unmet& unmet, const mesh::Found& found, Stats& stats) {
+  if (unmet.bare > kDoubtful) {
     stats.warnings.push_back(
-        percent(found.bare_points) + " of the points have no surface near them: parts whose points are much closer together than is usual" +
+        percent(unmet.bare) + " of the points have no surface near them: parts whose points are much closer together than is usual" +
         (is_noisy(stats) ? ", or that are thinner than the noise" : "") + ", or points that are no surface; mesh such parts one by one");
+  }
+  if (unmet.turned > kDoubtful) {
+    stats.warnings.push_back(
+        percent(unmet.turned) + " of the points are on surface that faces away from their normals: walls or gaps below " +
+        (is_noisy(stats) ? "the noise" : "the spacing") + ", normals that face the wrong way, or points that are no surface");
   }
   if (found.pointless_area > kDoubtful) {
     stats.warnings.push_back(percent(found.pointless_area) +
                              " of the surface is of parts that no point is on: normals of one part of the cloud face the other way");
   }
-  stats.doubtful = stats.doubtful || std::max(found.bare_points, found.pointless_area) > kManyUnsure;
+  stats.doubtful = stats.doubtful || std::max({unmet.bare, unmet.turned, found.pointless_area}) > kManyUnsure;
 }
 
 void warn_of_trimming(const MeshCheck& check, const MeshOptions& options, Stats& stats) {
@@ -326,7 +340,7 @@ void describe_mesh(const MeshCheck& check, const MeshRun& run, const MeshOptions
                              (is_trimmed ? "" : "; trim the mesh (--open)"));
     stats.doubtful = stats.doubtful || (run.far_share > kManyUnsure && !is_trimmed);
   }
-  warn_of_missing(run.found, stats);
+  warn_of_missing(run.unmet, run.found, stats);
   warn_of_trimming(check, options, stats);
   warn_of_topology(check, stats);
   warn_of_faces(check.triangles, options.faces, run.new_crossings, stats.warnings);

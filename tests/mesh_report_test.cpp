@@ -66,6 +66,28 @@ TEST(MeshReport, PointsWithoutSurfaceAreTold) {
   EXPECT_FALSE(found.report.stats.doubtful);
 }
 
+// Random points with random normals, whose surface is what noise leaves; and a sphere with some normals that face inward.
+TEST(MeshReport, SurfaceThatFacesAwayFromTheNormalsIsTold) {
+  for (const std::size_t n : {50U, 100U, 300U}) {
+    std::mt19937_64 rng(n);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    OrientedSample noise = sphere_sample(n, 1, n);  // for the normals
+    for (Vec3& p : noise.points) p = {uniform(rng), uniform(rng), uniform(rng)};
+    const Reported random(noise);
+    EXPECT_TRUE(random.warns("of the points are on surface that faces away from their normals")) << n;
+    EXPECT_TRUE(random.report.stats.doubtful) << n;
+  }
+  OrientedSample sphere = sphere_sample(2000, 1, 1);
+  EXPECT_TRUE(Reported(sphere).report.stats.warnings.empty());
+  for (std::size_t i = 0; i < sphere.normals.size(); i += 10) sphere.normals[i] = vector::scale(sphere.normals[i], -1);
+  const Reported some(sphere);
+  EXPECT_TRUE(some.warns("of the points are on surface that faces away from their normals"));
+  EXPECT_FALSE(some.report.stats.doubtful);
+  MeshOptions less;
+  less.keep_largest = 1;
+  EXPECT_TRUE(Reported(sphere, less).report.stats.warnings.empty());
+}
+
 // A spiral over the unit sphere about (x, 0, 0), as even as its points can be.
 OrientedSample spiral(std::size_t n, double x, double outward) {
   OrientedSample out;

@@ -7,6 +7,7 @@
 #include "mesh/constants.h"
 #include "mesh/held_points.h"
 #include "mesh/mesh_parts.h"
+#include "mesh/triangle.h"
 #include "mesh/trim.h"
 
 #include <algorithm>
@@ -78,10 +79,21 @@ void add_points(const Mesh& mesh, const std::vector<std::uint32_t>& component, c
   }
 }
 
-double bare_share(const Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>& spacing, double scatter) {
+Unmet unmet_points(const Mesh& mesh, const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const std::vector<double>& spacing,
+                   double scatter) {
   const std::vector<std::uint32_t> held_by =
-      nearest_of(mesh.vertices, points, [&](std::size_t i) { return std::pow(kFarSpacings * (spacing[i] + scatter), 2); });
-  return static_cast<double>(std::count(held_by.begin(), held_by.end(), kNone)) / static_cast<double>(points.size());
+      nearest_of(centres_of(mesh), points, [&](std::size_t i) { return std::pow(kFarSpacings * (spacing[i] + scatter), 2); });
+  std::size_t bare = 0, turned = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (held_by[i] == kNone) {
+      ++bare;
+      continue;
+    }
+    const Vec3 outward = vector::normalised(twice_area_vector(mesh.vertices, mesh.triangles[held_by[i]]));
+    turned += vector::dot(outward, normals[i]) < -kSlant ? 1 : 0;
+  }
+  const auto all = static_cast<double>(points.size());
+  return {static_cast<double>(bare) / all, static_cast<double>(turned) / all};
 }
 
 std::vector<std::uint8_t> kept_components(const std::vector<Support>& support, const MeshOptions& options, std::size_t strays,

@@ -34,9 +34,14 @@ void add_areas(const Mesh& mesh, const std::vector<std::uint32_t>& component, co
 void add_points(const Mesh& mesh, const std::vector<std::uint32_t>& component, const std::vector<Vec3>& points,
                 const std::vector<double>& spacing, double scatter, const std::vector<Vec3>& strays, std::vector<Support>& support);
 
-/// Share of the points that are farther than kFarSpacings of their spacings, and of `scatter`, from all vertices, of which there is one.
-/// O((V + N) log V).
-[[nodiscard]] double bare_share(const Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>& spacing, double scatter);
+/// Points that the surface is not that of, as shares of all.
+struct Unmet {
+  double bare = 0;    ///< no surface is within kFarSpacings of their spacings, and of `scatter`
+  double turned = 0;  ///< the nearest faces away from their normals
+};
+/// `normals`: unit, outward as the triangles are. O((F + N) log F).
+[[nodiscard]] Unmet unmet_points(const Mesh& mesh, const std::vector<Vec3>& points, const std::vector<Vec3>& normals,
+                                 const std::vector<double>& spacing, double scatter);
 
 /// Marks (1) the components that stay. The one with most area near points always does. Of the others go, and are added to `dropped`,
 /// spurious ones (MeshOptions::min_component), those that fewer points hold than least_points_of_a_part(strays), and those that fewer

@@ -59,8 +59,6 @@ void finish_mesh(Mesh& mesh, const OrientedPoints& points, double noise, const M
   if (mesh.triangles.empty()) return;
   if (options.trim != MeshOptions::Trim::kOff) trim(mesh, points, options, cancel);
   drop_components(mesh, points.positions, points.spacing, noise, options, found);
-  const bool is_all = options.trim == MeshOptions::Trim::kOff && options.depth == 0 && options.keep_largest == 0 && !options.min_component;
-  if (is_all) found.bare_points = bare_share(mesh, points.positions, points.spacing, noise * median(points.spacing));
 }
 
 }  // namespace g3r::mesh

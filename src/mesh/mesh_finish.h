@@ -15,7 +15,6 @@ struct Found {
   std::vector<Vec3> strays;   ///< places of points that no surface goes through
   Dropped dropped;            ///< for want of support
   double noise = 0;           ///< standard deviation of the points that is smoothed over, a length
-  double bare_points = 0;     ///< share of the points without surface near them, bare_share(); 0 where options ask for less than all
   double pointless_area = 0;  ///< share of the area that is of parts which no point holds
 };
 
