@@ -115,7 +115,6 @@ void leave_out(OrientedCloud& oriented, const std::vector<std::uint8_t>& held, s
 // Takes points back that the surface goes through. Areas follow the spacing.
 void regain_points(OrientedCloud& oriented, std::vector<Vec3>& strays, const std::atomic<bool>* cancel) {
   CanonicalCloud& cloud = oriented.cloud;
-  std::sort(strays.begin(), strays.end());  // whatever the order of the input
   const std::vector<Vec3> normals = mesh::normals_of_regained(cloud.points(), directions_of(oriented.eta), strays, cancel);
   std::vector<Vec3> points = cloud.points(), left;
   std::vector<double> density;  // area over squared spacing
@@ -142,7 +141,7 @@ void regain_points(OrientedCloud& oriented, std::vector<Vec3>& strays, const std
   std::vector<double> sorted_density;
   for (std::size_t k = 0; k < order.size(); ++k) {
     const std::uint32_t i = order[k];
-    if (!sorted.empty() && sorted.back() == points[i]) continue;  // the input had it more than once
+    if (!sorted.empty() && sorted.back() == points[i]) continue;  // two may be one in this frame
     sorted.push_back(points[i]);
     sorted_directions.push_back(directions[i]);
     sorted_density.push_back(density[i]);
@@ -153,7 +152,6 @@ void regain_points(OrientedCloud& oriented, std::vector<Vec3>& strays, const std
     const double h = cloud.set.smoothed_spacing()[i];
     oriented.eta[i] = vector::scale(sorted_directions[i], sorted_density[i] * h * h);
   }
-  oriented.spacing = cloud.set.spacing();
 }
 
 // A frame of its own for what is left where strays made the old one much larger, which may not resolve its spacing. Areas follow the
@@ -172,7 +170,6 @@ void fit_frame(OrientedCloud& oriented, std::vector<Vec3>& strays) {
     eta[k] = vector::add(eta[k], vector::scale(oriented.eta[i], growth * growth));
   }
   for (Vec3& p : strays) p = cloud.frame.to_unit(old.to_world(p));
-  oriented.spacing = cloud.set.spacing();
   oriented.cloud = std::move(cloud);
   oriented.eta = std::move(eta);
 }
@@ -208,6 +205,9 @@ bool asks_for_all(const MeshOptions& options) {
 Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor& monitor, MeshRun& run) {
   mesh::Found& found = run.found;
   for (Vec3& p : found.strays) p = oriented.cloud.frame.to_unit(p);
+  // Whatever the order of the input, and however often it has them.
+  std::sort(found.strays.begin(), found.strays.end());
+  found.strays.erase(std::unique(found.strays.begin(), found.strays.end()), found.strays.end());
   if (!options.keep_all) {
     std::vector<Vec3> doubtful;
     leave_out(oriented, mesh::held_points(oriented.cloud.points(), directions_of(oriented.eta), monitor.cancel), doubtful);
@@ -215,6 +215,7 @@ Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor
     found.strays.insert(found.strays.end(), doubtful.begin(), doubtful.end());
     leave_out(oriented, mesh::points_of_parts(oriented.cloud.set, found.strays), found.strays);
     fit_frame(oriented, found.strays);
+    oriented.spacing = oriented.cloud.set.spacing();
   }
   found.dropped.points = found.strays.size();
   const WindingSampler field(oriented, monitor.cancel);

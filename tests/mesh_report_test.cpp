@@ -146,6 +146,39 @@ TEST(MeshReport, StraysDoNotMakeTheScale) {
   EXPECT_TRUE(with.report.stats.warnings.empty());
 }
 
+TEST(MeshReport, StraysDoNotMakeTheSpacing) {
+  OrientedSample sample = sphere_sample(3000, 1, 1);
+  const double spacing = Reported(sample).report.stats.spacing;
+  const OrientedSample directions = sphere_sample(300, 1, 3);
+  std::mt19937_64 rng(4);
+  std::uniform_real_distribution<double> uniform(-1.5, 1.5);
+  for (const Vec3& n : directions.normals) {
+    sample.points.push_back({uniform(rng), uniform(rng), uniform(rng)});
+    sample.normals.push_back(n);
+  }
+  const Reported with(sample);
+  EXPECT_GT(with.report.check.dropped.points, 250U);
+  EXPECT_NEAR(with.report.stats.spacing, spacing, 0.005 * spacing);
+}
+
+// Copies of outliers are neither more of them nor more beside the parts of the mesh.
+TEST(MeshReport, CopiesOfOutliersAreOne) {
+  std::vector<Vec3> points = sphere_sample(1000, 1, 1).points;
+  const std::vector<Vec3> few = sphere_sample(20, 0.12, 2).points;
+  for (const Vec3& p : few) points.push_back(vector::add(p, {1.6, 0, 0}));
+  const auto outliers = static_cast<std::ptrdiff_t>(points.size());
+  std::mt19937_64 rng(4);
+  std::uniform_real_distribution<double> uniform(-2, 2);
+  for (int i = 0; i < 200; ++i) points.push_back({uniform(rng), uniform(rng), uniform(rng)});
+  const Reconstruction once = reconstruct(points);
+  const std::vector<Vec3> added(points.begin() + outliers, points.end());
+  points.insert(points.end(), added.begin(), added.end());
+  const Reconstruction twice = reconstruct(points);
+  EXPECT_GT(once.check.dropped.points, 100U);
+  EXPECT_EQ(twice.check.dropped.points, once.check.dropped.points);
+  EXPECT_EQ(twice.mesh.vertices, once.mesh.vertices);
+}
+
 TEST(MeshReport, HasTheNoiseThatIsSmoothedOver) {
   const OrientedSample clean = sphere_sample(5000, 1, 1);
   EXPECT_EQ(Reported(clean).report.stats.noise, 0);

@@ -22,7 +22,7 @@ struct Mesh {
 
 /// What a mesher left out for want of support, see MeshOptions::keep_all.
 struct Dropped {
-  std::size_t points = 0;      ///< outliers and strays: no surface goes through them
+  std::size_t points = 0;      ///< distinct outliers and strays: no surface goes through them
   std::size_t components = 0;  ///< that too few points hold
   double area = 0;             ///< of these components
 };
