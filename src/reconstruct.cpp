@@ -22,6 +22,7 @@
 #include "mesh/separate_vertices.h"
 #include "mesh/simplify.h"
 #include "mesh/smooth_spacing.h"
+#include "mesh/used_vertices.h"
 #include "orient/confidence.h"
 #include "orient/memory_plan.h"
 #include "orient/settings.h"
@@ -41,11 +42,7 @@
 namespace g3r {
 namespace {
 
-// The depth of screened Poisson in the paper preset, which is that of the comparisons in docs/evidence/meshes.md.
-constexpr int kPaperDepth = 10;
-// Limits of double: the bounds of coordinates and extents within which volumes, areas and their squares, also of triangles with sides of a
-// ten-millionth, are finite and have all their digits.
-constexpr double kLargestCoordinate = 1e50;
+// The extent from which squares of areas, also of triangles with sides of a ten-millionth, have all their digits.
 constexpr double kLeastExtent = 1e-70;
 
 // Throws before the work what the mesh could not be measured with. O(N).
@@ -283,7 +280,7 @@ MeshOptions choose(const MeshOptions& given, const Options& options) {
     const bool poisson = options.preset == Preset::kPaper && screened_poisson_available();
     chosen.mesher = poisson ? Mesher::kPoisson : Mesher::kField;
   }
-  if (options.preset == Preset::kPaper && chosen.mesher == Mesher::kPoisson && chosen.depth == 0) chosen.depth = kPaperDepth;
+  if (options.preset == Preset::kPaper && chosen.mesher == Mesher::kPoisson && chosen.depth == 0) chosen.depth = kMostAutomaticDepth;
   return chosen;
 }
 

@@ -14,6 +14,10 @@ namespace g3r {
 /// would leave the cube.
 inline constexpr double kPoissonCube = 1.1;
 
+/// The largest depth that is chosen without being asked for: more costs minutes and gigabytes. The paper preset takes it, as the
+/// comparisons in docs/evidence/meshes.md do.
+inline constexpr int kMostAutomaticDepth = 10;
+
 /// Octree depth whose cells are about as wide as the points are apart.
 /// `spacing`: square root of area per point, > 0; `box_side`: longest side of the bounding box, same unit. Result in 4..10.
 [[nodiscard]] int automatic_depth(double spacing, double box_side);

@@ -6,13 +6,6 @@
 
 namespace g3r {
 
-namespace {
-
-// Products of up to six coordinates, the most that areas, volumes and distances need, then stay finite.
-constexpr double kLargestCoordinate = 1e50;
-
-}  // namespace
-
 vector::Box box_of_used_vertices(const Mesh& mesh) {
   vector::Box box;
   for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {

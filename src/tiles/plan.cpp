@@ -10,6 +10,7 @@
 #include "io/tiles.h"
 #include "mesh/field_mesher.h"
 #include "mesh/field_points.h"
+#include "mesh/used_vertices.h"
 #include "orient/memory_plan.h"
 #include "orient/settings.h"
 #include "orient/site_parts.h"
@@ -44,7 +45,6 @@ constexpr std::uint64_t kCoarseShare = 8;       // one of so many points is in t
 constexpr std::size_t kFixed = 32u << 20;       // beside that of a solve in core: 131,072 queries of a sum
 constexpr std::size_t kBeside = 210;  // bytes of a point beside its solve: part, coarse side, and what facets hold if they are solved for
 constexpr double kFreeShare = 0.75;   // of the free memory, if no limit is given
-constexpr double kLargest = 1e50;     // coordinates, whose squares and cubes are still numbers
 constexpr std::size_t kMostTiles = 1000000;
 constexpr std::size_t kMostWarnings = 8;  // of all files together
 
@@ -163,12 +163,14 @@ Manifest survey(const std::vector<std::string>& files, const TileOptions& option
   }
   double side = 0;
   for (std::size_t a = 0; a < 3; ++a) {
-    if (!(std::max(-low[a], high[a]) < kLargest)) throw InvalidInput("coordinates beyond 1e50 are no lengths that can be worked with");
+    if (!(std::max(-low[a], high[a]) <= kLargestCoordinate)) {
+      throw InvalidInput("coordinates beyond 1e50 are no lengths that can be worked with");
+    }
     side = std::max(side, high[a] - low[a]);
     m.frame.centre[a] = low[a] + (high[a] - low[a]) / 2;
   }
   m.bounds = {low, high};
-  if (!(side > 1 / kLargest)) throw InvalidInput("all points are at one place");
+  if (!(side > 1 / kLargestCoordinate)) throw InvalidInput("all points are at one place");
   m.frame.scale = scale_for(side, sample.spacing());
   if (more_warnings > 0) m.warnings.push_back("and " + std::to_string(more_warnings) + " more warnings about these files");
   if (m.non_finite > 0) m.warnings.push_back(std::to_string(m.non_finite) + " points with a non-finite coordinate were left out");
