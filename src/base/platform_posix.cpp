@@ -46,6 +46,16 @@ void take(const struct stat& from, FileStatus& status) {
   status.index = static_cast<std::uint64_t>(from.st_ino);
 }
 
+// Of a pattern for glob(), where brackets and backslashes have a meaning of their own.
+std::string with_plain_brackets(const std::string& pattern) {
+  std::string out;
+  for (const char c : pattern) {
+    if (c == '[' || c == ']' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out;
+}
+
 }  // namespace
 
 std::filesystem::path path_of(const std::string& name) { return name; }
@@ -80,7 +90,7 @@ std::vector<std::string> matching(const std::string& pattern) {
     ~Matches() { ::globfree(&found); }
     glob_t found{};
   } matches;
-  const int result = ::glob(pattern.c_str(), GLOB_NOSORT, nullptr, &matches.found);
+  const int result = ::glob(with_plain_brackets(pattern).c_str(), GLOB_NOSORT, nullptr, &matches.found);
   if (result == GLOB_NOSPACE) throw std::bad_alloc();
   std::vector<std::string> names;
   for (std::size_t i = 0; result == 0 && i < matches.found.gl_pathc; ++i) names.emplace_back(matches.found.gl_pathv[i]);
