@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -155,6 +156,27 @@ TEST(Platform, MemoryIsTold) {
   EXPECT_LT(platform::peak_memory(), std::size_t{1} << 32);
   EXPECT_GT(platform::free_memory(), 1 << 20);
 }
+
+#ifdef __linux__
+double available_memory() {
+  std::ifstream in("/proc/meminfo");
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("MemAvailable:")) return 1024 * std::stod(line.substr(13));
+  }
+  return 0;
+}
+
+// Caches of files count as free: after a large file was read they are most of the memory.
+TEST(Platform, FreeMemoryIsWhatTheSystemCanGive) {
+  constexpr double kOfOthers = 256 << 20;  // what other processes take or give back meanwhile
+  const double before = available_memory();
+  const double free = platform::free_memory();
+  const double after = available_memory();
+  if (free == platform::container_memory()) GTEST_SKIP() << "the container leaves less";
+  EXPECT_GE(free, std::min(before, after) - kOfOthers);
+  EXPECT_LE(free, std::max(before, after) + kOfOthers);
+}
+#endif
 
 // Both versions of control groups; of all limits around a process the one that leaves least holds, and cached files count as free.
 TEST(Platform, LimitsOfContainersAreSeen) {

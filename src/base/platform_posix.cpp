@@ -9,7 +9,6 @@
 #include <fstream>
 #include <memory>
 #include <new>
-#include <string_view>
 
 #include <fcntl.h>
 #include <glob.h>
@@ -45,6 +44,17 @@ void take(const struct stat& from, FileStatus& status) {
   status.device = static_cast<std::uint64_t>(from.st_dev);
   status.index = static_cast<std::uint64_t>(from.st_ino);
 }
+
+#ifdef __linux__
+// Bytes, of a file whose lines have a name, a colon and kilobytes; 0 if none has this name.
+double told_by(const char* file, const std::string& name) {
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with(name + ":")) return 1024 * std::strtod(line.c_str() + name.size() + 1, nullptr);
+  }
+  return 0;
+}
+#endif
 
 // Of a pattern for glob(), where brackets and backslashes have a meaning of their own.
 std::string with_plain_brackets(const std::string& pattern) {
@@ -162,11 +172,7 @@ bool sync_folder(const std::string& folder) {
 std::size_t peak_memory() {
 #ifdef __linux__
   // What getrusage() says includes the memory of the process that this one was started by, until it became this program.
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);) {
-    constexpr std::string_view kName = "VmHWM:";
-    if (line.compare(0, kName.size(), kName) == 0) return std::strtoull(line.c_str() + kName.size(), nullptr, 10) * 1024;
-  }
+  if (const double peak = told_by("/proc/self/status", "VmHWM"); peak > 0) return static_cast<std::size_t>(peak);
 #endif
   rusage usage{};
   if (::getrusage(RUSAGE_SELF, &usage) != 0) return 0;
@@ -201,6 +207,10 @@ double free_memory() {
   const double free = static_cast<double>(pages.free_count) + static_cast<double>(pages.inactive_count);
 #else
   const auto free = static_cast<double>(::sysconf(_SC_AVPHYS_PAGES));
+#endif
+#ifdef __linux__
+  // With the caches of files, which it gives up for whoever wants memory: after a large file was read they are most of it.
+  if (const double available = told_by("/proc/meminfo", "MemAvailable"); available > 0) return std::min(available, container_memory());
 #endif
   return std::min(free * static_cast<double>(::sysconf(_SC_PAGESIZE)), container_memory());
 }
