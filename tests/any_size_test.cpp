@@ -380,6 +380,29 @@ TEST(TilesPlan, ProgressGoesOnWithinAFile) {
   EXPECT_GT(most, 0.9);
 }
 
+// Reading and sorting may take hours.
+TEST(TilesPlan, UnusableOptionsAreRefusedBeforeThePointsAreRead) {
+  const TemporaryFolder folder;
+  write_points(folder.file("in.ply"), shapes::sphere(kPoints).points);
+  bool has_begun = false;
+  Monitor monitor;
+  monitor.progress = [&](std::string_view, double) { return has_begun = true; };
+  const auto plan = [&](const Hints& hints, int threads, const std::string& device) {
+    (void)plan_tiles({folder.file("in.ply")}, folder.file("work"), {0, 0, hints, threads, device}, monitor);
+  };
+  for (const Hints& hints : {Hints{.up = Vec3{0, 0, 0}}, Hints{.sensors = {{NAN, 0, 0}}}, Hints{.inside = {{0, 0, INFINITY}}}})
+    EXPECT_THROW(plan(hints, 0, "cpu"), InvalidInput);
+  EXPECT_THROW(plan({}, -1, "cpu"), InvalidInput);
+  EXPECT_THROW(plan({}, 0, "gpus"), InvalidInput);
+  EXPECT_THROW(plan({}, 0, "gpu:1000"), Unavailable);
+  EXPECT_FALSE(has_begun);
+  EXPECT_FALSE(std::filesystem::exists(folder.file("work")));
+  plan({}, 0, "cpu");
+  EXPECT_TRUE(has_begun);
+  EXPECT_THROW((void)run_tiles(folder.file("work"), {1, 1, -1}), InvalidInput);
+  EXPECT_THROW((void)mesh_tiles(folder.file("work"), {1, 1, -1}), InvalidInput);
+}
+
 TEST(TilesPlan, TellsWhatItCannotDo) {
   const TemporaryFolder folder;
   write_points(folder.file("few.ply"), shapes::sphere(500).points);

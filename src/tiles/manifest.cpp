@@ -151,6 +151,7 @@ std::string coarse_path(const std::string& folder) { return folder + "/coarse.bi
 std::string result_path(const std::string& folder, std::size_t tile) { return folder + "/tile-" + std::to_string(tile) + ".bin"; }
 
 void require_worker(const TileWorker& worker) {
+  if (worker.threads < 0) throw InvalidInput("threads must be 0 (all cores) or positive");
   if (worker.number >= 1 && worker.number <= worker.workers) return;
   throw InvalidInput("tiles: expected a worker of 1 to the number of workers, found " + std::to_string(worker.number) + " of " +
                      std::to_string(worker.workers));

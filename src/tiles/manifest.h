@@ -79,7 +79,7 @@ void write_manifest(const std::string& folder, const Manifest& manifest);
 /// Throws InvalidInput where the file is not that of the manifest, IoError.
 [[nodiscard]] Cells read_cells(const std::string& folder, const Manifest& manifest);
 
-/// Throws InvalidInput unless the worker is one of 1 to workers.
+/// Throws InvalidInput unless the worker is one of 1 to workers, with a number of threads.
 void require_worker(const TileWorker& worker);
 
 /// Throws IoError where the output is an input of the plan, which would be gone before it was read.

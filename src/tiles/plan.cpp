@@ -11,10 +11,12 @@
 #include "mesh/field_mesher.h"
 #include "mesh/field_points.h"
 #include "mesh/used_vertices.h"
+#include "orient/hints.h"
 #include "orient/memory_plan.h"
 #include "orient/settings.h"
 #include "orient/site_parts.h"
 #include "orient/start.h"
+#include "sum/device_scope.h"
 #include "tiles/external_sort.h"
 #include "tiles/fewest_tiles.h"
 #include "tiles/manifest.h"
@@ -315,6 +317,14 @@ void make_folder(const std::string& folder) {
   if (error) throw IoError(IoError::Kind::kCannotCreate, "cannot create " + escape_text(folder) + ": " + error.message());
 }
 
+// What no cloud makes usable is refused before any is read.
+void require_usable(const TileOptions& options) {
+  if (!options.hints.sensor_of_point.empty()) throw InvalidInput("plan_tiles: sensors of single points are not supported with tiles");
+  require_sound(options.hints, 0);
+  if (options.threads < 0) throw InvalidInput("threads must be 0 (all cores) or positive");
+  const gpu::Lease device(options.device, 0);  // kept for the solve
+}
+
 TileStatus make_plan(const std::vector<std::string>& files, const std::string& folder, const TileOptions& options, const Monitor& monitor) {
   Stages stages(monitor);
   const std::size_t limit = memory_limit(options);
@@ -362,7 +372,7 @@ namespace g3r {
 
 TileStatus plan_tiles(const std::vector<std::string>& inputs, const std::string& folder, const TileOptions& options,
                       const Monitor& monitor) {
-  if (!options.hints.sensor_of_point.empty()) throw InvalidInput("plan_tiles: sensors of single points are not supported with tiles");
+  tiles::require_usable(options);
   const std::vector<std::string> files = tiles::files_of(inputs);
   if (tiles::has_manifest(folder)) {
     const tiles::Manifest there = tiles::read_manifest(folder);
