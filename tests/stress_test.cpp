@@ -91,6 +91,13 @@ TEST(Stress, AreaOfABall) {
   EXPECT_NEAR(sum / kSeeds / (4 * 3.14159265), 1, kFromLines);
 }
 
+TEST(Stress, RecipesWithWordsThatAreNoneAreRefused) {
+  for (const char* option : {"preset=papier", "method=grene", "trim=yes", "epsilon=2x", "noise_given=some", "epsilon=", "degree=two"}) {
+    const Recipe recipe(std::string("shape=solid points=20 seed=1 ") + option);
+    EXPECT_THROW((void)run_options({recipe, make_scene(recipe)}), InvalidInput) << option;
+  }
+}
+
 // A failure that needs 3 points that are not finite is shrunk to these.
 TEST(Stress, FailuresShrink) {
   const Recipe recipe("shape=solid parts=4 points=200 missing=5 noise=0.1 offset=utm seed=1 preset=paper");

@@ -1,12 +1,14 @@
 #include "run_options.h"
 
 #include <g3r/error.h>
+#include <g3r/names.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "shapes.h"
 
@@ -72,25 +74,19 @@ void draw_mesh(Random& random, Recipe& recipe) {
   if (random.uniform() < 0.2) recipe.set("trim", "auto");
 }
 
-Length length_of(const std::string& text) {
-  Length out{Length::Unit::kInput, 0};
-  const char* begin = text.data();
-  const char* end = begin + text.size();
-  const auto [rest, error] = std::from_chars(begin, end, out.value);
-  if (error != std::errc()) throw InvalidInput("not a length: " + text);
-  const std::string unit(rest, end);
-  if (unit == "h") out.unit = Length::Unit::kSpacing;
-  if (unit == "%") out.unit = Length::Unit::kPercent;
-  if (unit == "n") out.unit = Length::Unit::kNormalised;
-  return out;
+// The value of a key whose words are those of g3r/names.h; without the key, `otherwise`.
+template <class Value>
+Value choice_of(const Recipe& recipe, const std::string& key, Value otherwise) {
+  if (!recipe.has(key)) return otherwise;
+  const std::optional<Value> value = parse<Value>(recipe.text(key));
+  if (!value) throw InvalidInput(key + " must be one of " + words<Value>() + ", not " + recipe.text(key));
+  return *value;
 }
 
-Method method_of(const std::string& name) {
-  if (name == "green") return Method::kGreen;
-  if (name == "wnnc") return Method::kWnnc;
-  if (name == "agr") return Method::kAgr;
-  if (name == "pgr") return Method::kPgr;
-  return name == "energy" ? Method::kEnergy : Method::kAuto;
+Length length_of(const Recipe& recipe, const std::string& key) {
+  const std::optional<Length> length = parse_length(recipe.text(key, "auto"));
+  if (!length) throw InvalidInput(key + " is not a length: " + recipe.text(key));
+  return *length;
 }
 
 struct Bounds {
@@ -164,21 +160,21 @@ RunOptions run_options(const Case& of) {
   const Recipe& r = of.recipe;
   RunOptions out;
   out.options.device = "cpu";
-  if (r.text("preset") == "paper") out.options.preset = Preset::kPaper;
-  out.options.method = method_of(r.text("method"));
+  out.options.preset = choice_of(r, "preset", Preset::kDefault);
+  out.options.method = choice_of(r, "method", Method::kAuto);
   out.options.degree = static_cast<int>(r.number("degree", -1));
   out.options.accuracy = r.number("accuracy", -1);
   out.options.tolerance = r.number("tolerance", -1);
   out.options.schedule = schedule_of(r);
-  if (r.has("epsilon")) out.options.epsilon = length_of(r.text("epsilon"));
-  if (r.has("noise_given")) out.options.noise = length_of(r.text("noise_given"));
+  out.options.epsilon = length_of(r, "epsilon");
+  out.options.noise = length_of(r, "noise_given");
   out.options.hints = hints_of(of);
   out.mesh.depth = static_cast<int>(r.number("depth"));
   out.mesh.faces = static_cast<std::size_t>(r.number("faces"));
   out.mesh.keep_largest = static_cast<std::size_t>(r.number("keep_largest"));
   if (r.has("min_component")) out.mesh.min_component = r.number("min_component");
   out.mesh.keep_all = r.has("keep_all");
-  if (r.text("trim") == "auto") out.mesh.trim = MeshOptions::Trim::kAuto;
+  out.mesh.trim = choice_of(r, "trim", MeshOptions::Trim::kOff);
   return out;
 }
 
