@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <string>
+#include <vector>
 
 #include "run_apart.h"
 #include "run_options.h"
@@ -96,6 +98,102 @@ TEST(Stress, RecipesWithWordsThatAreNoneAreRefused) {
     const Recipe recipe(std::string("shape=solid points=20 seed=1 ") + option);
     EXPECT_THROW((void)run_options({recipe, make_scene(recipe)}), InvalidInput) << option;
   }
+}
+
+std::vector<std::string> kinds(const Outcome& outcome) {
+  std::vector<std::string> all;
+  for (const Finding& f : outcome.findings) all.push_back(f.kind);
+  return all;
+}
+
+// Results that are right but for one thing, which is found.
+class SpoiltResult : public testing::Test {
+ protected:
+  using Kinds = std::vector<std::string>;
+
+  static void SetUpTestSuite() {
+    const Recipe recipe("shape=solid parts=1 points=600 seed=3");
+    case_ = {recipe, make_scene(recipe)};
+    const RunOptions run = run_options(case_);
+    right_ = reconstruct(case_.scene.points, run.options, run.mesh);
+  }
+  // Of a result that `spoil` has changed.
+  template <class Spoil>
+  static Kinds found(const Spoil& spoil) {
+    Reconstruction result = right_;
+    spoil(result);
+    return kinds(hold_result(case_, result, true));
+  }
+  static void turn_all(Reconstruction& r) {
+    for (Vec3& n : r.orientation.normals) n = {-n[0], -n[1], -n[2]};
+    std::fill(r.orientation.confidence.begin(), r.orientation.confidence.end(), 1.0F);
+  }
+
+  static inline Case case_;
+  static inline Reconstruction right_;
+};
+
+TEST_F(SpoiltResult, RightAsItIs) {
+  EXPECT_EQ(found([](Reconstruction&) {}), Kinds{});
+}
+
+TEST_F(SpoiltResult, Numbers) {
+  EXPECT_EQ(found([](Reconstruction& r) { r.orientation.normals[7] = {NAN, 0, 0}; }), Kinds{"number"});
+  EXPECT_EQ(found([](Reconstruction& r) { r.orientation.normals[7][0] += 0.1; }), Kinds{"number"});
+  EXPECT_EQ(found([](Reconstruction& r) { r.orientation.areas[7] = -1; }), Kinds{"number"});
+  EXPECT_EQ(found([](Reconstruction& r) { r.orientation.confidence[7] = NAN; }), Kinds{"number"});
+  EXPECT_EQ(found([](Reconstruction& r) { r.orientation.areas.pop_back(); }), Kinds{"number"});
+  EXPECT_EQ(found([](Reconstruction& r) { r.orientation.stats.spacing = NAN; }), Kinds{"number"});
+}
+
+TEST_F(SpoiltResult, Meshes) {
+  EXPECT_EQ(found([](Reconstruction& r) { r.mesh.vertices[7][1] = NAN; }), Kinds{"mesh"});
+  EXPECT_EQ(found([](Reconstruction& r) { r.mesh.vertices[7][1] = INFINITY; }), Kinds{"mesh"});
+  EXPECT_EQ(found([](Reconstruction& r) { r.mesh.triangles.clear(); }), Kinds{"mesh"});
+  EXPECT_EQ(found([](Reconstruction& r) { r.mesh.triangles.pop_back(); }), (Kinds{"mesh", "weld"}));
+  EXPECT_EQ(found([](Reconstruction& r) { std::swap(r.mesh.triangles[7][0], r.mesh.triangles[7][1]); }), (Kinds{"mesh", "weld"}));
+}
+
+TEST_F(SpoiltResult, SidesWithoutAWarningOfThem) {
+  EXPECT_EQ(found(turn_all), Kinds{"confidence"});
+  EXPECT_EQ(found([](Reconstruction& r) {
+              turn_all(r);
+              r.orientation.stats.warnings = {
+                  "3 points with a non-finite coordinate were left out",
+                  "nothing was cut away: no surface is farther than 4 spacings from the points",
+                  "trimmed at 0.1, which is less than the gaps between the points and leaves holes: 4 spacings are 1",
+                  "so few triangles intersect each other: 1 pair more than before simplifying",
+                  "40 triangles instead of 30: fewer would open the mesh"};
+            }),
+            Kinds{"confidence"});
+  EXPECT_EQ(found([](Reconstruction& r) {
+              turn_all(r);
+              r.orientation.stats.warnings = {"the points fill a volume"};
+            }),
+            Kinds{});
+  EXPECT_EQ(found([](Reconstruction& r) {
+              turn_all(r);
+              r.orientation.stats.consistent = false;
+            }),
+            Kinds{});
+}
+
+TEST_F(SpoiltResult, FilesOfTheProgram) {
+  const Orientation& o = right_.orientation;
+  Cloud file;
+  file.normals = o.normals;
+  file.confidence = o.confidence;
+  EXPECT_EQ(difference_in_file(file, o), "");
+  const auto differs = [&](const auto& spoil) {
+    Cloud spoilt = file;
+    spoil(spoilt);
+    return !difference_in_file(spoilt, o).empty();
+  };
+  EXPECT_TRUE(differs([](Cloud& c) { c.normals[7][2] += 1e-3; }));
+  EXPECT_TRUE(differs([](Cloud& c) { c.normals[7] = {NAN, NAN, NAN}; }));
+  EXPECT_TRUE(differs([](Cloud& c) { c.confidence[7] = std::nextafter(c.confidence[7], 2.0F); }));
+  EXPECT_TRUE(differs([](Cloud& c) { c.normals.clear(); }));
+  EXPECT_TRUE(differs([](Cloud& c) { c.confidence.clear(); }));
 }
 
 // A failure that needs 3 points that are not finite is shrunk to these.

@@ -40,6 +40,9 @@ constexpr double kMemorySlack = 4e6;  // bytes: pages of code and of the allocat
 constexpr double kLineRatio = 1e-9;   // extent across over extent along, below which points are on a line
 constexpr double kSliver = 0.05;      // the same of up to kNeighbours points, below which their surface is no triangle
 constexpr double kMoved = 0.01;       // spacings: rounding by more makes another cloud
+// Words of warnings that say nothing of sides: of points that are none, of hints, and of what options make of the mesh.
+constexpr const char* kNotOfSides[] = {"non-finite",          "hint", "nothing was cut away", "trimmed at", "so few triangles",
+                                       "triangles instead of"};
 
 class Judge {
  public:
@@ -100,9 +103,7 @@ bool may_be_refused(const Case& tested) {
 }
 
 void check_numbers(const std::vector<Vec3>& points, const Orientation& o, Judge& judge) {
-  judge.demand(o.normals.size() == points.size() && o.areas.size() == points.size() && o.confidence.size() == points.size(), "number",
-               "the result has not as many values as points");
-  for (std::size_t i = 0; i < points.size() && i < o.normals.size(); ++i) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
     const std::string place = " of point " + std::to_string(i);
     const double size = norm(o.normals[i]);
     judge.demand(is_finite(points[i]) ? std::abs(size - 1) < kUnit : size == 0, "number",
@@ -147,6 +148,10 @@ std::size_t ends_of(const Mesh& mesh) {
 }
 
 void check_surface(const Reconstruction& r, bool trimmed, Outcome& outcome, Judge& judge) {
+  const auto lost = std::find_if_not(r.mesh.vertices.begin(), r.mesh.vertices.end(), is_finite);
+  if (lost != r.mesh.vertices.end()) {
+    return judge.demand(false, "mesh", "vertex " + std::to_string(lost - r.mesh.vertices.begin()) + " has a coordinate that is not finite");
+  }
   const MeshCheck check = check_mesh(r.mesh);
   judge.demand(check.triangles > 0 || trimmed, "mesh", "the mesh is empty");
   judge.demand(check.manifold, "mesh",
@@ -244,8 +249,10 @@ void check_rigid(const Case& tested, const RunOptions& run, const Reconstruction
 
 bool warns_of_sides(const Stats& stats) {
   if (!stats.consistent || !stats.converged) return true;
-  return std::any_of(stats.warnings.begin(), stats.warnings.end(),
-                     [](const std::string& w) { return w.find("non-finite") == std::string::npos && w.find("hint") == std::string::npos; });
+  return std::any_of(stats.warnings.begin(), stats.warnings.end(), [](const std::string& warning) {
+    return std::none_of(std::begin(kNotOfSides), std::end(kNotOfSides),
+                        [&](const char* words) { return warning.find(words) != std::string::npos; });
+  });
 }
 
 // Whether another side of the surface is too near for the samples, or the noise, to distinguish them: docs/glossary.md, "thin".
@@ -337,7 +344,7 @@ int run_program(std::vector<std::string> words) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
 }
 
-// Through a file of doubles and back: normals and confidence are the same to the precision of the file.
+// Through a file of doubles and back.
 void check_program(const Case& tested, const std::string& program, const Orientation& first, Judge& judge) {
   const Folder folder;
   Cloud cloud;
@@ -349,10 +356,21 @@ void check_program(const Case& tested, const std::string& program, const Orienta
   const int code = run_program(words);
   judge.demand(code == 0, "program", "g3r ends with " + std::to_string(code));
   if (code != 0) return;
-  const Cloud out = read_cloud(folder.at("out.ply"));
-  double worst = out.normals.size() == first.normals.size() ? 0 : 2;
-  for (std::size_t i = 0; i < out.normals.size() && worst < 2; ++i) worst = std::max(worst, norm(minus(out.normals[i], first.normals[i])));
-  judge.demand(worst < kUnit, "program", "normals of the program differ by " + std::to_string(worst));
+  const std::string differ = difference_in_file(read_cloud(folder.at("out.ply")), first);
+  judge.demand(differ.empty(), "program", differ);
+}
+
+// What one result has to be by itself. False if it has not as many values as points.
+bool judge_result(const Case& tested, const Reconstruction& result, bool statistical, Outcome& outcome, Judge& judge) {
+  const Orientation& o = result.orientation;
+  const std::size_t points = tested.scene.points.size();
+  const bool complete = o.normals.size() == points && o.areas.size() == points && o.confidence.size() == points;
+  judge.demand(complete, "number", "the result has not as many values as points");
+  if (!complete) return false;
+  check_numbers(tested.scene.points, o, judge);
+  check_surface(result, run_options(tested).mesh.trim != MeshOptions::Trim::kOff, outcome, judge);
+  if (statistical) check_confidence(tested, o, outcome, judge);
+  return true;
 }
 
 // The run that all others are compared with. Empty if the cloud is refused.
@@ -376,6 +394,25 @@ std::optional<Reconstruction> first_run(const Case& tested, const RunOptions& ru
 
 }  // namespace
 
+Outcome hold_result(const Case& tested, const Reconstruction& result, bool statistical) {
+  Outcome outcome;
+  Judge judge(outcome);
+  judge_result(tested, result, statistical, outcome, judge);
+  return outcome;
+}
+
+std::string difference_in_file(const Cloud& written, const Orientation& result) {
+  if (written.normals.size() != result.normals.size() || written.confidence.size() != result.confidence.size())
+    return "the program writes " + std::to_string(written.normals.size()) + " normals and " + std::to_string(written.confidence.size()) +
+           " confidences";
+  for (std::size_t i = 0; i < result.normals.size(); ++i) {
+    const double apart = norm(minus(written.normals[i], result.normals[i]));
+    if (!(apart < kUnit)) return "normal " + std::to_string(i) + " of the program differs by " + std::to_string(apart);
+    if (written.confidence[i] != result.confidence[i]) return "the program is another time as sure of point " + std::to_string(i);
+  }
+  return "";
+}
+
 bool is_statistical(const std::string& kind) { return kind == "rigid" || kind == "confidence" || kind == "thin"; }
 
 Outcome hold(const Case& tested, const Demands& demands) {
@@ -384,10 +421,7 @@ Outcome hold(const Case& tested, const Demands& demands) {
   RunOptions run = run_options(tested);
   run.options.threads = 1;
   const std::optional<Reconstruction> first = first_run(tested, run, outcome, judge);
-  if (!first) return outcome;
-  check_numbers(tested.scene.points, first->orientation, judge);
-  check_surface(*first, run.mesh.trim != MeshOptions::Trim::kOff, outcome, judge);
-  if (demands.statistical) check_confidence(tested, first->orientation, outcome, judge);
+  if (!first || !judge_result(tested, *first, demands.statistical, outcome, judge)) return outcome;
   const bool all = tested.scene.points.size() <= demands.thorough_points;
   const auto turn = static_cast<std::uint64_t>(tested.recipe.number("seed")) % 3;  // which of the repeated runs a large cloud gets
   run.options.threads = 2;

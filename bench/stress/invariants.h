@@ -8,11 +8,14 @@
 //   weld        closed after vertices at the same place are made one: every edge has as many triangles one way as the other
 //   threads     the same bytes for one and two threads
 //   order       the same bytes for the points in another order
-//   program     the same normals from the command line
+//   program     the same normals and confidence from the command line
 //   rigid       points that are sure of their side keep it when the cloud is turned, unless rounding moves them then (statistical)
 //   confidence  few points are wrong and sure, or there is a warning (statistical)
 //   thin        the same, where most of the wrong ones have another side of the surface so near that the samples do not tell (statistical)
 #pragma once
+
+#include <g3r/g3r.h>
+#include <g3r/io.h>
 
 #include <cstddef>
 #include <string>
@@ -45,6 +48,12 @@ struct Demands {
 
 /// Whether a kind of finding is a matter of shares, which a redesign of the method moves; all others are absolute.
 [[nodiscard]] bool is_statistical(const std::string& kind);
+
+/// Holds one result of the case to what has to be true of it by itself: number, mesh, weld and, if wanted, confidence and thin.
+[[nodiscard]] Outcome hold_result(const Case& tested, const Reconstruction& result, bool statistical);
+
+/// What is not the same in the file that the program has written; empty if all is.
+[[nodiscard]] std::string difference_in_file(const Cloud& written, const Orientation& result);
 
 /// Runs the case, up to five times, in this process.
 [[nodiscard]] Outcome hold(const Case& tested, const Demands& demands);
