@@ -130,7 +130,6 @@ void check_points(const std::vector<Vec3>& points, const std::vector<std::string
 MeshIfAny mesh_if_any(const std::string& path) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(platform::path_of(path), ignored)) return {};
-  if (!io::find_ept(path).empty() || !io::find_tiles(path).empty()) return {};  // lists of files of points
   try {
     return {read_mesh(path), ""};
   } catch (const NoFaces&) {

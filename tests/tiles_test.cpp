@@ -128,6 +128,8 @@ TEST(Tiles, ListsAndVirtualPointCloudsNameTheirFiles) {
   };
   spill(folder.path("all.vpc"), vpc("./b.xyz", ".\\/a.xyz"));
   EXPECT_EQ(read_cloud(folder.path("all.vpc")).positions, both);
+  for (const char* list : {"all.list", "all.vpc"}) EXPECT_THROW((void)read_mesh(folder.path(list)), NoFaces) << list;
+  EXPECT_THROW((void)read_mesh(folder.path("none.list")), IoError);
   const auto complaint = [&](const std::string& name, const std::string& bytes) -> std::string {
     spill(folder.path(name), bytes);
     try {
@@ -263,6 +265,12 @@ TEST(Ept, CellsAreOneCloud) {
   EXPECT_EQ(read_cloud(folder.path(""), options).positions, (std::vector<Vec3>{{20, 12, 13}}));
   options.box = Box{{0, 0, 20}, {30, 30, 30}};
   EXPECT_THROW((void)read_cloud(folder.path(""), options), InvalidInput);
+}
+
+TEST(Ept, IsNoMesh) {
+  const Folder folder;
+  make_ept(folder);
+  EXPECT_THROW((void)read_mesh(folder.path("ept.json")), NoFaces);
 }
 
 TEST(Ept, DamageIsSaid) {

@@ -108,7 +108,8 @@ def test_the_command_takes_folders_and_says_what_is_odd(tmp_path, capsys, sphere
     folder.mkdir()
     g3r.write(folder / "a.ply", sphere[:300])
     g3r.write(folder / "b.ply", sphere[300:])
-    for inputs in (str(folder), str(folder / "*.ply")):
+    (tmp_path / "all.list").write_text("scans/a.ply\nscans/b.ply\n")
+    for inputs in (str(folder), str(folder / "*.ply"), str(tmp_path / "all.list")):
         assert main(["view", inputs, "-o", out]) == 0
         assert f'"given":{len(sphere)}' in (tmp_path / "look.html").read_text().replace(" ", "")
     assert capsys.readouterr().err == ""

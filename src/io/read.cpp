@@ -1,5 +1,7 @@
 // From bytes to a cloud or a mesh: recognise the format, call its reader, check what holds for all formats.
+#include "base/platform.h"
 #include "io/ept.h"
+#include "io/file_lists.h"
 #include "io/readers.h"
 #include "io/recognise.h"
 #include "io/source.h"
@@ -183,6 +185,8 @@ Cloud read_cloud(const std::string& path, const ReadOptions& options) {
 }
 
 Mesh read_mesh(const std::string& path) {
+  if (io::is_file_list(path) && platform::exists(path))
+    io::fail_without_faces({{}, io::display_name(path)}, "a list of files of points: expected a mesh, PLY, OBJ, OFF or STL");
   const std::string bytes = io::read_bytes(path);
   return read_mesh_bytes(bytes.data(), bytes.size(), path);
 }
