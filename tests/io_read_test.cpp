@@ -136,6 +136,8 @@ TEST(Ply, SplatsBelowTheOpacityAreLeftOut) {
   EXPECT_TRUE(cloud.normals.empty());
   EXPECT_EQ(cloud.colors[0], (std::array<std::uint8_t, 3>{255, 128, 0}));
   EXPECT_EQ(read_cloud_bytes(file.data(), file.size(), "splats", {.min_opacity = 0}).positions.size(), 3U);
+  for (const double none : {-0.1, 1.1, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_THROW((void)read_cloud_bytes(file.data(), file.size(), "splats", {.min_opacity = none}), InvalidInput) << none;
 }
 
 TEST(Xyz, ColumnsAreDistinguishedByTheirValues) {

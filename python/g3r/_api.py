@@ -6,10 +6,11 @@ import json
 from typing import TYPE_CHECKING, Any, Callable, Dict, List, NamedTuple, Optional, Set, Tuple, Union, overload
 
 from . import _g3r
-from ._arrays import as_areas, as_colors, as_points, integer, member, opened, points_and_owner, truth, warn_of_file, whole
+from ._arrays import as_areas, as_colors, as_points, member, opened, points_and_owner, warn_of_file
 from ._cloud import Cloud
 from ._errors import InputError
 from ._hints import HINTS, checked_numbers, take_hints
+from ._kinds import integer, number, truth, whole
 from ._view import DEFAULT_HEIGHT, DEFAULT_POINTS, View
 
 if TYPE_CHECKING:
@@ -77,7 +78,7 @@ class Field:
 
         array = as_points(points)
         self._field = _g3r.field(array, np.ascontiguousarray(as_points(normals, "normals"), dtype=np.float64),
-                                 as_areas(areas, len(array)), float(width), device)
+                                 as_areas(areas, len(array)), number("width", width), device)
 
     def __call__(self, queries: Any) -> Floats:
         """The field at (q, 3) query points: (q,) float64. O(n + q log n). Ctrl-C works. Raises InputError."""
@@ -253,7 +254,7 @@ def run(points: Any, *, colors: Any = None, epsilon: Union[str, float] = "auto",
     device = options.get("device", "auto")
     warnings = points.warnings if isinstance(points, Cloud) else []
     surface = None
-    if mesh:
+    if truth("mesh", mesh):
         normals, areas, confidence, report, surface = _g3r.reconstruct(array, colors, options, warnings, progress)
     else:
         normals, areas, confidence, report = _g3r.orient(array, options, warnings, progress)

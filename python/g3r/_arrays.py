@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from typing import TYPE_CHECKING, Any, Optional, Tuple
+from typing import TYPE_CHECKING, Any, Tuple
 
 from ._cloud import Cloud, read
 from ._errors import InputError
@@ -74,32 +74,6 @@ def _rows(value: Any, what: str) -> Points:
     if array.ndim != 2 or array.shape[1] != 3:
         raise InputError(f"{what} must be an array of shape (n, 3), not {array.shape}")
     return array
-
-
-def integer(name: str, value: Any, least: Optional[int] = None) -> int:
-    """An integer, of any type that holds one, `least` or more."""
-    try:
-        number = int(value)
-        if number == value and (least is None or number >= least):
-            return number
-    except (TypeError, ValueError, OverflowError):
-        pass
-    raise InputError(f"{name} must be an integer{'' if least is None else f', {least} or more'}, not {value!r}")
-
-
-def whole(name: str, value: Any) -> int:
-    """An integer, 0 or more."""
-    return integer(name, value, 0)
-
-
-def truth(name: str, value: Any) -> bool:
-    """True or False, of any type that equals one of them."""
-    try:
-        if value in (True, False):
-            return bool(value)
-    except ValueError:  # an array
-        pass
-    raise InputError(f"{name} must be True or False, not {value!r}")
 
 
 def opened(value: Any) -> Any:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, List, Optional, Sequence, Tuple, Union
 
 from . import _g3r
 from ._errors import InputError
+from ._kinds import integer, number, truth, whole
 
 if TYPE_CHECKING:
     from ._types import Bytes, Floats, Indices, Singles
@@ -101,12 +102,11 @@ def read(
     if box is not None:
         if len(box) != 2 or len(box[0]) != 3 or len(box[1]) != 3:
             raise InputError("box: expected two corners of three coordinates")
-        low, high = ([float(value) for value in corner] for corner in box)
+        low, high = ([number("a coordinate of box", value) for value in corner] for corner in box)
         sides = (low[0], low[1], low[2], high[0], high[1], high[2])
-    if levels is not None and levels < 1:
-        raise InputError(f"levels: expected a number from 1, found {levels}")
-    depth = 0 if levels is None else int(levels)
-    return Cloud(_g3r.read_cloud(os.fsencode(path), float(min_opacity), bool(all_splats), sides, depth, int(threads)))
+    depth = 0 if levels is None else integer("levels", levels, 1)
+    return Cloud(_g3r.read_cloud(os.fsencode(path), number("min_opacity", min_opacity), truth("all_splats", all_splats), sides, depth,
+                                 whole("threads", threads)))
 
 
 def read_mesh(path: Path) -> Tuple[Floats, Indices]:

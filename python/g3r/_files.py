@@ -10,6 +10,7 @@ from ._api import Result
 from ._arrays import as_colors, as_faces, as_points, as_values, faces_in, opened, warn_of_file
 from ._cloud import Cloud, Path
 from ._errors import InputError
+from ._kinds import truth
 
 
 def write(path: Path, what: Any, faces: Any = None, *, normals: Any = None, confidence: Any = None, colors: Any = None,
@@ -26,6 +27,7 @@ def write(path: Path, what: Any, faces: Any = None, *, normals: Any = None, conf
     that file.
     """
     name = os.fsencode(path)
+    ascii, cloud_compare_names = truth("ascii", ascii), truth("cloud_compare_names", cloud_compare_names)
     if faces is None and isinstance(what, (str, bytes, os.PathLike)):
         what = opened(what)
         warn_of_file(what)
@@ -49,7 +51,7 @@ def write(path: Path, what: Any, faces: Any = None, *, normals: Any = None, conf
         vertices = as_points(what, "vertices")
         count = len(vertices)
         _g3r.write_mesh(name, vertices, as_faces(faces, count), None if colors is None else as_colors(colors, count),
-                        None if confidence is None else as_values(confidence, count, "confidence"), bool(ascii))
+                        None if confidence is None else as_values(confidence, count, "confidence"), ascii)
         return
     source = what._native if isinstance(what, Cloud) else None
     if source is not None and colors is not None:
@@ -61,4 +63,4 @@ def write(path: Path, what: Any, faces: Any = None, *, normals: Any = None, conf
         if len(normals) != count:
             raise InputError(f"{len(normals)} normals for {count} points")
     _g3r.write_cloud(name, source, points, normals, None if colors is None else as_colors(colors, count),
-                     None if confidence is None else as_values(confidence, count, "confidence"), bool(ascii), bool(cloud_compare_names))
+                     None if confidence is None else as_values(confidence, count, "confidence"), ascii, cloud_compare_names)

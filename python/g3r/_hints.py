@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Any, Dict, Tuple
 
-from ._arrays import _plain, opened, truth
+from ._arrays import _plain, opened
 from ._cloud import Cloud
 from ._errors import InputError
+from ._kinds import truth
 
 HINTS = {"up", "sensor", "sensor_of_point", "inside", "seen_from_inside", "flip"}
 _NO_SENSOR = 0xFFFFFFFF

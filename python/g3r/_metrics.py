@@ -6,6 +6,7 @@ from typing import Any, Dict, Iterable, Tuple
 
 from . import _g3r
 from ._arrays import as_faces, as_points
+from ._kinds import number, whole
 
 Pair = Tuple[Any, Any]
 """(V, F): vertices (v, 3) and faces (m, 3)."""
@@ -28,5 +29,5 @@ def score_mesh(mesh: Pair, truth: Pair, *, samples: int = 200000, seed: int = 0,
     samples: points on each mesh; the same seed gives the same ones. O((m + samples) log m). Raises InputError for a mesh without area, a face without its vertices, a distance that is not above 0.
     """
     vertices, true_vertices = as_points(mesh[0], "vertices"), as_points(truth[0], "vertices")
-    return _g3r.score_mesh(vertices, as_faces(mesh[1], len(vertices)), true_vertices, as_faces(truth[1], len(true_vertices)), int(samples),
-                           int(seed), [float(d) for d in distances])
+    return _g3r.score_mesh(vertices, as_faces(mesh[1], len(vertices)), true_vertices, as_faces(truth[1], len(true_vertices)),
+                           whole("samples", samples), whole("seed", seed), [number("a distance", d) for d in distances])

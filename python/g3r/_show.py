@@ -8,6 +8,7 @@ from . import _g3r
 from ._api import Result
 from ._arrays import as_colors, as_faces, as_points, as_values, faces_in, opened, warn_of_file
 from ._cloud import Cloud
+from ._kinds import whole
 from ._view import DEFAULT_HEIGHT, DEFAULT_POINTS, View
 
 
@@ -74,7 +75,7 @@ def show(what: Any, *, normals: Any = None, confidence: Any = None, colors: Any 
                        None if confidence is None or count == 0 else as_values(confidence, count, "confidence"),
                        None if colors is None or count == 0 else as_colors(colors, count), rows(true_normals, "true_normals"),
                        vertices, triangles, vertex_colors, vertex_confidence, report)
-    view = View(scene, up == "z", int(max_points), int(height))
+    view = View(scene, up == "z", whole("max_points", max_points), whole("height", height))
     if open or (open is None and not _in_notebook()):
         view.open()
     return view

@@ -6,6 +6,7 @@ import os
 from typing import TYPE_CHECKING
 
 from . import _g3r
+from ._kinds import integer
 
 if TYPE_CHECKING:
     from ._cloud import Path
@@ -31,7 +32,7 @@ class View:
 
     def png(self, tile: int = 600) -> bytes:
         """Four views as a PNG file, each `tile` pixels wide and high, 16 to 2048. Raises InputError."""
-        return _g3r.view_png(self._scene, self._z_up, int(tile))
+        return _g3r.view_png(self._scene, self._z_up, integer("tile", tile))
 
     def open(self) -> str:
         """Opens the page in the browser from a temporary file, whose name is returned."""

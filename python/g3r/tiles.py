@@ -14,9 +14,9 @@ import os
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Sequence, Union
 
 from . import _g3r
-from ._arrays import integer, whole
 from ._errors import InputError
 from ._hints import HINTS, take_hints
+from ._kinds import integer, whole
 from ._tile_status import Status, status
 
 if TYPE_CHECKING:

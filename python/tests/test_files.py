@@ -155,13 +155,21 @@ def test_scanner_positions_are_kept(tmp_path):
     assert g3r.read(path).sensor_positions is None
 
 
+def test_switches_of_writing_are_switches(tmp_path, sphere):
+    for name in ("ascii", "cloud_compare_names"):
+        with pytest.raises(g3r.InputError, match=f"{name} must be True or False"):
+            g3r.write(tmp_path / "a.ply", sphere, **{name: "no"})
+    assert not (tmp_path / "a.ply").exists()
+
+
 def test_folders_and_boxes(tmp_path):
     (tmp_path / "a.xyz").write_text("1 2 3\n")
     (tmp_path / "b.xyz").write_text("4 5 6\n")
     np.testing.assert_array_equal(g3r.read(tmp_path).points, [[1, 2, 3], [4, 5, 6]])
     np.testing.assert_array_equal(g3r.read(tmp_path / "*.xyz", box=((2, 2, 2), (9, 9, 9))).points, [[4, 5, 6]])
     assert "no COPC" in g3r.read(tmp_path / "a.xyz", levels=2).warnings[0]
-    for options in ({"box": ((7, 7, 7), (9, 9, 9))}, {"box": ((0, 0, 0),)}, {"box": ((1, 1, 1), (0, 0, 0))}, {"levels": 0}):
+    for options in ({"box": ((7, 7, 7), (9, 9, 9))}, {"box": ((0, 0, 0),)}, {"box": ((1, 1, 1), (0, 0, 0))}, {"box": ((0, 0, "low"), (1, 1, 1))}, {"levels": 0},
+                    {"levels": 1.5}, {"threads": -1}, {"threads": 2.5}, {"min_opacity": 7}, {"min_opacity": np.nan}, {"min_opacity": "none"}, {"all_splats": "no"}):
         with pytest.raises(g3r.InputError):
             g3r.read(tmp_path, **options)
 

@@ -287,7 +287,7 @@ def test_unusable_options_are_refused(sphere, options):
     ("faces", float("nan")), ("faces", 1e30), ("faces", 10**30), ("max_memory", "8G"), ("keep_all", "no"), ("keep_all", None),
     ("min_component", "a"), ("tolerance", "1e-3"), ("tolerance", None), ("accuracy", "x"), ("device", None), ("method", None),
     ("harmonics", None),
-    ("schedule", 3), ("preset", None), ("flip", "no"), ("condition_number", 2),
+    ("schedule", 3), ("preset", None), ("flip", "no"), ("condition_number", 2), ("mesh", "no"),
 ])
 def test_a_value_of_another_kind_is_refused_by_name(sphere, option, value):
     with pytest.raises(g3r.InputError, match=option):

@@ -30,6 +30,9 @@ def test_points_with_a_reference_show_errors(sphere):
 def test_thinning_is_told(sphere):
     data = data_of(g3r.show(sphere, max_points=100, open=False))
     assert (data["points"]["given"], data["points"]["shown"]) == (len(sphere), 100)
+    for wrong in ({"max_points": -1}, {"max_points": 2.5}, {"height": "high"}):
+        with pytest.raises(g3r.InputError, match=next(iter(wrong))):
+            g3r.show(sphere, open=False, **wrong)
 
 
 def test_vertices_with_faces_are_a_mesh():
@@ -61,6 +64,8 @@ def test_save_writes_a_page_or_a_picture(tmp_path, result):
     assert (tmp_path / "look.html").read_bytes().startswith(b"<!doctype html>")
     assert (tmp_path / "look.png").read_bytes().startswith(b"\x89PNG")
     assert view.png(tile=64).startswith(b"\x89PNG")
+    with pytest.raises(g3r.InputError, match="tile must be an integer"):
+        view.png(tile=64.5)
 
 
 def test_a_notebook_gets_a_frame(result):
