@@ -18,6 +18,11 @@ std::string& last_error() {
   return text;
 }
 
+std::string& last_report() {
+  thread_local std::string text;
+  return text;
+}
+
 g3r_status fail(g3r_status status, const char* what) noexcept {
   try {
     last_error() = what;
@@ -165,7 +170,9 @@ g3r_status g3r_orient(const double* points, size_t count, const g3r_options* opt
   return guarded([&] {
     if ((points == nullptr && count > 0) || normals == nullptr) throw g3r::InvalidInput("points and normals must not be NULL");
     const Request request = read_options(options, count);
-    give(g3r::orient(g3r::PointsView(points, count), request.options, request.monitor), normals, areas, confidence);
+    const g3r::Orientation result = g3r::orient(g3r::PointsView(points, count), request.options, request.monitor);
+    last_report() = g3r::report_json(result.stats);
+    give(result, normals, areas, confidence);
   });
 }
 
@@ -179,6 +186,7 @@ g3r_status g3r_reconstruct(const double* points, size_t count, const g3r_options
     owned->view = {owned->mesh.vertices.size(), owned->mesh.triangles.size(),
                    owned->mesh.vertices.empty() ? nullptr : owned->mesh.vertices[0].data(),
                    owned->mesh.triangles.empty() ? nullptr : owned->mesh.triangles[0].data()};
+    last_report() = g3r::report_json(result.orientation.stats, &result.check);
     give(result.orientation, normals, areas, confidence);
     *mesh = &owned.release()->view;
   });
@@ -242,6 +250,8 @@ const char* g3r_status_text(g3r_status status) {
   }
   return "not a status of g3r";
 }
+
+const char* g3r_last_report(void) { return last_report().c_str(); }
 
 const char* g3r_last_error(void) { return last_error().c_str(); }
 

@@ -254,6 +254,30 @@ TEST_F(Guest, ALengthWithoutItsUnitIsRefused) {
   EXPECT_EQ(orient(points.data(), kPoints, &options, normals.data(), nullptr, nullptr), G3R_OK) << complaint();
 }
 
+TEST_F(Guest, ReportsAreToldByThread) {
+  const auto orient = library().find<decltype(g3r_orient)>("g3r_orient");
+  const auto report = library().find<decltype(g3r_last_report)>("g3r_last_report");
+  ASSERT_NE(report, nullptr);
+  const auto tells = [&](const char* words) { return std::string(report()).find(words) != std::string::npos; };
+  g3r_options options;
+  library().find<decltype(g3r_options_init)>("g3r_options_init")(&options, sizeof options);
+  options.device = "cpu";
+  std::vector<double> points = egg();
+  std::vector<double> normals(points.size());
+  ASSERT_EQ(orient(points.data(), kPoints, &options, normals.data(), nullptr, nullptr), G3R_OK);
+  EXPECT_TRUE(tells("\"warnings\": []")) << report();
+  EXPECT_TRUE(tells("\"mesh\": null")) << report();
+  points[0] = NAN;
+  ASSERT_EQ(orient(points.data(), kPoints, &options, normals.data(), nullptr, nullptr), G3R_OK);
+  EXPECT_TRUE(tells("1 points with a non-finite coordinate were left out")) << report();
+  const std::string before = report();
+  EXPECT_EQ(orient(points.data(), 2, &options, normals.data(), nullptr, nullptr), G3R_INVALID_INPUT);
+  EXPECT_EQ(before, report());
+  std::thread([&] { EXPECT_STREQ(report(), ""); }).join();
+  ASSERT_FALSE(reconstruct(library()).empty());
+  EXPECT_TRUE(tells("\"closed\": true")) << report();
+}
+
 TEST_F(Guest, TilesAreFourCalls) {
   const auto init = library().find<decltype(g3r_options_init)>("g3r_options_init");
   const auto plan = library().find<decltype(g3r_tiles_plan)>("g3r_tiles_plan");

@@ -81,6 +81,10 @@ G3R_C_API g3r_status g3r_orient(const double* points, size_t count, const g3r_op
 G3R_C_API g3r_status g3r_reconstruct(const double* points, size_t count, const g3r_options* options, double* normals, double* areas,
                                      float* confidence, g3r_mesh** mesh);
 
+/* What the last call of these two that returned G3R_OK in this thread did and how it went, as JSON (docs/report.md): warnings, whether the
+ * solver converged and the sides are consistent, the check of the mesh. Valid until the next one; "" if there was none. */
+G3R_C_API const char* g3r_last_report(void);
+
 /* Frees a mesh; NULL is fine. */
 G3R_C_API void g3r_mesh_free(g3r_mesh* mesh);
 
