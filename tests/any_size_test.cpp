@@ -277,6 +277,18 @@ TEST_F(Tiles, DamagedFoldersAreRefused) {
     refused(text);
   }
   write_bytes(tiles::manifest_path(work), manifest);
+  const tiles::Manifest sound = tiles::read_manifest(work);
+  const auto spoilt = [&](const auto& spoil) {  // the frame, which a mesh is made in
+    tiles::Manifest m = sound;
+    spoil(m);
+    tiles::write_manifest(work, m);
+    EXPECT_THROW((void)run_tiles(work), InvalidInput);
+  };
+  for (const double factor : {-1.0, 0.0, 0.4, 2.5, 1e300}) spoilt([&](tiles::Manifest& m) { m.frame.scale *= factor; });
+  spoilt([](tiles::Manifest& m) { m.frame.centre[1] += 0.1; });
+  spoilt([](tiles::Manifest& m) { m.bounds.high[2] += 1; });
+  spoilt([](tiles::Manifest& m) { std::swap(m.bounds.low, m.bounds.high); });
+  write_bytes(tiles::manifest_path(work), manifest);
   std::string cells = bytes_of(tiles::cells_path(work));
   std::swap(cells[0], cells[16]);
   std::swap(cells[1], cells[17]);

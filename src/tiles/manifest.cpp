@@ -101,10 +101,21 @@ Manifest parsed(const json& from) {
   return m;
 }
 
+// Whether the frame is that of the bounds: their middle, and a longest side as kLongestSide says.
+bool is_of(const Box& bounds, const Frame& frame) {
+  constexpr double kRounding = 1e-12;
+  double side = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (frame.centre[a] != bounds.low[a] + (bounds.high[a] - bounds.low[a]) / 2) return false;
+    side = std::max(side, (bounds.high[a] - bounds.low[a]) * frame.scale);
+  }
+  return side > (0.5 - kRounding) * kLongestSide && side < (1 + kRounding) * kLongestSide;
+}
+
 // Whether numbers can be of one plan: every place in a file that they lead to is checked by those who read it.
 bool is_sound(const Manifest& m) {
   if (m.points > kMostPoints || m.non_finite > m.points || m.level < 0 || m.level > kGridBits || m.tiles.empty()) return false;
-  if (m.stride == 0 || (m.stride & (m.stride - 1)) != 0 || m.stride > m.sorted() || !std::isfinite(m.frame.scale)) return false;
+  if (m.stride == 0 || (m.stride & (m.stride - 1)) != 0 || m.stride > m.sorted() || !is_of(m.bounds, m.frame)) return false;
   if (m.coarse_points != (m.sorted() + m.stride - 1) / m.stride || m.coarse_points >= kNotCoarse) return false;
   std::uint64_t own = 0;
   std::uint64_t cell = 0;
