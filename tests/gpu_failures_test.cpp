@@ -411,13 +411,13 @@ TEST(GpuFailures, AKeptDeviceIsGivenOutOnceAndNotAfterAFork) {
 // The folder of OpenCL's drivers, of files that name one each.
 class Vendors {
  public:
-  Vendors() {
+  explicit Vendors(const char* variable = "OCL_ICD_VENDORS") : variable_(variable) {
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directory(folder_);
-    setenv("OCL_ICD_VENDORS", folder_.c_str(), 1);  // NOLINT(concurrency-mt-unsafe): one thread
+    setenv(variable_, folder_.c_str(), 1);  // NOLINT(concurrency-mt-unsafe): one thread
   }
   ~Vendors() {
-    unsetenv("OCL_ICD_VENDORS");  // NOLINT(concurrency-mt-unsafe)
+    unsetenv(variable_);  // NOLINT(concurrency-mt-unsafe)
     std::filesystem::remove_all(folder_);
   }
   Vendors(const Vendors&) = delete;
@@ -426,6 +426,7 @@ class Vendors {
   void add(const std::string& file, const std::string& driver) const { std::ofstream(folder_ / file) << driver << '\n'; }
 
  private:
+  const char* variable_;
   std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "g3r_vendors_test";
 };
 
@@ -438,6 +439,26 @@ TEST(GpuFailures, PoclAloneIsSoftwareAndOtherDriversMayBeHardware) {
   EXPECT_TRUE(gpu::only_software(gpu::listed_drivers("")));
   vendors.add("nvidia.icd", "libnvidia-opencl.so.1");
   EXPECT_FALSE(gpu::only_software(gpu::listed_drivers("")));
+}
+
+// A processor's driver beside the loader says nothing of what variables name.
+TEST(GpuFailures, DriversAreListedByVariables) {
+  const std::filesystem::path prefix = std::filesystem::path(testing::TempDir()) / "g3r_prefix_test";
+  const std::string loader = (prefix / "lib/here/libOpenCL.so.1").string();
+  const auto software = [&] { return gpu::only_software(gpu::listed_drivers(loader)); };
+  std::filesystem::create_directories(prefix / "etc/OpenCL/vendors");
+  std::ofstream(prefix / "etc/OpenCL/vendors/pocl.icd") << "libpocl.so.2\n";
+  const bool others = !software();  // in the folders above
+  {
+    const Vendors vendors("OPENCL_VENDOR_PATH");
+    vendors.add("nvidia.icd", "libnvidia-opencl.so.1");
+    EXPECT_FALSE(software());
+  }
+  setenv("OCL_ICD_FILENAMES", "libnvidia-opencl.so.1", 1);  // NOLINT(concurrency-mt-unsafe): one thread
+  EXPECT_FALSE(software());
+  unsetenv("OCL_ICD_FILENAMES");  // NOLINT(concurrency-mt-unsafe)
+  std::filesystem::remove_all(prefix);
+  if (others) GTEST_SKIP() << "the machine lists other drivers, with which nothing is software alone";
 }
 
 TEST(GpuFailures, DriversAreListedBesideTheLoader) {

@@ -1,4 +1,4 @@
-// Source: Khronos, cl_khr_icd, and ocl-icd's manual for the variable.
+// Sources: Khronos, cl_khr_icd, and the manuals of its loader and of ocl-icd for the variables.
 #include "gpu/drivers.h"
 
 #include <algorithm>
@@ -28,20 +28,27 @@ void add_folder(const fs::path& folder, std::vector<std::string>& drivers) {
   }
 }
 
+std::string variable(const char* name) {
+  const char* value = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): nothing here sets variables
+  return value == nullptr ? std::string() : std::string(value);
+}
+
 }  // namespace
 
 std::vector<std::string> listed_drivers(const std::string& loader) {
+  if (!variable("OCL_ICD_FILENAMES").empty()) return {};  // drivers besides, for some loaders
   std::vector<std::string> drivers;
-  const char* variable = std::getenv("OCL_ICD_VENDORS");  // NOLINT(concurrency-mt-unsafe): nothing here sets variables
-  if (variable != nullptr && *variable != '\0') {
-    const fs::path vendors(variable);
+  std::string given = variable("OCL_ICD_VENDORS");
+  if (given.empty()) given = variable("OPENCL_VENDOR_PATH");
+  if (!given.empty()) {
+    const fs::path vendors(given);
     std::error_code error;
     if (fs::is_directory(vendors, error)) {
       add_folder(vendors, drivers);
     } else if (vendors.extension() == kEnd) {
       add_file(vendors, drivers);
     } else {
-      drivers.push_back(variable);
+      drivers.push_back(given);
     }
   } else if (!loader.empty()) {
     for (fs::path folder = fs::path(loader).parent_path();; folder = folder.parent_path()) {
