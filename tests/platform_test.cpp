@@ -11,12 +11,20 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <csignal>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
 
 #include "temporary_folder.h"
+
+#ifndef _WIN32
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/time.h>
+#endif
 
 namespace g3r {
 namespace {
@@ -79,6 +87,34 @@ TEST(Platform, AFileInUseIsNotTakenForLeftBehind) {
   EXPECT_TRUE(platform::remove_if_left_behind(path));
   EXPECT_FALSE(platform::exists(path));
 }
+
+#ifndef _WIN32
+std::string pipe_name;
+volatile std::sig_atomic_t signals = 0;
+
+// A profiler's timer, whose handler does not restart what it interrupts, while nobody has opened the other end of a pipe.
+TEST(Platform, OpeningGoesOnAfterSignals) {
+  const TemporaryFolder folder;
+  pipe_name = folder.file("pipe");
+  ASSERT_EQ(::mkfifo(pipe_name.c_str(), 0600), 0);
+  struct sigaction action {};
+  struct sigaction before {};
+  action.sa_handler = [](int) {
+    signals = signals + 1;
+    if (signals == 3) (void)::open(pipe_name.c_str(), O_RDWR | O_NONBLOCK);
+  };
+  ::sigaction(SIGALRM, &action, &before);
+  const itimerval often{{0, 2000}, {0, 2000}};
+  ::setitimer(ITIMER_REAL, &often, nullptr);
+  const int file = platform::open_to_read(pipe_name);
+  const itimerval never{};
+  ::setitimer(ITIMER_REAL, &never, nullptr);
+  ::sigaction(SIGALRM, &before, nullptr);
+  EXPECT_GE(file, 0) << std::strerror(errno);
+  EXPECT_GE(signals, 3);
+  platform::close_file(file);
+}
+#endif
 
 TEST(Platform, BytesAreReadAndWrittenAtAPlace) {
   const TemporaryFolder folder;

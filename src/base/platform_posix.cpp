@@ -36,6 +36,11 @@ auto repeated(const Call& call) {
   return result;
 }
 
+// Waits for the other end of a named pipe, or a disk on a network.
+int opened(const std::string& name, int flags, unsigned permissions = 0) {
+  return repeated([&] { return ::open(name.c_str(), flags | O_CLOEXEC, permissions); });
+}
+
 void take(const struct stat& from, FileStatus& status) {
   using Kind = FileStatus::Kind;
   status.kind = S_ISREG(from.st_mode) ? Kind::kRegular : S_ISDIR(from.st_mode) ? Kind::kFolder : Kind::kOther;
@@ -107,8 +112,8 @@ std::vector<std::string> matching(const std::string& pattern) {
   return names;
 }
 
-int open_to_read(const std::string& name) { return ::open(name.c_str(), O_RDONLY | O_CLOEXEC); }
-int open_to_write(const std::string& name) { return ::open(name.c_str(), O_WRONLY | O_CLOEXEC); }
+int open_to_read(const std::string& name) { return opened(name, O_RDONLY); }
+int open_to_write(const std::string& name) { return opened(name, O_WRONLY); }
 int standard_input() { return kStandardInput; }
 int standard_output() { return kStandardOutput; }
 bool close_file(int file) { return ::close(file) == 0; }
@@ -130,7 +135,7 @@ std::ptrdiff_t write_at(int file, std::uint64_t offset, const void* bytes, std::
 }
 
 int create_file(const std::string& name, unsigned permissions) {
-  return ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, permissions & 0777U);
+  return opened(name, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW, permissions & 0777U);
 }
 
 bool mark_in_use(int file, const std::string& name) {
@@ -142,7 +147,7 @@ bool mark_in_use(int file, const std::string& name) {
 }
 
 bool remove_if_left_behind(const std::string& name) {
-  const int file = ::open(name.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  const int file = opened(name, O_WRONLY | O_NOFOLLOW | O_NONBLOCK);
   if (file < 0) return false;
   FileStatus status;
   const bool left = get_status(file, status) && status.kind == FileStatus::Kind::kRegular && ::flock(file, LOCK_EX | LOCK_NB) == 0;
@@ -161,10 +166,10 @@ bool sync(int file) {
 bool replace(int& /*file*/, const std::string& from, const std::string& to) { return ::rename(from.c_str(), to.c_str()) == 0; }
 
 bool sync_folder(const std::string& folder) {
-  const int opened = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (opened < 0) return true;  // a folder that may be written but not read
-  const int error = ::fsync(opened) != 0 && errno != EINVAL && errno != EROFS ? errno : 0;
-  ::close(opened);
+  const int file = opened(folder, O_RDONLY | O_DIRECTORY);
+  if (file < 0) return true;  // a folder that may be written but not read
+  const int error = !sync(file) && errno != EINVAL && errno != EROFS ? errno : 0;
+  ::close(file);
   errno = error;
   return error == 0;
 }
