@@ -17,6 +17,7 @@
 #include "sampling.h"
 #include "sanitized.h"
 #include "shrink.h"
+#include "temporary_folder.h"
 
 namespace g3r::stress {
 namespace {
@@ -217,6 +218,19 @@ TEST(Stress, FindingsComeOutOfTheirProcess) {
   EXPECT_EQ(outcome.findings[0].kind, "program");
   EXPECT_EQ(outcome.findings[0].what, "g3r ends with 1");
   EXPECT_GT(outcome.cpu_seconds, 0);
+}
+
+// What waits for ever takes no time of the processor.
+TEST(Stress, HangsAreFindings) {
+  const TemporaryFolder folder;
+  Demands demands;
+  demands.program = folder.file("hangs");
+  std::ofstream(demands.program) << "#!/bin/sh\nexec sleep 100000\n";
+  std::filesystem::permissions(demands.program, std::filesystem::perms::owner_all);
+  const Outcome outcome = hold_apart(Recipe("shape=solid points=20 seed=1"), demands, {600, 8ULL << 30, 5});
+  ASSERT_EQ(outcome.findings.size(), 1U);
+  const std::string& kind = outcome.findings[0].kind;
+  EXPECT_TRUE(kind == "program" || kind == "crash") << kind;  // the second where the runs before take so long
 }
 
 // A run that is too long, too large or ends by a signal is a finding.

@@ -334,8 +334,11 @@ int run_program(std::vector<std::string> words) {
   std::vector<char*> arguments;
   for (std::string& w : words) arguments.push_back(w.data());
   arguments.push_back(nullptr);
+  const unsigned left = alarm(0);  // of this process, in seconds; 0: no limit
+  alarm(left);
   const pid_t child = fork();
   if (child == 0) {
+    alarm(left > 1 ? left - 1 : left);  // goes on in the program
     execv(arguments[0], arguments.data());
     _exit(127);
   }

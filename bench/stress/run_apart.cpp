@@ -2,6 +2,7 @@
 
 #include <g3r/error.h>
 
+#include <fcntl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -62,6 +63,7 @@ Outcome unpacked(const std::string& text) {
 void write_all(int to, const std::string& text) {
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t n = write(to, text.data() + done, text.size() - done);
+    if (n < 0 && errno == EINTR) continue;
     if (n < 0) return;
     done += static_cast<std::size_t>(n);
   }
@@ -84,6 +86,7 @@ void limit(int what, rlim_t to) {
 }
 
 [[noreturn]] void be_child(int to, const std::function<Outcome()>& work, const Limits& limits) {
+  alarm(limits.wall_seconds);
   limit(RLIMIT_CPU, limits.cpu_seconds);
   limit(RLIMIT_CORE, 0);
   if (!kSanitized) limit(RLIMIT_AS, limits.address_bytes);
@@ -99,7 +102,7 @@ void limit(int what, rlim_t to) {
 
 Outcome apart(const std::function<Outcome()>& work, const Limits& limits) {
   std::array<int, 2> ends{};
-  if (pipe(ends.data()) != 0) throw IoError(IoError::Kind::kFailed, "no pipe to another process");
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw IoError(IoError::Kind::kFailed, "no pipe to another process");
   const pid_t child = fork();
   if (child < 0) throw IoError(IoError::Kind::kFailed, "no other process can be started");
   if (child == 0) {
