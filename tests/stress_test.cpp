@@ -144,6 +144,9 @@ TEST_F(SpoiltResult, Numbers) {
   EXPECT_EQ(found([](Reconstruction& r) { r.orientation.areas[7] = -1; }), Kinds{"number"});
   EXPECT_EQ(found([](Reconstruction& r) { r.orientation.confidence[7] = NAN; }), Kinds{"number"});
   EXPECT_EQ(found([](Reconstruction& r) { r.orientation.areas.pop_back(); }), Kinds{"number"});
+  EXPECT_EQ(found([](Reconstruction& r) { r.mesh.confidence[7] = 1.5F; }), Kinds{"number"});
+  EXPECT_EQ(found([](Reconstruction& r) { r.mesh.confidence[7] = NAN; }), Kinds{"number"});
+  EXPECT_EQ(found([](Reconstruction& r) { r.mesh.confidence.pop_back(); }), Kinds{"number"});
   EXPECT_EQ(found([](Reconstruction& r) { r.orientation.stats.spacing = NAN; }), Kinds{"number"});
 }
 

@@ -152,6 +152,9 @@ void check_surface(const Reconstruction& r, bool trimmed, Outcome& outcome, Judg
   if (lost != r.mesh.vertices.end()) {
     return judge.demand(false, "mesh", "vertex " + std::to_string(lost - r.mesh.vertices.begin()) + " has a coordinate that is not finite");
   }
+  const std::vector<float>& confidence = r.mesh.confidence;
+  const bool is_share = std::all_of(confidence.begin(), confidence.end(), [](float c) { return c >= 0 && c <= 1; });
+  judge.demand(is_share && confidence.size() == r.mesh.vertices.size(), "number", "not every vertex has a confidence in [0, 1]");
   const MeshCheck check = check_mesh(r.mesh);
   judge.demand(check.triangles > 0 || trimmed, "mesh", "the mesh is empty");
   judge.demand(check.manifold, "mesh",
@@ -176,6 +179,7 @@ std::string difference(const Reconstruction& a, const Reconstruction& b) {
   if (!same_bytes(a.orientation.confidence, b.orientation.confidence)) out += " confidence";
   if (!same_bytes(a.mesh.vertices, b.mesh.vertices)) out += " vertices";
   if (!same_bytes(a.mesh.triangles, b.mesh.triangles)) out += " triangles";
+  if (!same_bytes(a.mesh.confidence, b.mesh.confidence)) out += " confidence of vertices";
   if (a.orientation.stats.warnings != b.orientation.stats.warnings) out += " warnings";
   return out;
 }

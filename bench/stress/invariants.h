@@ -2,7 +2,8 @@
 //
 //   crash       the run ends by itself, within its time and the memory of the child that it runs in (run_apart.h)
 //   refused     no error but for clouds that are none: fewer than 4 distinct places, all on a line, no surface or one below one triangle
-//   number      normals are unit and finite, areas finite and not negative, confidence is in [0, 1], the report is finite
+//   number      normals are unit and finite, areas finite and not negative, confidence is in [0, 1], of vertices too, the
+//               report is finite
 //   memory      the peak stays within the plan
 //   mesh        closed and manifold unless trimmed, every coordinate finite
 //   weld        closed after vertices at the same place are made one: every edge has as many triangles one way as the other
