@@ -72,6 +72,21 @@ TEST(Neighbours, WithinARadiusAreAllThatAreCloser) {
   EXPECT_EQ(found, expected);
 }
 
+TEST(Neighbours, WithinARadiusStopBeyondTheMostThatAreWanted) {
+  constexpr std::size_t kMost = 20;
+  const std::vector<Vec3> points = cube();
+  const Vec3 x{0.5, 0.5, 0.5};
+  std::vector<std::uint32_t> found;
+  Neighbours(points).within(x, 1, found, kMost);
+  EXPECT_GT(found.size(), kMost);
+  EXPECT_LT(found.size(), 2 * kMost);  // a leaf more
+  std::vector<std::uint32_t> all;
+  Neighbours(points).within(x, 0.1, all);
+  ASSERT_LE(all.size(), kMost);
+  Neighbours(points).within(x, 0.1, found, kMost);
+  EXPECT_EQ(found, all);
+}
+
 // Many are far more than a leaf holds, and than one thread builds alone.
 TEST(Neighbours, OfManyAndOfTheMarkedAreThoseOfALookAtAllPoints) {
   shapes::Random random(4);

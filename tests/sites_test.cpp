@@ -7,8 +7,11 @@
 
 #include "shapes.h"
 
+#include <g3r/error.h>
+
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 
 namespace g3r {
@@ -120,6 +123,29 @@ TEST(Sites, LinesHaveTheirDistanceAndTheRestHasNone) {
   EXPECT_GT(static_cast<double>(kept), 0.99 * static_cast<double>(dense));  // few random ones are like lines
   for (const Vec3& axis : sites.axis) EXPECT_GT(std::abs(axis[2]), 0.999);
   EXPECT_TRUE(surface_distances(in_order(shapes::sphere(3000).points)).empty());
+}
+
+// Fewer than half of the points are a ball smaller than the gaps, more of them within every reach than are looked at.
+TEST(Sites, LinesBesideADenseBallKeepTheirDistance) {
+  shapes::Random random(6);
+  std::vector<Vec3> points;
+  for (double y = -0.9; y < 0.9; y += 0.08) {
+    for (double x = -0.9; x < 0.9; x += 0.002)
+      points.push_back({x + 0.0002 * random.gaussian(), y, 0.05 * std::sin(5 * x) * std::cos(4 * y)});
+  }
+  const double alone = surface_distance(in_order(points));
+  ASSERT_GT(alone, 0.02);
+  for (const Vec3& p : shapes::sphere(points.size() * 2 / 3, 0.005, {0, 0, 0.6}).points) points.push_back(p);
+  const double beside = surface_distance(in_order(points));
+  EXPECT_GT(beside, alone / 2);
+  EXPECT_LT(beside, alone * 2);
+}
+
+TEST(Sites, CanBeCancelled) {
+  const std::atomic<bool> cancel = true;
+  const PointSet cloud = in_order(scan_lines(6));
+  EXPECT_THROW(static_cast<void>(surface_distances(cloud, &cancel)), Cancelled);
+  EXPECT_THROW(static_cast<void>(place_sites(cloud, 0.05, &cancel)), Cancelled);
 }
 
 }  // namespace

@@ -118,17 +118,18 @@ class Nearer {
   double squared_;
 };
 
-// All points that are nearer than `reach`.
+// All points that are nearer than `reach`, until they are more than `most`.
 class Within {
  public:
-  Within(double reach, std::vector<std::uint32_t>& index) : reach_(reach), index_(index) {}
-  [[nodiscard]] double reach() const { return reach_; }
+  Within(double reach, std::size_t most, std::vector<std::uint32_t>& index) : reach_(reach), most_(most), index_(index) {}
+  [[nodiscard]] double reach() const { return index_.size() > most_ ? -1 : reach_; }
   void add(double squared, std::uint32_t point) {
     if (squared < reach_) index_.push_back(point);
   }
 
  private:
   double reach_;
+  std::size_t most_;
   std::vector<std::uint32_t>& index_;
 };
 
@@ -311,9 +312,9 @@ std::uint32_t Neighbours::nearest(const Vec3& x, double& squared, std::uint32_t 
   return found.point();
 }
 
-void Neighbours::within(const Vec3& x, double radius, std::vector<std::uint32_t>& index) const {
+void Neighbours::within(const Vec3& x, double radius, std::vector<std::uint32_t>& index, std::size_t most) const {
   index.clear();
-  Within found(radius * radius, index);
+  Within found(radius * radius, most, index);
   tree_->search(x, found);
 }
 

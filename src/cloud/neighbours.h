@@ -26,8 +26,9 @@ class Neighbours {
   /// The point nearest to x among those whose squared distance is less than `squared`, which becomes that of this point; `none` if there is
   /// no such point. The less `squared`, the faster. O(log N).
   [[nodiscard]] std::uint32_t nearest(const Vec3& x, double& squared, std::uint32_t none) const;
-  /// All points closer to x than `radius`, in no particular order. O(log N + points found).
-  void within(const Vec3& x, double radius, std::vector<std::uint32_t>& index) const;
+  /// All points closer to x than `radius`, in no particular order; where there are more than `most`, more than `most` of them. O(log N +
+  /// points found).
+  void within(const Vec3& x, double radius, std::vector<std::uint32_t>& index, std::size_t most = SIZE_MAX) const;
   /// For every point, the min(k, N) points nearest to it, nearest first (itself, but for points in the same
   /// place): N x min(k, N), row-major. O(k N log N). On the device of the call, if it has one, with the same result.
   [[nodiscard]] std::vector<std::uint32_t> of_all(std::size_t k) const;

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -120,9 +121,19 @@ class Planes {
   Plane at(const Vec3& centre) {
     index_.clear();
     if (reach_ > 0) set_.tree().within(centre, reach_, index_);
-    if (index_.size() < kPatchNeighbours) set_.tree().nearest(centre, kPatchNeighbours, index_, squared_);
-    std::sort(index_.begin(), index_.end());
-    return fit_plane_at(set_.points(), index_, centre);
+    return through_found(set_, centre);
+  }
+
+  // The same, but more than kPlaces points are too many: the first of the sets where so many are not stands for them.
+  Plane through_some_at(const Vec3& centre, const std::vector<PointSet>& thinned) {
+    if (reach_ == 0) return at(centre);
+    const PointSet* set = &set_;
+    set->tree().within(centre, reach_, index_, kPlaces);
+    for (auto next = thinned.begin(); index_.size() > kPlaces && next != thinned.end(); ++next) {
+      set = &*next;
+      set->tree().within(centre, reach_, index_, kPlaces);
+    }
+    return through_found(*set, centre);
   }
 
   // Of a point and its nearest, where every point is a site.
@@ -134,22 +145,43 @@ class Planes {
   }
 
  private:
+  Plane through_found(const PointSet& set, const Vec3& centre) {
+    if (index_.size() < kPatchNeighbours) set.tree().nearest(centre, kPatchNeighbours, index_, squared_);
+    std::sort(index_.begin(), index_.end());
+    return fit_plane_at(set.points(), index_, centre);
+  }
+
   const PointSet& set_;
   double reach_;
   std::vector<std::uint32_t> index_;
   std::vector<double> squared_;
 };
 
+// Every 4th, 16th, ... of the points in canonical order, which are as dense everywhere for their number, with their trees, down to kPlaces.
+std::vector<PointSet> thinned_sets(const PointSet& set) {
+  std::vector<PointSet> sets;
+  for (const PointSet* finer = &set; finer->size() > kPlaces; finer = &sets.back()) {
+    std::vector<Vec3> some;
+    for (std::size_t i = 0; i < finer->size(); i += kTwiceAsFar) some.push_back(finer->points()[i]);
+    sets.emplace_back(std::move(some));
+    static_cast<void>(sets.back().tree());
+  }
+  return sets;
+}
+
 // Sites at the centroids of the points nearest to each of `seeds`, in canonical order.
-void gather(const std::vector<Vec3>& points, const std::vector<Vec3>& seeds, Sites& sites) {
+void gather(const std::vector<Vec3>& points, const std::vector<Vec3>& seeds, const std::atomic<bool>* cancel, Sites& sites) {
   std::vector<std::uint32_t> nearest(points.size());
   const Neighbours tree(seeds);
-  parallel::for_blocks(points.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      double squared = HUGE_VAL;
-      nearest[i] = tree.nearest(points[i], squared, 0);
-    }
-  });
+  parallel::for_blocks(
+      points.size(), parallel::kSmallBlock,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          double squared = HUGE_VAL;
+          nearest[i] = tree.nearest(points[i], squared, 0);
+        }
+      },
+      cancel);
   std::vector<Vec3> centroids(seeds.size(), Vec3{0, 0, 0});
   std::vector<double> count(seeds.size(), 0);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -194,7 +226,7 @@ bool has_lines(const PointSet& set) {
 }
 
 // The planes of sites, through points of the set within reach, or through the nearest where all of these are the sites.
-void fit_planes(const PointSet& set, double distance, Sites& sites) {
+void fit_planes(const PointSet& set, double distance, const std::atomic<bool>* cancel, Sites& sites) {
   const std::size_t count = sites.size();
   sites.axis.resize(count);
   sites.flatness.resize(count);
@@ -204,35 +236,38 @@ void fit_planes(const PointSet& set, double distance, Sites& sites) {
   } else {
     static_cast<void>(set.near());
   }
-  parallel::for_blocks(count, parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
-    Planes planes(set, distance);
-    for (std::size_t s = begin; s < end; ++s) {
-      const Plane plane = distance > 0 ? planes.at(sites.points()[s]) : planes.at_point(s);
-      sites.axis[s] = plane.normal;
-      sites.flatness[s] = plane.flatness;
-      sites.breadth[s] = plane.breadth;
-    }
-  });
+  parallel::for_blocks(
+      count, parallel::kSmallBlock,
+      [&](std::size_t begin, std::size_t end) {
+        Planes planes(set, distance);
+        for (std::size_t s = begin; s < end; ++s) {
+          const Plane plane = distance > 0 ? planes.at(sites.points()[s]) : planes.at_point(s);
+          sites.axis[s] = plane.normal;
+          sites.flatness[s] = plane.flatness;
+          sites.breadth[s] = plane.breadth;
+        }
+      },
+      cancel);
 }
 
 }  // namespace
 
-Sites place_sites(const PointSet& set, double distance) {
+Sites place_sites(const PointSet& set, double distance, const std::atomic<bool>* cancel) {
   const std::vector<Vec3>& points = set.points();
   Sites sites;
   sites.distance = distance;
   if (distance > 0) {
-    gather(points, taken_points(points, distance), sites);
+    gather(points, taken_points(points, distance), cancel, sites);
   } else {
     sites.set = set;
     sites.site_of.resize(points.size());
     std::iota(sites.site_of.begin(), sites.site_of.end(), std::uint32_t{0});
   }
-  fit_planes(set, distance, sites);
+  fit_planes(set, distance, cancel, sites);
   return sites;
 }
 
-Sites place_sites(const PointSet& set, const std::vector<double>& distance) {
+Sites place_sites(const PointSet& set, const std::vector<double>& distance, const std::atomic<bool>* cancel) {
   const std::vector<Vec3>& points = set.points();
   std::map<double, std::vector<Vec3>> alike;
   for (std::size_t i = 0; i < points.size(); ++i) alike[distance[i]].push_back(points[i]);
@@ -242,8 +277,8 @@ Sites place_sites(const PointSet& set, const std::vector<double>& distance) {
     seeds.insert(seeds.end(), taken.begin(), taken.end());
   }
   Sites sites;
-  gather(points, seeds, sites);
-  fit_planes(sites.set, 0, sites);
+  gather(points, seeds, cancel, sites);
+  fit_planes(sites.set, 0, cancel, sites);
   return sites;
 }
 
@@ -253,28 +288,33 @@ double Sites::side(std::size_t site) const {
   return spacing()[site] > kFirstDistance * around ? around : spacing()[site];
 }
 
-double surface_distance(const PointSet& set) {
+double surface_distance(const PointSet& set, const std::atomic<bool>* cancel) {
   const std::vector<Vec3>& points = set.points();
   const double spacing = set.spacing();
+  std::vector<PointSet> thinned;
   const double length = static_cast<double>(points.size()) * spacing;  // of the lines that they are at most
   for (double distance = 0; distance * static_cast<double>(kFewestSites) < length;
        distance = std::max(kFirstDistance * spacing, kLevelRatio * distance)) {
     const std::size_t sites = distance > 0 ? static_cast<std::size_t>(length / distance) : points.size();
     const std::size_t step = std::max<std::size_t>(1, points.size() / std::min(kPlaces, sites));
     std::vector<double> breadth((points.size() + step - 1) / step);
-    parallel::for_blocks(breadth.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
-      Planes planes(set, distance);
-      for (std::size_t k = begin; k < end; ++k) breadth[k] = planes.at(points[k * step]).breadth;
-    });
+    if (distance > 0 && thinned.empty()) thinned = thinned_sets(set);
+    parallel::for_blocks(
+        breadth.size(), parallel::kSmallBlock,
+        [&](std::size_t begin, std::size_t end) {
+          Planes planes(set, distance);
+          for (std::size_t k = begin; k < end; ++k) breadth[k] = planes.through_some_at(points[k * step], thinned).breadth;
+        },
+        cancel);
     if (median(breadth) < kFacetBreadth) continue;
     return distance == 0 || taken_points(points, distance).size() >= kFewestSites ? distance : 0;
   }
   return 0;
 }
 
-std::vector<double> surface_distances(const PointSet& set) {
+std::vector<double> surface_distances(const PointSet& set, const std::atomic<bool>* cancel) {
   const std::size_t count = set.size();
-  const double distance_of_all = surface_distance(set);
+  const double distance_of_all = surface_distance(set, cancel);
   if (distance_of_all == 0 && !has_lines(set)) return {};
   if (are_wires(set)) return {};
   if (distance_of_all > 0) return std::vector<double>(count, distance_of_all);
@@ -286,7 +326,7 @@ std::vector<double> surface_distances(const PointSet& set) {
     std::vector<Vec3> some;
     some.reserve(in_lines.size());
     for (const std::uint32_t i : in_lines) some.push_back(set.points()[i]);
-    const Sites sites = place_sites(distance > 0 ? PointSet(std::move(some)) : set, distance);
+    const Sites sites = place_sites(distance > 0 ? PointSet(std::move(some)) : set, distance, cancel);
     if (sites.size() < kFewestSites) break;
     const double next = std::max(first, kLevelRatio * distance);
     std::vector<std::uint8_t> are_lines(sites.size());

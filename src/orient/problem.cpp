@@ -131,7 +131,7 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
   problem.noise = given ? *given : noise ? *noise : estimate_noise(set);
   if (problem.noise == 0 && !given && !set.views().known()) problem.direction_noise = fine_noise(set);
   stages.check();
-  if (!contains(without, Step::kSites)) problem.line_distance = surface_distances(set);
+  if (!contains(without, Step::kSites)) problem.line_distance = surface_distances(set, stages.cancel());
   stages.check();
   choose_scales_and_scatter(problem, options);
   stages.check();
