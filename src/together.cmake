@@ -17,7 +17,7 @@ g3r_together(sums cloud/outliers sum/fast_sum sum/solve_on_device sum/sum_engine
              baselines/stretched_winding baselines/wnnc field/areas)
 g3r_together(solvers cloud/sites solve/dense_solver solve/iterative_solver field/field field/oriented_cloud field/winding_sampler
              metrics/score_mesh metrics/score_normals orient/confidence orient/memory_plan orient/noise_settings cloud/heights
-             orient/open_to_views orient/sight_normals orient/two_walls orient/walls)
+             orient/crowded orient/open_to_views orient/sight_normals orient/two_walls orient/walls)
 g3r_together(orient sum/device_scope metrics/triangle_tree orient/certificate orient/coarse_to_fine orient/creases orient/planes
              orient/polish orient/problem orient/sign_graph orient/solution orient/clean_surface orient/noisy_surface orient/solve_apart
              orient/solve_on_sites)

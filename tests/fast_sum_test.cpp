@@ -1,6 +1,7 @@
 // The fast sums against their definitions: accuracy over shapes, sizes and tolerances; adjoints to rounding; widths; queries; determinism.
 #include "sum/fast_sum.h"
 
+#include "base/vector.h"
 #include "cloud/canonical_cloud.h"
 #include "cpu/parallel.h"
 #include "kernels/kernel_polynomials.h"
@@ -132,6 +133,38 @@ TEST(FastSum, QueriesSeeTheSameFieldAsThePoints) {
   for (int i = 0; i < 300; ++i) queries.push_back({random.uniform(-1.3, 1.3), random.uniform(-1, 1), random.uniform(-0.5, 0.5)});
   EXPECT_LE(relative_error(sum.winding_at(eta, queries), direct_sum::winding(points, 0.01, eta, queries)), 1e-3);
   EXPECT_LE(relative_error(sum.winding_gradient_at(eta, queries), direct_sum::winding_gradient(points, 0.01, eta, queries)), 1e-3);
+}
+
+TEST(FastSum, QueriesSeeEverySourceWithItsOwnWidth) {
+  const std::vector<Vec3> points = unit_points(shapes::torus(4000, 0.6, 0.25, 3).points);
+  const std::vector<Vec3> eta = random_vectors(points.size(), 1);
+  const auto is_wide = [&](std::size_t i) { return points[i][0] > 0; };
+  std::vector<double> widths(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) widths[i] = is_wide(i) ? 0.04 : 0.002;
+  std::vector<Vec3> queries = points;  // those at a point see its own kernel
+  queries.resize(1500);
+  for (const bool direct : {false, true}) {
+    const FastSum sum(points, Widths(widths), sum_plan(1e-3, direct ? 1 : 1000000));
+    std::vector<double> w(queries.size(), 0);
+    std::vector<Vec3> gradient(queries.size(), Vec3{0, 0, 0});
+    for (const bool wide : {false, true}) {
+      std::vector<Vec3> some, of_some;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        if (is_wide(i) != wide) continue;
+        some.push_back(points[i]);
+        of_some.push_back(eta[i]);
+      }
+      const double width = wide ? 0.04 : 0.002;
+      const std::vector<double> part = direct_sum::winding(some, width, of_some, queries);
+      const std::vector<Vec3> slope = direct_sum::winding_gradient(some, width, of_some, queries);
+      for (std::size_t q = 0; q < queries.size(); ++q) {
+        w[q] += part[q];
+        gradient[q] = vector::add(gradient[q], slope[q]);
+      }
+    }
+    EXPECT_LE(relative_error(sum.winding_at(eta, queries), w), 1e-3);
+    EXPECT_LE(relative_error(sum.winding_gradient_at(eta, queries), gradient), 1e-3);
+  }
 }
 
 TEST(FastSum, TheFieldsOfSeveralVectorsAreThoseOfEach) {

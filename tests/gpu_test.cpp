@@ -126,10 +126,15 @@ TEST(Gpu, QueriesSeeTheSameField) {
   Random random(2);
   std::vector<Vec3> queries;
   for (int i = 0; i < 500; ++i) queries.push_back({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-0.5, 0.5)});
-  const FastSum processor(points, Widths(0.01), sum_plan(1e-3, kPoints));
-  const FastSum device(points, Widths(0.01), on_device(sum_plan(1e-3, kPoints)));
-  EXPECT_LE(relative_error(device.winding_at(eta, queries), processor.winding_at(eta, queries)), 5e-4);
-  EXPECT_LE(relative_error(device.winding_gradient_at(eta, queries), processor.winding_gradient_at(eta, queries)), 5e-4);
+  queries.insert(queries.end(), points.begin(), points.begin() + 500);
+  std::vector<double> local(points.size());
+  for (double& w : local) w = random.uniform(0.005, 0.03);
+  for (const Widths& widths : {Widths(0.01), Widths(local)}) {
+    const FastSum processor(points, widths, sum_plan(1e-3, kPoints));
+    const FastSum device(points, widths, on_device(sum_plan(1e-3, kPoints)));
+    EXPECT_LE(relative_error(device.winding_at(eta, queries), processor.winding_at(eta, queries)), 5e-4);
+    EXPECT_LE(relative_error(device.winding_gradient_at(eta, queries), processor.winding_gradient_at(eta, queries)), 5e-4);
+  }
 }
 
 TEST(Gpu, QueriesInPartsSeeTheFieldOfTheirOwnDensity) {

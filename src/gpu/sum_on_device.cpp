@@ -62,7 +62,7 @@ void SumOnDevice<T>::set_targets(std::shared_ptr<ListsOnDevice<T>> lists, const 
   target_count_ = targets.count;
   target_stride_ = targets.stride;
   if (targets.places == nullptr) return;
-  const std::size_t elements = 3 * target_stride_;
+  const std::size_t elements = (local_widths_ ? 4 : 3) * target_stride_;
   device_.write(room(targets_, elements), 0, targets.places, elements * sizeof(T));
 }
 

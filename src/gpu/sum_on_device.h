@@ -23,7 +23,7 @@ struct SourcesOfSum {
   const Octree& tree;
   const T* places;
   std::size_t stride;      ///< from one field to the next
-  const T* squared_width;  ///< with local widths, those of the targets too; null without
+  const T* squared_width;  ///< with local widths; null without
   double uniform_width;    ///< without local widths
 };
 
@@ -31,7 +31,7 @@ struct SourcesOfSum {
 template <class T>
 struct TargetsOfSum {
   std::size_t count;
-  const T* places;  ///< null: the sources
+  const T* places;  ///< with local widths, their squares after z; null: the sources
   std::size_t stride;
 };
 

@@ -3,6 +3,7 @@
 #include "base/vector.h"
 #include "cloud/constants.h"
 #include "orient/confidence.h"
+#include "orient/crowded.h"
 #include "solve/refine.h"
 #include "sum/fast_sum.h"
 
@@ -56,10 +57,11 @@ std::vector<Vec3> by_agreement(const PointSet& set, const Sites& sites, const Su
   std::vector<Vec3> normals(count);
   for (std::size_t s = 0; s < count; ++s) normals[s] = vector::scale(sites.axis[s], signs.sign[s]);
   const double spacing = sites.set.spacing();
-  FastSum wide(sites.points(), Widths(kResolved * spacing), sums, cancel);
+  const auto widths = [&](double width) { return narrowed(width * spacing, sites.set.smoothed_spacing(), spacing); };
+  FastSum wide(sites.points(), widths(kResolved), sums, cancel);
   for (int turn = 0; turn < kMostRounds; ++turn) normals = refine_normals(wide, areas_of(sites, normals)).normals;
   // Directions from a narrower field, where its side is the same.
-  const FastSum field(wide, Widths(kBetweenSites * spacing));
+  const FastSum field(wide, widths(kBetweenSites));
   std::vector<Vec3> sided(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) sided[i] = normals[sites.site_of[i]];
   std::vector<Vec3> narrow = unit_normals(field.winding_gradient_at(areas_of(sites, normals), points, cancel), sided).normals;
@@ -127,7 +129,8 @@ std::vector<std::vector<Vec3>> sides_by_agreement(const PointSet& set, const Sit
 
 std::vector<Vec3> seen_from_afar(const PointSet& set, const Sites& sites, const std::vector<Vec3>& normals, const SumPlan& sums,
                                  const std::atomic<bool>* cancel) {
-  const FastSum field(sites.points(), Widths(kFar * sites.set.spacing()), sums, cancel);
+  const double spacing = sites.set.spacing();
+  const FastSum field(sites.points(), narrowed(kFar * spacing, sites.set.smoothed_spacing(), spacing), sums, cancel);
   return unit_normals(field.winding_gradient_at(areas_of(sites, at_sites(sites, normals)), set.points(), cancel), normals).normals;
 }
 

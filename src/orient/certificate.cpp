@@ -6,6 +6,7 @@
 #include "cloud/constants.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
+#include "orient/crowded.h"
 #include "orient/settings.h"
 #include "sum/fast_sum.h"
 
@@ -33,7 +34,7 @@ class Probed {
   Probed(const Sites& sites, std::vector<std::vector<Vec3>> hypotheses, const SumPlan& sums, const std::atomic<bool>* cancel)
       : sites_(sites),
         cancel_(cancel),
-        field_(sites.points(), Widths(kEpsilon * sites.set.spacing()), sums, cancel),
+        field_(sites.points(), narrowed(kEpsilon * sites.set.spacing(), sites.set.smoothed_spacing(), sites.set.spacing()), sums, cancel),
         etas_(std::move(hypotheses)),
         axis_(sites.axis) {
     for (std::size_t i = 0; i < axis_.size(); ++i) {

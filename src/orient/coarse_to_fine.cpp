@@ -42,11 +42,27 @@ std::vector<T> every(std::size_t step, const std::vector<T>& values) {
   return some;
 }
 
-// The points of a level, and how many times as far apart each is as the others, 1 at least; empty: all are equally far apart.
+// The points of a level, and how many times as far apart each is as the others, less than 1 where they crowd; empty: all are equally far
+// apart.
 struct LevelCloud {
   const std::vector<Vec3>& points;
   const std::vector<double>& relative_spacing;
 };
+
+// A quarter of the points, and as much of the area that those stand for which crowd.
+std::vector<Vec3> quarter_of(const LevelCloud& cloud) {
+  std::vector<Vec3> some;
+  double next = static_cast<double>(kTwiceAsFar) / 2;
+  double end = 0;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    const double relative = cloud.relative_spacing.empty() ? 1 : std::min(1.0, cloud.relative_spacing[i]);
+    end += relative * relative;
+    if (end <= next) continue;
+    some.push_back(cloud.points[i]);
+    next += static_cast<double>(kTwiceAsFar);
+  }
+  return some;
+}
 
 std::vector<double> spacing_of(const LevelCloud& cloud, const Settings& settings) {
   std::vector<double> spacing = cloud.relative_spacing;
@@ -67,10 +83,10 @@ struct Level {
 
 Level solve_level(const LevelCloud& cloud, const Settings& settings, double share, Stages& stages, const std::vector<Vec3>& gradient);
 
-// The winding gradient at the points of the solution on a quarter of them, all with kernels of one width: a field of several has no value
+// The winding gradient at the points of the solution on quarter_of() them, all with kernels of one width: a field of several has no value
 // between its points.
 std::vector<Vec3> coarse_gradient(const LevelCloud& cloud, const Settings& settings, double share, Stages& stages) {
-  const std::vector<Vec3> points = every(kTwiceAsFar, cloud.points);
+  const std::vector<Vec3> points = quarter_of(cloud);
   const std::vector<double> one_width;
   const Level coarse = solve_level({points, one_width}, coarser(settings), kCoarseShare * share, stages, {});
   return coarse.field->winding_gradient_at(coarse.result.eta, cloud.points, stages.cancel());

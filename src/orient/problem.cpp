@@ -5,6 +5,7 @@
 #include "cloud/outliers.h"
 #include "cloud/spacing.h"
 #include "cloud/viewpoint.h"
+#include "orient/crowded.h"
 #include "orient/hints.h"
 #include "solve/part_system.h"
 
@@ -79,7 +80,7 @@ std::vector<double> relative_spacing(const Problem& problem, const Options& opti
   if (!is_free || !runs(problem, Step::kLocalWidths)) return thinned;
   std::vector<double> relative = spacing_before_thinning(problem.cloud.set.smoothed_spacing(), thinned);
   const double typical = (problem.is_clean() ? 1 : kNoisySpread) * problem.spacing;
-  for (double& h : relative) h = std::max(1.0, h / typical);
+  for (double& h : relative) h = std::max(h / typical, narrowing(h / typical));
   for (std::size_t i = 0; i < thinned.size(); ++i) relative[i] *= thinned[i];
   return relative;
 }

@@ -49,8 +49,8 @@ struct Problem {
 /// kNoSensor if none is known.
 [[nodiscard]] std::vector<std::uint32_t> sensors_of_points(const CanonicalCloud& cloud, const std::vector<std::uint32_t>& sensor_of_point);
 
-/// How many times as far apart the points are as typical ones, 1 at least; kernels are as much wider. Unless the width is given: then only
-/// as far as they have been thinned. Empty: nowhere. O(N).
+/// How many times as far apart the points are as typical ones, 1 at least, or narrowing() where they crowd; kernels are as much wider.
+/// Unless the width is given: then only as far as they have been thinned. Empty: nowhere. O(N).
 [[nodiscard]] std::vector<double> relative_spacing(const Problem& problem, const Options& options);
 
 /// Canonical order, outliers, spacing, noise and settings of a cloud; `known`: in the order of `points`. Throws InvalidInput for a cloud or

@@ -3,7 +3,9 @@
 #include "base/disjoint_sets.h"
 #include "base/vector.h"
 #include "orient/agreement.h"
+#include "orient/crowded.h"
 #include "orient/settings.h"
+#include "solve/part_system.h"
 #include "sum/fast_sum.h"
 
 #include <algorithm>
@@ -76,11 +78,13 @@ JumpDefects SiteParts::jump_defects(const std::vector<std::vector<Vec3>>& hypoth
 double SiteParts::enclosure(const std::vector<std::uint32_t>& some, const std::vector<Vec3>& normals) const {
   std::vector<Vec3> points;
   std::vector<Vec3> eta;
+  const double spacing = sites_.set.spacing();
+  const std::vector<double> around = values_at(some, sites_.set.smoothed_spacing());
   for (const std::uint32_t s : some) {
     points.push_back(sites_.points()[s]);
     eta.push_back(vector::scale(normals[s], sites_.side(s) * sites_.side(s)));
   }
-  FastSum field(points, Widths(kBetweenSites * sites_.set.spacing()), sum_plan(kContinuedAccuracy, points.size()), cancel_);
+  FastSum field(points, narrowed(kBetweenSites * spacing, around, spacing), sum_plan(kContinuedAccuracy, points.size()), cancel_);
   double sum = 0;
   for (const double w : field.winding(eta)) sum += w;
   return 2 * sum / static_cast<double>(points.size());

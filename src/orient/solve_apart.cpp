@@ -2,6 +2,7 @@
 
 #include "cloud/constants.h"
 #include "cloud/sites.h"
+#include "orient/crowded.h"
 #include "orient/open_surfaces.h"
 #include "sum/fast_sum.h"
 
@@ -19,6 +20,7 @@ double winding_of_others(const Problem& problem, const std::vector<std::uint32_t
   std::vector<Vec3> others;
   std::vector<Vec3> areas;
   std::vector<Vec3> here;
+  std::vector<double> around;
   for (std::uint32_t i = 0, k = 0; i < eta.size(); ++i) {
     if (k < some.size() && some[k] == i) {
       here.push_back(problem.cloud.points()[i]);
@@ -27,8 +29,9 @@ double winding_of_others(const Problem& problem, const std::vector<std::uint32_t
     }
     others.push_back(problem.cloud.points()[i]);
     areas.push_back(eta[i]);
+    around.push_back(problem.cloud.set.smoothed_spacing()[i]);
   }
-  const FastSum field(others, Widths(kBetweenSites * problem.spacing), problem.settings.sums, stages.cancel());
+  const FastSum field(others, narrowed(kBetweenSites * problem.spacing, around, problem.spacing), problem.settings.sums, stages.cancel());
   double sum = 0;
   for (const double w : field.winding_at(areas, here, stages.cancel())) sum += std::abs(w);
   return sum / static_cast<double>(here.size());

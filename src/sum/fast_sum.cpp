@@ -25,6 +25,8 @@ constexpr std::size_t kTargetsAtOnce = 1 << 17;  // of queries: what a sum holds
 constexpr double kShellAccuracy = 1e-4;
 constexpr double kShellGradientAccuracy = 1e-5;
 
+double widest(const Widths& widths) { return *std::max_element(widths.values.begin(), widths.values.end()); }
+
 // Sums run on the device of their plan, or else of their surroundings.
 SumPlan placed(SumPlan plan) {
   if (!plan.execution) plan.execution = gpu::Scope::current();
@@ -35,7 +37,7 @@ SumPlan placed(SumPlan plan) {
 
 struct FastSum::Impl {
   const std::vector<Vec3>* points;
-  double width;  // where it is uniform
+  double width;  // the largest
   SumPlan plan;
   const std::atomic<bool>* cancel;
   std::variant<SumEngine<float>, SumEngine<double>> engine;
@@ -46,7 +48,8 @@ struct FastSum::Impl {
     return Engine(std::in_place_type<SumEngine<float>>, points, widths, plan, cancel);
   }
 
-  // The sources with all lengths times `factor`, a power of two: their order stays.
+  // The sources with all lengths times `factor`, a power of two: their order stays. For targets outside the cube, which only the widest
+  // kernels reach.
   [[nodiscard]] Engine shrunk(double factor, const SumPlan& with, const std::atomic<bool>* stop) const {
     return make(scaled(*points, factor), Widths(factor * width), with, stop);
   }
@@ -109,13 +112,13 @@ struct FastSum::Impl {
 };
 
 FastSum::FastSum(const std::vector<Vec3>& points, const Widths& widths, const SumPlan& plan, const std::atomic<bool>* cancel) {
-  impl_.reset(new Impl{&points, widths[0], placed(plan), cancel, Impl::make(points, widths, placed(plan), cancel)});
+  impl_.reset(new Impl{&points, widest(widths), placed(plan), cancel, Impl::make(points, widths, placed(plan), cancel)});
 }
 
 FastSum::FastSum(const FastSum& other, const Widths& narrower) {
   const Impl& from = *other.impl_;
   impl_.reset(new Impl{
-      from.points, narrower[0], from.plan, from.cancel,
+      from.points, widest(narrower), from.plan, from.cancel,
       std::visit([&](const auto& engine) { return Impl::Engine(std::decay_t<decltype(engine)>(engine, narrower)); }, from.engine)});
 }
 

@@ -57,9 +57,9 @@ class FastSum {
   /// -grad w at the points: N vectors, along the outward normals.
   std::vector<Vec3> winding_gradient(const std::vector<Vec3>& eta);
 
-  /// w and -grad w at other targets (uniform width): any order, Q values. O(Q log N); for targets outside [-1, 1]^3 O(N) more for every
-  /// power of two between them and the cube that has some. Farther than 2e6 widths, or 2^20 cubes, O(N) each.
-  /// The value at a target depends on that target alone, not on the others of the call.
+  /// w and -grad w at other targets, where pairs have the width of the source: any order, Q values. O(Q log N); for targets outside [-1,
+  /// 1]^3 O(N) more for every power of two between them and the cube that has some. Farther than 2e6 widths, or 2^20 cubes, O(N) each. The
+  /// value at a target depends on that target alone, not on the others of the call.
   [[nodiscard]] std::vector<double> winding_at(const std::vector<Vec3>& eta, const std::vector<Vec3>& targets,
                                                const std::atomic<bool>* cancel = nullptr) const;
   /// winding_at() of each of `etas`, at least one: faster than one by one, as the lists of the targets are built once.

@@ -68,6 +68,10 @@ SumGeometry<T>::SumGeometry(const SumGeometry& other, const Widths& narrower)
 template <class T>
 SumGeometry<T>::SumGeometry(const SumGeometry& other, const std::vector<Vec3>& targets)
     : plan_(other.plan_), local_widths_(other.local_widths_), sources_(other.sources_), widths_(other.widths_) {
+  if (local_widths_ && !other.has_own_targets()) {  // the mean of the square of a source and that of a target, 0, is that of the source
+    widths_ = std::make_shared<SourceWidths>(*other.widths_);
+    for (T& squared : widths_->squared) squared *= 2;
+  }
   set_targets(targets);
 }
 
@@ -75,6 +79,7 @@ template <class T>
 void SumGeometry<T>::set_targets(const std::vector<Vec3>& targets) {
   target_tree_ = std::make_shared<Octree>(build_query_octree(targets, morton_codes(targets), sources_->tree));
   target_places_ = places_in<T>(*target_tree_, targets, stride_of(targets.size()));
+  if (local_widths_) target_places_.resize(4 * stride_of(targets.size()), T{0});
   interactions_ = std::make_shared<Interactions>();
 }
 

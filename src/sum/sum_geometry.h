@@ -45,7 +45,7 @@ class SumGeometry {
   SumGeometry(const std::vector<Vec3>& points, const Widths& widths, const SumPlan& plan);
   /// The same points with widths that are nowhere larger, in the tree and the lists of `other`, whose own targets are its sources.
   SumGeometry(const SumGeometry& other, const Widths& narrower);
-  /// Another set of targets for the sources of `other` (uniform width), canonical order.
+  /// Another set of targets for the sources of `other`, canonical order: pairs have the width of the source.
   SumGeometry(const SumGeometry& other, const std::vector<Vec3>& targets);
   /// Takes other targets in place of those, canonical order.
   void set_targets(const std::vector<Vec3>& targets);
@@ -65,6 +65,10 @@ class SumGeometry {
   [[nodiscard]] double uniform_width() const { return widths_->uniform; }
   /// Of every source, with local widths; null without.
   [[nodiscard]] const T* squared_widths() const { return local_widths_ ? widths_->squared.data() : nullptr; }
+  /// Of every target, with local widths: the pair's is the mean of both.
+  [[nodiscard]] const T* target_squared_widths() const {
+    return has_own_targets() ? target_places_.data() + 3 * target_stride() : squared_widths();
+  }
   /// Of the kernel of this source.
   [[nodiscard]] double source_width(std::size_t source) const {
     return local_widths_ ? std::sqrt(static_cast<double>(widths_->squared[source])) : widths_->uniform;
@@ -97,7 +101,7 @@ class SumGeometry {
   std::shared_ptr<Sources> sources_;
   std::shared_ptr<SourceWidths> widths_;
   std::shared_ptr<Octree> target_tree_;  // the sources' tree when they are the targets
-  Places target_places_;                 // of others
+  Places target_places_;                 // of others; with local widths their squares, 0, are the fourth field
   std::shared_ptr<Interactions> interactions_;
 };
 

@@ -303,7 +303,7 @@ void SumPasses<T>::Run::place(const OctreeNode& leaf, LeafSpace& space) const {
     space.x[lane] = places[p];
     space.y[lane] = places[stride + p];
     space.z[lane] = places[2 * stride + p];
-    if (geometry_.local_widths()) space.width_squared[lane] = geometry_.squared_widths()[p];
+    if (geometry_.local_widths()) space.width_squared[lane] = geometry_.target_squared_widths()[p];
     for (std::size_t k = 0; k < fields; ++k) {
       space.data[(lane / cpu::kLanes * fields + k) * cpu::kLanes + lane % cpu::kLanes] = request_.target_data[k * stride + p];
     }
