@@ -3,6 +3,7 @@
 #include "base/median.h"
 #include "cloud/constants.h"
 #include "cpu/parallel.h"
+#include "orient/crowded.h"
 #include "solve/energy_system.h"
 #include "solve/iterative_solver.h"
 #include "sum/fast_sum.h"
@@ -15,7 +16,11 @@ namespace g3r {
 Widths local_widths(const KernelWidth& width, const Settings& settings, const std::vector<double>& spacing) {
   if (spacing.empty()) return Widths(width.typical());
   std::vector<double> widths(spacing.size());
-  parallel::for_all(widths.size(), [&](std::size_t i) { widths[i] = width.at(spacing[i] / settings.spacing); });
+  parallel::for_all(widths.size(), [&](std::size_t i) {
+    const double relative = spacing[i] / settings.spacing;
+    // Kernels that hide noise everywhere would hold a whole crowd.
+    widths[i] = narrowing(relative) < 1 ? relative * width.typical() : width.at(relative);
+  });
   return Widths(std::move(widths));
 }
 

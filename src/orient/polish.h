@@ -18,7 +18,7 @@ inline std::vector<double> scaled(double factor, std::vector<double> values) {
   return values;
 }
 
-/// `width` at the local `spacing`; the typical one everywhere if that is empty.
+/// `width` at the local `spacing`; in proportion to it where points crowd, under noise too; the typical one everywhere if that is empty.
 [[nodiscard]] Widths local_widths(const KernelWidth& width, const Settings& settings, const std::vector<double>& spacing);
 
 /// The square of `spacing` at every point, or one value for all, that of settings.spacing, if it is empty.
