@@ -85,6 +85,10 @@ class SourceFolders(unittest.TestCase):
         found = [path.name for path in SOURCES.rglob("*.h") if re.search(r"operator<=>\([^)]*\) const = default", path.read_text())]
         self.assertEqual(found, [])
 
+    def test_bits_go_through_one_function(self):  # bits_as() of io/number_type.h: the browsers' standard library has no std::bit_cast
+        found = [path.name for path in SOURCES.rglob("*.*") if path.suffix in (".h", ".cpp") and "std::bit_cast<" in path.read_text()]
+        self.assertEqual(found, [])
+
     def test_a_circle_is_found(self):
         graph = {"a": {"b": "a/1 includes b/2"}, "b": {"c": "b/2 includes c/3"}, "c": {"b": "c/3 includes b/1"}}
         self.assertEqual(circle(graph), ["b/2 includes c/3", "c/3 includes b/1"])

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "base/hash.h"
+#include "io/number_type.h"
 
 #include <g3r/points.h>
 
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -17,7 +17,7 @@ namespace g3r::tiles {
   std::uint64_t hash = 0;
   for (const double c : point) {
     const double one_zero = std::isnan(c) ? std::numeric_limits<double>::quiet_NaN() : c + 0.0;  // -0 is 0
-    hash = mixed(hash ^ std::bit_cast<std::uint64_t>(one_zero));
+    hash = mixed(hash ^ io::bits_as<std::uint64_t>(one_zero));
   }
   return hash;
 }
