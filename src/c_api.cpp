@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <new>
 #include <string>
@@ -99,7 +100,7 @@ Request read_options(const g3r_options* given, size_t points) {
   request.options.noise = read_length(o.noise, o.noise_unit, "noise");
   request.options.degree = o.degree;
   request.options.threads = o.threads;
-  request.options.max_memory = o.max_memory;
+  request.options.max_memory = static_cast<size_t>(std::min<uint64_t>(o.max_memory, std::numeric_limits<size_t>::max()));
   request.options.hints = read_hints(o, points);
   request.mesh_options.depth = o.depth;
   if (o.device != nullptr) request.options.device = o.device;

@@ -194,6 +194,7 @@ TEST(FieldMesher, LeavesGrowWithTheFitsUnderNoise) {
   EXPECT_EQ(mesh::most_per_handle(0, mesh::kFinestCell), mesh::kMostPerHandle);
   EXPECT_EQ(mesh::most_per_handle(0, mesh::kFinestCell / 2), mesh::kMostPerHandle);
   EXPECT_EQ(mesh::most_per_handle(1, mesh::cell_under(1)), 8 * mesh::kMostPerHandle);
+  EXPECT_EQ(mesh::most_per_handle(1, mesh::cell_under(1) / 1024), 0x1p33 * mesh::kMostPerHandle);  // more than an integer of 32 bits holds
   const OrientedSample s = sphere_sample(4000, 1, 8);
   const double h = std::sqrt(4 * M_PI / 4000);
   const DistanceSampler field([](const Vec3& p) { return norm(p) - 1; }, 2 * h);

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -172,7 +173,8 @@ std::vector<double> wide_spacing(const PointSet& set, const std::vector<std::uin
     return spacing;
   };
   const std::size_t probes = std::min(kPlaces, set.size());
-  const double typical = typical_spacing(measured(probes, [&](std::size_t k) { return k * set.size() / probes; }));
+  const double typical =
+      typical_spacing(measured(probes, [&](std::size_t k) { return static_cast<std::size_t>(std::uint64_t{k} * set.size() / probes); }));
   std::vector<double> spacing = measured(strays.size(), [&](std::size_t k) { return std::size_t{strays[k]}; });
   for (double& s : spacing) s /= typical;
   return spacing;

@@ -25,7 +25,7 @@ enum class Way { kBoth, kFill, kCut };
 }  // namespace
 
 void remove_handles(const Octree& octree, const AmbiguousCorners& ambiguous, const std::function<bool(std::uint32_t)>& may_change,
-                    long most_per_handle, const InsideTest& centre_inside, std::vector<std::uint8_t>& inside,
+                    double most_per_handle, const InsideTest& centre_inside, std::vector<std::uint8_t>& inside,
                     const std::atomic<bool>* cancel) {
   DualSurface surface = patches_of(octree, inside, centre_inside, cancel);
   if (count_handles(surface) == 0) return;

@@ -13,7 +13,7 @@ namespace g3r::mesh {
 
 /// Of the ambiguous corners those change for which may_change(corner). `most_per_handle`: of HandleRemoval. Throws Cancelled.
 void remove_handles(const Octree& octree, const AmbiguousCorners& ambiguous, const std::function<bool(std::uint32_t)>& may_change,
-                    long most_per_handle, const InsideTest& centre_inside, std::vector<std::uint8_t>& inside,
+                    double most_per_handle, const InsideTest& centre_inside, std::vector<std::uint8_t>& inside,
                     const std::atomic<bool>* cancel);
 
 }  // namespace g3r::mesh

@@ -88,7 +88,7 @@ struct Signs {
 };
 
 Signs find_signs(const Octree& octree, const Prepared& prepared, const mesh::LocalFit& local, const FieldSampler& sampler,
-                 const mesh::Cube& cube, const mesh::InsideTest& centre_inside, long most_per_handle, const Monitor& monitor) {
+                 const mesh::Cube& cube, const mesh::InsideTest& centre_inside, double most_per_handle, const Monitor& monitor) {
   const std::vector<Vec3>& positions = prepared.points.positions;
   const mesh::CornerSides side(local, sampler, prepared.typical, cube, mesh::level_places(positions),
                                mesh::kAskedPerPoint * positions.size());
@@ -119,7 +119,7 @@ PlacedSurface placed_surface(const Prepared& prepared, const std::vector<double>
   if (memory != nullptr) mesh::check_memory(prepared.points.positions.size(), octree.leaf_count(), options.depth, *memory);
   report(monitor, Done::kOctree);
   const auto centre_inside = [&](const std::vector<Vec3>& centres) { return mesh::sides_by_fit(local, centres); };
-  const long most_per_handle = mesh::most_per_handle(prepared.noise, std::ldexp(levels.side, -levels.rule.finest) / prepared.typical);
+  const double most_per_handle = mesh::most_per_handle(prepared.noise, std::ldexp(levels.side, -levels.rule.finest) / prepared.typical);
   const Signs signs =
       find_signs(octree, prepared, local, sampler, {box.centre(), box.longest_side()}, centre_inside, most_per_handle, monitor);
   PlacedSurface out{mesh::contour(octree, signs.inside, centre_inside, monitor.cancel), {}};

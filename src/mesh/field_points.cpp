@@ -55,9 +55,9 @@ void smooth_noise(const Noise& noise, const std::atomic<bool>* cancel, Prepared&
 
 double cell_under(double noise) { return std::max(kFinestCell, smoothing_width(noise) / 2); }
 
-long most_per_handle(double noise, double cell) {
+double most_per_handle(double noise, double cell) {
   const double blurred = noise > 0 ? std::max(1.0, smoothing_width(noise) / cell) : 1;
-  return std::lround(static_cast<double>(kMostPerHandle) * blurred * blurred * blurred);
+  return std::round(kMostPerHandle * blurred * blurred * blurred);
 }
 
 std::vector<double> sizes_to_resolve(const Prepared& prepared, const std::vector<std::uint8_t>& in_lines) {

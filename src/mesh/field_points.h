@@ -48,7 +48,7 @@ void smooth_noise(const Noise& noise, const std::atomic<bool>* cancel, Prepared&
 
 /// For HandleRemoval, with leaves of such a side in spacings: as many corners as without noise, in what is to the width of the fits as
 /// those are to kFinestCell.
-[[nodiscard]] long most_per_handle(double noise, double cell);
+[[nodiscard]] double most_per_handle(double noise, double cell);
 
 /// The size of what is to be seen at each point: its spacing, or less where walls and gaps are thinner. `in_lines`: of points_in_lines(),
 /// which are no walls to each other unless so few points are a line by chance; may be empty.

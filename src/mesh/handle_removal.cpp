@@ -50,7 +50,7 @@ Patches patches_now(const Octree& octree, const OpenEdges& open, const std::vect
 }  // namespace
 
 HandleRemoval::HandleRemoval(const Octree& octree, const std::vector<std::uint8_t>& open, const std::vector<std::uint8_t>& inside,
-                             DualSurface surface, InsideTest centre_inside, long most_per_handle, const std::atomic<bool>* cancel)
+                             DualSurface surface, InsideTest centre_inside, double most_per_handle, const std::atomic<bool>* cancel)
     : octree_(octree),
       centre_inside_(std::move(centre_inside)),
       most_per_handle_(most_per_handle),

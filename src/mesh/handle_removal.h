@@ -21,7 +21,7 @@ namespace g3r::mesh {
 
 /// The corners that may change sides for each handle that goes, unless noise blurs more: more change the shape. With 100 the 28 models have
 /// a genus of 265 instead of 287, but gears a CD of 0.702 instead of 0.677.
-inline constexpr long kMostPerHandle = 60;
+inline constexpr double kMostPerHandle = 60;
 
 /// Other labellings of the same corners, taken where they have fewer handles. The same result for any number of threads. Works on the part
 /// of the surface around the corners that a proposal may change.
@@ -31,7 +31,7 @@ class HandleRemoval {
   /// `octree` must outlive this.
   /// O(nodes + crossings + edges near open corners). All members throw Cancelled.
   HandleRemoval(const Octree& octree, const std::vector<std::uint8_t>& open, const std::vector<std::uint8_t>& inside, DualSurface surface,
-                InsideTest centre_inside, long most_per_handle = kMostPerHandle, const std::atomic<bool>* cancel = nullptr);
+                InsideTest centre_inside, double most_per_handle = kMostPerHandle, const std::atomic<bool>* cancel = nullptr);
   HandleRemoval(const HandleRemoval&) = delete;  // its parts refer to each other
   HandleRemoval& operator=(const HandleRemoval&) = delete;
 
@@ -55,7 +55,9 @@ class HandleRemoval {
     [[nodiscard]] long handles_lost(long after) const { return -handles_of(after - components, twice_chi); }
   };
 
-  [[nodiscard]] bool is_worth(long handles, long corners) const { return handles > 0 && corners <= most_per_handle_ * handles; }
+  [[nodiscard]] bool is_worth(long handles, long corners) const {
+    return handles > 0 && static_cast<double>(corners) <= most_per_handle_ * static_cast<double>(handles);
+  }
   [[nodiscard]] Patches patches_around(const CornerGroups& groups, const std::vector<std::uint8_t>& inside) const;
   [[nodiscard]] std::vector<Change> changes_of(const CornerGroups& groups, const Patches& changed, const std::vector<std::uint8_t>& from,
                                                const std::vector<std::uint8_t>& to) const;
@@ -65,7 +67,7 @@ class HandleRemoval {
 
   const Octree& octree_;
   InsideTest centre_inside_;
-  long most_per_handle_;
+  double most_per_handle_;
   const std::atomic<bool>* cancel_;
   long handles_;
   const SurfaceElsewhere elsewhere_;
