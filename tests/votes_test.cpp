@@ -22,24 +22,42 @@ TEST(SeenFrom, IsTheCosineOfTheAngleToTheNormal) {
   EXPECT_EQ(seen_from({1, 2, 3}, {1, 2, 3}, kUpwards), 0);
 }
 
-TEST(NearestPlace, IsTheNearestOrNone) {
+TEST(NearestPlaces, AreThoseNearestToAPointOrNone) {
   const std::vector<Vec3> none;
-  EXPECT_EQ(NearestPlace(none).to({0, 0, 0}), nullptr);
-  NearestPlace nearest(kPlaces);
-  EXPECT_EQ(*nearest.to({0.9, 5, 0}), kPlaces[0]);
-  EXPECT_EQ(*nearest.to({1.1, 5, 0}), kPlaces[1]);
+  NearestPlaces of_none(none);
+  of_none.find({0, 0, 0}, 2);
+  EXPECT_EQ(of_none.count(), 0);
+  NearestPlaces nearest(kPlaces);
+  nearest.find({0.9, 5, 0}, 1);
+  ASSERT_EQ(nearest.count(), 1);
+  EXPECT_EQ(nearest.place(0), kPlaces[0]);
+  nearest.find({1.1, 5, 0}, 7);
+  ASSERT_EQ(nearest.count(), 2);
+  EXPECT_EQ(nearest.place(0), kPlaces[1]);
+  EXPECT_DOUBLE_EQ(nearest.squared_distance(1), 1.1 * 1.1 + 25);
 }
 
-TEST(Voters, GoByTheNearestSensorUnlessThatOfThePointIsKnown) {
+// As densely as each of them samples what it sees.
+TEST(Voters, GoBySensorsNearAndFarUnlessThatOfThePointIsKnown) {
   Hints hints;
-  hints.sensors = {{0, 0, 1}, {2, 0, -1}};
-  Voters nearest(kPlaces, hints);
-  EXPECT_DOUBLE_EQ(nearest.vote(0, kUpwards), 1);
-  EXPECT_DOUBLE_EQ(nearest.vote(1, kUpwards), -1);
+  hints.sensors = {{0, 0, 1}, {0, 0, -2}};
+  const std::vector<Vec3> points{{0, 0, 0}, {0, 0, 1}};
+  Voters any(points, hints);
+  EXPECT_DOUBLE_EQ(any.vote(0, kUpwards), (1 - 0.25) / 1.25);
+  EXPECT_DOUBLE_EQ(any.vote(0, {0, 0, -1}), -(1 - 0.25) / 1.25);
+  EXPECT_EQ(any.vote(1, kUpwards), 0);  // where a sensor stands
   hints.sensor_of_point = {1, kNoSensor};
-  Voters known(kPlaces, hints);
-  EXPECT_NEAR(known.vote(0, kUpwards), -1 / std::sqrt(5), 1e-12);
+  Voters known(points, hints);
+  EXPECT_DOUBLE_EQ(known.vote(0, kUpwards), -1);
   EXPECT_EQ(known.vote(1, kUpwards), 0);
+}
+
+// Of two sensors in front and behind, equally far away, neither is right.
+TEST(Voters, SayNothingOfAWallBetweenThem) {
+  Hints hints;
+  hints.sensors = {{0, 3, 4}, {0, 3, -4}};
+  const std::vector<Vec3> points{{0, 0, 0}};
+  EXPECT_NEAR(Voters(points, hints).vote(0, kUpwards), 0, 1e-15);
 }
 
 TEST(Voters, AddUpAllHints) {

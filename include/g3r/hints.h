@@ -22,7 +22,8 @@ inline constexpr std::uint32_t kNoSensor = 0xffffffff;
 struct Hints {
   /// Direction, of any length, that open surfaces face: terrain, roofs, what lies on a table.
   std::optional<Vec3> up{};
-  /// Places that the points were seen from. A point faces its own sensor, or the nearest one if `sensor_of_point` is empty.
+  /// Places that the points were seen from, all of them. A point faces its own sensor; if `sensor_of_point` is empty, each may have seen
+  /// it, and near ones are likelier (src/orient/votes.h).
   std::vector<Vec3> sensors{};
   /// Empty, or for every point an index into `sensors`, or kNoSensor.
   std::vector<std::uint32_t> sensor_of_point{};

@@ -8,20 +8,21 @@ namespace {
 using vector::dot;
 using vector::normalised;
 
+// Sensors that vote on a point, at most: of a path with thousands those farther away say little.
+constexpr std::size_t kMostSensors = 16;
+
 }  // namespace
 
 double seen_from(const Vec3& place, const Vec3& point, const Vec3& normal) {
   return dot(normal, normalised(vector::subtract(place, point)));
 }
 
-NearestPlace::NearestPlace(const std::vector<Vec3>& places) : places_(places) {
+NearestPlaces::NearestPlaces(const std::vector<Vec3>& places) : places_(places) {
   if (!places.empty()) neighbours_.emplace(places_);
 }
 
-const Vec3* NearestPlace::to(const Vec3& point) {
-  if (!neighbours_) return nullptr;
-  neighbours_->nearest(point, 1, index_, squared_);
-  return &places_[index_[0]];
+void NearestPlaces::find(const Vec3& point, std::size_t most) {
+  if (neighbours_) neighbours_->nearest(point, most, index_, squared_);
 }
 
 Voters::Voters(const std::vector<Vec3>& points, const Hints& hints)
@@ -37,14 +38,23 @@ double Voters::seen(std::size_t i, const Vec3& normal) {
     const std::uint32_t sensor = hints_.sensor_of_point[i];
     return sensor == kNoSensor ? 0 : seen_from(hints_.sensors[sensor], points_[i], normal);
   }
-  const Vec3* sensor = sensors_.to(points_[i]);
-  return sensor == nullptr ? 0 : seen_from(*sensor, points_[i], normal);
+  sensors_.find(points_[i], kMostSensors);
+  if (sensors_.count() == 0 || sensors_.squared_distance(0) == 0) return 0;
+  double sum = 0;
+  double weights = 0;
+  for (std::size_t k = 0; k < sensors_.count(); ++k) {
+    const double weight = sensors_.squared_distance(0) / sensors_.squared_distance(k);
+    sum += weight * seen_from(sensors_.place(k), points_[i], normal);
+    weights += weight;
+  }
+  return sum / weights;
 }
 
 double Voters::vote(std::size_t i, const Vec3& normal) {
   double sum = seen(i, normal);
   if (up_) sum += dot(normal, *up_);
-  if (const Vec3* inside = inside_.to(points_[i])) sum -= seen_from(*inside, points_[i], normal);
+  inside_.find(points_[i], 1);
+  if (inside_.count() > 0) sum -= seen_from(inside_.place(0), points_[i], normal);
   return sum;
 }
 

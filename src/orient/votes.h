@@ -34,12 +34,17 @@ struct Votes {
 /// Cosine under which a place sees the front of a point; 0 from the point itself.
 [[nodiscard]] double seen_from(const Vec3& place, const Vec3& point, const Vec3& normal);
 
-/// The nearest of a few places, or nothing if there is none.
-class NearestPlace {
+/// The nearest of a few places, nearest first.
+class NearestPlaces {
  public:
   /// `places` are kept by reference.
-  explicit NearestPlace(const std::vector<Vec3>& places);
-  [[nodiscard]] const Vec3* to(const Vec3& point);
+  explicit NearestPlaces(const std::vector<Vec3>& places);
+
+  /// To a point, `most` of them or all.
+  void find(const Vec3& point, std::size_t most);
+  [[nodiscard]] std::size_t count() const { return index_.size(); }
+  [[nodiscard]] const Vec3& place(std::size_t k) const { return places_[index_[k]]; }
+  [[nodiscard]] double squared_distance(std::size_t k) const { return squared_[k]; }
 
  private:
   const std::vector<Vec3>& places_;
@@ -50,8 +55,9 @@ class NearestPlace {
 
 /// Votes of single points p with normals n, which count by how squarely a point is seen, and not by how near it is:
 ///   sensor s:  n . (s - p) / |s - p|      up u:  n . u / |u|      inside q:  - n . (q - p) / |q - p|
-/// s is the sensor of the point if that is known, else the nearest one, and q the nearest place. `seen_from_inside` without sensors votes
-/// like a sensor in the mean of the points.
+/// s is the sensor of the point if that is known, and q the nearest place. Else any of the sensors may have seen it: of the 16 nearest the
+/// votes are averaged with weights 1 / |s - p|^2, as a scanner samples a surface the denser the nearer it is. `seen_from_inside` without
+/// sensors votes like a sensor in the mean of the points.
 class Voters {
  public:
   /// Both are kept by reference.
@@ -69,8 +75,8 @@ class Voters {
  private:
   const std::vector<Vec3>& points_;
   const Hints& hints_;
-  NearestPlace sensors_;
-  NearestPlace inside_;
+  NearestPlaces sensors_;
+  NearestPlaces inside_;
   std::optional<Vec3> up_;
   std::optional<Vec3> middle_;
 };
