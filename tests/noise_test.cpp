@@ -285,16 +285,6 @@ TEST(FineNoise, IsThatOfSmoothSurfacesAndNotShape) {
   EXPECT_EQ(fine_noise_of(shapes::plates(6, 0.6, 0.7, 0.7, 0.02)), 0);
 }
 
-// Plates a spacing apart scatter their eight nearest points not at all, and twice as many of two plates by as much as they are apart.
-TEST(ScatterIsShape, OfWallsCloseTogetherAndNotOfNoise) {
-  EXPECT_TRUE(scatter_is_shape(PointSet(shapes::plates(6, 0.6, 1, 1, 0.02).points)));
-  for (const double sigma : {0.1, 0.5, 1.0, 2.0}) {
-    Surface noisy = shapes::sphere(10000);
-    shapes::scatter(noisy, sigma * std::sqrt(4 * std::numbers::pi / 10000));
-    EXPECT_FALSE(scatter_is_shape(PointSet(noisy.points))) << sigma;
-  }
-}
-
 double scatter_of(const Surface& s) { return largest_scatter(PointSet(s.points)); }
 
 TEST(Scatter, IsTheNoiseWhereThatIsEven) {

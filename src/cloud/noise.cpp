@@ -230,12 +230,6 @@ double fine_noise(const PointSet& set) {
   return is_shape || on_exact_planes(set) ? 0 : flattest;
 }
 
-bool scatter_is_shape(const PointSet& set) {
-  if (set.size() < kFewestSurfacePoints) return false;
-  if (Residuals(set, kPatchNeighbours).scatter(kFlattest) > kFilled * kSaturation * set.spacing()) return false;
-  return Residuals(set, kClosest).scatter(kFlattest) <= kClearlyLess * Residuals(set, kTwoPatches).scatter(kFlattest);
-}
-
 double largest_scatter(const PointSet& set) {
   const double spacing = set.spacing();
   if (set.size() < kFewestSurfacePoints || on_exact_planes(set)) return 0;

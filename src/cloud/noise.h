@@ -47,11 +47,6 @@ inline constexpr double kRoundingCumulant = rounding_moment(4) - 3 * kRoundingVa
 /// fields above is less than half of what rounding leaves, in units of the steps, in which voxels of slices that are far apart are cubes.
 [[nodiscard]] double rounding_noise(const PointSet& set);
 
-/// Whether what looks like noise is shape: it is as large among 24 points as among 8 if it is noise, shape is not. Of the flattest 2 % of
-/// both, twice as large or more. False for fewer than 192 points, and for noise of a spacing and more, which fills the balls. Cost as
-/// above.
-[[nodiscard]] bool scatter_is_shape(const PointSet& set);
-
 /// The noise where it is largest, if all scatter is noise: of scans that do not fit onto each other, or of noise that differs from place to
 /// place, of which estimate_noise() finds the least. From the scatter x h of three quarters of the height fields above (measured within
 /// 20 % from 0.1 to 1 h):

@@ -15,7 +15,7 @@ namespace {
 
 // The doubt that is left, of what there is, with more noise than the points speak for: noise hides thin walls and all doubt about them.
 constexpr double kHardlyAny = 0.2;
-// Points up to which shape looks like noise, so that none is tried too: with more it costs time and is hardly ever taken.
+// Points up to which shape looks like noise, so that none is tried too: with more it costs time and is never taken.
 constexpr std::size_t kFewPoints = 2500;
 
 bool may_try_noises(const Problem& problem, const Options& options) {
@@ -39,8 +39,7 @@ std::vector<OtherNoise> other_noises(const Problem& problem, const Oriented& fou
   const double rounding = rounding_deviation(set);
   if (rounding > problem.noise) noises.push_back({rounding});
   if (kWider * scatter <= least && unsure < kDoubtful) return noises;
-  const bool may_be_none = set.size() <= kFewPoints || scatter_is_shape(set);
-  if (may_be_none && problem.noise > rounding_noise(set)) noises.push_back({0});
+  if (set.size() <= kFewPoints && problem.noise > rounding_noise(set)) noises.push_back({0});
   if (scatter > kWider * problem.noise) {
     noises.push_back({std::max(kWider * scatter, least)});
   } else if (problem.noise > 0 && unsure >= kDoubtful) {

@@ -17,11 +17,10 @@ struct OtherNoise {
 };
 
 /// What to try, in this order, where the sides of many points are unsure; nothing elsewhere. No noise: few points on much shape look noisy,
-/// and so does what grows as shape does (scatter_is_shape()), but neither looks rounded. More: what scatters most, of noise that differs
-/// from place to place and of scans that do not fit onto each other, looks like shape beside what scatters least, which the estimate goes
-/// by; what rounding leaves, where exact terraces hide it; and noise of a spacing or so can turn whole shells, in cavities for example, in
-/// the narrow polish. A surface that is open at the estimate may be closed at such a scatter, but not at one that kernels hide anyway.
-/// `found`: the solution of the problem. O(N log N).
+/// but not rounded. More: what scatters most, of noise that differs from place to place and of scans that do not fit onto each other, looks
+/// like shape beside what scatters least, which the estimate goes by; what rounding leaves, where exact terraces hide it; and noise of a
+/// spacing or so can turn whole shells, in cavities for example, in the narrow polish. A surface that is open at the estimate may be closed
+/// at such a scatter, but not at one that kernels hide anyway. `found`: the solution of the problem. O(N log N).
 [[nodiscard]] std::vector<OtherNoise> other_noises(const Problem& problem, const Oriented& found);
 
 /// The attempt with the best noise, `first` being that with the estimate: narrower kernels where these separate walls (separate_walls()),
