@@ -51,6 +51,18 @@ Refinement refine(const Problem& problem, const Problem& coarse, const Sites& si
   return out;
 }
 
+// Whether most of the points in lines are on open surfaces.
+bool are_lines_open(const Problem& problem, const OpenSurfaces& surfaces) {
+  std::size_t in_lines = 0;
+  std::size_t open = 0;
+  for (std::size_t i = 0; i < problem.line_distance.size(); ++i) {
+    if (problem.line_distance[i] == 0) continue;
+    ++in_lines;
+    open += surfaces.is_open(i) ? 1 : 0;
+  }
+  return 2 * open > in_lines;
+}
+
 // Whether the mean jump defect of one solution at the sites is less than that of another.
 bool jumps_better(const Problem& problem, const Solution& one, const Solution& other, Stages& stages) {
   const Sites sites = place_sites(problem.cloud.set, problem.line_distance);
@@ -96,7 +108,7 @@ Solution solve_with_lines(Problem& problem, const Options& options, Stages& stag
   if (problem.is_lines()) return solve_on_sites(problem, options, stages, stats);
   Stats of_sites = stats;
   Solution on_points = solve_parts(problem, options, stages, stats);
-  if (!problem.line_distance.empty()) {
+  if (are_lines_open(problem, on_points.open_surfaces)) {
     Solution on_sites = solve_on_sites(problem, options, stages, of_sites);
     if (jumps_better(problem, on_sites, on_points, stages)) {
       stats = std::move(of_sites);

@@ -16,8 +16,8 @@ namespace g3r {
 [[nodiscard]] Solution solve_on_sites(const Problem& problem, const Options& options, Stages& stages, Stats& stats);
 
 /// Solves a problem, open surfaces apart, on its points, or on sites if all of them are lines. Where some are, both are hypotheses: the one
-/// whose normals have the lesser jump_defects() at the sites counts. Forgets the lines if the points count. Adds to `stats` like
-/// solve_parts(). Throws Cancelled.
+/// whose normals have the lesser jump_defects() at the sites counts. Lines on closed parts are none. Forgets the lines if the points count.
+/// Adds to `stats` like solve_parts(). Throws Cancelled.
 [[nodiscard]] Solution solve_with_lines(Problem& problem, const Options& options, Stages& stages, Stats& stats);
 
 }  // namespace g3r
