@@ -19,7 +19,7 @@ constexpr const char* kCommandGroup = "Commands";
 
 constexpr const char* kTilesHelp =
     "If it would need more, for example 8G: work in tiles, on disk beside OUT (.ply; orient: .las, .laz too), or refuse "
-    "(default: refuse beyond what the container leaves)";
+    "(default: refuse beyond what is free)";
 constexpr const char* kMemoryHelp = "Warn if reconstruction would need more, for example 8G";
 
 void add_reconstruct(CLI::App& app, Settings& s) {
@@ -75,7 +75,7 @@ void add_mesh(CLI::App& app, Settings& s) {
              "(default: estimated)");
   add_run_options(*sub, s);
   add_read_options(*sub, s);
-  add_memory_option(*sub, s, "If it would need more, for example 8G: refuse (default: what the container leaves)");
+  add_memory_option(*sub, s, "If it would need more, for example 8G: refuse (default: what is free)");
 }
 
 void add_eval(CLI::App& app, Settings& s) {

@@ -1,6 +1,7 @@
 #include "sensors.h"
 
 #include "base/control_groups.h"
+#include "base/platform.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,8 +37,9 @@ double share_facing_away(const Cloud& cloud, const std::vector<Vec3>& normals) {
 
 Options run_options(const Settings& settings, const Cloud& cloud) {
   Options options = settings.options;
-  const double left = platform::container_memory();  // of the points that are read already, so that there is some to spare
-  if (options.max_memory == 0 && std::isfinite(left)) options.max_memory = std::max<std::size_t>(1, static_cast<std::size_t>(left));
+  const double left = platform::free_memory();  // of the points that are read already, so that there is some to spare
+  const bool is_known = left > 0 || std::isfinite(platform::container_memory());
+  if (options.max_memory == 0 && is_known) options.max_memory = std::max<std::size_t>(1, static_cast<std::size_t>(left));
   if (!settings.sensors_of_file) return options;
   if (cloud.sensor_positions.empty()) {
     throw InvalidInput(escape_text(settings.input) + " does not say where the scanner stood: --sensor X,Y,Z does");

@@ -10,8 +10,8 @@
 
 namespace g3r::cli {
 
-/// The options, with the sensors of the file as a hint where they are asked for, and with what the container leaves as the limit of memory
-/// where none is given. Throws InvalidInput if the file names no sensors.
+/// The options, with the sensors of the file as a hint where they are asked for, and with the memory that is free as its limit where none
+/// is given. Throws InvalidInput if the file names no sensors.
 [[nodiscard]] Options run_options(const Settings& settings, const Cloud& cloud);
 
 /// Adds a warning where the scanner positions of the file would say more than the points and no hint was given: open surfaces, and a cloud

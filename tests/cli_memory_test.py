@@ -104,6 +104,18 @@ class Memory(ProgramTest):
         self.expect(OK, "mesh", "few.ply", "out.ply", "--depth", "6", "--max-memory", "1G", "--report", "r.json")
         self.assertLess(self.json_of("r.json")["peak_memory_bytes"], self.json_of("r.json")["planned_memory_bytes"])
 
+    @unittest.skipUnless(os.path.exists("/proc/meminfo"), "nothing says how much memory there is")
+    def test_a_plan_beyond_the_memory_that_is_free_is_refused(self):
+        names = [("double", name) for name in ("x", "y", "z", "nx", "ny", "nz")]
+        write_ply(self.path("square.ply"), names, [(i / 7, j / 7, 0, 0, 0, 1) for i in range(7) for j in range(7)])
+        with open("/proc/meminfo", encoding="ascii") as lines:
+            free = next(int(line.split()[1]) / 1024 for line in lines if line.startswith("MemAvailable"))
+        limited = self.expect(UNAVAILABLE, "mesh", "square.ply", "out.ply", "--depth", "12", "--max-memory", "1M")
+        if int(re.search(r"plan needs (\d+) MiB", limited.err)[1]) < 2 * free:
+            self.skipTest("this machine has room for it")
+        result = self.expect(UNAVAILABLE, "mesh", "square.ply", "out.ply", "--depth", "12")
+        self.assertLess(int(re.search(r"the limit is (\d+) MiB", result.err)[1]), 1.5 * free)
+
     def test_a_mesh_that_turns_out_larger_than_its_plan_is_refused(self):
         n = 40  # two layers, half a spacing apart
         layers = [(i / n, j / n, z) for i in range(n) for j in range(n) for z in (0, 0.5 / n)]
