@@ -114,24 +114,24 @@ class SpoiltResult : public testing::Test {
 
   static void SetUpTestSuite() {
     const Recipe recipe("shape=solid parts=1 points=600 seed=3");
-    case_ = {recipe, make_scene(recipe)};
-    const RunOptions run = run_options(case_);
-    right_ = reconstruct(case_.scene.points, run.options, run.mesh);
+    tested = {recipe, make_scene(recipe)};
+    const RunOptions run = run_options(tested);
+    right = reconstruct(tested.scene.points, run.options, run.mesh);
   }
   // Of a result that `spoil` has changed.
   template <class Spoil>
   static Kinds found(const Spoil& spoil) {
-    Reconstruction result = right_;
+    Reconstruction result = right;
     spoil(result);
-    return kinds(hold_result(case_, result, true));
+    return kinds(hold_result(tested, result, true));
   }
   static void turn_all(Reconstruction& r) {
     for (Vec3& n : r.orientation.normals) n = {-n[0], -n[1], -n[2]};
     std::fill(r.orientation.confidence.begin(), r.orientation.confidence.end(), 1.0F);
   }
 
-  static inline Case case_;
-  static inline Reconstruction right_;
+  static inline Case tested;
+  static inline Reconstruction right;
 };
 
 TEST_F(SpoiltResult, RightAsItIs) {
@@ -183,15 +183,15 @@ TEST_F(SpoiltResult, SidesWithoutAWarningOfThem) {
 }
 
 TEST_F(SpoiltResult, FilesOfTheProgram) {
-  const Orientation& o = right_.orientation;
+  const Orientation& o = right.orientation;
   Cloud file;
   file.normals = o.normals;
   file.confidence = o.confidence;
   EXPECT_EQ(difference_in_file(file, o), "");
   const auto differs = [&](const auto& spoil) {
-    Cloud spoilt = file;
-    spoil(spoilt);
-    return !difference_in_file(spoilt, o).empty();
+    Cloud tested = file;
+    spoil(tested);
+    return !difference_in_file(tested, o).empty();
   };
   EXPECT_TRUE(differs([](Cloud& c) { c.normals[7][2] += 1e-3; }));
   EXPECT_TRUE(differs([](Cloud& c) { c.normals[7] = {NAN, NAN, NAN}; }));

@@ -202,6 +202,7 @@ std::vector<T> put_back(const std::vector<T>& values, const std::vector<std::siz
 void check_order(const Case& tested, const RunOptions& run, const Reconstruction& first, Judge& judge) {
   const std::vector<std::size_t> order = random_order(tested.scene.points.size(), 5);
   std::vector<Vec3> points;
+  points.reserve(order.size());
   for (const std::size_t i : order) points.push_back(tested.scene.points[i]);
   Reconstruction again = reconstruct(points, run.options, run.mesh);
   Orientation& o = again.orientation;
@@ -336,6 +337,7 @@ class Folder {
 
 int run_program(std::vector<std::string> words) {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& w : words) arguments.push_back(w.data());
   arguments.push_back(nullptr);
   const unsigned left = alarm(0);  // of this process, in seconds; 0: no limit
