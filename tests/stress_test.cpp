@@ -189,9 +189,9 @@ TEST_F(SpoiltResult, FilesOfTheProgram) {
   file.confidence = o.confidence;
   EXPECT_EQ(difference_in_file(file, o), "");
   const auto differs = [&](const auto& spoil) {
-    Cloud tested = file;
-    spoil(tested);
-    return !difference_in_file(tested, o).empty();
+    Cloud spoilt = file;
+    spoil(spoilt);
+    return !difference_in_file(spoilt, o).empty();
   };
   EXPECT_TRUE(differs([](Cloud& c) { c.normals[7][2] += 1e-3; }));
   EXPECT_TRUE(differs([](Cloud& c) { c.normals[7] = {NAN, NAN, NAN}; }));
