@@ -24,6 +24,7 @@
 #include "mesh/smooth_spacing.h"
 #include "mesh/used_vertices.h"
 #include "orient/confidence.h"
+#include "orient/describe.h"
 #include "orient/memory_plan.h"
 #include "orient/settings.h"
 #include "orient/start.h"
@@ -411,6 +412,7 @@ Stats describe_oriented(const PointsWithNormals& given, const OrientedCloud& ori
   if (given.non_finite > 0) {
     stats.warnings.push_back(std::to_string(given.non_finite) + " points with a non-finite coordinate were left out");
   }
+  warn_of_far(given.far.size(), stats);
   if (given.undirected > 0) {
     stats.warnings.push_back(std::to_string(given.undirected) +
                              " points with a normal of (0, 0, 0) or one that is not finite were left out");

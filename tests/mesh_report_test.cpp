@@ -207,14 +207,15 @@ TEST(MeshReport, TrimmingThatCutsNothingOrTooMuchIsTold) {
   }
 }
 
+// One of two parts that no frame holds together has a mesh, and the other one a warning; three have none that is fine enough.
 TEST(MeshReport, PartsThatAreTooFarApartAreNamedAsSuch) {
-  const OrientedSample apart = with_sphere(sphere_sample(300, 1, 1), 300, 1, 1e7);
-  try {
-    (void)mesh_oriented(apart.points, apart.normals);
-    ADD_FAILURE() << "it has a mesh";
-  } catch (const InvalidInput& error) {
-    EXPECT_NE(std::string(error.what()).find("800,000 spacings wide"), std::string::npos);
-  }
+  OrientedSample apart = with_sphere(sphere_sample(300, 1, 1), 300, 1, 1e7);
+  const Reported two(apart, {});
+  EXPECT_TRUE(two.warns("300 points are too far from the others"));
+  EXPECT_TRUE(two.report.stats.doubtful);
+  EXPECT_EQ(two.report.stats.outliers, 300U);
+  const Reported three(with_sphere(apart, 300, 1, 2e7), {});
+  EXPECT_TRUE(three.warns("800,000 spacings wide"));
 }
 
 }  // namespace

@@ -461,17 +461,21 @@ TEST(Orient, PointsOfEveryMagnitudeGiveNumbers) {
 
 TEST(Orient, ScalesOutOfReachAreSaid) {
   const std::vector<Vec3> sphere = shapes::sphere(1000).points;
-  const auto two = [&](double apart) {
-    std::vector<Vec3> points = sphere;
-    for (const Vec3& p : sphere) points.push_back({p[0] + apart, p[1], p[2]});
+  const auto row = [&](int count, double apart) {
+    std::vector<Vec3> points;
+    for (int k = 0; k < count; ++k) {
+      for (const Vec3& p : sphere) points.push_back({p[0] + k * apart, p[1], p[2] - k * apart});
+    }
     return points;
   };
   const auto text = [](const std::vector<std::string>& warnings) {
     return std::accumulate(warnings.begin(), warnings.end(), std::string());
   };
-  EXPECT_EQ(text(reconstruct(two(1e4)).orientation.stats.warnings), "");
-  EXPECT_NE(text(reconstruct(two(1e6)).orientation.stats.warnings).find("800,000 spacings"), std::string::npos);
-  EXPECT_NE(text(orient(two(1e7)).stats.warnings).find("a millionth of the cloud's width"), std::string::npos);
+  EXPECT_EQ(text(reconstruct(row(2, 1e4)).orientation.stats.warnings), "");
+  const Orientation one = orient(row(2, 1e6));
+  EXPECT_NE(text(one.stats.warnings).find("1000 points are too far from the others"), std::string::npos);
+  EXPECT_EQ(one.stats.outliers, 1000U);
+  EXPECT_NE(text(orient(row(3, 1e7)).stats.warnings).find("a millionth of the cloud's width"), std::string::npos);
 }
 
 TEST(Orient, SmallestCloudsWork) {

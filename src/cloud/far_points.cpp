@@ -2,18 +2,16 @@
 
 #include "base/median.h"
 #include "base/vector.h"
+#include "cloud/canonical_cloud.h"
+#include "cloud/spacing.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
 
 namespace g3r {
 namespace {
-
-// Of the spacing, a rounding of coordinates that moves no normal and makes no outlier.
-constexpr double kHardlyRounded = 1e-4;
 
 // The places within `reach` of the middle can share a frame.
 struct Surroundings {
@@ -25,18 +23,22 @@ struct Surroundings {
   }
 };
 
-// `points`: one at least. Half of n points on a surface as wide as d are about d / sqrt(n) apart, and places at the distance r in their
-// frame are rounded by r epsilon / 2.
+// `points`: one at least. The middle is the point nearest to the medians, as these need not be where any point is. Half of n points on a
+// surface as wide as d are about d / sqrt(n) apart, and in a frame as wide as r kBoxSide / r of that.
 Surroundings surroundings_of(const std::vector<Vec3>& points) {
   Surroundings out;
-  const auto median_of = [&points](const auto& value) {
+  for (std::size_t a = 0; a < 3; ++a) {
     std::vector<double> values(points.size());
-    std::transform(points.begin(), points.end(), values.begin(), value);
-    return median(std::move(values));
-  };
-  for (std::size_t a = 0; a < 3; ++a) out.middle[a] = median_of([a](const Vec3& p) { return p[a]; });
-  const double spacing = median_of([&out](const Vec3& p) { return out.distance(p); }) / std::sqrt(static_cast<double>(points.size()));
-  out.reach = kHardlyRounded * spacing / (std::numeric_limits<double>::epsilon() / 2);
+    std::transform(points.begin(), points.end(), values.begin(), [a](const Vec3& p) { return p[a]; });
+    out.middle[a] = median(std::move(values));
+  }
+  const auto nearer = [&out](const Vec3& p, const Vec3& q) { return std::pair(out.distance(p), p) < std::pair(out.distance(q), q); };
+  out.middle = *std::min_element(points.begin(), points.end(), nearer);
+  std::vector<double> distances(points.size());
+  std::transform(points.begin(), points.end(), distances.begin(), [&out](const Vec3& p) { return out.distance(p); });
+  const auto half = distances.begin() + static_cast<std::ptrdiff_t>((distances.size() - 1) / 2);
+  std::nth_element(distances.begin(), half, distances.end());
+  out.reach = *half / std::sqrt(static_cast<double>(points.size())) * kBoxSide / kLeastSpacing;
   return out;
 }
 

@@ -1,5 +1,6 @@
 #include "orient/describe.h"
 
+#include "cloud/constants.h"
 #include "cloud/exact_plane.h"
 #include "cloud/noise.h"
 #include "cloud/sites.h"
@@ -38,6 +39,7 @@ void warn_of_points(const Problem& problem, Stats& stats) {
   if (stats.dropped_non_finite > 0) {
     stats.warnings.push_back(std::to_string(stats.dropped_non_finite) + " points with a non-finite coordinate were left out");
   }
+  warn_of_far(problem.far, stats);
   if (problem.spacing <= kLeastSpacing) {
     stats.warnings.emplace_back(
         "the points are closer together than a millionth of the cloud's width, too close for the solver: "
@@ -75,6 +77,14 @@ void describe(const Problem& problem, const PointsView& points, const Options& o
   stats.planned_memory_bytes = planned_memory(settings, points.count, cloud.size());
   if (problem.baseline) describe_baseline(problem, stats);
   warn_of_points(problem, stats);
+}
+
+void warn_of_far(std::size_t far, Stats& stats) {
+  if (far <= kSmallPart) return;
+  stats.doubtful = true;
+  stats.warnings.push_back(std::to_string(far) +
+                           " points are too far from the others for one solve to resolve both, and were left out: check their coordinates, "
+                           "or treat them on their own");
 }
 
 void warn_of_volume(const Problem& problem, Stats& stats) {

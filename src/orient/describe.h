@@ -5,6 +5,7 @@
 
 #include <g3r/g3r.h>
 
+#include <cstddef>
 #include <vector>
 
 namespace g3r {
@@ -13,6 +14,10 @@ namespace g3r {
 /// `points`, the method, and the memory that the solve takes. Warns of points that are not finite, that are too close together for the
 /// solver, and that all lie in one plane. `problem`: made of these points with these options. O(N).
 void describe(const Problem& problem, const PointsView& points, const Options& options, Stats& stats);
+
+/// Warns of so many of the caller's points that far_points() left out, and calls the result doubtful, where they may be a part of their own
+/// (kSmallPart). O(1).
+void warn_of_far(std::size_t far, Stats& stats);
 
 /// Calls the result inconsistent, with a warning, where the points fill a volume (dimension()): there is no surface then, or the noise
 /// hides it. Only of problems that are solved for on clusters: to estimate_noise() a volume looks like noise of 0.75 spacings and more.

@@ -93,6 +93,7 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
   bool outliers_wanted = !contains(without, Step::kOutliers);
   std::vector<std::uint8_t> left_out;  // of the caller's points, for the frame to resolve the others
   if (outliers_wanted) left_out = far_points(points);
+  problem.far = static_cast<std::size_t>(std::count(left_out.begin(), left_out.end(), 1));
   problem.cloud = canonical_cloud(points, left_out, problem.outliers);
   stages.check();
   const auto known_noise = [&](double spacing) {

@@ -20,6 +20,7 @@ namespace g3r {
 struct Problem {
   CanonicalCloud cloud;
   std::vector<Vec3> outliers;  ///< taken out of the cloud; their indices follow those of its points
+  std::size_t far = 0;         ///< of the caller's points, left out by far_points(), which outliers are too
   double outlier_share = 0;    ///< of the whole cloud; that of its parts, which are among its outliers, too
   double spacing = 0;          ///< typical_spacing()
   double noise = 0;            ///< given_noise() or estimate_noise()
