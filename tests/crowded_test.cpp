@@ -3,6 +3,7 @@
 
 #include "base/vector.h"
 #include "cloud/canonical_cloud.h"
+#include "cloud/constants.h"
 #include "orient/polish.h"
 #include "sanitized.h"
 #include "shapes.h"
@@ -31,16 +32,16 @@ shapes::Surface ball_and_crowd(std::size_t points) {
 
 TEST(Crowded, KernelsFollowTheSpacingThereAndNowhereElse) {
   EXPECT_EQ(narrowing(3), 1);
-  EXPECT_EQ(narrowing(1 / kCrowded), 1);
-  EXPECT_EQ(narrowing(0.5 / kCrowded), 0.5 / kCrowded);
-  EXPECT_TRUE(narrowed(0.4, {1, 2, 1 / kCrowded}, 1).uniform());
+  EXPECT_EQ(narrowing(kClearlyLess), 1);
+  EXPECT_EQ(narrowing(kClearlyLess / 2), kClearlyLess / 2);
+  EXPECT_TRUE(narrowed(0.4, {1, 2, kClearlyLess}, 1).uniform());
   EXPECT_EQ(narrowed(0.5, {2, 1, 0.015625}, 1).values, (std::vector<double>{0.5, 0.5, 0.0078125}));
 }
 
 TEST(Crowded, KernelsThatHideNoiseFollowItToo) {
   Settings settings;
   settings.spacing = 1;
-  EXPECT_EQ(local_widths({0.25, 0.5, 0}, settings, {1, 0.125, 0.015625}).values, (std::vector<double>{0.5, 0.5, 0.0078125}));
+  EXPECT_EQ(local_widths({0.25, 0.5, 0}, settings, {1, 0.75, 0.125}).values, (std::vector<double>{0.5, 0.5, 0.0625}));
 }
 
 TEST(Crowded, NearPairsOfAPointDoNotGrowWithTheCrowd) {

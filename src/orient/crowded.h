@@ -1,4 +1,4 @@
-// Points so dense that a kernel of the typical width would hold thousands of them.
+// Kernels where points are clearly closer together than is typical.
 #pragma once
 
 #include "sum/direct_sum.h"
@@ -7,12 +7,10 @@
 
 namespace g3r {
 
-/// Times that points are closer together than is typical, from which kernels follow their spacing. One as wide as elsewhere reaches 1.6
-/// typical spacings and would hold 2000 of them: it shows nothing of a surface that all of these are of, and takes time with their square.
-inline constexpr double kCrowded = 16;
-
-/// What the width of a kernel is taken times where the points are `relative` times as far apart as is typical: that where they crowd, else
-/// 1.
+/// What the width of a kernel is taken times where the points are `relative` times as far apart as is typical: that where they are clearly
+/// closer (kClearlyLess), else 1. One as wide as elsewhere would reach over detail that they show, as vertices of simplified meshes do, and
+/// take time with the square of how many they are; even samples have no such places, and in kernels that followed them everywhere a field
+/// is less even.
 [[nodiscard]] double narrowing(double relative);
 
 /// Kernels of this width, taken times narrowing(). `spacing`: of every point.
