@@ -125,6 +125,13 @@ class Tiles(ProgramTest):
         self.assertFalse(os.path.exists(self.path("out.PLY")))
         self.assertTrue(os.path.exists(self.path("out.PLY.tiles/points-1.bin")))
 
+    @unittest.skipUnless(sys.platform.startswith("linux") and not ON_WINDOWS, "names of files are text here")
+    def test_names_that_are_no_utf8_are_refused_by_tiles_alone(self):
+        name = os.fsdecode(b"in\xff.ply")
+        os.rename(self.path("in.ply"), self.path(name))
+        self.expect(OK, "orient", name, "out.ply", "--max-memory", "8G")
+        self.assertIn("UTF-8", self.expect(BAD_DATA, "orient", name, "out.ply", "--max-memory", "8M").err)
+
     def test_what_is_refused_before_a_tile_is_solved_leaves_no_plan(self):
         """Another limit would not go on with it."""
         count, limit = FEWER

@@ -57,8 +57,9 @@ struct TileStatus {
 };
 
 /// Whether orient(), or with `mesh` reconstruct(), would refuse these inputs under a limit of `max_memory` bytes and tiles may not: its
-/// plan exceeds it, and the points are many enough. Counts the points, which for LAS and binary PLY takes a look at the headers; text, PTX,
-/// grids and E57 are read. Throws like read_cloud().
+/// plan exceeds it, and the points are many enough. Of files with fewer bytes than these are points nothing is looked at; of others the
+/// points are counted, which for LAS and binary PLY takes a look at the headers; text, PTX, grids and E57 are read. Throws like
+/// read_cloud().
 [[nodiscard]] bool needs_tiles(const std::vector<std::string>& inputs, std::size_t max_memory, bool mesh = false);
 
 /// Reads the inputs (files, folders and patterns as of read_cloud(), regular files only) twice, sorts their points into Morton order in the

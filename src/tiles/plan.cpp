@@ -1,4 +1,5 @@
 // Two readings of the inputs (extent, then sort), one scan of the sorted points, one solve of the thinned cloud.
+#include "tiles/plan.h"
 #include "base/platform.h"
 #include "base/stages.h"
 #include "base/vector.h"
@@ -48,7 +49,8 @@ constexpr std::size_t kFixed = 32u << 20;       // beside that of a solve in cor
 constexpr std::size_t kBeside = 210;  // bytes of a point beside its solve: part, coarse side, and what facets hold if they are solved for
 constexpr double kFreeShare = 0.75;   // of the free memory, if no limit is given
 constexpr std::size_t kMostTiles = 1000000;
-constexpr std::size_t kMostWarnings = 8;  // of all files together
+constexpr std::size_t kMostWarnings = 8;                       // of all files together
+constexpr std::uint64_t kAnyNumber = std::uint64_t{1} << 48U;  // of points, in files of unknown size
 
 // Calls begin(file, stream) for each file, take(file, point) for all points in order, and between(share of the work) now and then: files
 // count alike, as only one of them is open.
@@ -68,8 +70,7 @@ void for_all_points(const std::vector<std::string>& files, const ReadOptions& op
   }
 }
 
-// Absolute, so that workers may be started anywhere.
-std::vector<std::string> files_of(const std::vector<std::string>& inputs) {
+std::vector<std::string> found_files(const std::vector<std::string>& inputs) {
   std::vector<std::string> files;
   for (const std::string& input : inputs) {
     const std::string ept = io::find_ept(input);
@@ -77,6 +78,12 @@ std::vector<std::string> files_of(const std::vector<std::string>& inputs) {
     if (found.empty()) files.push_back(input);
     files.insert(files.end(), found.begin(), found.end());
   }
+  return files;
+}
+
+// Absolute, so that workers may be started anywhere.
+std::vector<std::string> files_of(const std::vector<std::string>& inputs) {
+  std::vector<std::string> files = found_files(inputs);
   if (files.empty()) throw InvalidInput("plan_tiles: no input");
   for (std::string& file : files) {
     if (!can_be_stored(file)) throw InvalidInput(escape_text(file) + ": tiles expect names of files in UTF-8; rename it");
@@ -365,7 +372,37 @@ void require_same(const std::string& folder, const Manifest& there, const std::v
   }
 }
 
+bool is_beyond(std::size_t limit, std::uint64_t points, bool mesh) {
+  return limit > 0 && points >= kFewestPoints && (mesh ? field_mesh_memory(points, 0, 0, 0, 0) : in_core(points)) > limit;
+}
+
+// No point takes less than a byte of its file: with so many points as bytes, most clouds need not be counted.
+std::uint64_t most_points(const std::vector<std::string>& files) {
+  std::uint64_t bytes = 0;
+  for (const std::string& file : files) {
+    std::error_code error;
+    const std::uint64_t size = std::filesystem::file_size(platform::path_of(file), error);
+    if (error || size > kAnyNumber - bytes) return kAnyNumber;
+    bytes += size;
+  }
+  return bytes;
+}
+
 }  // namespace
+
+bool exceed(const std::vector<std::string>& inputs, std::size_t limit, bool mesh, const Monitor& monitor) {
+  const std::vector<std::string> files = found_files(inputs);
+  if (!is_beyond(limit, most_points(files), mesh)) return false;
+  Stages stages(monitor);
+  stages.begin("read");
+  std::uint64_t points = 0;
+  for (const std::string& file : files) {
+    stages.still_going();
+    points += io::open_points(file, false, {.cancel = stages.cancel()})->left();
+  }
+  return is_beyond(limit, points, mesh);
+}
+
 }  // namespace g3r::tiles
 
 namespace g3r {
@@ -383,10 +420,7 @@ TileStatus plan_tiles(const std::vector<std::string>& inputs, const std::string&
 }
 
 bool needs_tiles(const std::vector<std::string>& inputs, std::size_t max_memory, bool mesh) {
-  std::uint64_t points = 0;
-  for (const std::string& file : tiles::files_of(inputs)) points += io::open_points(file)->left();
-  return max_memory > 0 && points >= tiles::kFewestPoints &&
-         (mesh ? field_mesh_memory(points, 0, 0, 0, 0) : tiles::in_core(points)) > max_memory;
+  return tiles::exceed(inputs, max_memory, mesh, {});
 }
 
 TileStatus tiles_status(const std::string& folder) { return tiles::status_of(folder, tiles::read_manifest(folder)); }
