@@ -19,8 +19,8 @@ constexpr const char* kCommandGroup = "Commands";
 
 constexpr const char* kTilesHelp =
     "If it would need more, for example 8G: work in tiles, on disk beside OUT (.ply; orient: .las, .laz too), or refuse "
-    "(default: refuse beyond what is free)";
-constexpr const char* kMemoryHelp = "Warn if reconstruction would need more, for example 8G";
+    "(default: what is free; tiles from three quarters of it on, which is told; the same bytes everywhere need it given)";
+constexpr const char* kMemoryHelp = "Warn if reconstruction would need more, for example 8G (default: three quarters of what is free)";
 
 void add_reconstruct(CLI::App& app, Settings& s) {
   app.add_option("IN", s.input, "Point cloud; - for standard input")->type_name("");
@@ -158,7 +158,10 @@ void add_tiles(CLI::App& app, Settings& s) {
       ->type_name("N");
   add_hint_options(*plan, s);
   add_run_options(*plan, s);
-  add_memory_option(*plan, s, "What a worker may take, for example 6G (default: three quarters of what is free)");
+  add_memory_option(
+      *plan, s,
+      "What a worker may take, for example 6G (default: three quarters of what is free, which is told; the same bytes everywhere "
+      "need it given)");
   CLI::App* run = add_tile_step(*sub, s, "run", TileStep::kRun, "Solve the tiles that are not done");
   CLI::App* mesh = add_tile_step(*sub, s, "mesh", TileStep::kMesh, "Mesh the tiles that are not meshed, once all have normals");
   for (CLI::App* step : {run, mesh}) {

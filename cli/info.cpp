@@ -1,4 +1,7 @@
 // g3r info FILE: what is in a file, and what g3r would do with it. Text on standard output, or the plan as JSON with --report -.
+#include "base/control_groups.h"
+#include "tiles/plan.h"
+
 #include <g3r/g3r.h>
 #include <g3r/io.h>
 
@@ -98,9 +101,27 @@ std::string plan_text(const Stats& stats) {
          line("memory", "about " + bytes(stats.planned_memory_bytes) + " to orient and mesh, more if walls are thinner than the spacing");
 }
 
+struct Free {
+  std::size_t all = 0;  ///< bytes, 0 where the system does not say
+  std::size_t limit = 0;
+};
+Free free_memory() { return {platform::share_of_free_memory(1), tiles::default_limit()}; }
+
+// `given`: --max-memory, 0 for none.
+void warn_of_memory(std::size_t given, const Free& free, Stats& stats) {
+  const std::size_t needed = stats.planned_memory_bytes;
+  const std::size_t limit = given > 0 ? given : free.limit;
+  if (limit == 0 || needed <= limit) return;
+  const bool refuses = given > 0 || needed > free.all;
+  stats.warnings.push_back("more than the " + bytes(limit) + (given > 0 ? " of --max-memory" : ", three quarters of what is free") +
+                           ": g3r works in tiles where it can (docs/tiles.md), and " + (refuses ? "refuses" : "in one piece") +
+                           " where it cannot");
+}
+
 }  // namespace
 
 int run_info(const Settings& settings, Session& session) {
+  const Free free = free_memory();  // as for g3r, before the points are read
   const Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, session.cancellable(settings.read_options)); });
   const MeshIfAny read = mesh_if_any(settings.input);
   const std::optional<Mesh>& mesh = read.mesh;
@@ -114,10 +135,7 @@ int run_info(const Settings& settings, Session& session) {
   try {
     stats = session.stage("plan", [&] { return plan(cloud.positions, settings.options, settings.mesh_options); });
     text += plan_text(stats);
-    if (settings.options.max_memory > 0 && stats.planned_memory_bytes > settings.options.max_memory) {
-      stats.warnings.push_back("more than the " + bytes(settings.options.max_memory) +
-                               " of --max-memory: g3r works in tiles where it can (docs/tiles.md), and refuses where it cannot");
-    }
+    warn_of_memory(settings.options.max_memory, free, stats);
   } catch (const InvalidInput& error) {
     stats.points = cloud.positions.size();
     stats.warnings.emplace_back(error.what());

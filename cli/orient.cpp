@@ -16,7 +16,8 @@ int run_orient(const Settings& settings, Session& session) {
   Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, session.cancellable(settings.read_options)); });
   check_points(cloud.positions, settings.outputs());
   std::vector<Vec3>().swap(cloud.normals);  // of no use here, and the new ones take as much
-  Orientation result = in_core(settings, false, [&] { return orient(cloud.positions, run_options(settings, cloud), session.monitor()); });
+  Orientation result = in_core(settings, false, cloud.positions.size(),
+                               [&] { return orient(cloud.positions, run_options(settings, cloud), session.monitor()); });
   session.stage("write", [&] {
     for (const std::string& output : settings.outputs()) {
       write_cloud(output, cloud, &result.normals, &result.confidence, session.cancellable(settings.write_options));

@@ -16,8 +16,9 @@ int run_reconstruct(const Settings& settings, Session& session) {
   Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, session.cancellable(settings.read_options)); });
   check_points(cloud.positions, {settings.oriented});
   std::vector<Vec3>().swap(cloud.normals);  // of no use here, and the new ones take as much
-  Reconstruction result = in_core(
-      settings, true, [&] { return reconstruct(cloud.positions, run_options(settings, cloud), settings.mesh_options, session.monitor()); });
+  Reconstruction result = in_core(settings, true, cloud.positions.size(), [&] {
+    return reconstruct(cloud.positions, run_options(settings, cloud), settings.mesh_options, session.monitor());
+  });
   if (!cloud.colors.empty()) {
     session.stage("carry", [&] {
       carry_attributes(result.mesh, cloud.positions, cloud.colors, result.orientation.confidence, session.monitor(),

@@ -1,9 +1,7 @@
 #include "sensors.h"
 
 #include "base/control_groups.h"
-#include "base/platform.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -37,10 +35,8 @@ double share_facing_away(const Cloud& cloud, const std::vector<Vec3>& normals) {
 
 Options run_options(const Settings& settings, const Cloud& cloud) {
   Options options = settings.options;
-  const double left = platform::free_memory();  // of the points that are read already, so that there is some to spare
-  // Nothing is left, or the system does not say.
-  const bool is_known = left > 0 || std::isfinite(platform::container_memory());
-  if (options.max_memory == 0 && is_known) options.max_memory = std::max<std::size_t>(1, static_cast<std::size_t>(left));
+  // Of the points that are read already, so that there is some to spare.
+  if (options.max_memory == 0) options.max_memory = platform::share_of_free_memory(1);
   if (!settings.sensors_of_file) return options;
   if (cloud.sensor_positions.empty()) {
     throw InvalidInput(escape_text(settings.input) + " does not say where the scanner stood: --sensor X,Y,Z does");

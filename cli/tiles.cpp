@@ -1,9 +1,12 @@
-// g3r tiles plan, run, mesh, status, merge; and g3r orient and g3r IN OUT with --max-memory where the cloud does not fit.
+// g3r tiles plan, run, mesh, status, merge; and g3r orient and g3r IN OUT where the cloud exceeds --max-memory or what is free.
+#include "base/control_groups.h"
 #include "base/platform.h"
+#include "base/whole_bytes.h"
 #include "cpu/parallel.h"
 #include "io/source.h"
 #include "orient/hints.h"
 #include "tiles/manifest.h"
+#include "tiles/plan.h"
 
 #include <g3r/g3r.h>
 #include <g3r/io.h>
@@ -12,7 +15,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <initializer_list>
 #include <string>
 #include <system_error>
 
@@ -82,19 +84,20 @@ bool has_files(const std::string& input) {
          std::filesystem::is_directory(platform::path_of(input), ignored) || input.find_first_of("*?") != std::string::npos;
 }
 
-// Whether tiles can do what is asked for, and end in a file with one of these extensions.
-bool can_be_tiled(const Settings& s, std::initializer_list<const char*> extensions) {
-  const std::string extension = "." + io::extension(s.output);
-  const bool simple_output = s.also.empty() && !s.write_options.ascii && !s.write_options.cloud_compare_names &&
-                             std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
+bool can_be_meshed(const MeshOptions& o) {
+  return o.mesher != Mesher::kPoisson && o.depth == 0 && o.trim == MeshOptions::Trim::kOff && o.faces == 0;
+}
+
+// Whether tiles can do what is asked for, points with normals or a mesh.
+bool can_be_tiled(const Settings& s, bool mesh) {
+  const std::string extension = io::extension(s.output);
+  const bool is_written = extension == "ply" || (!mesh && (extension == "las" || extension == "laz"));
+  const bool simple_output = is_written && s.also.empty() && !s.write_options.ascii && !s.write_options.cloud_compare_names;
+  if (mesh && (!s.oriented.empty() || !can_be_meshed(s.mesh_options))) return false;
   const ReadOptions& read = s.read_options;
   const bool whole_input =
       s.input != "-" && !read.box && read.levels == 0 && !read.all_splats && read.min_opacity == ReadOptions{}.min_opacity;
   return simple_output && whole_input && has_files(s.input) && !s.sensors_of_file && is_default_method(s.options);
-}
-
-bool can_be_meshed(const MeshOptions& o) {
-  return o.mesher != Mesher::kPoisson && o.depth == 0 && o.trim == MeshOptions::Trim::kOff && o.faces == 0;
 }
 
 Stats stats_of(const TileStatus& status, const std::string& folder, const Settings& settings) {
@@ -121,6 +124,35 @@ Stats stats_of(const TileStatus& status, const std::string& folder, const Settin
   return stats;
 }
 
+bool is_limit_given(const Settings& settings) { return settings.options.max_memory > 0; }
+
+std::size_t limit_of(const Settings& settings) { return is_limit_given(settings) ? settings.options.max_memory : tiles::default_limit(); }
+
+// What a plan in this folder was held to, and, where that was what is free, how to have the same plan where something else is.
+struct LimitText {
+  std::string name;
+  std::string again;
+};
+LimitText limit_text(const Settings& settings, const std::string& folder) {
+  if (is_limit_given(settings)) return {"--max-memory", ""};
+  const std::uint64_t limit = tiles::read_manifest(folder).limit;
+  return {"three quarters of the free memory, " + bytes(static_cast<std::size_t>(limit)) + ",",
+          "; --max-memory " + std::to_string(limit) + " makes the same tiles anywhere"};
+}
+
+// A plan that was made when more was free is not gone on with where it does not fit: what is done of it stays.
+void require_room(const std::string& folder, bool mesh) {
+  const TileStatus status = tiles_status(folder);
+  std::uint64_t needed = status.done < status.tiles ? status.worker_memory_bytes : 0;
+  if (mesh) needed = std::max(needed, planned_mesh_memory(folder));
+  const std::size_t free = platform::share_of_free_memory(1);
+  if (free == 0 || needed <= free) return;
+  throw Unavailable(escape_text(folder) + ": its plan, of which " + std::to_string(status.done) + " of " + counted(status.tiles, "tile") +
+                    " are done, was made when more memory was free: it needs " + std::to_string(mebibytes_needed(needed)) + " MiB, and " +
+                    std::to_string(mebibytes(free)) +
+                    " MiB are free; go on when more is, or remove the folder to begin anew with smaller tiles");
+}
+
 // Plans in the folder, and refuses what cannot be before any tile is solved: then no plan stays, which another limit would not go on with.
 void plan_or_refuse(const Settings& settings, const std::string& folder, bool mesh, const Monitor& monitor) {
   bool is_ours = false;
@@ -144,19 +176,53 @@ void plan_or_refuse(const Settings& settings, const std::string& folder, bool me
   }
 }
 
-// Plans and solves beside the output; `merge` writes it, and says what of it is worth a warning. Then the folder goes.
-template <class Merge>
-int work_in_tiles(const Settings& settings, Session& session, bool mesh, const Merge& merge) {
-  const std::string folder = settings.output + kFolderSuffix;
-  session.console().say("more than --max-memory in one piece: tiles, in " + escape_text(folder) +
-                        "; where this ends early, the same command goes on");
+// Whether there is a plan to work on: the cloud exceeds the limit, or did so when the folder was made. Without --max-memory what tiles
+// refuse is left to one piece, as far as that fits what is free.
+bool plan_if_needed(const Settings& settings, Session& session, const std::string& folder, bool mesh) {
   const Monitor monitor = session.monitor();
-  plan_or_refuse(settings, folder, mesh, monitor);
+  const bool given = is_limit_given(settings);
+  const bool goes_on = !given && tiles::holds_plan_of(folder, {settings.input}, tile_options(settings));
+  if (goes_on) {
+    require_room(folder, mesh);
+    session.console().say("goes on with the tiles in " + escape_text(folder));
+  } else if (tiles::exceed({settings.input}, limit_of(settings), mesh, monitor)) {
+    session.console().say(std::string("more than ") + (given ? "--max-memory" : "three quarters of the free memory") +
+                          " in one piece: tiles, in " + escape_text(folder) + "; where this ends early, the same command goes on");
+  } else {
+    if (!given && !tiles::has_manifest(folder)) tiles::remove_plan(folder);  // what was begun when less was free
+    return false;
+  }
+  const auto leaves_it_to_one_piece = [&](const Error& refusal) {
+    if (given || goes_on || tiles::exceed({settings.input}, platform::share_of_free_memory(1), mesh, monitor)) return false;
+    session.console().clear_bar();
+    session.console().say(std::string("no tiles (") + refusal.what() + "); in one piece it fits what is free");
+    return true;
+  };
+  try {
+    plan_or_refuse(settings, folder, mesh, monitor);
+  } catch (const Unavailable& error) {
+    if (leaves_it_to_one_piece(error)) return false;
+    throw;
+  } catch (const InvalidInput& error) {
+    if (leaves_it_to_one_piece(error)) return false;
+    throw;
+  }
+  return true;
+}
+
+// Plans and solves beside the output, where that is needed; `merge` writes it, and says what of it is worth a warning. Then the folder
+// goes.
+template <class Merge>
+std::optional<int> work_in_tiles(const Settings& settings, Session& session, bool mesh, const Merge& merge) {
+  const std::string folder = settings.output + kFolderSuffix;
+  if (!plan_if_needed(settings, session, folder, mesh)) return std::nullopt;
+  const Monitor monitor = session.monitor();
+  const LimitText limit = limit_text(settings, folder);
   const TileStatus status = g3r::run_tiles(folder, worker_of(settings), monitor);
   Stats stats = stats_of(status, folder, settings);
   const std::string left_out = merge(folder, monitor, stats);
   tiles::remove_plan(folder);
-  stats.warnings.push_back("beyond --max-memory in one piece: worked in " + counted(status.tiles, "tile") +
+  stats.warnings.push_back("beyond " + limit.name + " in one piece: worked in " + counted(status.tiles, "tile") + limit.again +
                            (left_out.empty() ? "" : "; " + left_out));
   return finish(settings, session, stats, nullptr);
 }
@@ -178,6 +244,10 @@ int run_tiles(const Settings& settings, Session& session) {
     case TileStep::kPlan:
       say_status(session, plan_tiles(settings.tile_paths, settings.tile_folder, tile_options(settings), monitor));
       say_mesh_memory(session, settings.tile_folder);
+      if (!is_limit_given(settings)) {
+        const LimitText limit = limit_text(settings, settings.tile_folder);
+        session.console().say("the limit is " + limit.name + " when it was planned" + limit.again);
+      }
       break;
     case TileStep::kRun:
       say_status(session, g3r::run_tiles(settings.tile_folder, worker_of(settings), monitor));
@@ -208,16 +278,14 @@ int run_tiles(const Settings& settings, Session& session) {
   return kOk;
 }
 
-std::string what_tiles_need(const Settings& settings, bool mesh) {
-  if (settings.options.max_memory == 0 || !has_files(settings.input)) return "";
-  if (!needs_tiles({settings.input}, settings.options.max_memory, mesh)) return "";
+std::string what_tiles_need(const Settings& settings, bool mesh, std::size_t points) {
+  if (can_be_tiled(settings, mesh) || !has_files(settings.input) || !tiles::is_beyond(limit_of(settings), points, mesh)) return "";
   return std::string("; tiles take any size, but need a ") + (mesh ? ".ply" : ".ply, .las or .laz") +
          " for OUT and none of the options that docs/tiles.md lists";
 }
 
 std::optional<int> orient_in_tiles(const Settings& settings, Session& session) {
-  if (settings.options.max_memory == 0 || !can_be_tiled(settings, {".ply", ".las", ".laz"})) return std::nullopt;
-  if (!needs_tiles({settings.input}, settings.options.max_memory)) return std::nullopt;
+  if (!can_be_tiled(settings, false)) return std::nullopt;
   return work_in_tiles(settings, session, false, [&](const std::string& folder, const Monitor& monitor, Stats& stats) {
     const MergedTiles merged = merge_tiles(folder, settings.output, monitor);
     stats.confidence_mean = merged.confidence_mean;
@@ -228,9 +296,7 @@ std::optional<int> orient_in_tiles(const Settings& settings, Session& session) {
 }
 
 std::optional<int> reconstruct_in_tiles(const Settings& settings, Session& session) {
-  if (settings.options.max_memory == 0 || !can_be_tiled(settings, {".ply"})) return std::nullopt;
-  if (!settings.oriented.empty() || !can_be_meshed(settings.mesh_options)) return std::nullopt;
-  if (!needs_tiles({settings.input}, settings.options.max_memory, true)) return std::nullopt;
+  if (!can_be_tiled(settings, true)) return std::nullopt;
   return work_in_tiles(settings, session, true, [&](const std::string& folder, const Monitor& monitor, Stats& stats) {
     const MeshTiles meshed = mesh_tiles(folder, worker_of(settings), monitor);
     stats.planned_memory_bytes = std::max<std::size_t>(stats.planned_memory_bytes, meshed.worker_memory_bytes);

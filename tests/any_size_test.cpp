@@ -426,9 +426,12 @@ TEST(TilesPlan, TellsWhatItCannotDo) {
   EXPECT_THROW((void)run_tiles(folder.file("work")), InvalidInput);
   EXPECT_THROW((void)run_tiles(folder.file("work"), {3, 2}), InvalidInput);
   EXPECT_FALSE(needs_tiles({folder.file("few.ply")}, 1000));
-  EXPECT_TRUE(needs_tiles({folder.file("in.ply")}, std::size_t{10} << 20U));
-  EXPECT_FALSE(needs_tiles({folder.file("in.ply")}, std::size_t{80} << 20U));
-  EXPECT_FALSE(needs_tiles({folder.file("in.ply")}, 0));
+  EXPECT_FALSE(needs_tiles({folder.file("in.ply")}, std::size_t{10} << 20U));  // of which tiles would take more than one piece
+  write_points(folder.file("more.ply"), shapes::sphere(120'000).points);
+  EXPECT_TRUE(needs_tiles({folder.file("more.ply")}, std::size_t{10} << 20U));
+  EXPECT_TRUE(needs_tiles({folder.file("more.ply")}, std::size_t{130} << 20U, true));
+  EXPECT_FALSE(needs_tiles({folder.file("more.ply")}, std::size_t{130} << 20U));
+  EXPECT_FALSE(needs_tiles({folder.file("more.ply")}, 0));
 }
 
 }  // namespace

@@ -10,6 +10,10 @@
 // And lets clocks jump at every call that reads one:
 //
 //   G3R_FAULT_CLOCK   "set": that of the day goes hours forth and back, as if somebody set it; "asleep": all go on by hours, as after sleep
+//
+// And lets the system say that other memory is free:
+//
+//   G3R_FAULT_MEMORY  a file that is read in place of /proc/meminfo
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/syscall.h>
@@ -21,6 +25,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdarg>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
@@ -78,6 +83,13 @@ int open_file(int folder, const char* path, int flags, mode_t mode) {
   const auto file = static_cast<int>(syscall(SYS_openat, folder, path, flags, mode));
   track(file, counts && file >= 0);
   return file;
+}
+
+// What the streams of the C++ library open their files with.
+std::FILE* open_stream(const char* name, const char* path, const char* mode) {
+  const std::string memory = setting("G3R_FAULT_MEMORY");
+  if (!memory.empty() && std::strcmp(path, "/proc/meminfo") == 0) path = memory.c_str();
+  return real<std::FILE* (*)(const char*, const char*)>(name)(path, mode);
 }
 
 // What a clock is off by at this reading.
@@ -160,6 +172,9 @@ std::time_t time(std::time_t* now) noexcept {
   if (now != nullptr) *now = read;
   return read;
 }
+
+std::FILE* fopen(const char* path, const char* mode) { return open_stream("fopen", path, mode); }
+std::FILE* fopen64(const char* path, const char* mode) { return open_stream("fopen64", path, mode); }
 
 int rename(const char* from, const char* to) {
   if (in_folder(to) && strikes("rename")) return fail();

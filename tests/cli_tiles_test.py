@@ -4,6 +4,7 @@ Run by ctest with G3R_PROGRAM set to the program. For measuring, G3R_TILE_KILLS 
 """
 
 import os
+import json
 import random
 import signal
 import sys
@@ -15,10 +16,22 @@ from cli_support import *
 COUNT = 8200  # few more than tiles take
 LARGE_COUNT = 200_000  # of a cloud that fits a limit in tiles and does not in core
 FEWER = 100_000, "84M"  # points and a limit of which the same is true, but not of their mesh
+SHIM = os.environ.get("G3R_FAULT_SHIM", "")
+MEBIBYTE = 1 << 20
 KILLS = int(os.environ.get("G3R_TILE_KILLS", "2"))
+
+SAYS_WHAT_IS_FREE = unittest.skipIf(not SHIM or is_sanitized() or not os.path.exists("/proc/meminfo"), "what is free cannot be told to it")
 
 
 class Tiles(ProgramTest):
+    def with_free(self, mebibytes):
+        """Options of start() for a system that says so much memory is free."""
+        folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, folder)
+        with open(os.path.join(folder, "meminfo"), "w") as file:
+            file.write("MemAvailable: %d kB\n" % (mebibytes * 1024))
+        return {"env": {**os.environ, "LD_PRELOAD": SHIM, "G3R_FAULT_MEMORY": file.name}}
+
     def setUp(self):
         super().setUp()
         write_points(self.path("in.ply"), sphere(COUNT))
@@ -130,7 +143,8 @@ class Tiles(ProgramTest):
         name = os.fsdecode(b"in\xff.ply")
         os.rename(self.path("in.ply"), self.path(name))
         self.expect(OK, "orient", name, "out.ply", "--max-memory", "8G")
-        self.assertIn("UTF-8", self.expect(BAD_DATA, "orient", name, "out.ply", "--max-memory", "8M").err)
+        write_points(self.path(name), sphere(FEWER[0]))
+        self.assertIn("UTF-8", self.expect(BAD_DATA, "orient", name, "out.ply", "--max-memory", FEWER[1]).err)
 
     def test_what_is_refused_before_a_tile_is_solved_leaves_no_plan(self):
         """Another limit would not go on with it."""
@@ -155,6 +169,92 @@ class Tiles(ProgramTest):
         self.assertTrue(report["converged"] and report["consistent"])
         self.assertGreater(report["confidence"]["mean"], 0.9)
         self.assertEqual(sorted(os.listdir(self.folder)), ["fewer.ply", "in.ply", "out.ply", "r.json"])
+
+    @SAYS_WHAT_IS_FREE
+    def test_without_max_memory_what_was_free_decides_and_killed_runs_go_on(self):
+        count, limit = FEWER
+        in_bytes = int(limit[:-1]) * MEBIBYTE
+        free = int(limit[:-1]) * 4 / 3
+        write_points(self.path("fewer.ply"), sphere(count))
+        self.expect(OK, "orient", "fewer.ply", "whole.ply", "--max-memory", str(in_bytes))
+        arguments = ["orient", "fewer.ply", "out.ply"]
+        process = self.start(*arguments, "-v", **self.with_free(free))
+        guard = threading.Timer(300, process.kill)
+        guard.start()
+        said = []
+        for line in process.stderr:
+            said.append(line)
+            if b"tile 2 of" in line:
+                break
+        process.kill()
+        process.communicate()
+        guard.cancel()
+        self.assertIn(b"more than three quarters of the free memory in one piece: tiles, in out.ply.tiles; where this ends early, the same "
+                      b"command goes on\n", said)
+        done = self.bytes_of("out.ply.tiles/tile-0.bin")
+        refused = self.expect(UNAVAILABLE, *arguments, **self.with_free(free / 4))
+        self.assertIn("was made when more memory was free", refused.err)
+        self.assertIn("%d MiB are free" % (free / 4), refused.err)
+        self.assertEqual(self.bytes_of("out.ply.tiles/tile-0.bin"), done)
+        result = self.expect(OK, *arguments, "-v", "--report", "r.json", **self.with_free(100 * free))
+        self.assertIn("goes on with the tiles in out.ply.tiles", result.err)
+        self.assertNotIn("tile 1 of", result.err)
+        [warning] = self.json_of("r.json")["warnings"]
+        self.assertIn("beyond three quarters of the free memory, %s, in one piece" % limit.replace("M", " MiB"), warning)
+        self.assertIn("--max-memory %d makes the same tiles anywhere" % in_bytes, warning)
+        self.assertEqual(self.bytes_of("out.ply"), self.bytes_of("whole.ply"))
+        self.assertFalse(os.path.exists(self.path("out.ply.tiles")))
+
+    @SAYS_WHAT_IS_FREE
+    def test_what_cannot_be_tiled_is_refused_beyond_what_is_free(self):
+        count, limit = FEWER
+        write_points(self.path("fewer.ply"), sphere(count))
+        little = self.with_free(int(limit[:-1]))
+        for arguments in (["orient", "fewer.ply", "out.xyz"], ["orient", "fewer.ply", "out.ply", "--also", "out.las"],
+                          ["orient", "fewer.ply", "out.ply", "--tolerance", "1e-3"], ["fewer.ply", "out.obj"], ["fewer.ply", "out.ply", "--open"]):
+            with self.subTest(arguments=arguments):
+                refused = self.expect(UNAVAILABLE, *arguments, **little)
+                self.assertIn("the plan needs", refused.err)
+                self.assertIn("tiles take any size, but need a .ply", refused.err)
+        refused = self.expect(UNAVAILABLE, "fewer.ply", "out.ply", **little)
+        self.assertIn("three quarters of the free memory", refused.err)
+        self.assertIn("tiles of this cloud need", refused.err)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["fewer.ply", "in.ply"])
+
+    @SAYS_WHAT_IS_FREE
+    def test_what_fits_what_is_free_and_no_tiles_is_done_in_one_piece(self):
+        self.expect(OK, "orient", "in.ply", "out.ply", "--report", "r.json")
+        plan = self.json_of("r.json")["planned_memory_bytes"] / MEBIBYTE
+        arguments = ["orient", "in.ply", "out.ply"]
+        for share in 1.2, 1.4:
+            self.assertNotIn("tiles", self.expect(OK, *arguments, **self.with_free(share * plan)).err)
+        refused = self.expect(UNAVAILABLE, *arguments, **self.with_free(0.9 * plan)).err
+        self.assertIn("the plan needs", refused)
+        self.assertNotIn("tiles", refused)
+        count, limit = FEWER
+        write_points(self.path("fewer.ply"), sphere(count))
+        said = self.expect(OK, "orient", "fewer.ply", "out.ply", **self.with_free(1.1 * int(limit[:-1]))).err
+        self.assertIn("no tiles (tiles of this cloud need", said)
+        self.assertIn("in one piece it fits what is free", said)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["fewer.ply", "in.ply", "out.ply", "r.json"])
+
+    def test_what_was_begun_when_less_was_free_is_removed(self):
+        os.mkdir(self.path("out.ply.tiles"))
+        for name in "points-1.bin", "run-3.bin":
+            shutil.copy(self.path("in.ply"), self.path("out.ply.tiles/" + name))
+        self.expect(OK, "orient", "in.ply", "out.ply")
+        self.assertEqual(sorted(os.listdir(self.folder)), ["in.ply", "out.ply"])
+
+    @SAYS_WHAT_IS_FREE
+    def test_the_limit_of_what_is_free_is_told(self):
+        plan = json.loads(self.expect(OK, "info", "in.ply", "--report", "-").out)["planned_memory_bytes"] / MEBIBYTE
+        self.assertNotIn("free", self.expect(OK, "info", "in.ply", **self.with_free(1.4 * plan)).err)
+        for share, end in (1.2, "in one piece where it cannot"), (0.9, "refuses where it cannot"):
+            said = self.expect(OK, "info", "in.ply", **self.with_free(share * plan)).err
+            self.assertIn("three quarters of what is free: g3r works in tiles where it can", said)
+            self.assertIn(end, said)
+        said = self.expect(OK, "tiles", "plan", "in.ply", "work", "--tiles", "2", **self.with_free(400)).err
+        self.assertIn("the limit is three quarters of the free memory, 300 MiB, when it was planned; --max-memory %d" % (300 * MEBIBYTE), said)
 
 
 if __name__ == "__main__":

@@ -191,6 +191,8 @@ TEST(Platform, MemoryIsTold) {
   EXPECT_GT(platform::peak_memory(), std::size_t{1} << 20);
   EXPECT_LT(platform::peak_memory(), std::size_t{1} << 32);
   EXPECT_GT(platform::free_memory(), 1 << 20);
+  EXPECT_GT(platform::share_of_free_memory(0.75), std::size_t{1} << 19U);
+  EXPECT_EQ(platform::share_of_free_memory(0), 1U);  // nothing is left, which is no limit only where it is 0
 }
 
 #ifdef __linux__

@@ -1,6 +1,10 @@
 #include "base/control_groups.h"
 
+#include "base/platform.h"
+#include "base/whole_bytes.h"
+
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -77,6 +81,12 @@ double container_memory() {
   std::ifstream groups("/proc/self/cgroup");
   const std::string memberships{std::istreambuf_iterator<char>(groups), {}};
   return memory_left_by_groups(memberships, "/sys/fs/cgroup");
+}
+
+std::size_t share_of_free_memory(double share) {
+  const double free = free_memory();
+  if (!(free > 0) && std::isinf(container_memory())) return 0;
+  return std::max<std::size_t>(1, whole_bytes(share * std::max(0.0, free)));
 }
 
 }  // namespace g3r::platform

@@ -1,6 +1,7 @@
 // Linux's control groups: the limits on memory that containers are made of. A process beyond one is killed without a word.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 namespace g3r::platform {
@@ -12,5 +13,8 @@ namespace g3r::platform {
 
 /// The same of this process; infinite on systems without control groups.
 [[nodiscard]] double container_memory();
+
+/// A share of free_memory() as a limit, in bytes: 1 where nothing is left, 0 where the system does not say.
+[[nodiscard]] std::size_t share_of_free_memory(double share);
 
 }  // namespace g3r::platform

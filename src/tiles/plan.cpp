@@ -1,5 +1,6 @@
 // Two readings of the inputs (extent, then sort), one scan of the sorted points, one solve of the thinned cloud.
 #include "tiles/plan.h"
+#include "base/control_groups.h"
 #include "base/platform.h"
 #include "base/stages.h"
 #include "base/vector.h"
@@ -208,20 +209,20 @@ std::uint64_t points_for(std::size_t memory) {
   return enough;
 }
 
-std::size_t memory_limit(const TileOptions& options) {
-  if (options.max_memory > 0) return options.max_memory;
-  return static_cast<std::size_t>(kFreeShare * platform::free_memory());
-}
-
 [[noreturn]] void refuse_memory(std::size_t limit, std::uint64_t needed, const std::string& remedy) {
   throw Unavailable("tiles of this cloud need " + std::to_string(mebibytes_needed(memory_for(needed))) + " MiB, the limit is " +
                     std::to_string(mebibytes(limit)) + " MiB; " + remedy + ", or thin the cloud");
 }
 
+std::uint64_t fewest_coarse(std::uint64_t points) { return std::min(kFewestCoarse, points / 4); }
+
+// The memory without which no tiles of so many points can be: twice the thinned cloud.
+std::size_t least_memory(std::uint64_t points) { return memory_for(2 * fewest_coarse(points)); }
+
 // The thinned cloud has as many points as are useful and the memory allows.
 std::uint64_t choose_stride(std::uint64_t points, std::size_t limit) {
   const std::uint64_t most = std::min(kMostCoarse, points_for(limit) / 2);
-  const std::uint64_t fewest = std::min(kFewestCoarse, points / 4);
+  const std::uint64_t fewest = fewest_coarse(points);
   if (most < fewest) refuse_memory(limit, 2 * fewest, "raise the limit");
   const std::uint64_t wanted = std::min(most, std::max(fewest, points / kCoarseShare));
   std::uint64_t stride = 2;
@@ -334,7 +335,7 @@ void require_usable(const TileOptions& options) {
 
 TileStatus make_plan(const std::vector<std::string>& files, const std::string& folder, const TileOptions& options, const Monitor& monitor) {
   Stages stages(monitor);
-  const std::size_t limit = memory_limit(options);
+  const std::size_t limit = options.max_memory > 0 ? options.max_memory : default_limit();
   Manifest m = survey(files, options, stages);
   m.limit = limit;
   m.stride = choose_stride(m.sorted(), limit);
@@ -353,15 +354,20 @@ TileStatus make_plan(const std::vector<std::string>& files, const std::string& f
   return status_of(folder, m);
 }
 
-// The plan in the folder is of these options and files, and these of the points that they had.
-void require_same(const std::string& folder, const Manifest& there, const std::vector<std::string>& files, const TileOptions& options,
-                  const Monitor& monitor) {
+bool is_plan_of(const Manifest& there, const std::vector<std::string>& files, const TileOptions& options) {
   bool same = there.asked == asked_of(options) && there.inputs.size() == files.size();
   for (std::size_t f = 0; same && f < files.size(); ++f) {
     std::error_code ignored;
     same = there.inputs[f].path == files[f] && there.inputs[f].bytes == std::filesystem::file_size(platform::path_of(files[f]), ignored);
   }
-  if (!same) throw InvalidInput(escape_text(folder) + ": holds the plan of other files or options; take another folder, or remove it");
+  return same;
+}
+
+// The plan in the folder is of these options and files, and these of the points that they had.
+void require_same(const std::string& folder, const Manifest& there, const std::vector<std::string>& files, const TileOptions& options,
+                  const Monitor& monitor) {
+  if (!is_plan_of(there, files, options))
+    throw InvalidInput(escape_text(folder) + ": holds the plan of other files or options; take another folder, or remove it");
   Stages stages(monitor);
   stages.begin("read");
   const std::vector<std::uint64_t> hashes = hashes_of(files, options.threads, stages);
@@ -370,10 +376,6 @@ void require_same(const std::string& folder, const Manifest& there, const std::v
     throw InvalidInput(escape_text(files[f]) + ": its points are others than those of the plan in " + escape_text(folder) +
                        "; take another folder, or remove it");
   }
-}
-
-bool is_beyond(std::size_t limit, std::uint64_t points, bool mesh) {
-  return limit > 0 && points >= kFewestPoints && (mesh ? field_mesh_memory(points, 0, 0, 0, 0) : in_core(points)) > limit;
 }
 
 // No point takes less than a byte of its file: with so many points as bytes, most clouds need not be counted.
@@ -389,6 +391,22 @@ std::uint64_t most_points(const std::vector<std::string>& files) {
 }
 
 }  // namespace
+
+std::size_t default_limit() { return platform::share_of_free_memory(kFreeShare); }
+
+bool is_beyond(std::size_t limit, std::uint64_t points, bool mesh) {
+  const std::size_t whole = mesh ? field_mesh_memory(static_cast<std::size_t>(points), 0, 0, 0, 0) : in_core(points);
+  return limit > 0 && points >= kFewestPoints && whole > limit && whole > least_memory(points);
+}
+
+bool holds_plan_of(const std::string& folder, const std::vector<std::string>& inputs, const TileOptions& options) {
+  if (!has_manifest(folder)) return false;
+  try {
+    return is_plan_of(read_manifest(folder), files_of(inputs), options);
+  } catch (const InvalidInput&) {  // a damaged plan, or names that none can have
+    return false;
+  }
+}
 
 bool exceed(const std::vector<std::string>& inputs, std::size_t limit, bool mesh, const Monitor& monitor) {
   const std::vector<std::string> files = found_files(inputs);
