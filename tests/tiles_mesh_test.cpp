@@ -4,6 +4,7 @@
 #include "temporary_folder.h"
 #include "tiles/cell_codes.h"
 #include "tiles/manifest.h"
+#include "tiles/mesh_passes.h"
 #include "tiles/mesh_plan.h"
 #include "tiles/mesh_records.h"
 #include "tiles/patches_file.h"
@@ -20,12 +21,15 @@
 #include <cstring>
 #include <filesystem>
 #include <numbers>
+#include <set>
 
 namespace g3r {
 namespace {
 
 constexpr std::size_t kPoints = 9000;
 constexpr std::size_t kTiles = 4;
+constexpr int kBodyLevel = 6;  // of the cells of a hollow ball
+constexpr std::size_t kBodyTiles = 60;
 constexpr double kRing = 0.6;  // radii of the torus
 constexpr double kTube = 0.25;
 constexpr std::size_t kBallPoints = 122;  // as dense as the torus
@@ -354,6 +358,74 @@ TEST_F(TilesMesh, RingsAreCellsAroundThePlacesOfATile) {
       EXPECT_EQ(rings[c] == 0, near) << t << " " << c;
     }
   }
+}
+
+// The cells of a hollow ball in tiles, without points.
+tiles::MeshFolder hollow_ball() {
+  tiles::MeshFolder out;
+  out.cells.level = kBodyLevel;
+  const std::int64_t side = std::int64_t{1} << kBodyLevel;
+  for (std::uint64_t code = 0; code < std::uint64_t{1} << (3 * kBodyLevel); ++code) {
+    double squared = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double x = static_cast<double>(tiles::gather_bits(code >> a)) + 0.5 - 0.5 * static_cast<double>(side);
+      squared += x * x;
+    }
+    if (std::abs(std::sqrt(squared) - 0.4 * static_cast<double>(side)) < 1) out.cells.cells.push_back({code, out.cells.points++});
+  }
+  out.plan.tiles = tiles::cut(out.cells, kBodyTiles);
+  for (const tiles::Tile& tile : out.plan.tiles) out.first_code.push_back(out.cells.cells[tile.first_cell].code);
+  out.first_code[0] = 0;
+  return out;
+}
+
+// Far from all points leaves are large, and their corners in tiles whose points are elsewhere. Where a tile did not read these it would
+// take them for outside, and have pieces of surface within bodies, on which tiles do not agree.
+TEST(TilesOfCorners, AreThoseOfAllLeavesThatTouchTheTile) {
+  const tiles::MeshFolder folder = hollow_ball();
+  const tiles::Cells& cells = folder.cells;
+  std::set<std::uint64_t> occupied;  // 1 before the bits of a code
+  for (const tiles::Cell& cell : cells.cells) {
+    for (int up = 0; up <= cells.level; ++up) occupied.insert((std::uint64_t{1} << (3 * cells.level) | cell.code) >> (3 * up));
+  }
+  const mesh::Octree octree({-1, -1, -1}, 2, {}, [&](const mesh::OctreeNode& node) {
+    const int level = node.level;
+    const auto holds = [&](std::uint64_t code) { return occupied.count(std::uint64_t{1} << (3 * level) | code) != 0; };
+    const bool is_split =
+        level < mesh::kBaseLevel || (level < cells.level && tiles::any_neighbour(tiles::cell_at(node.low, level), level, 1, holds));
+    return is_split ? mesh::Split::kYes : mesh::Split::kNo;
+  });
+  std::set<std::array<std::uint32_t, 3>> corners;
+  for (std::size_t c = 0; c < octree.corner_count(); ++c) corners.insert(octree.corner_grid(c));
+  std::vector<std::set<std::size_t>> wanted(folder.tiles());
+  for (std::size_t leaf = 0; leaf < octree.leaf_count(); ++leaf) {
+    const mesh::OctreeNode node = octree.leaf(leaf);
+    const std::uint32_t half = octree.extent(node) / 2;
+    std::set<std::size_t> owners;
+    for (std::uint32_t k = 0; k < 27; ++k) {
+      const std::array<std::uint32_t, 3> at{node.low[0] + k % 3 * half, node.low[1] + k / 3 % 3 * half, node.low[2] + k / 9 * half};
+      if (corners.count(at) != 0) owners.insert(folder.owner(tiles::cell_at(at, cells.level)));
+    }
+    const std::uint64_t size = std::uint64_t{1} << (cells.level - node.level);  // cells along it, and one more on each side touches it
+    std::array<std::uint64_t, 3> first{};
+    for (std::size_t a = 0; a < 3; ++a) first[a] = node.low[a] >> (mesh::kMaxOctreeLevel - cells.level);
+    const std::uint64_t side = std::uint64_t{1} << cells.level;
+    for (std::uint64_t x = first[0] - (first[0] > 0 ? 1 : 0); x < std::min(side, first[0] + size + 1); ++x) {
+      for (std::uint64_t y = first[1] - (first[1] > 0 ? 1 : 0); y < std::min(side, first[1] + size + 1); ++y) {
+        for (std::uint64_t z = first[2] - (first[2] > 0 ? 1 : 0); z < std::min(side, first[2] + size + 1); ++z)
+          wanted[folder.owner(tiles::cell_code(x, y, z))].insert(owners.begin(), owners.end());
+      }
+    }
+  }
+  std::size_t elsewhere = 0;
+  for (std::size_t t = 0; t < folder.tiles(); ++t) {
+    const std::vector<std::size_t> found = tiles::tiles_of_corners(folder, t);
+    EXPECT_TRUE(std::includes(found.begin(), found.end(), wanted[t].begin(), wanted[t].end())) << t;
+    EXPECT_LT(found.size(), folder.tiles());
+    const std::vector<std::size_t> around = tiles::tiles_around(folder, t);
+    elsewhere += std::includes(around.begin(), around.end(), wanted[t].begin(), wanted[t].end()) ? 0 : 1;
+  }
+  EXPECT_GT(elsewhere, 0U);
 }
 
 }  // namespace

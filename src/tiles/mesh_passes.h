@@ -21,7 +21,7 @@ namespace g3r::tiles {
 void write_points(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel);
 /// Pass 2, after pass 1 of all tiles: the sides of its corners of the octree.
 void write_corners(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel);
-/// Pass 3, after pass 2 of tiles_around() it: its vertices, and the polygons around its edges.
+/// Pass 3, after pass 2 of tiles_of_corners() of it: its vertices, and the polygons around its edges.
 void write_patches(const MeshFolder& folder, std::size_t tile, const std::atomic<bool>* cancel);
 /// Pass 4, after pass 3 of it and of the tiles whose vertices it has, and pass 1 of tiles_around() it: the connected parts of its
 /// triangles, and what holds them.
@@ -29,6 +29,10 @@ void write_parts(const MeshFolder& folder, std::size_t tile, const std::atomic<b
 
 /// The tiles with points at most kAround cells away, itself included, ascending.
 [[nodiscard]] std::vector<std::size_t> tiles_around(const MeshFolder& folder, std::size_t tile);
+
+/// The tiles, itself included, that have corners of leaves which touch a place of the tile: far from all points these are as large as the
+/// gap, and their corners belong to tiles whose points are elsewhere. Ascending.
+[[nodiscard]] std::vector<std::size_t> tiles_of_corners(const MeshFolder& folder, std::size_t tile);
 
 /// Calls take(tile, point) for the points of the cells of ring 0, in order, without repeated places and strays.
 void for_points_around(const MeshFolder& folder, const std::vector<std::uint8_t>& rings,

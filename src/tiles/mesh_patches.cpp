@@ -24,7 +24,7 @@ std::vector<float> read_corners(const MeshFolder& folder, const Surroundings& ar
     asked[folder.owner(cell_at(grid, folder.cells.level))].push_back({corner_name(grid), c});
   }
   std::vector<float> value(octree.corner_count(), static_cast<float>(-folder.plan.spacing));
-  for (const std::size_t t : tiles_around(folder, tile)) {
+  for (const std::size_t t : tiles_of_corners(folder, tile)) {
     std::sort(asked[t].begin(), asked[t].end(), [](const Asked& a, const Asked& b) { return a.name < b.name; });
     const RecordFile<CornerValue> file(mesh_corners_path(folder.folder, t));
     std::vector<CornerValue> read;

@@ -40,7 +40,7 @@ class MeshRun {
 
   void patches(std::size_t t) {
     if (is_there(mesh_patches_path(folder_.folder, t))) return;
-    for (const std::size_t other : tiles_around(folder_, t)) corners(other);
+    for (const std::size_t other : tiles_of_corners(folder_, t)) corners(other);
     begin("surface", t);
     write_patches(folder_, t, stages_.cancel());
   }

@@ -20,7 +20,12 @@ bool is_occupied(const Cells& cells, std::uint64_t code, int level) {
   return found != cells.cells.end() && found->code >> up == code;
 }
 
-// Above the level of the cells a node is split if it or one beside it holds points; from there on by the discs of points.
+// Whether a node above the level of the cells is split: if it or one beside it holds points.
+bool is_split(const Cells& cells, std::uint64_t code, int level) {
+  return level < mesh::kBaseLevel || any_neighbour(code, level, 1, [&](std::uint64_t other) { return is_occupied(cells, other, level); });
+}
+
+// From the level of the cells on nodes are split by the discs of points.
 mesh::SplitRule split_rule(const MeshFolder& folder, const Region& region) {
   return [&folder, &region](const mesh::OctreeNode& node) {
     const int level = node.level;
@@ -29,8 +34,7 @@ mesh::SplitRule split_rule(const MeshFolder& folder, const Region& region) {
     if (level > cells.level) return mesh::Split::kAsRequested;
     const std::uint64_t code = cell_at(node.low, level);
     if (level == cells.level) return region.is_near(code, level, kFineAround) ? mesh::Split::kAsRequested : mesh::Split::kNo;
-    const auto occupied = [&](std::uint64_t other) { return is_occupied(cells, other, level); };
-    return region.is_near(code, level, kCoarseAround) && any_neighbour(code, level, 1, occupied) ? mesh::Split::kYes : mesh::Split::kNo;
+    return region.is_near(code, level, kCoarseAround) && is_split(cells, code, level) ? mesh::Split::kYes : mesh::Split::kNo;
   };
 }
 
@@ -48,6 +52,36 @@ std::vector<std::size_t> tiles_around(const MeshFolder& folder, std::size_t tile
     const auto first = rings.begin() + static_cast<std::ptrdiff_t>(folder.plan.tiles[t].first_cell);
     const auto last = rings.begin() + static_cast<std::ptrdiff_t>(folder.plan.tiles[t].last_cell);
     if (t == tile || std::find(first, last, std::uint8_t{0}) != last) tiles.push_back(t);
+  }
+  return tiles;
+}
+
+std::vector<std::size_t> tiles_of_corners(const MeshFolder& folder, std::size_t tile) {
+  const Cells& cells = folder.cells;
+  const Region region(folder, tile);
+  std::vector<std::uint8_t> wanted(folder.tiles(), 0);
+  // Corners that leaves beside this one have on it are in the middle of its sides and edges.
+  const auto take = [&](const std::array<std::uint32_t, 3>& low, std::uint32_t half) {
+    for (std::uint32_t k = 0; k < mesh::kLatticeSize; ++k) {
+      const std::uint32_t side = mesh::kLatticeSide;
+      wanted[folder.owner(
+          cell_at({low[0] + k % side * half, low[1] + k / side % side * half, low[2] + k / (side * side) * half}, cells.level))] = 1;
+    }
+  };
+  const auto visit = [&](const auto& self, std::uint64_t code, int level) -> void {
+    if (!region.is_near(code, level, 1)) return;
+    if (level < cells.level && is_split(cells, code, level)) {
+      for (std::uint64_t child = code << 3; child < (code + 1) << 3; ++child) self(self, child, level + 1);
+      return;
+    }
+    const int up = mesh::kMaxOctreeLevel - level;
+    const auto at = [&](std::uint64_t bits) { return static_cast<std::uint32_t>(gather_bits(bits) << up); };
+    take({at(code >> 2), at(code >> 1), at(code)}, std::uint32_t{1} << (up - 1));
+  };
+  visit(visit, 0, 0);
+  std::vector<std::size_t> tiles;
+  for (std::size_t t = 0; t < wanted.size(); ++t) {
+    if (wanted[t] != 0) tiles.push_back(t);
   }
   return tiles;
 }
