@@ -219,6 +219,7 @@ class Tiles(ProgramTest):
         refused = self.expect(UNAVAILABLE, "fewer.ply", "out.ply", **little)
         self.assertIn("three quarters of the free memory", refused.err)
         self.assertIn("tiles of this cloud need", refused.err)
+        self.assertIn("%d MiB, three quarters of what is free; raise the limit" % (int(limit[:-1]) * 3 / 4), refused.err)
         self.assertEqual(sorted(os.listdir(self.folder)), ["fewer.ply", "in.ply"])
 
     @SAYS_WHAT_IS_FREE

@@ -209,9 +209,10 @@ std::uint64_t points_for(std::size_t memory) {
   return enough;
 }
 
-[[noreturn]] void refuse_memory(std::size_t limit, std::uint64_t needed, const std::string& remedy) {
+[[noreturn]] void refuse_memory(const TileOptions& options, std::size_t limit, std::uint64_t needed, const std::string& remedy) {
   throw Unavailable("tiles of this cloud need " + std::to_string(mebibytes_needed(memory_for(needed))) + " MiB, the limit is " +
-                    std::to_string(mebibytes(limit)) + " MiB; " + remedy + ", or thin the cloud");
+                    std::to_string(mebibytes(limit)) + " MiB" + (options.max_memory > 0 ? "" : ", three quarters of what is free") + "; " +
+                    remedy + ", or thin the cloud");
 }
 
 std::uint64_t fewest_coarse(std::uint64_t points) { return std::min(kFewestCoarse, points / 4); }
@@ -220,10 +221,10 @@ std::uint64_t fewest_coarse(std::uint64_t points) { return std::min(kFewestCoars
 std::size_t least_memory(std::uint64_t points) { return memory_for(2 * fewest_coarse(points)); }
 
 // The thinned cloud has as many points as are useful and the memory allows.
-std::uint64_t choose_stride(std::uint64_t points, std::size_t limit) {
+std::uint64_t choose_stride(std::uint64_t points, const TileOptions& options, std::size_t limit) {
   const std::uint64_t most = std::min(kMostCoarse, points_for(limit) / 2);
   const std::uint64_t fewest = fewest_coarse(points);
-  if (most < fewest) refuse_memory(limit, 2 * fewest, "raise the limit");
+  if (most < fewest) refuse_memory(options, limit, 2 * fewest, "raise the limit");
   const std::uint64_t wanted = std::min(most, std::max(fewest, points / kCoarseShare));
   std::uint64_t stride = 2;
   while (points / (2 * stride) >= wanted || points / stride > most) stride *= 2;
@@ -287,7 +288,7 @@ void choose_tiles(const Cells& cells, const TileOptions& options, std::size_t li
   const std::size_t all = cells.cells.size();
   const auto first = static_cast<std::size_t>(std::min<std::uint64_t>(kMostTiles, m.sorted() / free + 1));
   const bool fits = options.tiles > 0 ? cut_into(std::min(options.tiles, all)) <= limit : cut_into_fewest(first, all, limit, cut_into);
-  if (!fits) refuse_memory(limit, largest, options.tiles > 0 ? "ask for more tiles, raise the limit" : "raise the limit");
+  if (!fits) refuse_memory(options, limit, largest, options.tiles > 0 ? "ask for more tiles, raise the limit" : "raise the limit");
 }
 
 // The sides: every stride-th point, in core.
@@ -338,7 +339,7 @@ TileStatus make_plan(const std::vector<std::string>& files, const std::string& f
   const std::size_t limit = options.max_memory > 0 ? options.max_memory : default_limit();
   Manifest m = survey(files, options, stages);
   m.limit = limit;
-  m.stride = choose_stride(m.sorted(), limit);
+  m.stride = choose_stride(m.sorted(), options, limit);
   m.coarse_points = (m.sorted() + m.stride - 1) / m.stride;
   make_folder(folder);
   clear_folder(folder);
