@@ -20,8 +20,7 @@ constexpr std::size_t kNear = 2 * kFitPoints;
 // Walls and gaps get leaves of at most their thickness over this, lest both walls cross one edge, but none smaller than half of the others:
 // thin walls cost four times the vertices already.
 constexpr double kThin = 1.3;
-// The levels that locally dense or sparse sampling may add or take away: without a bound, points at almost one place would make leaves as
-// small.
+// The levels that locally dense sampling may add: without a bound, points at almost one place would make leaves as small.
 constexpr int kMaxSpread = 4;
 
 }  // namespace
@@ -77,9 +76,8 @@ std::vector<double> sizes_to_resolve(const Prepared& prepared, const std::vector
 
 RefineDisc disc_around(const Vec3& position, const Vec3& normal, double spacing, double size, const LevelRule& rule) {
   const int spread = static_cast<int>(std::lround(std::log2(rule.typical / size)));
-  const int wanted = rule.finest + std::clamp(spread, -kMaxSpread, rule.deepens ? kMaxSpread : 0);
-  const double reach = std::min(spacing, rule.typical * std::exp2(kMaxSpread));  // its leaves are no larger
-  return {position, normal, kGap * reach, kDiscHalf * reach, std::clamp(wanted, kBaseLevel, kMaxOctreeLevel)};
+  const int wanted = rule.finest + std::min(spread, rule.deepens ? kMaxSpread : 0);
+  return {position, normal, kGap * spacing, kDiscHalf * spacing, std::clamp(wanted, kBaseLevel, kMaxOctreeLevel)};
 }
 
 std::vector<Vec3> level_places(const std::vector<Vec3>& points) {
