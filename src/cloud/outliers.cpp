@@ -113,24 +113,25 @@ class Slabs {
   std::array<std::vector<std::size_t>, kScales> least_;
 };
 
+// Whether a slab holds point i among its 16, 32 or 64 nearest. `index`, `squared`: room.
+bool is_on_slab(const PointSet& set, const Slabs& slabs, std::size_t i, std::vector<std::uint32_t>& index, std::vector<double>& squared) {
+  if (slabs.hold(set, set.near().data() + i * set.near_count(), slab_neighbours(0))) return true;
+  for (std::size_t scale = 1; scale < kScales; ++scale) {
+    set.tree().nearest(set.points()[i], slab_neighbours(scale) + 1, index, squared);
+    if (slabs.hold(set, index.data(), slab_neighbours(scale))) return true;
+  }
+  return false;
+}
+
 // Points so far apart as outliers may be and on no slab.
 std::vector<std::uint32_t> find_strays(const PointSet& set, const std::vector<double>& local, double typical) {
   const double least = least_spacing() * typical;
   const Slabs slabs;
-  const std::vector<std::uint32_t>& near = set.near();
   std::vector<char> stray(set.size(), 0);
   parallel::for_blocks(set.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> index;
     std::vector<double> squared;
-    for (std::size_t i = begin; i < end; ++i) {
-      if (local[i] <= least || slabs.hold(set, near.data() + i * set.near_count(), slab_neighbours(0))) continue;
-      bool held = false;
-      for (std::size_t scale = 1; scale < kScales && !held; ++scale) {
-        set.tree().nearest(set.points()[i], slab_neighbours(scale) + 1, index, squared);
-        held = slabs.hold(set, index.data(), slab_neighbours(scale));
-      }
-      stray[i] = held ? 0 : 1;
-    }
+    for (std::size_t i = begin; i < end; ++i) stray[i] = local[i] > least && !is_on_slab(set, slabs, i, index, squared) ? 1 : 0;
   });
   std::vector<std::uint32_t> strays;
   for (std::uint32_t i = 0; i < stray.size(); ++i) {
@@ -222,6 +223,22 @@ Outliers find_outliers(const PointSet& set, const std::vector<double>& relative_
   chosen = choose(strays, wide_spacing(set, strays, relative_spacing, count), layer, set.size());
   if (too_many()) chosen.clear();
   return {chosen, noise, {}};
+}
+
+double share_in_space(const PointSet& set, const std::vector<std::uint32_t>& some) {
+  if (set.size() <= slab_neighbours(kScales - 1)) return 0;
+  const Slabs slabs;
+  const std::size_t places = std::min(kPlaces, some.size());
+  std::vector<std::uint8_t> on_slab(places);
+  parallel::for_blocks(places, parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> index;
+    std::vector<double> squared;
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::uint32_t i = some[static_cast<std::size_t>(std::uint64_t{k} * some.size() / places)];
+      on_slab[k] = is_on_slab(set, slabs, i, index, squared) ? 1 : 0;
+    }
+  });
+  return static_cast<double>(std::count(on_slab.begin(), on_slab.end(), std::uint8_t{0})) / static_cast<double>(places);
 }
 
 std::vector<Vec3> remove_points(CanonicalCloud& cloud, const std::vector<std::uint32_t>& indices, const PointSet& others) {

@@ -31,6 +31,10 @@ struct Outliers {
 [[nodiscard]] Outliers find_outliers(const PointSet& set, const std::vector<double>& relative_spacing = {},
                                      std::optional<double> noise = std::nullopt);
 
+/// The share of some points of a set, at least one, that no slab as above holds: of those that fill space nearly all, of a surface hardly
+/// any, but under noise. Looks at about 2000 of them, in O(log N) each.
+[[nodiscard]] double share_in_space(const PointSet& set, const std::vector<std::uint32_t>& some);
+
 /// Takes the points with these indices out of the cloud and returns them. point_of and multiplicity number them after those that stay, and
 /// before those taken out earlier. `others`: Outliers::others, whose neighbours are then known.
 std::vector<Vec3> remove_points(CanonicalCloud& cloud, const std::vector<std::uint32_t>& indices, const PointSet& others = {});
