@@ -286,6 +286,31 @@ TEST(MeshFinish, TheWayToTheNextLineIsNoHole) {
   EXPECT_GT(check_mesh(mesh).area, 0.95 * 4 * M_PI);
 }
 
+// A half sphere, closed over by large triangles: no corner is farther from the points than asked for, and other places hardly are.
+TEST(MeshFinish, NothingIsFartherThanTheTrimDistance) {
+  const OrientedSample whole = sphere_sample(4000, 1, 1);
+  OrientedSample half;
+  for (std::size_t i = 0; i < whole.points.size(); ++i) {
+    if (whole.points[i][2] < 0) continue;
+    half.points.push_back(whole.points[i]);
+    half.normals.push_back(whole.normals[i]);
+  }
+  for (const double distance : {0.12, 0.2, 0.4}) {
+    MeshOptions options;
+    options.trim = MeshOptions::Trim::kDistance;
+    options.trim_distance = distance;
+    const Mesh mesh = mesh_oriented(half.points, half.normals, options);
+    EXPECT_EQ(mesh::find_components(mesh).count, 1U) << distance;
+    const auto from_points = [&](const Vec3& place) {
+      double nearest = 9;
+      for (const Vec3& p : half.points) nearest = std::min(nearest, norm(vector::subtract(p, place)));
+      return nearest;
+    };
+    for (const Vec3& v : mesh.vertices) ASSERT_LE(from_points(v), 1.001 * distance);
+    for (const auto& t : mesh.triangles) ASSERT_LE(from_points(mesh::centre_of(mesh, t)), 1.1 * distance);
+  }
+}
+
 TEST(MeshFinish, TrimDistanceMustBePositiveAndLeaveSomething) {
   TwoSpheres two = two_spheres();
   MeshOptions options;

@@ -71,6 +71,55 @@ std::vector<std::uint8_t> within(const Mesh& mesh, const std::vector<Vec3>& poin
   return keep;
 }
 
+// Halves edges that are longer than half of the limit, and than leaves around points, where surface may go on on both sides of the limit,
+// so that what is cut there follows it: no place of a triangle is farther from a corner than its longest side.
+void halve_edges(Mesh& mesh, const OrientedPoints& points, double limit, const std::atomic<bool>* cancel) {
+  const auto squared_length = [&](std::uint32_t a, std::uint32_t b) {
+    const Vec3 d = vector::subtract(mesh.vertices[a], mesh.vertices[b]);
+    return vector::dot(d, d);
+  };
+  const double longest = std::max(0.5 * limit, kFinestCell * median(points.spacing));
+  std::unordered_map<std::uint64_t, std::uint32_t> middle;
+  do {
+    middle.clear();
+    const std::vector<double> distance = distance_to_points(
+        mesh.vertices, points.positions, [](std::uint32_t) { return 1.0; }, cancel);
+    for (const Triangle& v : mesh.triangles) {
+      const double side = longest_side({mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]]});
+      const auto [near, far] = std::minmax({distance[v[0]], distance[v[1]], distance[v[2]]});
+      if (side <= longest || near > limit + side || far < limit - side) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = v[k], b = v[(k + 1) % 3];
+        if (squared_length(a, b) <= longest * longest || !middle.try_emplace(unordered_pair_key(a, b), mesh.vertices.size()).second)
+          continue;
+        mesh.vertices.push_back(vector::scale(vector::add(mesh.vertices[a], mesh.vertices[b]), 0.5));
+      }
+    }
+    const std::size_t count = mesh.triangles.size();
+    for (std::size_t t = 0; t < count; ++t) {
+      const Triangle v = mesh.triangles[t];
+      std::vector<std::uint32_t> ring;  // corners and middles
+      std::size_t first = 0;            // a middle, if there is one
+      for (std::size_t k = 0; k < 3; ++k) {
+        ring.push_back(v[k]);
+        const auto found = middle.find(unordered_pair_key(v[k], v[(k + 1) % 3]));
+        if (found == middle.end()) continue;
+        first = ring.size();
+        ring.push_back(found->second);
+      }
+      if (ring.size() == 3) continue;
+      std::rotate(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(first), ring.end());
+      if (ring.size() == 6) {
+        mesh.triangles[t] = {ring[0], ring[2], ring[4]};
+        for (std::size_t k = 0; k < 6; k += 2) mesh.triangles.push_back({ring[k], ring[k + 1], ring[(k + 2) % 6]});
+        continue;
+      }
+      mesh.triangles[t] = {ring[0], ring[1], ring[2]};
+      for (std::size_t k = 2; k + 1 < ring.size(); ++k) mesh.triangles.push_back({ring[0], ring[k], ring[k + 1]});
+    }
+  } while (!middle.empty());
+}
+
 // How far past the rims of the points each vertex is: 0 at a rim, -1 amid points.
 //   past = |m x n| / (sqrt(2 / pi) s) + |n| - n . (normal of the vertex) - 1
 // with m and n the means of the offsets and normals of the points around it, weighed with the area that each stands for and a Gaussian of
@@ -126,14 +175,41 @@ void flood(const Mesh& mesh, const std::vector<double>& past, std::vector<std::u
   for (std::uint32_t v = 0; v < off.size(); ++v) off[v] = is_off[regions.find(v)];
 }
 
-// Cuts the marked vertices off, where `past` is 0 on the edges to the others. `keep`: by triangle.
-void cut_off(Mesh& mesh, const std::vector<double>& past, const std::vector<std::uint8_t>& off, std::vector<std::uint8_t>& keep) {
+// A vertex that is made on the edge of two others, so far on the way.
+struct Cut {
+  std::uint32_t in = 0, vertex = 0;
+};
+
+// Halves the way of cuts that are beyond the limits to the vertices within them, as the distance does not grow evenly along an edge.
+void draw_in(Mesh& mesh, std::vector<Cut> cuts, const std::vector<Vec3>& points, const std::vector<double>& limits,
+             const std::atomic<bool>* cancel) {
+  for (double way = 1; way > kAtOnePlace && !cuts.empty(); way /= 2) {
+    std::vector<Vec3> places;
+    for (const Cut& cut : cuts) places.push_back(mesh.vertices[cut.vertex]);
+    const std::vector<double> distance = distance_to_points(
+        places, points, [&](std::uint32_t i) { return limits[i]; }, cancel);
+    std::size_t left = 0;
+    for (std::size_t k = 0; k < cuts.size(); ++k) {
+      if (distance[k] <= 1) continue;
+      Vec3& at = mesh.vertices[cuts[k].vertex];
+      at = vector::scale(vector::add(at, mesh.vertices[cuts[k].in]), 0.5);
+      cuts[left++] = cuts[k];
+    }
+    cuts.resize(left);
+  }
+}
+
+// Cuts the marked vertices off, where `past` is 0 on the edges to the others. `keep`: by triangle. Returns the cuts.
+std::vector<Cut> cut_off(Mesh& mesh, const std::vector<double>& past, const std::vector<std::uint8_t>& off,
+                         std::vector<std::uint8_t>& keep) {
+  std::vector<Cut> cuts;
   std::unordered_map<std::uint64_t, std::uint32_t> made;
   const auto cut = [&](std::uint32_t in, std::uint32_t out) {
     const auto [place, is_new] = made.try_emplace(pair_key(in, out), static_cast<std::uint32_t>(mesh.vertices.size()));
     if (is_new) {
       const double t = std::clamp(past[in] / (past[in] - past[out]), kAtOnePlace, 1 - kAtOnePlace);
       mesh.vertices.push_back(vector::add(vector::scale(mesh.vertices[in], 1 - t), vector::scale(mesh.vertices[out], t)));
+      cuts.push_back({in, place->second});
     }
     return place->second;
   };
@@ -158,6 +234,7 @@ void cut_off(Mesh& mesh, const std::vector<double>& past, const std::vector<std:
       add({p, v[2], q});
     }
   }
+  return cuts;
 }
 
 }  // namespace
@@ -165,13 +242,22 @@ void cut_off(Mesh& mesh, const std::vector<double>& past, const std::vector<std:
 void trim(Mesh& mesh, const OrientedPoints& points, const MeshOptions& options, const std::atomic<bool>* cancel) {
   const std::vector<double> limits = limits_of(points, options);
   const auto limit = [&](std::uint32_t i) { return limits[i]; };
-  std::vector<double> past = distance_to_points(mesh.vertices, points.positions, limit, cancel);
-  for (double& d : past) d -= 1;
-  std::vector<std::uint8_t> off(past.size());
-  std::transform(past.begin(), past.end(), off.begin(), [](double d) { return d > 0 ? 1 : 0; });
-  std::vector<std::uint8_t> keep = within(mesh, points.positions, limits, off, cancel);
+  std::vector<double> past;
+  std::vector<std::uint8_t> off, keep;
+  const auto look = [&] {
+    past = distance_to_points(mesh.vertices, points.positions, limit, cancel);
+    for (double& d : past) d -= 1;
+    off.resize(past.size());
+    std::transform(past.begin(), past.end(), off.begin(), [](double d) { return d > 0 ? 1 : 0; });
+    keep = within(mesh, points.positions, limits, off, cancel);
+  };
+  look();
   const auto is_set = [](std::uint8_t byte) { return byte != 0; };
   if (std::none_of(off.begin(), off.end(), is_set) && std::all_of(keep.begin(), keep.end(), is_set)) return;
+  if (options.trim == MeshOptions::Trim::kDistance) {
+    halve_edges(mesh, points, options.trim_distance, cancel);
+    look();
+  }
   if (options.trim == MeshOptions::Trim::kAuto) {
     const std::vector<double> rims = past_rims(mesh, points, cancel);
     for (std::size_t v = 0; v < past.size(); ++v) past[v] = std::max(past[v], rims[v]);
@@ -182,7 +268,7 @@ void trim(Mesh& mesh, const OrientedPoints& points, const MeshOptions& options, 
     }
     flood(mesh, past, off);
   }
-  cut_off(mesh, past, off, keep);
+  draw_in(mesh, cut_off(mesh, past, off, keep), points.positions, limits, cancel);
   remove_triangles(mesh, keep);
   if (mesh.triangles.empty()) throw InvalidInput("trimming removed the whole mesh: the trim distance is too small");
   smooth_rims(mesh, [&](const std::vector<Vec3>& places) {
