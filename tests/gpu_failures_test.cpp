@@ -37,6 +37,8 @@ using namespace sum_cases;  // NOLINT(google-build-using-namespace)
 // A device that gives `allowed` buffers and starts `launches` kernels before it fails; with 0 it cannot compile. It computes nothing, and
 // every double that is read is 1. Counts what is not freed, launches, and the bytes of copies.
 class FailingDevice : public gpu::Device {
+  static constexpr std::size_t kSmall = 256;  // bytes
+
  public:
   explicit FailingDevice(std::size_t allowed, std::size_t launches = 0, std::size_t memory = 0)
       : Device(described(launches > 0, memory)), left_(allowed), launches_(launches), compiles_(launches > 0) {}
@@ -50,6 +52,7 @@ class FailingDevice : public gpu::Device {
   std::size_t launched = 0;
   std::size_t written = 0;
   std::size_t read_back = 0;
+  std::set<std::vector<std::uint32_t>> uploaded;  // small arrays
 
  protected:
   std::unique_ptr<gpu::Buffer> make_buffer(std::size_t bytes) override {
@@ -58,7 +61,13 @@ class FailingDevice : public gpu::Device {
     return std::make_unique<Counted>(bytes, alive);
   }
   std::unique_ptr<gpu::Staging> make_staging(std::size_t bytes) override { return std::make_unique<HostMemory>(bytes); }
-  void start_write(const gpu::Buffer&, std::size_t, gpu::Staging&, std::size_t bytes) override { written += bytes; }
+  void start_write(const gpu::Buffer&, std::size_t, gpu::Staging& staging, std::size_t bytes) override {
+    written += bytes;
+    if (bytes > kSmall) return;
+    std::vector<std::uint32_t> numbers(bytes / sizeof(std::uint32_t));
+    std::memcpy(numbers.data(), staging.data(), numbers.size() * sizeof numbers[0]);
+    uploaded.insert(numbers);
+  }
   void start_read(const gpu::Buffer&, std::size_t, gpu::Staging& staging, std::size_t bytes) override {
     EXPECT_TRUE(compiles_) << "nothing was computed";
     const double one = 1;
@@ -281,6 +290,32 @@ TEST(GpuFailures, EveryFarPairIsInOneTileAndTilesDoNotMeetATargetTwice) {
   EXPECT_EQ(tiled.chunk_tiles.back(), tiled.tiles.size());
   EXPECT_EQ(found, expected);
   EXPECT_LT(tiled.tiles.size(), tiled.pairs.size() / 2) << "tiles do not share matrices";
+}
+
+// Leaves of a billion points each, all near to each other: their pairs of a leaf and a point do not fit 32 bits, those of one leaf do.
+TEST(GpuFailures, NearPointsOfAllLeavesMayBeMoreThan32BitsCount) {
+  constexpr std::uint32_t kLeaves = 3;
+  constexpr std::uint32_t kOfLeaf = 1'000'000'000;
+  Octree tree;
+  InteractionLists lists;
+  lists.near_begin.push_back(0);
+  tree.nodes.resize(1 + kLeaves);
+  tree.nodes[0] = {0, kLeaves * kOfLeaf, 1, kLeaves, 0, 0};
+  for (std::uint32_t i = 0; i < kLeaves; ++i) {
+    tree.nodes[1 + i] = {
+        i * kOfLeaf, (i + 1) * kOfLeaf, 0, 0, 0, 1, {static_cast<std::int32_t>(i % 2), static_cast<std::int32_t>(i / 2), 0}};
+    tree.leaves.push_back(1 + i);
+    for (std::uint32_t j = 0; j < kLeaves; ++j) lists.near.push_back(j);
+    lists.near_begin.push_back(lists.near.size());
+  }
+  tree.level_begin = {0, 1, 1 + kLeaves};
+  FailingDevice device(kPlenty, kPlenty);
+  std::vector<std::uint32_t> expected;
+  for (std::uint32_t i = 0; i <= kLeaves * kLeaves; ++i) expected.push_back(i * kOfLeaf);
+  const auto there = std::make_shared<gpu::TreeOnDevice>(device, tree);
+  gpu::ListsOnDevice<float> on_device(device, tree, tree, there, lists);
+  on_device.prepare_near();
+  EXPECT_EQ(device.uploaded.count(expected), 1U);
 }
 
 TEST(GpuFailures, PartsOfATreeHaveItsLeavesOnceAndAllThatIsAboveThem) {

@@ -26,6 +26,7 @@ constexpr std::size_t kVectorsGroup = 128;
 constexpr std::size_t kNeighboursGroup = 64;  // items of a group wait for the one that takes longest
 constexpr std::size_t kMostDepth = 32;        // of a tree of fewer than 2^32 points
 constexpr std::size_t kSoftwareGroup = 16;
+constexpr std::size_t kSoftwareNearGroup = 64;  // a leaf of targets
 // Sources of the near field in local memory at a time: one per item; processors rather have few turns, within their cache.
 constexpr std::size_t kTile = 128;
 constexpr std::size_t kSoftwareTile = 256;
@@ -76,14 +77,15 @@ std::string source(const KernelTraits& traits, std::size_t group, const std::str
 
 }  // namespace
 
-std::size_t near_group(const KernelTraits& traits) { return traits.lanes > 1 ? kSoftwareGroup : kNearGroup; }
+std::size_t near_group(const KernelTraits& traits) { return traits.lanes > 1 ? kSoftwareNearGroup : kNearGroup; }
 std::size_t far_group(const KernelTraits& traits) { return traits.lanes > 1 ? kSoftwareGroup : kFarGroup; }
 
 std::string near_field_source(const KernelTraits& traits) {
   const std::string fitted = traits.doubles ? polynomials<double, Precision::kFull>()
                              : traits.rough ? polynomials<float, Precision::kRough>()
                                             : polynomials<float, Precision::kFull>();
-  return source(traits, near_group(traits), fitted + define("TILE", traits.lanes > 1 ? kSoftwareTile : kTile), kernels::near_field_cl);
+  const std::string more = define("TILE", traits.lanes > 1 ? kSoftwareTile : kTile) + define("ROUGH", traits.rough ? 1 : 0);
+  return source(traits, near_group(traits), fitted + more, kernels::near_field_cl);
 }
 
 std::string expansions_source(const KernelTraits& traits) { return source(traits, far_group(traits), {}, kernels::expansions_cl); }

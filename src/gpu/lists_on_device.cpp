@@ -282,9 +282,7 @@ void ListsOnDevice<T>::add_near(TargetsOnDevice& part) const {
   part.near_leaves = upload(device_, leaves);
   std::vector<std::uint32_t> points(1, 0);
   points.reserve(leaves.size() + 1);
-  for (const std::uint32_t leaf : leaves) {
-    points.push_back(narrow(std::size_t{points.back()} + source_octree_.nodes[source_octree_.leaves[leaf]].count()));
-  }
+  for (const std::uint32_t leaf : leaves) points.push_back(points.back() + source_octree_.nodes[source_octree_.leaves[leaf]].count());
   part.near_points = upload(device_, points);
   std::vector<std::uint32_t> order(part.leaves);
   std::iota(order.begin(), order.end(), 0U);

@@ -80,7 +80,7 @@ struct TargetsOnDevice {
   std::vector<std::uint32_t> number;         ///< PartOfTree::number, empty for all
   std::shared_ptr<const TreeOnDevice> tree;  ///< of these nodes
   std::unique_ptr<Buffer> near_begin, near_leaves;
-  std::unique_ptr<Buffer> near_points;  ///< points of the leaves before each one of near_leaves, and of all
+  std::unique_ptr<Buffer> near_points;  ///< points of the leaves before each one of near_leaves, and of all, modulo 2^32
   std::unique_ptr<Buffer> near_order;   ///< leaves by what their near field costs, the most first: one that takes long has to begin early
   std::size_t chunk_nodes = 0, chunks = 0;
   std::unique_ptr<Buffer> chunk_tiles, tiles, pairs;  ///< TiledPairs

@@ -47,7 +47,7 @@ typedef float4 real4;
 #define DIVIDE(a, b) native_divide(a, b)
 #endif
 #define KERNEL __kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void
-#define FUNCTION static inline
+#define FUNCTION static inline __attribute__((always_inline))
 #define GLOBAL __global
 #define LOCAL __local
 #define LOCAL_ARRAY(type, name, count) __local type name[count]
@@ -78,13 +78,16 @@ typedef real lanes;
 #define JOIN(a, b) JOIN_(a, b)
 #if REAL_IS_DOUBLE
 typedef JOIN(double, LANES) lanes;
+#define MASK long
 #else
 typedef JOIN(float, LANES) lanes;
+#define MASK int
 #endif
+typedef JOIN(MASK, LANES) masks;
 #define SPLAT(x) ((lanes)(x))
 #define LOAD(from) JOIN(vload, LANES)(0, from)
 #define STORE(value, to) JOIN(vstore, LANES)(value, 0, to)
-#define ANY_LESS(a, b) any((a) < (b))
+#define ANY_LESS(a, b) is_any((a) < (b))
 FUNCTION real sum_of(lanes v) {
 #if LANES == 2
   return v.x + v.y;
@@ -95,6 +98,23 @@ FUNCTION real sum_of(lanes v) {
 #else
   return (((v.s0 + v.s8) + (v.s4 + v.sc)) + ((v.s2 + v.sa) + (v.s6 + v.se))) +
          (((v.s1 + v.s9) + (v.s5 + v.sd)) + ((v.s3 + v.sb) + (v.s7 + v.sf)));
+#endif
+}
+// Whether a comparison is true in any lane, by halves: any() goes lane by lane.
+FUNCTION int is_any(masks m) {
+#if LANES == 2
+  return (m.x | m.y) != 0;
+#elif LANES == 4
+  return ((m.x | m.z) | (m.y | m.w)) != 0;
+#else
+#if LANES == 16
+  const JOIN(MASK, 8) half_of = m.lo | m.hi;
+#else
+  const JOIN(MASK, 8) half_of = m;
+#endif
+  const JOIN(MASK, 4) fourth = half_of.lo | half_of.hi;
+  const JOIN(MASK, 2) eighth = fourth.lo | fourth.hi;
+  return (eighth.x | eighth.y) != 0;
 #endif
 }
 #endif

@@ -4,7 +4,7 @@
 // A tile of sources is gathered into local memory; items take a target each and, where a leaf has few, a share of the sources. Sums of a
 // tile are floats; tiles are added up in pairs of floats, which are as good as the doubles of the processor.
 //
-// The program says: FORM, BATCH (K), LOCAL_WIDTHS, TILE, and the polynomials SINGLE_LAYER(w), DOUBLE_LAYER(w), STOKESLET(w), GRADIENT(w)
+// The program says: FORM, BATCH (K), LOCAL_WIDTHS, TILE, ROUGH, and the polynomials SINGLE_LAYER(w), DOUBLE_LAYER(w), STOKESLET(w), GRADIENT(w)
 // in w = MAP_SCALE s / (s + MAP_POLE) - 1.
 #define GEOMETRY (3 + LOCAL_WIDTHS)
 #if FORM == GREEN
@@ -33,6 +33,19 @@
 #define TARGET_DATA 0
 #endif
 #define FIELDS (GEOMETRY + VALUES)
+#define AWAY ((real)8)  // of what fills vectors up; points are within 4 of each other
+
+#if LANES > 1 && !REAL_IS_DOUBLE
+// Processors take far longer for a root and a quotient than for these steps of Newton's: after two of them 5e-6 are left, then rounding.
+FUNCTION lanes inverse_root(lanes x) {
+  lanes y = JOIN(as_float, LANES)(0x5f375a86 - (JOIN(as_int, LANES)(x) >> 1));
+  const lanes half_x = SPLAT((real)0.5) * x;
+  UNROLL for (int k = 0; k < (ROUGH ? 2 : 3); ++k) y *= FMA(-half_x * y, y, SPLAT((real)1.5));
+  return y;
+}
+#else
+#define inverse_root(x) RSQRT(x)
+#endif
 
 // Phi (Stokes: Phi + e^2 g), g, and h or b at one distance, without 1/(4 pi).
 typedef struct {
@@ -41,7 +54,7 @@ typedef struct {
 
 FUNCTION Kernels plain(lanes r2, lanes width2) {
   Kernels k;
-  const lanes inverse = RSQRT(r2);
+  const lanes inverse = inverse_root(r2);
   const lanes inverse2 = inverse * inverse;
   k.value = inverse;
   k.flux = inverse * inverse2;
@@ -81,7 +94,7 @@ FUNCTION Kernels kernels_at(lanes r2, lanes width2, lanes inverse_width, real re
 #if LANES == 1
   if (r2 < end) {
 #if LOCAL_WIDTHS
-    inverse_width = RSQRT(width2);
+    inverse_width = inverse_root(width2);
 #endif
     return mollified(r2, width2, inverse_width);
   }
@@ -90,7 +103,7 @@ FUNCTION Kernels kernels_at(lanes r2, lanes width2, lanes inverse_width, real re
   Kernels k = plain(r2, width2);
   if (ANY_LESS(r2, end)) {
 #if LOCAL_WIDTHS
-    inverse_width = RSQRT(width2);
+    inverse_width = inverse_root(width2);
 #endif
     const Kernels m = mollified(r2, width2, inverse_width);
     k.value = r2 < end ? m.value : k.value;
@@ -186,7 +199,7 @@ FUNCTION void add_tile(const LOCAL real* tile, int first, int step, int size, re
 }
 
 // Work-group g does target leaf order[first + g]. Leaves: (first point, points). The near leaves of a target leaf and the points before
-// each in all of them: near_leaves and near_points, from near_begin on. Geometry: x y z [squared width], each `stride` apart, as are the
+// each in all of them, modulo 2^32: near_leaves and near_points, from near_begin on. Geometry: x y z [squared width], each `stride` apart, as are the
 // values of the sources, and the targets' by target_stride. out: blocks x CHANNELS x BLOCK, overwritten.
 KERNEL near_field(int first, const GLOBAL uint* order, const GLOBAL uint* near_begin, const GLOBAL uint* near_leaves,
                   const GLOBAL uint* near_points, const GLOBAL uint2* target_leaves, const GLOBAL int4* target_centres,
@@ -199,7 +212,8 @@ KERNEL near_field(int first, const GLOBAL uint* order, const GLOBAL uint* near_b
   const int count = (int)target_leaves[leaf].y;
   const int4 centre = target_centres[leaf];
   const uint first_run = near_begin[leaf];
-  const uint end = near_points[near_begin[leaf + 1]];
+  const uint before = near_points[first_run];  // differences are exact: one leaf has fewer sources than 2^32
+  const uint all = near_points[near_begin[leaf + 1]] - before;
   for (int begin = 0; begin < count; begin += GROUP) {
     const int targets = count - begin < GROUP ? count - begin : GROUP;
     const int shares = GROUP / targets < TILE / LANES ? GROUP / targets : TILE / LANES;
@@ -214,25 +228,37 @@ KERNEL near_field(int first, const GLOBAL uint* order, const GLOBAL uint* near_b
     UNROLL for (int c = 0; c < TARGET_DATA; ++c) t.u[c] = target_data[(size_t)c * target_stride + at];
     UNROLL for (int c = 0; c < CHANNELS; ++c) t.high[c] = t.low[c] = 0;
     uint run = first_run;  // that holds the item's source
-    for (uint done = near_points[first_run]; done < end; done += TILE) {
-      const int size = end - done < TILE ? (int)(end - done) : TILE;
+    for (uint done = 0; done < all; done += TILE) {
+      const int size = all - done < TILE ? (int)(all - done) : TILE;
       const int padded = (size + LANES - 1) / LANES * LANES;
       BARRIER();
-      for (int i = item; i < padded; i += GROUP) {
-        if (i >= size) {
-          UNROLL for (int f = 0; f < FIELDS; ++f) tile[f * TILE + i] = 0;
-          continue;
+      for (int i = item * LANES; i < padded; i += GROUP * LANES) {  // LANES sources, run by run
+        const int end = LANES == 1 || i + LANES < size ? i + LANES : size;
+        int to = i;
+        do {
+          const uint source = done + (uint)to;
+          while (near_points[run + 1] - before <= source) ++run;
+          const uint left = near_points[run + 1] - before - source;  // of the run
+          int from = to;
+          to = LANES == 1 || left >= (uint)(end - from) ? end : from + (int)left;
+          const uint source_leaf = near_leaves[run];
+          const int4 source_centre = source_centres[source_leaf];
+          const real x = (real)(source_centre.x - centre.x) * CELL;
+          const real y = (real)(source_centre.y - centre.y) * CELL;
+          const real z = (real)(source_centre.z - centre.z) * CELL;
+          size_t p = source_leaves[source_leaf].x + (source - (near_points[run] - before));
+          do {
+            tile[from] = geometry[p] + x;
+            tile[TILE + from] = geometry[stride + p] + y;
+            tile[2 * TILE + from] = geometry[2 * (size_t)stride + p] + z;
+            if (LOCAL_WIDTHS) tile[3 * TILE * LOCAL_WIDTHS + from] = geometry[3 * (size_t)stride * LOCAL_WIDTHS + p];
+            UNROLL for (int f = 0; f < VALUES; ++f) tile[(GEOMETRY + f) * TILE + from] = values[(size_t)f * stride + p];
+            ++p;
+          } while (++from < to);
+        } while (to < end);
+        for (int pad = end; pad < i + LANES; ++pad) {  // far away, and without any value
+          UNROLL for (int f = 0; f < FIELDS; ++f) tile[f * TILE + pad] = f < 3 ? AWAY : 0;
         }
-        const uint source = done + (uint)i;
-        while (near_points[run + 1] <= source) ++run;
-        const uint source_leaf = near_leaves[run];
-        const int4 from = source_centres[source_leaf];
-        const size_t p = source_leaves[source_leaf].x + (source - near_points[run]);
-        tile[i] = geometry[p] + (real)(from.x - centre.x) * CELL;
-        tile[TILE + i] = geometry[stride + p] + (real)(from.y - centre.y) * CELL;
-        tile[2 * TILE + i] = geometry[2 * (size_t)stride + p] + (real)(from.z - centre.z) * CELL;
-        if (LOCAL_WIDTHS) tile[3 * TILE * LOCAL_WIDTHS + i] = geometry[3 * (size_t)stride * LOCAL_WIDTHS + p];
-        UNROLL for (int f = 0; f < VALUES; ++f) tile[(GEOMETRY + f) * TILE + i] = values[(size_t)f * stride + p];
       }
       BARRIER();
       if (share < shares) add_tile(tile, share * LANES, shares * LANES, padded, uniform_width2, inverse_width, reach2, &t);
