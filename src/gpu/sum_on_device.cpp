@@ -17,12 +17,33 @@ constexpr std::size_t kSoftwareSlice = 256;
 constexpr std::size_t kSharedBytes = 32u << 10;  // of local memory, which every device in use has
 constexpr std::size_t kMostSlots = 4;            // pairs of a tile at a time
 constexpr std::size_t kTakenBlocks = 64;         // of results, that a thread takes at a time
-constexpr std::size_t kMostPoints = 32;          // of a tile of points_to_multipoles()
+// Of a tile of points_to_multipoles(). On a GPU its local memory decides how many groups run at a time; processors want few tiles.
+constexpr std::size_t kMostPoints = 16;
+constexpr std::size_t kSoftwareMostPoints = 32;
 
-// Parts of points_to_multipoles(): UP_PARTS there.
-std::size_t up_parts(cpu::NearForm form, int batch, bool local_widths) {
-  if (form == cpu::NearForm::kGreen || form == cpu::NearForm::kGreenAdjoint) return static_cast<std::size_t>(batch);
-  return form == cpu::NearForm::kStokesWinding ? (local_widths ? 5 : 4) : 1;
+// Of points_to_multipoles(): work-groups of a leaf, and sums of each.
+struct UpShape {
+  std::size_t groups;  // UP_PARTS / TOGETHER there
+  std::size_t sums;    // TOGETHER * EACH
+};
+UpShape up_shape(const KernelTraits& traits) {
+  using enum cpu::NearForm;
+  const bool green = traits.form == kGreen || traits.form == kGreenAdjoint;
+  const auto batch = static_cast<std::size_t>(traits.batch);
+  const std::size_t of_stokes = traits.local_widths ? 5 : 4;
+  const std::size_t parts = green ? batch : traits.form == kStokesWinding ? of_stokes : 1;
+  const std::size_t together = traits.doubles ? 1 : green && batch % 3 == 0 ? 3 : parts;
+  const std::size_t each = traits.form == kGreenAdjoint || traits.form == kWindingAdjoint ? 1
+                           : traits.form == kGreen || traits.form == kStokesWinding       ? 4
+                                                                                          : 3;
+  return {parts / together, together * each};
+}
+
+// Of locals_to_points(): ROWS there.
+std::size_t down_rows(const KernelTraits& traits) {
+  using enum cpu::NearForm;
+  if (traits.form == kStokesWinding) return traits.local_widths ? 10 : 9;
+  return traits.form == kGreen || traits.form == kGreenAdjoint ? static_cast<std::size_t>(traits.batch) : 1;
 }
 
 // Expansions that the moves of M2L take at most: MOST_MOVED there.
@@ -105,15 +126,18 @@ void SumOnDevice<T>::upward(const cpu::SumRequest<T>& request, Program& expansio
   const TreeOnDevice& tree = lists_->sources();
   const std::size_t n = coefficient_count(request.order);
   const std::size_t stride = cpu::padded_count(n);
-  const std::size_t parts = up_parts(request.form, request.batch, t.local_widths);
+  const UpShape shape = up_shape(t);
   Buffer& multipoles = room(multipoles_, source_tree_.nodes.size() * request.multipole_channels * stride);
-  const std::size_t points = that_fit(kMostPoints, t.lanes, 7 * n, n + 7, sizeof(T));
+  const std::size_t most_points = device_.info().software ? kSoftwareMostPoints : kMostPoints;
+  const std::size_t fixed = n * (3 + shape.sums);
+  const std::size_t each = n + 3 + shape.sums;
+  const std::size_t points = that_fit(most_points, t.lanes, fixed, each, sizeof(T));
   const std::size_t slice = device_.info().software ? kSoftwareSlice : kSlice;
   in_slices(source_tree_.leaves.size(), slice, request.cancel, [&](std::size_t first, std::size_t number) {
-    device_.launch(expansions.kernel("points_to_multipoles"), number * parts, far_group(t),
+    device_.launch(expansions.kernel("points_to_multipoles"), number * shape.groups, far_group(t),
                    {as_int(first), *tree.leaf_points, *tree.leaf_nodes, *tree.leaf_centres, *sources_, *values_, narrow(source_stride_),
                     request.order, as_int(stride), as_int(points), multipoles},
-                   (points * (n + 7) + 7 * n) * sizeof(T));
+                   (fixed + points * each) * sizeof(T));
   });
   const MatricesOnDevice& shifts = lists_->child_to_parent();
   const std::size_t apart = shifts.groups->bytes() / sizeof(std::array<std::uint32_t, 4>) / 8;
@@ -191,7 +215,7 @@ void SumOnDevice<T>::far_to_points(const cpu::SumRequest<T>& request, const Targ
     device_.launch(expansions.kernel("locals_to_points"), number, far_group(t),
                    {as_int(first), *tree.leaf_points, *tree.leaf_nodes, *tree.leaf_centres, target_geometry(), *target_data_,
                     narrow(target_stride_), request.order, as_int(cpu::padded_count(n)), width2, locals, *out_},
-                   7 * n * sizeof(T));
+                   n * (down_rows(t) + 2) * sizeof(T));
   });
 }
 

@@ -2,60 +2,74 @@
 // cpu/local_to_points.cpp; docs/math.md, "Expansions".
 //
 // A multipole is made of plain sums of the basis B_b, and its gradients are put together at the end; the value and the gradient of a local
-// are sums of B_b as well, by coefficients that are put together at the beginning. So both are passes of at most four sums over B_b.
+// are sums of B_b as well, which a target makes once for several expansions.
 //
 // The program says: FORM, BATCH (K), LOCAL_WIDTHS.
 #define STOKES_LOCALS 9        // cpu::kStokesLocals
 #define TRANSPOSED_WINDING 8   // cpu::kTransposedWinding
+// What follows says of every form:
+//   TOGETHER: parts of a multipole, of UP_PARTS, that a work-group does with one basis; of doubles one, for want of local memory
+//   FIRST_SUM to SUMS: the sums of a part that are needed
+//   VALUES, GRADIENTS: of how many expansions locals_to_points() needs values, and gradients; FUSED: how many it evaluates at a time
 #if FORM == GREEN
 #define MULTIPOLES BATCH
 #define LOCALS BATCH
 #define CHANNELS BATCH
-#define TARGET_DATA 0
 #define UP_PARTS BATCH
-#define DOWN_PASSES BATCH
+#define TOGETHER (REAL_IS_DOUBLE ? 1 : BATCH % 3 == 0 ? 3 : BATCH)
 #define FIRST_SUM 0
 #define SUMS 4
+#define VALUES BATCH
+#define GRADIENTS 0
+#define FUSED BATCH
 #elif FORM == GREEN_ADJOINT
 #define MULTIPOLES BATCH
 #define LOCALS BATCH
 #define CHANNELS (BATCH + 3)
-#define TARGET_DATA BATCH
 #define UP_PARTS BATCH
-#define DOWN_PASSES BATCH
+#define TOGETHER (REAL_IS_DOUBLE ? 1 : BATCH % 3 == 0 ? 3 : BATCH)
 #define FIRST_SUM 0
 #define SUMS 1
+#define VALUES BATCH
+#define GRADIENTS BATCH
+#define FUSED (BATCH % 3 == 0 ? 3 : BATCH)
 #elif FORM == STOKES_WINDING
 #define MULTIPOLES (8 + LOCAL_WIDTHS)
 #define LOCALS (9 + LOCAL_WIDTHS)
 #define CHANNELS 4
-#define TARGET_DATA 0
 #define UP_PARTS (4 + LOCAL_WIDTHS)
-#define DOWN_PASSES 5
+#define TOGETHER (REAL_IS_DOUBLE ? 1 : UP_PARTS)
 #define FIRST_SUM 0
 #define SUMS 4
+#define VALUES 5
+#define GRADIENTS (4 + LOCAL_WIDTHS)
+#define FUSED 5
 #else
 #define MULTIPOLES 1
 #define LOCALS 1
-#define TARGET_DATA 0
 #define UP_PARTS 1
-#define DOWN_PASSES 1
+#define TOGETHER 1
+#define FUSED 1
 #if FORM == WINDING
 #define CHANNELS 1
 #define FIRST_SUM 1
 #define SUMS 4
+#define VALUES 1
+#define GRADIENTS 0
 #elif FORM == WINDING_ADJOINT
 #define CHANNELS 3
 #define FIRST_SUM 0
 #define SUMS 1
+#define VALUES 0
+#define GRADIENTS 1
 #else
 #define CHANNELS 3
 #define FIRST_SUM 1
 #define SUMS 4
+#define VALUES 0
+#define GRADIENTS 1
 #endif
 #endif
-#define HAS_VALUE (FORM != WINDING_ADJOINT && FORM != WINDING_GRADIENT)
-#define HAS_GRADIENT (FORM != GREEN && FORM != WINDING)
 
 // Index of Re R_l^m (m >= 0) and Im R_l^m (m > 0).
 FUNCTION int real_index(int l, int m) { return l * l + (m == 0 ? 0 : 2 * m - 1); }
@@ -85,8 +99,7 @@ FUNCTION real at(const LOCAL real* s, int l, int m, int imaginary) {
 
 // sum_b (d/dx B_a)_b x_b + (d/dy B_a)_b y_b + (d/dz B_a)_b z_b, B_b of one degree less:
 //   g . grad R_l^m = g_z R_{l-1}^m - (g_x + i g_y)/2 R_{l-1}^{m-1} + (g_x - i g_y)/2 R_{l-1}^{m+1}
-FUNCTION real along_gradient(const LOCAL real* x, const LOCAL real* y, const LOCAL real* z, int a) {
-  const Place p = place_of(a);
+FUNCTION real along_gradient(const LOCAL real* x, const LOCAL real* y, const LOCAL real* z, Place p) {
   const int l = p.l - 1;
   if (l < 0) return 0;
   if (p.m == 0) return at(x, l, 1, 0) + at(y, l, 1, 1) + at(z, l, 0, 0);
@@ -98,26 +111,15 @@ FUNCTION real along_gradient(const LOCAL real* x, const LOCAL real* y, const LOC
   return a_half * (at(x, l, p.m + 1, 1) - at(x, l, p.m - 1, 1)) - a_half * (at(y, l, p.m + 1, 0) + at(y, l, p.m - 1, 0)) + at(z, l, p.m, 1);
 }
 
-// The transposed: coefficient b of the derivative along `axis` of sum_a c_a B_a.
-FUNCTION real derivative(const LOCAL real* c, int order, int axis, Place p) {
-  const int l = p.l + 1;
-  if (l > order) return 0;
-  if (axis == 2) return at(c, l, p.m, p.imaginary);
-  const real a_half = (real)0.5;
-  const real below = p.m == 1 ? (real)1 : a_half;  // of what comes from order 0
-  if (axis == 0) return (p.m > 0 ? below * at(c, l, p.m - 1, p.imaginary) : 0) - a_half * at(c, l, p.m + 1, p.imaginary);
-  if (p.imaginary) return below * at(c, l, p.m - 1, 0) + a_half * at(c, l, p.m + 1, 0);
-  return -a_half * (at(c, l, p.m + 1, 1) + (p.m > 1 ? at(c, l, p.m - 1, 1) : 0));
-}
-
 // R_{l+1}^m = up z R_l^m - down r^2 R_{l-1}^m. The numbers up and down are at 2 (l^2 + m) and after it.
 FUNCTION void make_factors(int order, LOCAL real* factors) {
-  for (int l = ITEM; l <= order; l += GROUP) {
-    for (int m = 0; m <= l; ++m) {
-      const real divisor = (real)((l + 1 + m) * (l + 1 - m));
-      factors[2 * (l * l + m)] = (real)(2 * l + 1) / divisor;
-      factors[2 * (l * l + m) + 1] = (real)1 / divisor;
-    }
+  for (int i = ITEM; i < (order + 1) * (order + 1); i += GROUP) {
+    const int l = place_of(i).l;
+    const int m = i - l * l;
+    if (m > l) continue;
+    const real divisor = (real)((l + 1 + m) * (l + 1 - m));
+    factors[2 * i] = (real)(2 * l + 1) / divisor;
+    factors[2 * i + 1] = (real)1 / divisor;
   }
 }
 
@@ -149,9 +151,9 @@ FUNCTION void source_weights(const GLOBAL real* values, uint stride, int part, r
 // From B_a to B_{a+1} of a tile of `points` points: where items read one point of many a, all are in banks of their own.
 #define PITCH(points) (LANES == 1 ? (points) + 1 : (points))
 
-// B_a of a tile of points: an item does one order m for a vector of points.
-FUNCTION void fill_basis(int order, int points, const LOCAL real* position, const LOCAL real* factors, LOCAL real* basis) {
-  const int vectors = points / LANES;
+// B_a of the first `count` points of a tile, a multiple of LANES: an item does one order m for a vector of points.
+FUNCTION void fill_basis(int order, int count, int points, const LOCAL real* position, const LOCAL real* factors, LOCAL real* basis) {
+  const int vectors = count / LANES;
   for (int i = ITEM; i < (order + 1) * vectors; i += GROUP) {
     const int m = i / vectors;
     const int p = i % vectors * LANES;
@@ -184,88 +186,104 @@ FUNCTION void fill_basis(int order, int points, const LOCAL real* position, cons
   }
 }
 
-// Work-group g does part g % UP_PARTS of the multipoles of source leaf first_leaf + g / UP_PARTS. `points`: of a tile, a multiple of LANES.
-// Geometry and values as in near_field(). Shared: points * (n + 7) + 7 n numbers, n = (order + 1)^2.
+// Work-group g does TOGETHER parts of the multipoles of a source leaf, from first_leaf on. `points`: of a tile, a multiple of LANES.
+// Geometry and values as in near_field(). Shared: points * (n + 3 + TOGETHER * EACH) + n * (3 + TOGETHER * EACH) numbers,
+// n = (order + 1)^2.
+#define EACH (SUMS - FIRST_SUM)
+#define SUM_OF(k, q) ((k) * EACH + (q) - FIRST_SUM)
 KERNEL points_to_multipoles(int first_leaf, const GLOBAL uint2* leaves, const GLOBAL uint* leaf_nodes, const GLOBAL int4* centres,
                             const GLOBAL real* geometry, const GLOBAL real* values, uint field_stride, int order, int stride,
                             int points, GLOBAL real* multipoles SHARED_ARGUMENT) {
   SHARED(shared);
-  const int leaf = first_leaf + GROUP_INDEX / UP_PARTS;
-  const int part = GROUP_INDEX % UP_PARTS;
+  const int leaf = first_leaf + GROUP_INDEX / (UP_PARTS / TOGETHER);
+  const int first_part = GROUP_INDEX % (UP_PARTS / TOGETHER) * TOGETHER;
   const int n = (order + 1) * (order + 1);
-  LOCAL real* basis = shared;                        // n x points
-  LOCAL real* weights = basis + n * PITCH(points);   // 4 x points
-  LOCAL real* position = weights + 4 * points;       // 3 x points, in half sides
-  LOCAL real* sums = position + 3 * points;          // 4 x n
-  LOCAL real* factors = sums + 4 * n;                // 2 x n
+  LOCAL real* basis = shared;                                   // n x points
+  LOCAL real* weights = basis + n * PITCH(points);              // TOGETHER x EACH x points
+  LOCAL real* position = weights + TOGETHER * EACH * points;    // 3 x points, in half sides
+  LOCAL real* sums = position + 3 * points;                     // TOGETHER x EACH x n
+  LOCAL real* factors = sums + TOGETHER * EACH * n;             // 2 x n
   const int count = (int)leaves[leaf].y;
   const uint first_point = leaves[leaf].x;
   const real unit = (real)(1 << centres[leaf].w);  // 1 / half side
-  for (int i = ITEM; i < 4 * n; i += GROUP) sums[i] = 0;
+  for (int i = ITEM; i < TOGETHER * EACH * n; i += GROUP) sums[i] = 0;
   make_factors(order, factors);
   for (int begin = 0; begin < count; begin += points) {
+    const int some = count - begin < points ? (count - begin + LANES - 1) / LANES * LANES : points;
     BARRIER();
-    for (int p = ITEM; p < points; p += GROUP) {
-      real w[4] = {0, 0, 0, 0};
-      real x = 0;
-      real y = 0;
-      real z = 0;
-      if (begin + p < count) {
-        const size_t at_point = first_point + (uint)(begin + p);
-        x = geometry[at_point];
-        y = geometry[field_stride + at_point];
-        z = geometry[2 * (size_t)field_stride + at_point];
-        source_weights(values + at_point, field_stride, part, x, y, z,
-                       LOCAL_WIDTHS ? geometry[3 * (size_t)field_stride * LOCAL_WIDTHS + at_point] : 0, w);
-      }
+    for (int p = ITEM; p < some; p += GROUP) {
+      const int there = begin + p < count;
+      const size_t at_point = first_point + (uint)(there ? begin + p : 0);
+      const real x = there ? geometry[at_point] : 0;
+      const real y = there ? geometry[field_stride + at_point] : 0;
+      const real z = there ? geometry[2 * (size_t)field_stride + at_point] : 0;
+      const real width2 = LOCAL_WIDTHS ? geometry[3 * (size_t)field_stride * LOCAL_WIDTHS + at_point] : 0;
       position[p] = unit * x;
       position[points + p] = unit * y;
       position[2 * points + p] = unit * z;
-      for (int q = 0; q < 4; ++q) weights[q * points + p] = w[q];
+      for (int k = 0; k < TOGETHER; ++k) {
+        real w[4];
+        source_weights(values + at_point, field_stride, first_part + k, x, y, z, width2, w);
+        UNROLL for (int q = FIRST_SUM; q < SUMS; ++q) weights[SUM_OF(k, q) * points + p] = there ? w[q] : 0;
+      }
     }
     BARRIER();
-    fill_basis(order, points, position, factors, basis);
+    fill_basis(order, some, points, position, factors, basis);
     BARRIER();
-    int q = FIRST_SUM;
-    for (int b = ITEM; q < SUMS; b += GROUP) {
-      for (; b >= n; b -= n) ++q;
-      if (q >= SUMS) break;
-      lanes sum = SPLAT(0);
-      for (int p = 0; p < points; p += LANES) sum = FMA(LOAD(basis + b * PITCH(points) + p), LOAD(weights + q * points + p), sum);
-      sums[q * n + b] += sum_of(sum);
+    for (int i = ITEM; i < TOGETHER * n; i += GROUP) {  // what is read of the basis serves all sums of a part
+      const int k = i / n;
+      const int b = i - k * n;
+      lanes sum[EACH];
+      UNROLL for (int q = 0; q < EACH; ++q) sum[q] = SPLAT(0);
+      for (int p = 0; p < some; p += LANES) {
+        const lanes of_point = LOAD(basis + b * PITCH(points) + p);
+        UNROLL for (int q = 0; q < EACH; ++q) sum[q] = FMA(of_point, LOAD(weights + (k * EACH + q) * points + p), sum[q]);
+      }
+      UNROLL for (int q = 0; q < EACH; ++q) sums[(k * EACH + q) * n + b] += sum_of(sum[q]);
     }
   }
   BARRIER();
   GLOBAL real* multipole = multipoles + (size_t)leaf_nodes[leaf] * MULTIPOLES * (size_t)stride;
   for (int a = ITEM; a < stride; a += GROUP) {
     const int within = a < n;
-    real of_gradient = 0;
-    if (SUMS == 4 && within) of_gradient = -unit * along_gradient(sums + n, sums + 2 * n, sums + 3 * n, a);
+    const Place place = place_of(within ? a : 0);
+    for (int k = 0; k < TOGETHER; ++k) {
+      const int part = first_part + k;
+      const LOCAL real* of_part = sums + k * EACH * n;
+      const LOCAL real* x = of_part + (EACH > 1 ? EACH - 3 : 0) * n;
+      const real of_gradient = EACH > 1 && within ? -unit * along_gradient(x, x + n, x + 2 * n, place) : 0;
+      const real value = FIRST_SUM == 0 && within ? of_part[a] : 0;
 #if FORM == STOKES_WINDING
-    const real value = within ? sums[a] : 0;
-    if (part == 0) {
-      multipole[a] = of_gradient;                                                               // W
-      for (int k = 1; k < 4; ++k) multipole[(3 + k) * stride + a] = within ? sums[k * n + a] : 0;  // P_k
-      multipole[7 * stride + a] = value;                                                        // Q
-    } else if (part < 4) {
-      multipole[part * stride + a] = value + of_gradient;  // E_a
-    } else {
-      multipole[8 * stride + a] = of_gradient;  // W of width^2 eta
-    }
+      if (part == 0) {
+        multipole[a] = of_gradient;                                                              // W
+        for (int c = 1; c < 4; ++c) multipole[(3 + c) * stride + a] = within ? of_part[c * n + a] : 0;  // P_c
+        multipole[7 * stride + a] = value;                                                       // Q
+      } else if (part < 4) {
+        multipole[part * stride + a] = value + of_gradient;  // E_a
+      } else {
+        multipole[8 * stride + a] = of_gradient;  // W of width^2 eta
+      }
 #else
-    multipole[part * stride + a] = (FIRST_SUM == 0 && within ? sums[a] : 0) + of_gradient;
+      multipole[part * stride + a] = value + of_gradient;
 #endif
+    }
   }
 }
 
-// sum_b of four expansions, n apart in `c`, at one vector of points: value and gradient.
+// Of FUSED expansions at one vector of points.
 typedef struct {
-  lanes value, x, y, z;
+  lanes value[FUSED], x[FUSED], y[FUSED], z[FUSED];
 } Evaluated;
+#define FUSED_VALUES (VALUES < FUSED ? VALUES : FUSED)
+#define FUSED_GRADIENTS (GRADIENTS < FUSED ? GRADIENTS : FUSED)
 
-FUNCTION Evaluated evaluate(const LOCAL real* c, const LOCAL real* factors, int n, int order, lanes x, lanes y, lanes z) {
-  Evaluated e;
-  e.value = e.x = e.y = e.z = SPLAT(0);
+// sum_a v_a B_a and sum_a g_a grad B_a. `values`: VALUES numbers for every a, of which the first FUSED are used; so `gradients`. The gradient
+// is a sum of B_b of one degree less, by coefficients of their neighbours:
+//   d/dx: c_{l+1}^{m-1} / 2 - c_{l+1}^{m+1} / 2    d/dy: the same, turned by i, with a sum    d/dz: c_{l+1}^m
+// where that of order 0 counts twice.
+FUNCTION void evaluate(const LOCAL real* values, const LOCAL real* gradients, const LOCAL real* factors, int order, lanes x, lanes y, lanes z,
+                       Evaluated* e) {
+  UNROLL for (int k = 0; k < FUSED; ++k) e->value[k] = e->x[k] = e->y[k] = e->z[k] = SPLAT(0);
   const lanes r2 = FMA(x, x, FMA(y, y, z * z));
   lanes re_diagonal = SPLAT(1);
   lanes im_diagonal = SPLAT(0);
@@ -276,21 +294,29 @@ FUNCTION Evaluated evaluate(const LOCAL real* c, const LOCAL real* factors, int 
       im_diagonal = scale * FMA(x, im_diagonal, y * re_diagonal);
       re_diagonal = next;
     }
+    const real twice = m == 0 ? 0 : (m == 1 ? 2 : 1);
+    const real once = m > 1 ? 1 : 0;
     lanes re = re_diagonal;
     lanes im = im_diagonal;
     lanes re_below = SPLAT(0);
     lanes im_below = SPLAT(0);
     for (int l = m; l <= order; ++l) {
-      const LOCAL real* at_re = c + real_index(l, m);
-      const LOCAL real* at_im = m > 0 ? at_re + 1 : at_re;  // times 0 for m = 0
-#if HAS_VALUE
-      e.value = FMA(SPLAT(at_re[0]), re, FMA(SPLAT(at_im[0]), im, e.value));
-#endif
-#if HAS_GRADIENT
-      e.x = FMA(SPLAT(at_re[n]), re, FMA(SPLAT(at_im[n]), im, e.x));
-      e.y = FMA(SPLAT(at_re[2 * n]), re, FMA(SPLAT(at_im[2 * n]), im, e.y));
-      e.z = FMA(SPLAT(at_re[3 * n]), re, FMA(SPLAT(at_im[3 * n]), im, e.z));
-#endif
+      const LOCAL real* v = values + real_index(l, m) * VALUES;
+      const LOCAL real* v_im = m > 0 ? v + VALUES : v;  // times 0 for m = 0
+      UNROLL for (int k = 0; k < FUSED_VALUES; ++k) e->value[k] = FMA(SPLAT(v[k]), re, FMA(SPLAT(v_im[k]), im, e->value[k]));
+      if (GRADIENTS > 0 && l < order) {
+        const LOCAL real* same = gradients + real_index(l + 1, m) * GRADIENTS;
+        const LOCAL real* same_im = m > 0 ? same + GRADIENTS : same;
+        const LOCAL real* more = gradients + real_index(l + 1, m + 1) * GRADIENTS;
+        const LOCAL real* more_im = more + GRADIENTS;
+        const LOCAL real* less = gradients + real_index(l + 1, m > 0 ? m - 1 : 0) * GRADIENTS;
+        const LOCAL real* less_im = m > 1 ? less + GRADIENTS : less;
+        UNROLL for (int k = 0; k < FUSED_GRADIENTS; ++k) {
+          e->x[k] = FMA(SPLAT(FMA(twice, less[k], -more[k])), re, FMA(SPLAT(FMA(once, less_im[k], -more_im[k])), im, e->x[k]));
+          e->y[k] = FMA(SPLAT(-FMA(once, less_im[k], more_im[k])), re, FMA(SPLAT(FMA(twice, less[k], more[k])), im, e->y[k]));
+          e->z[k] = FMA(SPLAT(same[k]), re, FMA(SPLAT(same_im[k]), im, e->z[k]));
+        }
+      }
       const lanes up = SPLAT(factors[2 * (l * l + m)]) * z;
       const lanes down = SPLAT(factors[2 * (l * l + m) + 1]) * r2;
       const lanes re_next = FMA(-down, re_below, up * re);
@@ -301,133 +327,126 @@ FUNCTION Evaluated evaluate(const LOCAL real* c, const LOCAL real* factors, int 
       im = im_next;
     }
   }
-  return e;
+  UNROLL for (int k = 0; k < FUSED_GRADIENTS; ++k) {
+    e->x[k] *= SPLAT((real)0.5);
+    e->y[k] *= SPLAT((real)0.5);
+  }
 }
 
-// The expansions whose value and gradient a pass needs. Those of S, docs/math.md, "The Stokes far field":
-//   0: value W of all pairs, gradient Q - e^2 W (local widths: Q - half of the W of e^2 eta)
-//   1..3: value E_a + P_a, gradient P_a      4: value W of the pairs that use E, gradient W of all pairs (local widths)
-FUNCTION real value_coefficient(const GLOBAL real* local_, int stride, int pass, int a) {
+// The expansions whose values and gradients make the sums. Those of S, docs/math.md, "The Stokes far field":
+//   values 0: W of all pairs    1..3: E_a + P_a    4: W of the pairs that use E
+//   gradients 0: Q - e^2 W (local widths: Q - half of the W of e^2 eta)    1..3: P_a    4, with local widths: W of all pairs
+FUNCTION real value_coefficient(const GLOBAL real* local_, int stride, int k, int a) {
 #if FORM == STOKES_WINDING
-  if (pass == 0) return local_[a] + local_[TRANSPOSED_WINDING * stride + a];
-  if (pass < 4) return local_[pass * stride + a] + local_[(3 + pass) * stride + a];
+  if (k == 0) return local_[a] + local_[TRANSPOSED_WINDING * stride + a];
+  if (k < 4) return local_[k * stride + a] + local_[(3 + k) * stride + a];
   return local_[a];
 #else
-  return local_[pass * stride + a];
+  return local_[k * stride + a];
 #endif
 }
-FUNCTION real gradient_coefficient(const GLOBAL real* local_, int stride, int pass, real uniform_width2, int a) {
+FUNCTION real gradient_coefficient(const GLOBAL real* local_, int stride, int k, real uniform_width2, int a) {
 #if FORM == STOKES_WINDING
   const real all = local_[a] + local_[TRANSPOSED_WINDING * stride + a];
-  if (pass == 0) {
+  if (k == 0) {
     return FMA(LOCAL_WIDTHS ? (real)-0.5 : -uniform_width2, LOCAL_WIDTHS ? local_[STOKES_LOCALS * stride * LOCAL_WIDTHS + a] : all,
                local_[7 * stride + a]);
   }
-  if (pass < 4) return local_[(3 + pass) * stride + a];
-  return LOCAL_WIDTHS ? all : 0;
+  return k < 4 ? local_[(3 + k) * stride + a] : all;
 #else
-  return local_[pass * stride + a];
+  return local_[k * stride + a];
 #endif
 }
 
-// Adds what a pass contributes at one vector of targets to the channels of the result.
-FUNCTION void add_pass(int pass, Evaluated e, real unit, lanes x, lanes y, lanes z, lanes width2, const GLOBAL real* data, lanes* out) {
-  const lanes value = SPLAT(unit) * e.value;
-  const lanes gx = SPLAT(unit * unit) * e.x;
-  const lanes gy = SPLAT(unit * unit) * e.y;
-  const lanes gz = SPLAT(unit * unit) * e.z;
-#if FORM == GREEN || FORM == WINDING
-  out[0] = value;
-#elif FORM == GREEN_ADJOINT
-  const lanes u = LOAD(data);
-  UNROLL for (int k = 0; k < BATCH; ++k) out[k] = k == pass ? value : out[k];
-  out[BATCH] = FMA(u, gx, out[BATCH]);
-  out[BATCH + 1] = FMA(u, gy, out[BATCH + 1]);
-  out[BATCH + 2] = FMA(u, gz, out[BATCH + 2]);
-#elif FORM == WINDING_ADJOINT
-  out[0] = gx;
-  out[1] = gy;
-  out[2] = gz;
-#elif FORM == WINDING_GRADIENT
-  out[0] = -gx;
-  out[1] = -gy;
-  out[2] = -gz;
+// Adds to channel c of the first `count` of a vector of targets.
+FUNCTION void add_to(GLOBAL real* out, size_t at, int count, int c, lanes value) {
+#if LANES == 1
+  out[(at / BLOCK * CHANNELS + (size_t)c) * BLOCK + at % BLOCK] += value;
 #else
-  lanes along = SPLAT(1);
-  if (pass == 0) {
-    out[3] = value;
-  } else if (pass < 4) {
-    along = -(pass == 1 ? x : (pass == 2 ? y : z));
-    out[0] += pass == 1 ? value : SPLAT(0);
-    out[1] += pass == 2 ? value : SPLAT(0);
-    out[2] += pass == 3 ? value : SPLAT(0);
-  } else {
-    along = SPLAT((real)-0.5) * width2;
-    out[0] = FMA(-x, value, out[0]);
-    out[1] = FMA(-y, value, out[1]);
-    out[2] = FMA(-z, value, out[2]);
+  real one[LANES];
+  STORE(value, one);
+  for (int i = 0; i < LANES && i < count; ++i) {
+    out[((at + (size_t)i) / BLOCK * CHANNELS + (size_t)c) * BLOCK + (at + (size_t)i) % BLOCK] += one[i];
   }
-  out[0] = FMA(along, gx, out[0]);
-  out[1] = FMA(along, gy, out[1]);
-  out[2] = FMA(along, gz, out[2]);
 #endif
 }
 
 // Work-group g does target leaf first_leaf + g and adds to out: blocks x CHANNELS x BLOCK. Leaves, targets and their data as in near_field().
-// Shared: 7 n numbers.
+// Shared: n * (ROWS + 2) numbers.
+#if FORM == STOKES_WINDING
+#define ROWS (VALUES + GRADIENTS)
+#else
+#define ROWS (VALUES > 0 ? VALUES : GRADIENTS)  // values and gradients are of the same expansions
+#endif
 KERNEL locals_to_points(int first_leaf, const GLOBAL uint2* leaves, const GLOBAL uint* leaf_nodes, const GLOBAL int4* centres,
                         const GLOBAL real* targets_, const GLOBAL real* target_data, uint target_stride, int order, int stride,
                         real uniform_width2, const GLOBAL real* locals, GLOBAL real* out SHARED_ARGUMENT) {
   SHARED(shared);
   const int leaf = first_leaf + GROUP_INDEX;
   const int n = (order + 1) * (order + 1);
-  LOCAL real* coefficients = shared;    // 4 x n
-  LOCAL real* combined = shared + 4 * n;
-  LOCAL real* factors = shared + 5 * n;  // 2 x n
+  LOCAL real* values = shared;  // for every a
+  LOCAL real* gradients = FORM == STOKES_WINDING ? values + VALUES * n : values;
+  LOCAL real* factors = shared + ROWS * n;  // 2 x n
   const int count = (int)leaves[leaf].y;
   const real unit = (real)(1 << centres[leaf].w);
   const GLOBAL real* local_ = locals + (size_t)leaf_nodes[leaf] * LOCALS * (size_t)stride;
   make_factors(order, factors);
-  for (int begin = 0; begin < count; begin += GROUP * LANES) {
-    const int target = begin + ITEM * LANES;
-    const int last = (count - 1) / LANES * LANES;
-    const size_t at = leaves[leaf].x + (uint)(target < last ? target : last);
+  for (int a = ITEM; a < n; a += GROUP) {
+    UNROLL for (int k = 0; k < VALUES; ++k) values[a * VALUES + k] = value_coefficient(local_, stride, k, a);
+    UNROLL for (int k = 0; k < ROWS - VALUES; ++k) gradients[a * GRADIENTS + k] = gradient_coefficient(local_, stride, k, uniform_width2, a);
+  }
+  BARRIER();
+  for (int target = ITEM * LANES; target < count; target += GROUP * LANES) {
+    const int left = count - target;
+    const size_t at = leaves[leaf].x + (uint)target;
     const lanes x = LOAD(targets_ + at);
     const lanes y = LOAD(targets_ + target_stride + at);
     const lanes z = LOAD(targets_ + 2 * (size_t)target_stride + at);
-    const lanes width2 = LOCAL_WIDTHS ? LOAD(targets_ + 3 * (size_t)target_stride * LOCAL_WIDTHS + at) : SPLAT(0);
-    lanes sum[CHANNELS];
-    UNROLL for (int c = 0; c < CHANNELS; ++c) sum[c] = SPLAT(0);
-    for (int pass = 0; pass < DOWN_PASSES; ++pass) {
-      BARRIER();
-      for (int a = ITEM; a < n; a += GROUP) {
-        coefficients[a] = value_coefficient(local_, stride, pass, a);
-        combined[a] = gradient_coefficient(local_, stride, pass, uniform_width2, a);
-      }
-      BARRIER();
-#if HAS_GRADIENT
-      for (int b = ITEM; b < n; b += GROUP) {
-        const Place p = place_of(b);
-        UNROLL for (int axis = 0; axis < 3; ++axis) coefficients[(1 + axis) * n + b] = derivative(combined, order, axis, p);
-      }
-      BARRIER();
+    lanes gx = SPLAT(0);
+    lanes gy = SPLAT(0);
+    lanes gz = SPLAT(0);
+    for (int first = 0; first < (VALUES > GRADIENTS ? VALUES : GRADIENTS); first += FUSED) {
+      Evaluated e;
+      evaluate(values + first, gradients + first, factors, order, SPLAT(unit) * x, SPLAT(unit) * y, SPLAT(unit) * z, &e);
+#if FORM == GREEN || FORM == GREEN_ADJOINT || FORM == WINDING
+      UNROLL for (int k = 0; k < FUSED; ++k) add_to(out, at, left, first + k, SPLAT(unit) * e.value[k]);
 #endif
-      const Evaluated e = evaluate(coefficients, factors, n, order, SPLAT(unit) * x, SPLAT(unit) * y, SPLAT(unit) * z);
-      const GLOBAL real* data = target_data + (size_t)pass * target_stride + at;
-#if FORM == GREEN
-      lanes one[1];
-      add_pass(pass, e, unit, x, y, z, width2, data, one);
-      UNROLL for (int k = 0; k < BATCH; ++k) sum[k] = k == pass ? one[0] : sum[k];
-#else
-      add_pass(pass, e, unit, x, y, z, width2, data, sum);
+#if FORM == GREEN_ADJOINT
+      UNROLL for (int k = 0; k < FUSED; ++k) {
+        const lanes u = LOAD(target_data + (size_t)(first + k) * target_stride + at);
+        gx = FMA(u, e.x[k], gx);
+        gy = FMA(u, e.y[k], gy);
+        gz = FMA(u, e.z[k], gz);
+      }
+#elif FORM == WINDING_ADJOINT
+      gx = e.x[0];
+      gy = e.y[0];
+      gz = e.z[0];
+#elif FORM == WINDING_GRADIENT
+      gx = -e.x[0];
+      gy = -e.y[0];
+      gz = -e.z[0];
+#elif FORM == STOKES_WINDING
+      gx = FMA(-x, e.x[1], FMA(-y, e.x[2], FMA(-z, e.x[3], e.x[0])));
+      gy = FMA(-x, e.y[1], FMA(-y, e.y[2], FMA(-z, e.y[3], e.y[0])));
+      gz = FMA(-x, e.z[1], FMA(-y, e.z[2], FMA(-z, e.z[3], e.z[0])));
+#if LOCAL_WIDTHS
+      const lanes half_width2 = SPLAT((real)-0.5) * LOAD(targets_ + 3 * (size_t)target_stride + at);
+      gx = FMA(half_width2, e.x[4], gx);
+      gy = FMA(half_width2, e.y[4], gy);
+      gz = FMA(half_width2, e.z[4], gz);
+#endif
+      const lanes scale = SPLAT(unit);  // of a value; a gradient has it twice
+      add_to(out, at, left, 0, scale * FMA(scale, gx, FMA(-x, e.value[4], e.value[1])));
+      add_to(out, at, left, 1, scale * FMA(scale, gy, FMA(-y, e.value[4], e.value[2])));
+      add_to(out, at, left, 2, scale * FMA(scale, gz, FMA(-z, e.value[4], e.value[3])));
+      add_to(out, at, left, 3, scale * e.value[0]);
 #endif
     }
-    UNROLL for (int c = 0; c < CHANNELS; ++c) {
-      real one[LANES];
-      STORE(sum[c], one);
-      for (int i = 0; i < LANES && target + i < count; ++i) {
-        out[((at + (size_t)i) / BLOCK * CHANNELS + (size_t)c) * BLOCK + (at + (size_t)i) % BLOCK] += one[i];
-      }
-    }
+#if FORM == GREEN_ADJOINT || FORM == WINDING_ADJOINT || FORM == WINDING_GRADIENT
+    add_to(out, at, left, CHANNELS - 3, SPLAT(unit * unit) * gx);
+    add_to(out, at, left, CHANNELS - 2, SPLAT(unit * unit) * gy);
+    add_to(out, at, left, CHANNELS - 1, SPLAT(unit * unit) * gz);
+#endif
   }
 }

@@ -133,10 +133,11 @@ FUNCTION int target_expansion(int c, int moved, int transposed) {
 #endif
 }
 
-// Coefficient j of all expansions.
+// Coefficient j of all expansions, before VALUE_OF(c) is one of them; a processor has each from where it is.
+#if LANES == 1
 FUNCTION void load_packed(const LOCAL real* from, int j, int stride, int moved, real* value) {
-#if MOST_MOVED == 1 || LANES > 1
-  UNROLL for (int c = 0; c < moved; ++c) value[c] = from[PACKED_AT(c, j, stride)];
+#if MOST_MOVED == 1
+  value[0] = from[j];
 #else
   UNROLL for (int c = 0; c < PACKED; c += 4) {
     if (c < moved) {
@@ -149,6 +150,11 @@ FUNCTION void load_packed(const LOCAL real* from, int j, int stride, int moved, 
   }
 #endif
 }
+#define VALUE_OF(c) value[c]
+#else
+#define load_packed(from, j, stride, moved, value)
+#define VALUE_OF(c) from[PACKED_AT(c, j + k, stride)]
+#endif
 
 // locals of the target += D K D multipoles of the source, D the signs of the pair's mirror image, for LANES rows at `lane` of the groups of
 // rows [first_group, first_group + ROW_GROUPS), of which there are `row_groups`.
@@ -182,7 +188,7 @@ FUNCTION void add_pair(const GLOBAL real* matrices, const GLOBAL uint4* groups, 
       real value[PACKED];
       load_packed(from, j + k, stride, moved, value);
       UNROLL for (int g = 0; g < ROW_GROUPS; ++g) {
-        UNROLL for (int c = 0; c < moved; ++c) sum[g][c] = FMA(entry[g][k], SPLAT(value[c]), sum[g][c]);
+        UNROLL for (int c = 0; c < moved; ++c) sum[g][c] = FMA(entry[g][k], SPLAT(VALUE_OF(c)), sum[g][c]);
       }
     }
   }
