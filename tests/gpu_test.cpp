@@ -492,6 +492,20 @@ TEST(Gpu, AutoTakesNoSoftwareAndAMissingNumberIsUnavailable) {
   EXPECT_EQ(gpu::Scope::current(), shared);
 }
 
+TEST(Gpu, ADeviceThatFailedIsNotKeptForTheNextCall) {
+  constexpr std::size_t kCall = 100;  // points
+  const gpu::DeviceInfo info = gpu::list_devices().at(0);
+  while (gpu::take_kept_device(info) != nullptr) continue;  // of other tests
+  { const gpu::Lease lease("gpu:0", kCall); }
+  EXPECT_NE(gpu::take_kept_device(info), nullptr);
+  {
+    const gpu::Lease lease("gpu:0", kCall);
+    EXPECT_THROW(lease.execution()->fail("the device was lost"), Unavailable);
+    EXPECT_TRUE(lease.execution()->usable(false)) << "the processor took over from a device that was asked for";
+  }
+  EXPECT_EQ(gpu::take_kept_device(info), nullptr);
+}
+
 TEST(Gpu, WhatDoesNotCompileOrFitIsAnErrorThatSaysSo) {
   gpu::Device& device = execution()->device();
   const std::unique_lock lock = device.lock();

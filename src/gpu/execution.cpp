@@ -18,6 +18,7 @@ Placed::~Placed() { current_execution = std::move(before_); }
 
 void Execution::fail(const std::string& why) {
   const std::string text = device_->info().name + ": " + why;
+  sound_ = false;
   if (required_) throw Unavailable(text + "; without --device gpu the processor does the work");
   if (failed_) return;
   failure_ = text;

@@ -26,6 +26,8 @@ class Execution {
   [[nodiscard]] double seconds() const { return seconds_; }
   /// Takes note that the device has failed; its lock is held. Throws Unavailable if it was required.
   void fail(const std::string& why);
+  /// Whether the device has never failed, required or not: another call may use it.
+  [[nodiscard]] bool sound() const { return sound_; }
   /// Why the processor took over; empty if it did not.
   [[nodiscard]] std::string failure() const { return failed_ ? failure_ : std::string(); }
 
@@ -34,6 +36,7 @@ class Execution {
   bool required_;
   std::string failure_;  // not read before failed_ is set, nor changed after
   std::atomic<bool> failed_ = false;
+  std::atomic<bool> sound_ = true;
   std::atomic<double> seconds_ = 0;
 };
 

@@ -152,7 +152,7 @@ Lease::Lease(const std::string& request, std::size_t points) {
 }
 
 Lease::~Lease() {
-  if (execution_ != nullptr && execution_->failure().empty()) keep_device(execution_->shared_device());
+  if (execution_ != nullptr && execution_->sound()) keep_device(execution_->shared_device());
 }
 
 Scope::Scope(const std::string& request, std::size_t points)
