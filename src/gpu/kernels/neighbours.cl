@@ -2,15 +2,15 @@
 // same bytes, and those as far come by their index, so that the result is the same whatever the order of the search.
 //
 // The program says: K, LEAF (points of a leaf), MOST_DEPTH (of the tree).
-#ifdef __OPENCL_VERSION__
+#if defined(__CUDACC__) || defined(__HIPCC__)
+#define ADD(a, b) __dadd_rn(a, b)
+#define MULTIPLY(a, b) __dmul_rn(a, b)
+#define NO_DISTANCE __longlong_as_double(0x7ff0000000000000LL)
+#else
 #pragma OPENCL FP_CONTRACT OFF
 #define ADD(a, b) ((a) + (b))
 #define MULTIPLY(a, b) ((a) * (b))
 #define NO_DISTANCE ((double)INFINITY)
-#else
-#define ADD(a, b) __dadd_rn(a, b)
-#define MULTIPLY(a, b) __dmul_rn(a, b)
-#define NO_DISTANCE __longlong_as_double(0x7ff0000000000000LL)
 #endif
 #define NO_POINT 0xFFFFFFFFu
 

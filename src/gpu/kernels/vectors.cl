@@ -3,7 +3,7 @@
 // products of solve/energy_system.cpp and solve/green_system.cpp.
 //
 // The program says: DOT_BLOCK, INV_4_PI. With `rooted` 0 every root is 1, and `roots` is not read.
-#ifdef __OPENCL_VERSION__
+#if !defined(__CUDACC__) && !defined(__HIPCC__)
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #endif
 #define INDEX ((uint)GROUP_INDEX * GROUP + (uint)ITEM)
