@@ -322,6 +322,42 @@ TEST(Gpu, SolvesWithVectorsThatStayThereAreThoseInMemory) {
   }
 }
 
+// A software device as if it were a GPU: groups, tiles and layouts of GPUs, which nothing else runs where there is none.
+TEST(Gpu, KernelsInTheShapeForGpusComputeTheSameOnAProcessor) {
+  if (kSanitized) GTEST_SKIP() << "takes minutes";
+  gpu::DeviceInfo info = gpu::list_devices().at(0);
+  if (!info.software) GTEST_SKIP() << "all other tests are of that shape";
+  info.software = false;
+  info.lanes_float = info.lanes_double = 1;
+  const auto as_gpu = std::make_shared<gpu::Execution>(gpu::open_device(info), true);
+  const std::vector<Vec3> points = unit_points(shapes::torus(kPoints, 0.6, 0.25, 3).points);
+  Random random(5);
+  std::vector<double> local(kPoints);
+  for (double& w : local) w = random.uniform(0.3, 0.4) * spacing_of(points);
+  const Inputs of_one_width = of_harmonics(1, points, Widths(0.4 * spacing_of(points)));
+  SumPlan rough = sum_plan(1e-2, kPoints);
+  const Sums expected_sums = fast_sums(of_one_width, rough);
+  rough.execution = as_gpu;
+  EXPECT_LE(worst_error(fast_sums(of_one_width, rough), expected_sums), 0.5e-2);
+  SumPlan plan = sum_plan(1e-6, kPoints);
+  const Inputs in(points, Widths(local));
+  FastSum processor(points, in.widths, plan);
+  plan.execution = as_gpu;
+  FastSum there(points, in.widths, plan);
+  std::vector<std::vector<Vec3>> s(2);
+  std::vector<std::vector<double>> w(2);
+  processor.stokes_winding(in.eta, s[0], w[0]);
+  there.stokes_winding(in.eta, s[1], w[1]);
+  EXPECT_LE(relative_error(s[1], s[0]), kRoundingDouble);
+  EXPECT_LE(relative_error(w[1], w[0]), kRoundingDouble);
+  EXPECT_LE(relative_error(there.winding_adjoint(in.q1), processor.winding_adjoint(in.q1)), kRoundingDouble);
+  const Neighbours tree(points);
+  const std::vector<std::uint32_t> expected = tree.of_all(17);
+  const gpu::Placed placed(as_gpu);
+  EXPECT_EQ(tree.of_all(17), expected);
+  EXPECT_EQ(as_gpu->failure(), "");
+}
+
 // The first device as if it had less memory.
 std::shared_ptr<gpu::Execution> with_memory(std::size_t bytes) {
   gpu::DeviceInfo info = gpu::list_devices().at(0);
