@@ -20,11 +20,20 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <set>
+#include <thread>
+
+#ifndef G3R_SERIAL
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#endif
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -112,6 +121,8 @@ class FailingDevice : public gpu::Device {
   std::size_t launches_;
   bool compiles_;
 };
+
+void sleep_some(int i) { std::this_thread::sleep_for(std::chrono::microseconds(100 + i * 7919 % 3000)); }
 
 constexpr std::size_t kPoints = 3000;
 constexpr std::size_t kPlenty = 1000;  // buffers; a sum takes fewer
@@ -243,6 +254,33 @@ TEST(GpuFailures, ARequiredDeviceThatFailsIsUnavailable) {
   }
   EXPECT_EQ(device->alive, 0U);
 }
+
+#ifndef G3R_SERIAL
+// In loops of a caller, whose other tasks may want the device that a task has: a thread that took one up would wait for itself.
+TEST(GpuFailures, WhoHasADeviceAloneTakesUpNothingElse) {
+  constexpr int kThreads = 6;  // more than there may be cores: idle ones take up what the others' loops have left
+  constexpr int kTasks = 300;
+  static thread_local bool has_it = false;
+  FailingDevice device(kPlenty);
+  std::atomic<int> took_up = 0;
+  std::atomic<int> done = 0;
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, kThreads);
+  tbb::task_arena(kThreads).execute([&] {
+    tbb::parallel_for(0, kTasks, [&](int i) {
+      took_up += has_it ? 1 : 0;
+      if (has_it || i % 3 != 0) return sleep_some(i);
+      device.alone([&] {
+        has_it = true;
+        parallel::for_each(16, [](std::size_t) { sleep_some(0); });
+        has_it = false;
+        ++done;
+      });
+    });
+  });
+  EXPECT_EQ(took_up, 0);
+  EXPECT_EQ(done, kTasks / 3);
+}
+#endif
 
 TEST(GpuFailures, WordsThatNameNoDeviceAreInvalid) {
   const std::vector<Vec3> points = shapes::sphere(100).points;

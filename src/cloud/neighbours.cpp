@@ -4,7 +4,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <mutex>
 #include <numeric>
 #include <utility>
 
@@ -221,17 +220,18 @@ struct Neighbours::Tree {
     std::vector<double> cuts_there;
     cuts_there.reserve(3 * cuts.size());
     for (const Cut& c : cuts) cuts_there.insert(cuts_there.end(), {c.before, c.after, static_cast<double>(c.axis)});
-    const std::unique_lock lock = execution->device().lock();
-    try {
-      const auto start = std::chrono::steady_clock::now();
-      std::vector<std::uint32_t> found = gpu::nearest_of_all(execution->device(), {kLeaf, places, order, cuts_there}, k);
-      execution->add_seconds(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-      return found;
-    } catch (const gpu::OutOfMemory&) {  // the sums may fit, in parts
-    } catch (const gpu::DeviceError& error) {
-      execution->fail(error.what());
-    }
-    return {};
+    std::vector<std::uint32_t> found;
+    execution->device().alone([&] {
+      try {
+        const auto start = std::chrono::steady_clock::now();
+        found = gpu::nearest_of_all(execution->device(), {kLeaf, places, order, cuts_there}, k);
+        execution->add_seconds(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+      } catch (const gpu::OutOfMemory&) {  // the sums may fit, in parts
+      } catch (const gpu::DeviceError& error) {
+        execution->fail(error.what());
+      }
+    });
+    return found;
   }
 
   // Shows `found` every point that is no farther from x than it still looks, and some others.

@@ -2,11 +2,15 @@
 // addition as with threads, and therefore the same bytes.
 #include "cpu/parallel.h"
 
+#include "cpu/parallel_apart.h"
+
 namespace g3r::parallel {
 
 int thread_count(int /*threads*/) { return 1; }
 
 void run_with_threads(int /*threads*/, FunctionRef<> work) { work(); }
+
+void apart(FunctionRef<> work) { work(); }
 
 void for_ranges(std::size_t count, FunctionRef<std::size_t, std::size_t> body) { body(0, count); }
 

@@ -1,6 +1,8 @@
 // Loops on oneTBB: the back end with threads. Beside cpu/parallel_sort.h the only file that names that library.
 #include "cpu/parallel.h"
 
+#include "cpu/parallel_apart.h"
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -104,6 +106,10 @@ void run_with_threads(int threads, FunctionRef<> work) {
   };
   const Loan loan(thread_count(threads));
   loan.arena->execute([&] { work(); });
+}
+
+void apart(FunctionRef<> work) {
+  tbb::this_task_arena::isolate([&] { work(); });
 }
 
 void for_ranges(std::size_t count, FunctionRef<std::size_t, std::size_t> body) {

@@ -2,6 +2,7 @@
 
 #include "base/platform.h"
 #include "cpu/parallel.h"
+#include "cpu/parallel_apart.h"
 #include "gpu/cuda.h"
 #include "gpu/opencl.h"
 
@@ -28,6 +29,13 @@ std::array<std::atomic<Kept*>, kKeptDevices>& kept_devices() {
 }
 
 }  // namespace
+
+void Device::alone(parallel::FunctionRef<> work) {
+  parallel::apart([&] {
+    const std::unique_lock lock(mutex_);
+    work();
+  });
+}
 
 std::unique_ptr<Buffer> Device::allocate(std::size_t bytes) {
   const std::size_t held = held_->now;

@@ -4,6 +4,8 @@
 // that are open at the same time.
 #pragma once
 
+#include "cpu/parallel.h"
+
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -117,12 +119,13 @@ struct Argument {
   }
 };
 
-/// A device in use. Work is done in the order it was asked for. Calls must not overlap: hold lock().
+/// A device in use. Work is done in the order it was asked for. Calls must not overlap: make them within alone().
 class Device {
  public:
   virtual ~Device() = default;
   [[nodiscard]] const DeviceInfo& info() const { return info_; }
-  [[nodiscard]] std::unique_lock<std::mutex> lock() { return std::unique_lock(mutex_); }
+  /// Runs work() while no other thread has the device to itself; it may run loops, but must not call alone() of this device.
+  void alone(parallel::FunctionRef<> work);
   /// Whether sums and products of doubles have the bytes of the processor's, so far as is known: neighbours rely on it.
   [[nodiscard]] bool rounds_alike() const { return info_.doubles && rounds_alike_; }
   void set_rounds_alike(bool alike) { rounds_alike_ = alike; }

@@ -24,7 +24,7 @@ class Execution {
   /// Adds the time of a piece of work; seconds() is that of all.
   void add_seconds(double seconds) { seconds_ = seconds_ + seconds; }
   [[nodiscard]] double seconds() const { return seconds_; }
-  /// Takes note that the device has failed; its lock is held. Throws Unavailable if it was required.
+  /// Takes note that the device has failed, within its alone(). Throws Unavailable if it was required.
   void fail(const std::string& why);
   /// Whether the device has never failed, required or not: another call may use it.
   [[nodiscard]] bool sound() const { return sound_; }

@@ -18,8 +18,8 @@ struct SearchTree {
   const std::vector<double>& cuts;          ///< of every inner node: the last point before the cut, the first one after it, its axis
 };
 
-/// For every point the k nearest, nearest first, those as far by their index: N x k, row-major. 0 < k <= N. Callers hold the device's lock,
-/// and it has doubles. Throws DeviceError; takes 28 + 4 k bytes a point there.
+/// For every point the k nearest, nearest first, those as far by their index: N x k, row-major. 0 < k <= N. Within alone() of the device,
+/// which has doubles. Throws DeviceError; takes 28 + 4 k bytes a point there.
 [[nodiscard]] std::vector<std::uint32_t> nearest_of_all(Device& device, const SearchTree& tree, std::size_t k);
 
 }  // namespace g3r::gpu

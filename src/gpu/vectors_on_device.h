@@ -12,8 +12,8 @@
 
 namespace g3r::gpu {
 
-/// Vectors of N x 3 doubles, by number, and the roots sqrt(m_i) of the points. For sums in T; the device has doubles. Callers hold its
-/// lock. Every function throws DeviceError.
+/// Vectors of N x 3 doubles, by number, and the roots sqrt(m_i) of the points. For sums in T; the device has doubles. All within
+/// alone() of the device. Every function throws DeviceError.
 template <class T>
 class VectorsOnDevice {
  public:

@@ -5,7 +5,6 @@
 #include "sum/sum_operators.h"
 
 #include <chrono>
-#include <mutex>
 #include <utility>
 
 namespace g3r {
@@ -54,10 +53,11 @@ class VectorsThere : public SolveVectors {
   template <class Work>
   void on_device(const Work& work) {
     try {
-      const std::unique_lock lock = execution_->device().lock();
-      const auto start = std::chrono::steady_clock::now();
-      work();
-      execution_->add_seconds(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+      execution_->device().alone([&] {
+        const auto start = std::chrono::steady_clock::now();
+        work();
+        execution_->add_seconds(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+      });
     } catch (const gpu::DeviceError& error) {
       throw VectorsLost(error.what());
     }
@@ -124,12 +124,13 @@ template <class T, class Work>
 std::unique_ptr<SolveVectors> made_there(const SumEngine<T>& engine, const Work& work) {
   const std::shared_ptr<gpu::Execution> execution = engine.execution();
   if (!execution || !execution->usable(true)) return nullptr;
+  std::unique_ptr<SolveVectors> made;
   try {
-    const std::unique_lock lock = execution->device().lock();
-    return work(execution);
+    execution->device().alone([&] { made = work(execution); });
   } catch (const gpu::DeviceError&) {
     return nullptr;
   }
+  return made;
 }
 
 }  // namespace

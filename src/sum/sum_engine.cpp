@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <mutex>
 
 namespace g3r {
 namespace {
@@ -134,9 +133,16 @@ template <class T>
 bool SumEngine<T>::run_on_device(const cpu::SumRequest<T>& request, const M2lTerms& terms, const TakeSums& take) {
   const std::shared_ptr<gpu::Execution> execution = this->execution();
   if (!execution) return false;
+  bool done = false;
+  execution->device().alone([&] {
+    if (execution->usable(sizeof(T) == sizeof(double))) done = run_alone(*execution, request, terms, take);  // else another thread's failed
+  });
+  return done;
+}
+
+template <class T>
+bool SumEngine<T>::run_alone(gpu::Execution& execution, const cpu::SumRequest<T>& request, const M2lTerms& terms, const TakeSums& take) {
   std::atomic<bool> taken = false;
-  const std::unique_lock lock = execution->device().lock();
-  if (!execution->usable(sizeof(T) == sizeof(double))) return false;  // of another thread
   const auto take_some = [&](std::size_t first, std::size_t count, const T* sums) {
     taken = true;
     std::vector<double> block(request.out_channels * cpu::kLanes);
@@ -150,14 +156,14 @@ bool SumEngine<T>::run_on_device(const cpu::SumRequest<T>& request, const M2lTer
       gpu::SumOnDevice<T>& there = prepare_device(terms);
       const auto start = std::chrono::steady_clock::now();
       there.run(request, take_some);
-      execution->add_seconds(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+      execution.add_seconds(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     });
   } catch (const gpu::DeviceError& error) {
     on_device_.reset();
     geometry_.lists_on_device().reset();
     geometry_.tree_on_device().reset();
-    execution->fail(error.what());
-    if (taken) throw Unavailable(execution->failure() + ", while its results were read; --device cpu does without it");
+    execution.fail(error.what());
+    if (taken) throw Unavailable(execution.failure() + ", while its results were read; --device cpu does without it");
     return false;
   }
   return true;

@@ -52,7 +52,7 @@ class SumEngine {
   /// The device that sums run on, null where that is the processor.
   [[nodiscard]] std::shared_ptr<gpu::Execution> execution() const;
   /// Runs a form of `values` values per source on that device, where the sums stay until the next ones. fill(values, those of the targets)
-  /// puts them there, fields source_stride() apart. Callers hold the device's lock. Throws DeviceError.
+  /// puts them there, fields source_stride() apart. Within alone() of the device. Throws DeviceError.
   const gpu::Buffer& run_there(cpu::NearForm form, int batch, std::size_t values, std::size_t out_channels,
                                const std::function<void(const gpu::Buffer&, const gpu::Buffer&)>& fill);
   [[nodiscard]] std::size_t source_stride() const { return geometry_.source_stride(); }
@@ -62,6 +62,7 @@ class SumEngine {
                                                const M2lTerms& terms) const;
   // False if there is no device, or it failed, and the processor has to do it.
   bool run_on_device(const cpu::SumRequest<T>& request, const M2lTerms& terms, const TakeSums& take);
+  bool run_alone(gpu::Execution& execution, const cpu::SumRequest<T>& request, const M2lTerms& terms, const TakeSums& take);
   // Does work(), again with the targets in more parts while it runs out of the device's memory before any sum is taken.
   template <class Work>
   void in_parts(const std::atomic<bool>& taken, const Work& work);
