@@ -27,9 +27,7 @@ constexpr std::size_t kNeighboursGroup = 64;  // items of a group wait for the o
 constexpr std::size_t kMostDepth = 32;        // of a tree of fewer than 2^32 points
 constexpr std::size_t kSoftwareGroup = 16;
 constexpr std::size_t kSoftwareNearGroup = 64;  // a leaf of targets
-// Sources of the near field in local memory at a time: one per item; processors rather have few turns, within their cache.
-constexpr std::size_t kTile = 128;
-constexpr std::size_t kSoftwareTile = 256;
+constexpr std::size_t kTile = 128;              // sources of the near field in local memory at a time: one per item
 
 std::string define(const char* name, std::size_t value) { return std::string("#define ") + name + ' ' + std::to_string(value) + '\n'; }
 
@@ -70,6 +68,18 @@ std::string forms(const KernelTraits& traits) {
          define("LOCAL_WIDTHS", traits.local_widths ? 1 : 0);
 }
 
+// TILE: processors rather have few turns, within their cache, as the loops of src/cpu.
+std::size_t near_tile(const KernelTraits& traits) {
+  using enum cpu::NearForm;
+  if (traits.lanes == 1) return kTile;
+  const auto batch = static_cast<std::size_t>(traits.batch);
+  const std::size_t values = traits.form == kGreen            ? 3 + 2 * batch
+                             : traits.form == kGreenAdjoint   ? batch
+                             : traits.form == kWindingAdjoint ? 1
+                                                              : 3;
+  return cpu::gathered_sources((traits.local_widths ? 4 : 3) + values);
+}
+
 std::string source(const KernelTraits& traits, std::size_t group, const std::string& more, std::string_view text) {
   return define("REAL_IS_DOUBLE", traits.doubles ? 1 : 0) + define("LANES", traits.lanes) + define("GROUP", group) + forms(traits) +
          std::string(kernels::dialect_cl) + more + std::string(text);
@@ -84,7 +94,7 @@ std::string near_field_source(const KernelTraits& traits) {
   const std::string fitted = traits.doubles ? polynomials<double, Precision::kFull>()
                              : traits.rough ? polynomials<float, Precision::kRough>()
                                             : polynomials<float, Precision::kFull>();
-  const std::string more = define("TILE", traits.lanes > 1 ? kSoftwareTile : kTile) + define("ROUGH", traits.rough ? 1 : 0);
+  const std::string more = define("TILE", near_tile(traits)) + define("ROUGH", traits.rough ? 1 : 0);
   return source(traits, near_group(traits), fitted + more, kernels::near_field_cl);
 }
 
