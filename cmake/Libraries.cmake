@@ -25,7 +25,7 @@ function(g3r_build_tbb)
               semaphore small_object_pool task task_dispatcher task_group_context version)
   list(TRANSFORM sources REPLACE "(.+)" "src/tbb/\\1.cpp")
   g3r_bundled(tbb TBB::tbb include ${sources})
-  set_target_properties(g3r_tbb PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 10)
+  set_target_properties(g3r_tbb PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
   set_source_files_properties("${G3R_SOURCES}/tbb/src/tbb/parallel_pipeline.cpp" PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)  # its names clash
   target_compile_features(g3r_tbb PRIVATE cxx_std_17)
   target_compile_definitions(g3r_tbb PRIVATE __TBB_BUILD __TBB_DYNAMIC_LOAD_ENABLED=0 __TBB_SOURCE_DIRECTLY_INCLUDED=1
@@ -37,7 +37,7 @@ function(g3r_build_tbb)
 endfunction()
 
 function(g3r_build_highway)
-  g3r_bundled(highway Highway::hwy . hwy/aligned_allocator.cc hwy/per_target.cc hwy/print.cc hwy/targets.cc)
+  g3r_bundled(highway Highway::hwy . hwy/targets.cc)
   target_compile_features(g3r_highway PRIVATE cxx_std_17)
   target_compile_definitions(g3r_highway PUBLIC HWY_STATIC_DEFINE)
 endfunction()
