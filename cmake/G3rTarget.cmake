@@ -10,6 +10,8 @@ function(g3r_target_defaults target)
   endif()
   if(G3R_TOGETHER AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # sources that another includes look like headers
+    # GCC collects garbage from 1 GiB on, not from 256 MiB, half of which are the precompiled headers.
+    target_compile_options(${target} PRIVATE "SHELL:--param ggc-min-heapsize=524288")
   endif()
   if(G3R_WARNINGS_AS_ERRORS)
     target_compile_options(${target} PRIVATE -Werror)
