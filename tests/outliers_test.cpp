@@ -235,6 +235,7 @@ TEST(FarPoints, AreFoundAmongMany) {
   near.insert(near.end(), 5000, Vec3{1e2, 5e3, 0});
   for (int i = 0; i < 900; ++i) spread.push_back({1e30 * random.uniform(-1, 1), 1e30 * random.uniform(-1, 1), 1e30});
   EXPECT_TRUE(far_points(near).empty());
+  EXPECT_TRUE(far_points(std::vector<Vec3>{{0, 0, 0}, {0, 0, 1}, {0, 1, 0}, {1e9, 0, 0}, {0, 1e9, 0}}).empty());
   for (const std::vector<Vec3>& cloud : {copies, spread}) {
     const std::vector<std::uint8_t> marks = far_points(cloud);
     ASSERT_EQ(marks.size(), cloud.size());

@@ -19,7 +19,6 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kFewestPoints = 4;  // fewer cannot enclose a volume
 constexpr double kLineThickness = 1e-12;  // distance from a line over its length, below which points count as collinear: rounding
 // From the middle of the frame along an axis, at most, of points that are left out: from farther the cloud is one point, and powers of the
 // distance leave the range of double.
@@ -254,7 +253,7 @@ CanonicalCloud canonical_cloud(const PointsView& points) {
 CanonicalCloud canonical_cloud(const PointsView& points, const std::vector<std::uint8_t>& left_out, std::vector<Vec3>& others) {
   if (points.count >= kNoPoint) throw InvalidInput("more than 4294967294 points; split the cloud");
   const Bounds bounds = bounds_of(points, left_out);
-  if (bounds.finite_points < kFewestPoints) {
+  if (bounds.finite_points < kLeastPoints) {
     throw InvalidInput("too few points: " + std::to_string(bounds.finite_points) + " of " + std::to_string(points.count) +
                        " are finite, at least 4 distinct points are needed");
   }
@@ -286,7 +285,7 @@ CanonicalCloud canonical_cloud(const PointsView& points, const std::vector<std::
     for (std::size_t same = k; same < n && number[same] == number[k]; ++same) ++cloud.multiplicity[place];
   });
   cloud.set = PointSet(std::move(kept));
-  if (cloud.size() < kFewestPoints) {
+  if (cloud.size() < kLeastPoints) {
     throw InvalidInput("too few distinct points: " + std::to_string(cloud.size()) + " (the rest are duplicates), at least 4 are needed");
   }
   others = add_left_out(points, left_out, cloud);

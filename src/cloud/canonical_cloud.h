@@ -29,6 +29,7 @@ struct Frame {
 
 inline constexpr double kBoxSide = 2.0 / 1.1;  ///< of the longest side in the unit frame: the paper's normalisation
 inline constexpr std::uint32_t kNoPoint = UINT32_MAX;
+inline constexpr std::size_t kLeastPoints = 4;  ///< distinct ones: fewer cannot enclose a volume
 
 /// Distinct finite points in Morton order of a 2^21-cell grid over [-1, 1]^3, ties by coordinates: the same for every permutation of the
 /// input.

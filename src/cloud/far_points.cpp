@@ -59,7 +59,8 @@ std::vector<std::uint8_t> far_points(const PointsView& points) {
   std::sort(places.begin(), places.end());
   places.erase(std::unique(places.begin(), places.end()), places.end());
   const Surroundings around = surroundings_of(places);
-  if (std::none_of(places.begin(), places.end(), is_far_from(around))) return {};
+  const auto far = static_cast<std::size_t>(std::count_if(places.begin(), places.end(), is_far_from(around)));
+  if (far == 0 || places.size() - far < kLeastPoints) return {};
   std::vector<std::uint8_t> marks(points.count, 0);
   for (std::size_t i = 0; i < points.count; ++i) {
     if (const Vec3 p = points[i]; vector::is_finite(p)) marks[i] = is_far_from(around)(p) ? 1 : 0;
