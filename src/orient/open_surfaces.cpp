@@ -40,7 +40,7 @@ struct Verdict {
   std::vector<std::vector<std::uint32_t>> restless;  // the sites where its field is not that of a closed surface: all, or those of pieces
   std::vector<std::uint8_t> is_open;
   std::vector<std::uint8_t> is_doubtful;     // neither at rest nor shown to be open
-  std::vector<std::uint8_t> is_turned;       // of those, whose sides are more certain by a hypothesis
+  std::vector<std::uint8_t> is_turned;       // of closed ones: whose sides are more certain by a hypothesis, where they are restless
   std::vector<std::vector<double>> defects;  // jump defects of the sites, of every hypothesis
   std::vector<std::size_t> best;             // of the hypotheses
   std::vector<double> defect;                // mean jump defect of the best
@@ -102,8 +102,9 @@ void choose_hypotheses(const SiteParts& parts, const std::vector<std::vector<Vec
   for (std::size_t p = 0; p < parts.count(); ++p) {
     if (verdict.is_open[p] == 0) continue;
     const std::vector<std::uint32_t>& restless = verdict.restless[p];
-    const bool is_shown =
-        is_shown_better(mean_over(restless, verdict.defects[verdict.best[p]]), mean_over(restless, given.of_sites.jump_defect));
+    const double defect = mean_over(restless, verdict.defects[verdict.best[p]]);
+    const double given_defect = mean_over(restless, given.of_sites.jump_defect);
+    const bool is_shown = is_shown_better(defect, given_defect);
     const bool is_better = given.unrest[p] > most_unrest || is_shown;
     // Noise makes one wall of two: what encloses most of all directions, as no bowl up to a half sphere does, is a closed surface whose
     // thin parts it hides. So is what is at rest but for a place.
@@ -114,7 +115,7 @@ void choose_hypotheses(const SiteParts& parts, const std::vector<std::vector<Vec
     verdict.is_doubtful[p] = given.unrest[p] > kUnrest ? 1 : 0;
     // What encloses little has no outside that tells which way to turn it.
     const bool has_outside = std::abs(verdict.enclosure[p]) >= kMostOf;
-    verdict.is_turned[p] = verdict.is_doubtful[p] != 0 && has_outside && verdict.defect[p] < given.defect[p] ? 1 : 0;
+    verdict.is_turned[p] = has_outside && (is_shown || (verdict.is_doubtful[p] != 0 && defect < given_defect)) ? 1 : 0;
   }
 }
 
@@ -125,16 +126,22 @@ std::vector<Vec3> best_of(const SiteParts& parts, const std::vector<std::vector<
   return best;
 }
 
-// Turns the points of doubtful parts to the sides of the best hypothesis, but where points of both sides are mixed: those may be on two
-// walls. Patches that are turned the other way are not, but at their rims, which they are no longer once the patches are turned.
-void turn_doubtful(const SiteParts& parts, const std::vector<Vec3>& best, const Verdict& verdict, std::vector<Vec3>& normals) {
+// Turns the points of closed parts that are restless to the sides of the best hypothesis, but where points of both sides are mixed: those
+// may be on two walls. Patches that are turned the other way are not, but at their rims, which they are no longer once the patches are
+// turned.
+void turn_restless(const SiteParts& parts, const std::vector<Vec3>& best, const Verdict& verdict, std::vector<Vec3>& normals) {
+  std::vector<std::uint8_t> is_turning(parts.sites().size(), 0);
+  for (std::size_t p = 0; p < parts.count(); ++p) {
+    if (verdict.is_turned[p] == 0) continue;
+    for (const std::uint32_t s : verdict.restless[p]) is_turning[s] = 1;
+  }
   for (bool is_turned = true; is_turned;) {
     is_turned = false;
     const std::vector<double> one_way = concentration(parts.sites(), normals);
     for (std::uint32_t i = 0; i < normals.size(); ++i) {
-      const std::uint32_t p = parts.of_point(i);
-      if (verdict.is_turned[p] == 0 || one_way[parts.sites().site_of[i]] < kSameSide) continue;
-      if (dot(normals[i], best[i]) * verdict.enclosure[p] >= 0) continue;
+      const std::uint32_t s = parts.sites().site_of[i];
+      if (is_turning[s] == 0 || one_way[s] < kSameSide) continue;
+      if (dot(normals[i], best[i]) * verdict.enclosure[parts.of_point(i)] >= 0) continue;
       normals[i] = vector::scale(normals[i], -1);
       is_turned = true;
     }
@@ -226,7 +233,7 @@ OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan
     best = best_of(parts, tried, verdict);
   }
   const bool are_turned = any(verdict.is_turned);
-  if (are_turned) turn_doubtful(parts, best, verdict, normals);
+  if (are_turned) turn_restless(parts, best, verdict, normals);
   std::vector<float> shown = certified_sides(parts, are_turned ? parts.test(normals) : given.of_sites, normals, noise == 0);
   given = {};  // the graph of the outside wants its memory, and that of the hypotheses
   OpenSurfaces found;

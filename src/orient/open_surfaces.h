@@ -50,9 +50,11 @@ struct OpenSurfaces {
 /// point is not certified in full. Then normals are turned to the outside (face_outside()). e is SiteParts::enclosure(); under noise a part
 /// with |e| above 2/3 is closed: noise makes one wall of two, and what is left encloses nearly everything. Where it is neither at rest nor
 /// shown to be open, its sides are those of the best hypothesis where the normals of a site and those around it have one side, if the mean
-/// defect of the hypothesis is less than that of the solution. Where the solution stays as it is, certified_sides() says how far its field
-/// shows it to be right; all points of a cloud of fewer than 30 have 0, and so have exact parts of fewer. `noise`: standard deviation;
-/// `normals`: N unit vectors, in: the solution, out: changed on open surfaces. O(N log N).
+/// defect of the hypothesis is less than that of the solution; and so they are in the restless pieces of one with |e| above 2/3 if the
+/// hypothesis is shown to be better there, as about the base of an object that was not scanned from below. Where the solution stays as it
+/// is, certified_sides() says how far its field shows it to be right; all points of a cloud of fewer than 30 have 0, and so have exact
+/// parts of fewer. `noise`: standard deviation; `normals`: N unit vectors, in: the solution, out: changed on open surfaces and where closed
+/// ones are restless. O(N log N).
 [[nodiscard]] OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan& sums, std::vector<Vec3>& normals,
                                               const std::atomic<bool>* cancel = nullptr);
 
