@@ -496,7 +496,7 @@ std::vector<T> repeated(int times, const std::vector<T>& values) {
 }
 
 // A round column with a dome on a base wider than it, of which the top and the rim have been scanned but not the bottom. The equations turn
-// the top of the base down, as if it were a open surface; neighbours agree with the column.
+// the top of the base down, as if it were an open surface; neighbours agree with the column.
 TEST(OpenSurfaces, TheBaseOfAnObjectThatIsOpenBelowFacesUp) {
   if (kSanitized) GTEST_SKIP() << "a whole solve, whose result is what counts";
   const double column = 0.5, base = 0.6, height = 1.5, rim = 0.1;

@@ -183,6 +183,7 @@ std::vector<std::uint32_t> points_of(const SiteParts& parts, const std::vector<s
 
 void OpenSurfaces::put(const std::vector<std::uint32_t>& some, const OpenSurfaces& here) {
   const std::size_t count = certified.size();
+  is_turned = is_turned || here.is_turned;
   if (part.empty() && !here.part.empty()) {
     part.assign(count, kNone);
     certainty.assign(count, 1);
@@ -248,6 +249,7 @@ OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan
     found.certified = std::move(shown);
   }
   found.uncertified = noise == 0 ? kUndecided : 0;
+  found.is_turned = are_turned;
   if (!are_some) return found;
   std::vector<Vec3> sides = values_at(suspects, normals);  // of the suspects without the others, which are closed
   found.put(suspects, find_open_surfaces(PointSet(values_at(suspects, set.points())), noise, sums, sides, cancel));

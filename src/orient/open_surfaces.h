@@ -25,6 +25,7 @@ struct OpenSurfaces {
                                      ///< open surfaces, that the side of a point agrees with those around it
   float uncertified = kUndecided;    ///< confidence, at most, of a side that it does not show: a choice, or under noise none
   std::vector<std::uint8_t> agrees;  ///< N: 1 on open surfaces whose sides agree (their mean jump defect is small), 0 elsewhere
+  bool is_turned = false;            ///< whether points of closed parts have taken the side of a hypothesis
   std::vector<float> held;           ///< N: chance that a point has the side of the rest of its part (held_by_neighbours()); else 1
 
   /// Whether point i lies on an open surface; also of points beyond N, such as outliers, which do not.

@@ -123,7 +123,11 @@ Solution solve_on_points(const Problem& problem, const Options& options, Stages&
     const std::vector<Vec3> before = normals;
     fit_clean_surface(problem, solution.eta, normals, stages);
     // Facets and creases may have found other sides, which the certificate has not seen.
-    if (!surfaces.part.empty() || any_turned(before, normals)) surfaces = find_open(normals);
+    if (!surfaces.part.empty() || surfaces.is_turned) {
+      surfaces = find_open(normals);
+    } else if (!surfaces.certified.empty() && any_turned(before, normals)) {
+      surfaces.certified = certified_sides(set, problem.noise, s.sums, normals, stages.cancel());
+    }
   }
   solution.open_surfaces = std::move(surfaces);
   return solution;
