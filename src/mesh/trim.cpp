@@ -185,6 +185,7 @@ void draw_in(Mesh& mesh, std::vector<Cut> cuts, const std::vector<Vec3>& points,
              const std::atomic<bool>* cancel) {
   for (double way = 1; way > kAtOnePlace && !cuts.empty(); way /= 2) {
     std::vector<Vec3> places;
+    places.reserve(cuts.size());
     for (const Cut& cut : cuts) places.push_back(mesh.vertices[cut.vertex]);
     const std::vector<double> distance = distance_to_points(
         places, points, [&](std::uint32_t i) { return limits[i]; }, cancel);

@@ -251,6 +251,7 @@ Cells sort_points(const std::vector<std::string>& files, const std::string& fold
   }
   std::vector<std::unique_ptr<io::OutputFile>> outputs;
   const std::vector<std::uint64_t> all_strides = strides(m.stride, m.sorted());
+  outputs.reserve(all_strides.size());
   for (const std::uint64_t stride : all_strides)
     outputs.push_back(std::make_unique<io::OutputFile>(points_path(folder, stride), stages.cancel()));
   LevelChoice choice;
