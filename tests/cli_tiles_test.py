@@ -23,6 +23,21 @@ KILLS = int(os.environ.get("G3R_TILE_KILLS", "2"))
 SAYS_WHAT_IS_FREE = unittest.skipIf(not SHIM or is_sanitized() or not os.path.exists("/proc/meminfo"), "what is free cannot be told to it")
 
 
+def signal_at(process, words, number):
+    """Sends a signal when a line of standard error has these words, and waits for the end; at most five minutes. The lines up to there."""
+    guard = threading.Timer(300, process.kill)
+    guard.start()
+    lines = []
+    for line in process.stderr:
+        lines.append(line)
+        if words in line:
+            break
+    process.send_signal(number)
+    process.communicate()
+    guard.cancel()
+    return lines
+
+
 class Tiles(ProgramTest):
     def with_free(self, mebibytes):
         """Options of start() for a system that says so much memory is free."""
@@ -123,16 +138,7 @@ class Tiles(ProgramTest):
         self.assertIn("tiles take any size, but need a .ply for OUT", refused.err)
         self.assertIn("g3r works in tiles where it can", self.expect(OK, "info", "large.ply", "--max-memory", "130M").err)
         process = self.start(*arguments, "-v", preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
-        guard = threading.Timer(120, process.kill)
-        guard.start()
-        stages = []
-        for line in process.stderr:
-            stages.append(line)
-            if b"coarse" in line:
-                break
-        process.send_signal(signal.SIGINT)
-        process.communicate()
-        guard.cancel()
+        stages = signal_at(process, b"coarse", signal.SIGINT)
         self.assertEqual(process.returncode, INTERRUPTED, stages)
         self.assertIn(b"g3r: sort\n", stages)
         self.assertFalse(os.path.exists(self.path("out.PLY")))
@@ -179,16 +185,7 @@ class Tiles(ProgramTest):
         self.expect(OK, "orient", "fewer.ply", "whole.ply", "--max-memory", str(in_bytes))
         arguments = ["orient", "fewer.ply", "out.ply"]
         process = self.start(*arguments, "-v", **self.with_free(free))
-        guard = threading.Timer(300, process.kill)
-        guard.start()
-        said = []
-        for line in process.stderr:
-            said.append(line)
-            if b"tile 2 of" in line:
-                break
-        process.kill()
-        process.communicate()
-        guard.cancel()
+        said = signal_at(process, b"tile 2 of", signal.SIGKILL)
         self.assertIn(b"more than three quarters of the free memory in one piece: tiles, in out.ply.tiles; where this ends early, the same "
                       b"command goes on\n", said)
         done = self.bytes_of("out.ply.tiles/tile-0.bin")

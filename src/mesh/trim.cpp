@@ -78,7 +78,7 @@ void halve_edges(Mesh& mesh, const OrientedPoints& points, double limit, const s
     const Vec3 d = vector::subtract(mesh.vertices[a], mesh.vertices[b]);
     return vector::dot(d, d);
   };
-  const double longest = std::max(0.5 * limit, kFinestCell * median(points.spacing));
+  const double longest = std::max(limit / 2, kFinestCell * median(points.spacing));
   std::unordered_map<std::uint64_t, std::uint32_t> middle;
   do {
     middle.clear();
