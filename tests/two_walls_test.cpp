@@ -49,6 +49,20 @@ TEST(TwoWalls, AreFoundWithoutNoise) {
   for (const double gap : {0.2, 0.5, 1.0}) EXPECT_TRUE(found(walls(gap, 0), 0)) << gap;
 }
 
+// Rays on a grid hit a plate as thick as they are apart: a cubic lattice, along which a plane through both walls may lie in any direction.
+TEST(TwoWalls, OfARasterAreFoundHoweverItLies) {
+  std::vector<Vec3> straight;
+  for (int x = 0; x < 120; ++x) {
+    for (int y = 0; y < 40; ++y) {
+      for (const double z : {0.0, 1.0}) straight.push_back({1.0 * x, 1.0 * y, z});
+    }
+  }
+  EXPECT_TRUE(found(straight, 0));
+  std::vector<Vec3> turned;
+  for (const Vec3& p : straight) turned.push_back({0.8 * p[0] - 0.6 * p[2], p[1], 0.6 * p[0] + 0.8 * p[2]});
+  EXPECT_TRUE(found(turned, 0));
+}
+
 // Scans that overlap and are a little off each other are two walls where they overlap, and so is a plate with a rim. What makes a field
 // restless on account of walls does so where these are.
 TEST(TwoWalls, AreNoReasonForUnrestBesideThem) {

@@ -171,31 +171,37 @@ TwoLayers fit_two_layers(const std::vector<Vec3>& points, const std::uint32_t* i
   const auto fit = [&]() -> Numbers {
     return (Normal(rows.transpose().lazyProduct(rows)) + ridge).ldlt().solve(rows.transpose().lazyProduct(z));
   };
+  // From the points above and below a middle, at these heights, on.
+  const auto from = [&](Column above, double middle) -> TwoLayers {
+    TwoLayers layers;
+    for (int round = 0; round < kSteps; ++round) {
+      bool unchanged = round > 0;
+      int upper = 0;
+      for (Eigen::Index k = 0; k < n; ++k) {
+        const double on_upper = above[k] >= middle ? 1 : 0;
+        unchanged = unchanged && rows(k, 0) == on_upper;
+        rows(k, 0) = on_upper;
+        rows(k, 1) = 1 - on_upper;
+        upper += above[k] >= middle ? 1 : 0;
+      }
+      if (upper < kFewestOnLayer || static_cast<int>(n) - upper < kFewestOnLayer) return {};
+      if (unchanged) break;
+      const Numbers solution = fit();
+      const double freedom = static_cast<double>(n - kTerms - 2);
+      layers = {radius * std::sqrt((z - rows.lazyProduct(solution)).squaredNorm() / freedom), radius * (solution[0] - solution[1])};
+      above = z - rows.rightCols<kTerms>().lazyProduct(solution.tail<kTerms>());
+      middle = (solution[0] + solution[1]) / 2;
+    }
+    return layers;
+  };
+  const TwoLayers flat = from(z, (z.minCoeff() + z.maxCoeff()) / 2);
+  rows.leftCols<2>().setZero();
   rows.col(0).setOnes();
-  Column above = z - rows.lazyProduct(fit());  // one layer
+  const Column above = z - rows.lazyProduct(fit());  // one layer
   Column sorted = above;
   std::nth_element(sorted.data(), sorted.data() + n / 2, sorted.data() + n);
-  double middle = sorted[n / 2];
-  TwoLayers layers;
-  for (int round = 0; round < kSteps; ++round) {
-    bool unchanged = round > 0;
-    int upper = 0;
-    for (Eigen::Index k = 0; k < n; ++k) {
-      const double on_upper = above[k] >= middle ? 1 : 0;
-      unchanged = unchanged && rows(k, 0) == on_upper;
-      rows(k, 0) = on_upper;
-      rows(k, 1) = 1 - on_upper;
-      upper += above[k] >= middle ? 1 : 0;
-    }
-    if (upper < kFewestOnLayer || static_cast<int>(n) - upper < kFewestOnLayer) return {};
-    if (unchanged) break;
-    const Numbers solution = fit();
-    const double freedom = static_cast<double>(n - kTerms - 2);
-    layers = {radius * std::sqrt((z - rows.lazyProduct(solution)).squaredNorm() / freedom), radius * (solution[0] - solution[1])};
-    above = z - rows.rightCols<kTerms>().lazyProduct(solution.tail<kTerms>());
-    middle = (solution[0] + solution[1]) / 2;
-  }
-  return layers;
+  const TwoLayers bent = from(above, sorted[n / 2]);
+  return flat.gap > 0 && (bent.gap <= 0 || flat.deviation < bent.deviation) ? flat : bent;
 }
 
 }  // namespace g3r

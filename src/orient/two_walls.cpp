@@ -2,6 +2,7 @@
 
 #include "base/median.h"
 #include "cloud/constants.h"
+#include "cloud/exact_plane.h"
 #include "cloud/heights.h"
 #include "cloud/layers.h"
 #include "cloud/neighbours.h"
@@ -36,6 +37,16 @@ void for_some(const PointSet& set, const Sites& sites, const std::vector<std::ui
   }
 }
 
+// The direction across the surface at a place: of exact points that of their facet, as a plane through two walls a step of a raster apart
+// may have any.
+Vec3 axis_at(const PointSet& set, const Sites& sites, std::uint32_t s) {
+  std::vector<std::uint32_t> index;
+  std::vector<double> squared;
+  set.tree().nearest(sites.points()[s], kPlaneNeighbours, index, squared);
+  const ExactPlane facet = find_exact_plane(set.points(), index, set.spacing());
+  return facet.breadth < kFacetBreadth ? sites.axis[s] : facet.normal;
+}
+
 // How much likelier two walls are than one around some of the members: visit(site, gain per point) for each.
 template <typename Visit>
 void for_gains(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members, std::size_t places, Visit visit) {
@@ -43,12 +54,13 @@ void for_gains(const PointSet& set, const Sites& sites, const std::vector<std::u
   const Vec3 steps = set.rounding_steps();
   for_some(set, sites, members, places, kTwoPatches, [&](std::uint32_t s, const std::vector<std::uint32_t>& index) {
     const double spacing = sites.spacing()[s];
-    const double one = quadratic_residual(points, index.data(), index.size(), sites.axis[s], spacing);
-    const TwoLayers two = fit_two_layers(points, index.data(), index.size(), sites.axis[s]);
+    const Vec3 axis = axis_at(set, sites, s);
+    const double one = quadratic_residual(points, index.data(), index.size(), axis, spacing);
+    const TwoLayers two = fit_two_layers(points, index.data(), index.size(), axis);
     const double exact = kExact * spacing;
     const bool thin = two.gap > 0 && two.gap < kResolved * spacing;
     double rounding = 0;
-    for (std::size_t a = 0; a < 3; ++a) rounding += std::abs(sites.axis[s][a]) * steps[a];
+    for (std::size_t a = 0; a < 3; ++a) rounding += std::abs(axis[a]) * steps[a];
     const double cost = (rounding > exact ? 2 : 1) * std::numbers::ln2;
     visit(s, (thin ? std::log(std::max(one, exact) / std::max(two.deviation, exact)) : 0) - cost);
   });
