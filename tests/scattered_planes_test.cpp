@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace g3r {
@@ -39,6 +40,29 @@ TEST(FacetScatter, IsThatOfBoxesAndOfWallsCloserThanTheSampling) {
   const double wall = scatter_of(scattered(shapes::plates(1, 1, 1.4, 5, kSpacing), 0.02));
   EXPECT_GT(wall, 0.01);
   EXPECT_LT(wall, 0.04);
+}
+
+// Of fins five spacings long the 132 nearest points hold a quarter at most on one side, and both sides are one plane of a tenth of a
+// spacing in scatter.
+TEST(FacetScatter, IsThatOfSmallFins) {
+  const double fins = scatter_of(scattered(shapes::plates(40, 5 * kSpacing, 0.2, 3, kSpacing), 0.005));
+  EXPECT_GT(fins, 0.0025);
+  EXPECT_LE(fins, 0.016);
+}
+
+// A cylinder is flat along its axis, and has as many points a little below a plane as on it.
+TEST(FacetScatter, IsNoneOfSmoothSurfaces) {
+  for (const double sigma : {0.0, 0.005, 0.02}) {
+    Surface cylinder;
+    shapes::Random random(9);
+    for (int i = 0; i < 20000; ++i) {
+      const double angle = random.uniform(0, 2 * std::numbers::pi);
+      cylinder.points.push_back(
+          {std::cos(angle), std::sin(angle), random.uniform(0, 20000 * kSpacing * kSpacing / (2 * std::numbers::pi))});
+      cylinder.normals.push_back({std::cos(angle), std::sin(angle), 0});
+    }
+    EXPECT_EQ(scatter_of(scattered(cylinder, sigma)), 0) << sigma;
+  }
 }
 
 TEST(FacetScatter, IsNoneWhereFewPointsAreOnPlanes) {

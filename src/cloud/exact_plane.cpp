@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <numbers>
 
@@ -35,6 +36,20 @@ struct Around {
     int sum = 0;
     for (std::size_t k = 0; k < kPlaneNeighbours; ++k) sum += std::abs(a * x[k] + b * y[k] + c * z[k]) <= most ? 1 : 0;
     return sum - static_cast<int>(kPlaneNeighbours - count);  // those that are missing are at 0
+  }
+
+  // How many another plane, parallel to one through the first and at least four such distances away, holds at most.
+  [[nodiscard]] int most_held_beside(const Vec3& normal, double within) const {
+    std::vector<double> height;
+    for (std::size_t k = 0; k < count; ++k) height.push_back(vector::dot(normal, at(k)));
+    std::sort(height.begin(), height.end());
+    std::size_t most = 0;
+    std::size_t end = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      while (end < count && height[end] - height[k] <= 2 * within) ++end;
+      if (height[k] >= 3 * within || height[end - 1] <= -3 * within) most = std::max(most, end - k);
+    }
+    return static_cast<int>(most);
   }
 };
 
@@ -83,9 +98,11 @@ Candidate best_plane(const Around& around, const Vec3* towards, double within) {
   return best;
 }
 
-// Whether a quadratic height field over the plane through these points is likelier than the plane (Schwarz's criterion).
+// Whether a quadratic height field over the plane through these points is likelier than the plane (Schwarz's criterion). Of exact points
+// both leave rounding, of which ratios say nothing.
 bool is_bent(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& held, const PlaneFit& plane, double spacing) {
   if (held.size() <= kQuadraticTerms) return false;  // some quadratic goes through any six points
+  if (plane.residual <= kExactScatter * spacing) return false;
   const auto n = static_cast<double>(held.size());
   const double flat = plane.residual * std::sqrt((n - kPlaneTerms) / n);  // root mean squares, of which the likelihoods are made
   const double bent = quadratic_residual(points, held.data(), held.size(), plane.normal, spacing) * std::sqrt((n - kQuadraticTerms) / n);
@@ -152,7 +169,8 @@ ExactPlane find_scattered_plane(const std::vector<Vec3>& points, const std::vect
   return held.fit.breadth < kLineBreadth || is_bent(points, held.points, held.fit, spacing) ? ExactPlane{} : held.plane();
 }
 
-LikeliestPlane find_likeliest_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing) {
+LikeliestPlane find_likeliest_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing,
+                                    const std::function<bool(const LikeliestPlane&)>& is_of_facet) {
   const Around around = around_first(points, index, spacing);
   LikeliestPlane found;
   double least = 1;
@@ -162,13 +180,19 @@ LikeliestPlane find_likeliest_plane(const std::vector<Vec3>& points, const std::
     if (is_majority(needed, static_cast<double>(around.count))) break;
     const Candidate best = best_plane(around, nullptr, within);
     if (best.held < needed) continue;
-    const double chance = chances_of_as_many(around.count - 3, share_by_chance(within))[static_cast<std::size_t>(best.held - 3)];
+    double chance = chances_of_as_many(around.count - 3, share_by_chance(within))[static_cast<std::size_t>(best.held - 3)];
+    if (const int other = around.most_held_beside(best.normal, within); other > kFewest) {
+      const std::vector<double> of_two = chances_of_as_many(around.count - 4, 2 * share_by_chance(within));
+      chance = std::min(chance, static_cast<double>(around.count - 3) * of_two[static_cast<std::size_t>(best.held + other - 4)]);
+    }
     if (chance >= least) continue;
     const Held held = fit_to_held(points, index, around, best.normal, {0, 0, 0}, within);
     if (held.points.size() <= static_cast<std::size_t>(kFewest)) continue;  // is_bent() cannot tell
     if (held.fit.breadth < kFacetBreadth || is_bent(points, held.points, held.fit, spacing)) continue;
+    const LikeliestPlane likelier{held.plane(), scatter};
+    if (!is_of_facet(likelier)) continue;
     least = chance;
-    found = {held.plane(), scatter};
+    found = likelier;
   }
   return found;
 }

@@ -26,8 +26,6 @@ namespace {
 constexpr double kFlattest = 0.02;
 // Quantile that shape lifts more than the flattest, and that of the layers that decides.
 constexpr double kFlat = 0.1;
-// In spacings, of noise: less blurs nothing, and curvature leaves as much.
-constexpr double kLeast = 0.04;
 // In spacings, what height fields through kPatchNeighbours say where noise fills their balls.
 constexpr double kSaturation = 0.57;
 // Of that, what the flattest say at most of noise: beyond, they tell no more.
@@ -36,7 +34,7 @@ constexpr double kFilled = 0.75;
 constexpr double kMostScattered = 0.75;
 // Of the saturation, what these say at most: the law has a pole at 1.
 constexpr double kMostFilled = 0.97;
-// Share of the points on planes that shows a cloud to consist of facets, and of a facet's surroundings that show it to go on.
+// Share of the points on planes that shows a cloud to consist of facets.
 constexpr double kOnPlanes = 0.4;
 // Values of a rounded coordinate, at least: those of plates and boxes that stand straight are fewer.
 constexpr std::size_t kFewestLevels = 5;
@@ -143,23 +141,31 @@ bool on_exact_planes(const PointSet& set) {
   return share_of(static_cast<std::size_t>(std::count(on_facet.begin(), on_facet.end(), 1.0)), on_facet.size()) >= kOnPlanes;
 }
 
-// By the flattest neighbourhoods, 0 where these or exact planes show that there is none.
+// Whether planes show that there is no noise: exact ones, or those of facets about which points scatter too little to blur anything.
+bool shows_no_noise(const PointSet& set) {
+  if (on_exact_planes(set)) return true;
+  const double scatter = facet_scatter(set);
+  return scatter > 0 && scatter < kLeastNoise * set.spacing();
+}
+
+// By the flattest neighbourhoods, 0 where these or planes show that there is none.
 double scattered_noise(const PointSet& set, const Residuals& residuals) {
   const double spacing = set.spacing();
   const double flattest = residuals.scatter(kFlattest);
   // Shape lifts the residuals of fewer points less, to at most 0.48 of the others, noise as much, to at least 0.56.
-  if (flattest < kLeast * spacing || Residuals(set, kClosest).scatter(kFlattest) < kClearlyLess * residuals.scatter(kFlat)) return 0;
+  if (flattest < kLeastNoise * spacing || Residuals(set, kClosest).scatter(kFlattest) < kClearlyLess * residuals.scatter(kFlat)) return 0;
   const double filled = flattest / (kSaturation * spacing);
-  if (on_exact_planes(set)) return 0;
+  if (shows_no_noise(set)) return 0;
   const double layered = layered_noise(set);
   // 1 / x^2 = 1 / sigma^2 + 1 / saturation^2
   const double sigma = filled > kFilled ? layered : std::min(layered, flattest / std::sqrt(1 - filled * filled));
-  return sigma < kLeast * spacing ? 0 : sigma;
+  return sigma < kLeastNoise * spacing ? 0 : sigma;
 }
 
-// Whether a plane goes on among four times as many points as it was found among: that of a facet does, also where half of them are on
-// another wall; that of a bend ends.
-bool goes_on(const PointSet& set, const ExactPlane& plane, double scatter) {
+// Whether a plane is that of a facet, among four times as many points as it was found among: they are on it or well away, on other facets.
+// Those of a bend are as many from w to 2 w away as up to w, as heights over a plane grow with the square of the distance, and at least
+// sqrt(2) - 1 times as many, over a cylinder.
+bool is_of_facet(const PointSet& set, const ExactPlane& plane, double scatter) {
   const std::vector<Vec3>& points = set.points();
   std::vector<std::uint32_t> index;
   std::vector<double> squared;
@@ -167,17 +173,20 @@ bool goes_on(const PointSet& set, const ExactPlane& plane, double scatter) {
   Vec3 middle{0, 0, 0};
   for (const std::uint32_t i : plane.points)
     middle = vector::add(middle, vector::scale(points[i], 1 / static_cast<double>(plane.points.size())));
-  const auto held = std::count_if(index.begin(), index.end(), [&](std::uint32_t i) {
-    return std::abs(vector::dot(plane.normal, vector::subtract(points[i], middle))) <= kSigmas * scatter;
-  });
-  return share_of(static_cast<std::size_t>(held), index.size()) >= kOnPlanes;
+  const auto held_within = [&](double distance) {
+    return static_cast<double>(std::count_if(index.begin(), index.end(), [&](std::uint32_t i) {
+      return std::abs(vector::dot(plane.normal, vector::subtract(points[i], middle))) <= distance;
+    }));
+  };
+  const double held = held_within(kSigmas * scatter);
+  return held_within(2 * kSigmas * scatter) - held <= kClearlyLess * kClearlyLess * held;
 }
 
 // rounding_deviation() of these steps.
 double deviation_of(const Vec3& steps, double spacing) {
   if (std::min({steps[0], steps[1], steps[2]}) == 0) return 0;
   const double sigma = std::hypot(steps[0], steps[1], steps[2]) * std::sqrt(kRoundingVariance / 3);
-  return sigma > kLeast * spacing ? sigma : 0;
+  return sigma > kLeastNoise * spacing ? sigma : 0;
 }
 
 }  // namespace
@@ -196,7 +205,7 @@ Vec3 rounding_steps(const std::vector<Vec3>& points, double spacing) {
       least = std::min(least, step);
       ++levels;
     }
-    if (least > kLeast * spacing && levels >= kFewestLevels) steps[a] = least;
+    if (least > kLeastNoise * spacing && levels >= kFewestLevels) steps[a] = least;
   }
   return steps;
 }
@@ -224,7 +233,7 @@ double fine_noise(const PointSet& set) {
   const double spacing = set.spacing();
   const Residuals residuals(set, kPatchNeighbours);
   const double flattest = residuals.scatter(kFlattest);
-  if (flattest <= kExactScatter * spacing || flattest >= kWider * kLeast * spacing) return 0;
+  if (flattest <= kExactScatter * spacing || flattest >= kWider * kLeastNoise * spacing) return 0;
   // Noise is as large among three times as many points, shape clearly larger.
   const bool is_shape = kWider * Residuals(set, kClosest).scatter(0.5) <= Residuals(set, kTwoPatches).scatter(0.5);
   return is_shape || on_exact_planes(set) ? 0 : flattest;
@@ -232,7 +241,7 @@ double fine_noise(const PointSet& set) {
 
 double largest_scatter(const PointSet& set) {
   const double spacing = set.spacing();
-  if (set.size() < kFewestSurfacePoints || on_exact_planes(set)) return 0;
+  if (set.size() < kFewestSurfacePoints || shows_no_noise(set)) return 0;
   const double x = Residuals(set, kPatchNeighbours).scatter(kMostScattered);
   const double filled = std::min(x / (kSaturation * spacing), kMostFilled);
   return x / std::sqrt(1 - filled * filled * filled * filled);
@@ -242,9 +251,12 @@ double facet_scatter(const PointSet& set) {
   if (set.size() < kFewestSurfacePoints) return 0;
   const double spacing = set.spacing();
   const std::vector<double> scatters = at_some(set, kFewPlaces, kPlaneNeighbours, [&](const Vec3&, const auto& index, const auto&) {
-    const LikeliestPlane found = find_likeliest_plane(set.points(), index, spacing);
-    if (found.scatter == 0 || is_along_sight(set, index.front(), found.plane.normal)) return 0.0;
-    return goes_on(set, found.plane, found.scatter * spacing) ? found.scatter : 0.0;
+    return find_likeliest_plane(set.points(), index, spacing,
+                                [&](const LikeliestPlane& found) {
+                                  return !is_along_sight(set, index.front(), found.plane.normal) &&
+                                         is_of_facet(set, found.plane, found.scatter * spacing);
+                                })
+        .scatter;
   });
   std::map<double, std::size_t> counts;  // in steps of kLevelRatio
   for (const double s : scatters) {

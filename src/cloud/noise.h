@@ -15,6 +15,9 @@ inline constexpr double kRoundingVariance = rounding_moment(2);
 /// The fourth cumulant of the same, which that of a normal distribution is above by 1/120.
 inline constexpr double kRoundingCumulant = rounding_moment(4) - 3 * kRoundingVariance * kRoundingVariance;
 
+/// In spacings: noise below this counts as none, as it blurs nothing and curvature leaves as much.
+inline constexpr double kLeastNoise = 0.04;
+
 /// Standard deviation of the points from their surface in each coordinate; 0 for a clean cloud.
 ///   - Noise lifts the residual of every neighbourhood; curvature, creases and thin parts only that of some. So the flattest 2 % decide. Of
 ///     quadratic height fields through 12 points noise sigma leaves residuals of a chi distribution with 6 degrees of freedom, times a
@@ -22,7 +25,8 @@ inline constexpr double kRoundingCumulant = rounding_moment(4) - 3 * kRoundingVa
 ///   - Noise is as large in small neighbourhoods as in larger ones, shape is not. Where the flattest 2 % of 8 points scatter half as much
 ///     or less than the flattest 10 % of 12 points, that is shape: thin walls, wires, detail (measured: up to 0.48; noise 0.56 and more).
 ///   - Noise leaves no exact planes behind. Where 40 % of the points are on one (find_exact_plane(), breadth 0.5) and no second one, the
-///     cloud is clean, unless its coordinates are rounded to steps of 0.04 h or more, which puts noise on planes.
+///     cloud is clean, unless its coordinates are rounded to steps of 0.04 h or more, which puts noise on planes. So is one of facets about
+///     which points scatter less than 0.04 h (facet_scatter()): what lies farther from a height field is on another wall.
 ///   - Against two or three layers of a smooth surface there is layered_deviation() of 256 neighbours, its 10 % quantile; the lesser of the
 ///     two counts. It needs the layers to be smooth as far as that. Noise above h fills such neighbourhoods as well, so every fourth point
 ///     is taken then, as often as needed.
@@ -51,14 +55,15 @@ inline constexpr double kRoundingCumulant = rounding_moment(4) - 3 * kRoundingVa
 /// place, of which estimate_noise() finds the least. From the scatter x h of three quarters of the height fields above (measured within
 /// 20 % from 0.1 to 1 h):
 ///     sigma = h x / sqrt(1 - (x / 0.57)^4).
-/// Walls and detail below the spacing lift it: not an estimate, but what to try. 0 for fewer than 192 points, or where exact planes
-/// as above show that there is no noise. Units and cost as above.
+/// Walls and detail below the spacing lift it: not an estimate, but what to try. 0 for fewer than 192 points, or where planes as above show
+/// that there is no noise. Units and cost as above.
 [[nodiscard]] double largest_scatter(const PointSet& set);
 
-/// Standard deviation of the points about the facets of a CAD model: what find_likeliest_plane() finds at most of about 500 points, where
-/// 40 % of the 132 nearest points are on that plane too. A scanner scatters alike everywhere, detail does not, so two adjacent ones of its
-/// steps have to hold 40 % of the points; else 0, and 0 for exact points. It sees a scatter too small to blur anything, for which
-/// estimate_noise() is 0, and that of walls closer together than the sampling. 0 for fewer than 192 points. About 20 ms.
+/// Standard deviation of the points about the facets of a CAD model: what find_likeliest_plane() finds at most of about 500 points. Planes
+/// of bends do not count: among the 132 nearest points they have more from w to 2 w away than a quarter of those up to w = 2.5 scatters. A
+/// scanner scatters alike everywhere, detail does not, so two adjacent ones of its steps have to hold 40 % of the points; else 0, and 0 for
+/// exact points. It sees a scatter too small to blur anything, for which estimate_noise() is 0, and that of walls closer together than the
+/// sampling. 0 for fewer than 192 points. About 20 ms.
 [[nodiscard]] double facet_scatter(const PointSet& set);
 
 /// Along each axis, the least step between coordinates, not counting those up to 0.001 typical spacings; 0 where it is 0.04 spacings or

@@ -1,5 +1,6 @@
 #include "orient/clean_surface.h"
 
+#include "cloud/noise.h"
 #include "orient/confidence.h"
 #include "orient/creases.h"
 #include "orient/facets.h"
@@ -22,8 +23,9 @@ void agree_on_facets(const Problem& problem, const std::vector<std::uint8_t>& pr
                      std::vector<Vec3>& normals, Stages& stages) {
   const PointSet& set = problem.cloud.set;
   const Settings& s = problem.settings;
+  const double scatter = problem.scatter < kLeastNoise * problem.spacing ? problem.scatter : 0;  // else it may be that of two walls
   for (int round = 0; round < kMostRounds; ++round) {
-    const Facets facets = find_facets(set, proven, normals, problem.known.wanted);
+    const Facets facets = find_facets(set, proven, normals, scatter, problem.known.wanted);
     if (minority_share(facets, normals) < kMinMinority) return;
     make_room_for_sums(set);
     choose_facet_sides(set, s, facets, eta, normals, stages);

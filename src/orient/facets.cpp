@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <utility>
 
 namespace g3r {
@@ -103,7 +104,7 @@ std::vector<std::uint8_t> unsure_facets(const Facets& facets, const std::vector<
 
 }  // namespace
 
-Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven, const std::vector<Vec3>& normals,
+Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven, const std::vector<Vec3>& normals, double scatter,
                    const std::vector<std::uint8_t>& wanted) {
   const std::vector<Vec3>& points = set.points();
   const std::vector<double>& spacing = set.smoothed_spacing();
@@ -111,11 +112,12 @@ Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven,
   Facets facets;
   facets.of.assign(points.size(), Facets::kNone);
   if (points.size() < kSpacingNeighbours) return facets;
+  const double of_two = kSigmas * std::numbers::sqrt2 * scatter;  // how far apart two points of one plane may be across it
   const auto is_parallel = [&](std::size_t i, std::size_t j) { return std::abs(vector::dot(normals[i], normals[j])) >= kParallel; };
   const auto in_one_plane = [&](std::size_t i, std::size_t j) {
     const Vec3 d = vector::subtract(points[i], points[j]);
     return std::max(std::abs(vector::dot(normals[i], d)), std::abs(vector::dot(normals[j], d))) <=
-           kExactScatter * std::min(spacing[i], spacing[j]);
+           std::max(kExactScatter * std::min(spacing[i], spacing[j]), of_two);
   };
   // The neighbours in one plane with a point, a bit each: most points of curved surfaces have none.
   std::vector<std::uint32_t> beside(points.size(), 0);
