@@ -7,7 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace g3r {
@@ -74,6 +76,26 @@ TEST(Creases, RoughSurfacesStayAsTheyAre) {
   normals = rough.normals;
   EXPECT_FALSE(sharpen_creases(PointSet(rough.points), normals));
   EXPECT_EQ(normals, rough.normals);
+}
+
+// The surroundings of a tile are thinned, and so more rounded.
+TEST(Creases, OfWantedPointsDecide) {
+  const BlurredCube input = blurred_cube(1000);
+  Surface all = input.cube;
+  std::vector<Vec3> blurred = input.blurred;
+  shapes::Random random(3);
+  for (const Vec3& p : shapes::sphere(12000, 0.5, {3, 0, 0}).points) {
+    all.points.push_back(p);
+    blurred.push_back(random.direction());
+  }
+  std::vector<std::uint8_t> wanted(all.points.size(), 0);
+  std::fill_n(wanted.begin(), input.blurred.size(), std::uint8_t{1});
+  const PointSet set(all.points);
+  std::vector<Vec3> normals = blurred;
+  EXPECT_FALSE(sharpen_creases(set, normals));
+  EXPECT_TRUE(sharpen_creases(set, normals, wanted));
+  normals.resize(input.blurred.size());
+  EXPECT_LE(shapes::angle_error(normals, input.cube.normals), shapes::angle_error(input.blurred, input.cube.normals) / 2);
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ void fit_clean_surface(const Problem& problem, std::vector<Vec3>& eta, std::vect
   std::vector<std::uint8_t> proven;
   const auto fit = [&] { proven = fit_directions(problem, normals); };
   fit();
-  if (runs(problem, Step::kCreases) && sharpen_creases(problem.cloud.set, normals)) fit();
+  if (runs(problem, Step::kCreases) && sharpen_creases(problem.cloud.set, normals, problem.known.wanted)) fit();
   if (runs(problem, Step::kFacets)) agree_on_facets(problem, proven, fit, eta, normals, stages);
 }
 

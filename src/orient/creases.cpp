@@ -62,11 +62,14 @@ Averaged average_in_planes(const PointSet& set, const std::vector<Vec3>& normals
 
 }  // namespace
 
-bool sharpen_creases(const PointSet& set, std::vector<Vec3>& normals) {
+bool sharpen_creases(const PointSet& set, std::vector<Vec3>& normals, const std::vector<std::uint8_t>& wanted) {
   if (set.size() < kSpacingNeighbours) return false;
   std::vector<Vec3> sharp = normals;
   for (int round = 0; round < kRounds; ++round) sharp = average_in_planes(set, sharp).normals;
   std::vector<double> share = average_in_planes(set, sharp).share;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (wanted[i] == 0) share[i] = -1;  // thinner than what is wanted, and rounded more
+  }
   share.erase(std::remove(share.begin(), share.end(), -1.0), share.end());
   if (share.empty() || median(share) < kPiecewiseSmooth) return false;
   normals = std::move(sharp);
