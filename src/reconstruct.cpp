@@ -312,11 +312,11 @@ void warn_of_missing(const mesh::Unmet& unmet, const mesh::Found& found, Stats& 
   stats.doubtful = stats.doubtful || std::max({unmet.bare, unmet.turned, found.pointless_area}) > kManyUnsure;
 }
 
-void warn_of_trimming(const MeshCheck& check, const MeshOptions& options, Stats& stats) {
+void warn_of_trimming(const mesh::Found& found, const MeshOptions& options, Stats& stats) {
   if (options.trim == MeshOptions::Trim::kOff) return;
   const bool by_distance = options.trim == MeshOptions::Trim::kDistance;
-  if (check.closed) {
-    stats.warnings.push_back("nothing was cut away: no surface is farther than " +
+  if (!found.trimmed) {
+    stats.warnings.push_back("nothing was trimmed: no surface is farther than " +
                              (by_distance ? short_number(options.trim_distance) : short_number(mesh::kFarSpacings) + " spacings") +
                              " from the points");
   }
@@ -340,7 +340,7 @@ void describe_mesh(const MeshCheck& check, const MeshRun& run, const MeshOptions
     stats.doubtful = stats.doubtful || (run.far_share > kManyUnsure && !is_trimmed);
   }
   warn_of_missing(run.unmet, run.found, stats);
-  warn_of_trimming(check, options, stats);
+  warn_of_trimming(run.found, options, stats);
   warn_of_topology(check, stats);
   warn_of_faces(check.triangles, options.faces, run.new_crossings, stats.warnings);
   if (is_too_wide(stats.box_side, stats.spacing, options)) {

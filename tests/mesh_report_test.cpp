@@ -191,7 +191,7 @@ TEST(MeshReport, TrimmingThatCutsNothingOrTooMuchIsTold) {
   MeshOptions options;
   options.trim = MeshOptions::Trim::kAuto;
   const Reported closed(sphere, options);
-  EXPECT_TRUE(closed.warns("nothing was cut away: no surface is farther than 4 spacings"));
+  EXPECT_TRUE(closed.warns("nothing was trimmed: no surface is farther than 4 spacings"));
   EXPECT_FALSE(closed.report.stats.doubtful);
   OrientedSample half;
   for (std::size_t i = 0; i < sphere.points.size(); ++i) {
@@ -200,6 +200,16 @@ TEST(MeshReport, TrimmingThatCutsNothingOrTooMuchIsTold) {
     half.normals.push_back(sphere.normals[i]);
   }
   EXPECT_TRUE(Reported(half, options).report.stats.warnings.empty());
+  // Of an open part that is dropped after it was trimmed nothing is left; a closed one is dropped for its size alone.
+  options.keep_largest = 1;
+  OrientedSample small;
+  for (const Vec3& p : half.points) small.points.push_back({0.5 * p[0] + 5, 0.5 * p[1], 0.5 * p[2]});
+  small.normals = half.normals;
+  const Reported one(joined(sphere, small), options);
+  EXPECT_TRUE(one.report.check.closed);
+  EXPECT_FALSE(one.warns("nothing was"));
+  EXPECT_TRUE(Reported(with_sphere(sphere, 1000, 0.5, 5), options).warns("nothing was trimmed"));
+  options.keep_largest = 0;
   options.trim = MeshOptions::Trim::kDistance;
   for (const double spacings : {0.7, 4.0}) {
     options.trim_distance = spacings * spacing_on_sphere(sphere.points.size());

@@ -164,7 +164,7 @@ TEST_F(SpoiltResult, SidesWithoutAWarningOfThem) {
               turn_all(r);
               r.orientation.stats.warnings = {
                   "3 points with a non-finite coordinate were left out",
-                  "nothing was cut away: no surface is farther than 4 spacings from the points",
+                  "nothing was trimmed: no surface is farther than 4 spacings from the points",
                   "trimmed at 0.1, which is less than the gaps between the points and leaves holes: 4 spacings are 1",
                   "so few triangles intersect each other: 1 pair more than before simplifying",
                   "40 triangles instead of 30: fewer would open the mesh"};

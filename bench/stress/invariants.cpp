@@ -41,7 +41,7 @@ constexpr double kLineRatio = 1e-9;   // extent across over extent along, below 
 constexpr double kSliver = 0.05;      // the same of up to kNeighbours points, below which their surface is no triangle
 constexpr double kMoved = 0.01;       // spacings: rounding by more makes another cloud
 // Words of warnings that say nothing of sides: of points that are none, of hints, and of what options make of the mesh.
-constexpr const char* kNotOfSides[] = {"non-finite",          "hint", "nothing was cut away", "trimmed at", "so few triangles",
+constexpr const char* kNotOfSides[] = {"non-finite",          "hint", "nothing was trimmed", "trimmed at", "so few triangles",
                                        "triangles instead of"};
 
 class Judge {

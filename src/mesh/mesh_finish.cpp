@@ -57,7 +57,7 @@ void finish_mesh(Mesh& mesh, const OrientedPoints& points, double noise, const M
   if (by_distance && !(options.trim_distance > 0)) throw InvalidInput("the trim distance must be positive");
   if (!(options.min_component.value_or(0) >= 0)) throw InvalidInput("the smallest component must not be negative");
   if (mesh.triangles.empty()) return;
-  if (options.trim != MeshOptions::Trim::kOff) trim(mesh, points, options, cancel);
+  if (options.trim != MeshOptions::Trim::kOff) found.trimmed = trim(mesh, points, options, cancel);
   drop_components(mesh, points.positions, points.spacing, noise, options, found);
 }
 

@@ -16,6 +16,7 @@ struct Found {
   Dropped dropped;            ///< for want of support
   double noise = 0;           ///< standard deviation of the points that is smoothed over, a length
   double pointless_area = 0;  ///< share of the area that is of parts which no point holds
+  bool trimmed = false;       ///< whether trimming cut something off, of parts that were dropped after it too
 };
 
 /// Share of the mesh's area whose triangles have their centre farther than `spacings` local spacings, of points in lines those across

@@ -240,7 +240,7 @@ std::vector<Cut> cut_off(Mesh& mesh, const std::vector<double>& past, const std:
 
 }  // namespace
 
-void trim(Mesh& mesh, const OrientedPoints& points, const MeshOptions& options, const std::atomic<bool>* cancel) {
+bool trim(Mesh& mesh, const OrientedPoints& points, const MeshOptions& options, const std::atomic<bool>* cancel) {
   const std::vector<double> limits = limits_of(points, options);
   const auto limit = [&](std::uint32_t i) { return limits[i]; };
   std::vector<double> past;
@@ -254,7 +254,7 @@ void trim(Mesh& mesh, const OrientedPoints& points, const MeshOptions& options, 
   };
   look();
   const auto is_set = [](std::uint8_t byte) { return byte != 0; };
-  if (std::none_of(off.begin(), off.end(), is_set) && std::all_of(keep.begin(), keep.end(), is_set)) return;
+  if (std::none_of(off.begin(), off.end(), is_set) && std::all_of(keep.begin(), keep.end(), is_set)) return false;
   if (options.trim == MeshOptions::Trim::kDistance) {
     halve_edges(mesh, points, options.trim_distance, cancel);
     look();
@@ -278,6 +278,7 @@ void trim(Mesh& mesh, const OrientedPoints& points, const MeshOptions& options, 
     std::transform(distance.begin(), distance.end(), near.begin(), [](double d) { return d <= 1 ? 1 : 0; });
     return near;
   });
+  return true;
 }
 
 }  // namespace g3r::mesh

@@ -13,8 +13,8 @@ namespace g3r::mesh {
 /// denser; 1.4 of the place where it is so sparse that this is more. What spans gaps stays so, but at the rims of an open scan surface goes
 /// on as far for nothing: from there inwards (auto) all goes that is past the rims of the points, where as many of these are missing as on
 /// the other side of an edge, and what is turned away from their normals. The mesh is cut between its vertices, and its rims are smoothed
-/// (smooth_rims) within the same distances. Nothing happens to surface that is nowhere too far. `mesh`: without colours. O((F + N) log N).
-/// Throws InvalidInput if nothing would be left; Cancelled.
-void trim(Mesh& mesh, const OrientedPoints& points, const MeshOptions& options, const std::atomic<bool>* cancel = nullptr);
+/// (smooth_rims) within the same distances. Nothing happens to surface that is nowhere too far: then false is returned. `mesh`: without
+/// colours. O((F + N) log N). Throws InvalidInput if nothing would be left; Cancelled.
+bool trim(Mesh& mesh, const OrientedPoints& points, const MeshOptions& options, const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace g3r::mesh
