@@ -33,14 +33,15 @@ g3r_together(fields mesh/automatic_depth mesh/box_tree mesh/component_support me
 g3r_together(meshes mesh/carry_attributes mesh/check_mesh mesh/coarsen mesh/crossings mesh/edge_collapse mesh/exact_orientation mesh/fair
              mesh/findings mesh/mesh_finish mesh/mesh_parts mesh/self_intersections mesh/separate_vertices mesh/simplify mesh/smooth_rims
              mesh/smooth_spacing mesh/split_nonmanifold mesh/trim mesh/untangle mesh/used_vertices)
-g3r_together(readers io/copc io/find_columns io/gltf_file io/las io/las_fields io/las_plan io/npy_header io/ply_body io/ply_header
-             io/ply_types io/point_text io/random_file io/read io/read_ascii_grid io/read_gltf io/read_las io/read_npy io/read_obj
-             io/read_off io/read_ply io/read_ptx io/read_spz io/recognise io/source io/splats io/text)
+g3r_together(readers io/column_words io/copc io/find_columns io/gltf_file io/las io/las_column io/las_coordinates io/las_extra_bytes
+             io/las_fields io/las_plan io/npy_header io/ply_body io/ply_header io/ply_types io/point_lines io/point_rows io/random_file
+             io/read io/read_ascii_grid io/read_gltf io/read_las io/read_npy io/read_obj io/read_off io/read_ply io/read_ptx io/read_spz
+             io/recognise io/source io/splats io/strangers io/text io/text_numbers io/text_shape)
 g3r_together(tables io/cloud_from_table io/column_facts io/column_names io/columns io/decimal_steps io/fixed_records io/grid_header io/gzip
              io/json io/lzf io/merger io/number_type io/output_file io/pcd_header io/point_stream io/polygons io/ptx_scans io/read_pcd
              io/read_stl io/read_xyz io/rows io/subset io/table io/tiles)
-g3r_together(writers io/float_text io/splat_light io/splat_view io/text_values io/utf8 io/write io/write_glb io/write_las io/write_las_new
-             io/write_npy io/write_obj io/write_off io/write_pcd io/write_ply io/write_stl io/write_xyz io/xml)
+g3r_together(writers io/float_text io/splat_image io/splat_light io/splat_view io/text_values io/utf8 io/write io/write_glb io/write_las
+             io/write_las_new io/write_npy io/write_obj io/write_off io/write_pcd io/write_ply io/write_stl io/write_xyz io/xml io/xml_text)
 g3r_together(tiles base/control_groups gpu/nvrtc tiles/cells tiles/coarse_sides tiles/external_sort tiles/merge tiles/mesh_corners
              tiles/mesh_parts tiles/mesh_patches tiles/mesh_points tiles/mesh_records tiles/mesh_region tiles/mesh_run
              tiles/mesh_surroundings tiles/parts tiles/patches_file tiles/plan tiles/point_writer tiles/run tiles/spacing_sample

@@ -6,7 +6,9 @@
 
 #include "io/las.h"
 #include "io/lzf.h"
+#include "io/strangers.h"
 #include "io/text.h"
+#include "io/text_numbers.h"
 #include "io_samples.h"
 
 namespace g3r {
@@ -44,6 +46,19 @@ TEST(Text, NumbersBeyondDoubleAreInfiniteOrZeroAndSaid) {
   EXPECT_TRUE(io::parse_double("0." + std::string(400, '0') + "1", v, &overflow));
   EXPECT_EQ(v, 0);
   EXPECT_FALSE(overflow);
+}
+
+TEST(Text, NumbersAreWrittenAsShortAsTheyReadBack) {
+  EXPECT_EQ(io::number_text(0.1), "0.1");
+  EXPECT_EQ(io::number_text(0.1F), "0.1");
+  EXPECT_EQ(io::number_text(static_cast<double>(0.1F)), "0.10000000149011612");
+  EXPECT_EQ(io::number_text(1e300), "1e+300");
+}
+
+TEST(Strangers, AreKnownByTheirFirstBytes) {
+  EXPECT_STREQ(io::find_stranger("PK\x03\x04 and more"), "a zip archive (compressed); unpack it first");
+  EXPECT_STREQ(io::find_stranger("\xff\xfe"), "UTF-16 text; save it as UTF-8");
+  for (const char* none : {"", "PK", "ply\n", "1 2 3\n"}) EXPECT_EQ(io::find_stranger(none), nullptr) << none;
 }
 
 TEST(Text, AllLineEndsAreLineEnds) {

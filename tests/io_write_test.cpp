@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 
 #include "io/las.h"
+#include "io/las_extra_bytes.h"
 #include "io_samples.h"
 
 namespace g3r {

@@ -12,7 +12,7 @@ OF_A_SYSTEM = re.compile(r"^#include <((?:arpa|linux|mach|net|netinet|sys)/.*|cs
                          r"malloc\.h|poll\.h|psapi\.h|pthread\.h|pwd\.h|sched\.h|share\.h|shellapi\.h|spawn\.h|termios\.h|unistd\.h|windows\.h)>", re.MULTILINE)
 FOR_A_SYSTEM = re.compile(r"_(posix|windows)\.cpp$")
 # Where the standard library's functions take integers alone: the browsers' one has them for no others (io/float_text.h is for those).
-OF_INTEGERS = {"io/float_text.h", "io/text.h", "io/text.cpp", "io/xml.cpp", "io/float_text.cpp", "solve/harmonics.cpp", "sum/device_scope.cpp"}
+OF_INTEGERS = {"io/float_text.h", "io/text_numbers.h", "io/text_numbers.cpp", "io/xml_text.cpp", "io/float_text.cpp", "solve/harmonics.cpp", "sum/device_scope.cpp"}
 ENTRY = "src"  # files of src/ itself: the public entry points, which may use every folder
 
 

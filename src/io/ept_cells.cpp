@@ -2,7 +2,7 @@
 
 #include "base/platform.h"
 #include "io/source.h"
-#include "io/text.h"
+#include "io/text_numbers.h"
 
 #include <nlohmann/json.hpp>
 

@@ -2,11 +2,10 @@
 
 #include "io/column_facts.h"
 #include "io/column_names.h"
-#include "io/text_values.h"
+#include "io/column_words.h"
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <iterator>
 #include <string_view>
 #include <utility>
@@ -17,44 +16,35 @@ namespace {
 
 constexpr const char* kAxes[] = {"x", "y", "z"};
 
-// A column with a word in more than one line of so many holds text; fewer words are damage, which is an error.
-constexpr std::uint64_t kLinesPerWord = 100;
-
-constexpr std::size_t kKeptWord = 256;  // bytes of a word that are kept for messages, which show fewer
-
-// Values of a column that are no numbers.
-struct Words {
-  std::uint64_t count = 0;
-  std::size_t line = 0;  // of the first
-  std::string first;
-  bool like_numbers = false;  // some begin like a number
-};
+// The column of this name, or one that is not there.
+std::size_t column_of(std::string_view name, const std::vector<std::string>& names) {
+  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+}
 
 // Finds the columns of one text.
 class Finder {
  public:
-  Finder(const Text& text, const TextShape& shape) : text_(text), source_(text.source()), shape_(shape), words_(shape.columns) {
+  Finder(const Text& text, const TextShape& shape) : text_(text), source_(text.source()), shape_(shape), words_(source_, shape) {
     found_.properties.resize(shape.columns);
     for (Property& property : found_.properties) property.type = Type::kFloat64;
   }
 
   TextColumns find(const std::function<void(const double*)>& store) {
     const bool named = !shape_.header.names.empty();
-    const bool asks = !named || find_name("i") < shape_.columns;  // what i, j, k are
+    const bool asks = !named || column_of("i", shape_.header.names) < shape_.columns;  // what i, j, k are
     ColumnFacts facts(shape_.columns);
-    PointRows rows(text_, shape_, [&](std::size_t column, std::size_t line, std::string_view value) { note(column, line, value); });
+    PointRows rows(text_, shape_, [&](std::size_t column, std::size_t line, std::string_view value) { words_.note(column, line, value); });
     while (const double* row = rows.next()) {
       if (store) store(row);
       if (asks) facts.add(row);
     }
     found_.overflow = rows.overflow();
-    missing_ = rows.missing();
-    const std::vector<TextColumn> text = find_text();
+    words_.set_missing(rows.missing());
+    const std::vector<TextColumn> text = words_.find_text();
     if (named) name_by_header(facts);
     const std::size_t known = named ? shape_.columns : name_first_columns(facts, text);
     const std::size_t left = leave_out_text(known);
-    for (std::size_t c = 0; c < missing_.size(); ++c) missing_[c].count = words_[c].count == 0 ? missing_[c].count : 0;
-    const std::vector<std::string> missing = about_missing(shape_, missing_);
+    const std::vector<std::string> missing = words_.about_missing();
     found_.warnings.insert(found_.warnings.end(), missing.begin(), missing.end());
     if (named) return std::move(found_);
     if (found_.kept.size() < shape_.columns && left < found_.kept.size()) facts = facts_of_kept();
@@ -64,53 +54,6 @@ class Finder {
   }
 
  private:
-  [[noreturn]] void fail_at_word(std::size_t column) const {
-    fail_at_line(source_, words_[column].line, expected_number(words_[column].first, " in " + column_text(shape_, column)));
-  }
-
-  // Which columns hold text; a word among numbers is an error.
-  [[nodiscard]] std::vector<TextColumn> find_text() const {
-    std::vector<TextColumn> text(words_.size());
-    std::size_t damage = words_.size();
-    for (std::size_t c = 0; c < words_.size(); ++c) {
-      const Words& words = words_[c];
-      text[c].any = words.count != 0;
-      text[c].all = text[c].any && words.count + missing_[c].count == shape_.points && !words.like_numbers;
-      if (text[c].any && words.count * kLinesPerWord <= shape_.points && (damage == words_.size() || words.line < words_[damage].line)) {
-        damage = c;
-      }
-    }
-    if (damage < words_.size()) fail_at_word(damage);
-    return text;
-  }
-
-  // A column that is no coordinate and holds no number is of no use.
-  [[nodiscard]] bool is_used(std::size_t column) const { return words_[column].count == 0 && missing_[column].count < shape_.points; }
-
-  // The column of this name in the header, or a column that is not there.
-  [[nodiscard]] std::size_t find_name(std::string_view name) const {
-    const std::vector<std::string>& names = shape_.header.names;
-    return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
-  }
-
-  // A coordinate needs numbers.
-  void require_numbers(std::size_t column) const {
-    if (words_[column].count != 0) fail_at_word(column);
-    if (missing_[column].count == shape_.points) {
-      fail_at_line(source_, missing_[column].line,
-                   "expected a coordinate in " + column_text(shape_, column) + ", found no number in any line");
-    }
-  }
-
-  void note(std::size_t column, std::size_t line, std::string_view value) {
-    Words& here = words_[column];
-    if (here.count++ == 0) {
-      here.line = line;
-      here.first = value.substr(0, kKeptWord);
-    }
-    here.like_numbers = here.like_numbers || is_like_number(value);
-  }
-
   template <class Take>
   void for_each_row(const Take& take) const {
     PointRows rows(text_, shape_, [](std::size_t, std::size_t, std::string_view) {});
@@ -139,7 +82,7 @@ class Finder {
       found_.warnings.emplace_back(
           "the columns look like point number, northing, easting, elevation and description (PNEZD) and are read so; if they are others, "
           "name them in a first line, for example point,x,y,z,description");
-      for (std::size_t a = 0; a < 3; ++a) require_numbers(1 + a);
+      for (std::size_t a = 0; a < 3; ++a) words_.require_numbers(1 + a);
       constexpr const char* kNames[] = {"point", "y", "x", "z", "description"};
       for (std::size_t c = 0; c < std::size(kNames); ++c) found_.properties[c].name = kNames[c];
       return std::size(kNames);
@@ -152,7 +95,7 @@ class Finder {
           "a first line, for example point,northing,easting,elevation");
     }
     for (std::size_t a = 0; a < 3; ++a) {
-      require_numbers(first + a);
+      words_.require_numbers(first + a);
       found_.properties[first + a].name = kAxes[a];
     }
     const std::string doubt = first == 0 && !shape_.counted ? doubt_of_order(facts, shape_.columns) : "";
@@ -162,8 +105,9 @@ class Finder {
 
   // i, j and k are normals where they are vectors of length 1, else indices or what they may be.
   void name_normals(std::vector<std::string>& names, const ColumnFacts& facts) const {
-    const std::size_t i = find_name("i");
-    if (i + 2 >= names.size() || names[i + 1] != "j" || names[i + 2] != "k" || find_name("nx") < names.size() || !facts.are_normals(i))
+    const std::size_t i = column_of("i", shape_.header.names);
+    if (i + 2 >= names.size() || names[i + 1] != "j" || names[i + 2] != "k" || column_of("nx", shape_.header.names) < names.size() ||
+        !facts.are_normals(i))
       return;
     for (std::size_t a = 0; a < 3; ++a) names[i + a] = std::string("n") + kAxes[a];
   }
@@ -175,7 +119,7 @@ class Finder {
     std::size_t named = 0;
     std::size_t last = 0;
     for (std::size_t a = 0; a < 3; ++a) {
-      axes[a] = static_cast<std::size_t>(std::find(names.begin(), names.end(), kAxes[a]) - names.begin());
+      axes[a] = column_of(kAxes[a], names);
       if (axes[a] == names.size()) continue;
       ++named;
       last = std::max(last, axes[a]);
@@ -183,7 +127,7 @@ class Finder {
     std::vector<std::size_t> found = named == 2 ? std::vector<std::size_t>() : like_axes(names);
     const bool by_name = !found.empty();
     for (std::size_t c = named == 2 ? last + 1 : 0; c < names.size() && found.size() < 3; ++c) {
-      if (is_used(c)) found.push_back(c);
+      if (words_.is_used(c)) found.push_back(c);
     }
     if (found.size() < (named == 2 ? 1 : 3))
       fail(source_, "the header names no columns x, y and z, and fewer than three columns are numbers");
@@ -211,10 +155,7 @@ class Finder {
     }
     make_distinct(names);
     for (std::size_t c = 0; c < names.size(); ++c) found_.properties[c].name = names[c];
-    for (const char* axis : kAxes) {
-      const auto column = static_cast<std::size_t>(std::find(names.begin(), names.end(), axis) - names.begin());
-      require_numbers(column);
-    }
+    for (const char* axis : kAxes) words_.require_numbers(column_of(axis, names));
   }
 
   // Leaves out the columns with text, and says so. Returns how many of the first `known` columns are left.
@@ -222,8 +163,8 @@ class Finder {
     constexpr std::size_t kMostNamed = 8;  // The warning names so many columns, and counts the others.
     std::vector<std::size_t>& kept = found_.kept;
     std::string names;
-    for (std::size_t c = 0; c < words_.size(); ++c) {
-      if (is_used(c)) {
+    for (std::size_t c = 0; c < shape_.columns; ++c) {
+      if (words_.is_used(c)) {
         kept.push_back(c);
         continue;
       }
@@ -232,10 +173,10 @@ class Finder {
       if (left_out > 1) names += ", ";
       names += std::to_string(c + 1);
       if (!found_.properties[c].name.empty()) names.append(" ").append(quote(found_.properties[c].name));
-      names.append(" (").append(words_[c].count != 0 ? quote(words_[c].first) : "empty").append(")");
+      names.append(" (").append(words_.first(c).empty() ? "empty" : quote(words_.first(c))).append(")");
     }
-    if (kept.size() == words_.size()) return known;
-    const std::size_t more = words_.size() - kept.size() > kMostNamed ? words_.size() - kept.size() - kMostNamed : 0;
+    if (kept.size() == shape_.columns) return known;
+    const std::size_t more = shape_.columns - kept.size() > kMostNamed ? shape_.columns - kept.size() - kMostNamed : 0;
     if (more != 0) names += " and " + std::to_string(more) + " more";
     found_.warnings.push_back("columns without numbers are not used: " + names);
     for (std::size_t k = 0; k < kept.size(); ++k) {
@@ -248,8 +189,7 @@ class Finder {
   const Text& text_;
   const Source& source_;
   const TextShape& shape_;
-  std::vector<Words> words_;
-  std::vector<PointRows::Missing> missing_;
+  ColumnWords words_;
   TextColumns found_;
 };
 

@@ -2,7 +2,8 @@
 // left out.
 #pragma once
 
-#include "io/point_text.h"
+#include "io/point_rows.h"
+#include "io/table.h"
 
 #include <cstddef>
 #include <functional>

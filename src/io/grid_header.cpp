@@ -1,5 +1,7 @@
 #include "io/grid_header.h"
 
+#include "io/text_numbers.h"
+
 #include <cmath>
 #include <optional>
 

@@ -1,6 +1,6 @@
 #include "io/json.h"
 
-#include "io/text.h"
+#include "io/text_numbers.h"
 
 #include <cmath>
 

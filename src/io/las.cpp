@@ -1,5 +1,6 @@
 #include "io/las.h"
 
+#include "io/las_extra_bytes.h"
 #include "io/laz.h"
 
 #include <algorithm>
@@ -44,44 +45,6 @@ std::vector<LasField> standard_fields(unsigned format) {
   return fields;
 }
 
-constexpr Type kDescribedTypes[] = {Type::kUint8, Type::kInt8,   Type::kUint16, Type::kInt16,   Type::kUint32,
-                                    Type::kInt32, Type::kUint64, Type::kInt64,  Type::kFloat32, Type::kFloat64};
-
-// The scale and offset of one of the numbers that a descriptor describes.
-DecimalSteps steps_of(const char* descriptor, std::size_t number) {
-  constexpr unsigned kHasScale = 8;
-  constexpr unsigned kHasOffset = 16;
-  constexpr std::size_t kScaleAt = 112;
-  constexpr std::size_t kOffsetAt = 136;
-  const auto options = static_cast<unsigned char>(descriptor[3]);
-  const double scale = (options & kHasScale) != 0 ? load<double>(descriptor + kScaleAt + 8 * number) : 1;
-  const double offset = (options & kHasOffset) != 0 ? load<double>(descriptor + kOffsetAt + 8 * number) : 0;
-  if (!std::isfinite(scale) || scale == 0 || !std::isfinite(offset)) return DecimalSteps();  // never set, though the options say so
-  return DecimalSteps(scale, offset);
-}
-
-// Adds the fields that an Extra Bytes record describes. Types 11 to 30 are arrays of two or three numbers of types 1 to 10.
-void describe_extra_bytes(std::string_view descriptors, LasHeader& header) {
-  constexpr unsigned kTypes = std::size(kDescribedTypes);
-  constexpr unsigned kMostNumbers = 3;
-  std::size_t at = kRecordSize[header.point_format];
-  for (std::size_t d = 0; d + kDescriptor <= descriptors.size(); d += kDescriptor) {
-    const char* descriptor = descriptors.data() + d;
-    const auto type = static_cast<unsigned char>(descriptor[2]);
-    const auto options = static_cast<unsigned char>(descriptor[3]);
-    if (type > kTypes * kMostNumbers || (type == 0 && options == 0)) break;
-    const Type number = kDescribedTypes[type == 0 ? 0 : (type - 1) % kTypes];
-    const std::size_t numbers = type == 0 ? options : (type - 1) / kTypes + 1;  // type 0: that many bytes without meaning
-    if (numbers * size_of(number) > header.record_bytes - at) break;
-    const std::string name = las_text(descriptors.substr(d + kLasNameAt, kLasNameBytes));
-    for (std::size_t k = 0; k < numbers; ++k, at += size_of(number)) {
-      if (type == 0) continue;
-      header.fields.push_back({numbers == 1 ? name : name + "_" + std::to_string(k), number, at, steps_of(descriptor, k)});
-    }
-  }
-  header.undescribed_bytes = header.record_bytes - at;
-}
-
 // Whether a coordinate system in OGC's Well-Known Text is geographic: it has a geographic one and does not project it.
 bool is_geographic_wkt(std::string_view wkt) {
   const auto has = [&](std::string_view a, std::string_view b) {
@@ -119,7 +82,7 @@ void read_vlrs(const Source& source, LasHeader& header) {
     const unsigned record = load<std::uint16_t>(source.bytes.data() + at + 18);
     if (user == "LASF_Spec" && record == kExtraBytes && header.extra_vlr == 0) {
       header.extra_vlr = at;
-      describe_extra_bytes(source.bytes.substr(at + kVlrHeader, length), header);
+      read_extra_bytes(source.bytes.substr(at + kVlrHeader, length), header);
     }
     if (user == "laszip encoded" && record == kCompression && header.laszip_vlr == 0) header.laszip_vlr = at;
     if (user == "LASF_Projection") {
@@ -127,6 +90,35 @@ void read_vlrs(const Source& source, LasHeader& header) {
       header.geographic |= (record == kWkt && is_geographic_wkt(system)) || (record == kGeoKeys && is_geographic_keys(system));
     }
     at += kVlrHeader + length;
+  }
+}
+
+// The count of points, in one place or two, and whether the file has room for them.
+void read_count(const Source& source, std::uint64_t file_size, LasHeader& header) {
+  header.count = load<std::uint32_t>(source.bytes.data() + kLegacyCount);
+  if (header.minor == 4) {
+    const auto count = load<std::uint64_t>(source.bytes.data() + kCount);
+    if (count != 0 && header.count != 0 && count != header.count) {
+      fail_at_byte(source, kCount,
+                   "the header has two counts of points, " + std::to_string(header.count) + " and " + std::to_string(count));
+    }
+    header.count = std::max(count, header.count);
+  }
+  if (!header.compressed && header.count > (file_size - header.points_at) / header.record_bytes) {
+    fail_at_byte(source, header.points_at,
+                 "truncated: " + std::to_string(header.count) + " points of " + std::to_string(header.record_bytes) +
+                     " bytes declared, but only " + std::to_string(file_size - header.points_at) + " bytes follow (count too large)");
+  }
+}
+
+void read_steps(const Source& source, LasHeader& header) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    header.scale[a] = load<double>(source.bytes.data() + kScale + 8 * a);
+    header.offset[a] = load<double>(source.bytes.data() + kOffset + 8 * a);
+    if (!std::isfinite(header.scale[a]) || header.scale[a] == 0 || !std::isfinite(header.offset[a])) {
+      fail_at_byte(source, kScale + 8 * a, "the scale or offset of an axis is zero or not finite");
+    }
+    header.steps[a] = DecimalSteps(header.scale[a], header.offset[a]);
   }
 }
 
@@ -168,59 +160,15 @@ LasHeader read_las_header(const Source& source, std::uint64_t file_size) {
                  "expected records of at least " + std::to_string(kRecordSize[format]) + " bytes for point format " +
                      std::to_string(format) + ", found " + std::to_string(header.record_bytes));
   }
-  header.count = load<std::uint32_t>(bytes + kLegacyCount);
-  if (header.minor == 4) {
-    const auto count = load<std::uint64_t>(bytes + kCount);
-    if (count != 0 && header.count != 0 && count != header.count) {
-      fail_at_byte(source, kCount,
-                   "the header has two counts of points, " + std::to_string(header.count) + " and " + std::to_string(count));
-    }
-    header.count = std::max(count, header.count);
-  }
-  if (!header.compressed && header.count > (size - header.points_at) / header.record_bytes) {
-    fail_at_byte(source, header.points_at,
-                 "truncated: " + std::to_string(header.count) + " points of " + std::to_string(header.record_bytes) +
-                     " bytes declared, but only " + std::to_string(size - header.points_at) + " bytes follow (count too large)");
-  }
-  for (std::size_t a = 0; a < 3; ++a) {
-    header.scale[a] = load<double>(bytes + kScale + 8 * a);
-    header.offset[a] = load<double>(bytes + kOffset + 8 * a);
-    if (!std::isfinite(header.scale[a]) || header.scale[a] == 0 || !std::isfinite(header.offset[a])) {
-      fail_at_byte(source, kScale + 8 * a, "the scale or offset of an axis is zero or not finite");
-    }
-    header.steps[a] = DecimalSteps(header.scale[a], header.offset[a]);
-  }
+  read_count(source, size, header);
+  read_steps(source, header);
   header.fields = standard_fields(format);
   read_vlrs(source, header);
   header.geographic = header.geographic && can_be_degrees(source);
   return header;
 }
 
-unsigned las_type_number(Type type) {
-  for (unsigned i = 0; i < std::size(kDescribedTypes); ++i) {
-    if (kDescribedTypes[i] == type) return i + 1;
-  }
-  return 0;
-}
-
 std::string las_text(std::string_view bytes) { return std::string(bytes.substr(0, bytes.find('\0'))); }
-
-std::string las_descriptor(const std::string& name, unsigned type, std::size_t options) {
-  std::string bytes(kDescriptor, '\0');
-  bytes[2] = static_cast<char>(type);
-  bytes[3] = static_cast<char>(options);
-  bytes.replace(kLasNameAt, std::min(name.size(), kLasNameBytes), name, 0, kLasNameBytes);
-  return bytes;
-}
-
-std::string las_extra_vlr(std::size_t length) {
-  std::string bytes(kVlrHeader, '\0');
-  bytes.replace(2, 9, "LASF_Spec");
-  put(bytes, 18, static_cast<std::uint16_t>(kExtraBytes));
-  put(bytes, 20, static_cast<std::uint16_t>(length));
-  bytes.replace(22, 11, "Extra Bytes");
-  return bytes;
-}
 
 std::int32_t las_steps(double value, const DecimalSteps& of, const char* axis) {
   const double steps = of.steps(value);

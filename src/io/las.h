@@ -71,20 +71,8 @@ Attributes las_table(const LasHeader& header);
 /// A record of the file as one of las_table() at `to`; returns its end.
 char* copy_las_record(const LasHeader& header, const char* record, char* to);
 
-/// LAS's number of a type (1..10) in an extra-bytes descriptor.
-unsigned las_type_number(Type type);
-
-inline constexpr std::size_t kLasNameAt = 4;      ///< byte offset of the name in an extra-bytes descriptor
-inline constexpr std::size_t kLasNameBytes = 32;  ///< of an extra-bytes descriptor
-
 /// The text in so many bytes, which ends at the first 0.
 std::string las_text(std::string_view bytes);
-
-/// An extra-bytes descriptor; type 0 with `options` bytes stands for bytes without meaning.
-std::string las_descriptor(const std::string& name, unsigned type, std::size_t options);
-
-/// The header of the variable length record that holds `length` bytes of descriptors.
-std::string las_extra_vlr(std::size_t length);
 
 /// The integer that a coordinate is stored as. Throws InvalidInput, with the name of the axis, if there is none.
 std::int32_t las_steps(double value, const DecimalSteps& of, const char* axis);

@@ -2,7 +2,8 @@
 #pragma once
 
 #include "io/columns.h"
-#include "io/decimal_steps.h"
+#include "io/las_column.h"
+#include "io/las_coordinates.h"
 #include "io/las_fields.h"
 #include "io/rows.h"
 
@@ -15,8 +16,8 @@
 
 namespace g3r::io {
 
-/// Coordinates get as many decimals as they were read with, where their extent in such steps fits in 32 bits, else steps of a power of
-/// ten, at most 5e-9 of the extent. A property with the name of a LAS field becomes that field if all its numbers fit, else extra bytes.
+/// Coordinates get the steps of LasCoordinates. A property with the name of a LAS field becomes that field if all its numbers fit, else
+/// extra bytes.
 class LasPlan {
  public:
   /// `like` has no points but says what they have, as plan_columns() takes it, and has a colour if they have.
@@ -36,9 +37,9 @@ class LasPlan {
     std::size_t column;
     std::string name;
   };
-  [[nodiscard]] std::uint64_t count() const { return count_; }
-  [[nodiscard]] const Box& bounds() const { return bounds_; }
-  [[nodiscard]] const DecimalSteps& steps(std::size_t axis) const { return steps_[axis]; }
+  [[nodiscard]] std::uint64_t count() const { return coordinates_.count(); }
+  [[nodiscard]] const Box& bounds() const { return coordinates_.bounds(); }
+  [[nodiscard]] const DecimalSteps& steps(std::size_t axis) const { return coordinates_.steps(axis); }
   [[nodiscard]] LasFamily family() const { return family_; }
   [[nodiscard]] unsigned point_format() const { return las_point_format(family_, has(LasPart::kGpsTime), colored_, has(LasPart::kNir)); }
   /// What Rows takes.
@@ -60,40 +61,24 @@ class LasPlan {
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
-  // The numbers of a column.
-  struct Facts {
-    std::size_t column = 0;
-    LasPart part = LasPart::kNone;
-    double low = 0;
-    double high = 0;
-    bool whole = true;
-    bool finite = true;
-    double odd = 0;  // the first that is not whole
-    void add(double value);
-    [[nodiscard]] bool fit(const LasPlace& place) const;
-  };
-  [[nodiscard]] LasPlace place(const Facts& facts, LasFamily family) const;
-  [[nodiscard]] const Facts* find(LasPart part) const;
+  [[nodiscard]] LasPlace place(const LasColumn& named, LasFamily family) const;
+  [[nodiscard]] const LasColumn* find(LasPart part) const;
   void choose_family();
   void place_columns();
   void name_extras();
-  void choose_steps();
-  [[nodiscard]] std::string misfit(const Facts& facts) const;
+  void choose_deep_colors();
+  [[nodiscard]] std::string misfit(const LasColumn& named) const;
 
   std::vector<Column> columns_;
   std::vector<std::size_t> others_;  // columns that are neither coordinates nor colours
-  std::vector<Facts> facts_;         // of columns called after parts
-  std::vector<Facts> channels_;      // of red, green and blue in the table
-  std::array<Decimals, 3> decimals_;
-  Scalar precision_;
+  std::vector<LasColumn> named_;     // called after parts
+  std::vector<LasColumn> channels_;  // red, green and blue in the table
+  LasCoordinates coordinates_;
   bool colored_;
-  std::uint64_t count_ = 0;
-  Box bounds_{};
   std::array<std::uint64_t, 256> return_bytes_{};  // points by the number that says which return they are
   bool mixed_ = false;                             // of point formats of both families, whose bytes of several fields differ
 
   LasFamily family_ = LasFamily::kOld;
-  std::array<DecimalSteps, 3> steps_;
   std::vector<Field> fields_;
   std::vector<LasPart> placed_;
   std::vector<Extra> extras_;

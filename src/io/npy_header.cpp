@@ -1,6 +1,6 @@
 #include "io/npy_header.h"
 
-#include "io/text.h"
+#include "io/text_numbers.h"
 
 #include <algorithm>
 #include <optional>

@@ -1,6 +1,7 @@
 #include "io/pcd_header.h"
 
 #include "io/text.h"
+#include "io/text_numbers.h"
 
 #include <algorithm>
 #include <array>

@@ -2,6 +2,7 @@
 
 #include "io/ply_types.h"
 #include "io/text.h"
+#include "io/text_numbers.h"
 
 #include <algorithm>
 #include <optional>

@@ -1,5 +1,7 @@
 #include "io/ptx_scans.h"
 
+#include "io/text_numbers.h"
+
 #include <cmath>
 #include <string>
 #include <string_view>

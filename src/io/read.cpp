@@ -6,7 +6,7 @@
 #include "io/recognise.h"
 #include "io/source.h"
 #include "io/subset.h"
-#include "io/text.h"
+#include "io/text_numbers.h"
 #include "io/tiles.h"
 
 #include <algorithm>
@@ -78,11 +78,9 @@ void warn_about_precision(Cloud& cloud) {
     }
     const double step = std::max(std::abs(low), std::abs(high)) * static_cast<double>(std::numeric_limits<float>::epsilon());
     if (high > low && step > kStepPerExtent * (high - low)) {
-      std::string text = "coordinates in float32 are quantised to steps of ";
-      append_number(text, static_cast<float>(step));
-      text += " in an extent of ";
-      append_number(text, static_cast<float>(high - low));
-      cloud.warnings.push_back(text + ": precision is lost; store them as double, or subtract an offset first");
+      cloud.warnings.push_back("coordinates in float32 are quantised to steps of " + number_text(static_cast<float>(step)) +
+                               " in an extent of " + number_text(static_cast<float>(high - low)) +
+                               ": precision is lost; store them as double, or subtract an offset first");
       return;
     }
   }

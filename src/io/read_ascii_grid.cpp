@@ -2,6 +2,7 @@
 #include "io/fixed_records.h"
 #include "io/grid_header.h"
 #include "io/readers.h"
+#include "io/text_numbers.h"
 
 #include <cmath>
 #include <utility>
@@ -37,8 +38,7 @@ class GridCells {
   [[nodiscard]] std::uint64_t points() const { return points_; }
   [[nodiscard]] std::vector<std::string> warnings() const {
     std::vector<std::string> all;
-    std::string no_data;
-    append_number(no_data, header_.no_data);
+    const std::string no_data = number_text(header_.no_data);
     if (points_ == 0) all.push_back("no points: all of " + header_.counts() + " are NODATA_value (" + no_data + ") or nan");
     if (usual_ != 0)
       all.push_back("-9999 is the value of " + std::to_string(usual_) + " cells, but NODATA_value is " + no_data +

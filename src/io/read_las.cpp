@@ -5,7 +5,6 @@
 #include "io/las.h"
 #include "io/laz.h"
 #include "io/readers.h"
-#include "io/text.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,6 +3,7 @@
 #include "io/polygons.h"
 #include "io/readers.h"
 #include "io/text.h"
+#include "io/text_numbers.h"
 
 #include <algorithm>
 #include <array>

@@ -5,6 +5,7 @@
 #include "io/readers.h"
 #include "io/table.h"
 #include "io/text.h"
+#include "io/text_numbers.h"
 
 #include <algorithm>
 #include <optional>

@@ -3,6 +3,7 @@
 #include "io/fixed_records.h"
 #include "io/ptx_scans.h"
 #include "io/readers.h"
+#include "io/text_numbers.h"
 
 #include <algorithm>
 #include <array>

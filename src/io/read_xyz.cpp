@@ -1,8 +1,9 @@
-// Text with one point per line: XYZ, TXT, CSV, PTS. Where its points are: point_text.h; what its columns are: find_columns.h.
+// Text with one point per line: XYZ, TXT, CSV, PTS. Where its points are: point_lines.h; what its columns are: find_columns.h.
 #include "io/cloud_from_table.h"
 #include "io/find_columns.h"
 #include "io/fixed_records.h"
 #include "io/readers.h"
+#include "io/text_numbers.h"
 
 #include <algorithm>
 #include <cmath>

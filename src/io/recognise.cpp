@@ -2,8 +2,10 @@
 
 #include "io/grid_header.h"
 #include "io/gzip.h"
+#include "io/strangers.h"
 #include "io/table.h"
 #include "io/text.h"
+#include "io/text_numbers.h"
 #include "io/text_values.h"
 
 #include <algorithm>
@@ -13,46 +15,6 @@
 namespace g3r::io {
 
 namespace {
-
-using std::string_view_literals::operator""sv;
-
-struct Signature {
-  std::string_view magic;
-  const char* what;
-};
-
-// Files that people mistake for point clouds, and what to do with them.
-constexpr Signature kStrangers[] = {
-    {"\x1f\x8b"sv, "a gzip-compressed file; unpack it first"},
-    {"PK\x03\x04"sv, "a zip archive (compressed); unpack it first"},
-    {"BZh"sv, "a bzip2-compressed file; unpack it first"},
-    {"\xfd"
-     "7zXZ"sv,
-     "an xz-compressed file; unpack it first"},
-    {"(\xb5/\xfd"sv, "a zstd-compressed file; unpack it first"},
-    {"x\x01"sv, "zlib-compressed data; uncompress it first"},
-    {"x\x5e"sv, "zlib-compressed data; uncompress it first"},
-    {"x\x9c"sv, "zlib-compressed data; uncompress it first"},
-    {"x\xda"sv, "zlib-compressed data; uncompress it first"},
-    {"NGSP"sv, "an SPZ file of version 4 or later, which g3r does not read; save it as version 3 or as PLY"},
-    {"version https://git-lfs"sv, "a git-lfs pointer, not the file itself; run \"git lfs pull\""},
-    {"<!DOCTYPE"sv, "an HTML page; the download failed"},
-    {"<!doctype"sv, "an HTML page; the download failed"},
-    {"<html"sv, "an HTML page; the download failed"},
-    {"<?xml"sv, "an XML file, which is no point format"},
-    {"# vtk DataFile"sv, "a VTK file; save it as PLY, for example with ParaView"},
-    {"  0\nSECTION"sv, "a DXF drawing; save its points as text, one a line"},
-    {"  0\r\nSECTION"sv, "a DXF drawing; save its points as text, one a line"},
-    {"0\nSECTION"sv, "a DXF drawing; save its points as text, one a line"},
-    {"0\r\nSECTION"sv, "a DXF drawing; save its points as text, one a line"},
-    {"DSAA"sv, "a Surfer grid; save it as an ASCII grid of Arc/Info, for example with GDAL"},
-    {"DSBB"sv, "a Surfer grid; save it as an ASCII grid of Arc/Info, for example with GDAL"},
-    {"DSRB"sv, "a Surfer grid; save it as an ASCII grid of Arc/Info, for example with GDAL"},
-    {"%PDF"sv, "a PDF file"},
-    {"\x89HDF"sv, "an HDF5 file"},
-    {"\xff\xfe"sv, "UTF-16 text; save it as UTF-8"},
-    {"\xfe\xff"sv, "UTF-16 text; save it as UTF-8"},
-};
 
 constexpr std::array<std::string_view, 16> kObjKeywords = {"v", "vn", "vt",     "vp",     "f",    "l",      "p",   "o",
                                                            "g", "s",  "mtllib", "usemtl", "call", "cstype", "deg", "mg"};
@@ -96,7 +58,7 @@ bool starts_with_number(std::string_view line) {
   if (!line.empty() && line[0] == '"') line.remove_prefix(1);
   const std::size_t end = line.find_first_of(" \t,;");
   double value = 0;
-  return parse_double(line.substr(0, end), value) || (!line.empty() && line.find_first_of("+-.0123456789") == 0);
+  return parse_double(line.substr(0, end), value) || is_like_number(line);
 }
 
 // Whether files of this extension are lines of numbers, so that several lines of words may come first. Of others, which a damaged header
@@ -117,14 +79,6 @@ std::size_t count_fields(std::string_view line) {
 // SPZ is recognised among gzip files by the first bytes inside.
 bool is_spz(std::string_view bytes) { return bytes.substr(0, 2) == "\x1f\x8b" && Gunzip(bytes).read(4) == "NGSP"; }
 
-std::size_t count_blank_separated(std::string_view line) {
-  Tokens tokens(line);
-  std::string_view token;
-  std::size_t count = 0;
-  while (tokens.next(token)) ++count;
-  return count;
-}
-
 // PTX starts with two whole numbers on lines of their own, of which the first is not 0 (PTS: a number, and as many lines of columns); then
 // come four lines of three numbers and four lines of four. A shorter file is a PTX that is cut.
 bool is_ptx(std::string_view bytes) {
@@ -137,7 +91,7 @@ bool is_ptx(std::string_view bytes) {
   if (!lines.next_filled(line) || !parse_integer(line, rows)) return false;
   for (const std::size_t count : kColumns) {
     if (!lines.next_filled(line)) return true;
-    if (count_blank_separated(line) != count) return !lines.ended();
+    if (count_values(line, ' ') != count) return !lines.ended();
   }
   return true;
 }
@@ -176,11 +130,7 @@ Format recognise(const Source& source) {
   const std::string_view bytes = without_mark(source.bytes);
   if (bytes.empty()) fail(source, "empty file (0 bytes): expected " + magic_of(ext));
   if (is_spz(bytes)) return Format::kSpz;
-  for (const Signature& stranger : kStrangers) {
-    if (bytes.substr(0, stranger.magic.size()) == stranger.magic) {
-      fail(source, std::string("expected ") + magic_of(ext) + ", found " + stranger.what);
-    }
-  }
+  if (const char* const stranger = find_stranger(bytes)) fail(source, "expected " + magic_of(ext) + ", found " + stranger);
   if (bytes.substr(0, 4) == "ply\n" || bytes.substr(0, 4) == "ply\r" || bytes.substr(0, 4) == "ply ") return Format::kPly;
   if (bytes.substr(0, 6) == "\x93NUMPY") return Format::kNpy;
   if (bytes.substr(0, 4) == "LASF") return Format::kLas;

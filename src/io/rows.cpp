@@ -1,6 +1,6 @@
 #include "io/rows.h"
 
-#include "io/text.h"
+#include "io/text_numbers.h"
 
 namespace g3r::io {
 

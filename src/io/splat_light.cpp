@@ -1,6 +1,7 @@
 #include "io/splat_light.h"
 
 #include "cpu/parallel.h"
+#include "io/splat_image.h"
 #include "io/splat_view.h"
 
 #include <algorithm>

@@ -11,8 +11,6 @@
 namespace g3r::io {
 namespace {
 
-using vector::dot;
-
 constexpr double kHalf = 0.5;  // The surface is where so much of the light is stopped (Gaussian Opacity Fields).
 // The splats that a ray meets at most: it bounds the time that hostile files take, and in scans rays meet tens.
 constexpr std::size_t kMostLookedAt = 4096;
@@ -23,37 +21,9 @@ constexpr std::size_t kMostTiles = 16;
 // The share of the splats at either end of an axis of the picture that tiles do not resolve: a few in the sky would make all tiles too
 // large.
 constexpr double kOuter = 0.01;
-constexpr double kEdgeOn = 1e-6;      // A disc seen from its edge has this share of its spread across: it keeps a place in the picture.
-constexpr double kLargest = 1e100;    // Coordinates and scales up to this have squares of products that are finite,
-constexpr double kSmallest = 1e-100;  // and from this on such that are above 0.
-
-// m^2 at which it is drawn no more.
-double squared_reach(const Splat& splat) { return 2 * std::log(splat.opacity / kFaintest); }
-
-// What a splat takes of the light at a place where the square of the Mahalanobis distance is so much.
-double taken(const Splat& splat, double squared) {
-  const double share = splat.opacity * std::exp(-squared / 2);
-  return share >= kFaintest ? std::min(share, 1.0) : 0;
-}
-
-double squared_distance(const Splat& splat, const Vec3& place) {
-  const Vec3 d = vector::subtract(place, splat.centre);
-  double sum = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double along = dot(d, splat.axes[k]) / splat.scale[k];
-    sum += along * along;
-  }
-  return sum;
-}
+constexpr double kLeastStep = 1e-100;  // of tiles: an extent over their number may be 0
 
 }  // namespace
-
-// A splat as it appears along an axis.
-struct SplatView::Image {
-  double x = 0, y = 0, depth = 0;
-  double xx = 0, xy = 0, yy = 0;  // inverse of its covariance
-  double width = 0, height = 0;   // half sides of what is drawn
-};
 
 // One axis of the picture, cut into tiles. Those at the ends hold what lies beyond.
 struct SplatView::Ruler {
@@ -66,42 +36,12 @@ struct SplatView::Ruler {
     low = values[static_cast<std::size_t>(outer)];
     std::nth_element(values.begin(), values.end() - 1 - outer, values.end());
     const double high = values[values.size() - 1 - static_cast<std::size_t>(outer)];
-    if (high > low) step = std::max((high - low) / static_cast<double>(tiles), kSmallest);
+    if (high > low) step = std::max((high - low) / static_cast<double>(tiles), kLeastStep);
   }
   [[nodiscard]] std::size_t operator()(double value) const {
     return static_cast<std::size_t>(std::clamp((value - low) / step, 0.0, static_cast<double>(tiles - 1)));
   }
 };
-
-bool is_drawn(const Splat& splat) {
-  const auto sound = [](double value) { return std::abs(value) <= kLargest; };
-  return std::all_of(splat.centre.begin(), splat.centre.end(), sound) &&
-         std::all_of(splat.scale.begin(), splat.scale.end(), [](double s) { return s >= kSmallest && s <= kLargest; }) &&
-         splat.opacity >= kFaintest;
-}
-
-SplatView::Image SplatView::image_of(const Splat& splat, const Vec3& right, const Vec3& up, const Vec3& ahead) {
-  Image image{dot(right, splat.centre), dot(up, splat.centre), dot(ahead, splat.centre)};
-  double xx = 0, xy = 0, yy = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double x = splat.scale[k] * dot(right, splat.axes[k]), y = splat.scale[k] * dot(up, splat.axes[k]);
-    xx += x * x;
-    xy += x * y;
-    yy += y * y;
-  }
-  const double least = kEdgeOn * (xx + yy);
-  xx += least;
-  yy += least;
-  const double reach = squared_reach(splat);
-  image.width = std::sqrt(reach * xx);
-  image.height = std::sqrt(reach * yy);
-  const double scale = xx + yy;  // the determinant of scales of 1e-100 would be 0
-  const double determinant = (xx / scale) * (yy / scale) - (xy / scale) * (xy / scale);
-  image.xx = yy / scale / determinant / scale;
-  image.xy = -xy / scale / determinant / scale;
-  image.yy = xx / scale / determinant / scale;
-  return image;
-}
 
 SplatView::SplatView(const std::vector<Splat>& splats, const std::vector<std::uint32_t>& drawn, const Vec3& ahead,
                      const std::atomic<bool>* cancel)
@@ -144,7 +84,7 @@ std::size_t SplatView::tile_of(std::uint32_t i) const { return (*down_)(images_[
 // visit(tile) for the tiles that splat i is drawn in.
 template <class Visit>
 void SplatView::for_tiles(std::uint32_t i, const Visit& visit) const {
-  const Image& image = images_[i];
+  const SplatImage& image = images_[i];
   const std::size_t left = (*across_)(image.x - image.width), right = (*across_)(image.x + image.width);
   const std::size_t bottom = (*down_)(image.y + image.height);
   for (std::size_t row = (*down_)(image.y - image.height); row <= bottom; ++row) {
@@ -156,7 +96,7 @@ std::size_t SplatView::entries() const {
   return parallel::sum_blocks<std::size_t>(drawn_.size(), parallel::kSmallBlock, 0, [&](std::size_t begin, std::size_t end) {
     std::size_t sum = 0;
     for (std::size_t k = begin; k < end; ++k) {
-      const Image& image = images_[drawn_[k]];
+      const SplatImage& image = images_[drawn_[k]];
       sum += ((*across_)(image.x + image.width) - (*across_)(image.x - image.width) + 1) *
              ((*down_)(image.y + image.height) - (*down_)(image.y - image.height) + 1);
     }
@@ -189,12 +129,12 @@ void SplatView::cut() {
 
 template <class Iterator>
 bool SplatView::reaches(std::uint32_t i, Iterator begin, Iterator end) const {
-  const Image& at = images_[i];
+  const SplatImage& at = images_[i];
   double passes = 1;
   std::size_t looked_at = 0;
   for (Iterator k = begin; k != end && *k != i; ++k) {
     if (++looked_at > kMostLookedAt) return true;
-    const Image& image = images_[*k];
+    const SplatImage& image = images_[*k];
     const double x = at.x - image.x, y = at.y - image.y;
     if (std::abs(x) > image.width || std::abs(y) > image.height) continue;
     const Splat& other = splats_[*k];

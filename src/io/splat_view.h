@@ -2,7 +2,7 @@
 // Source: Kerbl, Kopanas, Leimkuehler, Drettakis, "3D Gaussian Splatting for Real-Time Radiance Field Rendering", 2023.
 #pragma once
 
-#include "io/splat_light.h"
+#include "io/splat_image.h"
 
 #include <atomic>
 #include <cstddef>
@@ -11,12 +11,6 @@
 #include <vector>
 
 namespace g3r::io {
-
-/// Renderers do not draw what stops less of the light, so it stops none here.
-inline constexpr double kFaintest = 1.0 / 255;
-
-/// Whether a splat stops any light: it is not too faint, and its centre and scales are finite.
-[[nodiscard]] bool is_drawn(const Splat& splat);
 
 /// The splats along one axis: for every tile of the picture those that are drawn in it, from near to far.
 class SplatView {
@@ -34,9 +28,7 @@ class SplatView {
   [[nodiscard]] bool is_solid(std::uint32_t i) const;
 
  private:
-  struct Image;
   struct Ruler;
-  static Image image_of(const Splat& splat, const Vec3& right, const Vec3& up, const Vec3& ahead);
   [[nodiscard]] std::size_t tile_of(std::uint32_t i) const;
   template <class Visit>
   void for_tiles(std::uint32_t i, const Visit& visit) const;
@@ -47,7 +39,7 @@ class SplatView {
 
   const std::vector<Splat>& splats_;
   const std::vector<std::uint32_t>& drawn_;
-  std::vector<Image> images_;
+  std::vector<SplatImage> images_;
   std::unique_ptr<Ruler> across_, down_;
   std::vector<std::size_t> start_;  // of every tile, and the end
   std::vector<std::uint32_t> list_;

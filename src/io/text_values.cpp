@@ -1,5 +1,7 @@
 #include "io/text_values.h"
 
+#include "io/text_numbers.h"
+
 namespace g3r::io {
 
 namespace {

@@ -1,9 +1,9 @@
 // Binary glTF 2.0 out: one mesh, float32 positions around their centre, which the node's translation puts back, 32-bit indices and colours.
+#include "base/vector.h"
 #include "io/table.h"
-#include "io/text.h"
+#include "io/text_numbers.h"
 #include "io/writers.h"
 
-#include <algorithm>
 #include <limits>
 
 namespace g3r::io {
@@ -42,30 +42,20 @@ void append_view(std::uint64_t offset, std::uint64_t bytes, int target, std::str
   text += '}';
 }
 
-}  // namespace
+// The binary part: positions, colours, indices, one after the other.
+struct BodyBytes {
+  std::uint64_t positions, colors, indices;
+  [[nodiscard]] std::uint64_t body() const { return positions + colors + indices; }
+};
 
-void write_glb_mesh(const Mesh& mesh, OutputFile& file) {
-  Vec3 low{mesh.vertices[0]};
-  Vec3 high{mesh.vertices[0]};
-  for (const Vec3& v : mesh.vertices) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], v[a]);
-      high[a] = std::max(high[a], v[a]);
-    }
-  }
-  Vec3 centre{};
-  std::array<float, 3> least{};
-  std::array<float, 3> most{};
-  for (std::size_t a = 0; a < 3; ++a) {
-    centre[a] = low[a] / 2 + high[a] / 2;
-    least[a] = to_float(low[a] - centre[a]);
-    most[a] = to_float(high[a] - centre[a]);
-  }
-  const std::uint64_t position_bytes = 12 * std::uint64_t{mesh.vertices.size()};
-  const std::uint64_t color_bytes = 4 * std::uint64_t{mesh.colors.size()};
-  const std::uint64_t index_bytes = 12 * std::uint64_t{mesh.triangles.size()};
-  const std::uint64_t body = position_bytes + color_bytes + index_bytes;
+std::array<float, 3> offsets_from(const Vec3& centre, const Vec3& place) {
+  return {to_float(place[0] - centre[0]), to_float(place[1] - centre[1]), to_float(place[2] - centre[2])};
+}
+
+// The JSON part.
+std::string description_of(const Mesh& mesh, const vector::Box& box, const BodyBytes& bytes) {
   const bool colored = !mesh.colors.empty();
+  const Vec3 centre = box.centre();
   std::string text = R"({"asset":{"version":"2.0","generator":"g3r"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"translation":)";
   append_array(centre, text);
   text += R"(}],"meshes":[{"primitives":[{"attributes":{"POSITION":0)";
@@ -73,9 +63,9 @@ void write_glb_mesh(const Mesh& mesh, OutputFile& file) {
   text += R"("accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":)";
   append_number(text, std::uint64_t{mesh.vertices.size()});
   text += R"(,"min":)";
-  append_array(least, text);
+  append_array(offsets_from(centre, box.low), text);
   text += R"(,"max":)";
-  append_array(most, text);
+  append_array(offsets_from(centre, box.high), text);
   text += R"(},{"bufferView":1,"componentType":5125,"type":"SCALAR","count":)";
   append_number(text, std::uint64_t{3 * mesh.triangles.size()});
   if (colored) {
@@ -83,16 +73,29 @@ void write_glb_mesh(const Mesh& mesh, OutputFile& file) {
     append_number(text, std::uint64_t{mesh.colors.size()});
   }
   text += R"(}],"bufferViews":[)";
-  append_view(0, position_bytes, kArrayBuffer, text);
+  append_view(0, bytes.positions, kArrayBuffer, text);
   text += ',';
-  append_view(position_bytes + color_bytes, index_bytes, kElementBuffer, text);
+  append_view(bytes.positions + bytes.colors, bytes.indices, kElementBuffer, text);
   if (colored) {
     text += ',';
-    append_view(position_bytes, color_bytes, kArrayBuffer, text);
+    append_view(bytes.positions, bytes.colors, kArrayBuffer, text);
   }
   text += R"(],"buffers":[{"byteLength":)";
-  append_number(text, body);
+  append_number(text, bytes.body());
   text += "}]}";
+  return text;
+}
+
+}  // namespace
+
+void write_glb_mesh(const Mesh& mesh, OutputFile& file) {
+  vector::Box box;
+  for (const Vec3& v : mesh.vertices) box.extend(v);
+  const Vec3 centre = box.centre();
+  const BodyBytes body_bytes{12 * std::uint64_t{mesh.vertices.size()}, 4 * std::uint64_t{mesh.colors.size()},
+                             12 * std::uint64_t{mesh.triangles.size()}};
+  const std::uint64_t body = body_bytes.body();
+  std::string text = description_of(mesh, box, body_bytes);
   text.append((4 - text.size() % 4) % 4, ' ');
   constexpr std::uint64_t kHeaders = 12 + 8 + 8;
   if (body + text.size() + kHeaders > std::numeric_limits<std::uint32_t>::max())
@@ -108,7 +111,7 @@ void write_glb_mesh(const Mesh& mesh, OutputFile& file) {
   file.write(bytes);
   for (const Vec3& v : mesh.vertices) {
     bytes.clear();
-    for (std::size_t a = 0; a < 3; ++a) append_u32(bytes, bits_as<std::uint32_t>(to_float(v[a] - centre[a])));
+    for (const float x : offsets_from(centre, v)) append_u32(bytes, bits_as<std::uint32_t>(x));
     file.write(bytes);
   }
   for (const auto& color : mesh.colors) {

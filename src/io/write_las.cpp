@@ -1,10 +1,9 @@
 // LAS out, or LAZ, of clouds read from LAS: header, variable length records and every byte of every record stay; normals and confidence are
 // added as extra bytes (NormalX, NormalY, NormalZ, confidence), or replace those that are floats; what else has such a name gets another.
 // Other clouds: write_las_new.cpp.
-#include "io/las.h"
+#include "io/las_extra_bytes.h"
 #include "io/las_output.h"
 #include "io/las_plan.h"
-#include "io/text.h"
 #include "io/writers.h"
 
 #include <algorithm>

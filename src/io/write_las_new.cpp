@@ -1,6 +1,6 @@
 // LAS of clouds that come from other formats: LAS 1.4, the point format that holds the fields which the points have, all other properties
 // as extra bytes.
-#include "io/las.h"
+#include "io/las_extra_bytes.h"
 #include "io/las_output.h"
 #include "io/las_plan.h"
 #include "io/rows.h"

@@ -1,5 +1,5 @@
 // OBJ out: v (with r g b in 0..1 where there are colours), vn for points, f for meshes.
-#include "io/text.h"
+#include "io/text_numbers.h"
 #include "io/writers.h"
 
 namespace g3r::io {

@@ -1,5 +1,5 @@
 // OFF out, in text; COFF where there are colours.
-#include "io/text.h"
+#include "io/text_numbers.h"
 #include "io/writers.h"
 
 namespace g3r::io {

@@ -1,6 +1,6 @@
 // PCD 0.7 out: binary, or ascii. A cloud read from PCD keeps its fields, their types and arrays, WIDTH, HEIGHT and VIEWPOINT; padding is
 // dropped. As text packed colours are whole numbers, as PCL writes them: as floats many of them are no numbers.
-#include "io/text.h"
+#include "io/text_numbers.h"
 #include "io/writers.h"
 
 #include <algorithm>

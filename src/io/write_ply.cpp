@@ -1,7 +1,6 @@
 // PLY out: binary little-endian, or ascii. Points keep every element, property, list, comment and obj_info of the PLY they came from.
 #include "io/ply_header.h"
 #include "io/ply_types.h"
-#include "io/text.h"
 #include "io/writers.h"
 
 #include <algorithm>

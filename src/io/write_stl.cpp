@@ -3,7 +3,7 @@
 #include "base/suits_float.h"
 #include "base/vector.h"
 #include "io/table.h"
-#include "io/text.h"
+#include "io/text_numbers.h"
 #include "io/writers.h"
 
 #include <cmath>

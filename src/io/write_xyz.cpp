@@ -1,6 +1,5 @@
 // Text with one point per line. Columns that a reader could not name by itself get a header: names behind "//" (XYZ, TXT), as a first line
 // (CSV).
-#include "io/text.h"
 #include "io/writers.h"
 
 namespace g3r::io {

@@ -1,10 +1,9 @@
 // Source: W3C, "Extensible Markup Language (XML) 1.0 (Fifth Edition)", 2008; numbers in brackets are its productions.
 #include "io/xml.h"
 
-#include "io/utf8.h"
+#include "io/xml_text.h"
 
 #include <algorithm>
-#include <charconv>
 #include <utility>
 
 namespace g3r::io {
@@ -13,21 +12,6 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
 constexpr std::string_view kNameEnds = " \t\r\n=/<>\"'&";  // none of these is part of a name
-
-bool is_character(unsigned c) {  // [2]
-  return c == '\t' || c == '\n' || c == '\r' || (c >= 0x20 && c < 0xD800) || (c >= 0xE000 && c < 0xFFFE) || (c >= 0x10000 && c < 0x110000);
-}
-
-// The place of the first byte that does not belong to a character in UTF-8 that XML allows; npos if there is none.
-std::size_t first_bad_character(std::string_view text) {
-  unsigned character = 0;
-  for (std::size_t i = 0; i < text.size();) {
-    const std::size_t bytes = utf8_length(text.substr(i), character);
-    if (bytes == 0 || !is_character(character)) return i;
-    i += bytes;
-  }
-  return std::string_view::npos;
-}
 
 class Parser {
  public:
@@ -126,7 +110,7 @@ class Parser {
     if (value.find('<') != std::string::npos) fail("'<' in an attribute");
     std::replace_if(
         value.begin(), value.end(), [](char c) { return c == '\n' || c == '\t'; }, ' ');  // 3.3.3
-    out.value = decoded(value);
+    out.value = decoded(value, i_);
     return out;
   }
 
@@ -145,55 +129,11 @@ class Parser {
     const std::string_view piece = xml_.substr(i_, end - i_);
     if (piece.find("]]>") != std::string_view::npos) fail("\"]]>\" in a text");
     if (!open_.empty()) {
-      events_.text(decoded(in_unix_lines(piece)));
+      events_.text(decoded(in_unix_lines(piece), i_));
     } else if (piece.find_first_not_of(kBlanks) != std::string_view::npos) {
       fail("text outside of the elements");
     }
     i_ = end;
-  }
-
-  static std::string in_unix_lines(std::string_view piece) {  // 2.11
-    std::string out(piece);
-    const auto crlf = [&](std::size_t i) { return i + 1 < piece.size() && piece[i] == '\r' && piece[i + 1] == '\n'; };
-    std::size_t size = 0;
-    for (std::size_t i = 0; i < piece.size(); ++i) {
-      if (!crlf(i)) out[size++] = piece[i] == '\r' ? '\n' : piece[i];
-    }
-    out.resize(size);
-    return out;
-  }
-
-  std::string decoded(const std::string& piece) const {  // [66, 68]
-    if (piece.find('&') == std::string::npos) return piece;
-    constexpr std::pair<std::string_view, char> kEntities[] = {{"lt", '<'}, {"gt", '>'}, {"amp", '&'}, {"apos", '\''}, {"quot", '"'}};
-    std::string out;
-    for (std::size_t i = 0; i < piece.size(); ++i) {
-      if (piece[i] != '&') {
-        out += piece[i];
-        continue;
-      }
-      const std::size_t end = piece.find(';', i);
-      if (end == std::string::npos) fail("'&' without ';'");
-      const std::string_view word = std::string_view(piece).substr(i + 1, end - i - 1);
-      if (word.starts_with('#')) {
-        append_utf8(number(word.substr(1)), out);
-      } else {
-        const auto* const known = std::find_if(std::begin(kEntities), std::end(kEntities), [&](const auto& e) { return e.first == word; });
-        if (known == std::end(kEntities)) fail("an entity");
-        out += known->second;
-      }
-      i = end;
-    }
-    return out;
-  }
-
-  unsigned number(std::string_view digits) const {
-    const int base = digits.starts_with('x') ? 16 : 10;
-    if (base == 16) digits.remove_prefix(1);
-    unsigned c = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), c, base);
-    if (error != std::errc() || end != digits.data() + digits.size() || !is_character(c)) fail("a number of no character");
-    return c;
   }
 
   std::string_view xml_;

@@ -1,10 +1,13 @@
-#include "io/point_text.h"
+#include "io/text_shape.h"
 
+#include "io/point_lines.h"
+#include "io/text_numbers.h"
 #include "io/text_values.h"
 
 #include <algorithm>
-#include <limits>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 namespace g3r::io {
 
@@ -12,22 +15,6 @@ namespace {
 
 constexpr std::size_t kMostColumns = 1000;  // More columns mean that the file has no line ends.
 constexpr std::size_t kMostBytes = 256;     // of a first line that are kept for a message
-
-// Comments start a line; CloudCompare's "//X Y Z" is one that names columns.
-bool is_comment(std::string_view line) { return line[0] == '#' || line.substr(0, 2) == "//"; }
-
-// A first line that names columns: it starts with a word and is no point whose first column holds text.
-bool is_header(std::string_view line) {
-  const char separator = separator_of(line);
-  Values values(line, separator);
-  std::string_view value;
-  double number = 0;
-  if (!values.next(value) || is_like_number(value) || parse_double(value, number)) return false;
-  bool has_gap = false;
-  while (values.next(value)) has_gap = has_gap || is_missing(value);
-  const std::size_t numbers = count_numbers(line, separator);
-  return numbers < 3 && !(numbers == 2 && has_gap);  // a point may lack a number
-}
 
 bool are_distinct(std::vector<std::string> names) {
   std::sort(names.begin(), names.end());
@@ -108,39 +95,6 @@ void find_names(const Text& text, TextShape& shape) {
 
 }  // namespace
 
-void PointLines::check_block() {
-  if (counted_ && seen_ > block_ && !announced_) announced_ = block_;
-  if (counted_ && seen_ < block_) {
-    fail_at_line(*source_, lines_.number(),
-                 "expected " + std::to_string(block_) + " points as the count line says, found " + std::to_string(seen_) +
-                     " lines of columns (truncated?)");
-  }
-}
-
-bool PointLines::next(std::string_view& line) {
-  while (lines_.next_filled(line)) {
-    if (is_comment(line)) continue;
-    if (first_ && headers_ < kMostHeaderLines && is_header(line)) {
-      ++headers_;
-      continue;
-    }
-    open_end_ = !lines_.ended();
-    std::uint64_t count = 0;
-    const bool counts = (first_ || counted_) && parse_integer(line, count);
-    first_ = false;
-    if (!counts) {
-      ++seen_;
-      return true;
-    }
-    check_block();
-    counted_ = true;
-    block_ = count;
-    seen_ = 0;
-  }
-  check_block();
-  return false;
-}
-
 std::string column_text(const TextShape& shape, std::size_t column) {
   const std::vector<std::string>& names = shape.header.theirs;
   const std::string text = "column " + std::to_string(column + 1);
@@ -188,58 +142,6 @@ TextShape measure(const Text& text) {
   if (shape.points != 0) find_names(text, shape);
   if (shape.points != 0 && shape.columns < 3) refuse_columns(text.source(), first_number, first_line, shape);
   return shape;
-}
-
-PointRows::PointRows(const Text& text, const TextShape& shape, Word word)
-    : source_(&text.source()),
-      lines_(text),
-      word_(std::move(word)),
-      separator_(shape.separator),
-      row_(shape.columns),
-      missing_(shape.columns) {}
-
-void PointRows::take(std::size_t column, std::string_view value) {
-  if (parse_double(value, row_[column], &overflow_)) return;
-  row_[column] = std::numeric_limits<double>::quiet_NaN();
-  if (!is_missing(value)) return word_(column, lines_.number(), value);
-  if (missing_[column].count++ == 0) missing_[column].line = lines_.number();
-}
-
-const double* PointRows::next() {
-  std::string_view line;
-  if (!lines_.next(line)) return nullptr;
-  Values values(line, separator_);
-  std::string_view token;
-  std::size_t found = 0;
-  for (; values.next(token); ++found) {
-    if (found < row_.size()) take(found, token);
-  }
-  if (found + 1 == row_.size() && ends_with_separator(line, separator_)) take(found++, "");
-  if (found != row_.size()) {
-    fail_at_line(*source_, lines_.number(),
-                 "expected " + std::to_string(row_.size()) + " columns as on the lines before, found " + std::to_string(found) +
-                     (found > row_.size() ? ""
-                      : separator_ == ' ' ? " (nan stands for a number that is not there)"
-                                          : " (also an empty cell needs its separator)"));
-  }
-  return row_.data();
-}
-
-std::vector<std::string> about_missing(const TextShape& shape, const std::vector<PointRows::Missing>& missing) {
-  std::vector<std::string> lines;
-  for (std::size_t c = 0; c < missing.size(); ++c) {
-    if (missing[c].count == 0 || missing[c].count == shape.points) continue;  // a column without any number is left out, or an error
-    const std::string count = missing[c].count == 1 ? "one line" : std::to_string(missing[c].count) + " lines";
-    lines.push_back(column_text(shape, c) + " has no number in " + count + ", first in line " + std::to_string(missing[c].line) +
-                    ": read as nan (not a number)");
-  }
-  return lines;
-}
-
-PointRows::Word no_words(const Text& text, const TextShape& shape) {
-  return [&source = text.source(), &shape](std::size_t column, std::size_t line, std::string_view value) {
-    fail_at_line(source, line, expected_number(value, " in " + column_text(shape, column)));
-  };
 }
 
 }  // namespace g3r::io
