@@ -1,11 +1,11 @@
 // From points, or oriented points, to a mesh.
-#include "base/median.h"
 #include "base/number_text.h"
 #include "base/stages.h"
 #include "base/vector.h"
-#include "cloud/far_points.h"
 #include "cpu/parallel.h"
 #include "field/oriented_cloud.h"
+#include "field/points_with_normals.h"
+#include "field/surface_points.h"
 #include "field/winding_sampler.h"
 #include "mesh/component_support.h"
 #include "mesh/constants.h"
@@ -13,10 +13,7 @@
 #include "mesh/field_octree.h"
 #include "mesh/field_points.h"
 #include "mesh/findings.h"
-#include "mesh/held_points.h"
 #include "mesh/mesh_finish.h"
-#include "mesh/point_parts.h"
-#include "mesh/regained_points.h"
 #include "mesh/screened_poisson.h"
 #include "mesh/self_intersections.h"
 #include "mesh/separate_vertices.h"
@@ -84,94 +81,6 @@ Mesh mesh_with_poisson(const OrientedCloud& oriented, const std::vector<Vec3>& n
   return screened_poisson(oriented.cloud.points(), normals, chosen);
 }
 
-std::vector<Vec3> directions_of(const std::vector<Vec3>& eta) {
-  std::vector<Vec3> directions(eta.size());
-  for (std::size_t i = 0; i < directions.size(); ++i) {
-    directions[i] = eta[i] == Vec3{0, 0, 0} ? Vec3{0, 0, 1} : vector::normalised(eta[i]);
-  }
-  return directions;
-}
-
-// Leaves out the points that are not held. The numbers of the others do not lead to the input any more.
-void leave_out(OrientedCloud& oriented, const std::vector<std::uint8_t>& held, std::vector<Vec3>& strays) {
-  if (std::find(held.begin(), held.end(), std::uint8_t{0}) == held.end()) return;
-  CanonicalCloud& cloud = oriented.cloud;
-  std::vector<Vec3> points;
-  points.reserve(held.size());
-  for (std::size_t i = 0; i < held.size(); ++i) {
-    if (held[i] == 0) {
-      strays.push_back(cloud.points()[i]);
-      continue;
-    }
-    oriented.eta[points.size()] = oriented.eta[i];
-    points.push_back(cloud.points()[i]);
-  }
-  oriented.eta.resize(points.size());
-  cloud.set = PointSet(std::move(points));
-}
-
-// Takes points back that the surface goes through. Areas follow the spacing.
-void regain_points(OrientedCloud& oriented, std::vector<Vec3>& strays, const std::atomic<bool>* cancel) {
-  CanonicalCloud& cloud = oriented.cloud;
-  const std::vector<Vec3> normals = mesh::normals_of_regained(cloud.points(), directions_of(oriented.eta), strays, cancel);
-  std::vector<Vec3> points = cloud.points(), left;
-  std::vector<double> density;  // area over squared spacing
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec3& eta = oriented.eta[i];
-    const double h = cloud.set.smoothed_spacing()[i];
-    density.push_back(std::sqrt(vector::dot(eta, eta)) / (h * h));
-  }
-  const double usual = median(density);
-  std::vector<Vec3> directions = directions_of(oriented.eta);
-  for (std::size_t k = 0; k < strays.size(); ++k) {
-    if (normals[k] == Vec3{0, 0, 0}) {
-      left.push_back(strays[k]);
-      continue;
-    }
-    points.push_back(strays[k]);
-    directions.push_back(normals[k]);
-    density.push_back(usual);
-  }
-  if (left.size() == strays.size()) return;
-  strays = std::move(left);
-  const std::vector<std::uint32_t> order = morton_order(points);
-  std::vector<Vec3> sorted, sorted_directions;
-  std::vector<double> sorted_density;
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const std::uint32_t i = order[k];
-    if (!sorted.empty() && sorted.back() == points[i]) continue;  // two may be one in this frame
-    sorted.push_back(points[i]);
-    sorted_directions.push_back(directions[i]);
-    sorted_density.push_back(density[i]);
-  }
-  cloud.set = PointSet(std::move(sorted));
-  oriented.eta.resize(cloud.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const double h = cloud.set.smoothed_spacing()[i];
-    oriented.eta[i] = vector::scale(sorted_directions[i], sorted_density[i] * h * h);
-  }
-}
-
-// A frame of its own for what is left where strays made the old one much larger, which may not resolve its spacing. Areas follow the
-// spacing.
-void fit_frame(OrientedCloud& oriented, std::vector<Vec3>& strays) {
-  if (!is_small_in_frame(oriented.cloud)) return;
-  const Frame old = oriented.cloud.frame;
-  const std::vector<double> old_spacing = oriented.cloud.set.smoothed_spacing();
-  std::vector<Vec3> points = oriented.cloud.points();
-  for (Vec3& p : points) p = old.to_world(p);
-  CanonicalCloud cloud = canonical_cloud(PointsView(points));
-  std::vector<Vec3> eta(cloud.size(), Vec3{0, 0, 0});
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const std::uint32_t k = cloud.point_of[i];
-    const double growth = cloud.set.smoothed_spacing()[k] / old_spacing[i];
-    eta[k] = vector::add(eta[k], vector::scale(oriented.eta[i], growth * growth));
-  }
-  for (Vec3& p : strays) p = cloud.frame.to_unit(old.to_world(p));
-  oriented.cloud = std::move(cloud);
-  oriented.eta = std::move(eta);
-}
-
 void turn(std::vector<Vec3>& vectors) {
   for (Vec3& v : vectors) v = {-v[0], -v[1], -v[2]};
 }
@@ -206,15 +115,7 @@ Mesh make_mesh(OrientedCloud oriented, const MeshOptions& options, const Monitor
   // Whatever the order of the input, and however often it has them.
   std::sort(found.strays.begin(), found.strays.end());
   found.strays.erase(std::unique(found.strays.begin(), found.strays.end()), found.strays.end());
-  if (!options.keep_all) {
-    std::vector<Vec3> doubtful;
-    leave_out(oriented, mesh::held_points(oriented.cloud.points(), directions_of(oriented.eta), monitor.cancel), doubtful);
-    regain_points(oriented, found.strays, monitor.cancel);
-    found.strays.insert(found.strays.end(), doubtful.begin(), doubtful.end());
-    leave_out(oriented, mesh::points_of_parts(oriented.cloud.set, found.strays), found.strays);
-    fit_frame(oriented, found.strays);
-    oriented.spacing = oriented.cloud.set.spacing();
-  }
+  if (!options.keep_all) keep_surface_points(oriented, found.strays, monitor.cancel);
   found.dropped.points = found.strays.size();
   const WindingSampler field(oriented, monitor.cancel);
   const bool inside_out = is_inside_out(oriented, field);
@@ -350,46 +251,6 @@ void describe_mesh(const MeshCheck& check, const MeshRun& run, const MeshOptions
   if ((!check.closed && !is_trimmed) || !check.manifold) {
     stats.warnings.emplace_back(check.closed ? "the mesh is not manifold" : "the mesh is not closed");
   }
-}
-
-// Points that have a normal, and unit normals.
-struct PointsWithNormals {
-  std::vector<Vec3> points, normals;
-  std::size_t non_finite = 0;  // points left out for a coordinate,
-  std::size_t undirected = 0;  // and others for a normal that is zero or not finite
-  std::vector<Vec3> far;       // left out with their normals: far_points()
-};
-
-void leave_out_far(PointsWithNormals& given) {
-  const std::vector<std::uint8_t> is_far = far_points(given.points);
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < is_far.size(); ++i) {
-    if (is_far[i] != 0) {
-      given.far.push_back(given.points[i]);
-      continue;
-    }
-    given.points[kept] = given.points[i];
-    given.normals[kept++] = given.normals[i];
-  }
-  if (is_far.empty()) return;
-  given.points.resize(kept);
-  given.normals.resize(kept);
-}
-
-PointsWithNormals with_normals(const PointsView& points, const PointsView& normals) {
-  PointsWithNormals out;
-  for (std::size_t i = 0; i < points.count; ++i) {
-    const Vec3 p = points[i], n = normals[i];
-    const double size = std::hypot(n[0], n[1], n[2]);
-    const bool is_place = vector::is_finite(p), is_direction = std::isfinite(size) && size > 0;
-    out.non_finite += is_place ? 0 : 1;
-    out.undirected += is_place && !is_direction ? 1 : 0;
-    if (!is_place || !is_direction) continue;
-    out.points.push_back(p);
-    out.normals.push_back({n[0] / size, n[1] / size, n[2] / size});
-  }
-  leave_out_far(out);
-  return out;
 }
 
 // What is known before the mesh. `given`: what `oriented` was made of.

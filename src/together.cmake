@@ -15,8 +15,9 @@ g3r_together(sums gpu/cuda gpu/device gpu/drivers gpu/execution gpu/kernel_cache
              gpu/neighbours_on_device gpu/sum_on_device gpu/vectors_on_device solve/energy_system sum/device_scope sum/direct_sum
              sum/fast_sum sum/solve_on_device sum/sum_engine sum/sum_geometry sum/sum_passes sum/sum_plan sum/target_shells)
 g3r_together(solve baselines/baseline baselines/gauss_system baselines/hard_cutoff baselines/near_pairs baselines/stretched_winding
-             baselines/wnnc cloud/heights cloud/layers field/areas field/field field/oriented_cloud field/winding_sampler solve/dense_solver
-             solve/green_system solve/harmonics solve/iterative_solver solve/part_system solve/refine)
+             baselines/wnnc cloud/heights cloud/layers field/areas field/field field/oriented_cloud field/points_with_normals
+             field/surface_points field/winding_sampler solve/dense_solver solve/green_system solve/harmonics solve/iterative_solver
+             solve/part_system solve/refine)
 g3r_together(orient orient/attempt orient/clean_surface orient/clustered_polish orient/coarse_to_fine orient/creases orient/jets
              orient/noise_choice orient/noise_settings orient/noisy_jets orient/noisy_surface orient/open_surfaces orient/outlier_normals
              orient/planes orient/polish orient/problem orient/projection orient/restless orient/settings orient/site_parts orient/solution
