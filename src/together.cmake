@@ -43,10 +43,10 @@ g3r_together(tables io/cloud_from_table io/column_facts io/column_names io/colum
              io/read_stl io/read_xyz io/rows io/subset io/table io/tiles)
 g3r_together(writers io/float_text io/splat_image io/splat_light io/splat_view io/text_values io/utf8 io/write io/write_glb io/write_las
              io/write_las_new io/write_npy io/write_obj io/write_off io/write_pcd io/write_ply io/write_stl io/write_xyz io/xml io/xml_text)
-g3r_together(tiles base/control_groups gpu/nvrtc tiles/cells tiles/coarse_sides tiles/external_sort tiles/merge tiles/mesh_corners
-             tiles/mesh_parts tiles/mesh_patches tiles/mesh_points tiles/mesh_records tiles/mesh_region tiles/mesh_run
+g3r_together(tiles base/control_groups gpu/nvrtc tiles/cells tiles/coarse_sides tiles/external_sort tiles/inputs tiles/merge
+             tiles/mesh_corners tiles/mesh_parts tiles/mesh_patches tiles/mesh_points tiles/mesh_records tiles/mesh_region tiles/mesh_run
              tiles/mesh_surroundings tiles/parts tiles/patches_file tiles/plan tiles/point_writer tiles/run tiles/spacing_sample
-             tiles/tile_cloud)
+             tiles/survey tiles/tile_cloud tiles/tile_memory)
 g3r_together(pictures gpu/opencl view/canvas view/pack view/picture view/png view/scene)
 
 # With nlohmann's JSON.

@@ -1,37 +1,34 @@
 // Two readings of the inputs (extent, then sort), one scan of the sorted points, one solve of the thinned cloud.
 #include "tiles/plan.h"
+
 #include "base/control_groups.h"
 #include "base/platform.h"
 #include "base/stages.h"
 #include "base/vector.h"
 #include "base/whole_bytes.h"
 #include "cpu/parallel.h"
-#include "io/ept.h"
 #include "io/output_file.h"
 #include "io/point_stream.h"
-#include "io/tiles.h"
 #include "mesh/field_mesher.h"
-#include "mesh/field_points.h"
-#include "mesh/used_vertices.h"
 #include "orient/hints.h"
 #include "orient/memory_plan.h"
 #include "orient/settings.h"
-#include "orient/site_parts.h"
 #include "orient/start.h"
 #include "sum/device_scope.h"
 #include "tiles/external_sort.h"
 #include "tiles/fewest_tiles.h"
+#include "tiles/inputs.h"
 #include "tiles/manifest.h"
 #include "tiles/point_hash.h"
 #include "tiles/records.h"
-#include "tiles/spacing_sample.h"
+#include "tiles/survey.h"
 #include "tiles/tile_cloud.h"
+#include "tiles/tile_memory.h"
 
 #include <g3r/io.h>
 #include <g3r/tiles.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <sstream>
@@ -41,57 +38,11 @@
 namespace g3r::tiles {
 namespace {
 
-constexpr std::size_t kAtOnce = std::size_t{1} << 16;  // points read at once
-constexpr std::uint64_t kFewestPoints = 8000;          // fewer are solved in core in a second, and leave no thinned cloud worth the name
 constexpr std::uint64_t kFewestCoarse = 20000;  // with half as many, fields of thin parts of the dragon no longer close, and sides go wrong
 constexpr std::uint64_t kMostCoarse = 2000000;  // every tile has them all around it
 constexpr std::uint64_t kCoarseShare = 8;       // one of so many points is in the thinned cloud, if that is enough and not too much
-constexpr std::size_t kFixed = 32u << 20;       // beside that of a solve in core: 131,072 queries of a sum
-constexpr std::size_t kBeside = 210;  // bytes of a point beside its solve: part, coarse side, and what facets hold if they are solved for
-constexpr double kFreeShare = 0.75;   // of the free memory, if no limit is given
+constexpr double kFreeShare = 0.75;             // of the free memory, if no limit is given
 constexpr std::size_t kMostTiles = 1000000;
-constexpr std::size_t kMostWarnings = 8;                       // of all files together
-constexpr std::uint64_t kAnyNumber = std::uint64_t{1} << 48U;  // of points, in files of unknown size
-
-// Calls begin(file, stream) for each file, take(file, point) for all points in order, and between(share of the work) now and then: files
-// count alike, as only one of them is open.
-template <class Begin, class Between, class Take>
-void for_all_points(const std::vector<std::string>& files, const ReadOptions& options, const Begin& begin, const Between& between,
-                    const Take& take) {
-  std::vector<Vec3> points;
-  for (std::size_t f = 0; f < files.size(); ++f) {
-    const std::unique_ptr<io::PointStream> stream = io::open_points(files[f], false, options);
-    begin(f, *stream);
-    const auto all = static_cast<double>(stream->left());
-    for (stream->next(kAtOnce, points); !points.empty(); stream->next(kAtOnce, points)) {
-      const double of_file = 1 - static_cast<double>(stream->left() + points.size()) / all;
-      between((static_cast<double>(f) + of_file) / static_cast<double>(files.size()));
-      for (const Vec3& p : points) take(f, p);
-    }
-  }
-}
-
-std::vector<std::string> found_files(const std::vector<std::string>& inputs) {
-  std::vector<std::string> files;
-  for (const std::string& input : inputs) {
-    const std::string ept = io::find_ept(input);
-    const std::vector<std::string> found = ept.empty() ? io::find_tiles(input) : io::ept_files(ept);
-    if (found.empty()) files.push_back(input);
-    files.insert(files.end(), found.begin(), found.end());
-  }
-  return files;
-}
-
-// Absolute, so that workers may be started anywhere.
-std::vector<std::string> files_of(const std::vector<std::string>& inputs) {
-  std::vector<std::string> files = found_files(inputs);
-  if (files.empty()) throw InvalidInput("plan_tiles: no input");
-  for (std::string& file : files) {
-    if (!can_be_stored(file)) throw InvalidInput(escape_text(file) + ": tiles expect names of files in UTF-8; rename it");
-    file = platform::name_of(std::filesystem::absolute(platform::path_of(file)));
-  }
-  return files;
-}
 
 std::string asked_of(const TileOptions& options) {
   std::ostringstream text;
@@ -104,109 +55,6 @@ std::string asked_of(const TileOptions& options) {
   if (options.hints.seen_from_inside) text << " seen_from_inside";
   if (options.hints.flip) text << " flip";
   return text.str();
-}
-
-// point_hash() of the points of each file.
-std::vector<std::uint64_t> hashes_of(const std::vector<std::string>& files, int threads, Stages& stages) {
-  std::vector<std::uint64_t> hashes(files.size());
-  for_all_points(
-      files, {.threads = threads, .cancel = stages.cancel()}, [](std::size_t, const io::PointStream&) {},
-      [&](double share) { stages.progress(share); }, [&](std::size_t file, const Vec3& p) { hashes[file] = point_hash(hashes[file], p); });
-  return hashes;
-}
-
-// The points fill the frame as far as may be with cells of the mesh, halves of halves of the frame, of the size that they have in core.
-double scale_for(double longest_side, double spacing) {
-  const double scale = kLongestSide / longest_side;
-  const double halvings = std::log2(2 / (mesh::kFinestCell * spacing * scale));
-  return spacing > 0 && std::isfinite(halvings) ? scale * std::exp2(halvings - std::ceil(halvings)) : scale;
-}
-
-// First reading: counts and extent.
-Manifest survey(const std::vector<std::string>& files, const TileOptions& options, Stages& stages) {
-  stages.begin("read");
-  Manifest m;
-  m.asked = asked_of(options);
-  for (const std::string& file : files) {
-    std::error_code ignored;  // of a file that is gone again; reading it says so
-    m.inputs.push_back({file, std::filesystem::file_size(platform::path_of(file), ignored)});
-  }
-  std::vector<std::uint64_t> non_finite(files.size());
-  SpacingSample sample;
-  Vec3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL};
-  Vec3 high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-  std::size_t more_warnings = 0;
-  const auto begin = [&](std::size_t file, const io::PointStream& stream) {
-    for (const std::string& warning : stream.warnings()) {
-      if (m.warnings.size() < kMostWarnings) {
-        m.warnings.push_back(escape_text(files[file]) + ": " + escape_text(warning));
-      } else {
-        ++more_warnings;
-      }
-    }
-  };
-  for_all_points(
-      files, {.threads = options.threads, .cancel = stages.cancel()}, begin, [&](double share) { stages.progress(share); },
-      [&](std::size_t file, const Vec3& p) {
-        ++m.points;
-        ++m.inputs[file].points;
-        m.inputs[file].hash = point_hash(m.inputs[file].hash, p);
-        if (!vector::is_finite(p)) {
-          ++m.non_finite;
-          ++non_finite[file];
-          return;
-        }
-        sample.add(p);
-        for (std::size_t a = 0; a < 3; ++a) {
-          low[a] = std::min(low[a], p[a]);
-          high[a] = std::max(high[a], p[a]);
-        }
-      });
-  for (std::size_t f = 0; f < files.size(); ++f) {
-    if (non_finite[f] == 0 || non_finite[f] < m.inputs[f].points) continue;
-    throw InvalidInput(escape_text(files[f]) + ": from the first to the last of its " + std::to_string(non_finite[f]) +
-                       " points no coordinates are finite; get the file again, or leave it out");
-  }
-  if (m.sorted() < kFewestPoints) {
-    throw InvalidInput(std::to_string(m.sorted()) + " points are too few for tiles: expected at least " + std::to_string(kFewestPoints) +
-                       "; g3r orient takes them as they are");
-  }
-  double side = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    if (!(std::max(-low[a], high[a]) <= kLargestCoordinate)) {
-      throw InvalidInput("coordinates beyond 1e50 are no lengths that can be worked with");
-    }
-    side = std::max(side, high[a] - low[a]);
-    m.frame.centre[a] = low[a] + (high[a] - low[a]) / 2;
-  }
-  m.bounds = {low, high};
-  if (!(side > 1 / kLargestCoordinate)) throw InvalidInput("all points are at one place");
-  m.frame.scale = scale_for(side, sample.spacing());
-  if (more_warnings > 0) m.warnings.push_back("and " + std::to_string(more_warnings) + " more warnings about these files");
-  if (m.non_finite > 0) m.warnings.push_back(std::to_string(m.non_finite) + " points with a non-finite coordinate were left out");
-  return m;
-}
-
-// Of so many points without noise, or of fewer: up to kMostSites the certificate takes more of each.
-std::size_t in_core(std::uint64_t points) {
-  Settings clean;
-  clean.spacing = 1;
-  const auto all = static_cast<std::size_t>(points);
-  const std::size_t some = std::min(all, kMostSites);
-  return std::max(planned_memory(clean, all, all), planned_memory(clean, some, some));
-}
-
-std::size_t memory_for(std::uint64_t points) { return in_core(points) + kFixed + kBeside * static_cast<std::size_t>(points); }
-
-// The most points that this memory is enough for.
-std::uint64_t points_for(std::size_t memory) {
-  std::uint64_t enough = 0;
-  std::uint64_t more = memory / kBeside + 1;
-  while (more - enough > 1) {
-    const std::uint64_t middle = enough + (more - enough) / 2;
-    (memory_for(middle) <= memory ? enough : more) = middle;
-  }
-  return enough;
 }
 
 [[noreturn]] void refuse_memory(const TileOptions& options, std::size_t limit, std::uint64_t needed, const std::string& remedy) {
@@ -261,7 +109,7 @@ Cells sort_points(const std::vector<std::string>& files, const std::string& fold
     for (std::size_t s = 0; s < outputs.size(); ++s) {
       if (place % all_strides[s] == 0) outputs[s]->write(&record, sizeof record);
     }
-    if (place++ % kAtOnce == 0) stages.progress(0.5 + 0.4 * static_cast<double>(place) / static_cast<double>(m.points));
+    if (place++ % kPointsAtOnce == 0) stages.progress(0.5 + 0.4 * static_cast<double>(place) / static_cast<double>(m.points));
   });
   for (const std::unique_ptr<io::OutputFile>& output : outputs) output->commit();
   m.level = choice.level();
@@ -338,7 +186,8 @@ void require_usable(const TileOptions& options) {
 TileStatus make_plan(const std::vector<std::string>& files, const std::string& folder, const TileOptions& options, const Monitor& monitor) {
   Stages stages(monitor);
   const std::size_t limit = options.max_memory > 0 ? options.max_memory : default_limit();
-  Manifest m = survey(files, options, stages);
+  Manifest m = survey(files, options.threads, stages);
+  m.asked = asked_of(options);
   m.limit = limit;
   m.stride = choose_stride(m.sorted(), options, limit);
   m.coarse_points = (m.sorted() + m.stride - 1) / m.stride;
@@ -378,18 +227,6 @@ void require_same(const std::string& folder, const Manifest& there, const std::v
     throw InvalidInput(escape_text(files[f]) + ": its points are others than those of the plan in " + escape_text(folder) +
                        "; take another folder, or remove it");
   }
-}
-
-// No point takes less than a byte of its file: with so many points as bytes, most clouds need not be counted.
-std::uint64_t most_points(const std::vector<std::string>& files) {
-  std::uint64_t bytes = 0;
-  for (const std::string& file : files) {
-    std::error_code error;
-    const std::uint64_t size = std::filesystem::file_size(platform::path_of(file), error);
-    if (error || size > kAnyNumber - bytes) return kAnyNumber;
-    bytes += size;
-  }
-  return bytes;
 }
 
 }  // namespace
