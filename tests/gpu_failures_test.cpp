@@ -1,6 +1,7 @@
 // What surrounds the kernels, without any device: failing devices, the cache of kernels, the tiles of far pairs.
 #include "cloud/canonical_cloud.h"
 #include "cpu/parallel.h"
+#include "german_locale.h"
 #include "gpu/device.h"
 #include "gpu/drivers.h"
 #include "gpu/execution.h"
@@ -462,6 +463,17 @@ TEST(GpuFailures, TheCacheGivesBackWhatIsWholeAndNothingElse) {
   cache.write(binary);
   EXPECT_TRUE(cache.read().empty());
   std::filesystem::remove_all(folder);
+}
+
+// Programs with windows set the locale of their user.
+TEST(GpuFailures, ALocaleWithDecimalCommasChangesNoKernel) {
+  gpu::KernelTraits floats, doubles;
+  doubles.doubles = true;
+  const auto sources = [&] { return std::vector<std::string>{gpu::near_field_source(floats), gpu::near_field_source(doubles)}; };
+  const std::vector<std::string> usual = sources();
+  const GermanLocale german;
+  if (!german.is_there()) GTEST_SKIP() << kNoGermanLocale;
+  EXPECT_EQ(sources(), usual);
 }
 
 TEST(GpuFailures, AKeptDeviceIsGivenOutOnceAndNotAfterAFork) {

@@ -19,6 +19,7 @@
 #include <thread>
 #include <vector>
 
+#include "german_locale.h"
 #include "sanitized.h"
 #include "temporary_folder.h"
 
@@ -221,11 +222,7 @@ TEST_F(Guest, SignalsDoNotDisturb) {
 }
 
 TEST_F(Guest, LeavesHandlersAndTheLocaleAlone) {
-  const std::string folder = testing::TempDir() + "g3r-guest-locale-" + std::to_string(getpid());
-  (void)std::system(("mkdir " + folder + " && localedef -i de_DE -f UTF-8 " + folder + "/de_DE.UTF-8 2> /dev/null").c_str());
-  setenv("LOCPATH", folder.c_str(), 1);
-  const bool german = std::setlocale(LC_ALL, "de_DE.UTF-8") != nullptr;
-  unsetenv("LOCPATH");
+  const g3r::GermanLocale german;
   struct sigaction interrupt {};
   struct sigaction interrupt_after {};
   sigaction(SIGINT, nullptr, &interrupt);
@@ -234,9 +231,7 @@ TEST_F(Guest, LeavesHandlersAndTheLocaleAlone) {
   EXPECT_EQ(locale, std::setlocale(LC_ALL, nullptr));
   sigaction(SIGINT, nullptr, &interrupt_after);
   EXPECT_EQ(interrupt.sa_handler, interrupt_after.sa_handler);
-  std::setlocale(LC_ALL, "C");
-  (void)std::system(("rm -rf " + folder).c_str());
-  if (!german) GTEST_SKIP() << "no German locale on this machine (package locales): tried in the one that there is";
+  if (!german.is_there()) GTEST_SKIP() << g3r::kNoGermanLocale << ": tried in the one that there is";
 }
 
 TEST_F(Guest, ALengthWithoutItsUnitIsRefused) {

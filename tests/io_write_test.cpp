@@ -3,12 +3,12 @@
 
 #include <clocale>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <limits>
 
 #include <sys/stat.h>
 
+#include "german_locale.h"
 #include "io/las.h"
 #include "io/las_extra_bytes.h"
 #include "io_samples.h"
@@ -213,23 +213,18 @@ TEST(LasExtraBytes, AreReadWithScaleAndOffsetAndKeptAsTheyAre) {
 }
 
 TEST(Write, ALocaleWithDecimalCommasChangesNothing) {
-  const Folder folder;  // Debian has locales as sources only
-  (void)std::system(("localedef -i de_DE -f UTF-8 " + folder.path("de_DE.UTF-8") + " 2> /dev/null").c_str());
-  setenv("LOCPATH", folder.path("").c_str(), 1);
-  const std::string before = std::setlocale(LC_ALL, nullptr);
-  const bool is_there = std::setlocale(LC_ALL, "de_DE.UTF-8") != nullptr;
-  unsetenv("LOCPATH");
-  if (!is_there) GTEST_SKIP() << "no German locale on this machine (package locales)";
+  const auto texts = [] {
+    std::vector<std::string> all;
+    for (const char* name : {"a.xyz", "a.csv", "a.pts", "a.ply", "a.pcd", "a.obj"})
+      all.push_back(samples::written(samples::helix(5), name, {.ascii = true}));
+    return all;
+  };
+  const std::vector<std::string> usual = texts();
+  const GermanLocale german;
+  if (!german.is_there()) GTEST_SKIP() << kNoGermanLocale;
   ASSERT_STREQ(std::localeconv()->decimal_point, ",");
-  for (const char* name : {"a.xyz", "a.csv", "a.pts", "a.ply", "a.pcd", "a.obj"}) {
-    const std::string german = samples::written(samples::helix(5), name, {.ascii = true});
-    const std::vector<Vec3> points = read(german).positions;
-    std::setlocale(LC_ALL, before.c_str());
-    EXPECT_EQ(german, samples::written(samples::helix(5), name, {.ascii = true})) << name;
-    EXPECT_EQ(points, samples::helix(5).positions) << name;
-    std::setlocale(LC_ALL, "de_DE.UTF-8");
-  }
-  std::setlocale(LC_ALL, before.c_str());
+  EXPECT_EQ(texts(), usual);
+  for (const std::string& text : usual) EXPECT_EQ(read(text).positions, samples::helix(5).positions) << text;
 }
 
 TEST(Write, CoordinatesOfAllFormatsSurvive) {

@@ -3,8 +3,9 @@
 #include "kernels/kernel_polynomials.h"
 #include "kernels/kernels.h"
 
-#include <array>
-#include <cstdio>
+#include <ios>
+#include <locale>
+#include <sstream>
 #include <string_view>
 
 namespace g3r::gpu {
@@ -33,9 +34,11 @@ std::string define(const char* name, std::size_t value) { return std::string("#d
 
 template <class T>
 std::string literal(T value) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), sizeof(T) == 4 ? "%.9ef" : "%.17e", static_cast<double>(value));
-  return text.data();
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text.precision(sizeof(T) == 4 ? 9 : 17);
+  text << std::scientific << static_cast<double>(value) << (sizeof(T) == 4 ? "f" : "");
+  return text.str();
 }
 
 // #define NAME(w) a polynomial by Horner's rule.
