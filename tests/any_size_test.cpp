@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <locale>
 #include <set>
 
 namespace g3r {
@@ -229,6 +230,27 @@ TEST_F(Tiles, APlanIsMadeOnceAndOnlyForItsInputs) {
   EXPECT_THROW((void)plan_tiles({folder_->file("in.ply")}, work, options), InvalidInput);
   write_points(folder_->file("other.ply"), shapes::sphere(kPoints).points);
   EXPECT_THROW((void)plan_tiles({folder_->file("other.ply")}, work, {}), InvalidInput);
+}
+
+// Numbers as Germans write them: 4.294.967.296.
+struct GermanNumbers : std::numpunct<char> {
+  [[nodiscard]] char do_decimal_point() const override { return ','; }
+  [[nodiscard]] char do_thousands_sep() const override { return '.'; }
+  [[nodiscard]] std::string do_grouping() const override { return "\3"; }
+};
+
+TEST_F(Tiles, APlanIsTheSameInAllLocales) {
+  const TemporaryFolder folder;
+  TileOptions options;
+  options.tiles = kTiles;
+  options.max_memory = std::size_t{1} << 32;
+  options.hints.inside = {{0.6, 0, 1e-3}};
+  const std::vector<std::string> in{folder_->file("in.ply")};
+  (void)plan_tiles(in, folder.file("work"), options);
+  EXPECT_EQ(tiles::read_manifest(folder.file("work")).asked, "tiles 3 max_memory 4294967296 inside 0.59999999999999998,0,0.001");
+  const std::locale before = std::locale::global(std::locale(std::locale::classic(), new GermanNumbers));
+  EXPECT_NO_THROW((void)plan_tiles(in, folder.file("work"), options));
+  std::locale::global(before);
 }
 
 // As many points in as many bytes, in another order: their normals would go to the wrong points.

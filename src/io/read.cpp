@@ -89,7 +89,7 @@ void warn_about_precision(Cloud& cloud) {
 void check_options(const ReadOptions& options) {
   if (options.levels < 0) throw InvalidInput("read_cloud: levels: expected a number from 0, found " + std::to_string(options.levels));
   if (!(options.min_opacity >= 0 && options.min_opacity <= 1))
-    throw InvalidInput("read_cloud: min_opacity: expected a number from 0 to 1, found " + std::to_string(options.min_opacity));
+    throw InvalidInput("read_cloud: min_opacity: expected a number from 0 to 1, found " + number_text(options.min_opacity));
   for (std::size_t a = 0; options.box && a < 3; ++a) {
     if (!(options.box->low[a] <= options.box->high[a]))
       throw InvalidInput("read_cloud: the box has a low corner that is not below its high one");

@@ -30,6 +30,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <locale>
 #include <memory>
 #include <sstream>
 #include <system_error>
@@ -46,6 +47,7 @@ constexpr std::size_t kMostTiles = 1000000;
 
 std::string asked_of(const TileOptions& options) {
   std::ostringstream text;
+  text.imbue(std::locale::classic());
   text.precision(17);
   const auto add = [&](const char* name, const Vec3& v) { text << ' ' << name << ' ' << v[0] << ',' << v[1] << ',' << v[2]; };
   text << "tiles " << options.tiles << " max_memory " << options.max_memory;
