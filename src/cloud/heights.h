@@ -48,8 +48,8 @@ struct MeanExcess {
 };
 
 /// Of the places whose mean square is at most the median. Under normal noise the excess does not depend on the mean square, so that the
-/// choice does not change its mean. `places`: their moments; zeros of fewer than kFewestSites; `disjoint` > 0: as many
-/// of their neighbourhoods the points fill, if they share none: no more of them are independent. O(places).
+/// choice does not change its mean. `places`: their moments; zeros of fewer than kFewestSites; `disjoint` > 0: as many of their
+/// neighbourhoods the points fill, if they share none: no more of them are independent. O(places).
 [[nodiscard]] MeanExcess mean_excess(const std::vector<HeightMoments>& places, double disjoint);
 
 }  // namespace g3r

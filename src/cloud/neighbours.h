@@ -10,6 +10,7 @@
 
 namespace g3r {
 
+/// Of N points. Any number of threads may ask at once.
 class Neighbours {
  public:
   /// `positions` must outlive this. O(N log N).
@@ -29,8 +30,8 @@ class Neighbours {
   /// All points closer to x than `radius`, in no particular order; where there are more than `most`, more than `most` of them. O(log N +
   /// points found).
   void within(const Vec3& x, double radius, std::vector<std::uint32_t>& index, std::size_t most = SIZE_MAX) const;
-  /// For every point, the min(k, N) points nearest to it, nearest first (itself, but for points in the same
-  /// place): N x min(k, N), row-major. O(k N log N). On the device of the call, if it has one, with the same result.
+  /// For every point, the min(k, N) points nearest to it, nearest first (itself, but for points in the same place): N x min(k, N),
+  /// row-major. O(k N log N). On the device of the call, if it has one, with the same result.
   [[nodiscard]] std::vector<std::uint32_t> of_all(std::size_t k) const;
 
  private:

@@ -11,6 +11,7 @@
 
 namespace g3r {
 
+/// What find_outliers() finds.
 struct Outliers {
   std::vector<std::uint32_t> indices;  ///< ascending
   std::optional<double> noise;         ///< that of the other points, where it is known
@@ -26,13 +27,13 @@ struct Outliers {
 /// Noise scatters points as well, as far apart as outliers. So where a ball of 4 standard deviations holds more than 8 points of the noisy
 /// layer, spacings are measured over as many, and chance moves points from its middle too. `noise`: if known; otherwise that of the points
 /// left without it is estimated, where outliers are found. A density that changes smoothly, by whatever factor, is no reason. Never more
-/// than half of the points: then the cloud is something else, and none is returned. O(N log N).
+/// than half of the points: then the cloud is something else, and none is returned; nor of 64 points or fewer. O(N log N).
 /// `relative_spacing`: how many times as far apart the points of a cloud are that has been thinned, which is no reason either; or empty.
 [[nodiscard]] Outliers find_outliers(const PointSet& set, const std::vector<double>& relative_spacing = {},
                                      std::optional<double> noise = std::nullopt);
 
 /// The share of some points of a set, at least one, that no slab as above holds: of those that fill space nearly all, of a surface hardly
-/// any, but under noise. Looks at about 2000 of them, in O(log N) each.
+/// any, but under noise; 0 in a set of 64 points or fewer. Looks at about 2000 of them, in O(log N) each.
 [[nodiscard]] double share_in_space(const PointSet& set, const std::vector<std::uint32_t>& some);
 
 /// Takes the points with these indices out of the cloud and returns them. point_of and multiplicity number them after those that stay, and

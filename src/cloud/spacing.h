@@ -20,8 +20,8 @@ inline constexpr std::size_t kClosest = 8;
 inline constexpr std::size_t kSpacingNeighbours = 2 * kClosest + 1;
 
 /// h_i = d_k sqrt(pi / k), d_k the distance of point i to its k-th neighbour, k = 8: the square root of the area per point of a surface
-/// sample (docs/math.md, "Spacing"). Fewer than 9 points: k = N - 1. N values in the units of the points, all > 0 for distinct points. O(N
-/// log N). Points in the unit frame: none is below kLeastSpacing.
+/// sample (docs/math.md, "Spacing"). Two points and more, in the unit frame; fewer than 9: k = N - 1. N values, none below kLeastSpacing.
+/// O(N log N).
 [[nodiscard]] std::vector<double> local_spacing(const std::vector<Vec3>& points);
 /// The same from Neighbours::of_all(k) of these points, k >= 9.
 [[nodiscard]] std::vector<double> local_spacing(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& near);

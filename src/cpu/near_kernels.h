@@ -4,8 +4,7 @@
 // w = 2 (R^2 + 30) / R^2 * s / (s + 30) - 1 in [-1, 1], s = (rho / e)^2 in [0, R^2], fitted by Lawson iteration for the least relative
 // error (float: 6e-8, double: 1e-15 before rounding). The mapping spreads the bell of exp(-s/2), so degree 10 and 24 suffice where a
 // polynomial in s would need twice that. Where a task allows kRoughError, floats go without the Newton step of 1/rho, and degree 6 (1.3e-4)
-// will do. A vector of sources takes the mollified path when any lane is near; the lanes that are not keep
-// the plain value.
+// will do. A vector of sources takes the mollified path when any lane is near; the lanes that are not keep the plain value.
 #if defined(G3R_CPU_NEAR_KERNELS_H) == defined(HWY_TARGET_TOGGLE)  // once for every instruction set
 #ifdef G3R_CPU_NEAR_KERNELS_H
 #undef G3R_CPU_NEAR_KERNELS_H

@@ -17,8 +17,7 @@ bool is_splat(const Element& points);
 ///   - those whose opacity, 1 / (1 + exp(-value)), is below options.min_opacity;
 ///   - where the table has scale_0..2 (logarithms) and rot_0..3 (a quaternion, w first), those that places_of() finds translucent or
 ///   hidden.
-/// All are kept with options.all_splats, and where none would be left. Throws as fill_cloud(), and
-/// Cancelled.
+/// All are kept with options.all_splats, and where none would be left. Throws as fill_cloud(), and Cancelled.
 void fill_splat_cloud(const Source& source, std::shared_ptr<Attributes> table, const ReadOptions& options, Cloud& cloud);
 
 }  // namespace g3r::io

@@ -10,6 +10,7 @@
 
 namespace g3r::mesh {
 
+/// What find_crossings() finds.
 struct Crossings {
   double share = 0;       ///< of the points, near a curve where two surfaces cross, 0..1
   double angle = 0;       ///< between the two, the median in degrees; 0 without any

@@ -44,8 +44,8 @@ class CornerSides {
   CornerSides(const LocalFit& local, const FieldSampler& sampler, double typical, const Cube& cube, const std::vector<Vec3>& places,
               std::size_t asked_at_once);
 
-  /// Of the corners for which wanted(corner); the others are outside, and so is all that is beyond the cube of
-  /// side 2 in a frame in which that of the points is kBoxSide long. Throws Cancelled.
+  /// Of the corners for which wanted(corner); the others are outside, and so is all that is beyond the cube of side 2 in a frame in which
+  /// that of the points is kBoxSide long. Throws Cancelled.
   [[nodiscard]] Corners of(const Octree& octree, const std::function<bool(std::uint32_t)>& wanted, const std::atomic<bool>* cancel) const;
 
  private:

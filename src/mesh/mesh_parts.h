@@ -15,11 +15,14 @@ struct Components {
   std::vector<std::uint32_t> of;  ///< F: component of every triangle, numbered in order of first use
   std::size_t count = 0;
 };
+/// O(V + F).
 [[nodiscard]] Components find_components(const Mesh& mesh);
 
+/// The mean of the corners of a triangle.
 [[nodiscard]] Vec3 centre_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle);
 /// Of every triangle.
 [[nodiscard]] std::vector<Vec3> centres_of(const Mesh& mesh);
+/// In squared units of the mesh.
 [[nodiscard]] double area_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle);
 /// Of every vertex, the mean of the triangles around it by area; unit, (0, 0, 0) where there is none.
 [[nodiscard]] std::vector<Vec3> vertex_normals(const Mesh& mesh);

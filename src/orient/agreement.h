@@ -15,10 +15,10 @@ namespace g3r {
 
 /// Every pair of near sites once, from the 10 nearest of each, with the weight
 ///   w_ij = f_i f_j exp(-|d|^2 / (2 (1.5 r)^2)) (n_i . n_j - 2 (n_i . e)(n_j . e)),
-/// n the axes of the sites, d = p_j - p_i, e = d / |d|, r the distance of the sites, f = 1 - flatness: two normals agree if one is the
-/// mirror image of the other across the plane between the points, as on every arc (Xie, Wang, Hua, Qin, Kaufman, "Piecewise C1 continuous
-/// surface reconstruction of noisy point clouds via local implicit quadric regression", IEEE Visualization 2003). Sites farther apart than
-/// 4 r have a gap between them, and are no pair. O(M).
+/// n the axes of the sites, d = p_j - p_i, e = d / |d|, r the distance of the sites, where every point is one the mean spacing of the two,
+/// f = 1 - flatness: two normals agree if one is the mirror image of the other across the plane between the points, as on every arc (Xie,
+/// Wang, Hua, Qin, Kaufman, "Piecewise C1 continuous surface reconstruction of noisy point clouds via local implicit quadric regression",
+/// IEEE Visualization 2003). Sites farther apart than 4 r have a gap between them, and are no pair. O(M).
 [[nodiscard]] std::vector<SignEdge> adjacent_sites(const Sites& sites);
 
 /// M mean directions of the normals of the N points of every site; its axis where these cancel. O(N).

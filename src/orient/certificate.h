@@ -29,8 +29,8 @@ struct Certificate {
   std::vector<double> unrest;
 };
 
-/// `normals`: of the sites, unit vectors. `reach`: of every site, the size of its part; farther
-/// away the field of any part is 0. Eight evaluations of the field at all sites. Throws Cancelled. O(M log M).
+/// `normals`: of the sites, unit vectors. `reach`: of every site, the size of its part; farther away the field of any part is 0. Eight
+/// evaluations of the field at all sites. Throws Cancelled. O(M log M).
 [[nodiscard]] Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const std::vector<double>& reach,
                                   const SumPlan& sums, const std::atomic<bool>* cancel);
 

@@ -21,13 +21,14 @@ inline constexpr float kUndecided = 0.5F;
 [[nodiscard]] std::vector<float> side_confidence(const std::vector<Vec3>& eta, const std::vector<Vec3>& normals,
                                                  const std::vector<double>& jumps, const std::vector<double>& areas);
 
-/// Of every point the sums of the vectors of its near points and of their lengths, `near`: Neighbours::of_all(k). O(N k). Under noise the
-/// vectors of single points fit the noise; those of a place together tell its side, and how far they are one direction (the mean resultant
-/// length of directional statistics, as in concentration()) how surely, whatever the density.
+/// Sums over the near points of each one. Under noise the vectors of single points fit the noise; those of a place together tell its side,
+/// and how far they are one direction (the mean resultant length of directional statistics, as in concentration()) how surely, whatever the
+/// density.
 struct Sums {
-  std::vector<Vec3> vectors;
-  std::vector<double> lengths;
+  std::vector<Vec3> vectors;    ///< N: of their vectors
+  std::vector<double> lengths;  ///< N: of the lengths of these
 };
+/// Of N vectors; `near`: Neighbours::of_all(k) of their points, each its own near point too. O(N k).
 [[nodiscard]] Sums sums_over(const std::vector<std::uint32_t>& near, const std::vector<Vec3>& vectors);
 
 /// What n = N / kSpacingNeighbours independent neighbourhoods can show of sides. Were they n trials of which a share c succeeded, the next

@@ -44,6 +44,7 @@ struct HintedCloud {
   SidedPoints sided;
 };
 
+/// What follow_hints() has done.
 struct HintEffect {
   std::vector<std::uint8_t> decided;  ///< N: of points whose side was a choice and is none now; empty: nowhere
   std::vector<std::uint8_t> turned;   ///< N: by a vote or an order, not counting `flip`; empty: nowhere

@@ -19,9 +19,9 @@ namespace g3r {
 ///
 /// What of open parts still faces away from all sensors that may have seen it, at a cosine v < 0, has a confidence of (1 + v) / 2 at most;
 /// where all points have been `seen`, what would be seen squarely from behind is turned, with (1 - v) / 2, and elsewhere what is held by
-/// less than (1 - v) / 2. Marks points in
-/// HintEffect::turned and decided, N each and 0 before, and writes HintEffect::agreement and the confidence; normals stay as they are.
-/// O(N log(sensors) + N k), and all sensors for each open point that none of them sees from the front.
+/// less than (1 - v) / 2. Marks points in HintEffect::turned and decided, N each and 0 before, and writes HintEffect::agreement and the
+/// confidence; normals stay as they are. O(N log(sensors) + N k), and all sensors for each open point that none of them sees from the
+/// front.
 void decide_patches(const HintedCloud& cloud, Voters& voters, HintEffect& effect);
 
 }  // namespace g3r

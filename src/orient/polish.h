@@ -30,9 +30,10 @@ inline std::vector<double> scaled(double factor, std::vector<double> values) {
 /// rounding, as on a flat surface. One sweep of `sum`.
 void gradient_to_areas(FastSum& sum, const std::vector<double>& areas, std::vector<Vec3>& gradient);
 
+/// What polish() gives.
 struct Polished {
-  std::vector<Vec3> eta;
-  Refinement refinement;
+  std::vector<Vec3> eta;  ///< N area vectors, as solved
+  Refinement refinement;  ///< their winding gradient
 };
 
 /// The points of a polish, in canonical order.
@@ -45,8 +46,8 @@ struct PolishCloud {
 
 /// settings.polish.steps of conjugate gradients on the energy form at settings.polish.epsilon, started from `refined`, and the refinement
 /// at settings.polish.width. The start has the right areas, which the first solve does not (its eta are 0.6 to 1.3 of them), so a few
-/// steps suffice. Once: a second round rounds edges. This step is ours, not the paper's. Measured:
-/// docs/evidence/formulation.md.
+/// steps suffice. Once: a second round rounds edges. This step is ours, not the paper's. Measured: docs/evidence/formulation.md. O(N) a
+/// step. Throws Cancelled.
 [[nodiscard]] Polished polish(PolishCloud cloud, const Settings& settings, Refinement refined, Stages& stages);
 
 }  // namespace g3r

@@ -17,6 +17,7 @@
 
 namespace g3r {
 
+/// What a solve starts from. Lengths are in the unit frame of the cloud.
 struct Problem {
   CanonicalCloud cloud;
   std::vector<Vec3> outliers;  ///< taken out of the cloud; their indices follow those of its points

@@ -79,9 +79,8 @@ struct Settings {
 /// The noise of options in the cloud's frame, if it is given. Throws InvalidInput below 0.
 [[nodiscard]] std::optional<double> given_noise(const Length& noise, const CanonicalCloud& cloud, double spacing);
 
-/// `noise`: given_noise() or estimate_noise(); `outlier_share`: of all
-/// points, those that find_outliers() took out. Throws InvalidInput for an option out of
-/// range, naming it and the range.
+/// `spacing`, `noise`: lengths in the cloud's frame, the latter given_noise() or estimate_noise(); `outlier_share`: of all points, those
+/// that find_outliers() took out. Throws InvalidInput for an option out of range, naming it and the range.
 [[nodiscard]] Settings choose_settings(const Options& options, const CanonicalCloud& cloud, double spacing, double noise,
                                        double outlier_share);
 

@@ -14,6 +14,7 @@ struct SignEdge {
   double weight = 0;
 };
 
+/// A sign for each of N nodes.
 struct Signs {
   std::vector<std::int8_t> sign;         ///< N: 1 or -1
   std::vector<std::uint32_t> component;  ///< N: smallest node of the connected component; signs of different ones are unrelated

@@ -7,7 +7,6 @@
 #include <utility>
 
 namespace g3r {
-namespace {}  // namespace
 
 std::vector<Vec3> normalised(const std::vector<Vec3>& eta) {
   std::vector<Vec3> out(eta.size());

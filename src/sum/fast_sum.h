@@ -21,8 +21,7 @@ namespace g3r {
 /// Results are the same bytes for any number of threads. Memory is allocated on first use and reused; one caller at a time.
 class FastSum {
  public:
-  /// `points` lie in [-1, 1]^3 and outlive the sum; `widths` > 0. `cancel` may be null; sums then throw Cancelled
-  /// soon after it is set.
+  /// `points` lie in [-1, 1]^3 and outlive the sum; `widths` > 0. Sums throw Cancelled soon after `cancel` (may be null) is set.
   FastSum(const std::vector<Vec3>& points, const Widths& widths, const SumPlan& plan, const std::atomic<bool>* cancel = nullptr);
   FastSum(std::vector<Vec3>&&, const Widths&, const SumPlan&, const std::atomic<bool>* = nullptr) = delete;
   /// The points, plan and tree of `other`, with widths that are nowhere larger (std::invalid_argument otherwise): saves most of the time of

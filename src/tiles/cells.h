@@ -25,10 +25,12 @@ struct Cells {
   [[nodiscard]] std::uint64_t end(std::size_t cell) const { return cell + 1 < cells.size() ? cells[cell + 1].begin : points; }
 };
 
-/// Finds the deepest level whose cells hold enough points on average, from codes in ascending order.
+/// Finds the deepest level, of 0 to kGridBits, whose occupied cells hold 64 points or more on average.
 class LevelChoice {
  public:
+  /// Takes note of the Morton code of a point; codes ascend.
   void add(std::uint64_t code);
+  /// For the points so far; 0 without any.
   [[nodiscard]] int level() const;
 
  private:
@@ -37,12 +39,13 @@ class LevelChoice {
   std::array<std::uint64_t, kGridBits + 1> occupied_{};
 };
 
-/// The ring of every cell around the tile of cells [first, last): 0 for its own and those no more than kHaloCells away, r where that holds
-/// of the cells r levels up, at most `outermost`. O(cells).
+/// The ring of every cell around the tile of cells [first, last): 0 for its own and those next to them, r where that holds of the cells r
+/// levels up, at most `outermost`. O(cells).
 [[nodiscard]] std::vector<std::uint8_t> rings_around(const Cells& cells, std::size_t first, std::size_t last, int outermost);
 
-/// Parts of ring 0: for every cell the number of its part, cells that touch being in one; kNoPart outside of the ring.
+/// The part of a cell outside of ring 0.
 inline constexpr std::uint32_t kNoPart = 0xffffffffu;
+/// Parts of ring 0: for every cell the number of its part, cells that touch being in one; kNoPart outside of the ring. O(cells log cells).
 [[nodiscard]] std::vector<std::uint32_t> parts_of_ring(const Cells& cells, const std::vector<std::uint8_t>& rings);
 
 }  // namespace g3r::tiles

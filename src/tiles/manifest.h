@@ -17,6 +17,7 @@ namespace g3r::tiles {
 /// The largest side that the box of all points may have in the unit frame; scale_for() makes it this to half of this.
 inline constexpr double kLongestSide = kBoxSide;
 
+/// A file of points.
 struct Input {
   std::string path;
   std::uint64_t bytes = 0;
@@ -34,6 +35,7 @@ struct Tile {
   bool operator==(const Tile&) const = default;
 };
 
+/// What manifest.json says.
 struct Manifest {
   std::string asked;  ///< options of the plan, as text
   std::vector<Input> inputs;
@@ -71,6 +73,7 @@ struct Manifest {
 
 /// Whether a path is UTF-8, as the manifest has to be.
 [[nodiscard]] bool can_be_stored(const std::string& path);
+/// Whether a folder holds a plan, sound or not.
 [[nodiscard]] bool has_manifest(const std::string& folder);
 /// Throws IoError.
 void write_manifest(const std::string& folder, const Manifest& manifest);
@@ -94,7 +97,9 @@ void remove_plan(const std::string& folder);
 /// Tiles of nearly equal numbers of points, cut between cells.
 [[nodiscard]] std::vector<Tile> cut(const Cells& cells, std::size_t count);
 
+/// Whether the result of a tile is there, as long as it is to be. What is in it merge_tiles() looks at.
 [[nodiscard]] bool is_done(const std::string& folder, const Manifest& manifest, std::size_t tile);
+/// Of a plan and its results so far, of which only the sizes are looked at.
 [[nodiscard]] TileStatus status_of(const std::string& folder, const Manifest& manifest);
 
 }  // namespace g3r::tiles
