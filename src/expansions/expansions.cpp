@@ -3,6 +3,7 @@
 #include <cmath>
 #include <complex>
 #include <cstdlib>
+#include <utility>
 
 namespace g3r {
 namespace {
@@ -19,50 +20,45 @@ Complex regular(const std::vector<double>& b, int l, int m) {
   return m >= 0 ? value : parity(k) * std::conj(value);
 }
 
-}  // namespace
-
-std::vector<double> regular_harmonics(const Vec3& b, int order) {
+// All harmonics to an order, column by column of one m: H_0^0 = `first`, H_m^m = H_{m-1}^{m-1} along(m), and
+// H_l^m = up(l, m, H_{l-1}^m, H_{l-2}^m) above it.
+template <class Along, class Up>
+std::vector<double> by_columns(int order, Complex first, const Along& along, const Up& up) {
   std::vector<double> out(coefficient_count(order));
-  const double r2 = b[0] * b[0] + b[1] * b[1] + b[2] * b[2];
-  std::vector<Complex> column(static_cast<std::size_t>(order + 1));  // R_l^m for one m
-  Complex diagonal = 1;
+  Complex diagonal = first;
   for (int m = 0; m <= order; ++m) {
-    if (m > 0) diagonal *= -Complex(b[0], b[1]) / (2.0 * m);
+    if (m > 0) diagonal *= along(m);
+    Complex value = diagonal, below = 0, second_below = 0;
     for (int l = m; l <= order; ++l) {
-      const auto at = static_cast<std::size_t>(l);
-      if (l == m) {
-        column[at] = diagonal;
-      } else {
-        const Complex below = l >= m + 2 ? column[at - 2] : Complex(0);
-        column[at] = ((2.0 * l - 1) * b[2] * column[at - 1] - r2 * below) / static_cast<double>((l + m) * (l - m));
+      if (l > m) {
+        second_below = std::exchange(below, value);
+        value = up(l, m, below, second_below);
       }
-      out[real_index(l, m)] = column[at].real();
-      if (m > 0) out[imaginary_index(l, m)] = column[at].imag();
+      out[real_index(l, m)] = value.real();
+      if (m > 0) out[imaginary_index(l, m)] = value.imag();
     }
   }
   return out;
 }
 
+}  // namespace
+
+std::vector<double> regular_harmonics(const Vec3& b, int order) {
+  const double r2 = b[0] * b[0] + b[1] * b[1] + b[2] * b[2];
+  return by_columns(
+      order, 1, [&](int m) { return -Complex(b[0], b[1]) / (2.0 * m); },
+      [&](int l, int m, const Complex& below, const Complex& second_below) {
+        return ((2.0 * l - 1) * b[2] * below - r2 * second_below) / static_cast<double>((l + m) * (l - m));
+      });
+}
+
 std::vector<double> irregular_harmonics(const Vec3& d, int order) {
-  std::vector<double> out(coefficient_count(order));
   const double r2 = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-  std::vector<Complex> column(static_cast<std::size_t>(order + 1));
-  Complex diagonal = 1 / std::sqrt(r2);
-  for (int m = 0; m <= order; ++m) {
-    if (m > 0) diagonal *= -(2.0 * m - 1) * Complex(d[0], d[1]) / r2;
-    for (int l = m; l <= order; ++l) {
-      const auto at = static_cast<std::size_t>(l);
-      if (l == m) {
-        column[at] = diagonal;
-      } else {
-        const Complex below = l >= m + 2 ? column[at - 2] : Complex(0);
-        column[at] = ((2.0 * l - 1) * d[2] * column[at - 1] - static_cast<double>((l - 1) * (l - 1) - m * m) * below) / r2;
-      }
-      out[real_index(l, m)] = column[at].real();
-      if (m > 0) out[imaginary_index(l, m)] = column[at].imag();
-    }
-  }
-  return out;
+  return by_columns(
+      order, 1 / std::sqrt(r2), [&](int m) { return -(2.0 * m - 1) * Complex(d[0], d[1]) / r2; },
+      [&](int l, int m, const Complex& below, const Complex& second_below) {
+        return ((2.0 * l - 1) * d[2] * below - static_cast<double>((l - 1) * (l - 1) - m * m) * second_below) / r2;
+      });
 }
 
 // R_l^m(t + b) = sum_{j,k} R_{l-j}^{m-k}(t) R_j^k(b); b is the child's coordinate times 1/2, hence 2^-j.
