@@ -16,7 +16,7 @@ namespace {
 // Lines without comments and blanks.
 class Statements {
  public:
-  explicit Statements(std::string_view text) : lines_(text) {}
+  explicit Statements(std::string_view text, std::size_t lines_before = 0) : lines_(text, lines_before) {}
   bool next(std::string_view& line) {
     if (!pending_.empty()) {
       line = pending_;
@@ -85,6 +85,8 @@ class OffParser {
       }
       vertex(line, cloud);
     }
+    faces_at_ = statements_.offset();
+    lines_before_faces_ = statements_.number();
     convert_colors(cloud);
     cloud.property_names = {"x", "y", "z"};
     if (normals_) cloud.property_names.insert(cloud.property_names.end(), {"nx", "ny", "nz"});
@@ -95,9 +97,11 @@ class OffParser {
     return cloud;
   }
 
-  // Calls corner(index) between begin(face) and the next; throws InvalidInput for a face that is no face.
+  // Calls corner(index) between begin(face) and the next; throws InvalidInput for a face that is no face. After vertices(), as often as
+  // wanted.
   template <class Begin, class EachCorner>
   void faces(const Begin& begin, const EachCorner& each_corner) {
+    statements_ = Statements(source_.bytes.substr(faces_at_), lines_before_faces_);
     std::string_view line;
     for (std::uint64_t face = 0; face < faces_; ++face) {
       if (!statements_.next(line)) {
@@ -163,6 +167,8 @@ class OffParser {
   Statements statements_;
   std::uint64_t vertices_ = 0;
   std::uint64_t faces_ = 0;
+  std::size_t faces_at_ = 0;  // byte of the line of the first
+  std::size_t lines_before_faces_ = 0;
   bool normals_ = false;
   bool colors_ = false;
   bool texture_ = false;
@@ -193,17 +199,14 @@ Cloud read_off(const Source& source) {
 Mesh read_off_mesh(const Source& source) {
   Mesh mesh;
   Fans fans(source, mesh);
-  OffParser first(source);
-  first.header();
-  Cloud cloud = first.vertices();
-  first.faces([&](std::uint64_t, std::size_t corners) { fans.count(corners); }, [](std::int64_t) {});
+  OffParser parser(source);
+  parser.header();
+  Cloud cloud = parser.vertices();
+  parser.faces([&](std::uint64_t, std::size_t corners) { fans.count(corners); }, [](std::int64_t) {});
   mesh.vertices = std::move(cloud.positions);
   mesh.colors = std::move(cloud.colors);
   fans.reserve();
-  OffParser second(source);
-  second.header();
-  second.vertices();
-  second.faces([&](std::uint64_t face, std::size_t) { fans.begin(face, "face"); },
+  parser.faces([&](std::uint64_t face, std::size_t) { fans.begin(face, "face"); },
                [&](std::int64_t index) { fans.corner(static_cast<double>(index)); });
   return mesh;
 }
