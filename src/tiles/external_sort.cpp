@@ -15,27 +15,21 @@ namespace {
 constexpr std::size_t kLeastRecords = std::size_t{1} << 16;  // in memory: fewer make many small runs, which cost seeks
 constexpr std::size_t kLeastAtOnce = 256;                    // records read from a run at once
 
-// A run that is read from its beginning. Its file is open only while it is read: there may be thousands.
+// A run that is read from its beginning.
 class Run {
  public:
-  Run(std::string path, std::size_t at_once) : path_(std::move(path)), at_once_(at_once) {}
+  Run(std::string path, std::size_t at_once) : pieces_(std::move(path), at_once) {}
   const Record* next() {
     if (used_ == records_.size()) {
-      records_.clear();
+      pieces_.next(records_);
       used_ = 0;
-      const RecordFile<Record> file(path_);
-      const std::uint64_t end = std::min(file.size(), at_ + at_once_);
-      file.append(at_, end, records_);
-      at_ = end;
       if (records_.empty()) return nullptr;
     }
     return &records_[used_++];
   }
 
  private:
-  std::string path_;
-  std::size_t at_once_;
-  std::uint64_t at_ = 0;
+  RecordPieces<Record> pieces_;
   std::vector<Record> records_;
   std::size_t used_ = 0;
 };

@@ -25,9 +25,9 @@ constexpr std::uint64_t kCursorMemory = 64u << 20;  // bytes of the results that
 class Cursor {
  public:
   // `points`: of the input, which results lie among; `at_once`: results read at once.
-  Cursor(std::string path, std::uint64_t points, std::uint64_t at_once) : path_(std::move(path)), points_(points), at_once_(at_once) {}
+  Cursor(std::string path, std::uint64_t points, std::uint64_t at_once) : pieces_(std::move(path), at_once), points_(points) {}
 
-  // Calls take(result) for those before `end` that have not been taken. The file is open only while it is read: there may be thousands.
+  // Calls take(result) for those before `end` that have not been taken.
   template <class Take>
   void take_until(std::uint64_t end, const Take& take) {
     while (fill() && results_[used_].index < end) take(results_[used_++]);
@@ -37,12 +37,8 @@ class Cursor {
   bool fill() {
     if (used_ < results_.size()) return true;
     if (ended_) return false;
-    results_.clear();
+    pieces_.next(results_);
     used_ = 0;
-    const RecordFile<Result> file(path_);
-    const std::uint64_t to = std::min(file.size(), at_ + at_once_);
-    file.append(at_, to, results_);
-    at_ = to;
     ended_ = results_.empty();
     check();
     return !ended_;
@@ -56,16 +52,14 @@ class Cursor {
         next_ = r.index + 1;
         continue;
       }
-      throw InvalidInput(escape_text(path_) + ": damaged at record " + std::to_string(at_ - results_.size() + i) +
+      throw InvalidInput(escape_text(pieces_.path()) + ": damaged at record " + std::to_string(pieces_.at() - results_.size() + i) +
                          "; remove it, and g3r tiles run FOLDER does the tile again");
     }
   }
 
-  std::string path_;
+  RecordPieces<Result> pieces_;
   std::uint64_t points_;
-  std::uint64_t at_once_;
   std::uint64_t next_ = 0;  // least index that may follow
-  std::uint64_t at_ = 0;
   bool ended_ = false;
   std::vector<Result> results_;
   std::size_t used_ = 0;

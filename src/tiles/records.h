@@ -5,11 +5,13 @@
 
 #include <g3r/points.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace g3r::tiles {
@@ -58,6 +60,29 @@ class RecordFile {
 
  private:
   io::RandomFile file_;
+};
+
+/// The records of a file from its beginning, some at a time. It is open only while it is read: there may be thousands.
+template <class T>
+class RecordPieces {
+ public:
+  RecordPieces(std::string path, std::uint64_t at_once) : path_(std::move(path)), at_once_(at_once) {}
+  /// Replaces `records` by the next ones, at most `at_once`; by none at the end. Throws IoError.
+  void next(std::vector<T>& records) {
+    records.clear();
+    const RecordFile<T> file(path_);
+    const std::uint64_t end = std::min(file.size(), at_ + at_once_);
+    file.append(at_, end, records);
+    at_ = end;
+  }
+  [[nodiscard]] const std::string& path() const { return path_; }
+  /// The number of the next record.
+  [[nodiscard]] std::uint64_t at() const { return at_; }
+
+ private:
+  std::string path_;
+  std::uint64_t at_once_;
+  std::uint64_t at_ = 0;
 };
 
 }  // namespace g3r::tiles
