@@ -215,36 +215,17 @@ TEST(OpenSurfaces, NoisyBowlsKeepTheSidesOfTheirNeighbours) {
   EXPECT_FALSE(o.stats.consistent);
 }
 
-// The faces of a box, random points `spacing` apart.
-Surface box(const Vec3& low, const Vec3& high, double spacing, shapes::Random& random) {
-  Surface s;
-  for (std::size_t face = 0; face < 6; ++face) {
-    const std::size_t axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
-    const auto points = static_cast<int>((high[u] - low[u]) * (high[v] - low[v]) / (spacing * spacing));
-    for (int i = 0; i < points; ++i) {
-      Vec3 p{}, n{};
-      p[axis] = face % 2 == 0 ? low[axis] : high[axis];
-      p[u] = random.uniform(low[u], high[u]);
-      p[v] = random.uniform(low[v], high[v]);
-      n[axis] = face % 2 == 0 ? -1 : 1;
-      s.points.push_back(p);
-      s.normals.push_back(n);
-      s.areas.push_back(spacing * spacing);
-    }
-  }
-  return s;
-}
-
 // A heat sink whose fins are thinner than the noise: each looks like one wall, on which neighbours agree. A third of the sides is wrong;
 // whatever the sink is taken for, nothing may be sure of them.
 TEST(OpenSurfaces, FinsThinnerThanTheNoiseAreNoSureSides) {
   const double spacing = 0.03;
   for (const std::uint64_t seed : {1, 2, 3}) {
     shapes::Random random(seed);
-    Surface sink = box({-0.5, -0.5, -0.3}, {0.5, 0.5, 0}, spacing, random);
+    Surface sink;
+    shapes::append_box(sink, {-0.5, -0.5, -0.3}, {0.5, 0.5, 0}, spacing, random);
     for (int k = 0; k < 8; ++k) {
       const double y = -0.45 + 0.9 * k / 7, half = 0.1 * spacing;
-      sink = shapes::join(sink, box({-0.5, y - half, 0}, {0.5, y + half, 0.5}, spacing, random));
+      shapes::append_box(sink, {-0.5, y - half, 0}, {0.5, y + half, 0.5}, spacing, random);
     }
     shapes::scatter(sink, 0.25 * spacing);
     EXPECT_LT(orient(sink.points).stats.confidence_mean, 0.7) << seed;

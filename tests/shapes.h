@@ -120,6 +120,24 @@ inline Surface torus(std::size_t n, double major = 0.6, double minor = 0.25, std
   return s;
 }
 
+/// Adds the faces of a box: random points, uniform by area, `spacing` apart.
+inline void append_box(Surface& s, const Vec3& low, const Vec3& high, double spacing, Random& random) {
+  for (std::size_t face = 0; face < 6; ++face) {
+    const std::size_t axis = face / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const auto points = static_cast<int>((high[u] - low[u]) * (high[v] - low[v]) / (spacing * spacing));
+    for (int i = 0; i < points; ++i) {
+      Vec3 p{}, n{};
+      p[axis] = face % 2 == 0 ? low[axis] : high[axis];
+      p[u] = random.uniform(low[u], high[u]);
+      p[v] = random.uniform(low[v], high[v]);
+      n[axis] = face % 2 == 0 ? -1 : 1;
+      s.points.push_back(p);
+      s.normals.push_back(n);
+      s.areas.push_back(spacing * spacing);
+    }
+  }
+}
+
 /// Square plates one above the other, each closed: random points, uniform by area, `spacing` apart; `thickness` and `gap` in spacings.
 inline Surface plates(int count, double side, double thickness, double gap, double spacing) {
   Surface s;
@@ -128,23 +146,7 @@ inline Surface plates(int count, double side, double thickness, double gap, doub
     const double bottom = k * (thickness + gap) * spacing;
     const Vec3 low{-side / 2, -side / 2, bottom};
     const Vec3 high{side / 2, side / 2, bottom + thickness * spacing};
-    for (int face = 0; face < 6; ++face) {
-      const auto axis = static_cast<std::size_t>(face / 2);
-      const std::size_t u = (axis + 1) % 3;
-      const std::size_t v = (axis + 2) % 3;
-      const auto points = static_cast<int>((high[u] - low[u]) * (high[v] - low[v]) / (spacing * spacing));
-      for (int i = 0; i < points; ++i) {
-        Vec3 p{};
-        Vec3 n{};
-        p[axis] = face % 2 == 0 ? low[axis] : high[axis];
-        p[u] = random.uniform(low[u], high[u]);
-        p[v] = random.uniform(low[v], high[v]);
-        n[axis] = face % 2 == 0 ? -1 : 1;
-        s.points.push_back(p);
-        s.normals.push_back(n);
-        s.areas.push_back(spacing * spacing);
-      }
-    }
+    append_box(s, low, high, spacing, random);
   }
   return s;
 }
