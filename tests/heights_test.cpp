@@ -109,10 +109,10 @@ TEST(HeightMoments, FewPatchesSayNothingOfWalls) {
 TEST(HeightMoments, WallsHaveMoreThanShapeExplains) {
   EXPECT_DOUBLE_EQ((MeanExcess{0, 0, 0.5}.of_shape()), -0.5);
   EXPECT_EQ((MeanExcess{0, 0, -0.5}.of_shape()), 0);
-  EXPECT_FALSE((MeanExcess{-0.69, 0, 0.5}.may_be_two_walls()));
-  EXPECT_TRUE((MeanExcess{-0.71, 0, 0.5}.may_be_two_walls()));
-  EXPECT_TRUE((MeanExcess{-0.71, 0.08, 0.5}.is_two_walls()));  // 2.6 standard errors
-  EXPECT_FALSE((MeanExcess{-0.71, 0.09, 0.5}.is_two_walls()));
+  EXPECT_FALSE((MeanExcess{-0.72, 0, 0.5}.may_be_two_walls()));
+  EXPECT_TRUE((MeanExcess{-0.73, 0, 0.5}.may_be_two_walls()));
+  EXPECT_TRUE((MeanExcess{-0.73, 0.09, 0.5}.is_two_walls()));  // 2.6 standard errors
+  EXPECT_FALSE((MeanExcess{-0.73, 0.1, 0.5}.is_two_walls()));
 }
 
 // Ground that takes two heights has light tails as two walls have, but neighbours take the same: the correlation is in

@@ -16,9 +16,7 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kSeeds = kPatchNeighbours - 1;         // nearest others that candidates pass through
-constexpr double kCandidates = kSeeds * (kSeeds - 1) / 2.0;  // pairs of them
-constexpr int kFewest = kQuadraticTerms;                     // points on a plane: fewer are on a bend, too; so many of exact ones prove it
+constexpr std::size_t kSeeds = kPatchNeighbours - 1;  // nearest others, pairs of which candidates pass through
 
 // The nearest points of one, relative to it, itself first, in spacings.
 struct Around {
@@ -28,18 +26,18 @@ struct Around {
   [[nodiscard]] Vec3 at(std::size_t k) const { return {x[k], y[k], z[k]}; }
 
   // How many a plane through the first holds to within a distance.
-  [[nodiscard]] int held(const Vec3& normal, double within) const {
+  [[nodiscard]] std::size_t held(const Vec3& normal, double within) const {
     const auto a = static_cast<float>(normal[0]);
     const auto b = static_cast<float>(normal[1]);
     const auto c = static_cast<float>(normal[2]);
     const auto most = static_cast<float>(within);
     int sum = 0;
     for (std::size_t k = 0; k < kPlaneNeighbours; ++k) sum += std::abs(a * x[k] + b * y[k] + c * z[k]) <= most ? 1 : 0;
-    return sum - static_cast<int>(kPlaneNeighbours - count);  // those that are missing are at 0
+    return static_cast<std::size_t>(sum) - (kPlaneNeighbours - count);  // those that are missing are at 0
   }
 
   // How many another plane, parallel to one through the first and at least four such distances away, holds at most.
-  [[nodiscard]] int most_held_beside(const Vec3& normal, double within) const {
+  [[nodiscard]] std::size_t most_held_beside(const Vec3& normal, double within) const {
     std::vector<double> height;
     for (std::size_t k = 0; k < count; ++k) height.push_back(vector::dot(normal, at(k)));
     std::sort(height.begin(), height.end());
@@ -49,7 +47,7 @@ struct Around {
       while (end < count && height[end] - height[k] <= 2 * within) ++end;
       if (height[k] >= 3 * within || height[end - 1] <= -3 * within) most = std::max(most, end - k);
     }
-    return static_cast<int>(most);
+    return most;
   }
 };
 
@@ -67,17 +65,19 @@ Around around_first(const std::vector<Vec3>& points, const std::vector<std::uint
 
 struct Candidate {
   Vec3 normal{0, 0, 0};
-  int held = 0;
+  std::size_t held = 0;
   double cosine = 0;  // between its normal and the direction asked for
 };
 
 // Share of the points that lie within `within` of a plane through one by chance, if they fill the ball that as many of a surface lie in.
 double share_by_chance(double within) { return share_of_ball(within / std::sqrt(kPlaneNeighbours / std::numbers::pi)); }
 
-// How many of `count` points, three of them those that it goes through, prove a plane.
-int proof(std::size_t count, double within) {
+// How many of `count` points, three of them those that it goes through, prove a plane. Of less than kQuadraticTerms none: they are on a
+// bend, too. So many of exact ones prove it.
+std::size_t proof(std::size_t count, double within) {
   const std::size_t others = count < 3 ? 0 : count - 3;
-  return std::max(static_cast<int>(proving_number(others, share_by_chance(within), kCandidates)) + 3, kFewest);
+  const double pairs = kSeeds * (kSeeds - 1) / 2.0;
+  return std::max(proving_number(others, share_by_chance(within), pairs) + 3, kQuadraticTerms);
 }
 
 // The candidate that holds most points to within a distance.
@@ -91,7 +91,7 @@ Candidate best_plane(const Around& around, const Vec3* towards, double within) {
       if (!(size > 0)) continue;
       const Vec3 normal = vector::scale(across, 1 / size);
       const double cosine = towards != nullptr ? std::abs(vector::dot(normal, *towards)) : 1;
-      const int held = around.held(normal, within);
+      const std::size_t held = around.held(normal, within);
       if (held > best.held || (held == best.held && cosine > best.cosine)) best = {normal, held, cosine};
     }
   }
@@ -127,7 +127,7 @@ Held fit_to_held(const std::vector<Vec3>& points, const std::vector<std::uint32_
     held.points.push_back(index[k]);
     held.middle = vector::add(held.middle, at);
   }
-  if (held.points.size() < static_cast<std::size_t>(kFewest)) return {};  // rounding
+  if (held.points.size() < kQuadraticTerms) return {};  // rounding
   held.middle = vector::scale(held.middle, 1 / static_cast<double>(held.points.size()));
   held.fit = fit_plane(points, held.points.data(), held.points.size());
   return held;
@@ -138,7 +138,7 @@ Held fit_to_held(const std::vector<Vec3>& points, const std::vector<std::uint32_
 ExactPlane find_exact_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing, const Vec3* towards) {
   const Around around = around_first(points, index, spacing);
   const Candidate best = best_plane(around, towards, kExactScatter);
-  if (best.held < kFewest) return {};
+  if (best.held < kQuadraticTerms) return {};
   const Held held = fit_to_held(points, index, around, best.normal, {0, 0, 0}, kExactScatter);
   return held.fit.breadth < kLineBreadth ? ExactPlane{} : held.plane();
 }
@@ -154,15 +154,15 @@ ExactPlane find_scattered_plane(const std::vector<Vec3>& points, const std::vect
                                 const Vec3& towards) {
   const Around around = around_first(points, index, spacing);
   const double within = kSigmas * scatter / spacing;
-  const int needed = proof(around.count, within);
-  if (is_majority(needed, static_cast<double>(around.count))) return {};  // another plane may hold as many
+  const std::size_t needed = proof(around.count, within);
+  if (is_majority(static_cast<double>(needed), static_cast<double>(around.count))) return {};  // another plane may hold as many
   const Candidate best = best_plane(around, &towards, within);
   if (best.held < needed) return {};
   Held held;
   held.fit.normal = best.normal;
   for (std::size_t before = 0;;) {  // it passes through three points, so it is tilted by their scatter
     held = fit_to_held(points, index, around, held.fit.normal, held.middle, within);
-    if (static_cast<int>(held.points.size()) < needed || held.points.front() != index[0]) return {};
+    if (held.points.size() < needed || held.points.front() != index[0]) return {};
     if (held.points.size() <= before) break;
     before = held.points.size();
   }
@@ -176,19 +176,19 @@ LikeliestPlane find_likeliest_plane(const std::vector<Vec3>& points, const std::
   double least = 1;
   for (double scatter = kExactScatter;; scatter *= kLevelRatio) {
     const double within = kSigmas * scatter;
-    const int needed = proof(around.count, within);
-    if (is_majority(needed, static_cast<double>(around.count))) break;
+    const std::size_t needed = proof(around.count, within);
+    if (is_majority(static_cast<double>(needed), static_cast<double>(around.count))) break;
     const Candidate best = best_plane(around, nullptr, within);
     if (best.held < needed) continue;
-    double chance = chances_of_as_many(around.count - 3, share_by_chance(within))[static_cast<std::size_t>(best.held - 3)];
-    if (const int other = around.most_held_beside(best.normal, within); other > kFewest) {
+    double chance = chances_of_as_many(around.count - 3, share_by_chance(within))[best.held - 3];
+    if (const std::size_t other = around.most_held_beside(best.normal, within); other > kQuadraticTerms) {
       const std::vector<double> of_two = chances_of_as_many(around.count - 4, 2 * share_by_chance(within));
-      chance = std::min(chance, static_cast<double>(around.count - 3) * of_two[static_cast<std::size_t>(best.held + other - 4)]);
+      chance = std::min(chance, static_cast<double>(around.count - 3) * of_two[best.held + other - 4]);
     }
     if (chance >= least) continue;
     const Held held = fit_to_held(points, index, around, best.normal, {0, 0, 0}, within);
-    if (held.points.size() <= static_cast<std::size_t>(kFewest)) continue;  // is_bent() cannot tell
-    if (held.fit.breadth < kFacetBreadth || is_bent(points, held.points, held.fit, spacing)) continue;
+    if (held.points.size() <= kQuadraticTerms) continue;  // is_bent() cannot tell
+    if (held.fit.breadth < kClearlyLess || is_bent(points, held.points, held.fit, spacing)) continue;
     const LikeliestPlane likelier{held.plane(), scatter};
     if (!is_of_facet(likelier)) continue;
     least = chance;

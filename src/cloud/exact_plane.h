@@ -16,13 +16,17 @@ namespace g3r {
 /// Nearest points that a search for a plane looks at: the point itself, first, and 32 others, which reach twice as far as those that say
 /// how far apart points are.
 inline constexpr std::size_t kPlaneNeighbours = kTwiceAsFar * kClosest + 1;
+/// As many of a wall that may not be alone, which reach twice as far again: fewer follow the noise, more the shape.
+inline constexpr std::size_t kWallNeighbours = kTwiceAsFar * kPlaneNeighbours;
 
 /// Points of a CAD model lie on its facets to rounding, and more of them on one plane than chance would put there prove it, however narrow
 /// the facet and however close the wall behind it.
 struct ExactPlane {
   std::vector<std::uint32_t> points;  ///< on it, nearest first; none: there is no such plane
   Vec3 normal{0, 0, 0};               ///< of the least squares plane through them, either side
-  double breadth = 0;                 ///< their second principal spread over the first: 0 along a line, 1 all around
+  /// Their second principal spread over the first: 0 along a line, 1 all around. A surface holds no less than kClearlyLess; the rows of a
+  /// raster lie in narrow strips of planes across it, and lines are as broad as their noise over their length.
+  double breadth = 0;
 };
 
 /// The plane through points[index[0]] that holds most of the points `index` (at most kPlaneNeighbours, nearest first): 6 or more to within
@@ -50,9 +54,6 @@ struct ExactPlane {
 /// Spacings: points that scatter less are exact. Above the rounding of files and of a box far larger than the spacing; noise that matters
 /// is far above.
 inline constexpr double kExactScatter = 0.001;
-/// Breadth of points that a surface holds all around: the rows of a raster lie in narrow strips of planes across it, and lines are as broad
-/// as their noise over their length.
-inline constexpr double kFacetBreadth = 0.5;
 
 struct LikeliestPlane {
   ExactPlane plane;
@@ -60,8 +61,8 @@ struct LikeliestPlane {
 };
 
 /// The plane through points[index[0]] that is least likely to be one of chance, of all scatters of 1, 2, 4, ..., 128 times kExactScatter;
-/// none if none is proven as above, if what it holds is narrower than kFacetBreadth, if it is a bend, or not `is_of_facet`. A wall has two
-/// sides, which together are one plane of half its thickness in scatter: so what a parallel plane at least 10 scatters away holds counts
+/// none if none is proven as above, if what it holds is clearly less broad than long (kClearlyLess), if it is a bend, or not `is_of_facet`. A
+/// wall has two sides, which together are one plane of half its thickness in scatter: so what a parallel plane at least 10 scatters away holds counts
 /// with the plane, any of the other points being where that could be. docs/math.md, "Planes of scattered points". About 30 us.
 [[nodiscard]] LikeliestPlane find_likeliest_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing,
                                                   const std::function<bool(const LikeliestPlane&)>& is_of_facet);

@@ -17,10 +17,12 @@ namespace g3r {
 namespace {
 
 constexpr Eigen::Index kColumns = kCubicTerms;
-constexpr double kExcess = -0.2;  // of the kurtosis of walls 1.35 standard deviations apart
 // Columns keep this share of their squares beside those to their left: the ridge leaves 1 to 6 of itself where points on a line or a conic
 // determine them, and random points and grids keep 1e4 times as much.
 constexpr double kLeastOwn = 10 * kRidge;
+
+// Of the kurtosis, where two walls are so many standard deviations apart.
+double excess_of_walls(double apart) { return -2 * std::pow(apart * apart / (apart * apart + 4), 2); }
 
 // Columns 1 and 2 are the places across the normal, and whitened^T whitened is what the fit takes.
 double correlation_of_adjacent(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& whitened, const Eigen::VectorXd& residual) {
@@ -79,7 +81,7 @@ HeightMoments height_moments(const std::vector<Vec3>& points, const std::uint32_
 
 double MeanExcess::of_shape() const { return -2 * std::pow(std::max(0.0, correlation), 2); }
 
-bool MeanExcess::may_be_two_walls() const { return mean < of_shape() + kExcess; }
+bool MeanExcess::may_be_two_walls() const { return mean < of_shape() + excess_of_walls(kWider); }
 
 bool MeanExcess::is_two_walls() const { return may_be_two_walls() && mean < of_shape() - kSigmas * error; }
 

@@ -39,7 +39,7 @@ struct MeanExcess {
 
   /// The least excess that shape would have by itself: a share c of the squares that takes two values has -2 c^2.
   [[nodiscard]] double of_shape() const;
-  /// Whether what looks like one wall may be two that noise hides: the mean is below -0.2, that of walls 1.35 standard deviations apart,
+  /// Whether what looks like one wall may be two that noise hides: the mean is below -2/9, that of walls kWider standard deviations apart,
   /// and more so than shape explains, such as steps of a terrace. What else has light tails looks like two walls: two scans of one surface
   /// that do not fit onto each other, noise that is evenly distributed.
   [[nodiscard]] bool may_be_two_walls() const;

@@ -22,7 +22,6 @@ constexpr double kTail = 1.5;                         // deviations of a layer t
 constexpr Eigen::Index kTerms = kQuadraticTerms - 1;  // u, v, u^2, u v, v^2
 constexpr int kSteps = 20;  // of expectation and maximisation, and of points that look for their layer: most change theirs 4 times
 constexpr std::size_t kMostLayers = 3;
-constexpr int kFewestOnLayer = kPlaneTerms + 1;                  // of two layers, on either: fewer say nothing of their distance
 constexpr double kNoShare = std::numeric_limits<double>::min();  // keeps the logarithm of a likelihood finite
 
 using Terms = Eigen::Matrix<double, Eigen::Dynamic, kTerms>;
@@ -176,7 +175,7 @@ TwoLayers fit_two_layers(const std::vector<Vec3>& points, const std::uint32_t* i
     TwoLayers layers;
     for (int round = 0; round < kSteps; ++round) {
       bool unchanged = round > 0;
-      int upper = 0;
+      std::size_t upper = 0;
       for (Eigen::Index k = 0; k < n; ++k) {
         const double on_upper = above[k] >= middle ? 1 : 0;
         unchanged = unchanged && rows(k, 0) == on_upper;
@@ -184,7 +183,7 @@ TwoLayers fit_two_layers(const std::vector<Vec3>& points, const std::uint32_t* i
         rows(k, 1) = 1 - on_upper;
         upper += above[k] >= middle ? 1 : 0;
       }
-      if (upper < kFewestOnLayer || static_cast<int>(n) - upper < kFewestOnLayer) return {};
+      if (std::min(upper, count - upper) <= kPlaneTerms) return {};  // a plane goes through so few, at any distance from the others
       if (unchanged) break;
       const Numbers solution = fit();
       const double freedom = static_cast<double>(n - kTerms - 2);

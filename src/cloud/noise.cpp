@@ -2,6 +2,7 @@
 
 #include "base/bisect.h"
 #include "base/vector.h"
+#include "cloud/chance.h"
 #include "cloud/constants.h"
 #include "cloud/exact_plane.h"
 #include "cloud/layers.h"
@@ -22,30 +23,25 @@
 namespace g3r {
 namespace {
 
-// Quantile of the neighbourhoods that decides: shape lifts the others.
-constexpr double kFlattest = 0.02;
-// Quantile that shape lifts more than the flattest, and that of the layers that decides.
+// Quantile that shape lifts more than that of the flattest, kFalseAlarms, which are as many as chance may put there; and that of the layers
+// that decides.
 constexpr double kFlat = 0.1;
 // In spacings, what height fields through kPatchNeighbours say where noise fills their balls.
 constexpr double kSaturation = 0.57;
 // Of that, what the flattest say at most of noise: beyond, they tell no more.
 constexpr double kFilled = 0.75;
-// Quantile of the neighbourhoods that stands for those with the largest noise.
-constexpr double kMostScattered = 0.75;
-// Of the saturation, what these say at most: the law has a pole at 1.
-constexpr double kMostFilled = 0.97;
-// Share of the points on planes that shows a cloud to consist of facets.
-constexpr double kOnPlanes = 0.4;
 // Values of a rounded coordinate, at least: those of plates and boxes that stand straight are fewer.
 constexpr std::size_t kFewestLevels = 5;
-// Points of neighbourhoods that may hold several layers: fewer do not show three, more reach around the shape.
-constexpr std::size_t kLayerNeighbours = 256;
+// Points of neighbourhoods that may hold three layers: fewer do not show them, more reach around the shape.
+constexpr std::size_t kLayerNeighbours = 2 * kWallNeighbours;
 // What the quantile kFlat of them says on smooth surfaces, over the noise.
 constexpr double kLayerBias = 0.92;
 
-constexpr std::size_t kPlacesOfABlock = 16;  // looked at by one thread; any value gives the same
-
 double share_of(std::size_t some, std::size_t all) { return static_cast<double>(some) / static_cast<double>(all); }
+
+// Whether a share of the points on planes shows a cloud to consist of facets, or of a facet's surroundings that it goes on: where most are
+// on none, it does not.
+bool are_many(double share) { return share >= 1 - kMostOf; }
 
 double quantile(std::vector<double> values, double share) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
@@ -60,13 +56,11 @@ std::vector<double> at_some(const PointSet& set, std::size_t places, std::size_t
   const Neighbours& tree = set.tree();
   const std::size_t step = std::max<std::size_t>(1, points.size() / places);
   std::vector<double> values((points.size() + step - 1) / step);
-  parallel::for_blocks(values.size(), kPlacesOfABlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_each(values.size(), [&](std::size_t k) {
     std::vector<std::uint32_t> index;
     std::vector<double> squared;
-    for (std::size_t k = begin; k < end; ++k) {
-      tree.nearest(points[k * step], count, index, squared);
-      values[k] = value(points[k * step], index, squared);
-    }
+    tree.nearest(points[k * step], count, index, squared);
+    values[k] = value(points[k * step], index, squared);
   });
   return values;
 }
@@ -124,7 +118,7 @@ double layered_noise(const PointSet& set) {
 ExactPlane find_facet(const PointSet& set, const std::vector<std::uint32_t>& index) {
   const std::vector<Vec3>& points = set.points();
   const ExactPlane plane = find_exact_plane(points, index, set.spacing());
-  if (plane.breadth < kFacetBreadth || is_along_sight(set, index.front(), plane.normal)) return {};
+  if (plane.breadth < kClearlyLess || is_along_sight(set, index.front(), plane.normal)) return {};
   return find_exact_plane(points, beside_plane(index, plane.points), set.spacing()).points.empty() ? plane : ExactPlane{};
 }
 
@@ -138,7 +132,7 @@ bool on_exact_planes(const PointSet& set) {
     const Vec3 around = fit_plane(set.points(), index.data(), index.size()).normal;
     return std::abs(vector::dot(facet.normal, around)) > kSameSide ? 1.0 : 0.0;
   });
-  return share_of(static_cast<std::size_t>(std::count(on_facet.begin(), on_facet.end(), 1.0)), on_facet.size()) >= kOnPlanes;
+  return are_many(share_of(static_cast<std::size_t>(std::count(on_facet.begin(), on_facet.end(), 1.0)), on_facet.size()));
 }
 
 // Whether planes show that there is no noise: exact ones, or those of facets about which points scatter too little to blur anything.
@@ -151,9 +145,9 @@ bool shows_no_noise(const PointSet& set) {
 // By the flattest neighbourhoods, 0 where these or planes show that there is none.
 double scattered_noise(const PointSet& set, const Residuals& residuals) {
   const double spacing = set.spacing();
-  const double flattest = residuals.scatter(kFlattest);
+  const double flattest = residuals.scatter(kFalseAlarms);
   // Shape lifts the residuals of fewer points less, to at most 0.48 of the others, noise as much, to at least 0.56.
-  if (flattest < kLeastNoise * spacing || Residuals(set, kClosest).scatter(kFlattest) < kClearlyLess * residuals.scatter(kFlat)) return 0;
+  if (flattest < kLeastNoise * spacing || Residuals(set, kClosest).scatter(kFalseAlarms) < kClearlyLess * residuals.scatter(kFlat)) return 0;
   const double filled = flattest / (kSaturation * spacing);
   if (shows_no_noise(set)) return 0;
   const double layered = layered_noise(set);
@@ -169,7 +163,7 @@ bool is_of_facet(const PointSet& set, const ExactPlane& plane, double scatter) {
   const std::vector<Vec3>& points = set.points();
   std::vector<std::uint32_t> index;
   std::vector<double> squared;
-  set.tree().nearest(points[plane.points.front()], kTwiceAsFar * kPlaneNeighbours, index, squared);
+  set.tree().nearest(points[plane.points.front()], kWallNeighbours, index, squared);
   Vec3 middle{0, 0, 0};
   for (const std::uint32_t i : plane.points)
     middle = vector::add(middle, vector::scale(points[i], 1 / static_cast<double>(plane.points.size())));
@@ -232,7 +226,7 @@ double fine_noise(const PointSet& set) {
   if (set.size() < kFewestSurfacePoints) return 0;
   const double spacing = set.spacing();
   const Residuals residuals(set, kPatchNeighbours);
-  const double flattest = residuals.scatter(kFlattest);
+  const double flattest = residuals.scatter(kFalseAlarms);
   if (flattest <= kExactScatter * spacing || flattest >= kWider * kLeastNoise * spacing) return 0;
   // Noise is as large among three times as many points, shape clearly larger.
   const bool is_shape = kWider * Residuals(set, kClosest).scatter(0.5) <= Residuals(set, kTwoPatches).scatter(0.5);
@@ -242,8 +236,8 @@ double fine_noise(const PointSet& set) {
 double largest_scatter(const PointSet& set) {
   const double spacing = set.spacing();
   if (set.size() < kFewestSurfacePoints || shows_no_noise(set)) return 0;
-  const double x = Residuals(set, kPatchNeighbours).scatter(kMostScattered);
-  const double filled = std::min(x / (kSaturation * spacing), kMostFilled);
+  const double x = Residuals(set, kPatchNeighbours).scatter(kMostOf);
+  const double filled = std::min(x / (kSaturation * spacing), 1 - kFalseAlarms);  // the law has a pole at 1
   return x / std::sqrt(1 - filled * filled * filled * filled);
 }
 
@@ -272,7 +266,7 @@ double facet_scatter(const PointSet& set) {
     most = both;
     scatter = adjacent && next->second > step->second ? next->first : step->first;
   }
-  return share_of(most, scatters.size()) < kOnPlanes || scatter <= kExactScatter ? 0 : scatter * spacing;
+  return !are_many(share_of(most, scatters.size())) || scatter <= kExactScatter ? 0 : scatter * spacing;
 }
 
 double dimension(const PointSet& set) {

@@ -24,10 +24,10 @@ inline constexpr double kLeastNoise = 0.04;
 ///     scatter x h that is sigma while that is small, and fills the balls in the end: 1 / x^2 = (h / sigma)^2 + 1 / 0.57^2.
 ///   - Noise is as large in small neighbourhoods as in larger ones, shape is not. Where the flattest 2 % of 8 points scatter half as much
 ///     or less than the flattest 10 % of 12 points, that is shape: thin walls, wires, detail (measured: up to 0.48; noise 0.56 and more).
-///   - Noise leaves no exact planes behind. Where 40 % of the points are on one (find_exact_plane(), breadth 0.5) and no second one, the
+///   - Noise leaves no exact planes behind. Where a third of the points is on one (find_exact_plane(), breadth 0.5) and no second one, the
 ///     cloud is clean, unless its coordinates are rounded to steps of 0.04 h or more, which puts noise on planes. So is one of facets about
 ///     which points scatter less than 0.04 h (facet_scatter()): what lies farther from a height field is on another wall.
-///   - Against two or three layers of a smooth surface there is layered_deviation() of 256 neighbours, its 10 % quantile; the lesser of the
+///   - Against two or three layers of a smooth surface there is layered_deviation() of 264 neighbours, its 10 % quantile; the lesser of the
 ///     two counts. It needs the layers to be smooth as far as that. Noise above h fills such neighbourhoods as well, so every fourth point
 ///     is taken then, as often as needed.
 ///   - Less than 0.04 h is none.
@@ -39,7 +39,7 @@ inline constexpr double kLeastNoise = 0.04;
 
 /// The noise of a cloud for which that is less than 0.04 h, and so called none: kernels hide it, directions need not follow it. That of the
 /// flattest 2 % of 12 points, up to sqrt(2) 0.04 h, as layers may show less; 0 where it is more, where the points are exact to 0.001 h or
-/// 40 % of them on exact planes, and where shape explains as much: in the median place 24 points scatter at least sqrt(2) times as much
+/// a third of them on exact planes, and where shape explains as much: in the median place 24 points scatter at least sqrt(2) times as much
 /// as 8. Units and cost as above.
 [[nodiscard]] double fine_noise(const PointSet& set);
 
@@ -52,7 +52,7 @@ inline constexpr double kLeastNoise = 0.04;
 [[nodiscard]] double rounding_noise(const PointSet& set);
 
 /// The noise where it is largest, if all scatter is noise: of scans that do not fit onto each other, or of noise that differs from place to
-/// place, of which estimate_noise() finds the least. From the scatter x h of three quarters of the height fields above (measured within
+/// place, of which estimate_noise() finds the least. From the scatter x h of two thirds of the height fields above (measured within
 /// 20 % from 0.1 to 1 h):
 ///     sigma = h x / sqrt(1 - (x / 0.57)^4).
 /// Walls and detail below the spacing lift it: not an estimate, but what to try. 0 for fewer than 192 points, or where planes as above show
@@ -61,7 +61,7 @@ inline constexpr double kLeastNoise = 0.04;
 
 /// Standard deviation of the points about the facets of a CAD model: what find_likeliest_plane() finds at most of about 500 points. Planes
 /// of bends do not count: among the 132 nearest points they have more from w to 2 w away than a quarter of those up to w = 2.5 scatters. A
-/// scanner scatters alike everywhere, detail does not, so two adjacent ones of its steps have to hold 40 % of the points; else 0, and 0 for
+/// scanner scatters alike everywhere, detail does not, so two adjacent ones of its steps have to hold a third of the points; else 0, and 0 for
 /// exact points. It sees a scatter too small to blur anything, for which estimate_noise() is 0, and that of walls closer together than the
 /// sampling. 0 for fewer than 192 points. About 20 ms.
 [[nodiscard]] double facet_scatter(const PointSet& set);
@@ -72,7 +72,7 @@ inline constexpr double kLeastNoise = 0.04;
 [[nodiscard]] Vec3 rounding_steps(const std::vector<Vec3>& points, double spacing);
 
 /// How the number of points grows with the distance from one, as its power: about 2 on a surface, noisy or not, nearly 3 in a volume (2.6
-/// to 3 of 800 points and more, of fewer from 2.4: its boundary counts). From the distances r of the neighbours f = min(1024, N / 16) and
+/// to 3 of 800 points and more, of fewer from 2.4: its boundary counts). From the distances r of the neighbours f = min(1056, N / 16) and
 /// n = f / 4, rounded down, ln(f / n) / ln(r_f / r_n), the median over about 500 points; 2 for fewer than 192. O(f log N).
 [[nodiscard]] double dimension(const PointSet& set);
 

@@ -25,7 +25,6 @@ namespace {
 constexpr double kThinnest = 0.05;
 constexpr std::size_t slab_neighbours(std::size_t scale) { return (kSpacingNeighbours - 1) << scale; }
 constexpr double slab_thickness(std::size_t scale) { return kThinnest * static_cast<double>(std::size_t{1} << scale); }
-constexpr double kHeldWhole = 4;  // standard deviations of noise: a ball about a point of the layer holds all of it but its rim
 
 // P(Poisson(mean) < count).
 double chance_of_fewer(std::size_t count, double mean) {
@@ -215,7 +214,7 @@ Outliers find_outliers(const PointSet& set, const std::vector<double>& relative_
     h = others.spacing();
   }
   const double sigma = *noise / h;
-  const double held = std::numbers::pi * std::pow(kHeldWhole * sigma, 2);
+  const double held = std::numbers::pi * std::pow(kNoiseBreadth * sigma, 2);  // by a ball about any point of a layer, which holds all of it
   if (!(held < static_cast<double>(set.size()))) return {};
   const auto count = static_cast<std::size_t>(held);
   if (count <= kClosest) return {chosen, noise, others};

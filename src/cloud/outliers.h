@@ -24,7 +24,7 @@ struct Outliers {
 ///     dense patch beside it;
 ///   - and its spacing is more than chance explains: of as many points as are taken, one in fifty are as far apart on an even surface.
 ///     That is from 1.5 typical spacings on among many outliers, from 2 on where there is one.
-/// Noise scatters points as well, as far apart as outliers. So where a ball of 4 standard deviations holds more than 8 points of the noisy
+/// Noise scatters points as well, as far apart as outliers. So where a ball of 5 standard deviations holds more than 8 points of the noisy
 /// layer, spacings are measured over as many, and chance moves points from its middle too. `noise`: if known; otherwise that of the points
 /// left without it is estimated, where outliers are found. A density that changes smoothly, by whatever factor, is no reason. Never more
 /// than half of the points: then the cloud is something else, and none is returned; nor of 64 points or fewer. O(N log N).

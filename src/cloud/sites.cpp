@@ -207,7 +207,7 @@ bool is_in_lines(const PointSet& set, std::size_t i, const Breadth& breadth) {
   const std::size_t stride = set.near_count();
   const auto first = set.near().begin() + static_cast<std::ptrdiff_t>(i * stride);
   const auto narrow =
-      std::count_if(first, first + static_cast<std::ptrdiff_t>(stride), [&](std::uint32_t j) { return breadth(j) < kFacetBreadth; });
+      std::count_if(first, first + static_cast<std::ptrdiff_t>(stride), [&](std::uint32_t j) { return breadth(j) < kClearlyLess; });
   return 2 * static_cast<std::size_t>(narrow) > stride;
 }
 
@@ -306,7 +306,7 @@ double surface_distance(const PointSet& set, const std::atomic<bool>* cancel) {
           for (std::size_t k = begin; k < end; ++k) breadth[k] = planes.through_some_at(points[k * step], thinned).breadth;
         },
         cancel);
-    if (median(breadth) < kFacetBreadth) continue;
+    if (median(breadth) < kClearlyLess) continue;
     return distance == 0 || taken_points(points, distance).size() >= kFewestSites ? distance : 0;
   }
   return 0;

@@ -18,9 +18,6 @@
 namespace g3r {
 namespace {
 
-// Of a density that does not rise from the axis outwards, the least share within half of the root mean square distance: that of a disk.
-constexpr double kInDisk = kClearlyLess * kClearlyLess / 2;
-
 // A point and its nearest, seen along the line that they are next to.
 struct AlongLine {
   double roundness = 0;           // the lesser spread across it over the greater; negative: they lie along no line
@@ -38,7 +35,7 @@ AlongLine look_along(const std::vector<Vec3>& points, const std::vector<std::uin
   eigen.computeDirect(spread);
   const Eigen::Vector3d squared = eigen.eigenvalues().cwiseMax(0);
   const double across = std::sqrt((squared[0] + squared[1]) / count);
-  if (across <= rounded || std::sqrt(squared[1]) >= kFacetBreadth * std::sqrt(squared[2])) return {-1, 0};
+  if (across <= rounded || std::sqrt(squared[1]) >= kClearlyLess * std::sqrt(squared[2])) return {-1, 0};
   AlongLine seen{std::sqrt(squared[0] / squared[1]), 0};
   const Eigen::Vector3d line = eigen.eigenvectors().col(2);
   for (const std::uint32_t i : index) {
@@ -71,9 +68,11 @@ bool are_wires(const PointSet& set) {
     in_the_middle += line.in_the_middle;
   }
   if (roundness.empty() || median(roundness) < kClearlyLess) return false;
+  // Shares within half of the root mean square distance from the axis. A density that does not rise outwards has that of a disk at least.
+  const double of_disk = kClearlyLess * kClearlyLess / 2;
   const double of_noise = 1 - std::exp(-kClearlyLess * kClearlyLess);
   const double found = static_cast<double>(in_the_middle) / static_cast<double>(roundness.size() * kPatchNeighbours);
-  return found < (kInDisk + of_noise) / 2;
+  return found < (of_disk + of_noise) / 2;
 }
 
 }  // namespace g3r

@@ -11,7 +11,7 @@ namespace g3r {
 /// of those of a round disk, and of no density that falls from the middle fewer. Midway between the two decides, and a lesser spread across
 /// the line of half the greater (measured: 0.06 to 0.10 on clean tubes of 0.4 spacings and more across, up to 0.16 where they bend within
 /// 12 points, 0.20 to 0.31 on noisy contours). Looks at the 12 nearest of some 2000 points, where their breadth is less than a half
-/// (kFacetBreadth) and they are farther from the line than rounding moves them; false where there are none. O(N log N).
+/// (kClearlyLess) and they are farther from the line than rounding moves them; false where there are none. O(N log N).
 [[nodiscard]] bool are_wires(const PointSet& set);
 
 }  // namespace g3r

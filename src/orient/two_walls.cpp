@@ -21,8 +21,6 @@ namespace {
 
 // Site spacings: deviations from a height field below it are rounding, of which ratios say nothing.
 constexpr double kExact = 0.01;
-// The nearest points whose heights are tested for two walls that noise hides: fewer follow the noise, more the shape.
-constexpr std::size_t kNoisyPoints = 128;
 
 // Calls visit(site, its `count` nearest points in canonical order) for `places` to twice as many of the members.
 template <typename Visit>
@@ -105,14 +103,14 @@ bool on_exact_walls(const PointSet& set, const Sites& sites, const std::vector<s
 
 bool on_noisy_walls(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members) {
   const std::vector<Vec3>& points = set.points();
-  if (points.size() < kNoisyPoints) return false;
+  if (points.size() < kWallNeighbours) return false;
   const Vec3 steps = set.rounding_steps();
   std::vector<HeightMoments> places;
-  for_some(set, sites, members, kFewPlaces, kNoisyPoints, [&](std::uint32_t s, const std::vector<std::uint32_t>& index) {
+  for_some(set, sites, members, kFewPlaces, kWallNeighbours, [&](std::uint32_t s, const std::vector<std::uint32_t>& index) {
     places.push_back(height_moments(points, index.data(), index.size(), sites.axis[s], sites.spacing()[s], steps));
   });
   const double held = static_cast<double>(members.size()) * static_cast<double>(points.size()) / static_cast<double>(sites.size());
-  return mean_excess(places, held / static_cast<double>(kNoisyPoints)).is_two_walls();
+  return mean_excess(places, held / static_cast<double>(kWallNeighbours)).is_two_walls();
 }
 
 }  // namespace

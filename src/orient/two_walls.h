@@ -18,7 +18,7 @@ namespace g3r {
 ///     kUnrest, they are not the reason, and count for nothing: scans of one open surface that overlap in part and do not fit onto each
 ///     other. Of 2000 to 4000 places those are on one wall, or on two, that are so themselves with their 8 nearest, all but one; fewer than
 ///     30 on one wall say nothing.
-///   - Where there is noise, walls that it hides: MeanExcess::is_two_walls() of the heights over cubics through 128 points.
+///   - Where there is noise, walls that it hides: MeanExcess::is_two_walls() of the heights over cubics through 132 points.
 /// `members`: of the sites, at least one; `noise`: standard deviation, unit of the points; 0: none; `unrest`: Certificate::unrest of all
 /// sites. O(log N) per place, and O(N log N) once for the steps of rounding.
 [[nodiscard]] bool on_two_walls(const PointSet& set, const Sites& sites, const std::vector<std::uint32_t>& members, double noise,
