@@ -20,9 +20,10 @@ namespace {
 using vector::dot;
 
 constexpr std::size_t kAdjacent = 10;  // nearest sites that a site is connected with: 12 lead from a thin wall to the next under noise
-// Site distances that are far: longer edges cross gaps, and where sides do not agree a field so wide sees what is around; wider ones turn
-// the rims of small surfaces.
-constexpr double kFar = 4;
+
+// What is far, of sites `reach` apart: twice what separates walls. Longer edges cross gaps, and where sides do not agree a field so wide
+// sees what is around; wider ones turn the rims of small surfaces.
+double far_from(double reach) { return kLevelRatio * kResolved * reach; }
 
 double reach_of(const Sites& sites, std::uint32_t a, std::uint32_t b) {
   return sites.distance > 0 ? sites.distance : (sites.spacing()[a] + sites.spacing()[b]) / 2;
@@ -32,7 +33,7 @@ SignEdge edge_of(const Sites& sites, std::uint32_t a, std::uint32_t b) {
   const Vec3 d = vector::subtract(sites.points()[b], sites.points()[a]);
   const double squared = dot(d, d);
   const double reach = reach_of(sites, a, b);
-  if (squared > kFar * kFar * reach * reach) return {a, a, 0};
+  if (squared > far_from(reach) * far_from(reach)) return {a, a, 0};
   const double mirrored = dot(sites.axis[a], sites.axis[b]) -
                           2 * dot(sites.axis[a], d) * dot(sites.axis[b], d) / std::max(squared, std::numeric_limits<double>::min());
   // Sites whose surroundings are a ball still follow their neighbours.
@@ -130,7 +131,7 @@ std::vector<std::vector<Vec3>> sides_by_agreement(const PointSet& set, const Sit
 std::vector<Vec3> seen_from_afar(const PointSet& set, const Sites& sites, const std::vector<Vec3>& normals, const SumPlan& sums,
                                  const std::atomic<bool>* cancel) {
   const double spacing = sites.set.spacing();
-  const FastSum field(sites.points(), narrowed(kFar * spacing, sites.set.smoothed_spacing(), spacing), sums, cancel);
+  const FastSum field(sites.points(), narrowed(far_from(spacing), sites.set.smoothed_spacing(), spacing), sums, cancel);
   return unit_normals(field.winding_gradient_at(areas_of(sites, at_sites(sites, normals)), set.points(), cancel), normals).normals;
 }
 

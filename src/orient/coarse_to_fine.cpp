@@ -20,8 +20,7 @@
 namespace g3r {
 namespace {
 
-constexpr double kCubeRatio = kLevelRatio * kLevelRatio * kLevelRatio;  // of the weights of the winding number
-const double kCoarseShare = 1.0 / (1 + kTwiceAsFar);                    // of the progress bar: a quarter of the points beside all
+const double kCoarseShare = 1.0 / (1 + kTwiceAsFar);  // of the progress bar: a quarter of the points beside all
 
 Settings coarser(Settings settings) {
   settings.spacing *= kLevelRatio;
@@ -29,7 +28,7 @@ Settings coarser(Settings settings) {
     width->points *= kLevelRatio;
     width->noise *= kLevelRatio;
   }
-  settings.winding_weight *= kCubeRatio;
+  settings.winding_weight *= kLevelRatio * kLevelRatio * kLevelRatio;  // a volume
   settings.tolerance = settings.start_tolerance;
   settings.first_sums = settings.sums;
   return settings;

@@ -56,7 +56,7 @@ inline constexpr double kMinMinority = 1e-3;
 /// for the normals. Points on no facet come right only after those on facets, and what a third round has not turned a fourth does not
 /// either.
 inline constexpr int kMostRounds = 3;
-/// Share of unsure points above which the orientation is called inconsistent.
+/// Share of unsure points above which the orientation is called inconsistent, or of those that have been unsure a remedy no good.
 inline constexpr double kManyUnsure = 0.2;
 
 }  // namespace g3r

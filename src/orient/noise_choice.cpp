@@ -13,8 +13,6 @@
 namespace g3r {
 namespace {
 
-// The doubt that is left, of what there is, with more noise than the points speak for: noise hides thin walls and all doubt about them.
-constexpr double kHardlyAny = 0.2;
 // Points up to which shape looks like noise, so that none is tried too: with more it costs time and is never taken.
 constexpr std::size_t kFewPoints = 2500;
 
@@ -43,7 +41,8 @@ std::vector<OtherNoise> other_noises(const Problem& problem, const Oriented& fou
   if (scatter > kWider * problem.noise) {
     noises.push_back({std::max(kWider * scatter, least)});
   } else if (problem.noise > 0 && unsure >= kDoubtful) {
-    noises.push_back({kWider * std::max(scatter, problem.noise), kHardlyAny});
+    // More than the points speak for hides thin walls and all doubt about them: not many may stay unsure of those that are.
+    noises.push_back({kWider * std::max(scatter, problem.noise), kManyUnsure});
   }
   return noises;
 }
