@@ -17,10 +17,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kBlock = parallel::kSmallBlock;  // points among which fits are shared
-constexpr double kNormalWeight = 0.3;                  // the normals are those of a smooth field already: less leaves noise, more blurs
-constexpr double kShared = 0.25;                       // of the reach: how far a fit serves other points
-constexpr double kNoiseReach = 3;                      // spacings, of the fits that do: 4 takes detail for noise
+// Of the reach, how far from its middle a fit speaks for others: it serves the points up to there, and their normals, which are those of a
+// smooth field already, weigh as much as heights there. Less leaves noise, more blurs.
+constexpr double kShared = 0.25;
 
 struct Fit {
   QuadraticPatch patch;  // relative to the point it was fitted at
@@ -34,7 +33,7 @@ class Fitter {
       : points_(points), normals_(normals), noise_(noise), spacing_(spacing), side_(points, neighbours, normals) {}
 
   [[nodiscard]] double noise() const { return noise_; }
-  [[nodiscard]] double first_reach() const { return kNarrowestReach * std::sqrt(noise_ * spacing_); }
+  [[nodiscard]] double first_reach() const { return kWider * kNoiseReach * std::sqrt(noise_ * spacing_); }
 
   // From now on, fits with the noise of points [begin, end) where it is less than the cloud's: what is more may be detail. One of as many
   // points as are near one tells.
@@ -59,12 +58,13 @@ class Fitter {
     Fit best;
     narrower_.clear();
     bool is_widest = false;
+    const double arm = 2 * kShared;  // in halves of the reach, the unit of the fit
     for (double reach = first_reach(); reach > 0 && !is_widest; reach *= kWider) {
       if (!gather(i, axis, reach)) break;
       is_widest = side_.seen() >= std::min(kPlaces, points_.size());
       const std::size_t count = side_.members().size();
       if (count <= kQuadraticTerms) continue;
-      const QuadraticPatch patch = fit_quadratic_patch(side_.members(), 0, reach / 2, kNormalWeight);
+      const QuadraticPatch patch = fit_quadratic_patch(side_.members(), 0, reach / 2, arm * arm);
       Vector3d fitted;
       (void)patch.distance(Vector3d::Zero(), &fitted);
       if (fitted.dot(normal) <= kSameSide) continue;
@@ -133,7 +133,7 @@ void fit_noisy_jets(const PointSet& set, double noise, const std::vector<std::ui
       }
     }
   };
-  parallel::for_blocks(points.size(), kBlock, fit_block, cancel);
+  parallel::for_blocks(points.size(), parallel::kSmallBlock, fit_block, cancel);
   normals = std::move(out);
 }
 

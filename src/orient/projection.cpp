@@ -19,7 +19,7 @@ bool is_in_box(const Vector3d& p) { return p.cwiseAbs().maxCoeff() <= 1; }
 
 }  // namespace
 
-double projection_reach(double noise, double spacing) { return kNarrowestReach / kWider * std::sqrt(noise * spacing); }
+double projection_reach(double noise, double spacing) { return kNoiseReach * std::sqrt(noise * spacing); }
 
 double projected_noise(double noise, double spacing) {
   const double kernel = std::sqrt(72 / (15 * std::numbers::pi));
