@@ -14,10 +14,8 @@ namespace {
 
 // The default on noisy input, sigma in spacings h: the field must not see single points. Kernels of a given number of sigma hide the
 // scatter of points, and blur walls as thin as that; below a spacing fewer points share the scatter, and walls matter more. So the width
-// grows with the square of sigma first and in proportion later, w = A s^2 / hypot(s, 1) for s = sigma / h.
-constexpr double kNoisyWidth = kNoiseBreadth;  // A, the noise's whole breadth in the end: more blurs walls, less turns shells in cavities
-// Raw solutions fit the noise with every step, and the more noise there is the sooner: h / sigma times this many steps.
-constexpr double kStepsPerNoise = 7;
+// grows with the square of sigma first and in proportion later, w = A s^2 / hypot(s, 1) for s = sigma / h, with A the noise's
+// whole breadth in the end, kNoiseBreadth: more blurs walls, less turns shells in cavities.
 // Noise turns the normal of a patch of side s by about sigma h / s^2: widths in proportion to sqrt(sigma h) leave one accuracy. Those in
 // proportion to sigma hide the scatter, without which shells in cavities turn. Between the two, with this power of sigma / h:
 constexpr double kNoisyPolishPower = 0.6;
@@ -28,7 +26,7 @@ constexpr double kNoisyPolishWidth = 2.4;     // h
 const double kFlatPatch = std::numbers::inv_sqrtpi / 2;  // 1/h
 
 // Width in spacings of the kernels that hide this noise, in spacings too.
-double noisy_width(double noise) { return kNoisyWidth * noise * noise / std::hypot(noise, 1); }
+double noisy_width(double noise) { return kNoiseBreadth * noise * noise / std::hypot(noise, 1); }
 
 // Widths and weights of the polish for noise of this many spacings.
 void polish_under_noise(double noise, Settings& s) {
@@ -45,7 +43,7 @@ void polish_under_noise(double noise, Settings& s) {
 }  // namespace
 
 double hidden_noise(double width) {
-  const double sigmas = width / kNoisyWidth;
+  const double sigmas = width / kNoiseBreadth;
   return std::sqrt(sigmas * (sigmas + std::hypot(sigmas, 2)) / 2);
 }
 
@@ -66,7 +64,8 @@ void follow_noise(double noise, const Options& options, std::size_t points, Sett
   // A start from fewer points has lost the walls where noise asks for wider kernels: half of the sides of 95,000 points on walls of 3 h.
   if (noise > noise_of_clean_widths()) s.coarse_to_fine = false;
   if (options.schedule.empty() && !starts_coarse(s, points)) {
-    const double steps = std::clamp(kStepsPerNoise / noise, static_cast<double>(kFewSteps), static_cast<double>(s.schedule.front().count));
+    // Raw solutions fit the noise with every step, and the more of it there is the sooner.
+    const double steps = std::min(kFewSteps / std::min(noise, 1.0), static_cast<double>(s.schedule.front().count));
     s.schedule_text = std::to_string(static_cast<int>(steps)) + " cg";
     s.schedule = parse_schedule(s.schedule_text);
     if (options.tolerance < 0) s.tolerance = 0;

@@ -9,6 +9,10 @@
 
 namespace g3r {
 
+/// Weight of the winding number in the polish of clean points and little noise, in h^3 (kWindingWeight): more costs sides, less costs
+/// narrow gaps and smooth shapes.
+inline constexpr double kPolishWindingWeight = 70;
+
 /// The noise in spacings that kernels of this width, in spacings too, hide.
 [[nodiscard]] double hidden_noise(double width);
 

@@ -12,14 +12,12 @@
 #include <g3r/error.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
 namespace g3r {
 namespace {
-
-// Times the typical spacing, up to which noise alone may have scattered points: below it kernels of noisy clouds keep one width.
-constexpr double kNoisySpread = 1.12;
 
 void choose_scales(Problem& problem, const Options& options) {
   problem.settings = choose_settings(options, problem.cloud, problem.spacing, problem.noise, problem.outlier_share);
@@ -79,7 +77,10 @@ std::vector<double> relative_spacing(const Problem& problem, const Options& opti
   const std::vector<double>& thinned = problem.known.relative_spacing;
   if (!is_free || !runs(problem, Step::kLocalWidths)) return thinned;
   std::vector<double> relative = spacing_before_thinning(problem.cloud.set.smoothed_spacing(), thinned);
-  const double typical = (problem.is_clean() ? 1 : kNoisySpread) * problem.spacing;
+  // Up to one standard deviation above the typical spacing noise alone may have scattered points: kernels keep one width there. The area of
+  // n random points is off by 1 / sqrt(n), a side by half of that.
+  const double chance = 1 / (2 * std::sqrt(static_cast<double>(kSpacingNeighbours)));
+  const double typical = (problem.is_clean() ? 1 : 1 + chance) * problem.spacing;
   for (double& h : relative) h = std::max(h / typical, narrowing(h / typical));
   for (std::size_t i = 0; i < thinned.size(); ++i) relative[i] *= thinned[i];
   return relative;

@@ -20,17 +20,11 @@ namespace {
 
 // The default: energy form. Widths in spacings h.
 constexpr double kCoarsestEpsilon = 0.5;  // without a start: converges faster, finds more sides
-// Weights l of the winding number, in h^3: S eta and l W^T W eta keep their proportion for any number of points.
-constexpr double kWindingWeight = 250;  // from eta = 0; larger converges slower, 0 loses nested shells
-// With a coarse start or among outliers, and of further steps: finds more sides of thin walls; less costs narrow gaps.
-constexpr double kContinuedWindingWeight = 30;
 constexpr double kTolerance =
     2.5e-3;  // of further steps and of least squares too; slats and spokes need this residual; smooth shapes get there in half the steps
 constexpr const char* kEnergySchedule = "45 cg";
 constexpr const char* kGreenSchedule = "20 cg";  // least squares over the harmonics; more cost time, and change sides for better and worse
 constexpr double kAcceptedResidual = 0.1;        // random points on spheres end at 0.05 after a coarse start, with normals right to 1e-4
-// Of the sums. Solves from 0 amplify errors with every step; with a start kContinuedAccuracy does.
-constexpr double kAccuracy = 1e-2;
 // The polish is one more level on the same points.
 constexpr int kPolishSteps = 5;  // narrow gaps want more, smooth shapes fewer
 // The paper preset.
@@ -134,14 +128,14 @@ void choose_steps(const Options& options, bool among_outliers, Settings& s) {
   s.polish.steps = contains(s.without, Step::kPolish) ? 0 : kPolishSteps;
   s.tolerance = given ? options.tolerance : paper ? 0 : kTolerance;
   s.accepted_residual = given ? options.tolerance : kAcceptedResidual;
-  // Starts, and what starts from them, are no better than their sums.
+  // What starts from a solution is no better than its sums, nor is a start, which stands for kTwiceAsFar times as many points as it has.
   s.continued_tolerance = given ? options.tolerance : kContinuedAccuracy;
   s.doubtful_tolerance = given ? options.tolerance : kTolerance;
-  s.start_tolerance = std::max(s.tolerance, kAccuracy);
+  s.start_tolerance = std::max(s.tolerance, kTwiceAsFar * kTolerance);
 }
 
 void choose_sums(const Options& options, std::size_t points, Settings& s) {
-  s.accuracy = options.accuracy != -1 ? options.accuracy : kAccuracy;
+  s.accuracy = options.accuracy != -1 ? options.accuracy : kContinuedAccuracy / kLevelRatio;
   s.first_sums = sum_plan(s.accuracy, points);
   const bool continued = options.accuracy == -1 && s.method == Method::kEnergy;
   s.sums = sum_plan(continued ? kContinuedAccuracy : s.accuracy, points);
@@ -195,7 +189,7 @@ Settings choose_settings(const Options& options, const CanonicalCloud& cloud, do
   const double scatter = !follows ? 0 : wide ? hidden_noise(s.epsilon.points / spacing) : noise / spacing;
   if (scatter > 0) follow_noise(scatter, options, cloud.size(), s);
   const bool light = starts_coarse(s, cloud.size()) || among_outliers;
-  s.winding_weight = (light ? kContinuedWindingWeight : kWindingWeight) * cube(spacing);
+  s.winding_weight = kWindingWeight * cube((light ? 1 : kLevelRatio) * spacing);
   choose_sums(options, cloud.size(), s);
   return s;
 }

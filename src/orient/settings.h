@@ -92,7 +92,8 @@ inline constexpr double kEpsilon = 0.4;
 /// Width in spacings of the winding gradient that solves end with, and that finer ones start from: the field of the solution seen through
 /// the kernels of the solve once more, whose variances add. Narrower is noisy, wider rounds edges.
 inline constexpr double kRefinementWidth = std::numbers::sqrt2 * kEpsilon;
-/// Accuracy of the sums of a solve that has a start: it gives the same normals with 2e-2 as with 1e-3, while one from 0 amplifies errors.
+/// Accuracy of the sums of a solve that has a start: it gives the same normals with 2e-2 as with 1e-3, while one from 0 amplifies errors
+/// with every step, and asks for half of it.
 inline constexpr double kContinuedAccuracy = 2e-2;
 /// Points of a coarse cloud, at least: fewer cost sides on thin parts, lose small open ones, and save little.
 inline constexpr std::size_t kFewestCoarsePoints = 10000;
@@ -101,9 +102,11 @@ inline constexpr Steps kMoreSteps{60, StepKind::kConjugateGradient};
 /// Steps in which what is known reaches the far sides: fewer leave those undecided. More fit what is wrong with the equations: noise, above
 /// all in the polish, and after a coarse start, where smooth shapes take 2 to 10, open surfaces and the outliers that are always left.
 inline constexpr int kFewSteps = 10;
-/// Weight of the winding number in the polish of clean points and little noise, in h^3, so that S eta and l W^T W eta keep their
-/// proportion: more costs sides, less costs narrow gaps and smooth shapes.
-inline constexpr double kPolishWindingWeight = 70;
+/// Weight l of the winding number, in h^3, so that S eta and l W^T W eta keep their proportion for any number of points, of a solve with a
+/// start, among outliers, and of further steps: more costs sides of thin walls, less costs narrow gaps.
+/// From eta = 0 it is that of lengths kLevelRatio times as long: more converges slower, none loses nested shells.
+/// Of the polish: kPolishWindingWeight (noise_settings.h).
+inline constexpr double kWindingWeight = 30;
 
 /// Whether solve_coarse_to_fine() begins with fewer points.
 [[nodiscard]] bool starts_coarse(const Settings& settings, std::size_t points);
