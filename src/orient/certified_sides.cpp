@@ -50,7 +50,7 @@ std::vector<float> certified_sides(const SiteParts& parts, const Certificate& ce
     const std::uint32_t part = parts.of_point(i);
     if ((exact && parts.members(part).size() < kFewestSites) || dot(normals[i], mean[s]) <= 0) continue;
     const double jump = is_thinned ? 1 - certificate.scaled_defect[s] : certificate.jump[s];
-    const double restless = std::min(1.0, unrest[part] / (is_thinned ? kUnrestNoisy : kUnrest));
+    const double restless = std::min(1.0, unrest[part] / unrest_of_open(is_thinned));
     out[i] = static_cast<float>((exact ? 1 : one_way[s]) * std::clamp(jump, 0.0, 1.0) * (1 - restless * restless));
   }
   return out;

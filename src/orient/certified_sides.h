@@ -1,6 +1,7 @@
 // How far the field shows the sides of points to be right.
 #pragma once
 
+#include "cloud/constants.h"
 #include "cloud/point_set.h"
 #include "orient/site_parts.h"
 #include "sum/sum_plan.h"
@@ -14,8 +15,9 @@ namespace g3r {
 
 /// Mean unrest (Certificate::unrest) of a part that is open: closed ones have up to 0.06, open ones 0.1 to 0.3.
 inline constexpr double kUnrest = 0.08;
-/// The same where sites are thinned for noise (SiteParts::thinned_for_noise()): it hides thin walls, whose field is open in places.
-inline constexpr double kUnrestNoisy = 0.2;
+/// The same of parts, of which sites may be thinned for noise (SiteParts::thinned_for_noise()): it hides thin walls, whose field is open in
+/// places, so what is open has clearly more.
+[[nodiscard]] constexpr double unrest_of_open(bool thinned_for_noise) { return thinned_for_noise ? kUnrest / kClearlyLess : kUnrest; }
 
 /// Of every site, how far the normals of its points and of those of the 8 sites around it are one direction: the length of their mean (the
 /// mean resultant length of directional statistics; Mardia and Jupp, "Directional Statistics", 2000), the mean cosine between them and it:

@@ -21,9 +21,6 @@
 namespace g3r {
 namespace {
 
-// Cosine between the normals of a facet and of its seed: less lets facets follow curved surfaces.
-constexpr double kParallel = 0.9995;
-
 // The normal of the first point of every facet, to whose side those of the others are turned.
 std::vector<Vec3> first_normals(const Facets& facets, const std::vector<Vec3>& normals) {
   std::vector<Vec3> first(facets.count, Vec3{0, 0, 0});
@@ -113,7 +110,8 @@ Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven,
   facets.of.assign(points.size(), Facets::kNone);
   if (points.size() < kSpacingNeighbours) return facets;
   const double of_two = kSigmas * std::numbers::sqrt2 * scatter;  // how far apart two points of one plane may be across it
-  const auto is_parallel = [&](std::size_t i, std::size_t j) { return std::abs(vector::dot(normals[i], normals[j])) >= kParallel; };
+  // A bend of a spacing's radius, the least that a sample shows, leaves its plane by 1 - cosine of the angle that it turns by.
+  const auto is_parallel = [&](std::size_t i, std::size_t j) { return 1 - std::abs(vector::dot(normals[i], normals[j])) <= kExactScatter; };
   const auto in_one_plane = [&](std::size_t i, std::size_t j) {
     const Vec3 d = vector::subtract(points[i], points[j]);
     return std::max(std::abs(vector::dot(normals[i], d)), std::abs(vector::dot(normals[j], d))) <=

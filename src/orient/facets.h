@@ -21,7 +21,7 @@ struct Facets {
 
 /// Grows facets over the 16 nearest points from seeds in the order of the points: p_j joins beside p_i if both are proven and each lies
 /// within kExactScatter h of the other's plane, or within 2.5 deviations of the distance of two points that scatter, sqrt(2) `scatter`, and
-/// its normal is parallel, on either side, to that of the seed to 1.8 degrees. Sets of fewer than 6 points are no facets, nor are those
+/// its normal is parallel, on either side, to that of the seed to 2.6 degrees. Sets of fewer than 6 points are no facets, nor are those
 /// without a wanted point. h: smoothed_spacing(); `proven`: fit_jets() or fit_planes() found its normal; `scatter`: facet_scatter(), same
 /// units as the points; `wanted`: N, or empty for all. O(N).
 [[nodiscard]] Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven, const std::vector<Vec3>& normals,

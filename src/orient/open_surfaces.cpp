@@ -98,7 +98,7 @@ void choose_hypotheses(const SiteParts& parts, const std::vector<std::vector<Vec
       if (verdict.is_open[p] != 0 && verdict.best[p] == h) verdict.enclosure[p] = parts.enclosure(parts.members(p), normals);
     }
   }
-  const double most_unrest = parts.thinned_for_noise() ? kUnrestNoisy : kUnrest;
+  const double most_unrest = unrest_of_open(parts.thinned_for_noise());
   for (std::size_t p = 0; p < parts.count(); ++p) {
     if (verdict.is_open[p] == 0) continue;
     const std::vector<std::uint32_t>& restless = verdict.restless[p];

@@ -42,7 +42,7 @@ Vec3 axis_at(const PointSet& set, const Sites& sites, std::uint32_t s) {
   std::vector<double> squared;
   set.tree().nearest(sites.points()[s], kPlaneNeighbours, index, squared);
   const ExactPlane facet = find_exact_plane(set.points(), index, set.spacing());
-  return facet.breadth < kFacetBreadth ? sites.axis[s] : facet.normal;
+  return facet.breadth < kClearlyLess ? sites.axis[s] : facet.normal;
 }
 
 // How much likelier two walls are than one around some of the members: visit(site, gain per point) for each.
