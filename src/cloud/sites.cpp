@@ -5,7 +5,6 @@
 #include "cloud/canonical_cloud.h"
 #include "cloud/chance.h"
 #include "cloud/constants.h"
-#include "cloud/exact_plane.h"
 #include "cloud/wires.h"
 #include "cpu/parallel.h"
 

@@ -2,7 +2,6 @@
 
 #include "base/median.h"
 #include "cloud/constants.h"
-#include "cloud/exact_plane.h"
 #include "cloud/quadratic_patch.h"
 #include "cpu/parallel.h"
 
