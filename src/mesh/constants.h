@@ -1,6 +1,8 @@
 // Counts and lengths that several steps of the mesher share, each with one meaning.
 #pragma once
 
+#include "cloud/spacing.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -12,9 +14,8 @@ inline constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max()
 /// The tasks that a walk through a tree is cut into, whatever the number of threads, so that their order is always the same: fewer leave
 /// threads idle.
 inline constexpr std::size_t kTasks = 256;
-/// The nearest points that tell what a place is like: the definition of the spacing has so many (docs/math.md), and more reach across thin
-/// walls.
-inline constexpr std::size_t kRing = 8;
+/// The nearest points that tell what a place is like are those that the spacing is defined by: more reach across thin walls.
+inline constexpr std::size_t kRing = kClosest;
 /// The points of a fit, the nearest ones to the place: a quadratic has six numbers and normals double the data; more reach across walls.
 inline constexpr std::size_t kFitPoints = 2 * kRing;
 /// Cosine of two normals, 32 degrees, up to which points are on one patch: creases of CAD models turn more, and smooth surfaces less from
@@ -24,8 +25,6 @@ inline constexpr double kSamePatch = 0.85;
 inline constexpr std::size_t kPatchPoints = 3;
 /// The places, evenly from all, at which properties of a whole cloud are taken: medians and shares of so many are good to 2 %.
 inline constexpr std::size_t kSample = 4000;
-/// The fewest points that enclose a volume.
-inline constexpr std::size_t kFewestMeshPoints = 4;
 /// The points of a cloud, or pairs of them, below which nothing is said of what is rare in it: it would be a matter of chance.
 inline constexpr std::size_t kFewestPoints = 100;
 /// The share of a whole that is little beside it, and that nearly all of it has: of a variance, of the misfit of a surface, of pairs; of

@@ -20,17 +20,14 @@ struct RimCrossing {
   bool operator<(const RimCrossing& o) const { return std::tie(face, place) < std::tie(o.face, o.place); }
 };
 
-// The parts of all faces that are sorted one after another: those of all at once take more memory than the surface, and so many walks over
-// all edges take no time beside sorting.
-constexpr std::size_t kPortions = 8;
-
-// Calls on_face(first, last) with the crossings of every face, in ascending order.
+// Calls on_face(first, last) with the crossings of every face, in ascending order. As many parts of the faces as an edge has places are
+// sorted one after another, so that about as many crossings as edges are in memory at the same time.
 template <class OnFace>
 void for_each_face(const Octree& octree, const std::vector<CrossingEdge>& edges, const OnFace& on_face) {
   std::vector<RimCrossing> crossings;
-  for (std::size_t portion = 0; portion < kPortions; ++portion) {
+  for (std::size_t portion = 0; portion < kQuadrants; ++portion) {
     // By the lower of the two leaves.
-    const std::size_t begin = octree.leaf_count() * portion / kPortions, end = octree.leaf_count() * (portion + 1) / kPortions;
+    const std::size_t begin = octree.leaf_count() * portion / kQuadrants, end = octree.leaf_count() * (portion + 1) / kQuadrants;
     crossings.clear();
     for (std::uint32_t place = 0; place < place_of(static_cast<std::uint32_t>(edges.size()), 0); ++place) {
       const std::uint32_t a = leaf_at(edges, place), b = leaf_at(edges, next_place(place)), low = std::min(a, b);

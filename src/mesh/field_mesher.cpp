@@ -1,6 +1,7 @@
 #include "mesh/field_mesher.h"
 
 #include "base/vector.h"
+#include "cloud/canonical_cloud.h"
 #include "mesh/coarsen.h"
 #include "mesh/constants.h"
 #include "mesh/fair.h"
@@ -136,7 +137,7 @@ Mesh raw_mesh(const Prepared& prepared, const std::vector<double>& size, const F
 
 void check_input(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const MeshOptions& options) {
   if (points.size() != normals.size()) throw InvalidInput("points and normals differ in number");
-  if (points.size() < mesh::kFewestMeshPoints) throw InvalidInput("a mesh needs at least 4 points");
+  if (points.size() < kLeastPoints) throw InvalidInput("a mesh needs at least 4 points");
   if (options.depth != 0 && (options.depth < kLeastMeshDepth || options.depth > kMostMeshDepth))
     throw InvalidInput("mesh depth must be 4 to 12");
 }

@@ -17,8 +17,6 @@ namespace {
 
 constexpr int kKeyBits = kMaxOctreeLevel + 1;  // A corner coordinate is 0 to 2^kMaxOctreeLevel, the last included.
 
-constexpr std::size_t kAskEvery = 4096;  // Cells between two looks at whether to go on: about a millisecond.
-
 constexpr std::uint32_t kLargestNode = std::numeric_limits<std::int32_t>::max();                           // a node's number has 31 bits,
 constexpr std::uint32_t kMostNodes = std::numeric_limits<std::uint32_t>::max() / kLatticeSize * kOctants;  // and a corner's place 32
 
@@ -27,7 +25,7 @@ std::uint64_t corner_key(const std::array<std::uint32_t, 3>& c) {
 }
 
 void ask_each(std::size_t cell, const std::atomic<bool>* cancel) {
-  if (cell % kAskEvery == 0 && cancel != nullptr && cancel->load(std::memory_order_relaxed)) throw Cancelled();
+  if (cell % parallel::kSmallBlock == 0 && cancel != nullptr && cancel->load(std::memory_order_relaxed)) throw Cancelled();
 }
 
 // Nodes of one level still to be looked at, with the requests that touch each of them.

@@ -1,6 +1,7 @@
 // Points that no surface holds, once sides and directions are known.
 #pragma once
 
+#include "cloud/constants.h"
 #include "cloud/point_set.h"
 
 #include <g3r/points.h>
@@ -12,8 +13,9 @@
 
 namespace g3r::mesh {
 
-/// The share of the points above which none is a stray: such a cloud has no surface that these tests know, and would be lost.
-inline constexpr double kMostStrays = 1.0 / 3;
+/// The share of the points above which none is a stray: where the points on the surface are no clear majority, these tests know no surface,
+/// and the cloud would be lost.
+inline constexpr double kMostStrays = 1 - kMostOf;
 
 /// Marks (1) the points that the surface of the others goes through. A point is a stray
 ///   - if less than 3 of its 8 nearest points are on one patch with it: its distance from their plane, and theirs from its own, is at most

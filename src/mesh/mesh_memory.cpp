@@ -20,7 +20,6 @@ constexpr double kBaseBytes = 25 * kMebibyte;  // Code, libraries, the stacks of
 constexpr double kBytesPerPoint = 340;         // A point takes so many, those of the winding field included.
 constexpr double kBytesPerLeaf = 85;           // A leaf takes so many,
 constexpr double kBytesPerThinLeaf = 270;      // and one of a thin wall or gap so many: most of its corners are ambiguous.
-constexpr double kFewLeaves = 4000;            // Clouds of few points have so many beside: 300 on a sphere have 3,300, 1,500 have 2,000.
 constexpr double kPlainLeaves = 8.6;           // A point of a shape without thin walls has 5.7 to 8.6 leaves; what exceeds this is thin.
 
 // `depth`: 0 for the automatic one.
@@ -48,7 +47,9 @@ std::size_t field_mesh_memory(std::size_t points, double spacing, double noise, 
     const double finer = mesh::kFinestCell * spacing * std::exp2(depth) / mesh::octree_side(spacing, longest_side);
     leaves *= std::max(1.0, finer * finer * (thickness * finer + 2) / (thickness + 2));
   }
-  return memory_for(points, leaves * static_cast<double>(points) + (depth == 0 ? kFewLeaves : 0), depth);
+  // Clouds of few points have no more leaves beside than the base level: 300 on a sphere have 3,300, 1,500 have 2,000.
+  const double base = std::exp2(3 * mesh::kBaseLevel);
+  return memory_for(points, leaves * static_cast<double>(points) + (depth == 0 ? base : 0), depth);
 }
 
 void mesh::check_memory(std::size_t points, std::size_t leaves, int depth, MeshMemory& memory) {

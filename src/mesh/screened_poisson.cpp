@@ -1,7 +1,7 @@
 #include "mesh/screened_poisson.h"
 
 #include "base/vector.h"
-#include "mesh/constants.h"
+#include "cloud/canonical_cloud.h"
 #include "mesh/split_nonmanifold.h"
 
 #include <g3r/error.h>
@@ -42,7 +42,7 @@ UnitBox validated_box(const std::vector<Vec3>& points, const std::vector<Vec3>& 
   if (points.size() != normals.size()) {
     throw InvalidInput("cannot mesh " + std::to_string(points.size()) + " points with " + std::to_string(normals.size()) + " normals");
   }
-  if (points.size() < mesh::kFewestMeshPoints) throw InvalidInput("meshing needs at least 4 points, got " + std::to_string(points.size()));
+  if (points.size() < kLeastPoints) throw InvalidInput("meshing needs at least 4 points, got " + std::to_string(points.size()));
   if (depth < kLeastMeshDepth || depth > kMostMeshDepth) {
     throw InvalidInput("the octree depth must be in 4..12, got " + std::to_string(depth));
   }

@@ -4,15 +4,17 @@
 // Open3D. This is the only place that knows Open3D. Without it (G3R_WITH_OPEN3D=OFF) screened_poisson() throws Unavailable.
 #pragma once
 
+#include "cloud/canonical_cloud.h"
+
 #include <g3r/mesh.h>
 
 #include <vector>
 
 namespace g3r {
 
-/// The side of the octree's cube over that of the box of the points. It is the margin of the method's authors; without one the surface
-/// would leave the cube.
-inline constexpr double kPoissonCube = 1.1;
+/// The side of the octree's cube over that of the box of the points: the margin of the method's authors, and of the unit frame. Without one
+/// the surface would leave the cube.
+inline constexpr double kPoissonCube = 2 / kBoxSide;
 
 /// The largest depth that is chosen without being asked for: more costs minutes and gigabytes. The paper preset takes it, as the
 /// comparisons in docs/evidence/meshes.md do.
