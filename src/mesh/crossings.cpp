@@ -16,8 +16,6 @@ namespace {
 
 using vector::dot;
 
-// More take time, and shares of so many are good to a hundredth of a percent.
-constexpr std::size_t kLooks = 20000;
 // The points around the line that are looked at: those of an X within 3.5 spacings. Fewer are few in each half, and farther surfaces curve.
 constexpr std::size_t kAround = 5 * kFitPoints;
 // A point is on a plane if it is so near, in spacings, as meshes resolve, and its normal is one of the plane's patch: noise and curvature
@@ -84,7 +82,11 @@ double crossing_at(const PointSet& set, const std::vector<Vec3>& normals, std::s
 }  // namespace
 
 Crossings find_crossings(const PointSet& set, const std::vector<Vec3>& normals) {
-  const std::size_t every = std::max<std::size_t>(1, set.size() / kLooks);
+  // The share from which crossings are clear.
+  const double clear = 1 / std::sqrt(static_cast<double>(set.size()));
+  // Of so few looks that the share is still known to a tenth of itself: its deviation is 1 / sqrt(clear looks).
+  const double looks_needed = 1 / (clear * (1 - kNearlyAll) * (1 - kNearlyAll));
+  const auto every = static_cast<std::size_t>(std::max(1.0, static_cast<double>(set.size()) / looks_needed));
   std::vector<double> angles((set.size() + every - 1) / every, 0);
   if (angles.empty()) return {};
   (void)set.tree();  // made before threads ask for them
@@ -102,7 +104,7 @@ Crossings find_crossings(const PointSet& set, const std::vector<Vec3>& normals) 
   found.angle = median(angles);
   // Along a curve as long as the side of a square of the same area there is one for each spacing. Of 51 shapes without crossings, 5,000
   // points each, 0.85 times as many at most look so, of crossings three times as many and more.
-  found.is_clear = found.share >= 1 / std::sqrt(static_cast<double>(set.size()));
+  found.is_clear = found.share >= clear;
   return found;
 }
 

@@ -14,10 +14,7 @@
 namespace g3r {
 namespace {
 
-// These decide on warnings alone. The step is as low a quantile of the differences, and so much of their median at least: without steps
-// they come in all sizes.
-constexpr double kStepToMedian = 0.3;
-// The handles or parts below which nothing is said: so few may be the shape's own.
+// These decide on warnings alone. The handles or parts below which nothing is said: so few may be the shape's own.
 constexpr std::size_t kFewestOdd = 10;
 // The points for each handle, and for each part, that a mesh needs: the smallest handle that was right, in a lattice of rods, had 156.
 constexpr std::size_t kPointsPerOdd = 150;
@@ -53,10 +50,9 @@ double terrace_step(const PointSet& set, const std::vector<Vec3>& normals, std::
   if (same < mesh::kLittle || same > mesh::kNearlyAll) return 0;
   std::sort(steps.begin(), steps.end());
   const double low = steps[static_cast<std::size_t>(mesh::kLittle * static_cast<double>(steps.size()))];
-  // Smaller steps are below the noise of clean clouds, and larger ones are stairs.
-  const bool is_terrace = low >= mesh::kNoisy * spacing && low <= mesh::kFarSpacings * spacing;
-  const bool is_step = is_terrace && low >= kStepToMedian * steps[steps.size() / 2];
-  return is_step ? low : 0;
+  // Without steps differences come in all sizes, and the lowest are nearly none. Smaller steps are below the noise of clean clouds, and
+  // larger ones are stairs.
+  return low >= mesh::kNoisy * spacing && low <= mesh::kFarSpacings * spacing ? low : 0;
 }
 
 void warn_of_lines(const CanonicalCloud& cloud, Stats& stats) {
