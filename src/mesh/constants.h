@@ -23,8 +23,6 @@ inline constexpr std::size_t kFitPoints = 2 * kRing;
 inline constexpr double kSamePatch = 0.85;
 /// The points of a patch beside a point that make it one: corners of cubes have so many, fewer are noise, and random points have one.
 inline constexpr std::size_t kPatchPoints = 3;
-/// The places, evenly from all, at which properties of a whole cloud are taken: medians and shares of so many are good to 2 %.
-inline constexpr std::size_t kSample = 4000;
 /// The points of a cloud, or pairs of them, below which nothing is said of what is rare in it: it would be a matter of chance.
 inline constexpr std::size_t kFewestPoints = 100;
 /// The share of a whole that is little beside it, and that nearly all of it has: of a variance, of the misfit of a surface, of pairs; of

@@ -1,6 +1,7 @@
 #include "mesh/field_denoise.h"
 
 #include "base/median.h"
+#include "cloud/constants.h"
 #include "cpu/parallel.h"
 #include "mesh/constants.h"
 
@@ -56,7 +57,7 @@ class Neighbourhood {
 }  // namespace
 
 Noise estimate_noise(const OrientedPoints& points, const Neighbours& neighbours, double typical) {
-  const std::size_t n = points.positions.size(), count = std::min(n, kSample);
+  const std::size_t n = points.positions.size(), count = std::min(n, kPlaces);
   std::vector<double> position(count), normal(count);
   parallel::for_blocks(count, parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
     // As wide as under noise of half a spacing: fits to about 40 points, so that noise of a spacing does not bend them.

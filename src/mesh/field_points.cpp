@@ -1,6 +1,7 @@
 #include "mesh/field_points.h"
 
 #include "base/median.h"
+#include "cloud/constants.h"
 #include "mesh/constants.h"
 #include "mesh/handle_removal.h"
 #include "mesh/smooth_spacing.h"
@@ -81,7 +82,7 @@ RefineDisc disc_around(const Vec3& position, const Vec3& normal, double spacing,
 }
 
 std::vector<Vec3> level_places(const std::vector<Vec3>& points) {
-  const std::size_t count = std::min(points.size(), kSample);
+  const std::size_t count = std::min(points.size(), kPlaces);
   std::vector<Vec3> places(count);
   for (std::size_t i = 0; i < count; ++i) places[i] = points[static_cast<std::size_t>(std::uint64_t{i} * points.size() / count)];
   return places;

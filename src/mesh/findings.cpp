@@ -2,6 +2,7 @@
 
 #include "base/number_text.h"
 #include "base/vector.h"
+#include "cloud/constants.h"
 #include "cloud/noise.h"
 #include "mesh/constants.h"
 #include "mesh/crossings.h"
@@ -26,7 +27,7 @@ double terrace_step(const PointSet& set, const std::vector<Vec3>& normals, std::
   const std::vector<Vec3>& points = set.points();
   const double spacing = set.spacing();
   const std::size_t n = points.size(), stride = set.near_count(), count = std::min(mesh::kRing + 1, stride);
-  const std::size_t every = std::max<std::size_t>(1, n / mesh::kSample);
+  const std::size_t every = std::max<std::size_t>(1, n / kPlaces);
   std::size_t pairs = 0, across = 0, single = 0;
   std::vector<double> steps;
   for (std::size_t i = 0; i < n; i += every) {
