@@ -10,10 +10,6 @@
 namespace g3r::mesh {
 namespace {
 
-// The standard deviation in leaves, across the patch, of the places that count as along it: corners of the next layer are on the other side
-// of the surface, and must not count.
-constexpr double kAcross = 0.25;
-
 // The leaves around a corner, each with the corner's place in it.
 struct Around {
   std::array<std::uint32_t, kOctants> leaf{};
@@ -37,14 +33,15 @@ std::vector<Around> leaves_around(const Octree& octree, const std::vector<std::u
 }
 
 // Weights of the corners around one, by how far they are along the patch with normal n: at the middle + x + 3 (y + 3 z) for the corner
-// (x, y, z) leaf sides away, each -1, 0 or 1.
+// (x, y, z) leaf sides away, each -1, 0 or 1. The standard deviation across the patch is the half thickness of the discs that leaves
+// resolve: corners of the next layer are on the other side of the surface, and must not count.
 std::array<double, kLatticeSize> weights(const std::array<float, 3>& n) {
   std::array<double, kLatticeSize> out{};
   for (std::size_t i = 0; i <= out.size() / 2; ++i) {
     const std::size_t y = i / kLatticeSide % kLatticeSide, z = i / kLatticeSide / kLatticeSide;
     const double across =
         n[0] * (static_cast<double>(i % kLatticeSide) - 1) + n[1] * (static_cast<double>(y) - 1) + n[2] * (static_cast<double>(z) - 1);
-    out[i] = out[out.size() - 1 - i] = std::exp(-across * across / (2 * kAcross * kAcross));
+    out[i] = out[out.size() - 1 - i] = std::exp(-across * across / (2 * kDiscHalf * kDiscHalf));
   }
   return out;
 }
