@@ -1,5 +1,6 @@
 #include "mesh/local_surface.h"
 
+#include "cloud/constants.h"
 #include "mesh/constants.h"
 
 #include <algorithm>
@@ -9,10 +10,6 @@ namespace g3r::mesh {
 namespace {
 
 using Eigen::Vector3d;
-
-// The share of the distances of a patch's points from another patch, less those on the other side, from which it lies on one side of it:
-// three quarters of them. A patch that goes on on both sides of another does not surely end there; 0.8 gives the same genus.
-constexpr double kOneSide = 0.5;
 
 // The patch of a member that none has taken yet, and of one that makes no patch with those like it.
 enum : int { kUnassigned = -1, kLeftOut = -2 };
@@ -33,7 +30,7 @@ bool are_walls(const LocalSurface& s, int a, int b) {
 // Where the members of a patch are as seen from another one.
 struct Seen {
   double mean = 0;        // signed distance
-  bool one_side = false;  // most of them are on the side of the mean
+  bool one_side = false;  // a clear majority of the distances is on the side of the mean: a patch that goes on on both does not surely end
 };
 
 // Patch `b` from patch `a`. Members that are nearer to the opposite wall of `a`, the third patch, are beside that one: where a gap opens or
@@ -51,7 +48,7 @@ Seen see(const LocalSurface& s, const std::vector<FitPoint>& members, int a, int
       size += m.weight * std::abs(d);
       total += m.weight;
     }
-    if (total > 0) return {sum / total, std::abs(sum) > kOneSide * size};
+    if (total > 0) return {sum / total, std::abs(sum) + size > 2 * kMostOf * size};
   }
   return {};
 }
