@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace g3r::mesh {
@@ -18,9 +19,6 @@ namespace {
 // Neighbours kept of each point: the 16 nearest to a place are nearly always among those of its nearest point. With 24 AE_m is 2.9 %
 // larger.
 constexpr std::size_t kNear = 2 * kFitPoints;
-// Walls and gaps get leaves of at most their thickness over this, lest both walls cross one edge, but none smaller than half of the others:
-// thin walls cost four times the vertices already.
-constexpr double kThin = 1.3;
 // The levels that locally dense sampling may add: without a bound, points at almost one place would make leaves as small.
 constexpr int kMaxSpread = 4;
 
@@ -70,7 +68,9 @@ std::vector<double> sizes_to_resolve(const Prepared& prepared, const std::vector
   const bool has_lines = in_lines.size() > kFitPoints;
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     if (has_lines && in_lines[i] != 0) continue;  // what faces it is most often the same line
-    sizes[i] = std::min(sizes[i], std::max(thickness[i] / (kThin * kFinestCell), sizes[i] / 2));
+    // The diagonals of the sides of leaves are no longer than walls are thick, lest both sides of a wall cross one edge. But no leaves are
+    // smaller than half of the others: thin walls cost four times the vertices already.
+    sizes[i] = std::min(sizes[i], std::max(thickness[i] / (std::numbers::sqrt2 * kFinestCell), sizes[i] / 2));
   }
   return sizes;
 }
