@@ -11,8 +11,9 @@
 namespace g3r::mesh {
 namespace {
 
-// The distance in spacings from the nearest point within which the fitted surface gives the side: farther away it bends off by itself.
-constexpr double kLocalReach = 1.8;
+// The distance in spacings from the nearest point within which the fitted surface gives the side: half of that at which it is a guess, as
+// farther away it bends off by itself. With 1.4 thin plates of 5,000 points have a genus of 52 instead of 3.
+constexpr double kLocalReach = kFarSpacings / 2;
 // The corners of which more than the side is in memory at the same time.
 constexpr std::size_t kCornersAtOnce = 512 * parallel::kSmallBlock;
 
