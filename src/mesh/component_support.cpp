@@ -74,7 +74,7 @@ void add_points(const Mesh& mesh, const std::vector<std::uint32_t>& component, c
   const std::vector<std::uint32_t> beside = nearest_of(points, strays, anywhere);
   for (std::size_t k = 0; k < strays.size(); ++k) {
     const Vec3 d = vector::subtract(strays[k], points[beside[k]]);
-    if (held_by[beside[k]] == kNone || std::sqrt(vector::dot(d, d)) > kBesideSpacings * spacing[beside[k]]) continue;
+    if (held_by[beside[k]] == kNone || std::sqrt(vector::dot(d, d)) > kFarSpacings * spacing[beside[k]]) continue;
     ++support[component[held_by[beside[k]]]].strays;
   }
 }

@@ -9,17 +9,13 @@
 
 namespace g3r::mesh {
 
-/// The distance in spacings up to which a stray is beside a point: the parts that strays make are no farther from them. With less, outliers
-/// that fill space leave parts.
-inline constexpr double kBesideSpacings = 3;
-
 /// What holds a component. Of parts that turn out to be one component the sums are those of the parts.
 struct Support {
   double area = 0;                    ///< of its surface
   double near_area = 0;               ///< of that within kFarSpacings of a point, of the cloud where the point is isolated
   double stands_for = 0;              ///< points that its area stands for
   double stands_for_under_noise = 0;  ///< the same where noise makes spurious components
-  double strays = 0;                  ///< beside it
+  double strays = 0;                  ///< beside it: within kFarSpacings of its points
   double points = 0;                  ///< that lie at it
 
   void add(const Support& other);
@@ -45,7 +41,7 @@ struct Unmet {
 
 /// Marks (1) the components that stay. The one with most area near points always does. Of the others go, and are added to `dropped`,
 /// spurious ones (MeshOptions::min_component), those that fewer points hold than least_points_of_a_part(strays), and those that fewer
-/// points hold than strays are within 3 spacings of them, as in a cloud that fills space; and those beyond MeshOptions::keep_largest.
+/// points hold than strays are beside them, as in a cloud that fills space; and those beyond MeshOptions::keep_largest.
 [[nodiscard]] std::vector<std::uint8_t> kept_components(const std::vector<Support>& support, const MeshOptions& options, std::size_t strays,
                                                         Dropped& dropped);
 

@@ -26,7 +26,7 @@ std::vector<std::uint32_t> points_beside(const PointSet& set, const std::vector<
     for (std::size_t k = begin; k < end; ++k) {
       double squared = std::numeric_limits<double>::max();
       out[k] = tree.nearest(strays[k], squared, kNone);
-      if (std::sqrt(squared) > kBesideSpacings * spacing[out[k]]) out[k] = kNone;
+      if (std::sqrt(squared) > kFarSpacings * spacing[out[k]]) out[k] = kNone;
     }
   });
   return out;
