@@ -61,9 +61,9 @@ struct LikeliestPlane {
 };
 
 /// The plane through points[index[0]] that is least likely to be one of chance, of all scatters of 1, 2, 4, ..., 128 times kExactScatter;
-/// none if none is proven as above, if what it holds is clearly less broad than long (kClearlyLess), if it is a bend, or not `is_of_facet`. A
-/// wall has two sides, which together are one plane of half its thickness in scatter: so what a parallel plane at least 10 scatters away holds counts
-/// with the plane, any of the other points being where that could be. docs/math.md, "Planes of scattered points". About 30 us.
+/// none if none is proven as above, if what it holds is clearly less broad than long (kClearlyLess), if it is a bend, or not `is_of_facet`.
+/// A wall has two sides, which together are one plane of half its thickness in scatter: so what a parallel plane at least 10 scatters away
+/// holds counts with the plane, any of the other points being where that could be. docs/math.md, "Planes of scattered points". About 30 us.
 [[nodiscard]] LikeliestPlane find_likeliest_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing,
                                                   const std::function<bool(const LikeliestPlane&)>& is_of_facet);
 

@@ -147,7 +147,8 @@ double scattered_noise(const PointSet& set, const Residuals& residuals) {
   const double spacing = set.spacing();
   const double flattest = residuals.scatter(kFalseAlarms);
   // Shape lifts the residuals of fewer points less, to at most 0.48 of the others, noise as much, to at least 0.56.
-  if (flattest < kLeastNoise * spacing || Residuals(set, kClosest).scatter(kFalseAlarms) < kClearlyLess * residuals.scatter(kFlat)) return 0;
+  if (flattest < kLeastNoise * spacing || Residuals(set, kClosest).scatter(kFalseAlarms) < kClearlyLess * residuals.scatter(kFlat))
+    return 0;
   const double filled = flattest / (kSaturation * spacing);
   if (shows_no_noise(set)) return 0;
   const double layered = layered_noise(set);

@@ -61,9 +61,9 @@ inline constexpr double kLeastNoise = 0.04;
 
 /// Standard deviation of the points about the facets of a CAD model: what find_likeliest_plane() finds at most of about 500 points. Planes
 /// of bends do not count: among the 132 nearest points they have more from w to 2 w away than a quarter of those up to w = 2.5 scatters. A
-/// scanner scatters alike everywhere, detail does not, so two adjacent ones of its steps have to hold a third of the points; else 0, and 0 for
-/// exact points. It sees a scatter too small to blur anything, for which estimate_noise() is 0, and that of walls closer together than the
-/// sampling. 0 for fewer than 192 points. About 20 ms.
+/// scanner scatters alike everywhere, detail does not, so two adjacent ones of its steps have to hold a third of the points; else 0, and 0
+/// for exact points. It sees a scatter too small to blur anything, for which estimate_noise() is 0, and that of walls closer together than
+/// the sampling. 0 for fewer than 192 points. About 20 ms.
 [[nodiscard]] double facet_scatter(const PointSet& set);
 
 /// Along each axis, the least step between coordinates, not counting those up to 0.001 typical spacings; 0 where it is 0.04 spacings or
