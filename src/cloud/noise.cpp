@@ -39,8 +39,7 @@ constexpr double kLayerBias = 0.92;
 
 double share_of(std::size_t some, std::size_t all) { return static_cast<double>(some) / static_cast<double>(all); }
 
-// Whether a share of the points on planes shows a cloud to consist of facets, or of a facet's surroundings that it goes on: where most are
-// on none, it does not.
+// Whether a share of the points on planes shows a cloud to consist of facets: where most are on none, it does not.
 bool are_many(double share) { return share >= 1 - kMostOf; }
 
 double quantile(std::vector<double> values, double share) {
