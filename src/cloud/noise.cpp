@@ -33,7 +33,7 @@ constexpr double kFilled = 0.75;
 // Values of a rounded coordinate, at least: those of plates and boxes that stand straight are fewer.
 constexpr std::size_t kFewestLevels = 5;
 // Points of neighbourhoods that may hold three layers: fewer do not show them, more reach around the shape.
-constexpr std::size_t kLayerNeighbours = 2 * kWallNeighbours;
+constexpr std::size_t kLayerNeighbours = 256;
 // What the quantile kFlat of them says on smooth surfaces, over the noise.
 constexpr double kLayerBias = 0.92;
 

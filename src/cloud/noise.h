@@ -27,7 +27,7 @@ inline constexpr double kLeastNoise = 0.04;
 ///   - Noise leaves no exact planes behind. Where a third of the points is on one (find_exact_plane(), breadth 0.5) and no second one, the
 ///     cloud is clean, unless its coordinates are rounded to steps of 0.04 h or more, which puts noise on planes. So is one of facets about
 ///     which points scatter less than 0.04 h (facet_scatter()): what lies farther from a height field is on another wall.
-///   - Against two or three layers of a smooth surface there is layered_deviation() of 264 neighbours, its 10 % quantile; the lesser of the
+///   - Against two or three layers of a smooth surface there is layered_deviation() of 256 neighbours, its 10 % quantile; the lesser of the
 ///     two counts. It needs the layers to be smooth as far as that. Noise above h fills such neighbourhoods as well, so every fourth point
 ///     is taken then, as often as needed.
 ///   - Less than 0.04 h is none.
@@ -72,7 +72,7 @@ inline constexpr double kLeastNoise = 0.04;
 [[nodiscard]] Vec3 rounding_steps(const std::vector<Vec3>& points, double spacing);
 
 /// How the number of points grows with the distance from one, as its power: about 2 on a surface, noisy or not, nearly 3 in a volume (2.6
-/// to 3 of 800 points and more, of fewer from 2.4: its boundary counts). From the distances r of the neighbours f = min(1056, N / 16) and
+/// to 3 of 800 points and more, of fewer from 2.4: its boundary counts). From the distances r of the neighbours f = min(1024, N / 16) and
 /// n = f / 4, rounded down, ln(f / n) / ln(r_f / r_n), the median over about 500 points; 2 for fewer than 192. O(f log N).
 [[nodiscard]] double dimension(const PointSet& set);
 

@@ -16,6 +16,8 @@ namespace {
 // scatter of points, and blur walls as thin as that; below a spacing fewer points share the scatter, and walls matter more. So the width
 // grows with the square of sigma first and in proportion later, w = A s^2 / hypot(s, 1) for s = sigma / h, with A the noise's
 // whole breadth in the end, kNoiseBreadth: more blurs walls, less turns shells in cavities.
+// Raw solutions fit the noise with every step, and the more noise there is the sooner: h / sigma times this many steps.
+constexpr double kStepsPerNoise = 7;
 // Noise turns the normal of a patch of side s by about sigma h / s^2: widths in proportion to sqrt(sigma h) leave one accuracy. Those in
 // proportion to sigma hide the scatter, without which shells in cavities turn. Between the two, with this power of sigma / h:
 constexpr double kNoisyPolishPower = 0.6;
@@ -64,8 +66,7 @@ void follow_noise(double noise, const Options& options, std::size_t points, Sett
   // A start from fewer points has lost the walls where noise asks for wider kernels: half of the sides of 95,000 points on walls of 3 h.
   if (noise > noise_of_clean_widths()) s.coarse_to_fine = false;
   if (options.schedule.empty() && !starts_coarse(s, points)) {
-    // Raw solutions fit the noise with every step, and the more of it there is the sooner.
-    const double steps = std::min(kFewSteps / std::min(noise, 1.0), static_cast<double>(s.schedule.front().count));
+    const double steps = std::clamp(kStepsPerNoise / noise, static_cast<double>(kFewSteps), static_cast<double>(s.schedule.front().count));
     s.schedule_text = std::to_string(static_cast<int>(steps)) + " cg";
     s.schedule = parse_schedule(s.schedule_text);
     if (options.tolerance < 0) s.tolerance = 0;
