@@ -4,7 +4,6 @@
 #include "base/vector.h"
 #include "cloud/chance.h"
 #include "cloud/constants.h"
-#include "cloud/exact_plane.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
 #include "orient/crowded.h"
@@ -26,6 +25,8 @@ constexpr std::size_t kProbes = kScales + 1;
 double distance_of(std::size_t probe) { return std::ldexp(1.0, static_cast<int>(probe)); }
 
 constexpr double kOnSurface = 0.5;  // the winding number there, by mathematics
+// Spacings between a probe and any site, so that the field there knows of no single ones; the probe's own may be at 2.
+constexpr double kApart = 1.9;
 
 // The field of the sites with the normals of several hypotheses, at probes on either side of them. It has the width of the equations:
 // single sites are not seen at the nearest probes, walls of a spacing are.
@@ -148,8 +149,7 @@ Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const 
     if (d == 0) continue;  // its own site is too near
     parallel::for_blocks(2 * count, parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
-        // So far from any site that the field knows of no single ones; its own may be as near as that, but for rounding.
-        const double apart = (kResolved - kExactScatter) * spacing[k % count];
+        const double apart = kApart * spacing[k % count];
         double squared = apart * apart;
         if (distance_of(d) * spacing[k % count] > reach[k % count]) continue;
         is_quiet[2 * count * d + k] = tree.nearest(probes[k], squared, UINT32_MAX) == UINT32_MAX ? 1 : 0;

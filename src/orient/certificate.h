@@ -20,7 +20,7 @@ namespace g3r {
 ///   - `scaled_defect`, the same of c w, with c such that the median of c w inside (w > 1/2, far from any site) is 1, where there is any:
 ///     areas of even samples and of points that scatter are up to 1.3 times too large, and 1 - jump_defect is 0.8 at best there;
 ///   - `unrest`, the mean over d = 2, 4 and 8 of min(|c w|, |1 - c w|): 0 beside a closed surface, whose field is
-///     constant on either side, up to a half beside an open one. Probes nearer to a site than 2 spacings, or farther than `reach`, are
+///     constant on either side, up to a half beside an open one. Probes nearer to a site than 1.9 spacings, or farther than `reach`, are
 ///     left out; negative if none is left.
 struct Certificate {
   std::vector<double> jump;
