@@ -13,6 +13,12 @@
 namespace g3r {
 namespace {
 
+TEST(Chance, OfANormalDistributionIsSymmetric) {
+  EXPECT_EQ(normal_distribution(0), 0.5);
+  EXPECT_NEAR(normal_distribution(1), 0.8413447460685429, 1e-15);
+  for (const double x : {0.3, 2.5, 6.0}) EXPECT_NEAR(normal_distribution(x) + normal_distribution(-x), 1, 1e-15);
+}
+
 TEST(ChancesOfAsMany, AreThoseOfABinomial) {
   const std::vector<double> chances = chances_of_as_many(3, 0.5);
   const double expected[] = {1, 7.0 / 8, 4.0 / 8, 1.0 / 8};

@@ -75,5 +75,30 @@ TEST(FitCleanSurface, TheFacetsTakeTheSideOfMostOfTheirPoints) {
   }
 }
 
+// How far an area vector and a normal agree tells the side, so it stays where facets give the normal another direction.
+TEST(FitCleanSurface, TurnsAreaVectorsWithTheNormalsAtEdges) {
+  const Plate plate(10);
+  std::vector<std::vector<double>> cosines;
+  std::vector<std::vector<Vec3>> found;
+  for (const char* without : {"creases", "creases,facets"}) {
+    Problem problem = plate.problem;
+    problem.settings.without = parse_steps(without);
+    Solution solution = problems::solution_of(problem, plate.surface.normals);
+    std::vector<Vec3>& normals = solution.refinement.normals;
+    normals = shapes::disturbed(plate.normals, 0.3);
+    const Monitor monitor;
+    Stages stages(monitor);
+    fit_clean_surface(problem, solution.eta, normals, stages);
+    cosines.emplace_back();
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+      cosines.back().push_back(vector::dot(normals[i], solution.eta[i]) / vector::length(solution.eta[i]));
+    }
+    found.push_back(normals);
+  }
+  EXPECT_NE(found[0], found[1]);
+  EXPECT_LT(shapes::angle_error(found[0], plate.normals), shapes::angle_error(found[1], plate.normals));
+  for (std::size_t i = 0; i < cosines[0].size(); ++i) EXPECT_NEAR(cosines[0][i], cosines[1][i], 1e-9) << i;
+}
+
 }  // namespace
 }  // namespace g3r

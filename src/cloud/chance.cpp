@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace g3r {
+
+double normal_distribution(double x) { return std::erfc(-x / std::numbers::sqrt2) / 2; }
 
 double share_of_ball(double height) {
   const double t = std::min(height, 1.0);

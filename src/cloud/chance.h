@@ -1,4 +1,5 @@
-// What chance puts on a slab: detection a contrario (Desolneux, Moisan and Morel, "From Gestalt Theory to Image Analysis", 2008).
+// The normal distribution, and what chance puts on a slab: detection a contrario (Desolneux, Moisan and Morel, "From Gestalt Theory to
+// Image Analysis", 2008).
 #pragma once
 
 #include <cstddef>
@@ -13,6 +14,9 @@ inline constexpr double kFalseAlarms = 0.02;
 
 /// Whether these are more than half of all, numbers or shares: only one thing can be so of most.
 [[nodiscard]] inline bool is_majority(double some, double all) { return 2 * some > all; }
+
+/// P(X <= x) of a normal distribution of mean 0 and deviation 1.
+[[nodiscard]] double normal_distribution(double x);
 
 /// Share of a ball that is no farther from a plane through its centre than `height` of its radii.
 [[nodiscard]] double share_of_ball(double height);

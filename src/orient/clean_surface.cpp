@@ -1,8 +1,10 @@
 #include "orient/clean_surface.h"
 
+#include "base/vector.h"
 #include "cloud/noise.h"
 #include "orient/confidence.h"
 #include "orient/creases.h"
+#include "orient/facet_normals.h"
 #include "orient/facets.h"
 #include "orient/jets.h"
 #include "orient/planes.h"
@@ -16,6 +18,16 @@
 namespace g3r {
 namespace {
 
+// v, turned as from one unit vector to another: half round the middle of both.
+Vec3 turned(const Vec3& v, const Vec3& from, const Vec3& to) {
+  if (from == to) return v;
+  const Vec3 middle = vector::normalised(vector::add(from, to));  // 0 of opposite ones
+  return vector::subtract(vector::scale(middle, 2 * vector::dot(middle, v)), v);
+}
+
+// About facets; more than this may be that of two walls.
+double scatter_of_facets(const Problem& problem) { return problem.scatter < kLeastNoise * problem.spacing ? problem.scatter : 0; }
+
 // Where the points of a cloud's facets disagree about their sides, every facet gets one, and the other points their normals from the field
 // of what the facets have become. `fit` proves normals; `proven`: those it has.
 template <typename Fit>
@@ -23,9 +35,8 @@ void agree_on_facets(const Problem& problem, const std::vector<std::uint8_t>& pr
                      std::vector<Vec3>& normals, Stages& stages) {
   const PointSet& set = problem.cloud.set;
   const Settings& s = problem.settings;
-  const double scatter = problem.scatter < kLeastNoise * problem.spacing ? problem.scatter : 0;  // else it may be that of two walls
   for (int round = 0; round < kMostRounds; ++round) {
-    const Facets facets = find_facets(set, proven, normals, scatter, problem.known.wanted);
+    const Facets facets = find_facets(set, proven, normals, scatter_of_facets(problem), problem.known.wanted);
     if (minority_share(facets, normals) < kMinMinority) return;
     make_room_for_sums(set);
     choose_facet_sides(set, s, facets, eta, normals, stages);
@@ -52,7 +63,12 @@ void fit_clean_surface(const Problem& problem, std::vector<Vec3>& eta, std::vect
   const auto fit = [&] { proven = fit_directions(problem, normals); };
   fit();
   if (runs(problem, Step::kCreases) && sharpen_creases(problem.cloud.set, normals, problem.known.wanted)) fit();
-  if (runs(problem, Step::kFacets)) agree_on_facets(problem, proven, fit, eta, normals, stages);
+  if (!runs(problem, Step::kFacets)) return;
+  agree_on_facets(problem, proven, fit, eta, normals, stages);
+  const std::vector<Vec3> before = normals;
+  follow_facets(problem.cloud.set, scatter_of_facets(problem), proven, problem.known.wanted, normals);
+  // Area vectors turn with them: how far both agree tells the side, not the direction.
+  for (std::size_t i = 0; i < normals.size(); ++i) eta[i] = turned(eta[i], before[i], normals[i]);
 }
 
 }  // namespace g3r

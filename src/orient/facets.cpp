@@ -3,6 +3,7 @@
 #include "base/vector.h"
 #include "cloud/constants.h"
 #include "cloud/exact_plane.h"
+#include "cloud/plane_fit.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
 #include "orient/polish.h"
@@ -99,51 +100,122 @@ std::vector<std::uint8_t> unsure_facets(const Facets& facets, const std::vector<
   return unsure;
 }
 
+// Standard error, in radians, of the normal of a plane through half of kPlaneNeighbours points, which fill a disc and scatter by `relative`
+// spacings: 2 relative / (radius sqrt(n)), radius = sqrt(n / pi).
+double error_of_plane(double relative) {
+  constexpr double kHalf = kPlaneNeighbours / 2.0;
+  return 2 * std::sqrt(std::numbers::pi) * relative / kHalf;
+}
+
+FacetPlane plane_through(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& members) {
+  Vec3 sum{0, 0, 0};
+  for (const std::uint32_t i : members) sum = vector::add(sum, points[i]);
+  return {fit_plane(points, members.data(), members.size()).normal, vector::scale(sum, 1 / static_cast<double>(members.size()))};
+}
+
+// Facets around seeds, one at a time.
+class FacetGrowth {
+ public:
+  FacetGrowth(const PointSet& set, const std::vector<std::uint8_t>& proven, const std::vector<Vec3>& normals, double scatter)
+      : points_(set.points()),
+        spacing_(set.smoothed_spacing()),
+        near_(set.near()),
+        proven_(proven),
+        normals_(normals),
+        scatter_(scatter),
+        turned_by_(std::max(kExactScatter, std::pow(kSigmas * error_of_plane(scatter / set.spacing()), 2) / 2)),
+        tried_(set.size(), 0) {}
+
+  // Proven points beside others of their plane, those that have most of them first.
+  [[nodiscard]] std::vector<std::uint32_t> seeds() const {
+    std::vector<std::uint8_t> beside(points_.size(), 0);
+    parallel::for_all(points_.size(), [&](std::size_t i) {
+      if (proven_[i] == 0) return;
+      const FacetPlane own{normals_[i], points_[i]};
+      for (std::size_t k = 1; k < kSpacingNeighbours; ++k) {
+        const std::uint32_t j = near_[i * kSpacingNeighbours + k];
+        if (is_parallel(own, j) && is_within(own, std::numbers::sqrt2, j)) ++beside[i];
+      }
+    });
+    std::vector<std::uint32_t> seeds;
+    for (std::size_t most = kSpacingNeighbours; most-- > 1;) {
+      for (std::uint32_t i = 0; i < points_.size(); ++i) {
+        if (beside[i] == most) seeds.push_back(i);
+      }
+    }
+    return seeds;
+  }
+
+  [[nodiscard]] bool is_taken(std::uint32_t i) const { return tried_[i] == kTaken; }
+  void take(const std::vector<std::uint32_t>& members) {
+    for (const std::uint32_t i : members) tried_[i] = kTaken;
+  }
+
+  // The seed and what of no facet joins it.
+  const std::vector<std::uint32_t>& from(std::uint32_t seed) {
+    ++round_;
+    members_.assign(1, seed);
+    tried_[seed] = round_;
+    FacetPlane plane{normals_[seed], points_[seed]};
+    double deviations = std::numbers::sqrt2;  // of the seed and of another point
+    std::size_t fitted = kQuadraticTerms;
+    for (std::size_t m = 0; m < members_.size(); ++m) {
+      if (members_.size() >= 2 * fitted) {
+        fitted = members_.size();
+        plane = plane_through(points_, members_);
+        deviations = 1;
+      }
+      for (std::size_t k = 1; k < kSpacingNeighbours; ++k) {
+        const std::uint32_t j = near_[members_[m] * kSpacingNeighbours + k];
+        if (tried_[j] == round_ || is_taken(j) || !is_within(plane, deviations, j)) continue;
+        const bool is_along = deviations == 1 && std::abs(vector::dot(plane.normal, normals_[j])) >= kSamePatch;
+        if (!is_along && !is_parallel(plane, j)) continue;
+        tried_[j] = round_;
+        members_.push_back(j);
+      }
+    }
+    return members_;
+  }
+
+ private:
+  [[nodiscard]] bool is_parallel(const FacetPlane& plane, std::uint32_t j) const {
+    return proven_[j] != 0 && 1 - std::abs(vector::dot(plane.normal, normals_[j])) <= turned_by_;
+  }
+  [[nodiscard]] bool is_within(const FacetPlane& plane, double deviations, std::uint32_t j) const {
+    return std::abs(plane.height(points_[j])) <= std::max(kExactScatter * spacing_[j], kSigmas * deviations * scatter_);
+  }
+
+  const std::vector<Vec3>& points_;
+  const std::vector<double>& spacing_;
+  const std::vector<std::uint32_t>& near_;
+  const std::vector<std::uint8_t>& proven_;
+  const std::vector<Vec3>& normals_;
+  const double scatter_;
+  // 1 - cosine of the angle between normals of one facet: their error, or what a bend of a spacing's radius, the least that a sample shows,
+  // turns by where it leaves its plane.
+  const double turned_by_;
+  static constexpr std::uint32_t kTaken = UINT32_MAX;
+  std::vector<std::uint32_t> tried_;  // the last round in which a point joined, or kTaken
+  std::uint32_t round_ = 0;
+  std::vector<std::uint32_t> members_;
+};
+
 }  // namespace
 
 Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven, const std::vector<Vec3>& normals, double scatter,
                    const std::vector<std::uint8_t>& wanted) {
-  const std::vector<Vec3>& points = set.points();
-  const std::vector<double>& spacing = set.smoothed_spacing();
-  const std::vector<std::uint32_t>& near = set.near();
   Facets facets;
-  facets.of.assign(points.size(), Facets::kNone);
-  if (points.size() < kSpacingNeighbours) return facets;
-  const double of_two = kSigmas * std::numbers::sqrt2 * scatter;  // how far apart two points of one plane may be across it
-  // A bend of a spacing's radius, the least that a sample shows, leaves its plane by 1 - cosine of the angle that it turns by.
-  const auto is_parallel = [&](std::size_t i, std::size_t j) { return 1 - std::abs(vector::dot(normals[i], normals[j])) <= kExactScatter; };
-  const auto in_one_plane = [&](std::size_t i, std::size_t j) {
-    const Vec3 d = vector::subtract(points[i], points[j]);
-    return std::max(std::abs(vector::dot(normals[i], d)), std::abs(vector::dot(normals[j], d))) <=
-           std::max(kExactScatter * std::min(spacing[i], spacing[j]), of_two);
-  };
-  // The neighbours in one plane with a point, a bit each: most points of curved surfaces have none.
-  std::vector<std::uint32_t> beside(points.size(), 0);
-  parallel::for_all(points.size(), [&](std::size_t i) {
-    for (std::size_t k = 1; proven[i] != 0 && k < kSpacingNeighbours; ++k) {
-      const std::uint32_t j = near[i * kSpacingNeighbours + k];
-      if (proven[j] != 0 && in_one_plane(i, j)) beside[i] |= 1U << k;
-    }
-  });
-  std::vector<std::uint8_t> done(proven.size(), 0);
-  std::vector<std::uint32_t> members;
-  for (std::uint32_t seed = 0; seed < points.size(); ++seed) {
-    if (proven[seed] == 0 || done[seed] != 0) continue;
-    done[seed] = 1;
-    if (beside[seed] == 0) continue;
-    members.assign(1, seed);
-    for (std::size_t m = 0; m < members.size(); ++m) {
-      const std::uint32_t i = members[m];
-      for (std::size_t k = 1; k < kSpacingNeighbours; ++k) {
-        const std::uint32_t j = near[i * kSpacingNeighbours + k];
-        if ((beside[i] >> k & 1U) == 0 || done[j] != 0 || !is_parallel(seed, j)) continue;
-        done[j] = 1;
-        members.push_back(j);
-      }
-    }
+  facets.of.assign(set.size(), Facets::kNone);
+  if (set.size() < kSpacingNeighbours) return facets;
+  FacetGrowth growth(set, proven, normals, scatter);
+  for (const std::uint32_t seed : growth.seeds()) {
+    if (growth.is_taken(seed)) continue;
+    const std::vector<std::uint32_t>& members = growth.from(seed);
     if (members.size() < kQuadraticTerms) continue;
+    growth.take(members);
     if (!wanted.empty() && std::none_of(members.begin(), members.end(), [&](std::uint32_t i) { return wanted[i] != 0; })) continue;
     for (const std::uint32_t i : members) facets.of[i] = static_cast<std::uint32_t>(facets.count);
+    facets.planes.push_back(plane_through(set.points(), members));
     ++facets.count;
   }
   return facets;
@@ -177,7 +249,7 @@ void choose_facet_sides(const PointSet& set, const Settings& settings, const Fac
     }
   };
   set_areas();
-  const Facets here{values_at(some, facets.of), facets.count};
+  const Facets here{values_at(some, facets.of), facets.count, {}};
   const Subspace subspace(here, values_at(some, areas), values_at(some, turned));
   const std::vector<Vec3> start = subspace.project(values_at(some, eta));
   for (std::size_t k = 0; k < some.size(); ++k) eta[some[k]] = start[k];

@@ -12,18 +12,30 @@
 
 namespace g3r {
 
+/// A plane through the middle of what it holds.
+struct FacetPlane {
+  Vec3 normal{0, 0, 0};  ///< unit length, either side
+  Vec3 middle{0, 0, 0};
+
+  [[nodiscard]] double height(const Vec3& p) const {
+    return normal[0] * (p[0] - middle[0]) + normal[1] * (p[1] - middle[1]) + normal[2] * (p[2] - middle[2]);
+  }
+};
+
 /// Sets of points side by side in one plane.
 struct Facets {
   static constexpr std::uint32_t kNone = UINT32_MAX;
   std::vector<std::uint32_t> of;  ///< N: number of the facet of every point, or kNone
   std::size_t count = 0;
+  std::vector<FacetPlane> planes;  ///< `count`: least squares planes of their points
 };
 
-/// Grows facets over the 16 nearest points from seeds in the order of the points: p_j joins beside p_i if both are proven and each lies
-/// within kExactScatter h of the other's plane, or within 2.5 deviations of the distance of two points that scatter, sqrt(2) `scatter`, and
-/// its normal is parallel, on either side, to that of the seed to 2.6 degrees. Sets of fewer than 6 points are no facets, nor are those
-/// without a wanted point. h: smoothed_spacing(); `proven`: fit_jets() or fit_planes() found its normal; `scatter`: facet_scatter(), same
-/// units as the points; `wanted`: N, or empty for all. O(N).
+/// Grows facets over the 16 nearest points from proven seeds, those first around which most points are in their plane. A facet takes what
+/// is beside one of its points and within kExactScatter h or 2.5 `scatter` of its plane, which is fitted anew whenever the points have
+/// doubled, if its normal is proven and parallel, on either side, to that of the plane: to 2.6 degrees, or to 2.5 standard errors of the
+/// normals of find_scattered_plane(); of others, once the plane is fitted, to 26 degrees. Until then distances are those of two points that
+/// scatter. Sets of fewer than 6 points are no facets, nor are those without a wanted point. h: smoothed_spacing(); `proven`: fit_jets() or
+/// fit_planes() found its normal; `scatter`: facet_scatter(), same units as the points; `wanted`: N, or empty for all. O(N).
 [[nodiscard]] Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven, const std::vector<Vec3>& normals,
                                  double scatter, const std::vector<std::uint8_t>& wanted = {});
 

@@ -8,6 +8,7 @@
 #include "orient/certified_sides.h"
 #include "orient/clustered_polish.h"
 #include "orient/confidence.h"
+#include "orient/facet_normals.h"
 #include "orient/noisy_jets.h"
 #include "orient/planes.h"
 #include "orient/polish.h"
@@ -89,10 +90,12 @@ void fit_noisy_surface(const Problem& problem, Stages& stages, Solution& solutio
   const double noise = std::max(problem.noise, problem.direction_noise);
   if (noise == 0 || !runs(problem, Step::kPolish) || !runs(problem, Step::kNoisyJets)) return;
   fit_noisy_jets(problem.cloud.set, noise, problem.known.wanted, solution.refinement.normals, stages.cancel());
-  std::vector<std::uint8_t> none(problem.cloud.size(), 0);
-  // Facets whose points scatter less than the noise of all are chance, or beside what is noisy.
-  if (noise <= problem.scatter && runs(problem, Step::kPlanes))
-    fit_planes(problem.cloud.set, problem.scatter, none, solution.refinement.normals);
+  // Facets whose points scatter clearly less than the noise of all are chance, or beside what is noisy.
+  if (noise > kWider * problem.scatter || !runs(problem, Step::kPlanes)) return;
+  std::vector<std::uint8_t> proven(problem.cloud.size(), 0);
+  fit_planes(problem.cloud.set, problem.scatter, proven, solution.refinement.normals);
+  if (!runs(problem, Step::kFacets)) return;
+  follow_facets(problem.cloud.set, problem.scatter, proven, problem.known.wanted, solution.refinement.normals);
 }
 
 }  // namespace g3r

@@ -1,6 +1,7 @@
 #include "orient/sight_normals.h"
 
 #include "base/vector.h"
+#include "cloud/chance.h"
 #include "cloud/constants.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
@@ -13,7 +14,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -54,7 +54,7 @@ class Seen {
       // The direction turns by what m is off across itself, as a share of its length.
       const double deviation = std::sqrt(std::max(0.0, (plane.covariance.trace() - normal.dot(plane.covariance * normal)) / 2)) / size;
       const double steps = deviation > 0 ? std::asin(std::clamp(cosine, -1.0, 1.0)) / deviation : HUGE_VAL;
-      out.certified[members_[k]] = static_cast<float>(std::erfc(-std::max(0.0, steps) / std::numbers::sqrt2) / 2);
+      out.certified[members_[k]] = static_cast<float>(normal_distribution(std::max(0.0, steps)));
     }
   }
 
