@@ -2,6 +2,7 @@
 //   g3r_bench_fast_sum [--points N] [--accuracy A] [--epsilon E (in spacings)] [--threads T] [--order P] [--opening O] [--leaf L] [--cut C]
 #include "sum/fast_sum.h"
 #include "cloud/canonical_cloud.h"
+#include "cloud/morton.h"
 #include "cpu/near_field.h"
 #include "cpu/parallel.h"
 #include "solve/harmonics.h"

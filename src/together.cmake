@@ -7,15 +7,16 @@ function(g3r_together group)
 endfunction()
 set_target_properties(g3r PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 
-g3r_together(cloud cloud/canonical_cloud cloud/chance cloud/clusters cloud/exact_plane cloud/far_points cloud/neighbours cloud/noise
-             cloud/outliers cloud/plane_fit cloud/point_set cloud/quadratic_patch cloud/sites cloud/spacing cloud/viewpoint cloud/wires
+g3r_together(cloud cloud/canonical_cloud cloud/chance cloud/clusters cloud/disk_sample cloud/exact_plane cloud/far_points cloud/morton
+             cloud/neighbours cloud/noise cloud/outliers cloud/plane_fit cloud/point_set cloud/quadratic_patch cloud/site_planes cloud/sites
+             cloud/spacing cloud/surface_distance cloud/viewpoint cloud/wires
              expansions/expansions expansions/m2l_matrices metrics/sample_mesh metrics/score_mesh metrics/score_normals
              metrics/triangle_tree tree/far_pairs tree/interaction_lists tree/octree tree/traversal tree/tree_parts)
 g3r_together(sums gpu/cuda gpu/device gpu/drivers gpu/execution gpu/kernel_cache gpu/kernel_source gpu/lists_on_device
              gpu/neighbours_on_device gpu/sum_on_device gpu/vectors_on_device solve/energy_system sum/device_scope sum/direct_sum
              sum/fast_sum sum/solve_on_device sum/sum_engine sum/sum_geometry sum/sum_passes sum/sum_plan sum/target_shells)
 g3r_together(solve baselines/baseline baselines/gauss_system baselines/hard_cutoff baselines/near_pairs baselines/stretched_winding
-             baselines/wnnc cloud/heights cloud/layers field/areas field/field field/oriented_cloud field/points_with_normals
+             baselines/wnnc cloud/heights cloud/layers cloud/two_layers field/areas field/field field/oriented_cloud field/points_with_normals
              field/surface_points field/winding_sampler solve/dense_solver solve/green_system solve/harmonics solve/iterative_solver
              solve/part_system solve/refine)
 g3r_together(orient orient/attempt orient/clean_surface orient/clustered_polish orient/coarse_to_fine orient/creases orient/jets

@@ -1,4 +1,5 @@
 // Clouds in tiles: streams, the external sort, rings of cells, and that tiles give what one solve gives, whoever does them.
+#include "cloud/morton.h"
 #include "io/point_stream.h"
 #include "sanitized.h"
 #include "shapes.h"

@@ -2,7 +2,7 @@
 #include "orient/certificate.h"
 
 #include "base/vector.h"
-#include "cloud/canonical_cloud.h"
+#include "cloud/morton.h"
 
 #include "shapes.h"
 

@@ -2,6 +2,7 @@
 #include "cloud/clusters.h"
 
 #include "cloud/canonical_cloud.h"
+#include "cloud/morton.h"
 #include "shapes.h"
 #include "solve/energy_system.h"
 #include "sum/fast_sum.h"

@@ -4,6 +4,7 @@
 #include "base/vector.h"
 #include "cloud/canonical_cloud.h"
 #include "cloud/constants.h"
+#include "cloud/morton.h"
 #include "orient/polish.h"
 #include "sanitized.h"
 #include "shapes.h"

@@ -1,5 +1,6 @@
 // Expansion identities one by one, and the completeness of the interaction lists.
 #include "expansions/expansions.h"
+#include "cloud/morton.h"
 #include "expansions/m2l_matrices.h"
 
 #include "cloud/canonical_cloud.h"

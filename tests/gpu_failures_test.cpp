@@ -1,5 +1,5 @@
 // What surrounds the kernels, without any device: failing devices, the cache of kernels, the tiles of far pairs.
-#include "cloud/canonical_cloud.h"
+#include "cloud/morton.h"
 #include "cpu/parallel.h"
 #include "german_locale.h"
 #include "gpu/device.h"

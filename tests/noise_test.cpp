@@ -1,6 +1,5 @@
 // The size of the noise: exact on what it is defined by, near the truth on walls and on noise larger than the spacing.
 #include "cloud/noise.h"
-#include "cloud/layers.h"
 #include "cloud/neighbours.h"
 #include "cloud/spacing.h"
 #include "sanitized.h"
@@ -23,79 +22,11 @@ namespace {
 
 using shapes::Surface;
 
-// Layers z = offset + 0.01 (x^2 - y^2) of 20 x 20 spacings, one point per squared spacing, scattered; the points nearest to the middle of
-// the first one.
-double deviation_of_layers(const std::vector<double>& offsets, double sigma, std::size_t neighbours) {
-  shapes::Random random(7);
-  std::vector<Vec3> points;
-  for (const double offset : offsets) {
-    for (int i = 0; i < 400; ++i) {
-      const double x = random.uniform(-10, 10), y = random.uniform(-10, 10);
-      points.push_back({x, y, offset + 0.01 * (x * x - y * y) + sigma * random.gaussian()});
-    }
-  }
-  const Vec3 centre{0, 0, offsets.front()};
-  std::vector<std::uint32_t> index;
-  std::vector<double> squared;
-  Neighbours(points).nearest(centre, neighbours, index, squared);
-  return layered_deviation(points, index.data(), index.size(), centre, {0, 0, 1});
-}
-
 // Moments and cumulants of the even distribution on [-1/2, 1/2].
 TEST(Noise, RoundingHasTheMomentsOfAnEvenDistribution) {
   EXPECT_DOUBLE_EQ(kRoundingVariance, 1.0 / 12);
   EXPECT_DOUBLE_EQ(rounding_moment(4), 1.0 / 80);
   EXPECT_NEAR(kRoundingCumulant, -1.0 / 120, 1e-15);
-}
-
-TEST(Layers, OneLayerHasItsDeviation) {
-  for (const double sigma : {0.01, 0.3, 1.0}) EXPECT_NEAR(deviation_of_layers({0}, sigma, 256) / sigma, 1, 0.15) << sigma;
-}
-
-TEST(Layers, LayersFourDeviationsApartCountAsLayers) {
-  for (const double sigma : {0.3, 0.6}) {
-    EXPECT_NEAR(deviation_of_layers({0, 4 * sigma}, sigma, 256) / sigma, 1, 0.2) << sigma;
-    EXPECT_NEAR(deviation_of_layers({0, 4 * sigma, -4 * sigma}, sigma, 256) / sigma, 1, 0.2) << sigma;
-  }
-}
-
-// A layer 8 deviations away is cut by the ball of the neighbours.
-TEST(Layers, LayersThatTheBallCutsDoNotLowerIt) { EXPECT_NEAR(deviation_of_layers({0, 6.5}, 0.8, 256) / 0.8, 1, 0.12); }
-
-TEST(Layers, NoDeviationIsNone) {
-  EXPECT_LT(deviation_of_layers({0}, 0, 64), 1e-6);
-  EXPECT_LT(deviation_of_layers({0, 1}, 0, 128), 1e-3);
-}
-
-// Of the 24 points nearest to one on a curved layer that has another beside it.
-TwoLayers two_layers(double gap, double sigma) {
-  shapes::Random random(7);
-  std::vector<Vec3> points;
-  for (const double offset : {0.0, gap}) {
-    for (int i = 0; i < 100; ++i) {
-      const double x = random.uniform(-5, 5), y = random.uniform(-5, 5);
-      points.push_back({x, y, offset + 0.3 * x + 0.05 * (x * x - y * y) + sigma * random.gaussian()});
-    }
-  }
-  std::vector<std::uint32_t> index;
-  std::vector<double> squared;
-  Neighbours(points).nearest({0, 0, 0}, 24, index, squared);
-  return fit_two_layers(points, index.data(), index.size(), {0.1, 0, std::sqrt(0.99)});
-}
-
-TEST(Layers, TwoLayersHaveTheirGap) {
-  for (const double gap : {0.3, 0.6, 1.2}) {
-    const TwoLayers layers = two_layers(gap, 0);
-    EXPECT_NEAR(layers.gap / gap, 1, 0.15) << gap;  // across the slope
-    EXPECT_LT(layers.deviation, 0.05 * gap) << gap;
-  }
-}
-
-TEST(Layers, NoiseAboutOneLayerIsNotTwo) {
-  for (const double sigma : {0.1, 0.5}) {
-    const TwoLayers layers = two_layers(0, sigma);
-    EXPECT_GT(layers.deviation, 0.2 * layers.gap) << sigma;
-  }
 }
 
 double estimate(const Surface& s) { return estimate_noise(PointSet(s.points)); }

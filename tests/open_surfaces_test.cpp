@@ -2,7 +2,7 @@
 #include "orient/open_surfaces.h"
 
 #include "base/vector.h"
-#include "cloud/canonical_cloud.h"
+#include "cloud/morton.h"
 #include "cloud/plane_fit.h"
 #include "cloud/spacing.h"
 

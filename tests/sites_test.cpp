@@ -2,8 +2,9 @@
 #include "cloud/sites.h"
 
 #include "base/vector.h"
-#include "cloud/canonical_cloud.h"
+#include "cloud/morton.h"
 #include "cloud/spacing.h"
+#include "cloud/surface_distance.h"
 
 #include "shapes.h"
 

@@ -1,5 +1,6 @@
 #include "base/vector.h"
 #include "cloud/canonical_cloud.h"
+#include "cloud/morton.h"
 #include "shapes.h"
 #include "sum/target_shells.h"
 #include "tree/interaction_lists.h"

@@ -2,7 +2,7 @@
 
 #include "base/vector.h"
 #include "baselines/near_pairs.h"
-#include "cloud/canonical_cloud.h"
+#include "cloud/morton.h"
 #include "kernels/kernels.h"
 
 #include <algorithm>

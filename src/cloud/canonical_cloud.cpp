@@ -2,14 +2,13 @@
 
 #include "base/vector.h"
 #include "cloud/constants.h"
+#include "cloud/morton.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
 
 #include <g3r/error.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -19,80 +18,18 @@
 namespace g3r {
 namespace {
 
-constexpr double kLineThickness = 1e-12;  // distance from a line over its length, below which points count as collinear: rounding
-// From the middle of the frame along an axis, at most, of points that are left out: from farther the cloud is one point, and powers of the
-// distance leave the range of double.
+// The distance from a line, over its length, up to which points count as collinear: it is rounding.
+constexpr double kLineThickness = 1e-12;
+// The distance from the middle of the frame along an axis, at most, of points that are left out: from farther away the cloud is one point,
+// and powers of the distance leave the range of double.
 constexpr double kFarthest = 1 / std::numeric_limits<double>::epsilon();
 
-// Ones in groups of so many bits, each group at three times the place that it would have without gaps.
-constexpr std::uint64_t groups_of(int bits) {
-  std::uint64_t groups = 0;
-  for (int at = 0; at < std::numeric_limits<std::uint64_t>::digits; at += 3 * bits) groups |= ((std::uint64_t{1} << bits) - 1) << at;
-  return groups;
-}
-
-// The bits of v, which are in groups of 2 kBits with gaps of twice that, in groups of one.
-template <int kBits>
-std::uint64_t move_apart(std::uint64_t v) {
-  constexpr std::uint64_t kGroups = groups_of(kBits);
-  v = (v | v << (2 * kBits)) & kGroups;
-  if constexpr (kBits == 1) {
-    return v;
-  } else {
-    return move_apart<kBits / 2>(v);
-  }
-}
-
-struct Keyed {
-  std::uint64_t code;
-  std::uint32_t index;
-};
-
-// Least-significant-digit radix sort, stable; blocks of fixed size keep it the same for any number of threads.
-void radix_sort(std::vector<Keyed>& items) {
-  constexpr int kBits = std::numeric_limits<std::uint8_t>::digits;
-  constexpr std::size_t kDigits = std::size_t{1} << kBits;
-  const std::size_t n = items.size();
-  const std::size_t blocks = (n + parallel::kBlock - 1) / parallel::kBlock;
-  std::vector<Keyed> other(n);
-  std::vector<std::array<std::uint32_t, kDigits>> offset(blocks);
-  for (int shift = 0; shift < std::numeric_limits<std::uint64_t>::digits; shift += kBits) {
-    const auto digit = [shift](const Keyed& item) { return static_cast<std::size_t>(static_cast<std::uint8_t>(item.code >> shift)); };
-    parallel::for_blocks(n, parallel::kBlock, [&](std::size_t begin, std::size_t end) {
-      auto& count = offset[begin / parallel::kBlock];
-      count.fill(0);
-      for (std::size_t i = begin; i < end; ++i) ++count[digit(items[i])];
-    });
-    std::uint32_t total = 0;
-    bool one_digit = false;
-    for (std::size_t d = 0; d < kDigits; ++d) {
-      const std::uint32_t before = total;
-      for (auto& count : offset) {
-        const std::uint32_t c = count[d];
-        count[d] = total;
-        total += c;
-      }
-      one_digit = one_digit || total - before == n;
-    }
-    if (one_digit) continue;
-    parallel::for_blocks(n, parallel::kBlock, [&](std::size_t begin, std::size_t end) {
-      auto& next = offset[begin / parallel::kBlock];
-      for (std::size_t i = begin; i < end; ++i) other[next[digit(items[i])]++] = items[i];
-    });
-    items.swap(other);
-  }
-}
-
 struct Bounds {
-  Vec3 low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-  Vec3 high{-low[0], -low[1], -low[2]};
+  vector::Box box;
   std::size_t finite_points = 0;
 
   Bounds& operator+=(const Bounds& other) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], other.low[a]);
-      high[a] = std::max(high[a], other.high[a]);
-    }
+    box.extend(other.box);
     finite_points += other.finite_points;
     return *this;
   }
@@ -104,19 +41,16 @@ Bounds bounds_of(const PointsView& points, const std::vector<std::uint8_t>& left
     Bounds b;
     for (std::size_t i = begin; i < end; ++i) {
       if (!left_out.empty() && left_out[i] != 0) continue;
-      if (const Vec3 p = points[i]; vector::is_finite(p)) b += {p, p, 1};
+      if (const Vec3 p = points[i]; vector::is_finite(p)) b += {{p, p}, 1};
     }
     return b;
   });
 }
 
-Frame frame_of(const Bounds& b) {
+Frame frame_of(const vector::Box& box) {
   Frame frame;
-  double side = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    frame.centre[a] = b.low[a] + (b.high[a] - b.low[a]) / 2;
-    side = std::max(side, b.high[a] - b.low[a]);
-  }
+  for (std::size_t a = 0; a < 3; ++a) frame.centre[a] = box.low[a] + (box.high[a] - box.low[a]) / 2;
+  const double side = box.longest_side();
   if (!std::isfinite(side)) throw InvalidInput("the extent of the coordinates is more than a double can hold; scale them down");
   if (side <= 0) throw InvalidInput("all points lie at the same place: at least 4 distinct points are needed");
   frame.scale = kBoxSide / side;
@@ -197,52 +131,6 @@ void require_not_collinear(const std::vector<Vec3>& points, std::size_t outliers
   throw InvalidInput("all points" + but + " lie on one line (collinear): a surface needs points beside that line");
 }
 
-std::uint64_t spread_bits(std::uint64_t v) {
-  constexpr std::uint64_t kGrid = (std::uint64_t{1} << kGridBits) - 1;
-  return move_apart<static_cast<int>(std::bit_floor(unsigned{kGridBits}))>(v & kGrid);
-}
-
-std::uint64_t morton_code(const Vec3& unit) {
-  constexpr double kCells = static_cast<double>(1 << kGridBits);
-  std::uint64_t code = 0;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const double cell = std::floor((unit[a] + 1) * (kCells / 2));
-    const auto clamped = static_cast<std::uint64_t>(std::clamp(cell, 0.0, kCells - 1));
-    code |= spread_bits(clamped) << (2 - a);
-  }
-  return code;
-}
-
-std::vector<std::uint64_t> morton_codes(const std::vector<Vec3>& unit_points) {
-  std::vector<std::uint64_t> codes(unit_points.size());
-  parallel::for_all(codes.size(), [&](std::size_t i) { codes[i] = morton_code(unit_points[i]); });
-  return codes;
-}
-
-std::vector<std::uint32_t> morton_order(const std::vector<Vec3>& unit_points) {
-  const std::size_t n = unit_points.size();
-  std::vector<Keyed> items(n);
-  parallel::for_blocks(n, parallel::kBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) items[i] = {morton_code(unit_points[i]), static_cast<std::uint32_t>(i)};
-  });
-  radix_sort(items);
-  for (std::size_t begin = 0; begin < n;) {  // ties: by coordinates, then (equal points) by index
-    std::size_t end = begin + 1;
-    while (end < n && items[end].code == items[begin].code) ++end;
-    if (end - begin > 1) {
-      std::sort(items.begin() + static_cast<std::ptrdiff_t>(begin), items.begin() + static_cast<std::ptrdiff_t>(end),
-                [&](const Keyed& a, const Keyed& b) {
-                  if (unit_points[a.index] != unit_points[b.index]) return unit_points[a.index] < unit_points[b.index];
-                  return a.index < b.index;
-                });
-    }
-    begin = end;
-  }
-  std::vector<std::uint32_t> order(n);
-  parallel::for_all(n, [&](std::size_t i) { order[i] = items[i].index; });
-  return order;
-}
-
 CanonicalCloud canonical_cloud(const PointsView& points) {
   std::vector<Vec3> none;
   CanonicalCloud cloud = canonical_cloud(points, {}, none);
@@ -258,7 +146,7 @@ CanonicalCloud canonical_cloud(const PointsView& points, const std::vector<std::
                        " are finite, at least 4 distinct points are needed");
   }
   CanonicalCloud cloud;
-  cloud.frame = frame_of(bounds);
+  cloud.frame = frame_of(bounds.box);
 
   std::vector<std::uint32_t> input;
   input.reserve(bounds.finite_points);
@@ -292,12 +180,7 @@ CanonicalCloud canonical_cloud(const PointsView& points, const std::vector<std::
   return cloud;
 }
 
-bool is_small_in_frame(const CanonicalCloud& cloud) {
-  const Bounds bounds = bounds_of(cloud.points());
-  double side = 0;
-  for (std::size_t a = 0; a < 3; ++a) side = std::max(side, bounds.high[a] - bounds.low[a]);
-  return side < kClearlyLess * kBoxSide;
-}
+bool is_small_in_frame(const CanonicalCloud& cloud) { return bounds_of(cloud.points()).box.longest_side() < kClearlyLess * kBoxSide; }
 
 bool is_flat(const CanonicalCloud& cloud) {
   // The plane through the first point, the point farthest from it, and the point farthest from the line through both.

@@ -7,7 +7,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 namespace g3r {
@@ -17,9 +16,11 @@ struct Frame {
   Vec3 centre{0, 0, 0};
   double scale = 1;
 
+  /// A place in the unit frame, of the box or beyond.
   [[nodiscard]] Vec3 to_unit(const Vec3& p) const {
     return {(p[0] - centre[0]) * scale, (p[1] - centre[1]) * scale, (p[2] - centre[2]) * scale};
   }
+  /// A place of the unit frame in input units.
   [[nodiscard]] Vec3 to_world(const Vec3& p) const {
     return {p[0] / scale + centre[0], p[1] / scale + centre[1], p[2] / scale + centre[2]};
   }
@@ -43,19 +44,6 @@ struct CanonicalCloud {
   [[nodiscard]] const std::vector<Vec3>& points() const { return set.points(); }
   [[nodiscard]] std::size_t size() const { return set.size(); }
 };
-
-inline constexpr int kGridBits = std::numeric_limits<std::uint64_t>::digits / 3;  ///< of an axis in a Morton code: 3 x 21 = 63 bits
-
-/// The lowest 21 bits, each moved to three times its place: one axis of a Morton code.
-[[nodiscard]] std::uint64_t spread_bits(std::uint64_t v);
-
-/// Morton code of a point of [-1, 1]^3 on the 2^21 grid: bits x2 y2 z2 x1 y1 z1 x0 y0 z0, x highest. Coordinates outside are clamped.
-[[nodiscard]] std::uint64_t morton_code(const Vec3& unit);
-/// Of N points. O(N).
-[[nodiscard]] std::vector<std::uint64_t> morton_codes(const std::vector<Vec3>& unit_points);
-
-/// Indices that sort points of [-1, 1]^3 canonically. O(N).
-[[nodiscard]] std::vector<std::uint32_t> morton_order(const std::vector<Vec3>& unit_points);
 
 /// Whether the points fill less than half of the longest side of their frame, because far ones have been taken out: the grid and the
 /// kernels have to resolve what is left. O(N).

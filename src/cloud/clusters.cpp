@@ -1,6 +1,6 @@
 #include "cloud/clusters.h"
 
-#include "cloud/canonical_cloud.h"
+#include "cloud/morton.h"
 
 #include <algorithm>
 #include <cmath>

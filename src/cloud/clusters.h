@@ -12,8 +12,8 @@ namespace g3r {
 /// A partition of N points into the cells of a grid: M centroids in canonical order and what they stand for.
 struct Clusters {
   std::vector<Vec3> points;               ///< M centroids
-  std::vector<double> multiplicity;       ///< M: of the points in the cell, together
-  std::vector<double> relative_spacing;   ///< M: theirs, root mean square; empty if none is given
+  std::vector<double> multiplicity;       ///< M: of the points in the cell, added up
+  std::vector<double> relative_spacing;   ///< M: root mean square of that of the points in the cell; empty if none is given
   std::vector<std::uint32_t> cluster_of;  ///< N: point -> cluster
 
   [[nodiscard]] std::vector<double> roots() const;  ///< M: of the multiplicities

@@ -16,7 +16,8 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kSeeds = kPatchNeighbours - 1;  // nearest others, pairs of which candidates pass through
+// The nearest others, pairs of which candidates pass through: 55 pairs.
+constexpr std::size_t kSeeds = kPatchNeighbours - 1;
 
 // The nearest points of one, relative to it, itself first, in spacings.
 struct Around {

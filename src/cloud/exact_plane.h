@@ -24,17 +24,17 @@ inline constexpr std::size_t kWallNeighbours = kTwiceAsFar * kPlaneNeighbours;
 struct ExactPlane {
   std::vector<std::uint32_t> points;  ///< on it, nearest first; none: there is no such plane
   Vec3 normal{0, 0, 0};               ///< of the least squares plane through them, either side
-  /// Their second principal spread over the first: 0 along a line, 1 all around. A surface holds no less than kClearlyLess; the rows of a
+  /// Their middle principal spread over the largest: 0 along a line, 1 all around. A surface holds no less than kClearlyLess; the rows of a
   /// raster lie in narrow strips of planes across it, and lines are as broad as their noise over their length.
   double breadth = 0;
 };
 
 /// The plane through points[index[0]] that holds most of the points `index` (at most kPlaneNeighbours, nearest first): 6 or more to within
-/// kExactScatter. Candidates are the planes through the first and two of the next 11 (every pair, as RANSAC would in the limit: Fischler
-/// and Bolles, "Random sample consensus", Communications of the ACM 1981); the best is fitted to what it holds. Points along a line, which
-/// a curved surface has in planes across it, prove nothing: their second principal spread has to be 0.15 of the first. With `towards` (unit
-/// length), of equal ones the one least off it counts. Of random points on a smooth or noisy surface few have such a plane; rows of a
-/// raster have one across it. About 3 us.
+/// kExactScatter of their spacing, `spacing` > 0. Candidates are the planes through the first and two of the next 11 (every pair, as RANSAC
+/// would in the limit: Fischler and Bolles, "Random sample consensus", Communications of the ACM 1981); the best is fitted to what it
+/// holds. Points along a line, which a curved surface has in planes across it, prove nothing: their middle principal spread has to be 0.15
+/// of the largest. With `towards` (unit length), of equal ones the one least off it counts. Of random points on a smooth or noisy surface
+/// few have such a plane; rows of a raster have one across it. About 3 us.
 [[nodiscard]] ExactPlane find_exact_plane(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing,
                                           const Vec3* towards = nullptr);
 
@@ -55,6 +55,7 @@ struct ExactPlane {
 /// is far above.
 inline constexpr double kExactScatter = 0.001;
 
+/// What find_likeliest_plane() finds.
 struct LikeliestPlane {
   ExactPlane plane;
   double scatter = 0;  ///< of the points about it, in spacings; 0: there is no such plane

@@ -1,7 +1,6 @@
 #include "cloud/layers.h"
 
 #include "cloud/constants.h"
-#include "cloud/exact_plane.h"
 #include "cloud/noise.h"
 #include "cloud/quadratic_patch.h"
 
@@ -17,21 +16,29 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double kRadius = 0.6;                       // of the cylinder, in distances of the farthest point
-constexpr double kTail = 1.5;                         // deviations of a layer that have to be inside for its own deviation to count
-constexpr Eigen::Index kTerms = kQuadraticTerms - 1;  // u, v, u^2, u v, v^2
-constexpr int kSteps = 20;  // of expectation and maximisation, and of points that look for their layer: most change theirs 4 times
+// The radius of the cylinder whose points take part, in distances of the farthest point: a wider one leaves less of its height inside the
+// ball of the points, a narrower one has fewer points.
+constexpr double kRadius = 0.6;
+// Deviations from the middle of a layer up to which it has to be inside that ball for its deviation to count: what is cut looks thinner.
+constexpr double kTail = 1.5;
+// The terms of a height field beside its constant: u, v, u^2, u v, v^2.
+constexpr Eigen::Index kTerms = kQuadraticTerms - 1;
+// Steps of expectation and maximisation.
+constexpr int kSteps = 20;
+// Layers of a mixture, at most.
 constexpr std::size_t kMostLayers = 3;
-constexpr double kNoShare = std::numeric_limits<double>::min();  // keeps the logarithm of a likelihood finite
+// What every layer has of a point at least: it keeps the logarithm of a likelihood finite.
+constexpr double kNoShare = std::numeric_limits<double>::min();
 
 using Terms = Eigen::Matrix<double, Eigen::Dynamic, kTerms>;
 using Slopes = Eigen::Vector<double, kTerms>;
 using Square = Eigen::Matrix<double, kTerms, kTerms>;
 using PerLayer = std::array<double, kMostLayers>;
 
+// The heights over a plane through the centre of the n points in the cylinder.
 struct Heights {
   Terms terms;      // n x kTerms, of order 1
-  VectorXd z;       // from the centre
+  VectorXd z;       // n heights, in the unit of the points
   double most = 0;  // |z| up to which the cylinder is inside the ball of the points
 };
 
@@ -67,59 +74,96 @@ Heights heights(const std::vector<Vec3>& points, const std::uint32_t* index, std
   return h;
 }
 
-// A mixture of so many layers, from one layer's fit (`slopes`, `middle`, `deviation`) on, where equal layers at equal distances, without
-// scatter, have its deviation.
-Mixture fit_mixture(const Heights& h, std::size_t layers, const Eigen::LDLT<Square>& normal_equations, const Start& start) {
-  const auto count = static_cast<std::size_t>(h.z.size());
-  const auto total = static_cast<double>(count);
-  const auto of_layers = static_cast<double>(layers);
-  PerLayer offset{}, share{};
-  const double distance = start.deviation / std::sqrt(kRoundingVariance * (of_layers * of_layers - 1));
-  for (std::size_t c = 0; c < layers; ++c) {
-    offset[c] = start.middle + (static_cast<double>(c) - (of_layers - 1) / 2) * distance;
-    share[c] = 1 / of_layers;
+// A mixture of `layers` Gaussians and a quadratic, by expectation and maximisation.
+class MixtureFit {
+ public:
+  // Starts from one layer's fit, with equal layers at equal distances that without scatter have its deviation.
+  MixtureFit(const Heights& h, std::size_t layers, const Eigen::LDLT<Square>& normal_equations, const Start& start)
+      : h_(h),
+        layers_(layers),
+        normal_equations_(normal_equations),
+        one_deviation_(start.deviation),
+        sigma_(start.deviation / 2),
+        member_(static_cast<std::size_t>(h.z.size())),
+        flat_(h.z - h.terms.lazyProduct(start.slopes)) {
+    const auto count = static_cast<double>(layers);
+    const double distance = start.deviation / std::sqrt(kRoundingVariance * (count * count - 1));
+    for (std::size_t c = 0; c < layers; ++c) {
+      offset_[c] = start.middle + (static_cast<double>(c) - (count - 1) / 2) * distance;
+      share_[c] = 1 / count;
+    }
   }
-  double sigma = start.deviation / 2;
-  double likelihood = 0;
-  std::vector<PerLayer> member(count);  // the chance that a point is on a layer
-  VectorXd flat = h.z - h.terms.lazyProduct(start.slopes);
-  VectorXd rest(h.z.size());  // without the expected offset
-  for (int step = 0; step < kSteps; ++step) {
-    likelihood = -total * std::log(sigma);
+
+  Mixture run() {
+    for (int step = 0; step < kSteps; ++step) {
+      const PerLayer mass = expect();
+      fit_quadratic();
+      if (!fit_deviation(mass)) break;
+    }
+    return {sigma_, -2 * likelihood_ + 2 * (static_cast<double>(layers_) - 1) * std::log(total())};
+  }
+
+ private:
+  [[nodiscard]] double total() const { return static_cast<double>(member_.size()); }
+  [[nodiscard]] double flat(std::size_t k) const { return flat_[static_cast<Eigen::Index>(k)]; }
+
+  // The chances of every point to be on each layer, and the shares and offsets of the layers that follow from them. Returns the points that
+  // each layer has.
+  PerLayer expect() {
+    likelihood_ = -total() * std::log(sigma_);
     PerLayer mass{}, moment{};
-    for (std::size_t k = 0; k < count; ++k) {
-      const double z = flat[static_cast<Eigen::Index>(k)];
+    for (std::size_t k = 0; k < member_.size(); ++k) {
+      const double z = flat(k);
       double sum = 0;
-      for (std::size_t c = 0; c < layers; ++c) sum += member[k][c] = share[c] * gaussian((z - offset[c]) / sigma) + kNoShare;
-      likelihood += std::log(sum);
-      for (std::size_t c = 0; c < layers; ++c) {
-        member[k][c] /= sum;
-        mass[c] += member[k][c];
-        moment[c] += member[k][c] * z;
+      for (std::size_t c = 0; c < layers_; ++c) sum += member_[k][c] = share_[c] * gaussian((z - offset_[c]) / sigma_) + kNoShare;
+      likelihood_ += std::log(sum);
+      for (std::size_t c = 0; c < layers_; ++c) {
+        member_[k][c] /= sum;
+        mass[c] += member_[k][c];
+        moment[c] += member_[k][c] * z;
       }
     }
-    for (std::size_t c = 0; c < layers; ++c) {
-      share[c] = mass[c] / total;
-      offset[c] = moment[c] / (mass[c] + kNoShare);
+    for (std::size_t c = 0; c < layers_; ++c) {
+      share_[c] = mass[c] / total();
+      offset_[c] = moment[c] / (mass[c] + kNoShare);
     }
-    rest = h.z;
-    for (std::size_t k = 0; k < count; ++k) {
-      for (std::size_t c = 0; c < layers; ++c) rest[static_cast<Eigen::Index>(k)] -= member[k][c] * offset[c];
+    return mass;
+  }
+
+  // The quadratic through the heights without their expected offsets.
+  void fit_quadratic() {
+    VectorXd rest = h_.z;
+    for (std::size_t k = 0; k < member_.size(); ++k) {
+      for (std::size_t c = 0; c < layers_; ++c) rest[static_cast<Eigen::Index>(k)] -= member_[k][c] * offset_[c];
     }
-    flat = h.z - h.terms.lazyProduct(normal_equations.solve(h.terms.transpose().lazyProduct(rest)));
-    // The ball cuts layers near its poles, which makes them look thinner than they are.
+    flat_ = h_.z - h_.terms.lazyProduct(normal_equations_.solve(h_.terms.transpose().lazyProduct(rest)));
+  }
+
+  // The deviation of the layers that the ball does not cut, as it does near its poles, where they look thinner than they are. False if it
+  // cuts all.
+  bool fit_deviation(const PerLayer& mass) {
     double squares = 0, counted = 0;
-    for (std::size_t c = 0; c < layers; ++c) {
-      if (std::abs(offset[c]) + kTail * sigma > h.most) continue;
-      for (std::size_t k = 0; k < count; ++k) squares += member[k][c] * std::pow(flat[static_cast<Eigen::Index>(k)] - offset[c], 2);
+    for (std::size_t c = 0; c < layers_; ++c) {
+      if (std::abs(offset_[c]) + kTail * sigma_ > h_.most) continue;
+      for (std::size_t k = 0; k < member_.size(); ++k) squares += member_[k][c] * std::pow(flat(k) - offset_[c], 2);
       counted += mass[c];
     }
-    if (counted <= 0) break;
-    const double freedom = 1 - (static_cast<double>(kTerms) + of_layers) / total;
-    sigma = std::max(std::sqrt(squares / (counted * freedom)), kRidge * start.deviation);  // a mixture must not shrink to points
+    if (counted <= 0) return false;
+    const double freedom = 1 - (static_cast<double>(kTerms) + static_cast<double>(layers_)) / total();
+    sigma_ = std::max(std::sqrt(squares / (counted * freedom)), kRidge * one_deviation_);  // a mixture must not shrink to points
+    return true;
   }
-  return {sigma, -2 * likelihood + 2 * (of_layers - 1) * std::log(total)};
-}
+
+  const Heights& h_;
+  std::size_t layers_;
+  const Eigen::LDLT<Square>& normal_equations_;
+  double one_deviation_;  // about one layer
+  double sigma_;
+  double likelihood_ = 0;  // its logarithm, but for a constant
+  PerLayer offset_{}, share_{};
+  std::vector<PerLayer> member_;  // the chance that a point is on a layer
+  VectorXd flat_;                 // heights without the quadratic
+};
 
 }  // namespace
 
@@ -142,65 +186,10 @@ double layered_deviation(const std::vector<Vec3>& points, const std::uint32_t* i
   Mixture best{deviation, total * std::log(misfit / total) + total};
   const Eigen::LDLT<Square> several(Square(h.terms.transpose().lazyProduct(h.terms)) + ridge);
   for (std::size_t layers = 2; layers <= kMostLayers; ++layers) {
-    const Mixture mixture = fit_mixture(h, layers, several, {slopes, middle, deviation});
+    const Mixture mixture = MixtureFit(h, layers, several, {slopes, middle, deviation}).run();
     if (mixture.criterion < best.criterion) best = mixture;
   }
   return best.sigma;
-}
-
-TwoLayers fit_two_layers(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count, const Vec3& normal) {
-  constexpr Eigen::Index kMost = kPlaneNeighbours;
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, kTerms + 2, 0, kMost, kTerms + 2>;
-  using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
-  using Numbers = Eigen::Vector<double, kTerms + 2>;
-  using Normal = Eigen::Matrix<double, kTerms + 2, kTerms + 2>;
-  const auto n = static_cast<Eigen::Index>(count);
-  const Eigen::Matrix3d frame = tangent_frame(to_eigen(normal));
-  const Eigen::Vector3d centre = to_eigen(points[index[0]]);
-  const double radius = (to_eigen(points[index[count - 1]]) - centre).norm();
-  if (!(radius > 0)) return {};
-  Rows rows(n, kTerms + 2);  // on the upper layer, on the lower one, terms
-  Column z(n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const Eigen::Vector3d q = frame * (to_eigen(points[index[k]]) - centre) / radius;
-    rows.row(k) << 0, 0, q[0], q[1], q[0] * q[0], q[0] * q[1], q[1] * q[1];
-    z[k] = q[2];
-  }
-  const Normal ridge = kRidge * static_cast<double>(n) * Normal::Identity();
-  const auto fit = [&]() -> Numbers {
-    return (Normal(rows.transpose().lazyProduct(rows)) + ridge).ldlt().solve(rows.transpose().lazyProduct(z));
-  };
-  // From the points above and below a middle, at these heights, on.
-  const auto from = [&](Column above, double middle) -> TwoLayers {
-    TwoLayers layers;
-    for (int round = 0; round < kSteps; ++round) {
-      bool unchanged = round > 0;
-      std::size_t upper = 0;
-      for (Eigen::Index k = 0; k < n; ++k) {
-        const double on_upper = above[k] >= middle ? 1 : 0;
-        unchanged = unchanged && rows(k, 0) == on_upper;
-        rows(k, 0) = on_upper;
-        rows(k, 1) = 1 - on_upper;
-        upper += above[k] >= middle ? 1 : 0;
-      }
-      if (std::min(upper, count - upper) <= kPlaneTerms) return {};  // a plane goes through so few, at any distance from the others
-      if (unchanged) break;
-      const Numbers solution = fit();
-      const double freedom = static_cast<double>(n - kTerms - 2);
-      layers = {radius * std::sqrt((z - rows.lazyProduct(solution)).squaredNorm() / freedom), radius * (solution[0] - solution[1])};
-      above = z - rows.rightCols<kTerms>().lazyProduct(solution.tail<kTerms>());
-      middle = (solution[0] + solution[1]) / 2;
-    }
-    return layers;
-  };
-  const TwoLayers flat = from(z, (z.minCoeff() + z.maxCoeff()) / 2);
-  rows.leftCols<2>().setZero();
-  rows.col(0).setOnes();
-  const Column above = z - rows.lazyProduct(fit());  // one layer
-  Column sorted = above;
-  std::nth_element(sorted.data(), sorted.data() + n / 2, sorted.data() + n);
-  const TwoLayers bent = from(above, sorted[n / 2]);
-  return flat.gap > 0 && (bent.gap <= 0 || flat.deviation < bent.deviation) ? flat : bent;
 }
 
 }  // namespace g3r

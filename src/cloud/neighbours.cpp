@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/vector.h"
+#include "cloud/found_points.h"
 #include "cpu/parallel.h"
 #include "gpu/execution.h"
 #include "gpu/neighbours_on_device.h"
@@ -15,126 +16,15 @@
 namespace g3r {
 namespace {
 
-constexpr std::size_t kLeaf = 16;       // points per leaf: fewer make more nodes, more are looked at in vain; a matter of speed only
-constexpr std::size_t kMostThere = 64;  // nearest points that a device looks for, which it keeps in registers
-constexpr std::size_t kMany = 128;      // nearest points, from which sorting them at last is faster than keeping them sorted
-constexpr std::size_t kApart = 1 << 9;  // leaves from which halves are built side by side: fewer take less time than handing them out
-
-bool is_before(double squared, std::uint32_t point, double other_squared, std::uint32_t other) {
-  return squared < other_squared || (squared == other_squared && point < other);
-}
-
-// The k nearest points so far, nearest first, those as far by their index.
-class Nearest {
- public:
-  Nearest(std::size_t k, std::uint32_t* index, double* squared) : k_(k), index_(index), squared_(squared), reach_(k > 0 ? HUGE_VAL : -1) {}
-  [[nodiscard]] std::size_t size() const { return size_; }
-  [[nodiscard]] double reach() const { return reach_; }
-  void add(double squared, std::uint32_t point) {
-    if (size_ == k_) {
-      if (!is_before(squared, point, squared_[k_ - 1], index_[k_ - 1])) return;
-    } else {
-      ++size_;
-    }
-    std::size_t at = size_ - 1;
-    for (; at > 0 && is_before(squared, point, squared_[at - 1], index_[at - 1]); --at) {
-      squared_[at] = squared_[at - 1];
-      index_[at] = index_[at - 1];
-    }
-    squared_[at] = squared;
-    index_[at] = point;
-    if (size_ == k_) reach_ = squared_[k_ - 1];
-  }
-
- private:
-  std::size_t k_;
-  std::uint32_t* index_;
-  double* squared_;
-  std::size_t size_ = 0;
-  double reach_;
-};
-
-// The same of many, in any order: the farther half of twice as many is taken out together.
-class ManyNearest {
- public:
-  explicit ManyNearest(std::size_t k) : k_(k) { found_.reserve(2 * k); }
-  [[nodiscard]] double reach() const { return reach_; }
-  void add(double squared, std::uint32_t point) {
-    found_.emplace_back(squared, point);
-    if (found_.size() == 2 * k_) keep_nearest();
-  }
-  void sort_into(std::uint32_t* index, double* squared) {
-    if (found_.size() > k_) keep_nearest();
-    std::sort(found_.begin(), found_.end());
-    for (const auto& [distance, point] : found_) {
-      *index++ = point;
-      *squared++ = distance;
-    }
-  }
-
- private:
-  void keep_nearest() {
-    const auto last = found_.begin() + static_cast<std::ptrdiff_t>(k_ - 1);
-    std::nth_element(found_.begin(), last, found_.end());
-    reach_ = last->first;
-    found_.resize(k_);
-  }
-
-  std::size_t k_;
-  double reach_ = HUGE_VAL;
-  std::vector<std::pair<double, std::uint32_t>> found_;  // those as far by their index
-};
-
-// The nearest among the points that have a mark.
-class NearestMarked : public Nearest {
- public:
-  NearestMarked(std::size_t k, const std::vector<std::uint8_t>& marks, std::uint32_t* index, double* squared)
-      : Nearest(k, index, squared), marks_(marks) {}
-  void add(double squared, std::uint32_t point) {
-    if (marks_[point] != 0) Nearest::add(squared, point);
-  }
-
- private:
-  const std::vector<std::uint8_t>& marks_;
-};
-
-// The nearest point that is nearer than `reach`.
-class Nearer {
- public:
-  Nearer(double reach, std::uint32_t none) : point_(none), squared_(reach) {}
-  [[nodiscard]] std::uint32_t point() const { return point_; }
-  [[nodiscard]] double reach() const { return squared_; }
-  void add(double squared, std::uint32_t point) {
-    if (!(squared < squared_ || (found_ && squared == squared_ && point < point_))) return;
-    found_ = true;
-    squared_ = squared;
-    point_ = point;
-  }
-
- private:
-  bool found_ = false;
-  std::uint32_t point_;
-  double squared_;
-};
-
-// All points that are nearer than `reach`, until they are more than `most`.
-class Within {
- public:
-  Within(double reach, std::size_t most, std::vector<std::uint32_t>& index) : reach_(reach), most_(most), index_(index) {}
-  [[nodiscard]] double reach() const { return index_.size() > most_ ? -1 : reach_; }
-  void add(double squared, std::uint32_t point) {
-    if (squared < reach_) index_.push_back(point);
-  }
-
- private:
-  double reach_;
-  std::size_t most_;
-  std::vector<std::uint32_t>& index_;
-};
-
-struct Box {
-  Vec3 low, high;
-};
+// These decide on time alone.
+// A leaf has at most so many points: fewer make more nodes, of more most are looked at in vain.
+constexpr std::size_t kLeaf = 16;
+// A device looks for so many nearest points at most, as it keeps them in registers.
+constexpr std::size_t kMostThere = 64;
+// From so many nearest points on it is faster to sort them at the end than to keep them sorted.
+constexpr std::size_t kMany = 128;
+// From so many leaves on the halves of a node are built by two threads: of fewer, to hand them out takes longer.
+constexpr std::size_t kApart = 1 << 9;
 
 }  // namespace
 
@@ -158,7 +48,7 @@ struct Neighbours::Tree {
   const std::vector<Vec3>& points;
   std::vector<std::uint32_t> order;
   std::vector<Cut> cuts;
-  Box box{};
+  vector::Box box;
 
   explicit Tree(const std::vector<Vec3>& p) : points(p), order(p.size()) {
     std::iota(order.begin(), order.end(), std::uint32_t{0});
@@ -172,20 +62,14 @@ struct Neighbours::Tree {
   [[nodiscard]] Node root() const { return {0, (order.size() + kLeaf - 1) / kLeaf, 0}; }
   [[nodiscard]] std::size_t end_of(const Node& node) const { return std::min(order.size(), node.end * kLeaf); }
 
-  [[nodiscard]] Box box_of(const Node& node) const {
-    Box out{points[order[node.begin * kLeaf]], points[order[node.begin * kLeaf]]};
-    for (std::size_t i = node.begin * kLeaf; i < end_of(node); ++i) {
-      const Vec3& p = points[order[i]];
-      for (std::size_t a = 0; a < 3; ++a) {
-        out.low[a] = std::min(out.low[a], p[a]);
-        out.high[a] = std::max(out.high[a], p[a]);
-      }
-    }
+  [[nodiscard]] vector::Box box_of(const Node& node) const {
+    vector::Box out;
+    for (std::size_t i = node.begin * kLeaf; i < end_of(node); ++i) out.extend(points[order[i]]);
     return out;
   }
 
-  // Where the points in `around` reach farthest.
-  void cut(const Node& node, const Box& around) {
+  // Cuts a node, whose points fill the box `around`, across the longest side of that.
+  void cut(const Node& node, const vector::Box& around) {
     if (node.leaves() < 2) return;
     const Vec3 extent = vector::subtract(around.high, around.low);
     const auto axis = static_cast<std::size_t>(std::max_element(extent.begin(), extent.end()) - extent.begin());
@@ -194,7 +78,7 @@ struct Neighbours::Tree {
     std::nth_element(first, middle, place(end_of(node)),
                      [&](std::uint32_t i, std::uint32_t j) { return points[i][axis] < points[j][axis]; });
     const std::array<Node, 2> halves = {node.before(), node.after()};
-    std::array<Box, 2> boxes{};
+    std::array<vector::Box, 2> boxes;
     const auto go_on = [&](std::size_t half) {
       boxes[half] = box_of(halves[half]);
       cut(halves[half], boxes[half]);
@@ -208,7 +92,7 @@ struct Neighbours::Tree {
     cuts[node.first] = {boxes[0].high[axis], boxes[1].low[axis], axis};
   }
 
-  // Nearest points of all on the device of this thread's call; none where that is the processor, or cannot.
+  // Neighbours::of_all() on the device of this thread's call; empty where that is the processor, or a device that cannot.
   [[nodiscard]] std::vector<std::uint32_t> of_all_there(std::size_t k) const {
     const std::shared_ptr<gpu::Execution> execution = gpu::Execution::current();
     if (execution == nullptr || !execution->usable(true) || !execution->device().rounds_alike() || k == 0 || k > kMostThere) return {};
@@ -234,7 +118,7 @@ struct Neighbours::Tree {
     return found;
   }
 
-  // Shows `found` every point that is no farther from x than it still looks, and some others.
+  // Adds to `found`, one of the classes of found_points.h, all points that are no farther from x than its reach, and some others.
   template <class Found>
   void search(const Vec3& x, Found& found) const {
     if (order.empty()) return;
@@ -286,12 +170,12 @@ void Neighbours::nearest(const Vec3& x, std::size_t k, std::vector<std::uint32_t
   index.resize(k);
   squared.resize(k);
   if (k >= kMany) {
-    ManyNearest found(k);
+    ManyNearestPoints found(k);
     tree_->search(x, found);
     found.sort_into(index.data(), squared.data());
     return;
   }
-  Nearest found(k, index.data(), squared.data());
+  NearestPoints found(k, index.data(), squared.data());
   tree_->search(x, found);
 }
 
@@ -299,14 +183,19 @@ void Neighbours::nearest_marked(const Vec3& x, std::size_t k, const std::vector<
                                 std::vector<double>& squared) const {
   index.resize(k);
   squared.resize(k);
-  NearestMarked found(k, marks, index.data(), squared.data());
+  NearestMarkedPoints found(k, marks, index.data(), squared.data());
   tree_->search(x, found);
   index.resize(found.size());
   squared.resize(found.size());
 }
 
+bool Neighbours::any_within(const Vec3& x, double distance) const {
+  double squared = distance * distance;
+  return nearest(x, squared, UINT32_MAX) != UINT32_MAX;
+}
+
 std::uint32_t Neighbours::nearest(const Vec3& x, double& squared, std::uint32_t none) const {
-  Nearer found(squared, none);
+  NearestWithin found(squared, none);
   tree_->search(x, found);
   squared = found.reach();
   return found.point();
@@ -314,7 +203,7 @@ std::uint32_t Neighbours::nearest(const Vec3& x, double& squared, std::uint32_t 
 
 void Neighbours::within(const Vec3& x, double radius, std::vector<std::uint32_t>& index, std::size_t most) const {
   index.clear();
-  Within found(radius * radius, most, index);
+  AllWithin found(radius * radius, most, index);
   tree_->search(x, found);
 }
 
@@ -327,7 +216,7 @@ std::vector<std::uint32_t> Neighbours::of_all(std::size_t k) const {
   parallel::for_blocks(points.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<double> squared(k);
     for (std::size_t i = begin; i < end; ++i) {
-      Nearest found(k, out.data() + i * k, squared.data());
+      NearestPoints found(k, out.data() + i * k, squared.data());
       tree_->search(points[i], found);
     }
   });

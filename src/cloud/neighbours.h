@@ -27,6 +27,8 @@ class Neighbours {
   /// The point nearest to x among those whose squared distance is less than `squared`, which becomes that of this point; `none` if there is
   /// no such point. The less `squared`, the faster. O(log N).
   [[nodiscard]] std::uint32_t nearest(const Vec3& x, double& squared, std::uint32_t none) const;
+  /// Whether a point is closer to x than `distance`, which is 0 or more. O(log N).
+  [[nodiscard]] bool any_within(const Vec3& x, double distance) const;
   /// All points closer to x than `radius`, in no particular order; where there are more than `most`, more than `most` of them. O(log N +
   /// points found).
   void within(const Vec3& x, double radius, std::vector<std::uint32_t>& index, std::size_t most = SIZE_MAX) const;

@@ -8,6 +8,7 @@
 #include "cloud/layers.h"
 #include "cloud/plane_fit.h"
 #include "cloud/quadratic_patch.h"
+#include "cloud/some_places.h"
 #include "cloud/spacing.h"
 #include "cloud/viewpoint.h"
 #include "cpu/parallel.h"
@@ -23,18 +24,18 @@
 namespace g3r {
 namespace {
 
-// Quantile that shape lifts more than that of the flattest, kFalseAlarms, which are as many as chance may put there; and that of the layers
-// that decides.
+// The share of neighbourhoods that are flat: shape lifts this quantile of their residuals more than that of the flattest, kFalseAlarms,
+// which are as many as chance may make flat. The same quantile of the layers decides.
 constexpr double kFlat = 0.1;
-// In spacings, what height fields through kPatchNeighbours say where noise fills their balls.
+// The scatter in spacings of height fields through kPatchNeighbours points where noise fills their balls, by measurement.
 constexpr double kSaturation = 0.57;
-// Of that, what the flattest say at most of noise: beyond, they tell no more.
+// The share of it up to which the scatter of the flattest tells the noise: above, the layers alone do.
 constexpr double kFilled = 0.75;
-// Values of a rounded coordinate, at least: those of plates and boxes that stand straight are fewer.
+// The values that a rounded coordinate has at least: those of plates and boxes that stand straight have fewer.
 constexpr std::size_t kFewestLevels = 5;
 // Points of neighbourhoods that may hold three layers: fewer do not show them, more reach around the shape.
 constexpr std::size_t kLayerNeighbours = 256;
-// What the quantile kFlat of them says on smooth surfaces, over the noise.
+// The quantile kFlat of the deviations from layers on smooth surfaces, over the noise, by measurement.
 constexpr double kLayerBias = 0.92;
 
 double share_of(std::size_t some, std::size_t all) { return static_cast<double>(some) / static_cast<double>(all); }
@@ -53,13 +54,13 @@ template <typename Value>
 std::vector<double> at_some(const PointSet& set, std::size_t places, std::size_t count, const Value& value) {
   const std::vector<Vec3>& points = set.points();
   const Neighbours& tree = set.tree();
-  const std::size_t step = std::max<std::size_t>(1, points.size() / places);
-  std::vector<double> values((points.size() + step - 1) / step);
+  const SomePlaces some = SomePlaces::at_least(places, points.size());
+  std::vector<double> values(some.size());
   parallel::for_each(values.size(), [&](std::size_t k) {
     std::vector<std::uint32_t> index;
     std::vector<double> squared;
-    tree.nearest(points[k * step], count, index, squared);
-    values[k] = value(points[k * step], index, squared);
+    tree.nearest(points[some[k]], count, index, squared);
+    values[k] = value(points[some[k]], index, squared);
   });
   return values;
 }

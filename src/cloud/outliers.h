@@ -36,8 +36,8 @@ struct Outliers {
 /// any, but under noise; 0 in a set of 64 points or fewer. Looks at about 2000 of them, in O(log N) each.
 [[nodiscard]] double share_in_space(const PointSet& set, const std::vector<std::uint32_t>& some);
 
-/// Takes the points with these indices out of the cloud and returns them. point_of and multiplicity number them after those that stay, and
-/// before those taken out earlier. `others`: Outliers::others, whose neighbours are then known.
+/// Takes the points with these indices (ascending) out of the cloud and returns them. point_of and multiplicity number them after those
+/// that stay, and before those taken out earlier. `others`: Outliers::others, whose neighbours are then known. O(N).
 std::vector<Vec3> remove_points(CanonicalCloud& cloud, const std::vector<std::uint32_t>& indices, const PointSet& others = {});
 
 }  // namespace g3r

@@ -11,9 +11,10 @@
 
 namespace g3r {
 
+/// A plane and how well points lie in it.
 struct PlaneFit {
   Vec3 normal{0, 0, 1};  ///< unit length, either side
-  double residual = 0;   ///< root mean square distance, corrected for kPlaneTerms
+  double residual = 0;   ///< root mean square distance in the unit of the points, corrected for kPlaneTerms
   double flatness = 0;   ///< least principal spread over the middle one: 0 for points in a plane, 1 for a ball
   double breadth = 0;    ///< middle principal spread over the largest one: 0 for points on a line
 };

@@ -18,7 +18,9 @@ struct Views {
   std::vector<std::uint32_t> of_point;  ///< N indices into `places`; empty: all points have been seen from the first
 
   [[nodiscard]] bool known() const { return !places.empty(); }
+  /// Whether all points have been seen from one place.
   [[nodiscard]] bool is_one() const { return known() && of_point.empty(); }
+  /// Where a point has been seen from, if that is known.
   [[nodiscard]] const Vec3& place_of(std::size_t point) const { return places[of_point.empty() ? 0 : of_point[point]]; }
 };
 

@@ -8,14 +8,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-// On the curvatures, relative to the weight of the data: keeps them bounded where points are few.
+// What is added to the weight of the curvatures, relative to that of the data: it keeps them bounded where points are few; more flattens.
 constexpr double kCurvatureRidge = 1e-3;
 
-// Symmetric positive definite, the rows of the lower half one after the other.
+// The numbers of a patch, in the order of QuadraticPatch::c.
+using Numbers = std::array<double, kQuadraticTerms>;
+// A symmetric positive definite matrix over them, the rows of the lower half one after the other.
 using Lower = std::array<double, kQuadraticTerms*(kQuadraticTerms + 1) / 2>;
 
 // Replaces b by the solution x of A x = b, by A = L D L^T.
-void solve(Lower a, std::array<double, kQuadraticTerms>& b) {
+void solve(Lower a, Numbers& b) {
   const auto at = [&](std::size_t i, std::size_t j) -> double& { return a[i * (i + 1) / 2 + j]; };
   for (std::size_t j = 0; j < kQuadraticTerms; ++j) {
     for (std::size_t i = j + 1; i < kQuadraticTerms; ++i) {
@@ -30,6 +32,82 @@ void solve(Lower a, std::array<double, kQuadraticTerms>& b) {
     for (std::size_t i = j + 1; i < kQuadraticTerms; ++i) b[j] -= at(i, j) * b[i];
   }
 }
+
+// The normal equations of a fit. A point at (u, v) with the height z and the slopes s and t asks of the six numbers c that
+//   (1, u, v, u^2, u v, v^2) . c = z,   (0, 1, 0, 2 u, v, 0) . c = s,   (0, 0, 1, 0, u, 2 v) . c = t,
+// so that every entry of the matrix is a sum of moments m_ab = sum w u^a v^b. Of two moments that differ by the exchange of u and v both
+// are summed side by side.
+class NormalEquations {
+ public:
+  // `slope_weight`: of a squared misfit of slopes, beside 1 for that of heights.
+  explicit NormalEquations(double slope_weight) : slope_weight_(slope_weight) {}
+
+  // `q`: u, v and z, `n`: the unit normal, both in the frame of the patch.
+  void add(double weight, const Vector3d& q, const Vector3d& n) {
+    const double up = 1 / std::max(n[2], kSameSide), z = q[2];
+    const Pair uv(q[0], q[1]), vu(q[1], q[0]), slopes = -Pair(n[0], n[1]) * up * slope_weight_;
+    const Pair wuv = weight * uv, wsquare = wuv * uv, wcube = wsquare * uv, wmixed = wsquare * vu;
+    const double product = wuv[0] * q[1];
+    m00_ += weight;
+    m10_m01_ += wuv;
+    m20_m02_ += wsquare;
+    m11_ += product;
+    m30_m03_ += wcube;
+    m21_m12_ += wmixed;
+    m40_m04_ += wcube * uv;
+    m31_m13_ += Pair(wcube[0] * q[1], wmixed[1] * q[1]);
+    m22_ += wmixed[0] * q[1];
+    right_1_ += weight * z;
+    right_u_v_ += wuv * z + weight * slopes;
+    right_u2_v2_ += wsquare * z + 2 * wuv * slopes;
+    right_uv_ += product * z + wuv[1] * slopes[0] + wuv[0] * slopes[1];
+  }
+
+  // The numbers of the patch in units of the fit.
+  [[nodiscard]] Numbers solution() const {
+    Numbers c{right_1_, right_u_v_[0], right_u_v_[1], right_u2_v2_[0], right_uv_, right_u2_v2_[1]};
+    solve(matrix(), c);
+    return c;
+  }
+
+ private:
+  using Pair = Eigen::Array2d;
+
+  [[nodiscard]] Lower matrix() const {
+    const double m10 = m10_m01_[0], m01 = m10_m01_[1], m20 = m20_m02_[0], m02 = m20_m02_[1], m30 = m30_m03_[0], m03 = m30_m03_[1],
+                 m21 = m21_m12_[0], m12 = m21_m12_[1], m40 = m40_m04_[0], m04 = m40_m04_[1], m31 = m31_m13_[0], m13 = m31_m13_[1];
+    const double k = slope_weight_;
+    return {m00_,
+            m10,
+            m20 + (k + kRidge) * m00_,
+            m01,
+            m11_,
+            m02 + (k + kRidge) * m00_,
+            m20,
+            m30 + 2 * k * m10,
+            m21,
+            m40 + 4 * k * m20 + kCurvatureRidge * m00_,
+            m11_,
+            m21 + k * m01,
+            m12 + k * m10,
+            m31 + 2 * k * m11_,
+            m22_ + k * (m20 + m02) + kCurvatureRidge * m00_,
+            m02,
+            m12,
+            m03 + 2 * k * m01,
+            m22_,
+            m13 + 2 * k * m11_,
+            m04 + 4 * k * m02 + kCurvatureRidge * m00_};
+  }
+
+  double slope_weight_;
+  double m00_ = 0, m11_ = 0, m22_ = 0;
+  Pair m10_m01_ = Pair::Zero(), m20_m02_ = Pair::Zero(), m30_m03_ = Pair::Zero(), m21_m12_ = Pair::Zero(), m40_m04_ = Pair::Zero(),
+       m31_m13_ = Pair::Zero();
+  // The right side: sums of w (row . misfit), by the terms 1; u and v; u^2 and v^2; u v.
+  double right_1_ = 0, right_uv_ = 0;
+  Pair right_u_v_ = Pair::Zero(), right_u2_v2_ = Pair::Zero();
+};
 
 }  // namespace
 
@@ -54,61 +132,13 @@ QuadraticPatch fit_quadratic_patch(const std::vector<FitPoint>& points, int whic
   QuadraticPatch s;
   s.origin = mean_p / total;
   s.frame = tangent_frame(mean_n.normalized());
-  // The normal equations from the moments sum w u^a v^b, which all their entries are sums of; pairs of u and v side by side.
-  using Pair = Eigen::Array2d;
-  double m00 = 0, m11 = 0, m22 = 0, right0 = 0, right4 = 0;
-  Pair first = Pair::Zero(), second = first, cube = first, mixed = first, fourth = first, uneven = first, slope = first, curved = first;
+  NormalEquations equations(normal_weight);
   for (const FitPoint& m : points) {
-    if (m.patch != which) continue;
-    const Vector3d q = s.frame * (m.p - s.origin) / h;
-    const Vector3d n = s.frame * m.n;
-    const double w = m.weight, up = 1 / std::max(n[2], kSameSide), z = q[2];
-    const Pair uv(q[0], q[1]), vu(q[1], q[0]), along = -Pair(n[0], n[1]) * up * normal_weight;  // slopes
-    const Pair wuv = w * uv, wsquare = wuv * uv, wcube = wsquare * uv, wmixed = wsquare * vu;
-    const double product = wuv[0] * q[1];
-    m00 += w;
-    first += wuv;       // m10, m01
-    second += wsquare;  // m20, m02
-    m11 += product;
-    cube += wcube;                                      // m30, m03
-    mixed += wmixed;                                    // m21, m12
-    fourth += wcube * uv;                               // m40, m04
-    uneven += Pair(wcube[0] * q[1], wmixed[1] * q[1]);  // m31, m13
-    m22 += wmixed[0] * q[1];
-    right0 += w * z;
-    slope += wuv * z + w * along;
-    curved += wsquare * z + 2 * wuv * along;
-    right4 += product * z + wuv[1] * along[0] + wuv[0] * along[1];
+    if (m.patch == which) equations.add(m.weight, s.frame * (m.p - s.origin) / h, s.frame * m.n);
   }
-  const double m10 = first[0], m01 = first[1], m20 = second[0], m02 = second[1], m30 = cube[0], m03 = cube[1], m21 = mixed[0],
-               m12 = mixed[1], m40 = fourth[0], m04 = fourth[1], m31 = uneven[0], m13 = uneven[1];
-  std::array<double, kQuadraticTerms> right{right0, slope[0], slope[1], curved[0], right4, curved[1]};
-  // Heights have the row (1, u, v, u^2, uv, v^2), slopes along u (0, 1, 0, 2u, v, 0) and along v (0, 0, 1, 0, u, 2v).
-  const double k = normal_weight;
-  const Lower lower{m00,
-                    m10,
-                    m20 + (k + kRidge) * m00,
-                    m01,
-                    m11,
-                    m02 + (k + kRidge) * m00,
-                    m20,
-                    m30 + 2 * k * m10,
-                    m21,
-                    m40 + 4 * k * m20 + kCurvatureRidge * m00,
-                    m11,
-                    m21 + k * m01,
-                    m12 + k * m10,
-                    m31 + 2 * k * m11,
-                    m22 + k * (m20 + m02) + kCurvatureRidge * m00,
-                    m02,
-                    m12,
-                    m03 + 2 * k * m01,
-                    m22,
-                    m13 + 2 * k * m11,
-                    m04 + 4 * k * m02 + kCurvatureRidge * m00};
-  solve(lower, right);
-  const std::array<double, kQuadraticTerms> unit{h, 1, 1, 1 / h, 1 / h, 1 / h};
-  for (std::size_t i = 0; i < kQuadraticTerms; ++i) s.c[i] = right[i] * unit[i];
+  const Numbers solution = equations.solution();
+  const Numbers unit{h, 1, 1, 1 / h, 1 / h, 1 / h};
+  for (std::size_t i = 0; i < kQuadraticTerms; ++i) s.c[i] = solution[i] * unit[i];
   return s;
 }
 

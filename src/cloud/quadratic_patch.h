@@ -52,6 +52,7 @@ struct FitPoint {
 [[nodiscard]] double quadratic_residual(const std::vector<Vec3>& points, const std::uint32_t* index, std::size_t count, const Vec3& normal,
                                         double h);
 
+/// The same three numbers.
 [[nodiscard]] inline Eigen::Vector3d to_eigen(const Vec3& p) { return {p[0], p[1], p[2]}; }
 
 /// Rows: two directions across `n` (unit length), and n; right-handed.

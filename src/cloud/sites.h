@@ -23,6 +23,7 @@ inline constexpr double kBetweenSites = 0.7;
 /// apart than so many spacings, kernels farther apart than so many of their widths, and noisy points than so many sigma.
 inline constexpr double kResolved = 2;
 
+/// A cloud seen at one scale: M sites that stand for its N points. Lengths are in the unit of the points.
 struct Sites {
   double distance = 0;                 ///< least distance between the points that sites begin with; 0: every point is a site
   PointSet set;                        ///< M centroids of the points of each site; the square of side() is the area of a site
@@ -33,7 +34,7 @@ struct Sites {
 
   [[nodiscard]] std::size_t size() const { return set.size(); }
   [[nodiscard]] const std::vector<Vec3>& points() const { return set.points(); }
-  [[nodiscard]] const std::vector<double>& spacing() const { return set.local_spacing(); }
+  [[nodiscard]] const std::vector<double>& spacing() const { return set.local_spacing(); }  ///< M: local, of the sites
   /// The side of the square of surface that a site stands for: its spacing, but that of the sites around it where it is much farther from
   /// them, for the emptiness around a stray point is no surface.
   [[nodiscard]] double side(std::size_t site) const;
@@ -48,18 +49,5 @@ struct Sites {
 /// The same with a distance of its own for every point, N values of which only a few are different: 0 where it is a site itself. The planes
 /// are those through the 12 nearest sites.
 [[nodiscard]] Sites place_sites(const PointSet& set, const std::vector<double>& distance, const std::atomic<bool>* cancel = nullptr);
-
-/// The least distance of sites at which the samples are a surface and not lines: 0, or 1.5, 3, 6 ... typical spacings, such that the median
-/// breadth of the planes is a half or more. Scan lines are a surface only as seen across the gaps between them. Looks at about 2000
-/// places, at fewer where lines would have fewer sites, and around each at 2000 points, of which every 4th, 16th, ... stands for the
-/// others where there are more; 0 where there would be fewer than 30 sites. O(N) for every distance.
-[[nodiscard]] double surface_distance(const PointSet& set, const std::atomic<bool>* cancel = nullptr);
-
-/// N values: of every point the distance of sites at which the samples around it are a surface. That of all where half of the cloud is
-/// lines; else that of each place, as a spinning scanner samples the street in rings and a facade beside it densely: it grows from 0 as
-/// above for the points of the sites around which most planes have a breadth of less than a half, and stays 0 where those of sites 1.5
-/// spacings apart have more. Empty where at most 2 % of the points are lines then, and where lines are wires (are_wires()): they are a
-/// surface everywhere. O(N log N).
-[[nodiscard]] std::vector<double> surface_distances(const PointSet& set, const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace g3r

@@ -5,6 +5,7 @@
 #include "cloud/chance.h"
 #include "cloud/constants.h"
 #include "cloud/exact_plane.h"
+#include "cloud/some_places.h"
 #include "cloud/spacing.h"
 
 #include <algorithm>
@@ -38,10 +39,10 @@ class ViewpointSearch {
  public:
   explicit ViewpointSearch(const PointSet& set) : points_(set.points()), within_(kExactScatter * set.spacing()) {
     std::vector<double> squared;
-    const std::size_t step = std::max<std::size_t>(1, points_.size() / kFewPlaces);
-    for (std::size_t i = 0; i < points_.size(); i += step) {
+    const SomePlaces some = SomePlaces::at_least(kFewPlaces, points_.size());
+    for (std::size_t s = 0; s < some.size(); ++s) {
       Place place;
-      set.tree().nearest(points_[i], kPlaneNeighbours, place.index, squared);
+      set.tree().nearest(points_[some[s]], kPlaneNeighbours, place.index, squared);
       std::vector<std::uint32_t> index = place.index;
       for (int k = 0; k < kMostPlanes; ++k) {
         ExactPlane plane = find_exact_plane(points_, index, set.spacing());
@@ -234,18 +235,18 @@ bool may_be_seen_from(const std::vector<Vec3>& points, const Vec3& place) {
     tree.nearest(sights[i], 2, two, squared);
     return std::sqrt(squared.back());
   };
-  std::size_t looked = 0;
+  const SomePlaces some = SomePlaces::at_least(kFewPlaces, points.size());
   std::size_t too_near = 0;
-  for (std::uint32_t i = 0; i < points.size(); i += std::max<std::uint32_t>(1, static_cast<std::uint32_t>(points.size() / kFewPlaces))) {
+  for (std::size_t s = 0; s < some.size(); ++s) {
+    const auto i = static_cast<std::uint32_t>(some[s]);
     tree.nearest(sights[i], kClosest + 1, index, squared);
     std::vector<double> around;
     for (const std::uint32_t k : index) {
       if (k != i) around.push_back(nearest(k));
     }
-    ++looked;
     too_near += nearest(i) < kClearlyLess * median(around) ? 1 : 0;
   }
-  return static_cast<double>(too_near) <= kFalseAlarms * static_cast<double>(looked);
+  return static_cast<double>(too_near) <= kFalseAlarms * static_cast<double>(some.size());
 }
 
 bool may_be_seen(const std::vector<Vec3>& points, const Views& views) {

@@ -3,6 +3,7 @@
 #include "base/median.h"
 #include "cloud/constants.h"
 #include "cloud/quadratic_patch.h"
+#include "cloud/some_places.h"
 #include "cpu/parallel.h"
 
 #include <Eigen/Eigenvalues>
@@ -46,8 +47,8 @@ AlongLine look_along(const std::vector<Vec3>& points, const std::vector<std::uin
 }  // namespace
 
 bool are_wires(const PointSet& set) {
-  const std::size_t step = std::max<std::size_t>(1, set.size() / kPlaces);
-  std::vector<AlongLine> seen((set.size() + step - 1) / step);
+  const SomePlaces some = SomePlaces::at_least(kPlaces, set.size());
+  std::vector<AlongLine> seen(some.size());
   const Neighbours& tree = set.tree();
   const Vec3 steps = set.rounding_steps();
   const double rounded = std::max({steps[0], steps[1], steps[2]}) * std::numbers::sqrt2 / 2;
@@ -55,7 +56,7 @@ bool are_wires(const PointSet& set) {
     std::vector<std::uint32_t> index;
     std::vector<double> squared;
     for (std::size_t k = begin; k < end; ++k) {
-      tree.nearest(set.points()[k * step], kPatchNeighbours, index, squared);
+      tree.nearest(set.points()[some[k]], kPatchNeighbours, index, squared);
       seen[k] = look_along(set.points(), index, rounded);
     }
   });

@@ -2,6 +2,7 @@
 
 #include "base/median.h"
 #include "base/vector.h"
+#include "cloud/morton.h"
 #include "mesh/held_points.h"
 #include "mesh/point_parts.h"
 #include "mesh/regained_points.h"

@@ -1,6 +1,7 @@
 #include "base/vector.h"
 #include "cloud/canonical_cloud.h"
 #include "cloud/far_points.h"
+#include "cloud/morton.h"
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
 #include "mesh/constants.h"
@@ -20,8 +21,8 @@ namespace {
 
 using Color = std::array<std::uint8_t, 3>;
 
-// The points whose colours are mixed: more would blur, and one would look blocky.
-constexpr std::size_t kPoints = 4;
+// The points whose colours are mixed at a vertex: more would blur, and one would look blocky.
+constexpr std::size_t kLenders = 4;
 
 std::uint8_t rounded(double value) { return static_cast<std::uint8_t>(std::lround(value)); }
 
@@ -117,16 +118,16 @@ class LenderSearch {
   void find(std::size_t vertex, Lenders& out) const {
     const Vec3& x = mesh_.vertices[vertex];
     const auto faces_away = [&](std::uint32_t i) { return vector::dot(carriers_.normals[i], normals_[vertex]) < -mesh::kSlant; };
-    neighbours_.nearest(x, kPoints, out.index, out.squared);
+    neighbours_.nearest(x, kLenders, out.index, out.squared);
     if (normals_.empty() || std::none_of(out.index.begin(), out.index.end(), faces_away)) return;
     neighbours_.nearest(x, mesh::kFitPoints, out.index, out.squared);
     std::size_t kept = 0;
-    for (std::size_t k = 0; k < out.index.size() && kept < kPoints; ++k) {
+    for (std::size_t k = 0; k < out.index.size() && kept < kLenders; ++k) {
       if (faces_away(out.index[k])) continue;
       out.index[kept] = out.index[k];
       out.squared[kept++] = out.squared[k];
     }
-    if (kept == 0) kept = std::min(kPoints, out.index.size());
+    if (kept == 0) kept = std::min(kLenders, out.index.size());
     out.index.resize(kept);
     out.squared.resize(kept);
   }

@@ -4,6 +4,7 @@
 #include "base/vector.h"
 #include "cloud/constants.h"
 #include "cloud/noise.h"
+#include "cloud/some_places.h"
 #include "mesh/constants.h"
 #include "mesh/crossings.h"
 #include "mesh/lines.h"
@@ -26,11 +27,12 @@ std::string two_digits(double value) { return short_number(value, 2); }
 double terrace_step(const PointSet& set, const std::vector<Vec3>& normals, std::size_t axis) {
   const std::vector<Vec3>& points = set.points();
   const double spacing = set.spacing();
-  const std::size_t n = points.size(), stride = set.near_count(), count = std::min(mesh::kRing + 1, stride);
-  const std::size_t every = std::max<std::size_t>(1, n / kPlaces);
+  const std::size_t stride = set.near_count(), count = std::min(mesh::kRing + 1, stride);
+  const SomePlaces some = SomePlaces::at_least(kPlaces, points.size());
   std::size_t pairs = 0, across = 0, single = 0;
   std::vector<double> steps;
-  for (std::size_t i = 0; i < n; i += every) {
+  for (std::size_t s = 0; s < some.size(); ++s) {
+    const std::size_t i = some[s];
     if (std::fabs(normals[i][axis]) < mesh::kAlong) continue;
     const std::uint32_t* const around = set.near().data() + i * stride;
     const auto is_opposite = [&](std::uint32_t j) { return vector::dot(normals[i], normals[j]) < 0; };

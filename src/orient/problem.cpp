@@ -4,6 +4,7 @@
 #include "cloud/noise.h"
 #include "cloud/outliers.h"
 #include "cloud/spacing.h"
+#include "cloud/surface_distance.h"
 #include "cloud/viewpoint.h"
 #include "orient/crowded.h"
 #include "orient/hints.h"
@@ -66,6 +67,68 @@ Views find_views(const CanonicalCloud& cloud, const Hints& hints) {
   return shown ? Views{{*shown}, {}} : Views{};
 }
 
+// The noise that options give, or 0 where none is to be looked for; else nothing.
+std::optional<double> known_noise(const Options& options, const StepSet& without, const CanonicalCloud& cloud, double spacing) {
+  const std::optional<double> given = given_noise(options.noise, cloud, spacing);
+  return given || !contains(without, Step::kNoise) ? given : 0;
+}
+
+// Makes the cloud of the problem: without far points, and without outliers, which are looked for again in a frame of the others where these
+// fill little of it, as far ones may have hidden nearer ones. Returns the noise of what is left, where the search for outliers has found
+// it.
+std::optional<double> make_cloud(const PointsView& points, const std::vector<double>& relative_spacing, const Options& options,
+                                 const StepSet& without, Stages& stages, Problem& problem) {
+  bool outliers_wanted = !contains(without, Step::kOutliers);
+  std::vector<std::uint8_t> left_out;  // of the caller's points, for the frame to resolve the others
+  if (outliers_wanted) left_out = far_points(points);
+  problem.far = static_cast<std::size_t>(std::count(left_out.begin(), left_out.end(), 1));
+  problem.cloud = canonical_cloud(points, left_out, problem.outliers);
+  stages.check();
+  std::optional<double> noise;
+  while (outliers_wanted) {
+    const PointSet& set = problem.cloud.set;
+    Outliers found = find_outliers(set, last_in_canonical_order(problem.cloud, relative_spacing),
+                                   known_noise(options, without, problem.cloud, set.spacing()));
+    noise = found.noise;
+    stages.check();
+    if (found.indices.empty()) break;
+    std::vector<Vec3> removed = remove_points(problem.cloud, found.indices, found.others);
+    problem.outliers.insert(problem.outliers.begin(), removed.begin(), removed.end());
+    outliers_wanted = is_small_in_frame(problem.cloud);
+    if (!outliers_wanted) break;
+    left_out = taken_out(problem.cloud);
+    problem.cloud = canonical_cloud(points, left_out, problem.outliers);
+  }
+  require_not_collinear(problem.cloud.points(), problem.outliers.size());
+  const auto all = static_cast<double>(problem.cloud.size() + problem.outliers.size());
+  problem.outlier_share = static_cast<double>(problem.outliers.size()) / all;
+  return noise;
+}
+
+// Known, brought to the points of the cloud.
+Known known_of_points(const CanonicalCloud& cloud, Known given) {
+  const auto any = [](std::uint8_t a, std::uint8_t b) { return std::max(a, b); };
+  return {last_in_canonical_order(cloud, std::exchange(given.gradient, {})),
+          last_in_canonical_order(cloud, std::exchange(given.relative_spacing, {})),
+          in_canonical_order(cloud, std::exchange(given.wanted, {}), std::uint8_t{0}, any)};
+}
+
+// `found`: what make_cloud() has found.
+void choose_noise(const std::optional<double>& given, const std::optional<double>& found, Problem& problem) {
+  const PointSet& set = problem.cloud.set;
+  const bool is_seen = set.views().known();
+  if (is_seen) problem.direction_noise = given ? *given : largest_scatter(set);
+  problem.noise = given ? *given : found ? *found : estimate_noise(set);
+  if (problem.noise == 0 && !given && !is_seen) problem.direction_noise = fine_noise(set);
+}
+
+void choose_baseline_settings(const Options& options, Problem& problem) {
+  if (!options.wnnc_widths.empty() && options.method != Method::kWnnc) throw InvalidInput("wnnc_widths belong to the method wnnc");
+  if (!is_baseline(options.method)) return;
+  const double epsilon = options.epsilon.unit == Length::Unit::kAuto ? 0 : problem.settings.epsilon.typical();
+  problem.baseline = choose_baseline(options, epsilon, problem.spacing, problem.settings.sums);
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> sensors_of_points(const CanonicalCloud& cloud, const std::vector<std::uint32_t>& sensor_of_point) {
@@ -91,58 +154,22 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
   Problem problem;
   stages.begin("build");
   const StepSet without = steps_left_out(options);
-  bool outliers_wanted = !contains(without, Step::kOutliers);
-  std::vector<std::uint8_t> left_out;  // of the caller's points, for the frame to resolve the others
-  if (outliers_wanted) left_out = far_points(points);
-  problem.far = static_cast<std::size_t>(std::count(left_out.begin(), left_out.end(), 1));
-  problem.cloud = canonical_cloud(points, left_out, problem.outliers);
-  stages.check();
-  const auto known_noise = [&](double spacing) {
-    const std::optional<double> given = given_noise(options.noise, problem.cloud, spacing);
-    return given || !contains(without, Step::kNoise) ? given : 0;
-  };
-  std::optional<double> noise;
-  while (outliers_wanted) {
-    const std::vector<double> relative_spacing = last_in_canonical_order(problem.cloud, known.relative_spacing);
-    Outliers found = find_outliers(problem.cloud.set, relative_spacing, known_noise(problem.cloud.set.spacing()));
-    noise = found.noise;
-    stages.check();
-    if (found.indices.empty()) break;
-    std::vector<Vec3> removed = remove_points(problem.cloud, found.indices, found.others);
-    problem.outliers.insert(problem.outliers.begin(), removed.begin(), removed.end());
-    outliers_wanted = is_small_in_frame(problem.cloud);  // far ones may have hidden nearer ones
-    if (!outliers_wanted) break;
-    left_out = taken_out(problem.cloud);
-    problem.cloud = canonical_cloud(points, left_out, problem.outliers);
-  }
-  require_not_collinear(problem.cloud.points(), problem.outliers.size());
-  const auto all = static_cast<double>(problem.cloud.size() + problem.outliers.size());
-  problem.outlier_share = static_cast<double>(problem.outliers.size()) / all;
+  const std::optional<double> found_noise = make_cloud(points, known.relative_spacing, options, without, stages, problem);
   if (known.gradient.empty() && !contains(without, Step::kViewpoint)) {
     problem.cloud.set.set_views(find_views(problem.cloud, options.hints));
     stages.check();
   }
   const PointSet& set = problem.cloud.set;
-  const auto any = [](std::uint8_t a, std::uint8_t b) { return std::max(a, b); };
-  problem.known = {last_in_canonical_order(problem.cloud, std::exchange(known.gradient, {})),
-                   last_in_canonical_order(problem.cloud, std::exchange(known.relative_spacing, {})),
-                   in_canonical_order(problem.cloud, std::exchange(known.wanted, {}), std::uint8_t{0}, any)};
+  problem.known = known_of_points(problem.cloud, std::move(known));
   problem.spacing = typical_spacing(spacing_before_thinning(set.local_spacing(), problem.known.relative_spacing));
   stages.check();
-  const std::optional<double> given = known_noise(problem.spacing);
-  if (set.views().known()) problem.direction_noise = given ? *given : largest_scatter(set);
-  problem.noise = given ? *given : noise ? *noise : estimate_noise(set);
-  if (problem.noise == 0 && !given && !set.views().known()) problem.direction_noise = fine_noise(set);
+  choose_noise(known_noise(options, without, problem.cloud, problem.spacing), found_noise, problem);
   stages.check();
   if (!contains(without, Step::kSites)) problem.line_distance = surface_distances(set, stages.cancel());
   stages.check();
   choose_scales_and_scatter(problem, options);
   stages.check();
-  if (!options.wnnc_widths.empty() && options.method != Method::kWnnc) throw InvalidInput("wnnc_widths belong to the method wnnc");
-  if (is_baseline(options.method)) {
-    const double epsilon = options.epsilon.unit == Length::Unit::kAuto ? 0 : problem.settings.epsilon.typical();
-    problem.baseline = choose_baseline(options, epsilon, problem.spacing, problem.settings.sums);
-  }
+  choose_baseline_settings(options, problem);
   return problem;
 }
 

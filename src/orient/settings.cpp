@@ -1,7 +1,9 @@
 #include "orient/settings.h"
 
+#include "base/vector.h"
 #include "baselines/baseline.h"
 #include "cloud/chance.h"
+#include "cloud/morton.h"
 #include "cloud/sites.h"
 #include "orient/noise_settings.h"
 
@@ -18,37 +20,42 @@
 namespace g3r {
 namespace {
 
-// The default: energy form. Widths in spacings h.
-constexpr double kCoarsestEpsilon = 0.5;  // without a start: converges faster, finds more sides
-constexpr double kTolerance =
-    2.5e-3;  // of further steps and of least squares too; slats and spokes need this residual; smooth shapes get there in half the steps
+// Width in spacings of the kernels of a solve without a start: it converges faster than with kEpsilon, and finds more sides; wider ones
+// blur thin walls.
+constexpr double kCoarsestEpsilon = 0.5;
+// Relative residual at which solves from eta = 0, further steps and least squares stop: slats and spokes need so little, smooth shapes get
+// there in half of the steps of the schedule.
+constexpr double kTolerance = 2.5e-3;
+// Steps of the energy form from eta = 0, at most: slats need as many, smooth shapes stop at half.
 constexpr const char* kEnergySchedule = "45 cg";
-constexpr const char* kGreenSchedule = "20 cg";  // least squares over the harmonics; more cost time, and change sides for better and worse
-constexpr double kAcceptedResidual = 0.1;        // random points on spheres end at 0.05 after a coarse start, with normals right to 1e-4
-// The polish is one more level on the same points.
-constexpr int kPolishSteps = 5;  // narrow gaps want more, smooth shapes fewer
-// The paper preset.
+// Steps of least squares over the harmonics: more cost time, and change sides for better and worse.
+constexpr const char* kGreenSchedule = "20 cg";
+// Relative residual up to which a solve counts as converged: random points on spheres end at 0.05 after a coarse start, with normals right
+// to 1e-4.
+constexpr double kAcceptedResidual = 0.1;
+// Steps of the polish of clean points: narrow gaps want more, smooth shapes fewer.
+constexpr int kPolishSteps = 5;
+// The paper's width of the mollifier, in sides of its smallest leaves.
 constexpr double kPaperLeafFactor = 0.8;
-constexpr double kPaperLeastEpsilon = 0.15;  // h; below, 80 iterations are far from converged (random samples have very close pairs)
+// The least of it in spacings: below, 80 iterations are far from converged, as random samples have very close pairs.
+constexpr double kPaperLeastEpsilon = 0.15;
+// The paper's iterations.
 constexpr const char* kPaperSchedule = "20 sd 60 cg";
-constexpr std::size_t kPaperDensePoints = 500;  // "small N": seconds, not minutes
+// Points up to which the paper preset takes the dense solver, the paper's "small N": it takes seconds with so many, and minutes with more.
+constexpr std::size_t kPaperDensePoints = 500;
+// Highest degree of the harmonics of the method green where none is given.
 constexpr int kDefaultDegree = 2;
 
-// Not automatic, in the cloud's frame.
+// A length that is not automatic, in the cloud's frame.
 double in_frame(const Length& length, const CanonicalCloud& cloud, double spacing) {
   switch (length.unit) {
     case Length::Unit::kInput:
       return cloud.frame.length_to_unit(length.value);
     case Length::Unit::kPercent: {
-      Vec3 low = cloud.points().front();
-      Vec3 high = low;
-      for (const Vec3& p : cloud.points()) {
-        for (std::size_t a = 0; a < 3; ++a) {
-          low[a] = std::min(low[a], p[a]);
-          high[a] = std::max(high[a], p[a]);
-        }
-      }
-      return length.value / 100 * std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
+      vector::Box box;
+      for (const Vec3& p : cloud.points()) box.extend(p);
+      const Vec3 diagonal = vector::subtract(box.high, box.low);
+      return length.value / 100 * std::hypot(diagonal[0], diagonal[1], diagonal[2]);
     }
     case Length::Unit::kSpacing:
       return length.value * spacing;
@@ -69,7 +76,7 @@ Method method_of(const Options& options) {
   return options.preset == Preset::kPaper || harmonics_given ? Method::kGreen : Method::kEnergy;
 }
 
-// What contradicts itself, whatever the cloud.
+// Throws for options that contradict each other, whatever the cloud.
 void require_sound(const Options& options) {
   const bool harmonics_given = options.degree >= 0 || !options.harmonics.empty();
   const bool green = method_of(options) == Method::kGreen;
@@ -101,7 +108,7 @@ void choose_equations(const Options& options, std::size_t points, Settings& s) {
   require(!s.condition_number || s.dense, "the condition number is that of the dense system: set the solver to dense");
 }
 
-// Of clean points.
+// The widths for clean points, which follow_noise() changes.
 void choose_widths(const Options& options, const CanonicalCloud& cloud, Settings& s) {
   const bool paper = options.preset == Preset::kPaper;
   const bool automatic = options.epsilon.unit == Length::Unit::kAuto;

@@ -4,11 +4,12 @@
 #include "cloud/constants.h"
 #include "cloud/exact_plane.h"
 #include "cloud/heights.h"
-#include "cloud/layers.h"
 #include "cloud/neighbours.h"
 #include "cloud/noise.h"
 #include "cloud/quadratic_patch.h"
+#include "cloud/some_places.h"
 #include "cloud/spacing.h"
+#include "cloud/two_layers.h"
 #include "orient/certified_sides.h"
 
 #include <algorithm>
@@ -19,8 +20,8 @@
 namespace g3r {
 namespace {
 
-// Site spacings: deviations from a height field below it are rounding, of which ratios say nothing.
-constexpr double kExact = 0.01;
+// Site spacings up to which deviations from a height field count as rounding, of which ratios say nothing.
+constexpr double kRoundedDeviation = 0.01;
 
 // Calls visit(site, its `count` nearest points in canonical order) for `places` to twice as many of the members.
 template <typename Visit>
@@ -28,10 +29,12 @@ void for_some(const PointSet& set, const Sites& sites, const std::vector<std::ui
               Visit visit) {
   std::vector<std::uint32_t> index;
   std::vector<double> squared;
-  for (std::size_t k = 0; k < members.size(); k += std::max<std::size_t>(1, members.size() / places)) {
-    set.tree().nearest(sites.points()[members[k]], count, index, squared);
+  const SomePlaces some = SomePlaces::at_least(places, members.size());
+  for (std::size_t k = 0; k < some.size(); ++k) {
+    const std::uint32_t site = members[some[k]];
+    set.tree().nearest(sites.points()[site], count, index, squared);
     std::sort(index.begin(), index.end());
-    visit(members[k], index);
+    visit(site, index);
   }
 }
 
@@ -55,7 +58,7 @@ void for_gains(const PointSet& set, const Sites& sites, const std::vector<std::u
     const Vec3 axis = axis_at(set, sites, s);
     const double one = quadratic_residual(points, index.data(), index.size(), axis, spacing);
     const TwoLayers two = fit_two_layers(points, index.data(), index.size(), axis);
-    const double exact = kExact * spacing;
+    const double exact = kRoundedDeviation * spacing;
     const bool thin = two.gap > 0 && two.gap < kResolved * spacing;
     double rounding = 0;
     for (std::size_t a = 0; a < 3; ++a) rounding += std::abs(axis[a]) * steps[a];

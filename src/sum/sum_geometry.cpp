@@ -1,6 +1,6 @@
 #include "sum/sum_geometry.h"
 
-#include "cloud/canonical_cloud.h"
+#include "cloud/morton.h"
 #include "cpu/parallel.h"
 #include "expansions/expansions.h"
 

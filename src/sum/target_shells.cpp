@@ -1,6 +1,6 @@
 #include "sum/target_shells.h"
 
-#include "cloud/canonical_cloud.h"
+#include "cloud/morton.h"
 #include "cpu/parallel.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // Arithmetic on the Morton codes of the cells of one level.
 #pragma once
 
-#include "cloud/canonical_cloud.h"
+#include "cloud/morton.h"
 
 #include <algorithm>
 #include <array>

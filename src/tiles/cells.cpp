@@ -1,6 +1,7 @@
 #include "tiles/cells.h"
 
 #include "base/disjoint_sets.h"
+#include "cloud/morton.h"
 #include "tiles/cell_codes.h"
 
 #include <algorithm>

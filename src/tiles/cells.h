@@ -1,7 +1,7 @@
 // The cells of one level of the Morton grid that hold points, and what lies around a tile in them.
 #pragma once
 
-#include "cloud/canonical_cloud.h"
+#include "cloud/morton.h"
 
 #include <array>
 #include <cstddef>

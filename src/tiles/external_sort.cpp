@@ -1,6 +1,7 @@
 #include "tiles/external_sort.h"
 
 #include "base/platform.h"
+#include "cloud/morton.h"
 #include "cpu/parallel_sort.h"
 #include "io/output_file.h"
 

@@ -1,6 +1,7 @@
 #include "tiles/manifest.h"
 
 #include "base/platform.h"
+#include "cloud/morton.h"
 #include "io/output_file.h"
 #include "io/source.h"
 #include "tiles/records.h"

@@ -1,5 +1,6 @@
 // Pass 1.
 #include "base/vector.h"
+#include "cloud/morton.h"
 #include "io/output_file.h"
 #include "tiles/mesh_passes.h"
 

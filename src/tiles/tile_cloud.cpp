@@ -1,5 +1,6 @@
 #include "tiles/tile_cloud.h"
 
+#include "cloud/morton.h"
 #include "io/output_file.h"
 
 #include <algorithm>
