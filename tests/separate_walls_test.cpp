@@ -38,8 +38,8 @@ struct Separated {
 
 // Kernels are as wide as the square of the noise asks for.
 TEST(Narrower, TwiceHalvesTheSquareOfTheNoiseTwoRootsAtATime) {
-  EXPECT_DOUBLE_EQ(std::pow(narrower(0.3) / 0.3, 2), std::sqrt(0.5));
-  EXPECT_DOUBLE_EQ(narrower(narrower(narrower(narrower(0.3)))), 0.15);
+  EXPECT_DOUBLE_EQ(std::pow(next_hidden_noise(0.3) / 0.3, 2), std::sqrt(0.5));
+  EXPECT_DOUBLE_EQ(next_hidden_noise(next_hidden_noise(next_hidden_noise(next_hidden_noise(0.3)))), 0.15);
 }
 
 // Walls of 3.6 sigma, 5.4 sigma apart, under noise of 0.55 spacings.
@@ -47,7 +47,7 @@ TEST(SeparateWalls, FindsMoreSidesOfPlatesThatMerge) {
   shapes::Surface s = shapes::plates(6, 0.65, 2, 3, 0.02);
   shapes::scatter(s, 0.55 * 0.02);
   const Separated plates(s, 0.55 * 0.02);
-  EXPECT_LT(plates.noise_after, narrower(plates.noise_before) * (1 + 1e-12));
+  EXPECT_LT(plates.noise_after, next_hidden_noise(plates.noise_before) * (1 + 1e-12));
   EXPECT_GT(plates.right_after, plates.right_before + 0.05);
   EXPECT_EQ(plates.said_after, plates.said_before);  // the noise of the points, not what kernels hide
 }

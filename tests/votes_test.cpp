@@ -89,13 +89,13 @@ TEST(Votes, SayWhatShareIsAgainstAndNothingEdgeOn) {
   }
   EXPECT_DOUBLE_EQ(votes.total(), 2);
   EXPECT_DOUBLE_EQ(votes.share_against(), 0.25);
-  EXPECT_TRUE(votes.count());
+  EXPECT_TRUE(votes.say_something());
   Votes edge_on;
   for (int i = 0; i < 100; ++i) {
     edge_on.add(1e-9);  // of a float, rounding alone is more
     ++edge_on.points;
   }
-  EXPECT_FALSE(edge_on.count());
+  EXPECT_FALSE(edge_on.say_something());
 }
 
 }  // namespace

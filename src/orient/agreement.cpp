@@ -19,7 +19,8 @@ namespace {
 
 using vector::dot;
 
-constexpr std::size_t kAdjacent = 10;  // nearest sites that a site is connected with: 12 lead from a thin wall to the next under noise
+// The nearest sites that a site is connected with: 12 lead from a thin wall to the next under noise.
+constexpr std::size_t kAdjacent = 10;
 
 // What is far, of sites `reach` apart: twice what separates walls. Longer edges cross gaps, and where sides do not agree a field so wide
 // sees what is around; wider ones turn the rims of small surfaces.

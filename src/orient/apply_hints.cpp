@@ -41,8 +41,8 @@ Patches patches_of(const OpenSurfaces& surfaces) {
   return patches;
 }
 
-// Whether they say which side is seen, or is outside.
-bool vote(const Hints& hints) { return hints.up || !hints.sensors.empty() || !hints.inside.empty() || hints.seen_from_inside; }
+// Whether hints say of any side that it is seen, or is outside.
+bool have_votes(const Hints& hints) { return hints.up || !hints.sensors.empty() || !hints.inside.empty() || hints.seen_from_inside; }
 
 // Shares, with what views have decided before any vote: sides that they turned, or all, where these come from the lines of sight alone.
 void count_sides(const HintEffect& effect, const Problem& problem, const Solution& solution, bool flip, HintStats& hints) {
@@ -79,7 +79,7 @@ void warn(const HintEffect& effect, const Hints& given, bool any_open, Stats& st
 void warn_of_choices(const OpenSurfaces& surfaces, const Hints& given, Stats& stats) {
   if (stats.undecided_share == 0) return;
   std::string side;
-  if (vote(given)) {
+  if (have_votes(given)) {
     side = given.flip ? "the other hints left as it was and --flip turned" : "the hints left as it was";
   } else {
     bool any_bends = false;
@@ -110,7 +110,7 @@ void apply_hints(const Problem& problem, const Options& options, Solution& solut
   Patches patches = patches_of(solution.open_surfaces);
   patches.seen = views.known() && hints.sensors == views.places;
   HintEffect effect;
-  if (vote(hints) || hints.flip) {
+  if (have_votes(hints) || hints.flip) {
     const SidedPoints sided{solution.refinement.normals, solution.eta, confidence};
     effect = follow_hints({problem.cloud.points(), problem.cloud.set.near(), problem.spacing, patches, hints, sided}, cancel);
   }

@@ -9,7 +9,7 @@
 
 namespace g3r {
 
-/// A problem, its solution and what there is to say of them.
+/// A problem, its solution, and the statistics of both.
 struct Attempt {
   Problem problem;
   Oriented oriented;

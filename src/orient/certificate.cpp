@@ -24,9 +24,11 @@ namespace {
 constexpr std::size_t kProbes = kScales + 1;
 double distance_of(std::size_t probe) { return std::ldexp(1.0, static_cast<int>(probe)); }
 
-constexpr double kOnSurface = 0.5;  // the winding number there, by mathematics
-// Spacings between a probe and any site, so that the field there knows of no single ones; the probe's own may be at 2.
-constexpr double kApart = 1.9;
+// The winding number on a surface, by mathematics.
+constexpr double kOnSurface = 0.5;
+// Spacings from any site from which a probe is quiet, so that the field there knows of no single ones: with 2 the probe's own site, which
+// is at 2 by rounding, would count against it.
+constexpr double kQuiet = 1.9;
 
 // The field of the sites with the normals of several hypotheses, at probes on either side of them. It has the width of the equations:
 // single sites are not seen at the nearest probes, walls of a spacing are.
@@ -77,7 +79,7 @@ class Probed {
   std::vector<Vec3> axis_;  // on the side of the first hypothesis
 };
 
-// What one distance adds to the mean over all of |1 - jump|, of the field times a factor.
+// Adds to the mean over all distances of |1 - jump| that of one, of the field times a factor.
 void add_defects(const std::vector<double>& w, double factor, std::vector<double>& defect) {
   const std::size_t count = defect.size();
   for (std::size_t i = 0; i < count; ++i) defect[i] += std::abs(1 - factor * (w[i] - w[count + i])) / static_cast<double>(kScales);
@@ -90,12 +92,60 @@ std::vector<std::uint8_t> are_own(const Sites& sites, const std::vector<Vec3>& p
   std::vector<std::uint8_t> own(probes.size());
   parallel::for_blocks(probes.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      const double apart = kClearlyLess * distance * sites.spacing()[k % count];
-      double squared = apart * apart;
-      own[k] = tree.nearest(probes[k], squared, UINT32_MAX) == UINT32_MAX ? 1 : 0;
+      own[k] = tree.any_within(probes[k], kClearlyLess * distance * sites.spacing()[k % count]) ? 0 : 1;
     }
   });
   return own;
+}
+
+// Which of the probes so many spacings beside the sites are quiet, and no farther away than `reach`, one for each site.
+std::vector<std::uint8_t> are_quiet(const Sites& sites, const std::vector<Vec3>& probes, double distance,
+                                    const std::vector<double>& reach) {
+  const std::size_t count = sites.size();
+  const std::vector<double>& spacing = sites.spacing();
+  const Neighbours& tree = sites.set.tree();
+  std::vector<std::uint8_t> quiet(probes.size(), 0);
+  parallel::for_blocks(probes.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const double h = spacing[k % count];
+      quiet[k] = distance * h <= reach[k % count] && !tree.any_within(probes[k], kQuiet * h) ? 1 : 0;
+    }
+  });
+  return quiet;
+}
+
+// The field at the probes of one distance.
+struct AtDistance {
+  std::vector<double> winding;
+  std::vector<std::uint8_t> is_quiet;  // of the probes; empty: none is
+};
+
+// Areas are known up to a factor near 1, those of points that scatter are too large, of a grid too small: inside, w is 1. The factor that
+// makes it so; 1 where no quiet probe is inside.
+double factor_of_areas(const std::array<AtDistance, kProbes>& field) {
+  std::vector<double> inside;
+  for (const AtDistance& at : field) {
+    for (std::size_t k = 0; k < at.is_quiet.size(); ++k) {
+      if (at.is_quiet[k] != 0 && at.winding[k] > kOnSurface) inside.push_back(at.winding[k]);
+    }
+  }
+  return inside.empty() ? 1 : 1 / median(inside);
+}
+
+// Certificate::unrest of `count` sites.
+std::vector<double> unrest_of(const std::array<AtDistance, kProbes>& field, double factor, std::size_t count) {
+  std::vector<double> unrest(count, 0);
+  std::vector<double> quiet(count, 0);
+  for (const AtDistance& at : field) {
+    for (std::size_t k = 0; k < at.is_quiet.size(); ++k) {
+      if (at.is_quiet[k] == 0) continue;
+      const double value = factor * at.winding[k];
+      unrest[k % count] += std::min(std::abs(value), std::abs(1 - value));
+      ++quiet[k % count];
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i) unrest[i] = quiet[i] > 0 ? unrest[i] / quiet[i] : -1;
+  return unrest;
 }
 
 }  // namespace
@@ -128,52 +178,24 @@ JumpDefects jump_defects(const Sites& sites, std::vector<std::vector<Vec3>> hypo
 Certificate certify(const Sites& sites, const std::vector<Vec3>& normals, const std::vector<double>& reach, const SumPlan& sums,
                     const std::atomic<bool>* cancel) {
   const std::size_t count = sites.size();
-  const std::vector<double>& spacing = sites.spacing();
-  const Neighbours& tree = sites.set.tree();
   const Probed probed(sites, {normals}, sums, cancel);
   Certificate out;
   out.jump.assign(count, -HUGE_VAL);
   out.jump_defect.assign(count, 0);
   out.scaled_defect.assign(count, 0);
-  out.unrest.assign(count, 0);
-  std::vector<double> quiet(count, 0);
-  std::array<std::vector<double>, kProbes> w;
-  std::vector<std::uint8_t> is_quiet(2 * count * kProbes, 0);
+  std::array<AtDistance, kProbes> field;
   for (std::size_t d = 0; d < kProbes; ++d) {
     const std::vector<Vec3> probes = probed.at(distance_of(d));
-    w[d] = std::move(probed.windings(probes).front());
-    if (d < kScales) {
-      add_defects(w[d], 1, out.jump_defect);
-      for (std::size_t i = 0; i < count; ++i) out.jump[i] = std::max(out.jump[i], w[d][i] - w[d][count + i]);
-    }
-    if (d == 0) continue;  // its own site is too near
-    parallel::for_blocks(2 * count, parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) {
-        const double apart = kApart * spacing[k % count];
-        double squared = apart * apart;
-        if (distance_of(d) * spacing[k % count] > reach[k % count]) continue;
-        is_quiet[2 * count * d + k] = tree.nearest(probes[k], squared, UINT32_MAX) == UINT32_MAX ? 1 : 0;
-      }
-    });
+    field[d].winding = std::move(probed.windings(probes).front());
+    const std::vector<double>& w = field[d].winding;
+    if (d > 0) field[d].is_quiet = are_quiet(sites, probes, distance_of(d), reach);  // at the first its own site is too near
+    if (d >= kScales) continue;
+    add_defects(w, 1, out.jump_defect);
+    for (std::size_t i = 0; i < count; ++i) out.jump[i] = std::max(out.jump[i], w[i] - w[count + i]);
   }
-  // Areas are known up to a factor near 1, those of points that scatter are too large, of a grid too small: inside, w is 1.
-  std::vector<double> inside;
-  for (std::size_t d = 0; d < kProbes; ++d) {
-    for (std::size_t k = 0; k < 2 * count; ++k) {
-      if (is_quiet[2 * count * d + k] != 0 && w[d][k] > kOnSurface) inside.push_back(w[d][k]);
-    }
-  }
-  const double factor = inside.empty() ? 1 : 1 / median(inside);
-  for (std::size_t d = 0; d < kScales; ++d) add_defects(w[d], factor, out.scaled_defect);
-  for (std::size_t d = 0; d < kProbes; ++d) {
-    for (std::size_t k = 0; k < 2 * count; ++k) {
-      if (is_quiet[2 * count * d + k] == 0) continue;
-      const double value = factor * w[d][k];
-      out.unrest[k % count] += std::min(std::abs(value), std::abs(1 - value));
-      ++quiet[k % count];
-    }
-  }
-  for (std::size_t i = 0; i < count; ++i) out.unrest[i] = quiet[i] > 0 ? out.unrest[i] / quiet[i] : -1;
+  const double factor = factor_of_areas(field);
+  for (std::size_t d = 0; d < kScales; ++d) add_defects(field[d].winding, factor, out.scaled_defect);
+  out.unrest = unrest_of(field, factor, count);
   return out;
 }
 

@@ -25,14 +25,14 @@ inline constexpr double kUnrest = 0.08;
 /// O(N).
 [[nodiscard]] std::vector<double> concentration(const Sites& sites, const std::vector<Vec3>& normals);
 
-/// How far the certificate of the given normals shows the sides of the points to be right, N values in 0..1: J (1 - (u / kUnrest)^2), u the
-/// mean unrest of their part, as what is as restless as an open surface is not shown to be closed, and nothing else says that its sides are
-/// right; J = max(0, jump of the site). Where walls are too close for the sampling the field does not jump from 0 to 1, whatever the sides.
-/// J is the largest jump, and 1 - scaled_defect where sites are thinned for noise, which makes layers of single wrong patches. Under noise
-/// (`exact` is false) it counts R times, R the concentration(): two walls closer together than 4 sigma are one site or two neighbours, and
-/// which normal is whose is chance. Points that face the other way than the mean of their site have 0, and so have those of exact parts of
-/// fewer than 30 sites (kFewestSites): such patches are not tested for being open, and their fields jump as those of closed surfaces do.
-/// O(N).
+/// How far the certificate of the given normals shows the sides of the points to be right, N values in 0..1: J (1 - (u / U)^2), u the mean
+/// unrest of their part, U at most, which is unrest_of_open(), as what is as restless as an open surface is not shown to be closed, and
+/// nothing else says that its sides are right; J = max(0, jump of the site), 1 at most. Where walls are too close for the sampling the
+/// field does not jump from 0 to 1, whatever the sides. J is the largest jump, and 1 - scaled_defect where sites are thinned for noise,
+/// which makes layers of single wrong patches. Under noise (`exact` is false) it counts R times, R the concentration(): two walls closer
+/// together than 4 sigma are one site or two neighbours, and which normal is whose is chance. Points that face the other way than the mean
+/// of their site have 0, and so have those of exact parts of fewer than 30 sites (kFewestSites): such patches are not tested for being
+/// open, and their fields jump as those of closed surfaces do. O(N).
 [[nodiscard]] std::vector<float> certified_sides(const SiteParts& parts, const Certificate& certificate, const std::vector<Vec3>& normals,
                                                  bool exact);
 

@@ -43,7 +43,7 @@ bool spans_cloud(const HintedCloud& cloud) {
 
 bool is_inside(double winding) { return winding >= kInsideWinding; }
 
-// Share of the sensors that stand inside closed parts. Of many, which are along a path, every so-manieth tells.
+// Share of the sensors that stand inside closed parts: of many, which are along a path, 500 at most stand for all.
 double share_of_sensors_inside(const HintedCloud& cloud, const std::atomic<bool>* cancel) {
   const std::vector<Vec3>& sensors = cloud.hints.sensors;
   if (sensors.empty()) return 0;

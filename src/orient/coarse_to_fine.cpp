@@ -20,7 +20,8 @@
 namespace g3r {
 namespace {
 
-const double kCoarseShare = 1.0 / (1 + kTwiceAsFar);  // of the progress bar: a quarter of the points beside all
+// The share of the progress bar that the coarser levels of a level take: a quarter of the points, beside all.
+const double kCoarseShare = 1.0 / (1 + kTwiceAsFar);
 
 Settings coarser(Settings settings) {
   settings.spacing *= kLevelRatio;
@@ -64,9 +65,7 @@ std::vector<Vec3> quarter_of(const LevelCloud& cloud) {
 }
 
 std::vector<double> spacing_of(const LevelCloud& cloud, const Settings& settings) {
-  std::vector<double> spacing = cloud.relative_spacing;
-  for (double& h : spacing) h *= settings.spacing;
-  return spacing;
+  return scaled(settings.spacing, cloud.relative_spacing);
 }
 
 // A sum of kernels of this width.
@@ -107,12 +106,12 @@ bool is_mostly_open(const LevelCloud& cloud, const Settings& settings, const std
   return is_majority(all - static_cast<double>(closed), all);
 }
 
-// What a solve starts from, how long it goes on, and whom it tells.
+// What a solve starts from, and how long it goes on.
 struct Course {
-  std::vector<Vec3> start;
+  std::vector<Vec3> start;  // area vectors; empty: zeros
   std::vector<Steps> schedule;
-  double tolerance = 0;
-  std::function<void(int, int, double)> observe;
+  double tolerance = 0;                           // relative residual at which it ends earlier
+  std::function<void(int, int, double)> observe;  // called after every step with its number, that of all, and the residual
 };
 
 // Area vectors by settings.method.

@@ -17,7 +17,8 @@ using Eigen::Vector3d;
 // Spacings, standard deviation of the heights about a jet: more takes rough surfaces for smooth ones.
 constexpr double kScatter = 0.007;
 
-bool spread_out(const std::vector<FitPoint>& members, const Vector3d& normal) {
+// Whether the members lie around a place in the plane across the normal, and not along a line.
+bool is_spread_out(const std::vector<FitPoint>& members, const Vector3d& normal) {
   const Eigen::Matrix3d frame = tangent_frame(normal);
   Vector3d mean = Vector3d::Zero();
   for (const FitPoint& m : members) mean += m.p / static_cast<double>(members.size());
@@ -58,7 +59,7 @@ std::vector<std::uint8_t> fit_jets(const PointSet& set, std::vector<Vec3>& norma
         if (n.dot(normal) <= kSamePatch) continue;
         members.push_back({d, n, std::exp(-d.squaredNorm() * scale), 0});
       }
-      if (members.size() <= kQuadraticTerms || !spread_out(members, normal)) continue;
+      if (members.size() <= kQuadraticTerms || !is_spread_out(members, normal)) continue;
       const QuadraticPatch patch = fit_quadratic_patch(members, 0, spacing[i], 0);
       if (residual(patch, members) > kScatter * spacing[i]) continue;
       Vector3d fitted;

@@ -59,7 +59,7 @@ Attempt with_best_noise(Attempt first, const PointsView& points, const Options& 
     if (has_walls && other.noise > best.problem.noise) continue;
     Attempt tried = attempt(with_noise(best.problem, other.noise, options), points, options, stages);
     const double most = std::min(other.most_doubt * doubt, best.oriented.doubt);
-    const bool merges_walls = narrower(other.noise) > hidden_anyway && tried.oriented.about_walls.may_be_two_walls();
+    const bool merges_walls = next_hidden_noise(other.noise) > hidden_anyway && tried.oriented.about_walls.may_be_two_walls();
     if (tried.oriented.doubt <= most && !merges_walls) best = std::move(tried);
   }
   return best;

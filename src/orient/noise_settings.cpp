@@ -12,22 +12,23 @@
 namespace g3r {
 namespace {
 
-// The default on noisy input, sigma in spacings h: the field must not see single points. Kernels of a given number of sigma hide the
-// scatter of points, and blur walls as thin as that; below a spacing fewer points share the scatter, and walls matter more. So the width
-// grows with the square of sigma first and in proportion later, w = A s^2 / hypot(s, 1) for s = sigma / h, with A the noise's
-// whole breadth in the end, kNoiseBreadth: more blurs walls, less turns shells in cavities.
-// Raw solutions fit the noise with every step, and the more noise there is the sooner: h / sigma times this many steps.
+// Steps of the first solve times sigma / h: every step fits the noise more, and the more noise there is the sooner.
 constexpr double kStepsPerNoise = 7;
-// Noise turns the normal of a patch of side s by about sigma h / s^2: widths in proportion to sqrt(sigma h) leave one accuracy. Those in
-// proportion to sigma hide the scatter, without which shells in cavities turn. Between the two, with this power of sigma / h:
+// The power of sigma / h that the widths of the polish are in proportion to. Noise turns the normal of a patch of side s by about
+// sigma h / s^2, so that the power 1/2 leaves one accuracy; the power 1 hides the scatter, without which shells in cavities turn.
 constexpr double kNoisyPolishPower = 0.6;
-constexpr double kNoisyPolishEpsilon = 1.95;  // h; 1.8 and the power 1/2 leave more sides of thin walls right, and turn shells
-constexpr double kNoisyPolishWidth = 2.4;     // h
-// The single layer at the middle of a flat disk of area h^2: kernels this wide leave out most of the term of a point and itself, and
-// without it the polish turns shells in cavities.
-const double kFlatPatch = std::numbers::inv_sqrtpi / 2;  // 1/h
+// Width in spacings of the kernels of the polish at sigma = h: 1.8 and the power 1/2 leave more sides of thin walls right, and turn shells.
+constexpr double kNoisyPolishEpsilon = 1.95;
+// Width in spacings of the refinement after the polish at sigma = h.
+constexpr double kNoisyPolishWidth = 2.4;
+// The single layer, times h, at the middle of a flat disk of area h^2: kernels this wide leave out most of the term of a point and itself,
+// and without it the polish turns shells in cavities.
+const double kFlatPatch = std::numbers::inv_sqrtpi / 2;
 
-// Width in spacings of the kernels that hide this noise, in spacings too.
+// Width in spacings of the kernels that hide this noise, in spacings too: the field must not see single points. Kernels of a given number
+// of sigma hide the scatter of points, and blur walls as thin as that; below a spacing fewer points share the scatter, and walls matter
+// more. So the width grows with the square of sigma first and in proportion later, w = A s^2 / hypot(s, 1) for s = sigma / h, with A the
+// noise's whole breadth in the end, kNoiseBreadth: more blurs walls, less turns shells in cavities.
 double noisy_width(double noise) { return kNoiseBreadth * noise * noise / std::hypot(noise, 1); }
 
 // Widths and weights of the polish for noise of this many spacings.

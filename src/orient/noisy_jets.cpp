@@ -1,5 +1,6 @@
 #include "orient/noisy_jets.h"
 
+#include "base/median.h"
 #include "cloud/chance.h"
 #include "cloud/constants.h"
 #include "cloud/quadratic_patch.h"
@@ -17,8 +18,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Of the reach, how far from its middle a fit speaks for others: it serves the points up to there, and their normals, which are those of a
-// smooth field already, weigh as much as heights there. Less leaves noise, more blurs.
+// The share of its reach up to which a fit serves the points around its middle, and at which slopes weigh as much as heights: the normals
+// of those points are those of a smooth field already. Less leaves noise, more blurs.
 constexpr double kShared = 0.25;
 
 struct Fit {
@@ -46,9 +47,7 @@ class Fitter {
       if (std::isfinite(found)) scatter_.push_back(found);
     }
     if (scatter_.empty()) return;
-    const auto middle = scatter_.begin() + static_cast<std::ptrdiff_t>(scatter_.size() / 2);
-    std::nth_element(scatter_.begin(), middle, scatter_.end());
-    noise_ = std::min(*middle, noise_);
+    noise_ = std::min(median(scatter_), noise_);
   }
 
   // The widest fit at point i whose normal agrees with those of the narrower ones; none where there is no noise.

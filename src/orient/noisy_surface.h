@@ -20,8 +20,8 @@ namespace g3r {
 /// returns whether it did.
 bool polish_projected(const Problem& problem, const Options& options, Stages& stages, Solution& solution);
 
-/// The last word on the directions of a noisy cloud (fit_noisy_jets), and planes where facets scatter by all of the noise. Nothing happens
-/// without noise, and to earlier methods and the paper's.
+/// The final directions of a noisy cloud: those of fit_noisy_jets(), and of planes where facets scatter by all of the noise. Nothing
+/// happens without noise, and to earlier methods and the paper's. O(N). Throws Cancelled.
 void fit_noisy_surface(const Problem& problem, Stages& stages, Solution& solution);
 
 }  // namespace g3r

@@ -21,10 +21,11 @@ namespace {
 
 using vector::dot;
 
-// Mean jump defect, under noise, of a part whose sides change from site to site, or of two walls; without noise kMostOf.
+// Mean jump defect from which the sides of a part under noise are not those of a closed surface: they change from site to site, or it is
+// two walls. Without noise it is kMostOf.
 constexpr double kNoJumpNoisy = 0.8;
 
-bool any(const std::vector<std::uint8_t>& parts) {
+bool is_any_marked(const std::vector<std::uint8_t>& parts) {
   return std::any_of(parts.begin(), parts.end(), [](std::uint8_t part) { return part != 0; });
 }
 
@@ -49,7 +50,7 @@ struct Verdict {
 
 // From the field of the given normals. A part that is closed but for a place may be open all the same, as an object is that stands on a
 // table.
-Verdict suspect(const SiteParts& parts, const Given& given, double noise) {
+Verdict suspected_parts(const SiteParts& parts, const Given& given, double noise) {
   const std::size_t count = parts.count();
   const std::vector<std::uint8_t> none(count, 0);
   Verdict verdict{std::vector<std::vector<std::uint32_t>>(count),
@@ -148,15 +149,13 @@ void turn_restless(const SiteParts& parts, const std::vector<Vec3>& best, const 
   }
 }
 
-// The normals of open parts, whichever way they face. `best`: as above, and `wide`: as seen from afar.
-OpenSurfaces take(const SiteParts& parts, const std::vector<Vec3>& best, const std::vector<Vec3>& wide, const Verdict& verdict,
-                  std::vector<float> certified, std::vector<Vec3>& normals) {
+// What is known of the points, whose normals become on open parts those of `best`, of the best hypotheses, or where these do not jump those
+// of `wide`, as seen from afar; whichever way they face.
+OpenSurfaces with_open_parts(const SiteParts& parts, const std::vector<Vec3>& best, const std::vector<Vec3>& wide, const Verdict& verdict,
+                             std::vector<float> certified, std::vector<Vec3>& normals) {
   OpenSurfaces found;
   found.certified = std::move(certified);
-  found.part.assign(normals.size(), OpenSurfaces::kNone);
-  found.certainty.assign(normals.size(), 1);
-  found.agrees.assign(normals.size(), 0);
-  found.held.assign(normals.size(), 1);
+  found.resize(normals.size());
   for (std::uint32_t i = 0; i < normals.size(); ++i) {
     const std::uint32_t p = parts.of_point(i);
     if (verdict.is_doubtful[p] != 0) found.certainty[i] = kUndecided;
@@ -181,15 +180,16 @@ std::vector<std::uint32_t> points_of(const SiteParts& parts, const std::vector<s
 
 }  // namespace
 
+void OpenSurfaces::resize(std::size_t points) {
+  part.resize(points, kNone);
+  certainty.resize(points, 1);
+  agrees.resize(points, 0);
+  held.resize(points, 1);
+}
+
 void OpenSurfaces::put(const std::vector<std::uint32_t>& some, const OpenSurfaces& here) {
-  const std::size_t count = certified.size();
   is_turned = is_turned || here.is_turned;
-  if (part.empty() && !here.part.empty()) {
-    part.assign(count, kNone);
-    certainty.assign(count, 1);
-    agrees.assign(count, 0);
-    held.assign(count, 1);
-  }
+  if (part.empty() && !here.part.empty()) resize(certified.size());
   for (std::size_t k = 0; k < some.size(); ++k) {
     const std::uint32_t i = some[k];
     certified[i] = here.certified[k];
@@ -223,28 +223,28 @@ OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan
   Given given{parts.test(normals), {}, {}};
   given.unrest = parts.means(given.of_sites.unrest);
   given.defect = parts.means(given.of_sites.jump_defect);
-  Verdict verdict = suspect(parts, given, noise);
+  Verdict verdict = suspected_parts(parts, given, noise);
   const std::vector<std::uint32_t> suspects = points_of(parts, verdict.is_open);
   const bool are_some = !suspects.empty() && suspects.size() < set.size();
   if (are_some) std::fill(verdict.is_open.begin(), verdict.is_open.end(), std::uint8_t{0});
   std::vector<Vec3> best;
-  if (any(verdict.is_open)) {
+  if (is_any_marked(verdict.is_open)) {
     const std::vector<std::vector<Vec3>> tried = sides_by_agreement(set, parts.sites(), sums, cancel);
     choose_hypotheses(parts, tried, given, noise, verdict);
     best = best_of(parts, tried, verdict);
   }
-  const bool are_turned = any(verdict.is_turned);
+  const bool are_turned = is_any_marked(verdict.is_turned);
   if (are_turned) turn_restless(parts, best, verdict, normals);
   std::vector<float> shown = certified_sides(parts, are_turned ? parts.test(normals) : given.of_sites, normals, noise == 0);
   given = {};  // the graph of the outside wants its memory, and that of the hypotheses
   OpenSurfaces found;
-  if (any(verdict.is_open) || any(verdict.is_doubtful)) {
+  if (is_any_marked(verdict.is_open) || is_any_marked(verdict.is_doubtful)) {
     std::vector<Vec3> wide = best.empty() ? best : seen_from_afar(set, parts.sites(), best, sums, cancel);
-    found = take(parts, best, wide, verdict, std::move(shown), normals);
+    found = with_open_parts(parts, best, wide, verdict, std::move(shown), normals);
     std::vector<Vec3>().swap(best);
     std::vector<Vec3>().swap(wide);
     std::vector<std::vector<double>>().swap(verdict.defects);
-    if (any(verdict.is_open)) face_outside(parts, verdict.is_open, verdict.enclosure, normals, found);
+    if (is_any_marked(verdict.is_open)) face_outside(parts, verdict.is_open, verdict.enclosure, normals, found);
   } else {
     found.certified = std::move(shown);
   }

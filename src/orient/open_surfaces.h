@@ -34,6 +34,8 @@ struct OpenSurfaces {
   /// much as half of a thing.
   [[nodiscard]] bool is_choice(std::size_t i) const { return is_open(i) && static_cast<double>(certainty[i]) < kMostOf; }
 
+  /// Makes part, certainty, agrees and held values of N points; those that they have not had lie on a closed part.
+  void resize(std::size_t points);
   /// Takes what was found for some of the N points (ascending) without the others.
   void put(const std::vector<std::uint32_t>& some, const OpenSurfaces& here);
 };
@@ -41,21 +43,25 @@ struct OpenSurfaces {
 /// The equations are true of the boundary of a solid. A surface without an inside (terrain, one depth frame, a dental arch) satisfies them
 /// too, but with area vectors that lie in it or change their side from place to place. The field of the result shows it: beside a closed
 /// surface it is 0 or 1, beside an open one it is not (Certificate::unrest). So every connected part of the cloud (SiteParts) is tested,
-/// and where its unrest is above 0.08 or its jump defect above 2/3 (0.8 under noise), and its points do not lie on two walls close together
-/// (on_two_walls()), it is tested without the closed parts, and the sides_by_agreement() of neighbours are tried, from the finest scale on
-/// which the samples are a surface (scan lines are one only across their gaps) on. A part that is at rest as a whole, but not in some
-/// pieces (restless_pieces()), is open too if a hypothesis is_shown_better() there and its |e| is below 2/3. The hypothesis
-/// with the least mean of JumpDefects::all + own is taken, of equal ones the finest: where layers are close to each other, so that a probe
-/// of one is behind the next, what no other surface disturbs counts twice. Where the defect of a site is above a half, in a groove narrower
-/// than the sampling for instance, the direction is that of a field four site spacings wide, which sees what is around, and the side of a
-/// point is not certified in full. Then normals are turned to the outside (face_outside()). e is SiteParts::enclosure(); under noise a part
-/// with |e| above 2/3 is closed: noise makes one wall of two, and what is left encloses nearly everything. Where it is neither at rest nor
-/// shown to be open, its sides are those of the best hypothesis where the normals of a site and those around it have one side, if the mean
-/// defect of the hypothesis is less than that of the solution; and so they are in the restless pieces of one with |e| above 2/3 if the
-/// hypothesis is shown to be better there, as about the base of an object that was not scanned from below. Where the solution stays as it
-/// is, certified_sides() says how far its field shows it to be right; all points of a cloud of fewer than 30 have 0, and so have exact
+/// and may be open
+///   - as a whole, where its unrest is above 0.08 or its jump defect above 2/3 (0.8 under noise), unless its points lie on two walls close
+///     together (on_two_walls()); where it is not more restless than unrest_of_open(), a hypothesis has to be shown to be better;
+///   - if it is at rest as a whole, but not in some pieces (restless_pieces()), where a hypothesis is_shown_better() there.
+/// Such parts are tested without the closed ones, and the sides_by_agreement() of neighbours are the hypotheses, from the finest scale on
+/// which the samples are a surface (scan lines are one only across their gaps) on. That with the least mean of JumpDefects::all + own is
+/// taken, of equal ones the finest: where layers are close to each other, so that a probe of one is behind the next, what no other surface
+/// disturbs counts twice. Where the defect of a site is above a half, in a groove narrower than the sampling for instance, the direction is
+/// that of a field four site spacings wide, which sees what is around, and the side of a point is not certified in full. Then normals are
+/// turned to the outside (face_outside()).
+///
+/// With e = SiteParts::enclosure() of the best hypothesis, a part with |e| above 2/3 is closed under noise, or if only pieces of it are
+/// restless: noise makes one wall of two, and what is left encloses nearly everything. Where a part is neither at rest nor shown to be
+/// open, its sides are those of the best hypothesis where the normals of a site and those around it have one side, if |e| is above 2/3 and
+/// the mean defect of the hypothesis less than that of the solution; and so they are in the restless pieces of one with |e| above 2/3 if
+/// the hypothesis is shown to be better there, as about the base of an object that was not scanned from below. Where the solution stays as
+/// it is, certified_sides() says how far its field shows it to be right; all points of a cloud of fewer than 30 have 0, and so have exact
 /// parts of fewer. `noise`: standard deviation; `normals`: N unit vectors, in: the solution, out: changed on open surfaces and where closed
-/// ones are restless. O(N log N).
+/// ones are restless. O(N log N). Throws Cancelled.
 [[nodiscard]] OpenSurfaces find_open_surfaces(const PointSet& set, double noise, const SumPlan& sums, std::vector<Vec3>& normals,
                                               const std::atomic<bool>* cancel = nullptr);
 

@@ -1,7 +1,7 @@
 #include "orient/open_to_views.h"
-#include "orient/noise_settings.h"
 
 #include "base/vector.h"
+#include "orient/noise_settings.h"
 #include "orient/sight_normals.h"
 
 #include <cmath>
@@ -15,11 +15,8 @@ void open_to_views(const Views& views, const std::vector<Vec3>& points, Solution
   OpenSurfaces& surfaces = solution.open_surfaces;
   std::vector<Vec3>& normals = solution.refinement.normals;
   const std::size_t n = points.size();
-  surfaces.part.resize(n, OpenSurfaces::kNone);
-  surfaces.certainty.resize(n, 1);
+  surfaces.resize(n);
   surfaces.certified.resize(n, 1);
-  surfaces.agrees.resize(n, 0);
-  surfaces.held.resize(n, 1);
   solution.turned_to_views.assign(n, 0);
   std::uint32_t part = OpenSurfaces::kNone;  // as all parts, by its first point
   for (std::uint32_t i = 0; i < n; ++i) {

@@ -41,7 +41,7 @@ class PatchSides {
     }
     std::map<std::uint32_t, Votes> patches = votes_on_patches(votes);
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      if (is_closed(i) || !patches[patches_.of[i]].count()) continue;
+      if (is_closed(i) || !patches[patches_.of[i]].say_something()) continue;
       const double against = patches[patches_.of[i]].share_against();
       effect_.turned[i] = against > std::min(certainty(i), kMostOf) ? 1 : 0;
     }
@@ -51,14 +51,14 @@ class PatchSides {
     double agreed = 0;
     double all = 0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
-      if (!is_choice(i) || is_closed(i) || !patches[patches_.of[i]].count()) continue;
+      if (!is_choice(i) || is_closed(i) || !patches[patches_.of[i]].say_something()) continue;
       const double agreement = 1 - patches[patches_.of[i]].share_against();
       const double shown = patch_turned[i] != 0 ? 1 - certainty(i) : certainty(i);
       const double own = effect_.turned[i] != 0 ? -votes[i] : votes[i];
       const bool with_patch = effect_.turned[i] == patch_turned[i];
       const double side = std::max(both_agree(both_say(shown, agreement), with_patch ? held(i) : 1 - held(i)), chance(own));
       sided_.confidence[i] = static_cast<float>(side) * (patches_.agreed.empty() ? 1 : patches_.agreed[i]);
-      effect_.decided[i] = all_seen() || side >= kMostOf ? 1 : 0;
+      effect_.decided[i] = are_all_seen() || side >= kMostOf ? 1 : 0;
       if (effect_.decided[i] == 0) continue;
       agreed += agreement;
       ++all;
@@ -72,7 +72,7 @@ class PatchSides {
   // Of the side that the points themselves show.
   [[nodiscard]] double certainty(std::size_t i) const { return patches_.certainty.empty() ? 1 : patches_.certainty[i]; }
   // Then a grazing view leaves a doubt, but no choice.
-  [[nodiscard]] bool all_seen() const { return patches_.seen && !hints_.sensors.empty(); }
+  [[nodiscard]] bool are_all_seen() const { return patches_.seen && !hints_.sensors.empty(); }
   [[nodiscard]] bool is_choice(std::size_t i) const { return certainty(i) < 1; }
 
   // Chance that a point has the side of the rest of its patch.
@@ -112,26 +112,27 @@ class PatchSides {
   //   n_i . (n_j - 2 (n_j . d) d / |d|^2)
   // is near 1, as it is on bends and at sharp edges too (Koenig and Gumhold, "Consistent propagation of normal orientations in point
   // clouds", VMV 2009).
-  [[nodiscard]] bool consistent(std::uint32_t i, std::uint32_t j) const {
+  [[nodiscard]] bool are_consistent(std::uint32_t i, std::uint32_t j) const {
     const Vec3 d = normalised(subtract(points_[j], points_[i]));
     const Vec3 n = normal(j);
     return dot(normal(i), subtract(n, vector::scale(d, 2 * dot(n, d)))) > kSamePatch;
   }
 
   // Whether a sensor has seen the front of the one point and the back of the other, further from edge-on than a horizon is.
-  [[nodiscard]] bool opposed(const Vec3& sensor_i, std::uint32_t i, const Vec3& sensor_j, std::uint32_t j) const {
+  [[nodiscard]] bool are_opposed(const Vec3& sensor_i, std::uint32_t i, const Vec3& sensor_j, std::uint32_t j) const {
     return -seen_from(sensor_i, points_[i], normal(i)) * seen_from(sensor_j, points_[j], normal(j)) > kMostOpposed;
   }
 
   // Whether they are so for all sensors that may have seen them. Up is no such fact: an eave has a lower side.
-  [[nodiscard]] bool opposed(std::uint32_t i, std::uint32_t j) const {
+  [[nodiscard]] bool are_opposed(std::uint32_t i, std::uint32_t j) const {
     if (hints_.sensors.empty()) return false;
     if (hints_.sensor_of_point.empty()) {
-      return std::all_of(hints_.sensors.begin(), hints_.sensors.end(), [&](const Vec3& sensor) { return opposed(sensor, i, sensor, j); });
+      return std::all_of(hints_.sensors.begin(), hints_.sensors.end(),
+                         [&](const Vec3& sensor) { return are_opposed(sensor, i, sensor, j); });
     }
     const std::uint32_t of_i = hints_.sensor_of_point[i];
     const std::uint32_t of_j = hints_.sensor_of_point[j];
-    return of_i != kNoSensor && of_j != kNoSensor && opposed(hints_.sensors[of_i], i, hints_.sensors[of_j], j);
+    return of_i != kNoSensor && of_j != kNoSensor && are_opposed(hints_.sensors[of_i], i, hints_.sensors[of_j], j);
   }
 
   // The largest cosine under which a sensor that may have seen a point sees its front, or the first that is not below 0; nothing where none
@@ -165,7 +166,7 @@ class PatchSides {
   }
 
   // Two adjacent points are of one surface, which may be seen from behind beyond its horizon.
-  [[nodiscard]] bool joined(std::uint32_t i, std::uint32_t j) const { return consistent(i, j) && !opposed(i, j); }
+  [[nodiscard]] bool are_joined(std::uint32_t i, std::uint32_t j) const { return are_consistent(i, j) && !are_opposed(i, j); }
 
   // Where gaps or creases cut a patch into pieces that are not consistent with each other, those go over that two thirds of their votes are
   // against.
@@ -176,7 +177,7 @@ class PatchSides {
     }
     DisjointSets pieces(points_.size());
     for_adjacent([&](std::uint32_t i, std::uint32_t j) {
-      if (joined(i, j)) pieces.join(i, j);
+      if (are_joined(i, j)) pieces.join(i, j);
     });
     turn_objecting(pieces, votes);
     if (!voters_.only_from_middle()) turn_hardly_joined(votes);
@@ -188,11 +189,11 @@ class PatchSides {
   void turn_hardly_joined(const std::vector<double>& votes) {
     DisjointSets regions(points_.size());
     for_adjacent([&](std::uint32_t i, std::uint32_t j) {
-      if (votes[i] < 0 && votes[j] < 0 && joined(i, j)) regions.join(i, j);
+      if (votes[i] < 0 && votes[j] < 0 && are_joined(i, j)) regions.join(i, j);
     });
     std::vector<double> seam(points_.size(), 0);
     for_adjacent([&](std::uint32_t i, std::uint32_t j) {
-      if (!joined(i, j) || (votes[i] < 0) == (votes[j] < 0)) return;
+      if (!are_joined(i, j) || (votes[i] < 0) == (votes[j] < 0)) return;
       seam[regions.find(votes[i] < 0 ? i : j)] += 1;
     });
     const std::vector<Votes> sums = sums_of(regions, votes);
@@ -226,7 +227,7 @@ class PatchSides {
       const std::size_t piece = pieces.find(i);
       const auto count = static_cast<double>(sums[piece].points);
       const double vote = (sums[piece].in_favour - sums[piece].against) / count;
-      if (is_closed(i) || !sums[piece].count() || vote >= 0) continue;
+      if (is_closed(i) || !sums[piece].say_something() || vote >= 0) continue;
       if (chance(vote) + held_of[piece] / count > 1) continue;
       effect_.turned[i] ^= 1;
       votes[i] = -votes[i];

@@ -15,14 +15,16 @@
 namespace g3r {
 namespace {
 
-// Median breadth of those on curves: rings of a dozen points have 0.31, slices 0.05 to 0.3, facets 0.40 to 0.49.
+// The median breadth below which planes hold curves: those of rings of a dozen points have 0.31, of slices 0.05 to 0.3, of facets 0.40 to
+// 0.49.
 constexpr double kCurveBreadth = 0.35;
 
 struct Found {
-  Vec3 normal{0, 0, 0};
-  double breadth = 0;  // of its nearest points, one more than determine it: more follow the bend of a ring
+  Vec3 normal{0, 0, 0};  // 0: there is no plane
+  double breadth = 0;    // of its nearest points, one more than determine it: more follow the bend of a ring
 };
 
+// The plane through the first of the points, an exact one or else one of scattered points.
 Found find_at(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& index, double spacing, double scatter,
               const Vec3& towards) {
   ExactPlane plane = find_exact_plane(points, index, spacing, &towards);

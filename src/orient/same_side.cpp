@@ -1,6 +1,7 @@
 #include "orient/same_side.h"
 
 #include "cloud/constants.h"
+#include "cloud/some_places.h"
 
 #include <cmath>
 
@@ -9,21 +10,22 @@ namespace g3r {
 double SameSide::gather(std::size_t i, const Eigen::Vector3d& axis, double reach, double depth) {
   const Eigen::Vector3d centre = to_eigen(points_[i]);
   tree_.within(points_[i], std::hypot(reach, depth), index_);
-  const std::size_t stride = 1 + index_.size() / kPlaces;
+  const SomePlaces some = SomePlaces::at_most(kPlaces, index_.size());
   members_.clear();
   own_.clear();
   weight_ = 0;
   double opposed = 0;
-  for (std::size_t k = 0; k < index_.size(); k += stride) {
-    const Eigen::Vector3d d = to_eigen(points_[index_[k]]) - centre;
+  for (std::size_t k = 0; k < some.size(); ++k) {
+    const std::uint32_t j = index_[some[k]];
+    const Eigen::Vector3d d = to_eigen(points_[j]) - centre;
     const double height = axis.dot(d);
     const double weight = 1 - (d.squaredNorm() - height * height) / (reach * reach);
     if (weight <= 0) continue;
-    const Eigen::Vector3d n = to_eigen(normals_[index_[k]]);
+    const Eigen::Vector3d n = to_eigen(normals_[j]);
     const double cosine = n.dot(axis);
     if (cosine > kSameSide) {
       members_.push_back({d, n, weight, 0});
-      own_.push_back(index_[k]);
+      own_.push_back(j);
       weight_ += weight;
     } else if (cosine <= 0) {
       opposed += weight;

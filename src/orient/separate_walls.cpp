@@ -20,7 +20,7 @@ PlacesOnWalls walls_of(const Attempt& found, double noise) {
 
 }  // namespace
 
-double narrower(double noise) { return noise / std::sqrt(kWider); }
+double next_hidden_noise(double noise) { return noise / std::sqrt(kWider); }
 
 Attempt separate_walls(Attempt found, const PointsView& points, const Options& options, Stages& stages) {
   const double noise = found.problem.noise;
@@ -32,7 +32,7 @@ Attempt separate_walls(Attempt found, const PointsView& points, const Options& o
   const PlacesOnWalls first = walls_of(found, noise);
   double before = misfit(first);
   std::optional<Attempt> separated;
-  for (double hidden = narrower(noise); before > 1 && hidden > least; hidden = narrower(hidden)) {
+  for (double hidden = next_hidden_noise(noise); before > 1 && hidden > least; hidden = next_hidden_noise(hidden)) {
     Attempt tried = attempt(with_noise(found.problem, hidden, options), points, options, stages);
     const PlacesOnWalls walls = walls_of(tried, noise);
     const double after = misfit(walls);

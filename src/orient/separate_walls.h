@@ -8,8 +8,9 @@
 
 namespace g3r {
 
-/// From one try to the next, the noise that kernels are made for: the kernels, which follow its square, become narrower by sqrt(2).
-[[nodiscard]] double narrower(double noise);
+/// The noise that the kernels of the next try hide, after those that hide this one: kernels follow the square of the noise, and become
+/// narrower by sqrt(2). Any unit.
+[[nodiscard]] double next_hidden_noise(double noise);
 
 /// Kernels that hide the noise take walls closer together than they are wide for one: then points lie farther from the surface that is
 /// found than noise carries them (misfit()), or lie about it as about two (MeanExcess::is_two_walls()). Where that is so, narrower kernels

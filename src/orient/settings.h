@@ -22,16 +22,16 @@ namespace g3r {
 
 /// Width of kernels that hide single points and what noise scatters them.
 struct KernelWidth {
-  double points = 0;  ///< at the typical spacing; in proportion to the local one
-  double noise = 0;   ///< the least one under noise, at the typical spacing,
-  double power = 0;   ///< and the power of the local spacing with which it grows
+  double points = 0;  ///< width that hides single points at the typical spacing; elsewhere it is in proportion to the local one
+  double noise = 0;   ///< width that hides the noise at the typical spacing, 0 without noise
+  double power = 0;   ///< the power of the local spacing that `noise` is in proportion to elsewhere
 
-  /// Where the points are `relative` times as far apart as is typical.
+  /// The width where the points are `relative` times as far apart as is typical: the larger of the two.
   [[nodiscard]] double at(double relative) const { return std::max(points * relative, noise * std::pow(relative, power)); }
   [[nodiscard]] double typical() const { return at(1); }
 };
 
-/// Of polish().
+/// What polish() goes by, in normalised units.
 struct PolishSettings {
   int steps = 0;              ///< of conjugate gradients; 0: no polish
   KernelWidth epsilon;        ///< of the equations

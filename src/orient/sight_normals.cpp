@@ -23,9 +23,10 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr int kSightRounds = 4;  // of weights: from all points around to those of one surface
+// Rounds of weights, which go from those of all points around to those of the points of one surface.
+constexpr int kSightRounds = 4;
 
-// What one sensor has seen.
+// The points that one sensor has seen, and fits of planes to them.
 class Seen {
  public:
   Seen(const std::vector<Vec3>& points, std::vector<std::uint32_t> members, const Vec3& place, double noise)

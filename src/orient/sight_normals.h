@@ -10,6 +10,7 @@
 
 namespace g3r {
 
+/// What normals_by_sight() finds.
 struct SightNormals {
   std::vector<Vec3> normals;     ///< N unit vectors that face the sensor of their point
   std::vector<float> certified;  ///< N, 1/2..1: the chance that the surface faces the sensor on the side that its normal has

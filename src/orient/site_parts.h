@@ -15,14 +15,15 @@
 
 namespace g3r {
 
-/// Sites of the finest scale of the certificate, at most, for the sake of time: more say no more about sides.
+/// Sites of the finest scale of the certificate, at most: more take more time and say no more about sides.
 inline constexpr std::size_t kMostSites = 200000;
 
 /// Gives back the neighbours of more points than that: sums that follow take more than these do. Up to there the certificate takes more
 /// than both.
 void make_room_for_sums(const PointSet& set);
 
-/// The least distance of the sites of that scale, of a cloud with this typical spacing and noise; 0: every point is one.
+/// The least distance of the sites of that scale, of a cloud of so many points with this typical spacing and noise (same unit, that of the
+/// result); 0: every point is one. O(1).
 [[nodiscard]] double site_distance(std::size_t points, double spacing, double noise);
 
 /// Mean of `value` over the given sites, negative values being left out; 0 where there is no other.

@@ -15,19 +15,19 @@ enum class Step {
   kNoise,         ///< the noise is estimated; without it every cloud is taken for clean
   kSites,         ///< clouds of lines are solved for on sites as far apart as the lines
   kCoarseStart,   ///< the solve starts from a solution on fewer points
-  kMoreSteps,     ///< and goes on where many sides are unsure
-  kPolish,        ///< the last iterations, with narrow kernels, and everything after them
-  kLocalWidths,   ///< whose widths, and those of the solve, follow the local spacing of a clean cloud
+  kMoreSteps,     ///< the solve goes on where many sides are unsure
+  kPolish,        ///< the last iterations, with narrow kernels; without it nothing that comes after it runs
+  kLocalWidths,   ///< the widths of solve and polish follow the local spacing of a clean cloud
   kOpenSurfaces,  ///< parts whose field is not that of a closed surface get their sides from their neighbours
-  kApart,         ///< and are solved for apart from the rest
-  kJets,          ///< directions from fitted quadratics where the points prove them
-  kPlanes,        ///< and from planes
-  kCreases,       ///< and from the facets beside a crease
+  kApart,         ///< open surfaces and the rest are solved for apart from each other
+  kJets,          ///< directions come from fitted quadratics where the points prove them
+  kPlanes,        ///< directions come from planes where the points prove these
+  kCreases,       ///< directions beside a crease come from the facets there
   kFacets,        ///< the points of a facet take one side
   kNoiseChoice,   ///< other noises are tried where many sides are unsure
   kProjection,    ///< noisy points are moved onto their surface, and polished there
-  kNoisyJets,     ///< directions of noisy clouds from wide quadratics
-  kAreas,         ///< areas from the density of the points instead of the solution
+  kNoisyJets,     ///< directions of noisy clouds come from wide quadratics
+  kAreas,         ///< areas come from the density of the points instead of the solution
   kCertificate    ///< the confidence of a side is lowered where the field does not certify it
 };
 
@@ -40,6 +40,7 @@ using StepSet = std::bitset<kStepNames.size()>;
 /// The steps of a list of names separated by commas. Throws InvalidInput that lists the names there are.
 [[nodiscard]] StepSet parse_steps(std::string_view names);
 
+/// Whether a step is one of these.
 [[nodiscard]] inline bool contains(const StepSet& set, Step step) { return set.test(static_cast<std::size_t>(step)); }
 
 }  // namespace g3r

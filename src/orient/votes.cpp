@@ -8,7 +8,7 @@ namespace {
 using vector::dot;
 using vector::normalised;
 
-// Sensors that vote on a point, at most: of a path with thousands those farther away say little.
+// The nearest sensors that vote on a point, at most: of a path with thousands those farther away say little, and cost time.
 constexpr std::size_t kMostSensors = 16;
 
 }  // namespace

@@ -21,13 +21,14 @@ struct Votes {
   double against = 0;
   std::size_t points = 0;
 
+  /// `vote`: above 0 in favour, below 0 against.
   void add(double vote) {
     in_favour += std::max(vote, 0.0);
     against += std::max(-vote, 0.0);
   }
   [[nodiscard]] double total() const { return in_favour + against; }
-  /// Seen edge-on, rounding alone votes.
-  [[nodiscard]] bool count() const { return total() > std::numeric_limits<float>::epsilon() * static_cast<double>(points); }
+  /// Whether they are more than rounding, which is all that votes on points that are seen edge-on.
+  [[nodiscard]] bool say_something() const { return total() > std::numeric_limits<float>::epsilon() * static_cast<double>(points); }
   [[nodiscard]] double share_against() const { return total() > 0 ? against / total() : 0; }
 };
 

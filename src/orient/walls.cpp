@@ -5,6 +5,7 @@
 #include "cloud/constants.h"
 #include "cloud/noise.h"
 #include "cloud/quadratic_patch.h"
+#include "cloud/some_places.h"
 #include "cpu/parallel.h"
 #include "orient/projection.h"
 #include "orient/same_side.h"
@@ -13,20 +14,13 @@
 #include <cstdint>
 
 namespace g3r {
-namespace {
-
-std::size_t stride_of_places(const PointSet& set) { return 1 + set.size() / kPlaces; }
-std::size_t count_of_places(const PointSet& set) { return (set.size() + stride_of_places(set) - 1) / stride_of_places(set); }
-
-}  // namespace
 
 PlacesOnWalls fit_places(const PointSet& set, const std::vector<Vec3>& normals, double noise, double spacing) {
   const double reach = projection_reach(noise, spacing);
-  const std::size_t stride = stride_of_places(set);
-  const std::size_t count = count_of_places(set);
-  PlacesOnWalls places{std::vector<Vec3>(count), std::vector<double>(count, -1)};
-  parallel::for_all(count, [&](std::size_t k) {
-    const std::size_t i = k * stride;
+  const SomePlaces some = SomePlaces::at_most(kPlaces, set.size());
+  PlacesOnWalls places{std::vector<Vec3>(some.size()), std::vector<double>(some.size(), -1)};
+  parallel::for_all(some.size(), [&](std::size_t k) {
+    const std::size_t i = some[k];
     places.normals[k] = normals[i];
     SameSide side(set.points(), set.tree(), normals);
     side.gather(i, to_eigen(normals[i]), reach, kSigmas * noise);
@@ -58,11 +52,11 @@ MeanExcess excess_about_walls(const PointSet& set, const std::vector<Vec3>& norm
   const double reach = kLevelRatio * projection_reach(noise, spacing);
   const double depth = kNoiseBreadth * noise;
   const Vec3 steps = set.rounding_steps();
-  const std::size_t stride = stride_of_places(set);
-  std::vector<HeightMoments> at(count_of_places(set));
+  const SomePlaces some = SomePlaces::at_most(kPlaces, set.size());
+  std::vector<HeightMoments> at(some.size());
   std::vector<std::size_t> held(at.size(), 0);
   parallel::for_all(at.size(), [&](std::size_t k) {
-    const std::size_t i = k * stride;
+    const std::size_t i = some[k];
     SameSide side(set.points(), set.tree(), normals);
     side.gather(i, to_eigen(normals[i]), reach, depth);
     const std::vector<std::uint32_t>& members = side.indices();
