@@ -23,8 +23,9 @@ g3r_together(orient orient/attempt orient/clean_surface orient/clustered_polish 
              orient/noise_choice orient/noise_settings orient/noisy_jets orient/noisy_surface orient/open_surfaces orient/outlier_normals
              orient/planes orient/polish orient/problem orient/projection orient/restless orient/settings orient/site_parts orient/solution
              orient/solve_apart orient/solve_on_sites orient/steps)
-g3r_together(sides c_api names orient/agreement orient/apply_hints orient/assess orient/callers_order orient/certificate
-             orient/certified_sides orient/closed_sides orient/confidence orient/crowded orient/describe orient/facet_normals orient/facets orient/hints
+g3r_together(sides c_api describe_mesh mesh_run names orient/agreement orient/apply_hints orient/assess orient/callers_order
+             orient/certificate orient/certified_sides orient/closed_sides orient/confidence orient/crowded orient/describe
+             orient/facet_normals orient/facets orient/hints
              orient/memory_plan orient/open_to_views orient/outside orient/patch_sides orient/same_side orient/separate_walls
              orient/sight_normals orient/sign_graph orient/two_walls orient/unsure orient/votes orient/walls pipeline reconstruct)
 g3r_together(fields mesh/automatic_depth mesh/box_tree mesh/component_support mesh/corner_groups mesh/field_arcs mesh/field_contour

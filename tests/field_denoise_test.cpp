@@ -34,14 +34,14 @@ double root_mean_square_height(const OrientedPoints& points) {
 
 TEST(EstimateNoise, IsNoneOnAPlane) {
   const OrientedPoints points = square(0);
-  const Noise noise = estimate_noise(points, Neighbours(points.positions), kStep);
+  const Noise noise = noise_about_fits(points, Neighbours(points.positions), kStep);
   EXPECT_LT(noise.position, 1e-6);
   EXPECT_LT(noise.normal, 1e-6);
 }
 
 TEST(EstimateNoise, IsTheScatterInSpacings) {
   const OrientedPoints points = square(0.3 * kStep);
-  EXPECT_NEAR(estimate_noise(points, Neighbours(points.positions), kStep).position, 0.3, 0.05);
+  EXPECT_NEAR(noise_about_fits(points, Neighbours(points.positions), kStep).position, 0.3, 0.05);
 }
 
 TEST(Denoise, BringsPointsOfAPlaneBackToItAndLeavesThoseOnIt) {
@@ -49,7 +49,7 @@ TEST(Denoise, BringsPointsOfAPlaneBackToItAndLeavesThoseOnIt) {
     OrientedPoints points = square(sigma);
     const std::vector<Vec3> copy = points.positions;
     const Neighbours neighbours(copy);
-    denoise(points, neighbours, estimate_noise(points, neighbours, kStep), kStep);
+    denoise(points, neighbours, noise_about_fits(points, neighbours, kStep), kStep);
     EXPECT_LE(root_mean_square_height(points), 0.5 * sigma + 1e-9) << sigma;
     for (std::size_t i = 0; i < copy.size(); ++i) {
       EXPECT_NEAR(points.positions[i][0], copy[i][0], sigma + 1e-9);

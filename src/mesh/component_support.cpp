@@ -34,6 +34,12 @@ std::vector<std::uint32_t> nearest_of(const std::vector<Vec3>& points, const std
 
 double anywhere(std::size_t) { return std::numeric_limits<double>::max(); }
 
+// For every point the triangle whose centre is nearest, within so many of its spacings and of the scatter, or kNone.
+std::vector<std::uint32_t> triangles_at(const Mesh& mesh, const HoldingPoints& points, double spacings) {
+  return nearest_of(centres_of(mesh), points.positions,
+                    [&](std::size_t i) { return std::pow(spacings * (points.spacing[i] + points.scatter), 2); });
+}
+
 }  // namespace
 
 void Support::add(const Support& other) {
@@ -45,16 +51,15 @@ void Support::add(const Support& other) {
   points += other.points;
 }
 
-void add_areas(const Mesh& mesh, const std::vector<std::uint32_t>& component, const std::vector<Vec3>& points,
-               const std::vector<double>& spacing, double scatter, std::vector<Support>& support) {
+void add_areas(const Mesh& mesh, const std::vector<std::uint32_t>& component, const HoldingPoints& points, std::vector<Support>& support) {
   const std::vector<Vec3> centres = centres_of(mesh);
-  const std::vector<std::uint32_t> nearest = nearest_of(points, centres, anywhere);
-  const double typical = median(spacing);
-  const double widened = 2 * scatter;  // what points stand for, as noise makes spheres of 1.7 standard deviations
+  const std::vector<std::uint32_t> nearest = nearest_of(points.positions, centres, anywhere);
+  const double typical = median(points.spacing);
+  const double widened = 2 * points.scatter;  // what points stand for, as noise makes spheres of 1.7 standard deviations
   for (std::size_t t = 0; t < centres.size(); ++t) {
-    const double h = spacing[nearest[t]], h2 = h * h, reach = kFarSpacings * std::min(h, typical);
+    const double h = points.spacing[nearest[t]], h2 = h * h, reach = kFarSpacings * std::min(h, typical);
     const double area = area_of(mesh, mesh.triangles[t]);
-    const Vec3 d = vector::subtract(centres[t], points[nearest[t]]);
+    const Vec3 d = vector::subtract(centres[t], points.positions[nearest[t]]);
     Support& of = support[component[t]];
     of.area += area;
     of.near_area += vector::dot(d, d) <= reach * reach ? area : 0;
@@ -63,28 +68,24 @@ void add_areas(const Mesh& mesh, const std::vector<std::uint32_t>& component, co
   }
 }
 
-void add_points(const Mesh& mesh, const std::vector<std::uint32_t>& component, const std::vector<Vec3>& points,
-                const std::vector<double>& spacing, double scatter, const std::vector<Vec3>& strays, std::vector<Support>& support) {
-  const std::vector<Vec3> centres = centres_of(mesh);
-  const std::vector<std::uint32_t> held_by =
-      nearest_of(centres, points, [&](std::size_t i) { return std::pow(kGap * (spacing[i] + scatter), 2); });
+void add_points(const Mesh& mesh, const std::vector<std::uint32_t>& component, const HoldingPoints& points, const std::vector<Vec3>& strays,
+                std::vector<Support>& support) {
+  const std::vector<std::uint32_t> held_by = triangles_at(mesh, points, kGap);
   for (const std::uint32_t t : held_by) {
     if (t != kNone) ++support[component[t]].points;
   }
-  const std::vector<std::uint32_t> beside = nearest_of(points, strays, anywhere);
+  const std::vector<std::uint32_t> beside = nearest_of(points.positions, strays, anywhere);
   for (std::size_t k = 0; k < strays.size(); ++k) {
-    const Vec3 d = vector::subtract(strays[k], points[beside[k]]);
-    if (held_by[beside[k]] == kNone || std::sqrt(vector::dot(d, d)) > kFarSpacings * spacing[beside[k]]) continue;
+    const Vec3 d = vector::subtract(strays[k], points.positions[beside[k]]);
+    if (held_by[beside[k]] == kNone || std::sqrt(vector::dot(d, d)) > kFarSpacings * points.spacing[beside[k]]) continue;
     ++support[component[held_by[beside[k]]]].strays;
   }
 }
 
-Unmet unmet_points(const Mesh& mesh, const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const std::vector<double>& spacing,
-                   double scatter) {
-  const std::vector<std::uint32_t> held_by =
-      nearest_of(centres_of(mesh), points, [&](std::size_t i) { return std::pow(kFarSpacings * (spacing[i] + scatter), 2); });
+Unmet unmet_points(const Mesh& mesh, const HoldingPoints& points, const std::vector<Vec3>& normals) {
+  const std::vector<std::uint32_t> held_by = triangles_at(mesh, points, kFarSpacings);
   std::size_t bare = 0, turned = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  for (std::size_t i = 0; i < held_by.size(); ++i) {
     if (held_by[i] == kNone) {
       ++bare;
       continue;
@@ -92,7 +93,7 @@ Unmet unmet_points(const Mesh& mesh, const std::vector<Vec3>& points, const std:
     const Vec3 outward = vector::normalised(twice_area_vector(mesh.vertices, mesh.triangles[held_by[i]]));
     turned += vector::dot(outward, normals[i]) < -kSlant ? 1 : 0;
   }
-  const auto all = static_cast<double>(points.size());
+  const auto all = static_cast<double>(held_by.size());
   return {static_cast<double>(bare) / all, static_cast<double>(turned) / all};
 }
 

@@ -21,23 +21,27 @@ struct Support {
   void add(const Support& other);
 };
 
-/// Adds the triangles t to support[component[t]], all but its strays and points. N points with the spacing at each, N > 0; `scatter`: of
-/// the points about the surface, a length. O(F log N).
-void add_areas(const Mesh& mesh, const std::vector<std::uint32_t>& component, const std::vector<Vec3>& points,
-               const std::vector<double>& spacing, double scatter, std::vector<Support>& support);
+/// The N points of a cloud that may hold surface, N > 0, kept by reference.
+struct HoldingPoints {
+  const std::vector<Vec3>& positions;
+  const std::vector<double>& spacing;  ///< N, in the unit of the positions
+  double scatter;                      ///< standard deviation of the points about the surface, the same unit
+};
+
+/// Adds the triangles t to support[component[t]], all but its strays and points. O(F log N).
+void add_areas(const Mesh& mesh, const std::vector<std::uint32_t>& component, const HoldingPoints& points, std::vector<Support>& support);
 
 /// Adds the points and the strays (points that no surface goes through, none of them among the points). O((F + N) log F).
-void add_points(const Mesh& mesh, const std::vector<std::uint32_t>& component, const std::vector<Vec3>& points,
-                const std::vector<double>& spacing, double scatter, const std::vector<Vec3>& strays, std::vector<Support>& support);
+void add_points(const Mesh& mesh, const std::vector<std::uint32_t>& component, const HoldingPoints& points, const std::vector<Vec3>& strays,
+                std::vector<Support>& support);
 
-/// Points that the surface is not that of, as shares of all.
+/// Points that the mesh is not the surface of, as shares of all.
 struct Unmet {
   double bare = 0;    ///< no surface is within kFarSpacings of their spacings, and of `scatter`
   double turned = 0;  ///< the nearest faces away from their normals
 };
-/// `normals`: unit, outward as the triangles are. O((F + N) log F).
-[[nodiscard]] Unmet unmet_points(const Mesh& mesh, const std::vector<Vec3>& points, const std::vector<Vec3>& normals,
-                                 const std::vector<double>& spacing, double scatter);
+/// `normals`: of the points, unit, outward as the triangles are. O((F + N) log F).
+[[nodiscard]] Unmet unmet_points(const Mesh& mesh, const HoldingPoints& points, const std::vector<Vec3>& normals);
 
 /// Marks (1) the components that stay. The one with most area near points always does. Of the others go, and are added to `dropped`,
 /// spurious ones (MeshOptions::min_component), those that fewer points hold than least_points_of_a_part(strays), and those that fewer

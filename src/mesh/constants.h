@@ -18,9 +18,9 @@ inline constexpr std::size_t kTasks = 256;
 inline constexpr std::size_t kRing = kClosest;
 /// The points of a fit, the nearest ones to the place: a quadratic has six numbers and normals double the data; more reach across walls.
 inline constexpr std::size_t kFitPoints = 2 * kRing;
-/// Cosine of two normals, 32 degrees, up to which points are on one patch: creases of CAD models turn more, and smooth surfaces less from
-/// one point to the next, with the noise that normals have.
-inline constexpr double kSamePatch = 0.85;
+/// Cosine of two normals, 32 degrees, up to which points are on one patch of a LocalSurface: creases of CAD models turn more, and smooth
+/// surfaces less from one point to the next, with the noise that the normals of an oriented cloud may have. (For exact points: kSamePatch.)
+inline constexpr double kSameLocalPatch = 0.85;
 /// The points of a patch beside a point that make it one: corners of cubes have so many, fewer are noise, and random points have one.
 inline constexpr std::size_t kPatchPoints = 3;
 /// The points of a cloud, or pairs of them, below which nothing is said of what is rare in it: it would be a matter of chance.

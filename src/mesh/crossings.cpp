@@ -29,14 +29,21 @@ struct Look {
   std::vector<double> squared;
 };
 
+// A place on the line where two planes meet, and the points around it.
+struct OnLine {
+  Vec3 place;
+  double spacing;  // of the points there
+  const std::vector<std::uint32_t>& around;
+};
+
 // Whether the surface with this normal goes on to both sides of the line, `along` being the direction in the surface across the line.
-bool goes_on(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const std::vector<std::uint32_t>& around, const Vec3& place,
-             const Vec3& normal, const Vec3& along, double spacing) {
+bool goes_on(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const OnLine& line, const Vec3& normal, const Vec3& along) {
+  const double layer = kLayer * line.spacing;
   std::array<std::size_t, 2> count{}, front{};
-  for (const std::uint32_t j : around) {
-    const Vec3 d = vector::subtract(points[j], place);
+  for (const std::uint32_t j : line.around) {
+    const Vec3 d = vector::subtract(points[j], line.place);
     const double cosine = dot(normals[j], normal), t = dot(d, along);
-    if (std::fabs(dot(d, normal)) > kLayer * spacing || std::fabs(cosine) < kSamePatch || std::fabs(t) < kLayer * spacing) continue;
+    if (std::fabs(dot(d, normal)) > layer || std::fabs(cosine) < kSameLocalPatch || std::fabs(t) < layer) continue;
     const std::size_t half = t > 0 ? 1 : 0;
     ++count[half];
     front[half] += cosine > 0 ? 1 : 0;
@@ -55,7 +62,7 @@ double crossing_at(const PointSet& set, const std::vector<Vec3>& normals, std::s
   const std::uint32_t* const near = set.near().data() + i * set.near_count();
   const std::uint32_t* const end = near + set.near_count();
   const Vec3& a = normals[i];
-  const auto is_other = [&](std::uint32_t j) { return std::fabs(dot(a, normals[j])) < kSamePatch; };
+  const auto is_other = [&](std::uint32_t j) { return std::fabs(dot(a, normals[j])) < kSameLocalPatch; };
   if (static_cast<std::size_t>(std::count_if(near, end, is_other)) < kPatchPoints) return 0;  // fewer: noise of normals
   const std::uint32_t other = *std::find_if(near, end, is_other);
   const Vec3& b = normals[other];
@@ -74,8 +81,8 @@ double crossing_at(const PointSet& set, const std::vector<Vec3>& normals, std::s
   });
   // Where shapes are more than two surfaces, fewer are on one of the two planes.
   if (static_cast<double>(explained) < kNearlyAll * static_cast<double>(look.around.size())) return 0;
-  const bool both =
-      goes_on(points, normals, look.around, place, a, u, spacing) && goes_on(points, normals, look.around, place, b, v, spacing);
+  const OnLine at{place, spacing, look.around};
+  const bool both = goes_on(points, normals, at, a, u) && goes_on(points, normals, at, b, v);
   return both ? degrees(std::acos(std::min(1.0, std::fabs(dot(a, b))))) : 0;
 }
 

@@ -56,7 +56,7 @@ class Neighbourhood {
 
 }  // namespace
 
-Noise estimate_noise(const OrientedPoints& points, const Neighbours& neighbours, double typical) {
+Noise noise_about_fits(const OrientedPoints& points, const Neighbours& neighbours, double typical) {
   const std::size_t n = points.positions.size(), count = std::min(n, kPlaces);
   std::vector<double> position(count), normal(count);
   parallel::for_blocks(count, parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {

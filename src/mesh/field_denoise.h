@@ -14,7 +14,7 @@ struct Noise {
 
 /// `neighbours`: of the positions, `typical`: spacing of the cloud. From the misfit of quadratic height fields to about 48 neighbours, at
 /// 4,000 points evenly spread over the indices.
-[[nodiscard]] Noise estimate_noise(const OrientedPoints& points, const Neighbours& neighbours, double typical);
+[[nodiscard]] Noise noise_about_fits(const OrientedPoints& points, const Neighbours& neighbours, double typical);
 
 /// The width of the fits that points move onto under a noise, both in spacings: narrower ones leave noise; wider ones round detail and cost
 /// their square in time.
@@ -22,7 +22,7 @@ struct Noise {
 
 /// Moves every point along the normal onto a quadratic fit of smoothing_width(), and takes over the normal of the fit. The noise is a
 /// length, the same everywhere: where points are far apart it is little of their spacing, and there is detail to lose. `neighbours`: of a
-/// copy of the positions, `typical`: as of estimate_noise(). O(N) fits over up to 200 points. Throws Cancelled.
+/// copy of the positions, `typical`: as of noise_about_fits(). O(N) fits over up to 200 points. Throws Cancelled.
 void denoise(OrientedPoints& points, const Neighbours& neighbours, const Noise& noise, double typical,
              const std::atomic<bool>* cancel = nullptr);
 

@@ -19,14 +19,14 @@ struct Labelling {
 constexpr std::array kLabellings{Labelling{2, 0},           Labelling{0, 0},   Labelling{1, kFieldSure},
                                  Labelling{1, -kFieldSure}, Labelling{1, 0.5}, Labelling{1, -0.5}};
 
-// What a proposal may change: fewer corners in a group, and so smaller ones that can be taken, if it goes one way only.
+// Which of the corners that a labelling changes a proposal changes: if all of them come to be inside, or outside, its groups are smaller,
+// and some can be taken that are too large otherwise.
 enum class Way { kBoth, kFill, kCut };
 
 }  // namespace
 
-void remove_handles(const Octree& octree, const AmbiguousCorners& ambiguous, const std::function<bool(std::uint32_t)>& may_change,
-                    double most_per_handle, const InsideTest& centre_inside, std::vector<std::uint8_t>& inside,
-                    const std::atomic<bool>* cancel) {
+void remove_handles(const Octree& octree, const AmbiguousCorners& ambiguous, const HandlePrice& price, const InsideTest& centre_inside,
+                    std::vector<std::uint8_t>& inside, const std::atomic<bool>* cancel) {
   DualSurface surface = patches_of(octree, inside, centre_inside, cancel);
   if (count_handles(surface) == 0) return;
   const std::vector<std::vector<float>> smoothed = smooth_sides(octree, ambiguous, inside, 2, cancel);
@@ -38,12 +38,12 @@ void remove_handles(const Octree& octree, const AmbiguousCorners& ambiguous, con
   std::vector<std::uint32_t> changing;  // places among the ambiguous corners that some labelling changes
   for (std::uint32_t k = 0; k < ambiguous.corner.size(); ++k) {
     const std::uint32_t c = ambiguous.corner[k];
-    if (octree.on_boundary(c) || !may_change(c)) continue;
+    if (octree.on_boundary(c) || !price.may_change(c)) continue;
     if (std::all_of(kLabellings.begin(), kLabellings.end(), [&](const Labelling& r) { return sign(r, k) == inside[c]; })) continue;
     is_ambiguous[c] = 1;
     changing.push_back(k);
   }
-  HandleRemoval removal(octree, is_ambiguous, inside, std::move(surface), centre_inside, most_per_handle, cancel);
+  HandleRemoval removal(octree, is_ambiguous, inside, std::move(surface), centre_inside, price.most_per_handle, cancel);
   const std::vector<std::uint8_t> before = inside;
   for (const Labelling& labelling : kLabellings) {
     for (const Way way : {Way::kBoth, Way::kFill, Way::kCut}) {

@@ -11,9 +11,15 @@
 
 namespace g3r::mesh {
 
-/// Of the ambiguous corners those change for which may_change(corner). `most_per_handle`: of HandleRemoval. Throws Cancelled.
-void remove_handles(const Octree& octree, const AmbiguousCorners& ambiguous, const std::function<bool(std::uint32_t)>& may_change,
-                    double most_per_handle, const InsideTest& centre_inside, std::vector<std::uint8_t>& inside,
-                    const std::atomic<bool>* cancel);
+/// What handles may cost.
+struct HandlePrice {
+  std::function<bool(std::uint32_t)> may_change;  ///< whether an ambiguous corner may
+  double most_per_handle = 0;                     ///< corners that change, at most, for each handle that goes: of HandleRemoval
+};
+
+/// Changes the signs of ambiguous corners, those in groups that lose handles by it, to the signs after some smoothing (smooth_sides())
+/// above some value. `inside`: one byte for each corner, in and out; if nothing would be left inside all stays as it was. Throws Cancelled.
+void remove_handles(const Octree& octree, const AmbiguousCorners& ambiguous, const HandlePrice& price, const InsideTest& centre_inside,
+                    std::vector<std::uint8_t>& inside, const std::atomic<bool>* cancel);
 
 }  // namespace g3r::mesh

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 // Weights are about exp(-t) for t up to this and 0 beyond; it is a power of two, for bell().
 constexpr double kFaint = 16;
 // A factor larger than what rounding can make of a squared distance: without it the search might miss a point as near.
-constexpr double kWider = 1 + kRounding;
+constexpr double kRoundedUp = 1 + kRounding;
 // About exp(-t), 0 at kFaint.
 double bell(double t) {
   const double a = 1 - t / kFaint, a2 = a * a, a4 = a2 * a2, a8 = a4 * a4;
@@ -46,7 +46,7 @@ std::uint32_t LocalFit::nearest(const Vector3d& x, double reach, double& squared
     return dx * dx + dy * dy + dz * dz;
   };
   const double most = reach * widest_;
-  squared = kWider * most * most;
+  squared = kRoundedUp * most * most;
   while (true) {
     const std::uint32_t centre = last;
     const std::uint32_t* const near = near_.data() + centre * count_;
@@ -61,11 +61,11 @@ std::uint32_t LocalFit::nearest(const Vector3d& x, double reach, double& squared
       last = near[k];
     }
     const double others = std::sqrt(squared_distance(p[centre], p[near[count_ - 1]])) - std::sqrt(to_centre);
-    if (!tie && others > 0 && kWider * best < others * others) {
+    if (!tie && others > 0 && kRoundedUp * best < others * others) {
       squared = best;
       return last;
     }
-    squared = std::min(squared, kWider * best);
+    squared = std::min(squared, kRoundedUp * best);
     if (last == centre || tie) break;
   }
   const std::uint32_t found = neighbours_.nearest(place, squared, kNone);
@@ -75,7 +75,7 @@ std::uint32_t LocalFit::nearest(const Vector3d& x, double reach, double& squared
 
 // Is x farther from the tangent planes of all points next to point i than surface curves away from them, all on one side, and do these
 // belong to one patch? Then their mean plane is fit enough to say which side: half of the time.
-bool LocalFit::clear_of(std::uint32_t i, const Vector3d& x, double scale, QuadraticPatch& plane) const {
+bool LocalFit::is_clear_of(std::uint32_t i, const Vector3d& x, double scale, QuadraticPatch& plane) const {
   const Vector3d axis = to_eigen(points_.normals[i]), p0 = to_eigen(points_.positions[i]);
   const bool outside = axis.dot(x - p0) > 0;
   const double first = (x - p0).squaredNorm(), clear = kDiscHalf * points_.spacing[i];
@@ -85,7 +85,7 @@ bool LocalFit::clear_of(std::uint32_t i, const Vector3d& x, double scale, Quadra
     const std::uint32_t j = near_[i * count_ + k];
     const Vector3d p = to_eigen(points_.positions[j]), n = to_eigen(points_.normals[j]);
     const double d = n.dot(x - p);
-    if ((d > 0) != outside || std::abs(d) < clear || n.dot(axis) <= kSamePatch) return false;
+    if ((d > 0) != outside || std::abs(d) < clear || n.dot(axis) <= kSameLocalPatch) return false;
     const double weight = bell(std::min(((x - p).squaredNorm() - first) * scale, kFaint));
     mean_p += weight * p;
     mean_n += weight * n;
@@ -106,7 +106,7 @@ LocalSurface LocalFit::fit(const Vector3d& x, double reach, const Vector3d* dire
   const double h = out.spacing;
   if (std::sqrt(squared) > reach * h) return out;
   const double scale = 1 / (2 * kWidth * kWidth * h * h);
-  if (detail == Detail::kSide && clear_of(nearest, x, scale, out.patch[0])) {
+  if (detail == Detail::kSide && is_clear_of(nearest, x, scale, out.patch[0])) {
     out.count = 1;
     out.simple = true;
     return out;

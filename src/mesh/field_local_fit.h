@@ -48,7 +48,7 @@ class LocalFit {
   [[nodiscard]] std::uint32_t nearest(const Eigen::Vector3d& x, double reach, double& squared) const;
   void gather(const Eigen::Vector3d& x, std::uint32_t nearest, double scale, const Eigen::Vector3d* direction,
               std::vector<FitPoint>& members) const;
-  bool clear_of(std::uint32_t i, const Eigen::Vector3d& x, double scale, QuadraticPatch& plane) const;
+  bool is_clear_of(std::uint32_t i, const Eigen::Vector3d& x, double scale, QuadraticPatch& plane) const;
 
   const OrientedPoints& points_;
   const std::vector<std::uint32_t>& near_;

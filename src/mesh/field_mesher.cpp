@@ -49,60 +49,11 @@ vector::Box box_of(const std::vector<Vec3>& points) {
   return box;
 }
 
-// The cube of the octree and its levels around points.
-struct Levels {
-  double side = 0;
-  mesh::LevelRule rule;
-};
-
-Levels levels_of(const Prepared& prepared, double longest_side, int depth) {
-  const double h = prepared.typical;
-  Levels out{mesh::octree_side(h, longest_side), {h, depth}};
-  if (depth == 0) {
-    const double cell = mesh::cell_under(prepared.noise) * h;
-    const int level = static_cast<int>(std::ceil(std::log2(out.side / cell)));
-    out.rule.finest = std::clamp(level, kBaseLevel, mesh::kMaxOctreeLevel);
-    // Leaves are as large as asked for, but where the base level is finer: what few points surround is lost between large ones.
-    if (level >= kBaseLevel) out.side = std::max(out.side, cell * std::exp2(out.rule.finest));
-  } else {
-    out.rule.deepens = false;
-  }
-  return out;
-}
-
-// `size`: of sizes_to_resolve().
-Octree make_octree(const Prepared& prepared, const std::vector<double>& size, const Levels& levels, const vector::Box& box,
-                   const Monitor& monitor) {
-  const mesh::OrientedPoints& points = prepared.points;
-  const double half = 0.5 * levels.side;
-  std::vector<RefineDisc> requests(points.positions.size());
-  for (std::size_t i = 0; i < requests.size(); ++i)
-    requests[i] = mesh::disc_around(points.positions[i], points.normals[i], points.spacing[i], size[i], levels.rule);
-  return Octree(vector::subtract(box.centre(), {half, half, half}), levels.side, requests, std::min(kBaseLevel, levels.rule.finest),
-                monitor.cancel);
-}
-
 // Which corners of the octree are inside, and the values by which vertices are placed.
 struct Signs {
   std::vector<float> value;
   std::vector<std::uint8_t> inside;
 };
-
-Signs find_signs(const Octree& octree, const Prepared& prepared, const mesh::LocalFit& local, const FieldSampler& sampler,
-                 const mesh::Cube& cube, const mesh::InsideTest& centre_inside, double most_per_handle, const Monitor& monitor) {
-  const std::vector<Vec3>& positions = prepared.points.positions;
-  const mesh::CornerSides side(local, sampler, prepared.typical, cube, mesh::level_places(positions),
-                               mesh::kAskedPerPoint * positions.size());
-  const auto all = [](std::uint32_t) { return true; };
-  mesh::Corners corners = side.of(octree, all, monitor.cancel);
-  Signs out{std::move(corners.value), std::vector<std::uint8_t>(octree.corner_count())};
-  for (std::size_t c = 0; c < out.inside.size(); ++c) out.inside[c] = out.value[c] > 0 && !octree.on_boundary(c) ? 1 : 0;
-  report(monitor, Done::kSigns);
-  mesh::remove_handles(octree, corners.ambiguous, all, most_per_handle, centre_inside, out.inside, monitor.cancel);
-  mesh::match_values(octree, out.inside, prepared.typical, out.value);
-  report(monitor, Done::kHandles);
-  return out;
-}
 
 // Polygons, and the places and normals of their vertices.
 struct PlacedSurface {
@@ -110,28 +61,93 @@ struct PlacedSurface {
   mesh::PlacedVertices vertices;
 };
 
-// Octree, signs, polygons and vertices: all else that they hold is gone when the polygons are cut into triangles.
-PlacedSurface placed_surface(const Prepared& prepared, const std::vector<double>& size, const FieldSampler& sampler,
-                             const MeshOptions& options, const Monitor& monitor, MeshMemory* memory) {
-  const mesh::LocalFit local(prepared.points, *prepared.neighbours, prepared.near);
-  const vector::Box box = box_of(prepared.points.positions);
-  const Levels levels = levels_of(prepared, box.longest_side(), options.depth);
-  const Octree octree = make_octree(prepared, size, levels, box, monitor);
-  if (memory != nullptr) mesh::check_memory(prepared.points.positions.size(), octree.leaf_count(), options.depth, *memory);
-  report(monitor, Done::kOctree);
-  const auto centre_inside = [&](const std::vector<Vec3>& centres) { return mesh::sides_by_fit(local, centres); };
-  const double most_per_handle = mesh::most_per_handle(prepared.noise, std::ldexp(levels.side, -levels.rule.finest) / prepared.typical);
-  const Signs signs =
-      find_signs(octree, prepared, local, sampler, {box.centre(), box.longest_side()}, centre_inside, most_per_handle, monitor);
-  PlacedSurface out{mesh::contour(octree, signs.inside, centre_inside, monitor.cancel), {}};
-  out.vertices = mesh::place_vertices(octree, out.surface, signs.value, local, monitor.cancel);
-  report(monitor, Done::kVertices);
-  return out;
-}
+// From prepared points to polygons with their vertices. What it holds besides is gone when the polygons are cut into triangles.
+class SurfaceMaker {
+ public:
+  // All are kept by reference. `memory`: may be null.
+  SurfaceMaker(const Prepared& prepared, const FieldSampler& sampler, const MeshOptions& options, const Monitor& monitor,
+               MeshMemory* memory)
+      : prepared_(prepared),
+        sampler_(sampler),
+        options_(options),
+        monitor_(monitor),
+        memory_(memory),
+        local_(prepared.points, *prepared.neighbours, prepared.near),
+        box_(box_of(prepared.points.positions)) {
+    choose_levels();
+  }
+
+  // `size`: of sizes_to_resolve().
+  [[nodiscard]] PlacedSurface make(const std::vector<double>& size) const {
+    const Octree octree = make_octree(size);
+    if (memory_ != nullptr) mesh::check_memory(prepared_.points.positions.size(), octree.leaf_count(), options_.depth, *memory_);
+    report(monitor_, Done::kOctree);
+    const auto centre_inside = [&](const std::vector<Vec3>& centres) { return mesh::sides_by_fit(local_, centres); };
+    const Signs signs = find_signs(octree, centre_inside);
+    PlacedSurface out{mesh::contour(octree, signs.inside, centre_inside, monitor_.cancel), {}};
+    out.vertices = mesh::place_vertices(octree, out.surface, signs.value, local_, monitor_.cancel);
+    report(monitor_, Done::kVertices);
+    return out;
+  }
+
+ private:
+  // The side of the octree's cube, and the levels of its leaves around points.
+  void choose_levels() {
+    const double h = prepared_.typical;
+    side_ = mesh::octree_side(h, box_.longest_side());
+    rule_ = {h, options_.depth};
+    if (options_.depth != 0) {
+      rule_.deepens = false;
+      return;
+    }
+    const double cell = mesh::cell_under(prepared_.noise) * h;
+    const int level = static_cast<int>(std::ceil(std::log2(side_ / cell)));
+    rule_.finest = std::clamp(level, kBaseLevel, mesh::kMaxOctreeLevel);
+    // Leaves are as large as asked for, but where the base level is finer: what few points surround is lost between large ones.
+    if (level >= kBaseLevel) side_ = std::max(side_, cell * std::exp2(rule_.finest));
+  }
+
+  [[nodiscard]] Octree make_octree(const std::vector<double>& size) const {
+    const mesh::OrientedPoints& points = prepared_.points;
+    const double half = 0.5 * side_;
+    std::vector<RefineDisc> requests(points.positions.size());
+    for (std::size_t i = 0; i < requests.size(); ++i)
+      requests[i] = mesh::disc_around(points.positions[i], points.normals[i], points.spacing[i], size[i], rule_);
+    return Octree(vector::subtract(box_.centre(), {half, half, half}), side_, requests, std::min(kBaseLevel, rule_.finest),
+                  monitor_.cancel);
+  }
+
+  [[nodiscard]] Signs find_signs(const Octree& octree, const mesh::InsideTest& centre_inside) const {
+    const std::vector<Vec3>& positions = prepared_.points.positions;
+    const mesh::CornerSides side(local_, sampler_, prepared_.typical, {box_.centre(), box_.longest_side()}, mesh::level_places(positions),
+                                 mesh::kAskedPerPoint * positions.size());
+    const auto all = [](std::uint32_t) { return true; };
+    mesh::Corners corners = side.of(octree, all, monitor_.cancel);
+    Signs out{std::move(corners.value), std::vector<std::uint8_t>(octree.corner_count())};
+    for (std::size_t c = 0; c < out.inside.size(); ++c) out.inside[c] = out.value[c] > 0 && !octree.on_boundary(c) ? 1 : 0;
+    report(monitor_, Done::kSigns);
+    const double cell = std::ldexp(side_, -rule_.finest) / prepared_.typical;
+    mesh::remove_handles(octree, corners.ambiguous, {all, mesh::most_per_handle(prepared_.noise, cell)}, centre_inside, out.inside,
+                         monitor_.cancel);
+    mesh::match_values(octree, out.inside, prepared_.typical, out.value);
+    report(monitor_, Done::kHandles);
+    return out;
+  }
+
+  const Prepared& prepared_;
+  const FieldSampler& sampler_;
+  const MeshOptions& options_;
+  const Monitor& monitor_;
+  MeshMemory* memory_;
+  const mesh::LocalFit local_;
+  const vector::Box box_;  // of the points
+  double side_ = 0;
+  mesh::LevelRule rule_;
+};
 
 Mesh raw_mesh(const Prepared& prepared, const std::vector<double>& size, const FieldSampler& sampler, const MeshOptions& options,
               const Monitor& monitor, MeshMemory* memory) {
-  PlacedSurface placed = placed_surface(prepared, size, sampler, options, monitor, memory);
+  PlacedSurface placed = SurfaceMaker(prepared, sampler, options, monitor, memory).make(size);
   return mesh::triangulate(placed.surface, std::move(placed.vertices.positions), placed.vertices.normals);
 }
 
@@ -150,7 +166,7 @@ Mesh field_mesh(const std::vector<Vec3>& points, std::vector<Vec3> normals, cons
   report(monitor, Done::kNothing);
   Prepared prepared;
   mesh::prepare(points, std::move(normals), 0, prepared);
-  mesh::Noise noise = mesh::estimate_noise(prepared.points, *prepared.neighbours, prepared.typical);
+  mesh::Noise noise = mesh::noise_about_fits(prepared.points, *prepared.neighbours, prepared.typical);
   if (options.noise.unit != Length::Unit::kAuto) noise.position = options.noise.value / prepared.typical;
   report(monitor, Done::kNoise);
   mesh::smooth_noise(noise, monitor.cancel, prepared);

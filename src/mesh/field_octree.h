@@ -120,7 +120,12 @@ class Octree {
   }();
   static std::size_t family(std::uint32_t node) { return node == 0 ? 0 : (node - 1) / kOctants; }
   static std::uint32_t sibling(std::uint32_t node) { return node == 0 ? 0 : (node - 1) % kOctants; }
+  struct Frontier;  // nodes of one level that are still to be looked at, with the requests that touch each of them
   void refine(const std::vector<RefineDisc>& requests, const SplitRule& rule, const std::atomic<bool>* cancel);
+  [[nodiscard]] std::vector<std::size_t> split_nodes(const Frontier& front, int level, const std::vector<RefineDisc>& requests,
+                                                     const SplitRule& rule, const std::atomic<bool>* cancel);
+  [[nodiscard]] Frontier children_of(const Frontier& front, const std::vector<std::size_t>& split, int level,
+                                     const std::vector<RefineDisc>& requests, const std::atomic<bool>* cancel) const;
   void number_corners(const std::atomic<bool>* cancel);
 
   Vec3 low_;

@@ -114,7 +114,7 @@ class Search {
   [[nodiscard]] Look look_at(std::uint32_t i, std::uint32_t j) const {
     const Vec3 d = vector::subtract(points_[i], points_[j]);
     const double squared = dot(d, d), a = dot(d, normals_[i]), b = dot(d, normals_[j]);
-    return {std::max(std::abs(a), std::abs(b)), dot(normals_[i], normals_[j]) - 2 * a * b / squared > kSamePatch, std::sqrt(squared)};
+    return {std::max(std::abs(a), std::abs(b)), dot(normals_[i], normals_[j]) - 2 * a * b / squared > kSameLocalPatch, std::sqrt(squared)};
   }
 
   [[nodiscard]] double usual_height() const {

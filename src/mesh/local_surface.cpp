@@ -85,7 +85,7 @@ bool grow_patch(LocalSurface& s, std::vector<FitPoint>& members) {
     taken = 0;
     for (FitPoint& m : members) {
       if (m.patch != kUnassigned && m.patch != s.count) continue;
-      const bool same = m.n.dot(axis) > kSamePatch || &m == &*seed;
+      const bool same = m.n.dot(axis) > kSameLocalPatch || &m == &*seed;
       m.patch = same ? s.count : kUnassigned;
       if (!same) continue;
       mean += m.weight * m.n;

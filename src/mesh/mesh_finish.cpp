@@ -18,10 +18,10 @@ void drop_components(Mesh& mesh, const std::vector<Vec3>& points, const std::vec
                      const MeshOptions& options, Found& found) {
   const Components components = find_components(mesh);
   if (components.count < 2) return;
-  const double scatter = noise * median(spacing);
+  const HoldingPoints holding{points, spacing, noise * median(spacing)};
   std::vector<Support> support(components.count);
-  add_areas(mesh, components.of, points, spacing, scatter, support);
-  add_points(mesh, components.of, points, spacing, scatter, found.strays, support);
+  add_areas(mesh, components.of, holding, support);
+  add_points(mesh, components.of, holding, found.strays, support);
   const std::vector<std::uint8_t> keep = kept_components(support, options, found.strays.size(), found.dropped);
   double area = 0, pointless = 0;
   for (std::size_t c = 0; c < support.size(); ++c) {

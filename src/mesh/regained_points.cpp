@@ -62,7 +62,7 @@ std::vector<Vec3> normals_of_regained(const std::vector<Vec3>& points, const std
   for (bool found = points.size() > kFitPoints; found && !open.empty();) {
     Prepared prepared;
     prepare(positions, directions, 0, prepared);
-    const double noise = prepared.typical * noise_seen(estimate_noise(prepared.points, *prepared.neighbours, prepared.typical));
+    const double noise = prepared.typical * noise_seen(noise_about_fits(prepared.points, *prepared.neighbours, prepared.typical));
     const LocalFit local(prepared.points, *prepared.neighbours, prepared.near);
     parallel::for_blocks(
         open.size(), parallel::kSmallBlock,

@@ -108,6 +108,39 @@ mesh::FloatBox box_of(const Corners& t, const Vec3& middle) {
   return box;
 }
 
+// The corners of the triangles of a mesh, whose vertices lie in `box`, scaled to about 1 by a power of two, which is exact.
+class ScaledTriangles {
+ public:
+  ScaledTriangles(const Mesh& mesh, const vector::Box& box) : triangles_(mesh.triangles), vertices_(mesh.vertices), middle_(box.centre()) {
+    double largest = 0;
+    for (std::size_t k = 0; k < 3; ++k) largest = std::max({largest, std::fabs(box.low[k]), std::fabs(box.high[k])});
+    const int exponent = -std::ilogb(largest);
+    for (Vec3& v : vertices_) {
+      for (double& c : v) c = std::ldexp(c, exponent);
+    }
+    for (double& c : middle_) c = std::ldexp(c, exponent);
+  }
+
+  [[nodiscard]] Corners corners(std::size_t f) const {
+    const auto& t = triangles_[f];
+    return {vertices_[t[0]], vertices_[t[1]], vertices_[t[2]]};
+  }
+  [[nodiscard]] const Vec3& middle() const { return middle_; }
+
+  // Whether two triangles meet that have no corner at the same place.
+  [[nodiscard]] bool meet(std::uint32_t f, std::uint32_t g) const {
+    if (share_a_corner(triangles_[f], triangles_[g])) return false;
+    const Corners mine = corners(f), theirs = corners(g);
+    if (surely_apart(mine, theirs) || surely_apart(theirs, mine) || touch_at_a_corner(mine, theirs)) return false;
+    return triangles_meet(mine, theirs);
+  }
+
+ private:
+  const std::vector<std::array<std::uint32_t, 3>>& triangles_;
+  std::vector<Vec3> vertices_;
+  Vec3 middle_;  // of the box
+};
+
 }  // namespace
 
 namespace mesh {
@@ -115,29 +148,16 @@ namespace mesh {
 std::vector<TrianglePair> self_intersections(const Mesh& mesh, const std::atomic<bool>* cancel) {
   const vector::Box box = box_of_used_vertices(mesh);
   if (mesh.triangles.empty() || !(box.longest_side() > 0)) return {};
-  // By a power of two, which is exact, to about 1.
-  double largest = 0;
-  for (std::size_t k = 0; k < 3; ++k) largest = std::max({largest, std::fabs(box.low[k]), std::fabs(box.high[k])});
-  const int exponent = -std::ilogb(largest);
-  std::vector<Vec3> vertices = mesh.vertices;
-  for (Vec3& v : vertices) {
-    for (double& c : v) c = std::ldexp(c, exponent);
-  }
-  Vec3 middle = box.centre();
-  for (double& c : middle) c = std::ldexp(c, exponent);
-  const auto corners = [&](std::size_t f) {
-    const auto& t = mesh.triangles[f];
-    return Corners{vertices[t[0]], vertices[t[1]], vertices[t[2]]};
-  };
+  const ScaledTriangles triangles(mesh, box);
   std::vector<std::uint32_t> with_area;
   std::vector<FloatBox> boxes;
   with_area.reserve(mesh.triangles.size());
   boxes.reserve(mesh.triangles.size());
   for (std::uint32_t f = 0; f < mesh.triangles.size(); ++f) {
-    const Corners t = corners(f);
+    const Corners t = triangles.corners(f);
     if (has_no_area(t)) continue;
     with_area.push_back(f);
-    boxes.push_back(box_of(t, middle));
+    boxes.push_back(box_of(t, triangles.middle()));
   }
   const BoxTree tree(std::move(boxes));
   const std::vector<BoxTree::PairJob> jobs = tree.pair_jobs();
@@ -146,11 +166,7 @@ std::vector<TrianglePair> self_intersections(const Mesh& mesh, const std::atomic
       jobs.size(),
       [&](std::size_t job) {
         tree.visit_pairs(jobs[job], [&](std::uint32_t i, std::uint32_t j) {
-          const std::uint32_t f = with_area[i], g = with_area[j];
-          if (share_a_corner(mesh.triangles[f], mesh.triangles[g])) return;
-          const Corners mine = corners(f), theirs = corners(g);
-          if (surely_apart(mine, theirs) || surely_apart(theirs, mine) || touch_at_a_corner(mine, theirs)) return;
-          if (triangles_meet(mine, theirs)) found[job].push_back({f, g});
+          if (triangles.meet(with_area[i], with_area[j])) found[job].push_back({with_area[i], with_area[j]});
         });
       },
       cancel);

@@ -45,10 +45,10 @@ double longest_side(const std::array<Vec3, 3>& corner) {
   return longest;
 }
 
-// Which triangles have no place farther than the limits but what is cut off with a corner. Corners tell of small ones; of large ones the
-// middles of the sides and the centre are asked as well. `off`: which vertices are farther.
-std::vector<std::uint8_t> within(const Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>& limits,
-                                 const std::vector<std::uint8_t>& off, const std::atomic<bool>* cancel) {
+// Marks the triangles that have no place farther than the limits but what is cut off with a corner. Small ones are judged by their corners,
+// large ones by the middles of their sides and their centre as well. `off`: which vertices are farther.
+std::vector<std::uint8_t> triangles_within(const Mesh& mesh, const std::vector<Vec3>& points, const std::vector<double>& limits,
+                                           const std::vector<std::uint8_t>& off, const std::atomic<bool>* cancel) {
   // No place of a smaller triangle is much farther from a point than its corners.
   const double small = 0.5 * *std::min_element(limits.begin(), limits.end());
   std::vector<std::uint8_t> keep(mesh.triangles.size(), 1);
@@ -71,53 +71,67 @@ std::vector<std::uint8_t> within(const Mesh& mesh, const std::vector<Vec3>& poin
   return keep;
 }
 
-// Halves edges that are longer than half of the limit, and than leaves around points, where surface may go on on both sides of the limit,
-// so that what is cut there follows it: no place of a triangle is farther from a corner than its longest side.
-void halve_edges(Mesh& mesh, const OrientedPoints& points, double limit, const std::atomic<bool>* cancel) {
+// The vertices in the middles of edges, by the keys of these.
+using Middles = std::unordered_map<std::uint64_t, std::uint32_t>;
+
+// Makes vertices in the middles of the edges that are longer than `longest` and of triangles with a side so long through which the surface
+// `limit` away from the points may pass: no place of a triangle is farther from a corner than its longest side.
+Middles halve_long_edges(Mesh& mesh, const std::vector<Vec3>& points, double limit, double longest, const std::atomic<bool>* cancel) {
   const auto squared_length = [&](std::uint32_t a, std::uint32_t b) {
     const Vec3 d = vector::subtract(mesh.vertices[a], mesh.vertices[b]);
     return vector::dot(d, d);
   };
+  Middles middle;
+  const std::vector<double> distance = distance_to_points(
+      mesh.vertices, points, [](std::uint32_t) { return 1.0; }, cancel);
+  for (const Triangle& v : mesh.triangles) {
+    const double side = longest_side({mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]]});
+    const auto [near, far] = std::minmax({distance[v[0]], distance[v[1]], distance[v[2]]});
+    if (side <= longest || near > limit + side || far < limit - side) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = v[k], b = v[(k + 1) % 3];
+      if (squared_length(a, b) <= longest * longest || !middle.try_emplace(unordered_pair_key(a, b), mesh.vertices.size()).second) continue;
+      mesh.vertices.push_back(vector::scale(vector::add(mesh.vertices[a], mesh.vertices[b]), 0.5));
+    }
+  }
+  return middle;
+}
+
+// Cuts every triangle into as many as one more than its sides have middles.
+void cut_at_middles(Mesh& mesh, const Middles& middle) {
+  const std::size_t count = mesh.triangles.size();
+  for (std::size_t t = 0; t < count; ++t) {
+    const Triangle v = mesh.triangles[t];
+    std::vector<std::uint32_t> ring;  // corners and middles
+    std::size_t first = 0;            // a middle, if there is one
+    for (std::size_t k = 0; k < 3; ++k) {
+      ring.push_back(v[k]);
+      const auto found = middle.find(unordered_pair_key(v[k], v[(k + 1) % 3]));
+      if (found == middle.end()) continue;
+      first = ring.size();
+      ring.push_back(found->second);
+    }
+    if (ring.size() == 3) continue;
+    std::rotate(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(first), ring.end());
+    if (ring.size() == 6) {
+      mesh.triangles[t] = {ring[0], ring[2], ring[4]};
+      for (std::size_t k = 0; k < 6; k += 2) mesh.triangles.push_back({ring[k], ring[k + 1], ring[(k + 2) % 6]});
+      continue;
+    }
+    mesh.triangles[t] = {ring[0], ring[1], ring[2]};
+    for (std::size_t k = 2; k + 1 < ring.size(); ++k) mesh.triangles.push_back({ring[0], ring[k], ring[k + 1]});
+  }
+}
+
+// Halves edges that are longer than half of the limit, and than leaves around points, where surface may go on on both sides of the limit,
+// so that what is cut there follows it.
+void halve_edges(Mesh& mesh, const OrientedPoints& points, double limit, const std::atomic<bool>* cancel) {
   const double longest = std::max(limit / 2, kFinestCell * median(points.spacing));
-  std::unordered_map<std::uint64_t, std::uint32_t> middle;
-  do {
-    middle.clear();
-    const std::vector<double> distance = distance_to_points(
-        mesh.vertices, points.positions, [](std::uint32_t) { return 1.0; }, cancel);
-    for (const Triangle& v : mesh.triangles) {
-      const double side = longest_side({mesh.vertices[v[0]], mesh.vertices[v[1]], mesh.vertices[v[2]]});
-      const auto [near, far] = std::minmax({distance[v[0]], distance[v[1]], distance[v[2]]});
-      if (side <= longest || near > limit + side || far < limit - side) continue;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t a = v[k], b = v[(k + 1) % 3];
-        if (squared_length(a, b) <= longest * longest || !middle.try_emplace(unordered_pair_key(a, b), mesh.vertices.size()).second)
-          continue;
-        mesh.vertices.push_back(vector::scale(vector::add(mesh.vertices[a], mesh.vertices[b]), 0.5));
-      }
-    }
-    const std::size_t count = mesh.triangles.size();
-    for (std::size_t t = 0; t < count; ++t) {
-      const Triangle v = mesh.triangles[t];
-      std::vector<std::uint32_t> ring;  // corners and middles
-      std::size_t first = 0;            // a middle, if there is one
-      for (std::size_t k = 0; k < 3; ++k) {
-        ring.push_back(v[k]);
-        const auto found = middle.find(unordered_pair_key(v[k], v[(k + 1) % 3]));
-        if (found == middle.end()) continue;
-        first = ring.size();
-        ring.push_back(found->second);
-      }
-      if (ring.size() == 3) continue;
-      std::rotate(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(first), ring.end());
-      if (ring.size() == 6) {
-        mesh.triangles[t] = {ring[0], ring[2], ring[4]};
-        for (std::size_t k = 0; k < 6; k += 2) mesh.triangles.push_back({ring[k], ring[k + 1], ring[(k + 2) % 6]});
-        continue;
-      }
-      mesh.triangles[t] = {ring[0], ring[1], ring[2]};
-      for (std::size_t k = 2; k + 1 < ring.size(); ++k) mesh.triangles.push_back({ring[0], ring[k], ring[k + 1]});
-    }
-  } while (!middle.empty());
+  for (bool is_halved = true; is_halved;) {
+    const Middles middle = halve_long_edges(mesh, points.positions, limit, longest, cancel);
+    cut_at_middles(mesh, middle);
+    is_halved = !middle.empty();
+  }
 }
 
 // How far past the rims of the points each vertex is: 0 at a rim, -1 amid points.
@@ -250,7 +264,7 @@ bool trim(Mesh& mesh, const OrientedPoints& points, const MeshOptions& options, 
     for (double& d : past) d -= 1;
     off.resize(past.size());
     std::transform(past.begin(), past.end(), off.begin(), [](double d) { return d > 0 ? 1 : 0; });
-    keep = within(mesh, points.positions, limits, off, cancel);
+    keep = triangles_within(mesh, points.positions, limits, off, cancel);
   };
   look();
   const auto is_set = [](std::uint8_t byte) { return byte != 0; };

@@ -93,7 +93,7 @@ Vec3 normal_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
 }
 
 // Marks the vertices at which two triangles may fold back: then one is turned from their mean by half of that angle or more.
-std::vector<std::uint8_t> pointed(const Mesh& mesh) {
+std::vector<std::uint8_t> pointed_vertices(const Mesh& mesh) {
   std::vector<Vec3> mean(mesh.vertices.size(), Vec3{0, 0, 0});
   for (const auto& t : mesh.triangles) {
     const Vec3 n = normal_of(mesh, t);
@@ -123,7 +123,7 @@ void mark_thorns(const Part& part, std::vector<std::uint8_t>& marked) {
 }  // namespace
 
 void soften_thorns(Mesh& mesh, std::size_t crossings, const std::atomic<bool>* cancel) {
-  std::vector<std::uint8_t> move(mesh.vertices.size(), 0), near = pointed(mesh);
+  std::vector<std::uint8_t> move(mesh.vertices.size(), 0), near = pointed_vertices(mesh);
   grow(mesh, near);
   mark_thorns(part_of(mesh, near), move);
   if (std::find(move.begin(), move.end(), std::uint8_t{1}) == move.end()) return;

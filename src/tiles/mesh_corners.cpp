@@ -2,6 +2,7 @@
 #include "base/median.h"
 #include "base/pair_key.h"
 #include "base/vector.h"
+#include "cloud/morton.h"
 #include "field/areas.h"
 #include "field/winding_sampler.h"
 #include "io/output_file.h"
@@ -139,9 +140,9 @@ void write_corners(const MeshFolder& folder, std::size_t tile, const std::atomic
   const mesh::InsideTest joined = joining_rule(folder, prepared, local);
   const std::vector<std::uint8_t> free = free_corners(octree, owned);
   const double cell = std::ldexp(2.0, -folder.levels().finest) / folder.plan.spacing;
-  mesh::remove_handles(
-      octree, corners.ambiguous, [&](std::uint32_t c) { return free[c] != 0; },
-      mesh::most_per_handle(mesh::noise_seen(folder.plan.noise), cell), joined, inside, cancel);
+  const mesh::HandlePrice price{[&](std::uint32_t c) { return free[c] != 0; },
+                                mesh::most_per_handle(mesh::noise_seen(folder.plan.noise), cell)};
+  mesh::remove_handles(octree, corners.ambiguous, price, joined, inside, cancel);
   mesh::match_values(octree, inside, prepared.typical, corners.value);
 
   const std::vector<CornerValue> values = worth_saying(around, owned, corners.value, inside);

@@ -67,8 +67,8 @@ std::vector<mesh::Support> support_of(const MeshFolder& folder, std::size_t tile
   std::vector<mesh::Support> support(parts.count);
   if (mesh.triangles.empty()) return support;
   const double scatter = mesh::noise_seen(folder.plan.noise) * folder.plan.spacing;
-  mesh::add_areas(mesh, of_triangle, all.positions, all.spacing, scatter, support);
-  mesh::add_points(mesh, of_triangle, own.positions, own.spacing, scatter, strays, support);
+  mesh::add_areas(mesh, of_triangle, {all.positions, all.spacing, scatter}, support);
+  mesh::add_points(mesh, of_triangle, {own.positions, own.spacing, scatter}, strays, support);
   return support;
 }
 

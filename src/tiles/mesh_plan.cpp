@@ -72,7 +72,7 @@ void sample_cloud(const std::string& folder, const Manifest& m, const Cells& cel
     mesh::Prepared prepared;
     mesh::prepare(raw.positions, raw.normals, 0, prepared);
     spacing.push_back(median(prepared.points.spacing));
-    const mesh::Noise noise = mesh::estimate_noise(prepared.points, *prepared.neighbours, prepared.typical);
+    const mesh::Noise noise = mesh::noise_about_fits(prepared.points, *prepared.neighbours, prepared.typical);
     position.push_back(noise.position * prepared.typical);
     normal.push_back(noise.normal);
     const mesh::CloudHeights heights = mesh::cloud_heights(prepared.points.positions, prepared.points.normals);
