@@ -60,7 +60,7 @@ TEST(OtherNoises, AreNoneWhereSidesAreSure) {
 
 // Shape looks like noise where points are few, but rounding does not look like shape.
 TEST(OtherNoises, OfFewPointsThatLookNoisyThereMayBeNone) {
-  for (const std::size_t count : {2000, 4000}) {
+  for (const std::size_t count : {2000U, 4000U}) {
     const std::vector<Vec3> points = shapes::ellipsoid(count, 0.9, 0.5, 0.2).points;
     const Problem clean = prepared(points);
     const Problem noisy = with_noise(clean, 0.3 * clean.spacing, {});

@@ -38,7 +38,7 @@ TEST(PointSet, NearestPointsOfEqualDistanceComeInTheSameOrderHoweverManyAreAsked
   std::vector<Vec3> grid;
   for (int i = 0; i < 30 * 30; ++i) grid.push_back({0.05 * (i % 30) - 0.7, 0.05 * (i / 30) - 0.7, 0});
   const PointSet set = canonical_cloud(grid).set;
-  for (const std::size_t k : {9, 11, 12}) {
+  for (const std::size_t k : {9U, 11U, 12U}) {
     const std::vector<std::uint32_t> fewer = set.tree().of_all(k);
     for (std::size_t i = 0; i < set.size(); ++i) {
       for (std::size_t j = 0; j < k; ++j) ASSERT_EQ(fewer[i * k + j], set.near()[i * set.near_count() + j]) << k << " " << i;
