@@ -146,6 +146,25 @@ TEST(LocalSurface, JoinsTheSidesOfAnEdgeAndLeavesOutAPointThatIsOfNeither) {
   EXPECT_EQ(surface_through(none, 0.2, x).count, 0);
 }
 
+// Two walls, and beside their ends a single point between them. If it is square to both it is of the rim, and what is past it is outside.
+TEST(LocalSurface, ASinglePointTellsWhereTwoWallsEnd) {
+  for (const bool is_square : {true, false}) {
+    std::vector<FitPoint> points;
+    for (const double u : {-0.1, -0.2, -0.3}) {
+      for (const double v : {-0.1, 0.1}) {
+        points.push_back({{u, v, 0}, {0, 0, 1}, 1});
+        points.push_back({{u, v, -0.1}, {0, 0, -1}, 1});
+      }
+    }
+    points.push_back({{0, 0.25, -0.05}, is_square ? Eigen::Vector3d(1, 0, 0) : Eigen::Vector3d(0.8, 0, 0.6), 1});
+    const Eigen::Vector3d x(0.04, 0, -0.05);
+    const LocalSurface surface = surface_through(points, 0.2, x);
+    EXPECT_TRUE(surface.walls);
+    EXPECT_EQ(surface.count, is_square ? 3 : 2);
+    EXPECT_NEAR(surface.distance(x), is_square ? 0.04 : -0.05, 1e-6);
+  }
+}
+
 TEST(WallThickness, IsTheDistanceOfWallsThatFaceApart) {
   OrientedPoints points;
   add_square(points, 0, -1);

@@ -73,6 +73,16 @@ void join(LocalSurface& s, const std::vector<FitPoint>& members, const Vector3d&
   s.unjoined = s.count == 2 && !s.walls && !meet && (s.patch[0].distance(x) > 0) != (s.patch[1].distance(x) > 0);
 }
 
+// Whether the patch after two that are walls closes them, as the rim of a plate does: it is square to both, and both are on one side of it.
+// Of a rim narrower than the spacing one point is often all there is: without it the walls would go on.
+bool ends_walls(const LocalSurface& s, const std::vector<FitPoint>& members) {
+  const auto normal = [&](std::size_t k) { return s.patch[k].frame.row(2); };
+  if (s.count != 2 || !are_walls(s, 0, 1)) return false;
+  if (std::abs(normal(0).dot(normal(2))) > kSlant || std::abs(normal(1).dot(normal(2))) > kSlant) return false;
+  const Seen first = see(s, members, 2, 0), second = see(s, members, 2, 1);
+  return first.one_side && second.one_side && (first.mean < 0) == (second.mean < 0);
+}
+
 // The nearest point left seeds a patch, which takes those with similar normals: similar to the seed's, then to their mean. False if no
 // point is left.
 bool grow_patch(LocalSurface& s, std::vector<FitPoint>& members) {
@@ -93,13 +103,13 @@ bool grow_patch(LocalSurface& s, std::vector<FitPoint>& members) {
     }
     axis = mean.normalized();
   }
-  if (taken < std::min(kPatchPoints, members.size()) && s.count > 0) {
+  s.patch[static_cast<std::size_t>(s.count)] = fit_quadratic_patch(members, s.count, s.spacing, kSlopeWeight);
+  if (taken < std::min(kPatchPoints, members.size()) && s.count > 0 && !ends_walls(s, members)) {
     for (FitPoint& m : members) {
       if (m.patch == s.count) m.patch = kLeftOut;
     }
     return true;
   }
-  s.patch[static_cast<std::size_t>(s.count)] = fit_quadratic_patch(members, s.count, s.spacing, kSlopeWeight);
   ++s.count;
   return true;
 }
