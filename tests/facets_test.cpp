@@ -108,6 +108,19 @@ TEST(Facets, CountPointsOfTheMinoritySign) {
   EXPECT_NEAR(minority_share(facets_of(box, turned), turned), 0.2, 0.005);
 }
 
+// Every fifth point is turned: of those that are asked for none, or nearly all, as a few at the edges are on no facet.
+TEST(Facets, CountWantedPointsAlone) {
+  const Surface box = shapes::plates(1, 1, 20, 5, kSpacing);
+  const std::vector<Vec3> turned = partly_turned(box.normals);
+  const Facets facets = facets_of(box, turned);
+  std::vector<std::uint8_t> wanted(turned.size(), 0);
+  for (std::size_t i = 1; i < wanted.size(); i += 5) wanted[i] = 1;
+  EXPECT_EQ(minority_share(facets, turned, wanted), 0);
+  wanted.assign(wanted.size(), 0);
+  for (std::size_t i = 0; i < wanted.size(); i += 5) wanted[i] = 1;
+  EXPECT_GT(minority_share(facets, turned, wanted), 0.95);
+}
+
 // Walls a tenth of a spacing thick: single points cannot tell their side (51 % right without facets), facets can.
 TEST(Facets, OfWallsThinnerThanTheSpacingTellTheirSides) {
   if (kSanitized) GTEST_SKIP() << "a whole solve, whose result is what counts";

@@ -4,6 +4,7 @@
 #include "orient/confidence.h"
 #include "orient/polish.h"
 #include "orient/walls.h"
+#include "orient/wanted.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -62,21 +63,6 @@ void certify_sides(const OpenSurfaces& surfaces, bool hides_walls, std::vector<f
   }
 }
 
-// The share of the wanted points for which is_so(i); of all, if none is.
-template <class IsSo>
-double share_of_wanted(const Problem& problem, const IsSo& is_so) {
-  const std::vector<std::uint8_t>& wanted = problem.known.wanted;
-  const bool all = std::none_of(wanted.begin(), wanted.end(), [](std::uint8_t w) { return w != 0; });
-  std::size_t points = 0;
-  std::size_t so = 0;
-  for (std::size_t i = 0; i < problem.cloud.size(); ++i) {
-    if (!all && wanted[i] == 0) continue;
-    ++points;
-    so += is_so(i) ? 1 : 0;
-  }
-  return static_cast<double>(so) / static_cast<double>(points);
-}
-
 }  // namespace
 
 Oriented assess(const Problem& problem, Solution solution, Stats& stats) {
@@ -86,8 +72,9 @@ Oriented assess(const Problem& problem, Solution solution, Stats& stats) {
   const OpenSurfaces& surfaces = out.solution.open_surfaces;
   add_open_surfaces(surfaces, out.confidence, stats);
   const auto is_open = [&](std::size_t i) { return surfaces.is_open(i); };
-  out.agreed = share_of_wanted(problem, [&](std::size_t i) { return is_open(i) && surfaces.agrees[i] != 0; });
-  out.doubt = share_of_wanted(problem, [&](std::size_t i) { return out.confidence[i] < kUndecided; }) + share_of_wanted(problem, is_open);
+  const auto share = [&](const auto& is_so) { return share_of_wanted(problem.known.wanted, problem.cloud.size(), is_so); };
+  out.agreed = share([&](std::size_t i) { return is_open(i) && surfaces.agrees[i] != 0; });
+  out.doubt = unsure_share(out.confidence, problem.known.wanted) + share(is_open);
   if (problem.noise > 0 && stats.open_share < 1 && !problem.cloud.set.views().known()) {
     out.about_walls = excess_about_walls(problem.cloud.set, out.solution.refinement.normals, problem.noise, problem.spacing);
   }

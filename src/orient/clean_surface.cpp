@@ -37,7 +37,7 @@ void agree_on_facets(const Problem& problem, const std::vector<std::uint8_t>& pr
   const Settings& s = problem.settings;
   for (int round = 0; round < kMostRounds; ++round) {
     const Facets facets = find_facets(set, proven, normals, scatter_of_facets(problem), problem.known.wanted);
-    if (minority_share(facets, normals) < kMinMinority) return;
+    if (minority_share(facets, normals, problem.known.wanted) < kMinMinority) return;
     make_room_for_sums(set);
     choose_facet_sides(set, s, facets, eta, normals, stages);
     FastSum sum(set.points(), local_widths(s.polish.width, s, set.smoothed_spacing()), s.sums, stages.cancel());

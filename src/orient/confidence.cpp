@@ -5,6 +5,7 @@
 #include "cloud/constants.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
+#include "orient/wanted.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,9 +59,8 @@ std::vector<std::uint8_t> unsure_points(const std::vector<float>& confidence) {
   return unsure;
 }
 
-double unsure_share(const std::vector<float>& confidence) {
-  const auto unsure = std::count_if(confidence.begin(), confidence.end(), [](float c) { return c < kUndecided; });
-  return static_cast<double>(unsure) / static_cast<double>(confidence.size());
+double unsure_share(const std::vector<float>& confidence, const std::vector<std::uint8_t>& wanted) {
+  return share_of_wanted(wanted, confidence.size(), [&](std::size_t i) { return confidence[i] < kUndecided; });
 }
 
 }  // namespace g3r

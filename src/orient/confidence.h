@@ -45,8 +45,8 @@ void limit_to_evidence(std::size_t points, std::vector<float>& confidence);
 
 /// Of every point, whether its side_confidence() is below a half.
 [[nodiscard]] std::vector<std::uint8_t> unsure_points(const std::vector<float>& confidence);
-/// Share of the points, of at least one, whose side_confidence() is below a half. O(N).
-[[nodiscard]] double unsure_share(const std::vector<float>& confidence);
+/// Share of the wanted points (share_of_wanted()), of at least one, whose side_confidence() is below a half. O(N).
+[[nodiscard]] double unsure_share(const std::vector<float>& confidence, const std::vector<std::uint8_t>& wanted = {});
 /// Share of unsure sides from which more steps and other noises are tried: few clean clouds leave as many, and with a larger share thin
 /// parts, and scans that do not fit onto each other, would stay wrong.
 inline constexpr double kDoubtful = 0.05;

@@ -8,6 +8,7 @@
 #include "cpu/parallel.h"
 #include "orient/polish.h"
 #include "orient/unsure.h"
+#include "orient/wanted.h"
 #include "solve/energy_system.h"
 #include "solve/iterative_solver.h"
 #include "solve/part_system.h"
@@ -221,7 +222,7 @@ Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven,
   return facets;
 }
 
-double minority_share(const Facets& facets, const std::vector<Vec3>& normals) {
+double minority_share(const Facets& facets, const std::vector<Vec3>& normals, const std::vector<std::uint8_t>& wanted) {
   const std::vector<Vec3> first = first_normals(facets, normals);
   std::vector<std::size_t> same(facets.count, 0);
   std::vector<std::size_t> all(facets.count, 0);
@@ -231,9 +232,10 @@ double minority_share(const Facets& facets, const std::vector<Vec3>& normals) {
     ++all[f];
     same[f] += vector::dot(normals[i], first[f]) > 0 ? 1 : 0;
   }
-  std::size_t odd = 0;
-  for (std::size_t f = 0; f < facets.count; ++f) odd += std::min(same[f], all[f] - same[f]);
-  return static_cast<double>(odd) / static_cast<double>(normals.size());
+  return share_of_wanted(wanted, normals.size(), [&](std::size_t i) {
+    const std::uint32_t f = facets.of[i];
+    return f != Facets::kNone && (vector::dot(normals[i], first[f]) > 0) == (2 * same[f] <= all[f]);
+  });
 }
 
 void choose_facet_sides(const PointSet& set, const Settings& settings, const Facets& facets, std::vector<Vec3>& eta,

@@ -39,8 +39,8 @@ struct Facets {
 [[nodiscard]] Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven, const std::vector<Vec3>& normals,
                                  double scatter, const std::vector<std::uint8_t>& wanted = {});
 
-/// Share of all points whose normal is on another side than that of most points of their facet. O(N).
-[[nodiscard]] double minority_share(const Facets& facets, const std::vector<Vec3>& normals);
+/// Share of the wanted points (share_of_wanted()) whose normal is on another side than that of most points of their facet. O(N).
+[[nodiscard]] double minority_share(const Facets& facets, const std::vector<Vec3>& normals, const std::vector<std::uint8_t>& wanted = {});
 
 /// One side for every facet. Single points of a wall thinner than the spacing cannot tell their side, the whole facet can: the energy
 /// form's equations are restricted to area vectors eta_i = c_f A_i n_i on facets, with one unknown c_f per facet, its n_i on one side, and

@@ -200,6 +200,7 @@ Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, 
     points.push_back(problem.cloud.points()[i]);
     if (!problem.known.gradient.empty()) part.known.gradient.push_back(problem.known.gradient[i]);
     if (!problem.known.relative_spacing.empty()) part.known.relative_spacing.push_back(problem.known.relative_spacing[i]);
+    if (!problem.known.wanted.empty()) part.known.wanted.push_back(problem.known.wanted[i]);
   }
   Views views = problem.cloud.set.views();
   if (!views.of_point.empty()) views.of_point = values_at(some, views.of_point);

@@ -16,8 +16,8 @@ struct Known {
   /// How many times as far apart the points are as the densest ones, at least 1, where the cloud has been thinned more at some places than
   /// at others: the square root of the number of points that each one stands for. Kernels are as much wider there.
   std::vector<double> relative_spacing;
-  /// 1 for each point whose normal is asked for; the others are its surroundings. What is tried where sides are unsure goes by these points
-  /// alone, and only they have fits of noisy points.
+  /// 1 for each point whose normal is asked for; the others are its surroundings. Other noises and the sides of facets are tried where
+  /// sides of these points are unsure, and only they have fits of noisy points; more steps of the solver go by all points.
   std::vector<std::uint8_t> wanted;
 };
 
