@@ -48,7 +48,7 @@ g3r_together(writers io/float_text io/splat_image io/splat_light io/splat_view i
 g3r_together(tiles base/control_groups gpu/nvrtc tiles/cells tiles/coarse_sides tiles/external_sort tiles/inputs tiles/merge
              tiles/mesh_corners tiles/mesh_parts tiles/mesh_patches tiles/mesh_points tiles/mesh_records tiles/mesh_region tiles/mesh_run
              tiles/mesh_surroundings tiles/parts tiles/patches_file tiles/plan tiles/point_writer tiles/run tiles/spacing_sample
-             tiles/survey tiles/tile_cloud tiles/tile_memory)
+             tiles/survey tiles/thinned tiles/tile_cloud tiles/tile_memory)
 g3r_together(pictures gpu/opencl view/canvas view/pack view/picture view/png view/scene)
 
 # With nlohmann's JSON.

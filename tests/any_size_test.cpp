@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <locale>
 #include <set>
@@ -311,6 +312,7 @@ TEST_F(Tiles, DamagedFoldersAreRefused) {
   spoilt([](tiles::Manifest& m) { m.frame.centre[1] += 0.1; });
   spoilt([](tiles::Manifest& m) { m.bounds.high[2] += 1; });
   spoilt([](tiles::Manifest& m) { std::swap(m.bounds.low, m.bounds.high); });
+  for (const double spacing : {0.0, -0.01, 1e300, double{NAN}}) spoilt([&](tiles::Manifest& m) { m.coarse_spacing = spacing; });
   write_bytes(tiles::manifest_path(work), manifest);
   std::string cells = bytes_of(tiles::cells_path(work));
   std::swap(cells[0], cells[16]);
@@ -329,6 +331,50 @@ std::string complaint(const Work& work) {
     return error.what();
   }
   return "";
+}
+
+TEST_F(Tiles, PlansOfAnotherVersionAreNamed) {
+  const std::string work = copy_of_work("version");
+  std::string manifest = bytes_of(tiles::manifest_path(work));
+  manifest.replace(manifest.rfind("\"schema_version\": ") + 18, 1, "5");
+  write_bytes(tiles::manifest_path(work), manifest);
+  const std::string said = complaint([&] { (void)run_tiles(work); });
+  EXPECT_NE(said.find("of another version of g3r, schema 5; remove the folder, and make the plan anew"), std::string::npos) << said;
+}
+
+TEST_F(Tiles, ADamagedThinnedCloudIsNamed) {
+  const std::string work = copy_of_work("coarse");
+  std::filesystem::remove(tiles::result_path(work, 1));
+  const std::string path = tiles::coarse_path(work);
+  const std::string good = bytes_of(path);
+  for (const std::size_t left : {std::size_t{0}, sizeof(tiles::CoarseNormal), good.size() - 1}) {
+    write_bytes(path, good.substr(0, left));
+    EXPECT_NE(complaint([&] { (void)run_tiles(work); }).find("coarse.bin has " + std::to_string(left) + " bytes"), std::string::npos);
+  }
+  const auto spoilt = [&](const auto& spoil) {
+    tiles::CoarseNormal record{};
+    std::string bad = good;
+    std::memcpy(&record, good.data() + 7 * sizeof record, sizeof record);
+    spoil(record);
+    std::memcpy(bad.data() + 7 * sizeof record, &record, sizeof record);
+    write_bytes(path, bad);
+    EXPECT_NE(complaint([&] { (void)run_tiles(work); }).find("coarse.bin: damaged at record 7; remove the folder"), std::string::npos);
+  };
+  for (const float x : {NAN, INFINITY, -2.0F}) {
+    spoilt([&](tiles::CoarseNormal& c) { c.normal[1] = x; });
+    spoilt([&](tiles::CoarseNormal& c) { c.confidence = x; });
+    spoilt([&](tiles::CoarseNormal& c) { c.area = x; });
+  }
+  spoilt([](tiles::CoarseNormal& c) { c.open = 2; });
+  const std::string done = copy_of_work("done");
+  std::filesystem::copy_file(path, tiles::coarse_path(done), std::filesystem::copy_options::overwrite_existing);
+  EXPECT_NE(complaint([&] { (void)mesh_tiles(done); }).find("coarse.bin: damaged at record 7; remove the folder"), std::string::npos);
+  write_bytes(path, std::string(good.size(), '\0'));
+  EXPECT_NE(complaint([&] { (void)run_tiles(work); }).find("no surface found"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(tiles::result_path(work, 1)));
+  write_bytes(path, good);
+  EXPECT_EQ(run_tiles(work).done, kTiles);
+  EXPECT_TRUE(bytes_of(tiles::result_path(work, 1)) == bytes_of(tiles::result_path(folder_->file("work"), 1)));
 }
 
 TEST_F(Tiles, ADamagedResultIsNamedAndDoneAgain) {

@@ -40,7 +40,7 @@ bool cancel(const Vec3& mean) { return vector::length(mean) <= std::numeric_limi
 
 }  // namespace
 
-OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& normals, const std::vector<double>& areas) {
+OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& normals, const std::vector<double>& areas, double spacing) {
   std::vector<Vec3> kept;  // all but outliers, which have no area and may be far away
   std::vector<std::size_t> input;
   for (std::size_t i = 0; i < normals.size(); ++i) {
@@ -56,7 +56,7 @@ OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& 
     const double area = areas[input[k]] * scale * scale;  // from the left: the square of a scale may leave the range of double
     return vector::scale(normals[input[k]], area);
   });
-  out.spacing = out.cloud.set.spacing();
+  out.spacing = spacing > 0 ? out.cloud.frame.length_to_unit(spacing) : out.cloud.set.spacing();
   return out;
 }
 

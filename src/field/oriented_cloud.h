@@ -19,8 +19,10 @@ struct OrientedCloud {
 };
 
 /// From N points, N unit normals and N areas in squared input units. Points without area are left out, and those whose area or normal is
-/// not finite. Throws InvalidInput like canonical_cloud(), and where no point has an area. O(N log N).
-[[nodiscard]] OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& normals, const std::vector<double>& areas);
+/// not finite. `spacing`: the typical one in input units where it is known; with 0 it is found. Throws InvalidInput like canonical_cloud(),
+/// and where no point has an area. O(N log N).
+[[nodiscard]] OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& normals, const std::vector<double>& areas,
+                                           double spacing = 0);
 /// The same with areas from the spacing of the points: area_vectors(). Duplicates share theirs, and their mean normal. Places where that is
 /// 0 are left out: no normal of theirs is the right one.
 [[nodiscard]] OrientedCloud oriented_cloud(const PointsView& points, const std::vector<Vec3>& normals);

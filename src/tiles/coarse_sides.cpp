@@ -2,32 +2,15 @@
 
 #include "cloud/neighbours.h"
 #include "cpu/parallel.h"
-#include "field/oriented_cloud.h"
 #include "orient/settings.h"
 #include "sum/fast_sum.h"
+#include "tiles/thinned.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace g3r::tiles {
 namespace {
-
-// The thinned cloud, with what its solve has found.
-struct Thinned {
-  std::vector<Vec3> points;
-  std::vector<CoarseNormal> found;
-};
-
-Thinned read_thinned(const std::string& folder, const Manifest& m) {
-  const RecordFile<Record> places(points_path(folder, m.stride));
-  const RecordFile<CoarseNormal> found(coarse_path(folder));
-  std::vector<Record> records;
-  Thinned thinned;
-  places.append(0, places.size(), records);
-  found.append(0, places.size(), thinned.found);
-  for (const Record& record : records) thinned.points.push_back(record.point);
-  return thinned;
-}
 
 std::vector<CoarseNormal> nearest_of(const Thinned& thinned, const TileCloud& cloud) {
   const Neighbours tree(thinned.points);
@@ -45,12 +28,7 @@ std::vector<CoarseNormal> nearest_of(const Thinned& thinned, const TileCloud& cl
   return nearest;
 }
 
-std::vector<Vec3> gradient_of(const Thinned& thinned, const TileCloud& cloud, const std::atomic<bool>* cancel) {
-  std::vector<Vec3> normals(thinned.found.size());
-  for (std::size_t i = 0; i < normals.size(); ++i) {
-    for (std::size_t a = 0; a < 3; ++a) normals[i][a] = thinned.found[i].normal[a];
-  }
-  const OrientedCloud oriented = oriented_cloud(thinned.points, normals);
+std::vector<Vec3> gradient_of(const OrientedCloud& oriented, const TileCloud& cloud, const std::atomic<bool>* cancel) {
   std::vector<Vec3> targets(cloud.points.size());
   parallel::for_all(targets.size(), [&](std::size_t i) { targets[i] = oriented.cloud.frame.to_unit(cloud.points[i]); });
   const FastSum field(oriented.cloud.points(), Widths(kRefinementWidth * oriented.spacing),
@@ -62,7 +40,7 @@ std::vector<Vec3> gradient_of(const Thinned& thinned, const TileCloud& cloud, co
 
 CoarseSides coarse_sides(const std::string& folder, const Manifest& m, const TileCloud& cloud, const std::atomic<bool>* cancel) {
   const Thinned thinned = read_thinned(folder, m);
-  return {gradient_of(thinned, cloud, cancel), nearest_of(thinned, cloud)};
+  return {gradient_of(with_areas(thinned, m), cloud, cancel), nearest_of(thinned, cloud)};
 }
 
 }  // namespace g3r::tiles

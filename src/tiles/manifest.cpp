@@ -23,7 +23,7 @@ namespace g3r::tiles {
 namespace {
 
 constexpr const char* kSchema = "g3r.tiles";
-constexpr int kVersion = 5;
+constexpr int kVersion = 6;
 constexpr std::uint64_t kFewestThinned = 1000;                  // points of the thinnest file: fewer would save nothing
 constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 48U;  // sizes of files are numbers below; the manifest may be damaged
 
@@ -88,6 +88,7 @@ Manifest parsed(const json& from) {
   m.level = static_cast<int>(std::min<std::uint64_t>(whole_number(from.at("level")), kGridBits + 1));
   m.stride = whole_number(from.at("stride"));
   m.coarse_points = whole_number(from.at("coarse_points"));
+  from.at("coarse_spacing").get_to(m.coarse_spacing);
   for (const json& tile : from.at("tiles"))
     m.tiles.push_back({whole_number(tile.at(0)), whole_number(tile.at(1)), whole_number(tile.at(2)), whole_number(tile.at(3))});
   m.limit = whole_number(from.at("limit_bytes"));
@@ -118,6 +119,7 @@ bool is_sound(const Manifest& m) {
   if (m.points > kMostPoints || m.non_finite > m.points || m.level < 0 || m.level > kGridBits || m.tiles.empty()) return false;
   if (m.stride == 0 || (m.stride & (m.stride - 1)) != 0 || m.stride > m.sorted() || !is_of(m.bounds, m.frame)) return false;
   if (m.coarse_points != (m.sorted() + m.stride - 1) / m.stride || m.coarse_points >= kNotCoarse) return false;
+  if (!(m.coarse_spacing > 0 && m.frame.length_to_unit(m.coarse_spacing) < kLongestSide)) return false;
   std::uint64_t own = 0;
   std::uint64_t cell = 0;
   for (const Tile& tile : m.tiles) {
@@ -217,6 +219,7 @@ void write_manifest(const std::string& folder, const Manifest& m) {
               {"level", m.level},
               {"stride", m.stride},
               {"coarse_points", m.coarse_points},
+              {"coarse_spacing", m.coarse_spacing},
               {"limit_bytes", m.limit},
               {"worker_memory_bytes", m.worker_memory},
               {"disk_bytes", m.disk},

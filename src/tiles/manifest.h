@@ -46,6 +46,7 @@ struct Manifest {
   int level = 0;             ///< of the cells
   std::uint64_t stride = 1;  ///< every stride-th point is in the thinned cloud
   std::uint64_t coarse_points = 0;
+  double coarse_spacing = 0;  ///< typical, of the thinned cloud, in the units of the inputs
   std::vector<Tile> tiles;
   std::uint64_t limit = 0;  ///< bytes that a worker may take
   std::uint64_t worker_memory = 0;

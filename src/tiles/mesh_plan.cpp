@@ -2,17 +2,16 @@
 
 #include "base/median.h"
 #include "base/platform.h"
-#include "base/vector.h"
 #include "base/whole_bytes.h"
 #include "cloud/constants.h"
 #include "cpu/parallel.h"
-#include "field/oriented_cloud.h"
 #include "field/winding_sampler.h"
 #include "io/output_file.h"
 #include "io/source.h"
 #include "tiles/cell_codes.h"
 #include "tiles/fewest_tiles.h"
 #include "tiles/mesh_records.h"
+#include "tiles/thinned.h"
 #include "tiles/whole_number.h"
 
 #include <g3r/io.h>
@@ -87,21 +86,7 @@ void sample_cloud(const std::string& folder, const Manifest& m, const Cells& cel
 
 // As the thinned cloud says.
 bool is_turned(const std::string& folder, const Manifest& m, const std::atomic<bool>* cancel) {
-  std::vector<Record> records;
-  std::vector<CoarseNormal> coarse;
-  const RecordFile<Record> points(points_path(folder, m.stride));
-  const RecordFile<CoarseNormal> normals(coarse_path(folder));
-  points.append(0, points.size(), records);
-  normals.append(0, normals.size(), coarse);
-  std::vector<Vec3> places;
-  std::vector<Vec3> directions;
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    const Vec3 n{coarse[i].normal[0], coarse[i].normal[1], coarse[i].normal[2]};
-    if (!(vector::dot(n, n) > 0)) continue;
-    places.push_back(records[i].point);
-    directions.push_back(vector::normalised(n));
-  }
-  const OrientedCloud oriented = oriented_cloud(places, directions);
+  const OrientedCloud oriented = with_areas(read_thinned(folder, m), m);
   return is_inside_out(oriented, WindingSampler(oriented, cancel));
 }
 

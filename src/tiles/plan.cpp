@@ -156,10 +156,13 @@ void solve_coarse(const std::string& folder, const TileOptions& options, Manifes
   std::vector<std::uint8_t> open;
   const Orientation coarse = orient_from(points, {}, solve, named(monitor, "coarse"), &open);
   io::OutputFile out(coarse_path(folder), monitor.cancel);
+  m.coarse_spacing = coarse.stats.spacing;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3& n = coarse.normals[i];
-    const CoarseNormal normal{
-        {static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])}, coarse.confidence[i], open[i]};
+    const CoarseNormal normal{{static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])},
+                              coarse.confidence[i],
+                              static_cast<float>(coarse.areas[i] / m.coarse_spacing / m.coarse_spacing),
+                              open[i]};
     out.write(&normal, sizeof normal);
   }
   out.commit();

@@ -32,9 +32,10 @@ static_assert(sizeof(Record) == 32);
 struct CoarseNormal {
   std::array<float, 3> normal;
   float confidence;
+  float area;          ///< that it stands for, over the square of the spacing (Manifest::coarse_spacing); 0 of an outlier
   std::uint32_t open;  ///< 1: on a surface without an inside
 };
-static_assert(sizeof(CoarseNormal) == 20);
+static_assert(sizeof(CoarseNormal) == 24);
 
 /// The result for an input point.
 struct Result {
