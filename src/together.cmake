@@ -20,7 +20,7 @@ g3r_together(solve baselines/baseline baselines/gauss_system baselines/hard_cuto
              field/surface_points field/winding_sampler solve/dense_solver solve/green_system solve/harmonics solve/iterative_solver
              solve/part_system solve/refine)
 g3r_together(orient orient/attempt orient/clean_surface orient/clustered_polish orient/coarse_to_fine orient/creases orient/jets
-             orient/noise_choice orient/noise_settings orient/noisy_jets orient/noisy_surface orient/open_surfaces orient/outlier_normals
+             orient/known_open orient/noise_choice orient/noise_settings orient/noisy_jets orient/noisy_surface orient/open_surfaces orient/outlier_normals
              orient/planes orient/polish orient/problem orient/projection orient/restless orient/settings orient/site_parts orient/solution
              orient/solve_apart orient/solve_on_sites orient/steps)
 g3r_together(sides c_api describe_mesh mesh_run names orient/agreement orient/apply_hints orient/assess orient/callers_order

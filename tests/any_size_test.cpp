@@ -7,6 +7,7 @@
 #include "tiles/external_sort.h"
 #include "tiles/manifest.h"
 #include "tiles/point_hash.h"
+#include "tiles/thinned.h"
 #include "tiles/tile_cloud.h"
 
 #include <g3r/io.h>
@@ -321,6 +322,24 @@ TEST_F(Tiles, DamagedFoldersAreRefused) {
   EXPECT_THROW((void)run_tiles(work), InvalidInput);
   std::filesystem::remove(tiles::points_path(work, 1));
   EXPECT_THROW((void)tiles_status(work), InvalidInput);
+}
+
+// A closed point amid open ones: these may be closed too, as far as its neighbours go.
+TEST(ThinnedCloud, IsOpenWhereAllAroundIs) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 400; ++i) points.push_back({0.05 * (i % 20), 0.0501 * (i / 20), 0});
+  std::vector<std::uint8_t> open(points.size(), 1);
+  EXPECT_EQ(tiles::open_all_around(points, open), open);
+  open[210] = 0;
+  const std::vector<std::uint8_t> around = tiles::open_all_around(points, open);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double distance = std::hypot(points[i][0] - points[210][0], points[i][1] - points[210][1]);
+    if (distance < 0.09 || distance > 0.2) {
+      EXPECT_EQ(around[i], distance > 0.2 ? 1 : 0) << i;
+    }
+  }
+  open.assign(open.size(), 0);
+  EXPECT_EQ(tiles::open_all_around(points, open), open);
 }
 
 template <class Work>

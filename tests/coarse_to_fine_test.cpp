@@ -72,7 +72,7 @@ TEST(SolveCoarseToFine, MayStartFromWhatIsKnown) {
   Options only_solve;
   only_solve.without = "polish,more-steps";
   const auto first_residual = [&](const std::vector<Vec3>& start) {
-    return orient_from(torus.points, {start, {}, {}}, only_solve, {}).stats.iterations.front().residual;
+    return orient_from(torus.points, {start, {}, {}, {}}, only_solve, {}).stats.iterations.front().residual;
   };
   EXPECT_LT(first_residual(torus.normals), first_residual({}));
   EXPECT_GT(first_residual({torus.normals.rbegin(), torus.normals.rend()}), 0.5);
@@ -136,7 +136,7 @@ TEST(OrientFrom, ThinningFarPointsCostsNoDirections) {
   Options only_field;
   only_field.without = "jets,planes,creases,facets";
   const std::vector<Vec3> whole = orient(torus.points, only_field).normals;
-  const std::vector<Vec3> half = orient_from(points, {{}, relative, {}}, only_field, {}).normals;
+  const std::vector<Vec3> half = orient_from(points, {{}, relative, {}, {}}, only_field, {}).normals;
   double error_of_whole = 0, error_of_half = 0;  // of 1 - cos
   for (std::size_t k = 0; k < of.size(); ++k) {
     if (points[k][0] > -kFarFromThem) continue;

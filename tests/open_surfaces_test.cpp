@@ -5,6 +5,7 @@
 #include "cloud/morton.h"
 #include "cloud/plane_fit.h"
 #include "cloud/spacing.h"
+#include "orient/start.h"
 
 #include "sanitized.h"
 #include "shapes.h"
@@ -506,6 +507,36 @@ TEST(OpenSurfaces, AHalfIsAChoiceOnThemAndUnsureElsewhere) {
   surfaces.part = repeated<std::uint32_t>(8, {0, 0, 0, OpenSurfaces::kNone});
   EXPECT_EQ(unsure_share(surfaces, repeated<float>(8, {0.4F, 0.5F, 0.6F, 1})), 0.25);
   EXPECT_EQ(unsure_share(surfaces, repeated<float>(8, {0.6F, 0.5F, 0.6F, 0.5F})), 0.25);
+}
+
+// A layer and a ball, of which another cloud has shown that the layer is open and faces down: nothing else would choose that side.
+TEST(OpenSurfaces, ThatAreKnownHaveTheSideThatIs) {
+  Surface ball = shapes::sphere(3000);
+  for (Vec3& p : ball.points) p = {p[0], p[1], p[2] + 3};
+  const Surface layer = terrain(4000, waves, 0.02);
+  const Surface scene = shapes::join(layer, ball);
+  Known known;
+  for (std::size_t i = 0; i < scene.points.size(); ++i) {
+    known.open.push_back(i < layer.points.size() ? 1 : 0);
+    known.gradient.push_back(known.open[i] != 0 ? Vec3{0, 0, -1} : scene.normals[i]);
+  }
+  std::vector<std::uint8_t> open;
+  const Orientation found = orient_from(scene.points, known, {}, {}, &open);
+  EXPECT_EQ(open, known.open);
+  double error = 0;  // of 1 - |cos|
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    const double cosine = vector::dot(found.normals[i], scene.normals[i]);
+    EXPECT_TRUE(open[i] != 0 ? cosine < 0 : cosine > 0) << i;
+    error += (1 - std::abs(cosine)) / static_cast<double>(open.size());
+  }
+  EXPECT_LT(error, 0.005);
+  EXPECT_NEAR(found.stats.undecided_share, 4.0 / 7, 1e-9);
+  EXPECT_GT(found.stats.iterations.size(), 0U);
+  known.open.resize(layer.points.size());
+  known.gradient.resize(layer.points.size());
+  const Stats alone = orient_from(layer.points, known, {}, {}).stats;
+  EXPECT_EQ(alone.iterations.size(), 0U);
+  EXPECT_TRUE(alone.converged);
 }
 
 TEST(PlaneFit, KnowsPlaneAndNoise) {

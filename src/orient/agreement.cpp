@@ -51,13 +51,10 @@ Sites coarser_than(const PointSet& set, const Sites& sites) {
   return place_sites(set, std::max(kFirstDistance * set.spacing(), kLevelRatio * sites.distance));
 }
 
-// Of all points, from the signs that the sites of one scale agree on.
-std::vector<Vec3> by_agreement(const PointSet& set, const Sites& sites, const SumPlan& sums, const std::atomic<bool>* cancel) {
+// Of all points, from normals of the sites.
+std::vector<Vec3> at_points(const PointSet& set, const Sites& sites, std::vector<Vec3> normals, const SumPlan& sums,
+                            const std::atomic<bool>* cancel) {
   const std::vector<Vec3>& points = set.points();
-  const std::size_t count = sites.size();
-  const Signs signs = agree_on_signs(count, adjacent_sites(sites));  // 110 bytes a site, made again rather than kept
-  std::vector<Vec3> normals(count);
-  for (std::size_t s = 0; s < count; ++s) normals[s] = vector::scale(sites.axis[s], signs.sign[s]);
   const double spacing = sites.set.spacing();
   const auto widths = [&](double width) { return narrowed(width * spacing, sites.set.smoothed_spacing(), spacing); };
   FastSum wide(sites.points(), widths(kResolved), sums, cancel);
@@ -71,6 +68,15 @@ std::vector<Vec3> by_agreement(const PointSet& set, const Sites& sites, const Su
     if (dot(narrow[i], sided[i]) > 0) sided[i] = narrow[i];
   }
   return sided;
+}
+
+// Of all points, from the signs that the sites of one scale agree on.
+std::vector<Vec3> by_agreement(const PointSet& set, const Sites& sites, const SumPlan& sums, const std::atomic<bool>* cancel) {
+  const std::size_t count = sites.size();
+  std::vector<Vec3> normals(count);
+  const Signs signs = agree_on_signs(count, adjacent_sites(sites));  // 110 bytes a site, made again rather than kept
+  for (std::size_t s = 0; s < count; ++s) normals[s] = vector::scale(sites.axis[s], signs.sign[s]);
+  return at_points(set, sites, std::move(normals), sums, cancel);
 }
 
 }  // namespace
@@ -127,6 +133,14 @@ std::vector<std::vector<Vec3>> sides_by_agreement(const PointSet& set, const Sit
     sites = coarser_than(set, sites);
   }
   return all;
+}
+
+std::vector<Vec3> sides_as_known(const PointSet& set, const Sites& sites, const std::vector<Vec3>& known, const SumPlan& sums,
+                                 const std::atomic<bool>* cancel) {
+  std::vector<Vec3> normals = sites.axis;
+  const std::vector<Vec3> sides = at_sites(sites, known);
+  for (std::size_t s = 0; s < normals.size(); ++s) normals[s] = vector::scale(normals[s], dot(normals[s], sides[s]) < 0 ? -1 : 1);
+  return at_points(set, sites, std::move(normals), sums, cancel);
 }
 
 std::vector<Vec3> seen_from_afar(const PointSet& set, const Sites& sites, const std::vector<Vec3>& normals, const SumPlan& sums,

@@ -38,6 +38,11 @@ namespace g3r {
 [[nodiscard]] std::vector<std::vector<Vec3>> sides_by_agreement(const PointSet& set, const Sites& finest, const SumPlan& sums,
                                                                 const std::atomic<bool>* cancel);
 
+/// Normals of all N points on the sides of N known directions: the axes of the sites on those of their points, and on from there as above,
+/// on the scale of these sites alone. Throws Cancelled. O(N log N).
+[[nodiscard]] std::vector<Vec3> sides_as_known(const PointSet& set, const Sites& sites, const std::vector<Vec3>& known, const SumPlan& sums,
+                                               const std::atomic<bool>* cancel);
+
 /// Normals of all points from the field of the given ones, four site spacings wide: so wide that it sees no grooves but what is around.
 /// Throws Cancelled. O(N log N).
 [[nodiscard]] std::vector<Vec3> seen_from_afar(const PointSet& set, const Sites& sites, const std::vector<Vec3>& normals,

@@ -110,7 +110,8 @@ Known known_of_points(const CanonicalCloud& cloud, Known given) {
   const auto any = [](std::uint8_t a, std::uint8_t b) { return std::max(a, b); };
   return {last_in_canonical_order(cloud, std::exchange(given.gradient, {})),
           last_in_canonical_order(cloud, std::exchange(given.relative_spacing, {})),
-          in_canonical_order(cloud, std::exchange(given.wanted, {}), std::uint8_t{0}, any)};
+          in_canonical_order(cloud, std::exchange(given.wanted, {}), std::uint8_t{0}, any),
+          last_in_canonical_order(cloud, std::exchange(given.open, {}))};
 }
 
 // `found`: what make_cloud() has found.
@@ -201,6 +202,7 @@ Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, 
     if (!problem.known.gradient.empty()) part.known.gradient.push_back(problem.known.gradient[i]);
     if (!problem.known.relative_spacing.empty()) part.known.relative_spacing.push_back(problem.known.relative_spacing[i]);
     if (!problem.known.wanted.empty()) part.known.wanted.push_back(problem.known.wanted[i]);
+    if (!problem.known.open.empty()) part.known.open.push_back(problem.known.open[i]);
   }
   Views views = problem.cloud.set.views();
   if (!views.of_point.empty()) views.of_point = values_at(some, views.of_point);

@@ -13,7 +13,8 @@ namespace g3r {
 /// beside it wrong too. So each one whose enclosure is above 2/3, as no bowl up to half a sphere has it, is solved for alone, which may
 /// show that it was none, and then everything else without them, unless the others have no part in the equations: the mean size of their
 /// winding number at the points is at most 0.02, of 1/2. Without an open surface, or with one that is all there is, and without
-/// Step::kApart, this is solve(). Adds to `stats` like solve(); it has converged if all that is not open has. Throws Cancelled.
+/// Step::kApart, this is solve(). What is known to be open (known_open_points()) is not solved for (as_known_open()), and all else without
+/// it. Adds to `stats` like solve(); it has converged if all that is not open has. Throws Cancelled.
 [[nodiscard]] Solution solve_parts(const Problem& problem, const Options& options, Stages& stages, Stats& stats);
 
 }  // namespace g3r

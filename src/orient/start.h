@@ -19,6 +19,9 @@ struct Known {
   /// 1 for each point whose normal is asked for; the others are its surroundings. Other noises and the sides of facets are tried where
   /// sides of these points are unsure, and only they have fits of noisy points; more steps of the solver go by all points.
   std::vector<std::uint8_t> wanted;
+  /// 1 for each point that lies on a surface without an inside, whose side is that of the gradient; with a gradient only. The equations,
+  /// which are not true there, are not solved for these points, and no other sides are tried.
+  std::vector<std::uint8_t> open;
 };
 
 /// orient(points, options, monitor) with what is known. `open`: unless null, becomes 1 for each point that lies on a surface without an

@@ -18,11 +18,7 @@ std::vector<CoarseNormal> nearest_of(const Thinned& thinned, const TileCloud& cl
   parallel::for_blocks(nearest.size(), parallel::kBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       double squared = HUGE_VAL;
-      if (cloud.coarse[i] != kNotCoarse) {
-        nearest[i] = thinned.found[cloud.coarse[i]];
-      } else if (cloud.own[i] != 0) {
-        nearest[i] = thinned.found[tree.nearest(cloud.points[i], squared, 0)];
-      }
+      nearest[i] = thinned.found[cloud.coarse[i] != kNotCoarse ? cloud.coarse[i] : tree.nearest(cloud.points[i], squared, 0)];
     }
   });
   return nearest;

@@ -18,8 +18,7 @@ namespace g3r::tiles {
 struct CoarseSides {
   /// The winding gradient of the thinned cloud, at kRefinementWidth of its spacing.
   std::vector<Vec3> gradient;
-  /// The normal of the thinned cloud's point nearest to it, which is itself where it is one. Only of its own points and of those of the
-  /// thinned cloud, all zeros elsewhere.
+  /// The normal of the thinned cloud's point nearest to it, which is itself where it is one.
   std::vector<CoarseNormal> nearest;
 };
 

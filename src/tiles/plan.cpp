@@ -22,6 +22,7 @@
 #include "tiles/point_hash.h"
 #include "tiles/records.h"
 #include "tiles/survey.h"
+#include "tiles/thinned.h"
 #include "tiles/tile_cloud.h"
 #include "tiles/tile_memory.h"
 
@@ -156,6 +157,7 @@ void solve_coarse(const std::string& folder, const TileOptions& options, Manifes
   std::vector<std::uint8_t> open;
   const Orientation coarse = orient_from(points, {}, solve, named(monitor, "coarse"), &open);
   io::OutputFile out(coarse_path(folder), monitor.cancel);
+  open = open_all_around(points, open);
   m.coarse_spacing = coarse.stats.spacing;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3& n = coarse.normals[i];

@@ -33,7 +33,7 @@ struct CoarseNormal {
   std::array<float, 3> normal;
   float confidence;
   float area;          ///< that it stands for, over the square of the spacing (Manifest::coarse_spacing); 0 of an outlier
-  std::uint32_t open;  ///< 1: on a surface without an inside
+  std::uint32_t open;  ///< 1: on a surface without an inside, and so are the points around it
 };
 static_assert(sizeof(CoarseNormal) == 24);
 

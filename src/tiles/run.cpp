@@ -56,6 +56,14 @@ std::vector<Vec3> gradient_of_open(const TileCloud& cloud, const CoarseSides& co
   return gradient;
 }
 
+// Which points are on open surfaces, as the thinned cloud has found; empty: none is.
+std::vector<std::uint8_t> open_points(const CoarseSides& coarse) {
+  std::vector<std::uint8_t> open;
+  for (const CoarseNormal& there : coarse.nearest) open.push_back(there.open != 0 ? 1 : 0);
+  const bool any = std::find(open.begin(), open.end(), std::uint8_t{1}) != open.end();
+  return any ? open : std::vector<std::uint8_t>{};
+}
+
 // The sides of the own points: of those on an open surface each takes that of the thinned cloud's field, and the confidence there, for the
 // equations say nothing of it and all tiles choose as one; the others turn with their part.
 std::vector<Result> results_of(const TileCloud& cloud, const Orientation& solved, const CoarseSides& coarse,
@@ -85,8 +93,9 @@ void solve_tile(const std::string& folder, const Manifest& m, const Cells& cells
     return coarse_sides(folder, m, cloud, monitor.cancel);
   });
   const std::vector<Vec3> open_gradient = gradient_of_open(cloud, coarse);
-  const Orientation solved = solve(cloud, {std::move(coarse.gradient), std::move(cloud.relative_spacing), cloud.own}, worker,
-                                   named(monitor, "tile " + std::to_string(t + 1) + " of " + std::to_string(m.tiles.size())));
+  Known known{std::move(coarse.gradient), std::move(cloud.relative_spacing), cloud.own, open_points(coarse)};
+  const Orientation solved =
+      solve(cloud, std::move(known), worker, named(monitor, "tile " + std::to_string(t + 1) + " of " + std::to_string(m.tiles.size())));
   io::OutputFile out(result_path(folder, t), monitor.cancel);
   out.write_records(results_of(cloud, solved, coarse, open_gradient));
   out.commit();

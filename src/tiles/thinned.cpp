@@ -1,5 +1,9 @@
 #include "tiles/thinned.h"
 
+#include "cloud/neighbours.h"
+#include "cloud/spacing.h"
+#include "cpu/parallel.h"
+
 #include <g3r/io.h>
 
 #include <algorithm>
@@ -45,6 +49,16 @@ OrientedCloud with_areas(const Thinned& thinned, const Manifest& manifest) {
     areas[i] = found.area * manifest.coarse_spacing * manifest.coarse_spacing;
   }
   return oriented_cloud(thinned.points, normals, areas, manifest.coarse_spacing);
+}
+
+std::vector<std::uint8_t> open_all_around(const std::vector<Vec3>& points, const std::vector<std::uint8_t>& open) {
+  std::vector<std::uint8_t> around = open;
+  if (points.size() < kSpacingNeighbours || std::count(open.begin(), open.end(), std::uint8_t{0}) == 0) return around;
+  const std::vector<std::uint32_t> near = Neighbours(points).of_all(kSpacingNeighbours);
+  parallel::for_all(points.size(), [&](std::size_t i) {
+    for (std::size_t k = 0; k < kSpacingNeighbours; ++k) around[i] &= open[near[i * kSpacingNeighbours + k]];
+  });
+  return around;
 }
 
 }  // namespace g3r::tiles

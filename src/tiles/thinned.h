@@ -7,6 +7,7 @@
 
 #include <g3r/points.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -23,5 +24,9 @@ struct Thinned {
 
 /// With the areas that the plan has found. Throws InvalidInput where no point has one.
 [[nodiscard]] OrientedCloud with_areas(const Thinned& thinned, const Manifest& manifest);
+
+/// `open` without the points that have one of another kind among their nearest 16: where the thinned cloud takes a few points amid closed
+/// ones for open, or the other way round, the tile sees more. Of N points. O(N log N).
+[[nodiscard]] std::vector<std::uint8_t> open_all_around(const std::vector<Vec3>& points, const std::vector<std::uint8_t>& open);
 
 }  // namespace g3r::tiles
