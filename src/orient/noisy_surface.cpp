@@ -90,8 +90,9 @@ void fit_noisy_surface(const Problem& problem, Stages& stages, Solution& solutio
   const double noise = std::max(problem.noise, problem.direction_noise);
   if (noise == 0 || !runs(problem, Step::kPolish) || !runs(problem, Step::kNoisyJets)) return;
   fit_noisy_jets(problem.cloud.set, noise, problem.known.wanted, solution.refinement.normals, stages.cancel());
-  // Facets whose points scatter clearly less than the noise of all are chance, or beside what is noisy.
-  if (noise > kWider * problem.scatter || !runs(problem, Step::kPlanes)) return;
+  // Facets whose points scatter less than the noise of all by more than a step, to which both are known, are chance, or beside what is
+  // noisy.
+  if (noise >= kLevelRatio * problem.scatter || !runs(problem, Step::kPlanes)) return;
   std::vector<std::uint8_t> proven(problem.cloud.size(), 0);
   fit_planes(problem.cloud.set, problem.scatter, proven, solution.refinement.normals);
   if (!runs(problem, Step::kFacets)) return;
