@@ -16,7 +16,8 @@ namespace {
 
 // A plate of random points in planes, with its problem and true normals in canonical order.
 struct Plate {
-  explicit Plate(double thickness) : surface(shapes::plates(1, 1, thickness, 0, 0.02)) {
+  explicit Plate(double thickness, double scatter = 0) : surface(shapes::plates(1, 1, thickness, 0, 0.02)) {
+    shapes::scatter(surface, scatter);
     Options options;
     options.noise = {Length::Unit::kSpacing, 0};
     problem = problems::prepared(surface.points, options);
@@ -98,6 +99,20 @@ TEST(FitCleanSurface, TurnsAreaVectorsWithTheNormalsAtEdges) {
   EXPECT_NE(found[0], found[1]);
   EXPECT_LT(shapes::angle_error(found[0], plate.normals), shapes::angle_error(found[1], plate.normals));
   for (std::size_t i = 0; i < cosines[0].size(); ++i) EXPECT_NEAR(cosines[0][i], cosines[1][i], 1e-9) << i;
+}
+
+// Facets may be seen to scatter more than what counts as noise where no noise is, and their directions are exact all the same.
+TEST(FitCleanSurface, FollowsFacetsThatScatterWhereThereIsNoNoise) {
+  const Plate plate(10, 0.06 * 0.02);
+  ASSERT_EQ(plate.problem.noise, 0);
+  ASSERT_GT(plate.problem.scatter, 0.04 * plate.problem.spacing);
+  Solution solution = problems::solution_of(plate.problem, plate.surface.normals);
+  std::vector<Vec3>& normals = solution.refinement.normals;
+  normals = shapes::disturbed(plate.normals, 0.3);
+  const Monitor monitor;
+  Stages stages(monitor);
+  fit_clean_surface(plate.problem, solution.eta, normals, stages);
+  EXPECT_LT(shapes::angle_error(normals, plate.normals), 0.05 * 0.06);
 }
 
 }  // namespace

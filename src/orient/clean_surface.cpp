@@ -25,8 +25,8 @@ Vec3 turned(const Vec3& v, const Vec3& from, const Vec3& to) {
   return vector::subtract(vector::scale(middle, 2 * vector::dot(middle, v)), v);
 }
 
-// About facets; more than this may be that of two walls.
-double scatter_of_facets(const Problem& problem) { return problem.scatter < kLeastNoise * problem.spacing ? problem.scatter : 0; }
+// About facets whose sides are decided as one: more may be that of two walls, whose directions are one all the same.
+double scatter_of_one_side(const Problem& problem) { return problem.scatter < kLeastNoise * problem.spacing ? problem.scatter : 0; }
 
 // Where the points of a cloud's facets disagree about their sides, every facet gets one, and the other points their normals from the field
 // of what the facets have become. `fit` proves normals; `proven`: those it has.
@@ -36,7 +36,7 @@ void agree_on_facets(const Problem& problem, const std::vector<std::uint8_t>& pr
   const PointSet& set = problem.cloud.set;
   const Settings& s = problem.settings;
   for (int round = 0; round < kMostRounds; ++round) {
-    const Facets facets = find_facets(set, proven, normals, scatter_of_facets(problem), problem.known.wanted);
+    const Facets facets = find_facets(set, proven, normals, scatter_of_one_side(problem), problem.known.wanted);
     if (minority_share(facets, normals, problem.known.wanted) < kMinMinority) return;
     make_room_for_sums(set);
     choose_facet_sides(set, s, facets, eta, normals, stages);
@@ -66,7 +66,7 @@ void fit_clean_surface(const Problem& problem, std::vector<Vec3>& eta, std::vect
   if (!runs(problem, Step::kFacets)) return;
   agree_on_facets(problem, proven, fit, eta, normals, stages);
   const std::vector<Vec3> before = normals;
-  follow_facets(problem.cloud.set, scatter_of_facets(problem), proven, problem.known.wanted, normals);
+  follow_facets(problem.cloud.set, problem.scatter, proven, problem.known.wanted, normals);
   // Area vectors turn with them: how far both agree tells the side, not the direction.
   for (std::size_t i = 0; i < normals.size(); ++i) eta[i] = turned(eta[i], before[i], normals[i]);
 }
