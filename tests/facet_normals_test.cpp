@@ -56,7 +56,8 @@ Start blurred(const Surface& s) {
 
 std::vector<Vec3> followed(const Surface& s, double sigma, const Start& start) {
   std::vector<Vec3> normals = start.normals;
-  follow_facets(PointSet(s.points), sigma, start.proven, {}, normals);
+  const PointSet set(s.points);
+  follow_facets(set, find_facets(set, start.proven, normals, sigma), {}, normals);
   return normals;
 }
 
@@ -130,7 +131,8 @@ TEST(FacetNormals, OfPointsThatAreNotWantedStay) {
   std::vector<std::uint8_t> wanted(s.points.size(), 0);
   for (std::size_t i = 0; i < wanted.size() / 2; ++i) wanted[i] = 1;
   std::vector<Vec3> normals = start.normals;
-  follow_facets(PointSet(s.points), 0.1 * kSpacing, start.proven, wanted, normals);
+  const PointSet set(s.points);
+  follow_facets(set, find_facets(set, start.proven, normals, 0.1 * kSpacing, wanted), wanted, normals);
   EXPECT_NE(normals, start.normals);
   for (std::size_t i = wanted.size() / 2; i < wanted.size(); ++i) EXPECT_EQ(normals[i], start.normals[i]);
 }

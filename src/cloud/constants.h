@@ -56,6 +56,10 @@ constexpr std::size_t terms_of(std::size_t degree) { return (degree + 1) * (degr
 inline constexpr std::size_t kPlaneTerms = terms_of(1);
 /// Numbers of a quadratic height field, 1, u, v, u^2, uv, v^2: one point more says how far they are off.
 inline constexpr std::size_t kQuadraticTerms = terms_of(2);
+/// Those beside the constant, which layers of one surface share: an index, as matrices are indexed.
+inline constexpr std::ptrdiff_t kVaryingTerms = kQuadraticTerms - 1;
+/// Rounds in which points look for the layer that they are of, at most: most change theirs 4 times, and more cost time only.
+inline constexpr int kLayerRounds = 20;
 /// Numbers of a cubic height field, whose residuals follow the noise on more points than those of a quadratic.
 inline constexpr std::size_t kCubicTerms = terms_of(3);
 

@@ -21,23 +21,19 @@ using Eigen::VectorXd;
 constexpr double kRadius = 0.6;
 // Deviations from the middle of a layer up to which it has to be inside that ball for its deviation to count: what is cut looks thinner.
 constexpr double kTail = 1.5;
-// The terms of a height field beside its constant: u, v, u^2, u v, v^2.
-constexpr Eigen::Index kTerms = kQuadraticTerms - 1;
-// Steps of expectation and maximisation.
-constexpr int kSteps = 20;
 // Layers of a mixture, at most.
 constexpr std::size_t kMostLayers = 3;
 // What every layer has of a point at least: it keeps the logarithm of a likelihood finite.
 constexpr double kNoShare = std::numeric_limits<double>::min();
 
-using Terms = Eigen::Matrix<double, Eigen::Dynamic, kTerms>;
-using Slopes = Eigen::Vector<double, kTerms>;
-using Square = Eigen::Matrix<double, kTerms, kTerms>;
+using Terms = Eigen::Matrix<double, Eigen::Dynamic, kVaryingTerms>;
+using Slopes = Eigen::Vector<double, kVaryingTerms>;
+using Square = Eigen::Matrix<double, kVaryingTerms, kVaryingTerms>;
 using PerLayer = std::array<double, kMostLayers>;
 
 // The heights over a plane through the centre of the n points in the cylinder.
 struct Heights {
-  Terms terms;      // n x kTerms, of order 1
+  Terms terms;      // n x kVaryingTerms, of order 1
   VectorXd z;       // n heights, in the unit of the points
   double most = 0;  // |z| up to which the cylinder is inside the ball of the points
 };
@@ -60,7 +56,7 @@ Heights heights(const std::vector<Vec3>& points, const std::uint32_t* index, std
   const Eigen::Matrix3d frame = tangent_frame(to_eigen(normal));
   const double radius = (to_eigen(points[index[count - 1]]) - to_eigen(centre)).norm();
   const auto most = static_cast<Eigen::Index>(count);
-  Heights h{Terms(most, kTerms), VectorXd(most), std::sqrt(1 - kRadius * kRadius) * radius};
+  Heights h{Terms(most, kVaryingTerms), VectorXd(most), std::sqrt(1 - kRadius * kRadius) * radius};
   Eigen::Index n = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const Eigen::Vector3d q = frame * (to_eigen(points[index[k]]) - to_eigen(centre)) / radius;
@@ -69,7 +65,7 @@ Heights heights(const std::vector<Vec3>& points, const std::uint32_t* index, std
     h.terms.row(n) << u, v, u * u, u * v, v * v;
     h.z[n++] = q[2] * radius;
   }
-  h.terms.conservativeResize(n, kTerms);
+  h.terms.conservativeResize(n, kVaryingTerms);
   h.z.conservativeResize(n);
   return h;
 }
@@ -95,7 +91,7 @@ class MixtureFit {
   }
 
   Mixture run() {
-    for (int step = 0; step < kSteps; ++step) {
+    for (int step = 0; step < kLayerRounds; ++step) {
       const PerLayer mass = expect();
       fit_quadratic();
       if (!fit_deviation(mass)) break;
@@ -149,7 +145,7 @@ class MixtureFit {
       counted += mass[c];
     }
     if (counted <= 0) return false;
-    const double freedom = 1 - (static_cast<double>(kTerms) + static_cast<double>(layers_)) / total();
+    const double freedom = 1 - (static_cast<double>(kVaryingTerms) + static_cast<double>(layers_)) / total();
     sigma_ = std::max(std::sqrt(squares / (counted * freedom)), kRidge * one_deviation_);  // a mixture must not shrink to points
     return true;
   }
@@ -171,18 +167,18 @@ double layered_deviation(const std::vector<Vec3>& points, const std::uint32_t* i
                          const Vec3& normal) {
   const Heights h = heights(points, index, count, centre, normal);
   const Eigen::Index n = h.z.size();
-  if (n <= kTerms + static_cast<Eigen::Index>(kMostLayers)) return 0;
+  if (n <= kVaryingTerms + static_cast<Eigen::Index>(kMostLayers)) return 0;
   const auto total = static_cast<double>(n);
   const Square ridge = kRidge * total * Square::Identity();
   // One layer: the constant is the mean of what the other terms leave, so both are taken about their means.
-  const Eigen::RowVector<double, kTerms> mean_term = h.terms.colwise().mean();
+  const Eigen::RowVector<double, kVaryingTerms> mean_term = h.terms.colwise().mean();
   const Terms centred = h.terms.rowwise() - mean_term;
   const Eigen::LDLT<Square> one(Square(centred.transpose().lazyProduct(centred)) + ridge);
   const Slopes slopes = one.solve(centred.transpose().lazyProduct(h.z));
   const double middle = h.z.mean() - mean_term * slopes;
   const double misfit = ((h.z - h.terms.lazyProduct(slopes)).array() - middle).square().sum();
   if (misfit <= 0) return 0;
-  const double deviation = std::sqrt(misfit / (total - kTerms - 1));
+  const double deviation = std::sqrt(misfit / (total - kVaryingTerms - 1));
   Mixture best{deviation, total * std::log(misfit / total) + total};
   const Eigen::LDLT<Square> several(Square(h.terms.transpose().lazyProduct(h.terms)) + ridge);
   for (std::size_t layers = 2; layers <= kMostLayers; ++layers) {

@@ -13,14 +13,9 @@
 namespace g3r {
 namespace {
 
-// The terms of a height field beside its constant: u, v, u^2, u v, v^2.
-constexpr Eigen::Index kBends = kQuadraticTerms - 1;
-// Rounds in which points look for their layer, at most: most change theirs 4 times.
-constexpr int kMostChanges = 20;
-
 // Heights over a plane through one of the points, in units of the reach of all, and their fits by two offsets and a quadratic.
 class TwoLayerFit {
-  static constexpr Eigen::Index kUnknowns = kBends + 2;
+  static constexpr Eigen::Index kUnknowns = kVaryingTerms + 2;
   static constexpr Eigen::Index kMost = kPlaneNeighbours;
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, kUnknowns, 0, kMost, kUnknowns>;
   using Numbers = Eigen::Vector<double, kUnknowns>;
@@ -58,7 +53,7 @@ class TwoLayerFit {
   // turn. Zeros where one of them comes to have so few that a plane goes through them, at any distance from the others.
   [[nodiscard]] TwoLayers from(Column above, double middle) {
     TwoLayers layers;
-    for (int round = 0; round < kMostChanges; ++round) {
+    for (int round = 0; round < kLayerRounds; ++round) {
       std::size_t upper = 0;
       const bool is_changed = assign(above, middle, upper) || round == 0;
       if (std::min(upper, static_cast<std::size_t>(count_) - upper) <= kPlaneTerms) return {};
@@ -67,7 +62,7 @@ class TwoLayerFit {
       const double freedom = static_cast<double>(count_ - kUnknowns);
       layers = {radius_ * std::sqrt((heights_ - rows_.lazyProduct(solution)).squaredNorm() / freedom),
                 radius_ * (solution[0] - solution[1])};
-      above = heights_ - rows_.rightCols<kBends>().lazyProduct(solution.tail<kBends>());
+      above = heights_ - rows_.rightCols<kVaryingTerms>().lazyProduct(solution.tail<kVaryingTerms>());
       middle = (solution[0] + solution[1]) / 2;
     }
     return layers;

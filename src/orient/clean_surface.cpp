@@ -28,16 +28,20 @@ Vec3 turned(const Vec3& v, const Vec3& from, const Vec3& to) {
 // About facets whose sides are decided as one: more may be that of two walls, whose directions are one all the same.
 double scatter_of_one_side(const Problem& problem) { return problem.scatter < kLeastNoise * problem.spacing ? problem.scatter : 0; }
 
+Facets facets_of(const Problem& problem, double scatter, const std::vector<std::uint8_t>& proven, const std::vector<Vec3>& normals) {
+  return find_facets(problem.cloud.set, proven, normals, scatter, problem.known.wanted);
+}
+
 // Where the points of a cloud's facets disagree about their sides, every facet gets one, and the other points their normals from the field
-// of what the facets have become. `fit` proves normals; `proven`: those it has.
+// of what the facets have become. `fit` proves normals; `proven`: those it has. Returns the facets in the end.
 template <typename Fit>
-void agree_on_facets(const Problem& problem, const std::vector<std::uint8_t>& proven, const Fit& fit, std::vector<Vec3>& eta,
-                     std::vector<Vec3>& normals, Stages& stages) {
+Facets agree_on_facets(const Problem& problem, const std::vector<std::uint8_t>& proven, const Fit& fit, std::vector<Vec3>& eta,
+                       std::vector<Vec3>& normals, Stages& stages) {
   const PointSet& set = problem.cloud.set;
   const Settings& s = problem.settings;
-  for (int round = 0; round < kMostRounds; ++round) {
-    const Facets facets = find_facets(set, proven, normals, scatter_of_one_side(problem), problem.known.wanted);
-    if (minority_share(facets, normals, problem.known.wanted) < kMinMinority) return;
+  const double scatter = scatter_of_one_side(problem);
+  Facets facets = facets_of(problem, scatter, proven, normals);
+  for (int round = 0; round < kMostRounds && minority_share(facets, normals, problem.known.wanted) >= kMinMinority; ++round) {
     make_room_for_sums(set);
     choose_facet_sides(set, s, facets, eta, normals, stages);
     FastSum sum(set.points(), local_widths(s.polish.width, s, set.smoothed_spacing()), s.sums, stages.cancel());
@@ -46,7 +50,9 @@ void agree_on_facets(const Problem& problem, const std::vector<std::uint8_t>& pr
       if (facets.of[i] == Facets::kNone) normals[i] = refined.normals[i];
     }
     fit();
+    facets = facets_of(problem, scatter, proven, normals);
   }
+  return facets;
 }
 
 }  // namespace
@@ -64,9 +70,10 @@ void fit_clean_surface(const Problem& problem, std::vector<Vec3>& eta, std::vect
   fit();
   if (runs(problem, Step::kCreases) && sharpen_creases(problem.cloud.set, normals, problem.known.wanted)) fit();
   if (!runs(problem, Step::kFacets)) return;
-  agree_on_facets(problem, proven, fit, eta, normals, stages);
+  Facets facets = agree_on_facets(problem, proven, fit, eta, normals, stages);
+  if (problem.scatter != scatter_of_one_side(problem)) facets = facets_of(problem, problem.scatter, proven, normals);
   const std::vector<Vec3> before = normals;
-  follow_facets(problem.cloud.set, problem.scatter, proven, problem.known.wanted, normals);
+  follow_facets(problem.cloud.set, facets, problem.known.wanted, normals);
   // Area vectors turn with them: how far both agree tells the side, not the direction.
   for (std::size_t i = 0; i < normals.size(); ++i) eta[i] = turned(eta[i], before[i], normals[i]);
 }

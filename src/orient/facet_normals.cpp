@@ -6,7 +6,6 @@
 #include "cloud/exact_plane.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
-#include "orient/facets.h"
 
 #include <algorithm>
 #include <cmath>
@@ -126,9 +125,7 @@ class Mixture {
 
 }  // namespace
 
-void follow_facets(const PointSet& set, double scatter, const std::vector<std::uint8_t>& proven, const std::vector<std::uint8_t>& wanted,
-                   std::vector<Vec3>& normals) {
-  const Facets facets = find_facets(set, proven, normals, scatter, wanted);
+void follow_facets(const PointSet& set, const Facets& facets, const std::vector<std::uint8_t>& wanted, std::vector<Vec3>& normals) {
   if (facets.count == 0) return;
   const double deviation = std::max(deviation_from(facets, set.points()), kExactScatter * set.spacing());
   std::vector<Vec3> out = normals;

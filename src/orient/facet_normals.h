@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cloud/point_set.h"
+#include "orient/facets.h"
 
 #include <g3r/points.h>
 
@@ -19,9 +20,8 @@ namespace g3r {
 /// facet g ends it, N the normal distribution; planes that have points of f on either side do not end it. j: those of the points that are
 /// on no facet, with their tangent planes, which scatter as well. Points on no facet to within 2.5 s keep their normals, and so does what
 /// is on the other side of a wall (n_f . n_i < -0.5). docs/math.md, "Facets".
-/// `scatter`, `proven`, `wanted`: as for find_facets(); of exact points s is kExactScatter h. `normals`: N unit vectors, consistent sides;
-/// n_f has that of most of these points. O(N).
-void follow_facets(const PointSet& set, double scatter, const std::vector<std::uint8_t>& proven, const std::vector<std::uint8_t>& wanted,
-                   std::vector<Vec3>& normals);
+/// s is kExactScatter h at least, h the typical spacing. `facets`: of these points; `wanted`: 1 for each whose normal may change, N, or
+/// empty for all; `normals`: N unit vectors, consistent sides; n_f has that of most of these points. O(N).
+void follow_facets(const PointSet& set, const Facets& facets, const std::vector<std::uint8_t>& wanted, std::vector<Vec3>& normals);
 
 }  // namespace g3r

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/stages.h"
+#include "base/vector.h"
 #include "cloud/point_set.h"
 #include "orient/settings.h"
 
@@ -17,9 +18,7 @@ struct FacetPlane {
   Vec3 normal{0, 0, 0};  ///< unit length, either side
   Vec3 middle{0, 0, 0};
 
-  [[nodiscard]] double height(const Vec3& p) const {
-    return normal[0] * (p[0] - middle[0]) + normal[1] * (p[1] - middle[1]) + normal[2] * (p[2] - middle[2]);
-  }
+  [[nodiscard]] double height(const Vec3& p) const { return vector::dot(normal, vector::subtract(p, middle)); }
 };
 
 /// Sets of points side by side in one plane.

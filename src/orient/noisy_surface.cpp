@@ -8,6 +8,7 @@
 #include "orient/clustered_polish.h"
 #include "orient/confidence.h"
 #include "orient/facet_normals.h"
+#include "orient/facets.h"
 #include "orient/noise_settings.h"
 #include "orient/noisy_jets.h"
 #include "orient/planes.h"
@@ -96,7 +97,8 @@ void fit_noisy_surface(const Problem& problem, Stages& stages, Solution& solutio
   std::vector<std::uint8_t> proven(problem.cloud.size(), 0);
   fit_planes(problem.cloud.set, problem.scatter, proven, solution.refinement.normals);
   if (!runs(problem, Step::kFacets)) return;
-  follow_facets(problem.cloud.set, problem.scatter, proven, problem.known.wanted, solution.refinement.normals);
+  const Facets facets = find_facets(problem.cloud.set, proven, solution.refinement.normals, problem.scatter, problem.known.wanted);
+  follow_facets(problem.cloud.set, facets, problem.known.wanted, solution.refinement.normals);
 }
 
 }  // namespace g3r
