@@ -19,7 +19,7 @@ g3r_together(solve baselines/baseline baselines/gauss_system baselines/hard_cuto
              baselines/wnnc cloud/heights cloud/layers cloud/two_layers field/areas field/field field/oriented_cloud field/points_with_normals
              field/surface_points field/winding_sampler solve/dense_solver solve/green_system solve/harmonics solve/iterative_solver
              solve/part_system solve/refine)
-g3r_together(orient orient/attempt orient/clean_surface orient/clustered_polish orient/coarse_to_fine orient/creases orient/jets
+g3r_together(orient orient/attempt orient/clean_surface orient/clustered_polish orient/coarse_to_fine orient/jets
              orient/known_open orient/noise_choice orient/noise_settings orient/noisy_jets orient/noisy_surface orient/open_surfaces orient/outlier_normals
              orient/planes orient/polish orient/problem orient/projection orient/restless orient/settings orient/site_parts orient/solution
              orient/solve_apart orient/solve_on_sites orient/steps)

@@ -1,6 +1,7 @@
 // Normals of smooth regions from quadratic fits: exact on planes, convergent on curved surfaces, left alone where nothing is proven.
 #include "orient/jets.h"
 
+#include "base/vector.h"
 #include "cloud/neighbours.h"
 
 #include "shapes.h"
@@ -9,7 +10,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <numbers>
 #include <vector>
 
@@ -105,6 +109,87 @@ TEST(Jets, KeepTheSidesOfAThinPlateApart) {
   fit_jets(PointSet(thin.points), normals);
   EXPECT_LT(shapes::angle_error(normals, thin.normals), shapes::angle_error(before, thin.normals) / 2);
   for (std::size_t i = 0; i < kCount; ++i) EXPECT_GT(normals[i][2] * thin.normals[i][2], 0.8);
+}
+
+// A dome on its flat base, each with random points; the crease between them turns by 90 degrees.
+Surface dome(std::size_t count) {
+  shapes::Random random(5);
+  Surface s;
+  for (const Vec3& p : shapes::sphere(count, 1).points) {
+    if (p[2] < 0) continue;
+    s.points.push_back(p);
+    s.normals.push_back(p);
+  }
+  while (s.points.size() < count) {  // the base has half the area of the dome, and is half as dense again
+    const Vec3 p{random.uniform(-1, 1), random.uniform(-1, 1), 0};
+    if (p[0] * p[0] + p[1] * p[1] > 1) continue;
+    s.points.push_back(p);
+    s.normals.push_back({0, 0, -1});
+  }
+  return s;
+}
+
+// The means of the normals within a distance, as a gradient blurs them.
+std::vector<Vec3> blurred(const Surface& s, double reach) {
+  std::vector<Vec3> out;
+  for (const Vec3& p : s.points) {
+    Vec3 sum{0, 0, 0};
+    for (std::size_t j = 0; j < s.points.size(); ++j) {
+      if (vector::length(vector::subtract(p, s.points[j])) <= reach) sum = vector::add(sum, s.normals[j]);
+    }
+    out.push_back(vector::normalised(sum));
+  }
+  return out;
+}
+
+struct Crease {
+  Surface surface = dome(4000);
+  std::vector<Vec3> normals = blurred(surface, 1.5 * unit_sphere_spacing(4000));
+  std::vector<std::uint8_t> proven;
+
+  Crease() : proven(fit_jets(PointSet(surface.points), normals)) {}
+
+  [[nodiscard]] std::size_t unproven() const { return static_cast<std::size_t>(std::count(proven.begin(), proven.end(), 0)); }
+};
+
+TEST(JetsAtCreases, GivePointsTheNormalOfTheSurfaceThatHoldsThem) {
+  const Crease crease;
+  std::vector<Vec3> normals = crease.normals;
+  fit_jets_at_creases(PointSet(crease.surface.points), crease.proven, normals);
+  std::size_t turned = 0;
+  double error = 0;
+  double blurred_error = 0;
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    if (normals[i] == crease.normals[i]) continue;
+    EXPECT_EQ(crease.proven[i], 0);
+    ++turned;
+    error += 1 - vector::dot(normals[i], crease.surface.normals[i]);
+    blurred_error += 1 - vector::dot(crease.normals[i], crease.surface.normals[i]);
+  }
+  EXPECT_GT(turned, crease.unproven() / 2);
+  EXPECT_LT(error, blurred_error / 5);
+}
+
+TEST(JetsAtCreases, LeavePointsThatNoSurfaceHolds) {
+  Crease crease;
+  shapes::Random random(6);
+  Surface moved = crease.surface;  // those that are not proven, off every surface
+  const double h = unit_sphere_spacing(4000);
+  for (std::size_t i = 0; i < moved.points.size(); ++i) {
+    if (crease.proven[i] == 0) moved.points[i] = vector::add(moved.points[i], vector::scale(moved.normals[i], 0.2 * h));
+  }
+  std::vector<Vec3> normals = crease.normals;
+  fit_jets_at_creases(PointSet(moved.points), crease.proven, normals);
+  std::size_t turned = 0;
+  for (std::size_t i = 0; i < normals.size(); ++i) turned += normals[i] != crease.normals[i] ? 1 : 0;
+  EXPECT_LT(turned, crease.unproven() / 20);
+}
+
+TEST(JetsAtCreases, NeedProvenNeighbours) {
+  const Crease crease;
+  std::vector<Vec3> normals = crease.normals;
+  fit_jets_at_creases(PointSet(crease.surface.points), std::vector<std::uint8_t>(normals.size(), 0), normals);
+  EXPECT_EQ(normals, crease.normals);
 }
 
 }  // namespace

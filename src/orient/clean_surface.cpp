@@ -3,7 +3,6 @@
 #include "base/vector.h"
 #include "cloud/noise.h"
 #include "orient/confidence.h"
-#include "orient/creases.h"
 #include "orient/facet_normals.h"
 #include "orient/facets.h"
 #include "orient/jets.h"
@@ -68,12 +67,17 @@ void fit_clean_surface(const Problem& problem, std::vector<Vec3>& eta, std::vect
   std::vector<std::uint8_t> proven;
   const auto fit = [&] { proven = fit_directions(problem, normals); };
   fit();
-  if (runs(problem, Step::kCreases) && sharpen_creases(problem.cloud.set, normals, problem.known.wanted)) fit();
-  if (!runs(problem, Step::kFacets)) return;
-  Facets facets = agree_on_facets(problem, proven, fit, eta, normals, stages);
-  if (problem.scatter != scatter_of_one_side(problem)) facets = facets_of(problem, problem.scatter, proven, normals);
+  Facets facets;
+  if (runs(problem, Step::kFacets)) {
+    facets = agree_on_facets(problem, proven, fit, eta, normals, stages);
+    if (problem.scatter != scatter_of_one_side(problem)) facets = facets_of(problem, problem.scatter, proven, normals);
+  }
   const std::vector<Vec3> before = normals;
   follow_facets(problem.cloud.set, facets, problem.known.wanted, normals);
+  for (std::size_t i = 0; i < facets.of.size(); ++i) {
+    if (facets.of[i] != Facets::kNone) proven[i] = 1;
+  }
+  if (runs(problem, Step::kCreases)) fit_jets_at_creases(problem.cloud.set, proven, normals);
   // Area vectors turn with them: how far both agree tells the side, not the direction.
   for (std::size_t i = 0; i < normals.size(); ++i) eta[i] = turned(eta[i], before[i], normals[i]);
 }

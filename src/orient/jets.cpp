@@ -1,10 +1,14 @@
 #include "orient/jets.h"
 
+#include "base/vector.h"
+#include "cloud/exact_plane.h"
+#include "cloud/neighbours.h"
 #include "cloud/plane_fit.h"
 #include "cloud/quadratic_patch.h"
 #include "cloud/spacing.h"
 #include "cpu/parallel.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -36,41 +40,100 @@ bool is_spread_out(const std::vector<FitPoint>& members, const Vector3d& normal)
   return middle - swing >= kLineBreadth * kLineBreadth * (middle + swing);
 }
 
+// The normal at 0 of the jet through members about it, where they prove it, it holds 0, and it does not turn away from `normal`; 0
+// elsewhere.
+Vec3 normal_of_jet(const std::vector<FitPoint>& members, const Vector3d& normal, double spacing) {
+  if (members.size() <= kQuadraticTerms || !is_spread_out(members, normal)) return {0, 0, 0};
+  const QuadraticPatch patch = fit_quadratic_patch(members, 0, spacing, 0);
+  const double scatter = residual(patch, members);
+  if (scatter > kScatter * spacing) return {0, 0, 0};
+  Vector3d fitted;
+  const double distance = patch.distance(Vector3d::Zero(), &fitted);
+  if (std::abs(distance) > kSigmas * std::max(scatter, kExactScatter * spacing)) return {0, 0, 0};
+  if (fitted.dot(normal) <= kSamePatch) return {0, 0, 0};
+  return {fitted[0], fitted[1], fitted[2]};
+}
+
+// Of these neighbours of a point those whose normals are within 26 degrees of one, about the point and weighted.
+void gather(const PointSet& set, std::size_t i, const std::uint32_t* near, std::size_t count, const std::vector<Vec3>& normals,
+            const Vec3& normal, std::vector<FitPoint>& members) {
+  const double reach = kWeightReach * set.smoothed_spacing()[i];
+  members.clear();
+  for (std::size_t k = 0; k < count; ++k) {
+    if (vector::dot(normals[near[k]], normal) <= kSamePatch) continue;
+    const Vector3d d = to_eigen(set.points()[near[k]]) - to_eigen(set.points()[i]);
+    members.push_back({d, to_eigen(normals[near[k]]), std::exp(-d.squaredNorm() / (2 * reach * reach)), 0});
+  }
+}
+
+// The points whose normals are proven.
+struct ProvenPoints {
+  std::vector<std::uint32_t> index;  // among all points
+  std::vector<Vec3> points;
+
+  ProvenPoints(const std::vector<Vec3>& all, const std::vector<std::uint8_t>& proven) {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (proven[i] == 0) continue;
+      index.push_back(static_cast<std::uint32_t>(i));
+      points.push_back(all[i]);
+    }
+  }
+};
+
 }  // namespace
 
 std::vector<std::uint8_t> fit_jets(const PointSet& set, std::vector<Vec3>& normals) {
-  const std::vector<Vec3>& points = set.points();
-  std::vector<std::uint8_t> proven(points.size(), 0);
-  if (points.size() < kSpacingNeighbours) return proven;
+  const std::size_t size = set.size();
+  std::vector<std::uint8_t> proven(size, 0);
+  if (size < kSpacingNeighbours) return proven;
   const std::vector<double>& spacing = set.smoothed_spacing();
   const std::vector<std::uint32_t>& near = set.near();
   std::vector<Vec3> out = normals;
-  parallel::for_blocks(points.size(), parallel::kBlock, [&](std::size_t begin, std::size_t end) {
+  parallel::for_blocks(size, parallel::kBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<FitPoint> members;
     for (std::size_t i = begin; i < end; ++i) {
-      const Vector3d centre = to_eigen(points[i]);
-      const Vector3d normal = to_eigen(normals[i]);
-      const double scale = 1 / (2 * kWeightReach * kWeightReach * spacing[i] * spacing[i]);
-      members.clear();
-      for (std::size_t k = 0; k < kSpacingNeighbours; ++k) {
-        const std::uint32_t j = near[i * kSpacingNeighbours + k];
-        const Vector3d d = to_eigen(points[j]) - centre;
-        const Vector3d n = to_eigen(normals[j]);
-        if (n.dot(normal) <= kSamePatch) continue;
-        members.push_back({d, n, std::exp(-d.squaredNorm() * scale), 0});
-      }
-      if (members.size() <= kQuadraticTerms || !is_spread_out(members, normal)) continue;
-      const QuadraticPatch patch = fit_quadratic_patch(members, 0, spacing[i], 0);
-      if (residual(patch, members) > kScatter * spacing[i]) continue;
-      Vector3d fitted;
-      (void)patch.distance(Vector3d::Zero(), &fitted);
-      if (fitted.dot(normal) <= kSamePatch) continue;
-      out[i] = {fitted[0], fitted[1], fitted[2]};
+      gather(set, i, near.data() + i * kSpacingNeighbours, kSpacingNeighbours, normals, normals[i], members);
+      const Vec3 fitted = normal_of_jet(members, to_eigen(normals[i]), spacing[i]);
+      if (vector::dot(fitted, fitted) == 0) continue;
+      out[i] = fitted;
       proven[i] = 1;
     }
   });
   normals = std::move(out);
   return proven;
+}
+
+void fit_jets_at_creases(const PointSet& set, const std::vector<std::uint8_t>& proven, std::vector<Vec3>& normals) {
+  const ProvenPoints known(set.points(), proven);
+  if (known.index.size() <= kQuadraticTerms || known.index.size() == set.size()) return;
+  const Neighbours tree(known.points);
+  const std::vector<double>& spacing = set.smoothed_spacing();
+  std::vector<Vec3> out = normals;
+  parallel::for_blocks(set.size(), parallel::kBlock, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> near;
+    std::vector<double> squared;
+    std::vector<FitPoint> members;
+    std::vector<Vec3> tried;
+    std::vector<Vec3> found;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (proven[i] != 0) continue;
+      tree.nearest(set.points()[i], kPlaneNeighbours, near, squared);
+      for (std::uint32_t& j : near) j = known.index[j];
+      tried.clear();
+      found.clear();
+      for (const std::uint32_t j : near) {
+        const Vec3& start = normals[j];
+        const auto is_alike = [&](const Vec3& n) { return vector::dot(n, start) > kSamePatch; };
+        if (vector::dot(start, normals[i]) <= kSameSide || std::any_of(tried.begin(), tried.end(), is_alike)) continue;
+        tried.push_back(start);
+        gather(set, i, near.data(), near.size(), normals, start, members);
+        const Vec3 fitted = normal_of_jet(members, to_eigen(start), spacing[i]);
+        if (vector::dot(fitted, fitted) > 0) found.push_back(fitted);
+      }
+      if (found.size() == 1) out[i] = found.front();
+    }
+  });
+  normals = std::move(out);
 }
 
 }  // namespace g3r

@@ -22,8 +22,8 @@ enum class Step {
   kApart,         ///< open surfaces and the rest are solved for apart from each other
   kJets,          ///< directions come from fitted quadratics where the points prove them
   kPlanes,        ///< directions come from planes where the points prove these
-  kCreases,       ///< directions beside a crease come from the facets there
   kFacets,        ///< the points of a facet take one side
+  kCreases,       ///< directions beside a crease come from the surface that holds the point
   kNoiseChoice,   ///< other noises are tried where many sides are unsure
   kProjection,    ///< noisy points are moved onto their surface, and polished there
   kNoisyJets,     ///< directions of noisy clouds come from wide quadratics
@@ -32,8 +32,8 @@ enum class Step {
 };
 
 inline constexpr std::array<std::string_view, 19> kStepNames = {
-    "viewpoint", "outliers", "noise",   "sites",  "coarse-start", "more-steps", "polish",     "local-widths", "open-surfaces", "apart",
-    "jets",      "planes",   "creases", "facets", "noise-choice", "projection", "noisy-jets", "areas",        "certificate"};
+    "viewpoint", "outliers", "noise",  "sites",   "coarse-start", "more-steps", "polish",     "local-widths", "open-surfaces", "apart",
+    "jets",      "planes",   "facets", "creases", "noise-choice", "projection", "noisy-jets", "areas",        "certificate"};
 
 using StepSet = std::bitset<kStepNames.size()>;
 
