@@ -9,7 +9,8 @@ function(g3r_tests_together program)
   set(programs ${programs} ${program} PARENT_SCOPE)
 endfunction()
 
-g3r_tests_together(tests_of_quality areas baselines green_identity open_surfaces orient outliers planes)
+g3r_tests_together(tests_of_quality areas baselines coarse_start field given_noise green_identity invariance open_surfaces orient outliers
+                                    plan planes reconstruct sides_under_noise)
 g3r_tests_together(tests_of_noise layers noise noise_settings noisy_jets projection same_side viewpoint walls)
 g3r_tests_together(tests_of_attempts agreement assess attempt callers_order certified_sides clean_surface describe noise_choice noisy_surface
                                      outlier_normals outside problem restless separate_walls site_parts solution solve_apart solve_on_sites)

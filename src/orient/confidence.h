@@ -17,7 +17,7 @@ inline constexpr float kUndecided = 0.5F;
 ///   m = min(1, 2 A_i / median A), A = |eta| / area   wrong points find little of their area: about 0.2 of the median
 ///   f = min(1, 2 G_i / median G), G = |grad w| s     and lie where the field is weak; 1 without a refinement (empty `jumps`)
 /// with `areas` what each vector would be long if all was found, up to one factor, or one for all, and G the `jumps`, those of
-/// Refinement::strength. It must rank wrong sides on noisy data with AUC > 0.85 (tests/orient_test).
+/// Refinement::strength. It must rank wrong sides on noisy data with AUC > 0.85 (tests/sides_under_noise_test).
 [[nodiscard]] std::vector<float> side_confidence(const std::vector<Vec3>& eta, const std::vector<Vec3>& normals,
                                                  const std::vector<double>& jumps, const std::vector<double>& areas);
 
