@@ -25,7 +25,7 @@ const Octree& grid() {
 
 TEST(SomeLeaves, AreNumberedInTheirOrder) {
   Marks marked(300, 0);
-  for (const std::size_t leaf : {0, 1, 63, 64, 130, 299}) marked[leaf] = 1;
+  for (const std::size_t leaf : {0U, 1U, 63U, 64U, 130U, 299U}) marked[leaf] = 1;
   const SomeLeaves some(marked);
   std::uint32_t number = 0;
   for (std::uint32_t leaf = 0; leaf < marked.size(); ++leaf) {

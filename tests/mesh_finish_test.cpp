@@ -421,8 +421,8 @@ TEST(MeshFinish, AttributesDoNotDependOnTheOrderOfThePoints) {
   std::vector<Vec3> points;
   Mesh mesh;
   for (std::uint32_t i = 0; i < kSide * kSide * kSide; ++i) {
-    const int row = i / kSide;
-    const int layer = row / kSide;
+    const std::uint32_t row = i / kSide;
+    const std::uint32_t layer = row / kSide;
     const Vec3 p{static_cast<double>(i % kSide), static_cast<double>(row % kSide), static_cast<double>(layer)};
     points.push_back(p);
     if (i % 5 == 0) points.push_back(p);
