@@ -368,6 +368,45 @@ TEST(MeshFinish, SimplifyingKeepsHandlesAndBoundaries) {
   }
 }
 
+// The facets of a box, cut into squares: within them every collapse is free, and those that leave triangles without area, along the
+// edges of the box, are not taken.
+TEST(MeshFinish, SimplifyingFacetsLeavesNoTriangleWithoutArea) {
+  constexpr int kCells = 16;
+  Mesh box;
+  std::map<std::array<int, 3>, std::uint32_t> number;
+  const auto vertex = [&](const std::array<int, 3>& at) {
+    const auto [place, is_new] = number.try_emplace(at, static_cast<std::uint32_t>(box.vertices.size()));
+    if (is_new) box.vertices.push_back({at[0] / 30.0, at[1] / 20.0, at[2] / 10.0});
+    return place->second;
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (int cell = 0; cell < 2 * kCells * kCells; ++cell) {
+      const bool is_upper = cell >= kCells * kCells;
+      const int i = cell % kCells, j = cell / kCells % kCells;
+      std::array<std::uint32_t, 4> square{};
+      for (std::size_t k = 0; k < 4; ++k) {
+        std::array<int, 3> at{};
+        at[axis] = is_upper ? kCells : 0;
+        at[(axis + 1) % 3] = i + (k == 1 || k == 2 ? 1 : 0);
+        at[(axis + 2) % 3] = j + (k >= 2 ? 1 : 0);
+        square[is_upper ? k : 3 - k] = vertex(at);
+      }
+      box.triangles.push_back({square[0], square[1], square[2]});
+      box.triangles.push_back({square[0], square[2], square[3]});
+    }
+  }
+  const MeshCheck before = check_mesh(box);
+  ASSERT_TRUE(before.closed && before.manifold);
+  for (const std::size_t faces : {1500U, 600U, 200U}) {
+    mesh::simplify(box, faces);
+    const MeshCheck check = check_mesh(box);
+    EXPECT_EQ(box.triangles.size(), faces);
+    EXPECT_TRUE(check.closed && check.manifold);
+    EXPECT_NEAR(check.volume, before.volume, 1e-12);
+    EXPECT_LT(check.max_aspect, 100) << faces;
+  }
+}
+
 // Fewer than four triangles enclose nothing.
 TEST(MeshFinish, SimplifyingLeavesTetrahedraAtLeast) {
   TwoSpheres two = two_spheres();

@@ -2,6 +2,7 @@
 
 #include "base/vector.h"
 #include "cpu/parallel.h"
+#include "mesh/constants.h"
 #include "mesh/edge_collapse.h"
 #include "mesh/mesh_parts.h"
 #include "mesh/quadric.h"
@@ -13,6 +14,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <queue>
 #include <tuple>
 #include <utility>
@@ -23,6 +25,9 @@ namespace {
 
 using vector::dot;
 using vector::subtract;
+
+// The share of the cost of slivers that counts: what the rounding of coordinates in files costs, so that all else comes before it.
+constexpr double kFree = std::numeric_limits<float>::epsilon();
 
 class Simplification {
  public:
@@ -44,7 +49,7 @@ class Simplification {
         if (count % parallel::kSmallBlock == 0 && cancel != nullptr && cancel->load()) throw Cancelled();
         const Entry next = queue_.top();
         queue_.pop();
-        if (is_current(next)) collapse(std::get<1>(next), std::get<2>(next));
+        if (is_current(next)) collapse_or_delay(next);
       }
       queue_ = {};
     }
@@ -95,15 +100,54 @@ class Simplification {
       }
     }
   }
+  // Of the slivers that the collapse makes, or makes lower. So little of it counts that it decides where the surface stays: within facets,
+  // where all collapses are free, those without slivers come first.
+  [[nodiscard]] double cost_of_slivers(std::uint32_t from, std::uint32_t to) const {
+    double sum = 0;
+    edges_.for_triangles_of(from, [&](const std::array<std::uint32_t, 3>& t) {
+      if (std::find(t.begin(), t.end(), to) == t.end()) sum += std::max(0.0, sliver(t, from, to) - sliver(t, kNone, kNone));
+      return true;
+    });
+    return kFree * sum;
+  }
+  // The cost of moving a corner of a triangle lower than kAtOnePlace of its longest side to where it is as high; 0 of others. With the
+  // vertex `from` moved to `to`.
+  [[nodiscard]] double sliver(const std::array<std::uint32_t, 3>& t, std::uint32_t from, std::uint32_t to) const {
+    const double squared = longest_squared(t, from, to);
+    const Vec3 n = edges_.normal_of(t, from, to);
+    const double longest = std::sqrt(squared);
+    const double lacks = kAtOnePlace * longest - std::sqrt(dot(n, n)) / longest;
+    return lacks > 0 ? lacks * lacks * kAtOnePlace * squared : 0;
+  }
+  [[nodiscard]] double longest_squared(const std::array<std::uint32_t, 3>& t, std::uint32_t from, std::uint32_t to) const {
+    double squared = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+      squared = std::max(squared, edges_.squared_length(a == from ? to : a, b == from ? to : b));
+    }
+    return squared;
+  }
   [[nodiscard]] bool is_current(const Entry& entry) const {
     const auto& [unused, from, to, changes] = entry;
     return edges_.is_used(from) && edges_.is_used(to) && changes == std::uint64_t{changes_[from]} + changes_[to];
   }
+  // Nor leaves one whose direction is rounding.
   [[nodiscard]] bool turns_none_over(std::uint32_t from, std::uint32_t to) const {
     return edges_.for_triangles_of(from, [&](const std::array<std::uint32_t, 3>& t) {
-      const bool goes = std::find(t.begin(), t.end(), to) != t.end();
-      return goes || dot(edges_.normal_of(t), edges_.normal_of(t, from, to)) > 0;
+      if (std::find(t.begin(), t.end(), to) != t.end()) return true;
+      const Vec3 after = edges_.normal_of(t, from, to);
+      return dot(edges_.normal_of(t), after) > 0 && std::sqrt(dot(after, after)) > kRounding * longest_squared(t, from, to);
     });
+  }
+  // Slivers are looked for when the turn of an edge comes: what they cost may delay it.
+  void collapse_or_delay(const Entry& next) {
+    const auto& [before, from, to, changes] = next;
+    const double whole = cost(from, to) + cost_of_slivers(from, to);
+    if (whole > before) {
+      queue_.emplace(whole, from, to, changes);
+    } else {
+      collapse(from, to);
+    }
   }
   void collapse(std::uint32_t from, std::uint32_t to) {
     if (!turns_none_over(from, to) || !edges_.collapse(from, to)) return;
