@@ -28,6 +28,14 @@ foreach(kind static shared)
   run(${CMAKE_CTEST_COMMAND} --test-dir ${BUILD}/consumer/${kind} --output-on-failure --no-tests=error)
 endforeach()
 
+# A component that there is not is named.
+execute_process(COMMAND ${CMAKE_COMMAND} -S ${SOURCE}/unknown -B ${BUILD}/consumer/unknown -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${prefix}
+                RESULT_VARIABLE result ERROR_VARIABLE text OUTPUT_QUIET)
+string(REGEX REPLACE "[ \n]+" " " text "${text}")
+if(result EQUAL 0 OR NOT text MATCHES "g3r has no component headers: there are static and shared")
+  message(FATAL_ERROR "an unknown component is not named: ${text}")
+endif()
+
 # Within another project g3r is the library alone: nothing that only the program needs is asked for.
 run(${CMAKE_COMMAND} -S ${SOURCE}/parent -B ${BUILD}/consumer/parent -G ${GENERATOR} -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=${CXX}
     -DCMAKE_DISABLE_FIND_PACKAGE_CLI11=ON)
