@@ -102,6 +102,9 @@ Mesh mesh_oriented(const PointsView& points, const PointsView& normals, const Me
   MeshOptions chosen = options;
   if (chosen.mesher == Mesher::kAuto) chosen.mesher = Mesher::kField;
   PointsWithNormals given = with_normals(points, normals);
+  if (given.points.empty() && given.undirected > 0) {
+    throw InvalidInput("there are no normals: all that the points have are (0, 0, 0) or not finite");
+  }
   return parallel::with_threads(options.threads, [&] {
     const gpu::Scope device(options.device, given.points.size());
     OrientedCloud oriented = oriented_cloud(given.points, given.normals);

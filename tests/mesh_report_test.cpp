@@ -54,6 +54,17 @@ struct Reported {
   }
 };
 
+TEST(MeshReport, PointsOfWhichNoneHasANormalAreRefusedForThat) {
+  OrientedSample sample = sphere_sample(200, 1, 1);
+  std::fill(sample.normals.begin(), sample.normals.end(), Vec3{0, 0, 0});
+  try {
+    (void)mesh_oriented(sample.points, sample.normals);
+    ADD_FAILURE() << "a mesh of points without normals";
+  } catch (const InvalidInput& e) {
+    EXPECT_NE(std::string(e.what()).find("there are no normals"), std::string::npos) << e.what();
+  }
+}
+
 // The leaves of the octree are no finer than a sixteenth of the usual ones.
 TEST(MeshReport, PointsWithoutSurfaceAreTold) {
   const OrientedSample large = sphere_sample(2000, 1, 1);
