@@ -216,7 +216,7 @@ void add_hint_options(CLI::App& app, Settings& s) {
          "--up",
          [&hints](const std::string& text) {
            hints.up = parse_direction(text);
-           if (!hints.up) reject("--up", text, "X,Y,Z, or an axis such as +z or -y");
+           if (!hints.up) reject("--up", text, "X,Y,Z, not all 0, or an axis such as +z or -y");
          },
          "Open surfaces face this way: a direction, or an axis such as +z or -y")
       ->type_name("X,Y,Z");

@@ -131,7 +131,8 @@ class Hints(ProgramTest):
 
     def test_hints_that_cannot_be_meant_are_usage_errors(self):
         write_points(self.path("ball.ply"), sphere(100))
-        for hint, words in ((["--up", "w"], "--up: expected X,Y,Z, or an axis"), (["--up", "0,0,0"], "--up"), (["--up", "1,2"], "--up"),
+        for hint, words in ((["--up", "w"], "--up: expected X,Y,Z, not all 0, or an axis"), (["--up", "0,0,0"], "not all 0"),
+                            (["--up", "1,2"], "--up"),
                             (["--sensor", "here"], "--sensor: expected X,Y,Z, or file"), (["--sensor", "1,2,nan"], "--sensor"),
                             (["--inside", "1,2,3,4"], "--inside: expected X,Y,Z"), (["--sensor", "file", "--sensor", "1,2,3"], "exclude each other")):
             self.assertIn(words, self.expect(USAGE, "orient", "ball.ply", "out.ply", *hint).err)
