@@ -97,6 +97,7 @@ std::string report_json(const Stats& stats, const MeshCheck* mesh) {
                      {"turned_share", number(stats.hints.turned_share)},
                      {"agreement", number(stats.hints.agreement)},
                      {"contradicted_share", number(stats.hints.contradicted_share)},
+                     {"hidden_share", number(stats.hints.hidden_share)},
                      {"viewpoint", stats.hints.viewpoint ? place_json(*stats.hints.viewpoint) : Json(nullptr)}};
   report["seconds"] = seconds_json(stats);
   report["planned_memory_bytes"] = stats.planned_memory_bytes;

@@ -7,8 +7,8 @@ function(g3r_together group)
 endfunction()
 set_target_properties(g3r PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 
-g3r_together(cloud cloud/canonical_cloud cloud/chance cloud/clusters cloud/disk_sample cloud/exact_plane cloud/far_points cloud/morton
-             cloud/neighbours cloud/noise cloud/outliers cloud/plane_fit cloud/point_set cloud/quadratic_patch cloud/site_planes cloud/sites
+g3r_together(cloud cloud/blocked_sights cloud/canonical_cloud cloud/chance cloud/clusters cloud/disk_sample cloud/exact_plane
+             cloud/far_points cloud/morton cloud/neighbours cloud/noise cloud/outliers cloud/plane_fit cloud/point_set cloud/quadratic_patch cloud/site_planes cloud/sites
              cloud/spacing cloud/surface_distance cloud/viewpoint cloud/wires
              expansions/expansions expansions/m2l_matrices metrics/sample_mesh metrics/score_mesh metrics/score_normals
              metrics/triangle_tree tree/far_pairs tree/interaction_lists tree/octree tree/traversal tree/tree_parts)
@@ -26,8 +26,8 @@ g3r_together(orient orient/attempt orient/clean_surface orient/clustered_polish 
 g3r_together(sides c_api describe_mesh mesh_run names orient/agreement orient/apply_hints orient/assess orient/callers_order
              orient/certificate orient/certified_sides orient/closed_sides orient/confidence orient/crowded orient/describe
              orient/facet_normals orient/facets orient/hints
-             orient/memory_plan orient/open_to_views orient/outside orient/patch_sides orient/same_side orient/separate_walls
-             orient/sight_normals orient/sign_graph orient/two_walls orient/unsure orient/votes orient/walls pipeline reconstruct)
+             orient/memory_plan orient/open_to_views orient/outside orient/patch_sides orient/same_side orient/sensor_trust
+             orient/separate_walls orient/sight_normals orient/sign_graph orient/two_walls orient/unsure orient/votes orient/walls pipeline reconstruct)
 g3r_together(fields mesh/automatic_depth mesh/box_tree mesh/component_support mesh/corner_groups mesh/field_arcs mesh/field_contour
              mesh/field_corners mesh/field_denoise mesh/field_labellings mesh/field_local_fit mesh/field_mesher mesh/field_octree
              mesh/field_placement mesh/field_points mesh/field_triangulate mesh/handle_removal mesh/held_points mesh/least_squares_mesh

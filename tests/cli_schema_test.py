@@ -19,7 +19,7 @@ REPORT_SCHEMA = {
     "method": {"name": str, "preset": str, "solver": str, "harmonics": str, "sums": str, "accuracy": float, "tolerance": float,
                "condition_number": None},
     "iterations": list, "converged": bool, "consistent": bool, "doubtful": bool, "open_share": float, "undecided_share": float,
-    "hints": {"given": list, "settled_share": float, "turned_share": float, "agreement": float, "contradicted_share": float,
+    "hints": {"given": list, "settled_share": float, "turned_share": float, "agreement": float, "contradicted_share": float, "hidden_share": float,
               "viewpoint": None},
     "seconds": {"read": float, "build": float, "solve": float, "refine": float, "mesh": float, "write": float, "total": float},
     "planned_memory_bytes": int, "peak_memory_bytes": int, "threads": int,

@@ -11,6 +11,7 @@ namespace {
 
 const std::vector<Vec3> kPlaces{{0, 0, 0}, {2, 0, 0}};
 constexpr Vec3 kUpwards{0, 0, 1};
+const std::vector<double> kAll;  // sensors are trusted
 
 // A point of a plane sees a sensor at 60 degrees from its normal under the cosine 1/2, at any distance and from behind with the other sign.
 TEST(SeenFrom, IsTheCosineOfTheAngleToTheNormal) {
@@ -42,12 +43,12 @@ TEST(Voters, GoBySensorsNearAndFarUnlessThatOfThePointIsKnown) {
   Hints hints;
   hints.sensors = {{0, 0, 1}, {0, 0, -2}};
   const std::vector<Vec3> points{{0, 0, 0}, {0, 0, 1}};
-  Voters any(points, hints);
+  Voters any(points, hints, kAll);
   EXPECT_DOUBLE_EQ(any.vote(0, kUpwards), (1 - 0.25) / 1.25);
   EXPECT_DOUBLE_EQ(any.vote(0, {0, 0, -1}), -(1 - 0.25) / 1.25);
   EXPECT_EQ(any.vote(1, kUpwards), 0);  // where a sensor stands
   hints.sensor_of_point = {1, kNoSensor};
-  Voters known(points, hints);
+  Voters known(points, hints, kAll);
   EXPECT_DOUBLE_EQ(known.vote(0, kUpwards), -1);
   EXPECT_EQ(known.vote(1, kUpwards), 0);
 }
@@ -57,14 +58,14 @@ TEST(Voters, SayNothingOfAWallBetweenThem) {
   Hints hints;
   hints.sensors = {{0, 3, 4}, {0, 3, -4}};
   const std::vector<Vec3> points{{0, 0, 0}};
-  EXPECT_NEAR(Voters(points, hints).vote(0, kUpwards), 0, 1e-15);
+  EXPECT_NEAR(Voters(points, hints, kAll).vote(0, kUpwards), 0, 1e-15);
 }
 
 TEST(Voters, AddUpAllHints) {
   Hints hints;
   hints.up = Vec3{0, 0, 7};
   hints.inside = {{0, 0, -3}};
-  Voters voters(kPlaces, hints);
+  Voters voters(kPlaces, hints, kAll);
   EXPECT_DOUBLE_EQ(voters.vote(0, kUpwards), 2);  // up, and away from what is inside
   EXPECT_DOUBLE_EQ(voters.vote(0, {0, 0, -1}), -2);
   EXPECT_EQ(voters.seen(0, kUpwards), 0);  // by no sensor
@@ -73,11 +74,35 @@ TEST(Voters, AddUpAllHints) {
 TEST(Voters, TheMiddleStandsForAScannerInside) {
   Hints hints;
   hints.seen_from_inside = true;
-  Voters inside(kPlaces, hints);
+  Voters inside(kPlaces, hints, kAll);
   EXPECT_DOUBLE_EQ(inside.seen(0, {1, 0, 0}), 1);
   EXPECT_DOUBLE_EQ(inside.seen(1, {1, 0, 0}), -1);
   hints.sensors = {{0, 0, 5}};
-  EXPECT_DOUBLE_EQ(Voters(kPlaces, hints).seen(0, kUpwards), 1);
+  EXPECT_DOUBLE_EQ(Voters(kPlaces, hints, kAll).seen(0, kUpwards), 1);
+}
+
+// What a sensor says counts as far as it is trusted; what is up and inside counts in full.
+TEST(Voters, SensorsCountAsFarAsTheyAreTrusted) {
+  Hints hints;
+  hints.sensors = {{0, 0, 5}, {0, 0, -5}};
+  hints.sensor_of_point = {0, 1};
+  const std::vector<double> trusted{0.25, 1};
+  Voters voters(kPlaces, hints, trusted);
+  EXPECT_DOUBLE_EQ(voters.seen(0, kUpwards), 0.25);
+  EXPECT_DOUBLE_EQ(voters.seen(1, kUpwards), -5 / std::sqrt(29));
+  EXPECT_EQ(voters.trusted(0), 0.25);
+  hints.up = Vec3{0, 0, 1};
+  EXPECT_DOUBLE_EQ(Voters(kPlaces, hints, trusted).vote(0, kUpwards), 1.25);
+}
+
+TEST(Votes, GoAgainstASideWithTheChanceThatTheyAreTrusted) {
+  Votes votes;
+  for (const double vote : {-1.0, -1.0, 1.0}) votes.add(vote);
+  votes.points = 3;
+  for (const double trusted : {0.0, 0.5, 1.0}) {
+    votes.trusted = 3 * trusted;
+    EXPECT_DOUBLE_EQ(votes.chance_against(), 0.5 + trusted / 6);
+  }
 }
 
 TEST(Votes, SayWhatShareIsAgainstAndNothingEdgeOn) {

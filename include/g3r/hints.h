@@ -47,6 +47,9 @@ struct HintStats {
   /// pixels), or a single sensor that was given, where nothing hides anything from there. Every point faces it unless `up` or `inside`
   /// say otherwise.
   std::optional<Vec3> viewpoint{};
+  /// Share of what sensors should have seen of open surfaces that other points hide from them: a side is trusted with the rest as its
+  /// chance. 0 where nothing is hidden or no sensor is given.
+  double hidden_share = 0;
   double contradicted_share = 0;  ///< share of the votes on closed parts that were against their side; 0 up to 1/3, which is usual
 };
 

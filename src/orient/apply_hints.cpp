@@ -1,10 +1,12 @@
 #include "orient/apply_hints.h"
 
 #include "base/number_text.h"
+#include "cloud/blocked_sights.h"
 #include "orient/assess.h"
 #include "orient/confidence.h"
 #include "orient/hints.h"
 #include "orient/open_to_views.h"
+#include "orient/sensor_trust.h"
 
 #include <algorithm>
 #include <cmath>
@@ -72,6 +74,11 @@ void warn(const HintEffect& effect, const Hints& given, bool any_open, Stats& st
     stats.warnings.push_back("hint inside: " + in_words(given.inside[*effect.inside_that_is_outside]) +
                              " is not inside the closed parts; they keep their sides");
   }
+  if (stats.hints.hidden_share > kManyHidden) {
+    stats.warnings.push_back("hint sensor: " + percent(stats.hints.hidden_share) +
+                             " of the points of open surfaces cannot be seen from there, as other points lie in front of them, so that "
+                             "it decides little: check where the scanner stood, and give all its places");
+  }
   if (given.up && !any_open) stats.warnings.emplace_back("hint up: it decides nothing, as no part of the cloud is open");
 }
 
@@ -110,15 +117,20 @@ void apply_hints(const Problem& problem, const Options& options, Solution& solut
   Patches patches = patches_of(solution.open_surfaces);
   patches.seen = views.known() && hints.sensors == views.places;
   HintEffect effect;
+  SensorTrust trust;
   if (have_votes(hints) || hints.flip) {
     const SidedPoints sided{solution.refinement.normals, solution.eta, confidence};
-    effect = follow_hints({problem.cloud.points(), problem.cloud.set.near(), problem.spacing, patches, hints, sided}, cancel);
+    if (!patches.seen) trust = find_sensor_trust(problem.cloud.set, patches, hints, cancel);
+    effect =
+        follow_hints({problem.cloud.points(), problem.cloud.set.near(), problem.spacing, patches, hints, sided, trust.of_sensor}, cancel);
   }
   count_sides(effect, problem, solution, hints.flip, stats.hints);
   stats.hints.agreement = effect.agreement;
   stats.hints.contradicted_share = effect.contradicted_share;
+  stats.hints.hidden_share = trust.hidden_share;
   summarise_sides(solution.open_surfaces, confidence, effect.decided, stats);
   if (effect.contradicted_share > kUndecided && !effect.closed_parts_turned) stats.consistent = false;
+  if (trust.hidden_share > kManyHidden) stats.consistent = false;
   warn_of_unsure(solution.open_surfaces, confidence, stats);
   warn(effect, given, stats.open_share > 0, stats);
   warn_of_choices(solution.open_surfaces, given, stats);

@@ -93,14 +93,14 @@ double seen_by_all(const HintedCloud& cloud, std::size_t i, const Vec3& normal) 
 }
 
 // `right`, how often the sensors agree with the sides of such points, is the chance of a side before its own vote.
-void face_sensors(const HintedCloud& cloud, HintEffect& effect) {
+void face_sensors(const HintedCloud& cloud, const Voters& voters, HintEffect& effect) {
   std::vector<std::uint32_t> unsure;
   std::vector<double> seen;
   Votes votes;
   for (std::uint32_t i = 0; i < cloud.points.size(); ++i) {
     if (!cloud.patches.is_closed(i) || cloud.sided.confidence[i] >= kUndecided) continue;
     unsure.push_back(i);
-    seen.push_back((effect.turned[i] != 0 ? -1 : 1) * seen_by_all(cloud, i, cloud.sided.normals[i]));
+    seen.push_back((effect.turned[i] != 0 ? -1 : 1) * voters.trusted(i) * seen_by_all(cloud, i, cloud.sided.normals[i]));
     votes.add(seen.back());
   }
   const double right = 1 - votes.share_against();
@@ -133,7 +133,7 @@ void judge_closed_parts(const HintedCloud& cloud, Voters& voters, HintEffect& ef
     votes.add(voters.seen(i, cloud.sided.normals[i]));
   }
   if (votes.total() > 0 || cloud.hints.seen_from_inside) judge_by_sensors(cloud, votes, effect, cancel);
-  face_sensors(cloud, effect);
+  face_sensors(cloud, voters, effect);
 }
 
 }  // namespace g3r

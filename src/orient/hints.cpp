@@ -37,7 +37,7 @@ HintEffect follow_hints(const HintedCloud& cloud, const std::atomic<bool>* cance
     if (has_closed && voting.inside.empty()) effect.inside_that_is_outside = k;
     voting.inside.push_back(cloud.hints.inside[k]);
   }
-  Voters voters(cloud.points, voting);
+  Voters voters(cloud.points, voting, cloud.trusted);
   effect.decided.assign(count, 0);
   effect.turned.assign(count, 0);
   decide_patches(cloud, voters, effect);

@@ -34,7 +34,7 @@ struct SidedPoints {
 };
 
 /// What hints are followed for: points, their Neighbours::of_all(k) (empty: patches have no pieces), their spacing, for the winding number,
-/// and what is known of their sides. All but the spacing is kept by reference.
+/// and what is known of their sides and their sensors.
 struct HintedCloud {
   const std::vector<Vec3>& points;
   const std::vector<std::uint32_t>& near;
@@ -42,6 +42,7 @@ struct HintedCloud {
   const Patches& patches;
   const Hints& hints;
   SidedPoints sided;
+  std::vector<double> trusted{};  ///< how far each sensor is (SensorTrust); empty: 1
 };
 
 /// What follow_hints() has done.

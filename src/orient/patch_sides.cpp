@@ -42,7 +42,7 @@ class PatchSides {
     std::map<std::uint32_t, Votes> patches = votes_on_patches(votes);
     for (std::size_t i = 0; i < points_.size(); ++i) {
       if (is_closed(i) || !patches[patches_.of[i]].say_something()) continue;
-      const double against = patches[patches_.of[i]].share_against();
+      const double against = patches[patches_.of[i]].chance_against();
       effect_.turned[i] = against > std::min(certainty(i), kMostOf) ? 1 : 0;
     }
     const std::vector<std::uint8_t> patch_turned = effect_.turned;
@@ -52,7 +52,7 @@ class PatchSides {
     double all = 0;
     for (std::size_t i = 0; i < points_.size(); ++i) {
       if (!is_choice(i) || is_closed(i) || !patches[patches_.of[i]].say_something()) continue;
-      const double agreement = 1 - patches[patches_.of[i]].share_against();
+      const double agreement = 1 - patches[patches_.of[i]].chance_against();
       const double shown = patch_turned[i] != 0 ? 1 - certainty(i) : certainty(i);
       const double own = effect_.turned[i] != 0 ? -votes[i] : votes[i];
       const bool with_patch = effect_.turned[i] == patch_turned[i];
@@ -88,6 +88,7 @@ class PatchSides {
       if (is_closed(i)) continue;
       Votes& sum = sums[patches_.of[i]];
       sum.add(effect_.turned[i] != 0 ? -votes[i] : votes[i]);
+      sum.trusted += voters_.trusted(i);
       ++sum.points;
     }
     return sums;
@@ -153,15 +154,17 @@ class PatchSides {
 
   // A scanner sees fronts: what faces away from all that may have seen it has the wrong side or the wrong direction, so that the side is a
   // choice at a horizon, and certainly wrong where it would be seen squarely from behind. Where all have been seen, that is turned, and
-  // elsewhere what the rest of its patch does not hold more than that.
+  // elsewhere what the rest of its patch does not hold more than that. All this so far as the sensors are trusted.
   void judge_backs(const std::vector<std::uint8_t>& patch_turned) {
     for (std::uint32_t i = 0; i < points_.size(); ++i) {
       const std::optional<double> seen = is_closed(i) ? std::nullopt : best_seen(i);
       if (!seen || *seen >= 0) continue;
+      const double trusted = voters_.trusted(i);
       const double holds = effect_.turned[i] == patch_turned[i] ? held(i) : 1 - held(i);
-      const bool wrong = patches_.seen ? -*seen > std::sqrt(kMostOpposed) : holds + (1 + *seen) / 2 < 1;
+      const bool wrong = patches_.seen ? -*seen > std::sqrt(kMostOpposed) : holds + (1 + trusted * *seen) / 2 < 1;
       if (wrong) effect_.turned[i] ^= 1;
-      sided_.confidence[i] = std::min(sided_.confidence[i], static_cast<float>((1 + (wrong ? -*seen : *seen)) / 2));
+      const double chance = (1 + (wrong ? -*seen : *seen)) / 2;
+      sided_.confidence[i] = std::min(sided_.confidence[i], static_cast<float>(1 - trusted * (1 - chance)));
     }
   }
 

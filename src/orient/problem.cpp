@@ -1,5 +1,6 @@
 #include "orient/problem.h"
 
+#include "cloud/blocked_sights.h"
 #include "cloud/far_points.h"
 #include "cloud/noise.h"
 #include "cloud/outliers.h"
@@ -55,14 +56,14 @@ std::vector<T> last_in_canonical_order(const CanonicalCloud& cloud, const std::v
 }
 
 // Where the caller says that the points have been seen from, if it says so of each and nothing hides anything; or the place that they show.
-Views find_views(const CanonicalCloud& cloud, const Hints& hints) {
+Views find_views(const CanonicalCloud& cloud, const Hints& hints, const std::atomic<bool>* cancel) {
   Views views;
   for (const Vec3& sensor : hints.sensors) views.places.push_back(cloud.frame.to_unit(sensor));
   views.of_point = sensors_of_points(cloud, hints.sensor_of_point);
   const bool named = views.places.size() == 1 || !views.of_point.empty();
   const bool each = std::count(views.of_point.begin(), views.of_point.end(), kNoSensor) == 0;
   if (views.places.size() == 1) views.of_point.clear();
-  if (named && each && may_be_seen(cloud.points(), views)) return views;
+  if (named && each && may_be_seen(cloud.points(), views) && hidden_share(cloud.set, views, cancel) <= kManyHidden) return views;
   const std::optional<Vec3> shown = find_viewpoint(cloud.set, cloud.frame.to_unit({0, 0, 0}));
   return shown ? Views{{*shown}, {}} : Views{};
 }
@@ -157,7 +158,7 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
   const StepSet without = steps_left_out(options);
   const std::optional<double> found_noise = make_cloud(points, known.relative_spacing, options, without, stages, problem);
   if (known.gradient.empty() && !contains(without, Step::kViewpoint)) {
-    problem.cloud.set.set_views(find_views(problem.cloud, options.hints));
+    problem.cloud.set.set_views(find_views(problem.cloud, options.hints, stages.cancel()));
     stages.check();
   }
   const PointSet& set = problem.cloud.set;

@@ -8,9 +8,6 @@ namespace {
 using vector::dot;
 using vector::normalised;
 
-// The nearest sensors that vote on a point, at most: of a path with thousands those farther away say little, and cost time.
-constexpr std::size_t kMostSensors = 16;
-
 }  // namespace
 
 double seen_from(const Vec3& place, const Vec3& point, const Vec3& normal) {
@@ -25,18 +22,25 @@ void NearestPlaces::find(const Vec3& point, std::size_t most) {
   if (neighbours_) neighbours_->nearest(point, most, index_, squared_);
 }
 
-Voters::Voters(const std::vector<Vec3>& points, const Hints& hints)
-    : points_(points), hints_(hints), sensors_(hints.sensors), inside_(hints.inside) {
+Voters::Voters(const std::vector<Vec3>& points, const Hints& hints, const std::vector<double>& trusted)
+    : points_(points), hints_(hints), trusted_(trusted), sensors_(hints.sensors), inside_(hints.inside) {
   if (hints.up) up_ = normalised(*hints.up);
   // It turns with the cloud, lies in the plane of a flat one, and is where a scanner inside, about which points are dense, stands.
   if (hints.seen_from_inside && hints.sensors.empty()) middle_ = vector::mean(points);
+}
+
+double Voters::trusted(std::size_t i) const {
+  if (trusted_.empty()) return 1;
+  if (hints_.sensor_of_point.empty()) return trusted_.front();
+  const std::uint32_t sensor = hints_.sensor_of_point[i];
+  return sensor == kNoSensor ? 1 : trusted_[sensor];
 }
 
 double Voters::seen(std::size_t i, const Vec3& normal) {
   if (middle_) return seen_from(*middle_, points_[i], normal);
   if (!hints_.sensor_of_point.empty()) {
     const std::uint32_t sensor = hints_.sensor_of_point[i];
-    return sensor == kNoSensor ? 0 : seen_from(hints_.sensors[sensor], points_[i], normal);
+    return sensor == kNoSensor ? 0 : trusted(i) * seen_from(hints_.sensors[sensor], points_[i], normal);
   }
   sensors_.find(points_[i], kMostSensors);
   if (sensors_.count() == 0 || sensors_.squared_distance(0) == 0) return 0;
@@ -47,7 +51,7 @@ double Voters::seen(std::size_t i, const Vec3& normal) {
     sum += weight * seen_from(sensors_.place(k), points_[i], normal);
     weights += weight;
   }
-  return sum / weights;
+  return trusted(i) * sum / weights;
 }
 
 double Voters::vote(std::size_t i, const Vec3& normal) {

@@ -19,6 +19,7 @@ namespace g3r {
 struct Votes {
   double in_favour = 0;
   double against = 0;
+  double trusted = 0;  ///< sum over the points, of how far what they are seen by is (Voters::trusted())
   std::size_t points = 0;
 
   /// `vote`: above 0 in favour, below 0 against.
@@ -30,10 +31,15 @@ struct Votes {
   /// Whether they are more than rounding, which is all that votes on points that are seen edge-on.
   [[nodiscard]] bool say_something() const { return total() > std::numeric_limits<float>::epsilon() * static_cast<double>(points); }
   [[nodiscard]] double share_against() const { return total() > 0 ? against / total() : 0; }
+  /// Chance that the other side is right: a half so far as they are not trusted.
+  [[nodiscard]] double chance_against() const { return 0.5 + (share_against() - 0.5) * trusted / static_cast<double>(points); }
 };
 
 /// Cosine under which a place sees the front of a point; 0 from the point itself.
 [[nodiscard]] double seen_from(const Vec3& place, const Vec3& point, const Vec3& normal);
+
+/// The nearest sensors that vote on a point, at most: of a path with thousands those farther away say little, and cost time.
+inline constexpr std::size_t kMostSensors = 16;
 
 /// The nearest of a few places, nearest first.
 class NearestPlaces {
@@ -58,11 +64,14 @@ class NearestPlaces {
 ///   sensor s:  n . (s - p) / |s - p|      up u:  n . u / |u|      inside q:  - n . (q - p) / |q - p|
 /// s is the sensor of the point if that is known, and q the nearest place. Else any of the sensors may have seen it: of the 16 nearest the
 /// votes are averaged with weights 1 / |s - p|^2, as a scanner samples a surface the denser the nearer it is. `seen_from_inside` without
-/// sensors votes like a sensor in the mean of the points.
+/// sensors votes like a sensor in the mean of the points. Votes of sensors count as far as those are trusted.
 class Voters {
  public:
-  /// Both are kept by reference.
-  Voters(const std::vector<Vec3>& points, const Hints& hints);
+  /// `trusted`: of every sensor (SensorTrust); empty: 1. All are kept by reference.
+  Voters(const std::vector<Vec3>& points, const Hints& hints, const std::vector<double>& trusted);
+
+  /// How far what sensors say of point i is trusted, 0..1; 1 where none say anything.
+  [[nodiscard]] double trusted(std::size_t i) const;
 
   /// What a sensor, or the middle that stands for one, says of point i with this normal.
   [[nodiscard]] double seen(std::size_t i, const Vec3& normal);
@@ -76,6 +85,7 @@ class Voters {
  private:
   const std::vector<Vec3>& points_;
   const Hints& hints_;
+  const std::vector<double>& trusted_;
   NearestPlaces sensors_;
   NearestPlaces inside_;
   std::optional<Vec3> up_;

@@ -1,0 +1,98 @@
+// What other points hide from a sensor it has not seen, and so far it is not trusted.
+#include "orient/sensor_trust.h"
+
+#include "sides.h"
+
+#include <g3r/g3r.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace g3r {
+namespace {
+
+using sides::Sides;
+
+// The walls of a room of side 2, seen from inside, as one patch.
+Sides room() {
+  Sides sides;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const double sign : {-1.0, 1.0}) {
+      Vec3 centre{0, 0, 0};
+      centre[axis] = sign;
+      sides.add_square(centre, axis, -sign, 0);
+    }
+  }
+  return sides;
+}
+
+SensorTrust trust_in(const Sides& sides, const Hints& hints) {
+  return find_sensor_trust(PointSet(sides.points), sides.patches, hints, nullptr);
+}
+
+// From inside a room nothing is hidden. From outside the three walls in front hide the three others, which are seen as squarely.
+TEST(SensorTrust, IsLostWhereHalfIsHidden) {
+  const Sides sides = room();
+  const SensorTrust inside = trust_in(sides, {.sensors = {{0.3, -0.2, 0.1}}});
+  EXPECT_EQ(inside.hidden_share, 0);
+  EXPECT_EQ(inside.trusted, (std::vector<double>{1}));
+  const SensorTrust outside = trust_in(sides, {.sensors = {{50, 50, 50}}});
+  EXPECT_NEAR(outside.hidden_share, 0.5, 0.05);
+  EXPECT_NEAR(outside.trusted[0], 0, 0.1);
+  // Together with one inside they may have seen all.
+  EXPECT_EQ(trust_in(sides, {.sensors = {{50, 50, 50}, {0.3, -0.2, 0.1}}}).hidden_share, 0);
+}
+
+// Each sensor by its own points, where these are known.
+TEST(SensorTrust, IsOfEachSensorWherePointsNameTheirs) {
+  const Sides sides = room();
+  Hints hints{.sensors = {{0.3, -0.2, 0.1}, {50, 50, 50}}};
+  for (std::size_t i = 0; i < sides.points.size(); ++i) hints.sensor_of_point.push_back(i % 3 == 0 ? 1 : 0);
+  const SensorTrust trust = trust_in(sides, hints);
+  EXPECT_NEAR(trust.hidden_share, 0.5 / 3, 0.05);
+  EXPECT_GT(trust.of_sensor[0], 0.98);
+  EXPECT_LT(trust.of_sensor[1], 0.2);
+}
+
+// Closed parts are not asked, and no sensor is trusted as before where there are none.
+TEST(SensorTrust, IsOfOpenPartsOnly) {
+  Sides sides;
+  sides.add_sphere({0, 0, 0}, 1);
+  EXPECT_EQ(trust_in(sides, {.sensors = {{50, 0, 0}}}).hidden_share, 0);
+  EXPECT_TRUE(trust_in(sides, {.up = Vec3{0, 0, 1}}).trusted.empty());
+}
+
+// A street faces the sensor inside it, surely; one behind a wall hides the other from it, and is told to be in a place that cannot have seen
+// the points.
+TEST(SensorTrust, ASensorThatCannotHaveSeenThePointsDecidesNothing) {
+  Sides sides;
+  sides.add_square({-1, 0, 0}, 0, 1, 0);
+  sides.add_square({1, 0, 0}, 0, -1, 0);
+  sides.add_square({0, 0, -1}, 2, 1, 0);
+  for (const bool inside : {true, false}) {
+    Options options;
+    options.hints.sensors = {inside ? Vec3{0.3, -0.2, 0.1} : Vec3{20, 0, -0.5}};
+    const Orientation found = orient(sides.points, options);
+    double wrong = 0, sure = 0;
+    for (std::size_t i = 0; i < sides.points.size(); ++i) {
+      const bool is_wrong = sides::dot(found.normals[i], sides.normals[i]) < 0;
+      wrong += is_wrong ? 1 : 0;
+      sure += is_wrong && found.confidence[i] > 0.9F ? 1 : 0;
+    }
+    EXPECT_EQ(sure, 0) << inside;
+    if (inside) {
+      EXPECT_EQ(wrong, 0);
+    }
+    EXPECT_EQ(found.stats.consistent, inside);
+    EXPECT_EQ(found.stats.hints.hidden_share > 0.25, !inside) << found.stats.hints.hidden_share;
+    const auto says = [](const std::string& warning) { return warning.find("cannot be seen from there") != std::string::npos; };
+    EXPECT_EQ(std::count_if(found.stats.warnings.begin(), found.stats.warnings.end(), says), inside ? 0 : 1);
+  }
+}
+
+}  // namespace
+}  // namespace g3r
