@@ -91,9 +91,10 @@ int run_eval(const Settings& settings, Session& session) {
       session.console().warn("compared as points: " + refused);
     }
     if (!is_mixed) return score_points(settings, session);
-    throw InvalidInput("no faces were read from " + escape_text(result.mesh ? settings.truth : settings.input) +
-                       ": meshes are read from PLY, OBJ, OFF and STL; to score normals, `g3r sample` makes points with true normals from "
-                       "the mesh");
+    throw InvalidInput(
+        "no faces were read from " + escape_text(result.mesh ? settings.truth : settings.input) +
+        ": meshes are read from PLY, OBJ, OFF, STL and glTF; to score normals, `g3r sample` makes points with true normals from "
+        "the mesh");
   });
   session.console().clear_bar();
   write_text("-", scores.dump(2) + "\n");

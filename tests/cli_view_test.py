@@ -30,6 +30,14 @@ class View(ProgramTest):
         self.assertEqual((data["points"]["given"], data["mesh"]["given"], data["up"]), (300, 4, "z"))
         self.assertEqual(data["title"], "ball.ply, solid.off")
 
+    def test_a_mesh_comes_back_from_every_format_that_is_written(self):
+        self.expect(OK, "ball.ply", "ball.stl", *[word for name in ("ply", "obj", "off", "glb") for word in ("--also", f"mesh.{name}")])
+        pages = [self.expect(OK, "view", name, "-o", "-").out for name in ("ball.stl", "mesh.ply", "mesh.obj", "mesh.off", "mesh.glb")]
+        self.assertEqual(len({self.data(page)["mesh"]["given"] for page in pages}), 1)
+        self.assertEqual({self.data(page)["points"]["given"] for page in pages}, {0})
+        self.assertIn(b"closed, manifold", self.expect(OK, "info", "mesh.glb").out)
+        self.assertEqual(json.loads(self.expect(OK, "eval", "mesh.glb", "--truth", "mesh.ply", "--samples", "100").out)["kind"], "mesh")
+
     def test_oriented_points_and_the_report_are_shown(self):
         self.expect(OK, "orient", "ball.ply", "oriented.ply", "--report", "run.json")
         page = self.expect(OK, "view", "oriented.ply", "--truth", "oriented.ply", "--figures", "run.json", "-o", "-").out

@@ -260,6 +260,66 @@ TEST(Gltf, PrimitivesOfOneMeshMayShareTheirPositions) {
   EXPECT_EQ(read(text).positions, read(samples::text_gltf()).positions);
 }
 
+Mesh glb_mesh(const std::string& bytes) { return read_mesh_bytes(bytes.data(), bytes.size(), "a.glb"); }
+
+TEST(Gltf, TrianglesAreReadAsAMesh) {
+  const std::string positions = R"({"attributes":{"POSITION":0})";
+  const Mesh expected = samples::tetrahedron();
+  const std::size_t corners = expected.vertices.size();
+  for (const char* indices : {R"(,"indices":1})", R"(,"indices":2,"mode":4})"}) {
+    const Mesh mesh = glb_mesh(samples::triangles_glb(positions + indices, R"(,"translation":[10,0,0])"));
+    EXPECT_EQ(mesh.triangles, expected.triangles) << indices;
+    ASSERT_EQ(mesh.vertices.size(), corners) << indices;
+    EXPECT_EQ(mesh.vertices[0][0], expected.vertices[0][0] + 10) << indices;
+  }
+  // Primitives share the vertices of one mesh, whose lines are no triangles.
+  const std::string both = positions + R"(,"indices":1},)" + positions + R"(,"indices":2},)" + positions + R"(,"mode":1})";
+  EXPECT_EQ(glb_mesh(samples::triangles_glb(both)).triangles.size(), 2 * expected.triangles.size());
+  EXPECT_EQ(glb_mesh(samples::triangles_glb(both)).vertices.size(), corners);
+  // Without indices three positions after one another are a triangle.
+  std::string three = samples::triangles_glb(positions + "}");
+  three.replace(three.find(R"("count":4)"), 9, R"("count":3)");
+  EXPECT_EQ(glb_mesh(three).triangles, (decltype(expected.triangles){{0, 1, 2}}));
+}
+
+TEST(Gltf, TrianglesFaceOutwardInAMirrorToo) {
+  const std::string primitive = R"({"attributes":{"POSITION":0},"indices":1})";
+  const double volume = check_mesh(samples::tetrahedron()).volume;
+  for (const char* node : {R"(,"scale":[-1,1,1])", R"(,"scale":[1,-1,1])", R"(,"matrix":[0,1,0,0,1,0,0,0,0,0,1,0,0,0,0,1])"}) {
+    EXPECT_NEAR(check_mesh(glb_mesh(samples::triangles_glb(primitive, node))).volume, volume, 1e-9) << node;
+  }
+}
+
+TEST(Gltf, TrianglesThatAreNoneAreRefused) {
+  const auto refused = [](const std::string& text) {
+    try {
+      (void)glb_mesh(text);
+    } catch (const NoFaces&) {
+      return std::string("no faces");
+    } catch (const InvalidInput& error) {
+      return std::string(error.what());
+    }
+    return std::string("read");
+  };
+  const auto primitive = [](const std::string& rest) { return samples::triangles_glb(R"({"attributes":{"POSITION":0})" + rest + "}"); };
+  EXPECT_EQ(refused(primitive(R"(,"mode":0)")), "no faces");
+  EXPECT_NE(refused(primitive(R"(,"mode":5,"indices":1)")).find("strips or fans"), std::string::npos);
+  EXPECT_NE(refused(primitive("")).find("4 corners of triangles"), std::string::npos);
+  EXPECT_NE(refused(primitive(R"(,"indices":0)")).find("type SCALAR"), std::string::npos);
+  std::string few = primitive(R"(,"indices":1)");
+  few.replace(few.find(R"("count":4)"), 9, R"("count":3)");
+  EXPECT_NE(refused(few).find("face index out of range"), std::string::npos);
+  std::string many = primitive(R"(,"indices":1)");
+  many.replace(many.find(R"("count":12)"), 10, R"("count":15)");
+  EXPECT_NE(refused(many).find("does not fit"), std::string::npos);
+  // Triangles take memory too: so many nodes may share the points, but not both.
+  std::string nodes;
+  for (int k = 0; k < 500; ++k) nodes += R"(},{"mesh":0)";
+  const std::string shared = samples::triangles_glb(R"({"attributes":{"POSITION":0},"indices":1})", nodes);
+  EXPECT_EQ(read(shared).positions.size(), 501U * 4);
+  EXPECT_NE(refused(shared).find("instances"), std::string::npos);
+}
+
 TEST(Off, ColoursAreOfOneKindInAllLines) {
   const std::string head = "COFF\n2 0 0\n";
   using Colors = std::vector<std::array<std::uint8_t, 3>>;

@@ -139,6 +139,34 @@ inline std::string text_gltf() {
          R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0,"translation":[10,0,0],"scale":[1,1,2]}],"scenes":[{"nodes":[0]}],"scene":0})";
 }
 
+/// A GLB of four points, the corners of tetrahedron(), and `primitive` of them: positions are accessor 0, indices of the triangles accessor
+/// 1, as bytes, and 2, of 16 bits. `node`: members of the node beside its mesh.
+inline std::string triangles_glb(const std::string& primitive, const std::string& node = "") {
+  const Mesh mesh = tetrahedron();
+  std::string body, shorts;
+  for (const Vec3& v : mesh.vertices) {
+    for (const double x : v) body += raw(static_cast<float>(x));
+  }
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t v : triangle) {
+      body += static_cast<char>(v);
+      shorts += raw(static_cast<std::uint16_t>(v));
+    }
+  }
+  body += shorts;
+  std::string text =
+      R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":84}],"bufferViews":[{"buffer":0,"byteLength":48},)"
+      R"({"buffer":0,"byteOffset":48,"byteLength":12},{"buffer":0,"byteOffset":60,"byteLength":24}],)"
+      R"("accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,1]},)"
+      R"({"bufferView":1,"componentType":5121,"count":12,"type":"SCALAR"},{"bufferView":2,"componentType":5123,"count":12,"type":"SCALAR"}],)"
+      R"("meshes":[{"primitives":[)" +
+      primitive + R"(]}],"nodes":[{"mesh":0)" + node + "}]}";
+  text.append((4 - text.size() % 4) % 4, ' ');
+  const auto size = [](std::size_t bytes) { return raw(static_cast<std::uint32_t>(bytes)); };
+  return "glTF" + size(2) + size(28 + text.size() + body.size()) + size(text.size()) + "JSON" + text + size(body.size()) +
+         std::string("BIN\0", 4) + body;
+}
+
 /// Two scans that turn the helix by 90 degrees about z and shift it; of the first every third beam met nothing.
 inline std::string ptx(std::size_t count) {
   const Cloud cloud = helix(count);

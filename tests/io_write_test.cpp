@@ -350,7 +350,7 @@ TEST(Write, ConfidenceIsNamedForCloudCompareOnRequest) {
 
 TEST(WriteMesh, EveryFormatGivesTheMeshBack) {
   Mesh mesh = samples::tetrahedron();
-  for (const char* name : {"a.ply", "a.obj", "a.off", "a.stl"}) {
+  for (const char* name : {"a.ply", "a.obj", "a.off", "a.stl", "a.glb"}) {
     for (const bool ascii : {false, true}) {
       const std::string bytes = samples::written(mesh, name, {.ascii = ascii});
       const Mesh again = read_mesh_bytes(bytes.data(), bytes.size(), name);
@@ -384,7 +384,9 @@ TEST(WriteMesh, GlbKeepsGeoreferencedPositions) {
   Mesh mesh = samples::tetrahedron();
   for (Vec3& v : mesh.vertices) v = {v[0] + 497233.125, v[1] + 5412345.5, v[2] + 311};
   mesh.colors = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, {250, 251, 252}};
-  const Cloud cloud = read(samples::written(mesh, "a.glb"));
+  const std::string bytes = samples::written(mesh, "a.glb");
+  EXPECT_EQ(read_mesh_bytes(bytes.data(), bytes.size(), "a.glb").triangles, mesh.triangles);
+  const Cloud cloud = read(bytes);
   EXPECT_TRUE(cloud.warnings.empty());
   ASSERT_EQ(cloud.positions.size(), 4U);
   for (std::size_t i = 0; i < 4; ++i) {

@@ -66,7 +66,7 @@ struct ReadOptions {
 /// The same from bytes in memory; `name` is used in messages.
 [[nodiscard]] Cloud read_cloud_bytes(const void* bytes, std::size_t size, const std::string& name, const ReadOptions& options = {});
 
-/// Reads a triangle mesh (PLY, OBJ, OFF, STL); polygons are cut into fans. Throws like read_cloud(), and NoFaces if it has none.
+/// Reads a triangle mesh (PLY, OBJ, OFF, STL, glTF); polygons are cut into fans. Throws like read_cloud(), and NoFaces if it has none.
 [[nodiscard]] Mesh read_mesh(const std::string& path);
 /// The same from bytes in memory; `name` is used in messages.
 [[nodiscard]] Mesh read_mesh_bytes(const void* bytes, std::size_t size, const std::string& name);

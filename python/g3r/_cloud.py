@@ -110,6 +110,6 @@ def read(
 
 
 def read_mesh(path: Path) -> Tuple[Floats, Indices]:
-    """Reads a triangle mesh (PLY, OBJ, OFF, STL): V (v, 3) and F (m, 3). Raises like `read`, and InputError if it has no face."""
+    """Reads a triangle mesh (PLY, OBJ, OFF, STL, glTF): V (v, 3) and F (m, 3). Raises like `read`, and InputError if it has no face."""
     vertices, faces, _, _ = _g3r.read_mesh(os.fsencode(path))
     return vertices, faces

@@ -162,8 +162,14 @@ Mesh read_mesh_bytes(const void* bytes, std::size_t size, const std::string& nam
     case io::Format::kStlText:
       mesh = io::read_stl_mesh(source, false);
       break;
+    case io::Format::kGlb:
+      mesh = io::read_glb_mesh(source);
+      break;
+    case io::Format::kGltf:
+      mesh = io::read_gltf_mesh(source);
+      break;
     default:
-      io::fail_without_faces(source, "not a mesh format: expected PLY, OBJ, OFF or STL");
+      io::fail_without_faces(source, "not a mesh format: expected PLY, OBJ, OFF, STL or glTF");
   }
   if (mesh.triangles.empty()) io::fail_without_faces(source, "no faces: expected a mesh with at least one triangle");
   return mesh;
@@ -186,7 +192,7 @@ Cloud read_cloud(const std::string& path, const ReadOptions& options) {
 
 Mesh read_mesh(const std::string& path) {
   if (io::is_file_list(path) && platform::exists(path))
-    io::fail_without_faces({{}, io::display_name(path)}, "a list of files of points: expected a mesh, PLY, OBJ, OFF or STL");
+    io::fail_without_faces({{}, io::display_name(path)}, "a list of files of points: expected a mesh, PLY, OBJ, OFF, STL or glTF");
   const std::string bytes = io::read_bytes(path);
   return read_mesh_bytes(bytes.data(), bytes.size(), path);
 }

@@ -51,5 +51,7 @@ Mesh read_ply_mesh(const Source& source);
 Mesh read_obj_mesh(const Source& source);
 Mesh read_off_mesh(const Source& source);
 Mesh read_stl_mesh(const Source& source, bool binary);
+Mesh read_glb_mesh(const Source& source);
+Mesh read_gltf_mesh(const Source& source);
 
 }  // namespace g3r::io
