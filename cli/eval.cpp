@@ -20,8 +20,8 @@ using Json = nlohmann::ordered_json;
 // Points that are farther apart than this share of the box, and what float files round, are other points.
 constexpr double kSamePointShare = 1e-5;
 
-Cloud oriented_cloud(const std::string& path, const ReadOptions& options, Console& console) {
-  Cloud cloud = read_cloud(path, options);
+Cloud oriented_cloud(const std::string& path, const Input& input, const ReadOptions& options, Console& console) {
+  Cloud cloud = input.cloud(options);
   for (const std::string& warning : cloud.warnings) console.warn(escape_text(path) + ": " + warning);
   if (cloud.normals.empty()) throw InvalidInput(escape_text(path) + " has neither faces nor normals");
   return cloud;
@@ -51,10 +51,10 @@ void warn_if_moved(const Cloud& result, const Cloud& truth, Console& console) {
   }
 }
 
-Json score_points(const Settings& settings, Session& session) {
+Json score_points(const Settings& settings, const Input& of_result, const Input& of_truth, Session& session) {
   const ReadOptions options = session.cancellable(settings.read_options);
-  const Cloud result = oriented_cloud(settings.input, options, session.console());
-  const Cloud truth = oriented_cloud(settings.truth, options, session.console());
+  const Cloud result = oriented_cloud(settings.input, of_result, options, session.console());
+  const Cloud truth = oriented_cloud(settings.truth, of_truth, options, session.console());
   if (result.positions.size() != truth.positions.size()) {
     throw InvalidInput("the result has " + counted(result.positions.size(), "point") + ", the truth " +
                        counted(truth.positions.size(), "point"));
@@ -82,7 +82,8 @@ Json score_meshes(const Settings& settings, const Mesh& result, const Mesh& trut
 
 int run_eval(const Settings& settings, Session& session) {
   const Json scores = session.stage("evaluate", [&] {
-    const MeshIfAny result = mesh_if_any(settings.input), truth = mesh_if_any(settings.truth);
+    const Input of_result(settings.input), of_truth(settings.truth);
+    const MeshIfAny result = of_result.mesh(), truth = of_truth.mesh();
     if (result.mesh && truth.mesh) return score_meshes(settings, *result.mesh, *truth.mesh, session.monitor());
     const bool is_mixed = result.mesh || truth.mesh;
     for (const std::string& refused : {result.refused, truth.refused}) {
@@ -90,7 +91,7 @@ int run_eval(const Settings& settings, Session& session) {
       if (is_mixed) throw InvalidInput(refused);
       session.console().warn("compared as points: " + refused);
     }
-    if (!is_mixed) return score_points(settings, session);
+    if (!is_mixed) return score_points(settings, of_result, of_truth, session);
     throw InvalidInput(
         "no faces were read from " + escape_text(result.mesh ? settings.truth : settings.input) +
         ": meshes are read from PLY, OBJ, OFF, STL and glTF; to score normals, `g3r sample` makes points with true normals from "

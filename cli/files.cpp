@@ -127,16 +127,23 @@ void check_points(const std::vector<Vec3>& points, const std::vector<std::string
   }
 }
 
-MeshIfAny mesh_if_any(const std::string& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(platform::path_of(path), ignored)) return {};
+Input::Input(std::string path) : path_(std::move(path)) {
+  if (io::find_ept(path_).empty() && io::find_tiles(path_).empty()) bytes_ = io::read_bytes(path_);
+}
+
+MeshIfAny Input::mesh() const {
+  if (!bytes_) return {};
   try {
-    return {read_mesh(path), ""};
+    return {read_mesh_bytes(bytes_->data(), bytes_->size(), path_), ""};
   } catch (const NoFaces&) {
     return {};
   } catch (const InvalidInput& error) {
     return {std::nullopt, error.what()};
   }
+}
+
+Cloud Input::cloud(const ReadOptions& options) const {
+  return bytes_ ? read_cloud_bytes(bytes_->data(), bytes_->size(), path_, options) : read_cloud(path_, options);
 }
 
 void write_text(const std::string& path, const std::string& text) {

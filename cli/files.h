@@ -1,6 +1,7 @@
 // The checks of files that come before the work, and text output.
 #pragma once
 
+#include <g3r/io.h>
 #include <g3r/mesh.h>
 
 #include <optional>
@@ -23,8 +24,20 @@ struct MeshIfAny {
   std::optional<Mesh> mesh;
   std::string refused;
 };
-/// A pipe cannot be read twice and is taken for points. Throws IoError.
-[[nodiscard]] MeshIfAny mesh_if_any(const std::string& path);
+
+/// What may hold a mesh or points: a file, a pipe or standard input, read once, or what stands for several files of points.
+class Input {
+ public:
+  /// Throws IoError, and InvalidInput for a list that is none.
+  explicit Input(std::string path);
+  [[nodiscard]] MeshIfAny mesh() const;
+  /// Throws like read_cloud().
+  [[nodiscard]] Cloud cloud(const ReadOptions& options) const;
+
+ private:
+  std::string path_;
+  std::optional<std::string> bytes_;  // of a single file
+};
 
 /// Writes text to a file, whole or not at all, or to standard output for "-". Throws IoError.
 void write_text(const std::string& path, const std::string& text);

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "commands.h"
@@ -51,7 +52,7 @@ std::string scanner_text(const std::vector<Vec3>& positions) {
 }
 
 std::string file_text(const Settings& settings, const Cloud& cloud) {
-  std::string text = escape_text(settings.input) + "\n";
+  std::string text = (settings.input == "-" ? "standard input" : escape_text(settings.input)) + "\n";
   const char* precision = cloud.scalar == Scalar::kFloat64 ? "double" : "single";
   text += line("format", escape_text(cloud.format) + ", coordinates in " + precision + " precision");
   text += line("points", with_commas(cloud.positions.size()));
@@ -122,9 +123,12 @@ void warn_of_memory(std::size_t given, const Free& free, Stats& stats) {
 
 int run_info(const Settings& settings, Session& session) {
   const Free free = free_memory();  // as for g3r, before the points are read
-  const Cloud cloud = session.stage("read", [&] { return read_cloud(settings.input, session.cancellable(settings.read_options)); });
-  const MeshIfAny read = mesh_if_any(settings.input);
-  const std::optional<Mesh>& mesh = read.mesh;
+  const std::pair<Cloud, MeshIfAny> contents = session.stage("read", [&] {
+    const Input input(settings.input);
+    return std::pair{input.cloud(session.cancellable(settings.read_options)), input.mesh()};
+  });
+  const Cloud& cloud = contents.first;
+  const std::optional<Mesh>& mesh = contents.second.mesh;
   std::string text = file_text(settings, cloud);
   MeshCheck check;
   if (mesh) {
@@ -141,7 +145,7 @@ int run_info(const Settings& settings, Session& session) {
     stats.warnings.emplace_back(error.what());
   }
   stats.warnings.insert(stats.warnings.begin(), cloud.warnings.begin(), cloud.warnings.end());
-  if (!read.refused.empty()) stats.warnings.push_back("no mesh: " + read.refused);
+  if (!contents.second.refused.empty()) stats.warnings.push_back("no mesh: " + contents.second.refused);
   session.complete(stats);
   for (const std::string& warning : stats.warnings) session.console().warn(warning);
   session.console().clear_bar();

@@ -20,15 +20,15 @@
 namespace g3r::cli {
 namespace {
 
-Cloud read_and_warn(const std::string& path, const ReadOptions& options, Console& console) {
-  Cloud cloud = read_cloud(path, options);
+Cloud read_and_warn(const std::string& path, const Input& input, const ReadOptions& options, Console& console) {
+  Cloud cloud = input.cloud(options);
   for (const std::string& warning : cloud.warnings) console.warn(escape_text(path) + ": " + warning);
   return cloud;
 }
 
-void add_cloud(const std::string& path, const ReadOptions& options, Scene& scene, Console& console) {
+void add_cloud(const std::string& path, const Input& input, const ReadOptions& options, Scene& scene, Console& console) {
   if (!scene.points.empty()) throw UsageError("view shows one cloud and one mesh; " + path + " is a second cloud");
-  Cloud cloud = read_and_warn(path, options, console);
+  Cloud cloud = read_and_warn(path, input, options, console);
   scene.points = std::move(cloud.positions);
   scene.normals = std::move(cloud.normals);
   scene.confidence = std::move(cloud.confidence);
@@ -36,15 +36,16 @@ void add_cloud(const std::string& path, const ReadOptions& options, Scene& scene
 }
 
 void add_file(const std::string& path, const ReadOptions& options, Scene& scene, Console& console) {
-  auto [mesh, refused] = mesh_if_any(path);
+  const Input input(path);
+  auto [mesh, refused] = input.mesh();
   if (!refused.empty()) console.warn("shown as points: " + refused);
-  if (!mesh) return add_cloud(path, options, scene, console);
+  if (!mesh) return add_cloud(path, input, options, scene, console);
   if (!scene.mesh.triangles.empty()) throw UsageError("view shows one cloud and one mesh; " + path + " is a second mesh");
   scene.mesh = std::move(*mesh);
 }
 
 void add_truth(const std::string& path, const ReadOptions& options, Scene& scene, Console& console) {
-  Cloud truth = read_and_warn(path, options, console);
+  Cloud truth = read_and_warn(path, Input(path), options, console);
   if (truth.normals.empty()) throw InvalidInput(path + ": has no normals to compare with");
   if (truth.normals.size() != scene.points.size()) {
     throw InvalidInput(path + ": " + std::to_string(truth.normals.size()) + " points, but the cloud has " +
@@ -64,7 +65,8 @@ Scene read_scene(const Settings& settings, Session& session) {
   Console& console = session.console();
   Scene scene;
   for (const std::string& path : settings.shown) {
-    scene.title += (scene.title.empty() ? "" : ", ") + platform::name_of(platform::path_of(path).filename());
+    const std::string name = path == "-" ? "standard input" : platform::name_of(platform::path_of(path).filename());
+    scene.title += (scene.title.empty() ? "" : ", ") + name;
     add_file(path, options, scene, console);
   }
   if (!settings.truth.empty()) add_truth(settings.truth, options, scene, console);

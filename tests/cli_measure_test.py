@@ -64,6 +64,21 @@ class Measuring(ProgramTest):
         for pair in (["cube.obj", "--truth", "a.ply"], ["a.ply", "--truth", "cube.obj"]):
             self.assertIn("no faces were read from a.ply", self.expect(BAD_DATA, "eval", *pair).err)
 
+    def test_standard_input_is_read_like_a_file(self):
+        cube = self.bytes_of("cube.obj")
+        of_file = self.expect(OK, "info", "cube.obj").out.decode().splitlines()
+        of_input = self.expect(OK, "info", "-", data=cube).out.decode().splitlines()
+        self.assertEqual(of_input[0], "standard input")
+        self.assertEqual(of_input[1:], of_file[1:])
+        self.assertTrue(any(line.startswith("  mesh ") for line in of_file))
+        score = json.loads(self.expect(OK, "eval", "-", "--truth", "cube.obj", "--samples", "100", data=cube).out)
+        self.assertEqual(score["kind"], "mesh")
+        self.expect(OK, "sample", "cube.obj", "a.ply", "--count", "500")
+        score = json.loads(self.expect(OK, "eval", "a.ply", "--truth", "-", data=self.bytes_of("a.ply")).out)
+        self.assertEqual((score["kind"], score["pco"]), ("points", 1))
+        self.assertEqual(self.expect(OK, "view", "-", "-o", "-", data=cube).out.replace(b"standard input", b"cube.obj"),
+                         self.expect(OK, "view", "cube.obj", "-o", "-").out)
+
     def test_why_a_mesh_is_refused_is_told(self):
         with open(self.path("bad.off"), "w") as file:
             file.write("OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 7\n")
