@@ -276,6 +276,8 @@ class ExitCodes(ProgramTest):
         self.expect(BAD_DATA, *doubtful, "--strict")
         self.assertTrue(os.path.exists(self.path("out.ply")))
         self.expect(OK, "orient", "ball.ply", "out.ply", "--strict")
+        result = self.expect(BAD_DATA, "orient", "ball.ply", "out.ply", "--epsilon", "1", "--strict")
+        self.assertIn("epsilon is 1, too wide for a cloud of 2 x 2 x 2", result.err)
 
     def test_a_cloud_without_an_inside_is_told(self):
         random_ = random.Random(3)

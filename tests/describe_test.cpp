@@ -68,6 +68,39 @@ TEST(Describe, EpsilonIsThatOfTheSolve) {
   EXPECT_NEAR(spacings(described(few, options)), 0.45, 1e-9);
 }
 
+// The sphere's box is 1.8 wide: erf(1.8 / (2 sqrt(2) e)) cubed is a half for e = 0.711.
+TEST(Describe, AGivenEpsilonThatHidesTheInsideIsDoubtful) {
+  const std::vector<Vec3> points = shapes::sphere(2000, 0.9).points;
+  const auto with = [&](double epsilon) {
+    Options options;
+    options.epsilon = {Length::Unit::kInput, epsilon};
+    return described(points, options);
+  };
+  for (const double epsilon : {0.02, 0.4, 0.7}) {
+    EXPECT_FALSE(with(epsilon).doubtful) << epsilon;
+    EXPECT_TRUE(with(epsilon).warnings.empty()) << epsilon;
+  }
+  for (const double epsilon : {0.72, 1.0, 50.0}) {
+    const Stats stats = with(epsilon);
+    EXPECT_TRUE(stats.doubtful) << epsilon;
+    ASSERT_EQ(stats.warnings.size(), 1U) << epsilon;
+    EXPECT_NE(stats.warnings[0].find("less than 0.71 "), std::string::npos) << stats.warnings[0];
+  }
+}
+
+// Within so little height no kernels show an inside: a narrow epsilon is not to blame.
+TEST(Describe, AnEpsilonAsTheSpacingAsksForIsNeverTooWide) {
+  std::vector<Vec3> ground;
+  for (int i = 0; i < 60; ++i) {
+    for (int j = 0; j < 60; ++j) ground.push_back({i * 0.1, j * 0.1, 0.01 * std::sin(i + 0.7 * j)});
+  }
+  for (const double spacings : {0.5, 2.0}) {
+    Options options;
+    options.epsilon = {Length::Unit::kSpacing, spacings};
+    EXPECT_FALSE(described(ground, options).doubtful) << spacings;
+  }
+}
+
 // A grid of pixels on a plane that a camera at the origin looks at: what scatters about it is rounding.
 TEST(Describe, RoundingIsNoNoiseOfAScanner) {
   std::vector<Vec3> pixels;

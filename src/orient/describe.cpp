@@ -1,5 +1,8 @@
 #include "orient/describe.h"
 
+#include "base/bisect.h"
+#include "base/number_text.h"
+#include "base/vector.h"
 #include "cloud/constants.h"
 #include "cloud/exact_plane.h"
 #include "cloud/noise.h"
@@ -12,6 +15,8 @@
 #include <g3r/names.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <string>
 
 namespace g3r {
@@ -33,6 +38,34 @@ void describe_baseline(const Problem& problem, Stats& stats) {
   stats.harmonics = std::string(1, '1');
   stats.tolerance = problem.baseline->tolerance;
   stats.planned_memory_bytes += baseline_memory(*problem.baseline, problem.spacing, problem.cloud.size());
+}
+
+// The highest that the field of a body within a box of these sides may be, seen through kernels of this width: that of all of the box, at
+// its middle.
+double highest_field(const Vec3& sides, double width) {
+  double field = 1;
+  for (const double side : sides) field *= std::erf(side / (2 * std::numbers::sqrt2 * width));
+  return field;
+}
+
+// A given epsilon so wide that nothing in the box of the points can have a field that says inside, where the spacing asks for one that can.
+void warn_of_width(const Problem& problem, const Options& options, Stats& stats) {
+  if (options.epsilon.unit == Length::Unit::kAuto || problem.baseline) return;
+  vector::Box box;
+  for (const Vec3& p : problem.cloud.points()) box.extend(p);
+  const Vec3 sides = vector::subtract(box.high, box.low);
+  const double width = problem.settings.epsilon.typical();
+  constexpr double kOnSurface = 0.5;
+  const auto shows = [&](double w) { return highest_field(sides, w) > kOnSurface; };
+  if (shows(width) || !shows(kEpsilon * problem.spacing)) return;
+  const auto length = [&](double x) { return short_number(problem.cloud.frame.length_to_world(x), 2); };
+  const double most = last_that(shows);
+  stats.doubtful = true;
+  stats.warnings.push_back("epsilon is " + length(width) + ", too wide for a cloud of " + length(sides[0]) + " x " + length(sides[1]) +
+                           " x " + length(sides[2]) + ": within what these points enclose the field is " +
+                           short_number(highest_field(sides, width), 2) +
+                           " at most, and only above 0.5 is inside; leave epsilon out, or give less than " + length(most) + " (" +
+                           short_number(most / problem.spacing, 2) + " spacings)");
 }
 
 void warn_of_points(const Problem& problem, Stats& stats) {
@@ -77,6 +110,7 @@ void describe(const Problem& problem, const PointsView& points, const Options& o
   stats.planned_memory_bytes = planned_memory(settings, points.count, cloud.size());
   if (problem.baseline) describe_baseline(problem, stats);
   warn_of_points(problem, stats);
+  warn_of_width(problem, options, stats);
 }
 
 void warn_of_far(std::size_t far, Stats& stats) {
