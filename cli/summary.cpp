@@ -39,7 +39,10 @@ std::string scale_text(const Stats& stats) {
 
 std::string solve_text(const Stats& stats) {
   if (stats.iterations.empty()) return stats.solver;
-  const char* end = !stats.converged ? "not converged" : stats.tolerance > 0 ? "converged" : "as scheduled";
+  const char* end = !stats.converged        ? "not converged"
+                    : stats.open_share == 1 ? "which open surfaces do not depend on"
+                    : stats.tolerance > 0   ? "converged"
+                                            : "as scheduled";
   return counted(stats.iterations.size(), "iteration") + ", residual " + short_number(stats.iterations.back().residual, 2) + ", " + end;
 }
 

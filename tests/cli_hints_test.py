@@ -76,6 +76,10 @@ class Hints(ProgramTest):
         write_points(self.path("terrain.ply"), [(x, y, 0.1 * math.sin(4 * x) * math.cos(3 * y)) for x, y in plan])
         self.assertIn("is a choice: the one that faces up", self.expect(OK, "orient", "terrain.ply", "out.ply").err)
         self.assertIn("is a choice: the one that faces down", self.expect(OK, "orient", "terrain.ply", "out.ply", "--flip").err)
+        said = self.expect(OK, "orient", "terrain.ply", "out.ply", "--schedule", "1 cg", "--report", "r.json").err
+        self.assertGreater(self.json_of("r.json")["iterations"][-1]["residual"], 0.1)
+        self.assertIn("which open surfaces do not depend on", said)
+        self.assertNotIn("converged", said)
         ups = (("0.1,0,-3", (0, 0, -9)), ("+z", (0, 0, 9)), ("-z", (0, 0, -9)))
         for up, place in ups[:1] if is_sanitized() else ups:
             result = self.expect(OK, "orient", "terrain.ply", "out.ply", "--up", up, "--report", "r.json", "--strict")
