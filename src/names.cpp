@@ -35,9 +35,10 @@ std::optional<Vec3> parse_vector(std::string_view text) {
 std::optional<Vec3> parse_direction(std::string_view text) {
   const bool is_signed = !text.empty() && (text.front() == '+' || text.front() == '-');
   const std::string_view axis = text.substr(is_signed ? 1 : 0);
-  if (axis.size() == 1 && axis[0] >= 'x' && axis[0] <= 'z') {
+  const std::size_t number = axis.size() == 1 ? std::string_view("xyzXYZ").find(axis[0]) : std::string_view::npos;
+  if (number != std::string_view::npos) {
     Vec3 direction{0, 0, 0};
-    direction[static_cast<std::size_t>(axis[0] - 'x')] = text.front() == '-' ? -1 : 1;
+    direction[number % 3] = text.front() == '-' ? -1 : 1;
     return direction;
   }
   const std::optional<Vec3> vector = parse_vector(text);

@@ -57,6 +57,8 @@ TEST(ParseLength, RefusesWhatIsNone) {
 TEST(ParseDirection, TakesAxesAndThreeNumbersThatAreNotAllZero) {
   EXPECT_EQ(parse_direction("z"), (Vec3{0, 0, 1}));
   EXPECT_EQ(parse_direction("-y"), (Vec3{0, -1, 0}));
+  EXPECT_EQ(parse_direction("+Z"), (Vec3{0, 0, 1}));
+  EXPECT_EQ(parse_direction("-X"), (Vec3{-1, 0, 0}));
   EXPECT_EQ(parse_direction("1,-2.5,3e2"), (Vec3{1, -2.5, 300}));
   for (const char* text : {"", "+", "w", "zz", "+1", "0,0,0", "1,2", "1,2,3,", "1,2,3,4", "1, 2,3", "1,,3", "nan,0,0", "1e999,0,0"}) {
     EXPECT_FALSE(parse_direction(text)) << text;

@@ -90,7 +90,7 @@ inline constexpr int kLeastMeshDepth = 4, kMostMeshDepth = 12;
 /// Three finite numbers: "1,-2.5,3e2". Empty for anything else.
 [[nodiscard]] std::optional<Vec3> parse_vector(std::string_view text);
 
-/// Three finite numbers that are not all 0, or an axis with an optional sign: "z", "+z", "-y". Empty for anything else.
+/// Three finite numbers that are not all 0, or an axis with an optional sign: "z", "+Z", "-y". Empty for anything else.
 [[nodiscard]] std::optional<Vec3> parse_direction(std::string_view text);
 
 }  // namespace g3r
