@@ -79,7 +79,9 @@ Stats plan_of(const PointsView& points, const Options& options, const Monitor& m
   Stages stages(monitor);
   return parallel::with_threads(options.threads, [&] {
     Stats stats;
-    describe(prepare(points, {}, options, stages), points, options, stats);
+    const Problem problem = prepare(points, {}, options, stages);
+    describe(problem, points, options, stats);
+    warn_of_flat(problem.cloud, stats);
     stages.finish(stats);
     return stats;
   });

@@ -4,6 +4,7 @@
 #include "cloud/blocked_sights.h"
 #include "orient/assess.h"
 #include "orient/confidence.h"
+#include "orient/describe.h"
 #include "orient/hints.h"
 #include "orient/open_to_views.h"
 #include "orient/sensor_trust.h"
@@ -83,8 +84,11 @@ void warn(const HintEffect& effect, const Hints& given, bool any_open, Stats& st
 }
 
 // Of open parts that bend the side that encloses less was taken, of others the one that faces up.
-void warn_of_choices(const OpenSurfaces& surfaces, const Hints& given, Stats& stats) {
-  if (stats.undecided_share == 0) return;
+void warn_of_choices(const CanonicalCloud& cloud, const OpenSurfaces& surfaces, const Hints& given, Stats& stats) {
+  if (stats.undecided_share == 0) {
+    if (stats.open_share == 0) warn_of_flat(cloud, stats);  // nobody has looked for open surfaces
+    return;
+  }
   std::string side;
   if (have_votes(given)) {
     side = given.flip ? "the other hints left as it was and --flip turned" : "the hints left as it was";
@@ -97,8 +101,8 @@ void warn_of_choices(const OpenSurfaces& surfaces, const Hints& given, Stats& st
     side += given.flip ? "faces down (-z), turned by --flip" : "faces up (+z)";
     side += "; a hint decides it (--up, --sensor, --seen-from-inside)";
   }
-  stats.warnings.push_back("which side of " + percent(stats.undecided_share) + " of the points is the outside is a choice: the one that " +
-                           side);
+  stats.warnings.push_back("which side of " + percent(stats.undecided_share) + " of the points" +
+                           (is_flat(cloud) ? ", all in one plane," : "") + " is the outside is a choice: the one that " + side);
 }
 
 }  // namespace
@@ -133,7 +137,7 @@ void apply_hints(const Problem& problem, const Options& options, Solution& solut
   if (trust.hidden_share > kManyHidden) stats.consistent = false;
   warn_of_unsure(solution.open_surfaces, confidence, stats);
   warn(effect, given, stats.open_share > 0, stats);
-  warn_of_choices(solution.open_surfaces, given, stats);
+  warn_of_choices(problem.cloud, solution.open_surfaces, given, stats);
 }
 
 }  // namespace g3r

@@ -78,9 +78,6 @@ void warn_of_points(const Problem& problem, Stats& stats) {
         "the points are closer together than a millionth of the cloud's width, too close for the solver: "
         "treat parts that are far apart one by one");
   }
-  if (is_flat(problem.cloud)) {
-    stats.warnings.emplace_back("the cloud is flat (all points in one plane): which side is outside is a choice");
-  }
 }
 
 }  // namespace
@@ -119,6 +116,11 @@ void warn_of_far(std::size_t far, Stats& stats) {
   stats.warnings.push_back(std::to_string(far) +
                            " points are too far from the others for one solve to resolve both, and were left out: check their coordinates, "
                            "or treat them on their own");
+}
+
+void warn_of_flat(const CanonicalCloud& cloud, Stats& stats) {
+  if (!is_flat(cloud)) return;
+  stats.warnings.emplace_back("the cloud is flat (all points in one plane): nothing but a hint says which side is outside");
 }
 
 void warn_of_volume(const Problem& problem, Stats& stats) {
