@@ -30,7 +30,7 @@ class Interrupts {
 
   // People notice half a second. The library stops within a tenth of this; meshing and file access may take longer.
   static constexpr int kGraceMilliseconds = 350;
-  static constexpr const char* kMessage = "\ng3r: interrupted\n";
+  static constexpr const char* message(int code) { return code == kTerminated ? "\ng3r: terminated\n" : "\ng3r: interrupted\n"; }
 
   std::atomic<bool> requested_ = false;
   std::atomic<int> exit_code_ = kInterrupted;

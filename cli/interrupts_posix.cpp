@@ -64,8 +64,8 @@ class Interrupts::Watch {
 
     std::unique_lock lock(mutex_);
     if (changed_.wait_for(lock, std::chrono::milliseconds(kGraceMilliseconds), [this] { return done_; })) return;
-    constexpr std::string_view kText = kMessage;
-    [[maybe_unused]] const auto written = write(STDERR_FILENO, kText.data(), kText.size());
+    const std::string_view text = message(owner_.exit_code_);
+    [[maybe_unused]] const auto written = write(STDERR_FILENO, text.data(), text.size());
     _exit(owner_.exit_code_);
   }
 

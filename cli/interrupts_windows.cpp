@@ -57,7 +57,8 @@ class Interrupts::Watch {
     const auto is_done = [] { return shared().requested == nullptr; };
     if (shared().changed.wait_for(lock, std::chrono::milliseconds(kGraceMilliseconds), is_done)) return TRUE;
     DWORD written = 0;
-    WriteFile(GetStdHandle(STD_ERROR_HANDLE), kMessage, static_cast<DWORD>(std::strlen(kMessage)), &written, nullptr);
+    const char* const text = message(code);
+    WriteFile(GetStdHandle(STD_ERROR_HANDLE), text, static_cast<DWORD>(std::strlen(text)), &written, nullptr);
     TerminateProcess(GetCurrentProcess(), static_cast<UINT>(code));
     return TRUE;
   }

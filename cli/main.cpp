@@ -103,7 +103,8 @@ int run_program(const std::vector<std::string>& words) {
   } catch (const Unavailable& error) {
     return complain(kUnavailable, error.what());
   } catch (const Cancelled&) {
-    return complain(interrupts->exit_code(), "interrupted");
+    const int code = interrupts->exit_code();
+    return complain(code, code == kTerminated ? "terminated" : "interrupted");
   } catch (const std::bad_alloc&) {
     return complain(kOutOfMemory, "out of memory");
   } catch (const std::exception& error) {
