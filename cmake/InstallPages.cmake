@@ -1,0 +1,15 @@
+# Makes the links of the installed pages hold: what is linked of the headers is where these are installed, and of other sources, which are
+# not installed, the words are left. Run by cmake --install; G3R_PAGES and G3R_HEADERS are where both are installed.
+cmake_path(ABSOLUTE_PATH G3R_PAGES BASE_DIRECTORY "${CMAKE_INSTALL_PREFIX}")
+cmake_path(ABSOLUTE_PATH G3R_HEADERS BASE_DIRECTORY "${CMAKE_INSTALL_PREFIX}")
+set(installed "$ENV{DESTDIR}${G3R_PAGES}")
+set(sources "addons|bench|cli|cmake|fuzz|packaging|python|src|tests|tools|web")
+file(GLOB_RECURSE pages RELATIVE "${installed}" "${installed}/*.md")
+foreach(page IN LISTS pages)
+  cmake_path(GET page PARENT_PATH folder)
+  file(RELATIVE_PATH headers "${G3R_PAGES}/${folder}" "${G3R_HEADERS}")
+  file(READ "${installed}/${page}" text)
+  string(REGEX REPLACE "\\]\\((\\.\\./)*include/" "](${headers}/" text "${text}")
+  string(REGEX REPLACE "\\[([^]]*)\\]\\((\\.\\./)*(${sources})(/[^)]*)?\\)" "\\1" text "${text}")
+  file(WRITE "${installed}/${page}" "${text}")
+endforeach()
