@@ -53,12 +53,20 @@ std::string version_text() {
          " (--device list: what they have)";
 }
 
-/// scan.ply -> scan.mesh.ply
-std::string default_output(const std::string& input) {
-  const std::size_t end = input.find_last_not_of(platform::kSeparators);  // of a folder
-  std::filesystem::path path = platform::path_of(input.substr(0, end == std::string::npos ? input.size() : end + 1));
-  return platform::name_of(path.replace_extension(".mesh.ply"));
+/// Without the separators at the end of a folder.
+std::filesystem::path path_of_input(const std::string& input) {
+  const std::size_t end = input.find_last_not_of(platform::kSeparators);
+  return platform::path_of(input.substr(0, end == std::string::npos ? input.size() : end + 1));
 }
+
+/// The folder one is in, and those above it.
+bool is_nameless(const std::string& input) {
+  const std::filesystem::path name = path_of_input(input).filename();
+  return name.empty() || name == "." || name == "..";
+}
+
+/// scan.ply -> scan.mesh.ply
+std::string default_output(const std::string& input) { return platform::name_of(path_of_input(input).replace_extension(".mesh.ply")); }
 
 Command parsed_command(const CLI::App& app) {
   const std::map<std::string, Command> commands = {{"orient", Command::kOrient}, {"mesh", Command::kMesh}, {"eval", Command::kEval},
@@ -77,6 +85,7 @@ void complete(const CLI::App& app, Settings& s) {
     if (s.output.empty() && s.input == "-") throw UsageError("standard input has no name to derive OUT from: give OUT");
     if (s.output.empty() && s.input.find_first_of("*?") != std::string::npos)
       throw UsageError("a pattern has no name to derive OUT from: give OUT");
+    if (s.output.empty() && is_nameless(s.input)) throw UsageError("'" + s.input + "' has no name to derive OUT from: give OUT");
     if (s.output.empty()) s.output = default_output(s.input);
   } else if (app.count("IN") > 0) {
     throw UsageError("expected the command '" + app.get_subcommands().front()->get_name() + "' before its files");

@@ -62,6 +62,7 @@ class ExitCodes(ProgramTest):
                 (BAD_DATA, ["nan.xyz"], "nan.xyz: too few points: 0 of 9 are finite"), (BAD_DATA, ["three.xyz"], "too few points: 3 of 3"),
                 (BAD_DATA, ["comma.csv"], "a decimal comma?"), (CANNOT_CREATE, ["ball.ply", "no/a.ply"], "no/a.ply: cannot create: there is no such folder"),
                 (USAGE, ["ball.ply", "--epsilon", "wide"], "--epsilon: expected auto, X, X%, Xh or Xn with X > 0, found 'wide'"),
+                (USAGE, ["."], "'.' has no name to derive OUT from: give OUT"), (USAGE, ["../"], "'../' has no name"), (USAGE, ["folder/."], "has no name"),
                 (USAGE, ["ball.ply", "a.docx"], 'unknown extension ".docx": expected .ply, .obj'),
                 (USAGE, ["ball.ply", "a.xyz"], "a.xyz: .xyz is for points"), (USAGE, ["orient", "ball.ply", "a.stl"], "a.stl: .stl is for meshes"),
                 (USAGE, ["oriend", "ball.ply"], "no file and no command named oriend"), (USAGE, ["ball.ply", "--treads", "2"], "unknown option --treads; did you mean --threads?"),
