@@ -152,7 +152,7 @@ void add_tiles(CLI::App& app, Settings& s) {
   plan->add_option("IN", s.tile_paths, "Clouds, folders or patterns, and last the work folder DIR")
       ->required()
       ->expected(2, 1 << 20)
-      ->type_name("");
+      ->type_name("DIR");
   plan->add_option("--tiles", s.tile_count, "Number of tiles (default: as few as the memory allows)")
       ->check(range(std::size_t{1}, std::size_t{1000000}))
       ->type_name("N");

@@ -92,8 +92,10 @@ int run_eval(const Settings& settings, Session& session) {
       session.console().warn("compared as points: " + refused);
     }
     if (!is_mixed) return score_points(settings, of_result, of_truth, session);
+    const std::string& mesh = result.mesh ? settings.input : settings.truth;
+    const std::string& points = result.mesh ? settings.truth : settings.input;
     throw InvalidInput(
-        "no faces were read from " + escape_text(result.mesh ? settings.truth : settings.input) +
+        escape_text(mesh) + " is a mesh, and no faces were read from " + escape_text(points) +
         ": meshes are read from PLY, OBJ, OFF, STL and glTF; to score normals, `g3r sample` makes points with true normals from "
         "the mesh");
   });

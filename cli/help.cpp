@@ -26,11 +26,12 @@ std::string wrapped(const std::string& text) {
   return lines;
 }
 
-/// "IN...", "[OUT]", "--truth GT"
+/// "IN...", "IN... DIR", "[OUT]", "--truth GT"
 std::string typed(const CLI::Option& option) {
   std::string name = option.get_name(option.get_positional());
   if (!option.get_positional()) return option.get_name() + " " + option.get_type_name();
   if (option.get_items_expected_max() > 1) name += "...";
+  if (!option.get_type_name().empty()) name += " " + option.get_type_name();
   return option.get_required() ? name : "[" + name + "]";
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "exit_code.h"
 #include "option_kinds.h"
 
 namespace g3r::cli {
@@ -90,6 +91,9 @@ void add_read_options(CLI::App& app, Settings& s) {
          "--box",
          [&s](const std::vector<double>& sides) {
            s.read_options.box = Box{{sides[0], sides[1], sides[2]}, {sides[3], sides[4], sides[5]}};
+           for (std::size_t a = 0; a < 3; ++a) {
+             if (!(sides[a] <= sides[a + 3])) throw UsageError("--box: expected the low corner first, X0 <= X1, Y0 <= Y1 and Z0 <= Z1");
+           }
          },
          "Leave out points outside of this box, in the coordinates of the file")
       ->delimiter(',')

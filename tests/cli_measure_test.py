@@ -62,7 +62,7 @@ class Measuring(ProgramTest):
         self.assertEqual(score["f_scores"], [{"distance": d, "precision": 1, "recall": 1, "f": 1} for d in (0.01, 0.001)])
         self.expect(USAGE, "eval", "cube.obj", "--truth", "cube.obj", "--distances", "0")
         for pair in (["cube.obj", "--truth", "a.ply"], ["a.ply", "--truth", "cube.obj"]):
-            self.assertIn("no faces were read from a.ply", self.expect(BAD_DATA, "eval", *pair).err)
+            self.assertIn("g3r: cube.obj is a mesh, and no faces were read from a.ply", self.expect(BAD_DATA, "eval", *pair).err)
 
     def test_standard_input_is_read_like_a_file(self):
         cube = self.bytes_of("cube.obj")

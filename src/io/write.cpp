@@ -28,7 +28,9 @@ std::string choose_format(const std::string& path, const char* what, const Forma
   if (has(formats, ext)) return ext;
   std::string known;
   for (const std::string_view format : formats) known += (known.empty() ? "." : ", .") + std::string(format);
-  std::string trouble = "no extension";
+  platform::FileStatus status;
+  const bool is_folder = platform::get_status(path, status) && status.kind == platform::FileStatus::Kind::kFolder;
+  std::string trouble = is_folder ? "a folder, not a file" : "no extension";
   if (!ext.empty()) trouble = has(others, ext) ? "." + ext + " is for " + other : "unknown extension \"." + escape_text(ext) + "\"";
   throw InvalidInput(escape_text(path) + ": " + trouble + ": expected " + known + " for " + what);
 }
