@@ -251,6 +251,11 @@ TEST(Npy, PaddingIsLeftOutAndTruthIsANumber) {
   EXPECT_FALSE(message_of(samples::npy_header("[('x', '<f4'), ('name', '|S4')]", 1, "")).empty());
 }
 
+TEST(Gltf, OtherJsonIsNotCalledGltf) {
+  EXPECT_NE(message_of(R"({"schema":"g3r.report"})").find("a JSON file that is no glTF"), std::string::npos);
+  EXPECT_NE(message_of(R"({"asset":{"version":"2.0"}})").find("no mesh in this glTF file"), std::string::npos);
+}
+
 // The materials of a mesh may share its vertices.
 TEST(Gltf, PrimitivesOfOneMeshMayShareTheirPositions) {
   std::string text = samples::text_gltf();

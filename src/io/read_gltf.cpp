@@ -50,7 +50,10 @@ class GltfReader {
     visited_.assign(nodes.size(), false);
     measuring_ = true;
     traverse(cloud);
-    if (total_ == 0) fail_without_points("no points: no mesh in this glTF file has positions");
+    if (total_ == 0) {
+      fail_without_points(file_.root().find("asset") != nullptr ? "no points: no mesh in this glTF file has positions"
+                                                                : "no points: a JSON file that is no glTF, as it has no key \"asset\"");
+    }
     cloud.positions.reserve(static_cast<std::size_t>(total_));
     if (triangles_ != nullptr) triangles_->reserve(static_cast<std::size_t>(total_triangles_));
     measuring_ = false;
