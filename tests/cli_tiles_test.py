@@ -156,7 +156,8 @@ class Tiles(ProgramTest):
         """Another limit would not go on with it."""
         count, limit = FEWER
         write_points(self.path("fewer.ply"), sphere(count))
-        self.assertIn("tiles of this mesh need", self.expect(UNAVAILABLE, "fewer.ply", "mesh.ply", "--max-memory", limit).err)
+        refused = self.expect(UNAVAILABLE, "fewer.ply", "mesh.ply", "--max-memory", limit).err
+        self.assertRegex(refused, "tiles of this mesh need [0-9]+ MiB, the limit is [0-9]+ MiB; raise the limit")
         self.assertIn("tiles of this cloud need", self.expect(UNAVAILABLE, "orient", "fewer.ply", "out.ply", "--max-memory", "70M").err)
         self.assertEqual(sorted(os.listdir(self.folder)), ["fewer.ply", "in.ply"])
 

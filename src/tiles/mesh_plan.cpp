@@ -117,8 +117,8 @@ void choose_tiles(MeshFolder& folder) {
   };
   const std::uint64_t limit = folder.manifest.limit;
   if (cut_into_fewest(folder.manifest.tiles.size(), folder.cells.cells.size(), limit, cut_into)) return;
-  throw Unavailable("tiles of this mesh need " + std::to_string(mebibytes_needed(folder.plan.worker_memory)) +
-                    " MiB, the limit of the plan is " + std::to_string(mebibytes(limit)) + " MiB; make a plan with a higher limit");
+  throw Unavailable("tiles of this mesh need " + std::to_string(mebibytes_needed(folder.plan.worker_memory)) + " MiB, the limit is " +
+                    std::to_string(mebibytes(limit)) + " MiB; raise the limit, for which tiles are planned anew, or thin the cloud");
 }
 
 void write_plan(const std::string& folder, const MeshPlan& plan) {
