@@ -39,10 +39,10 @@ TEST(SensorTrust, IsLostWhereHalfIsHidden) {
   const Sides sides = room();
   const SensorTrust inside = trust_in(sides, {.sensors = {{0.3, -0.2, 0.1}}});
   EXPECT_EQ(inside.hidden_share, 0);
-  EXPECT_EQ(inside.trusted, (std::vector<double>{1}));
+  EXPECT_EQ(inside.of_sensor, (std::vector<double>{1}));
   const SensorTrust outside = trust_in(sides, {.sensors = {{50, 50, 50}}});
   EXPECT_NEAR(outside.hidden_share, 0.5, 0.05);
-  EXPECT_NEAR(outside.trusted[0], 0, 0.1);
+  EXPECT_NEAR(outside.of_sensor[0], 0, 0.1);
   // Together with one inside they may have seen all.
   EXPECT_EQ(trust_in(sides, {.sensors = {{50, 50, 50}, {0.3, -0.2, 0.1}}}).hidden_share, 0);
 }
@@ -63,7 +63,7 @@ TEST(SensorTrust, IsOfOpenPartsOnly) {
   Sides sides;
   sides.add_sphere({0, 0, 0}, 1);
   EXPECT_EQ(trust_in(sides, {.sensors = {{50, 0, 0}}}).hidden_share, 0);
-  EXPECT_TRUE(trust_in(sides, {.up = Vec3{0, 0, 1}}).trusted.empty());
+  EXPECT_TRUE(trust_in(sides, {.up = Vec3{0, 0, 1}}).of_sensor.empty());
 }
 
 // A street faces the sensor inside it, surely; one behind a wall hides the other from it, and is told to be in a place that cannot have seen
