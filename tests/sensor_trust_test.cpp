@@ -66,8 +66,8 @@ TEST(SensorTrust, IsOfOpenPartsOnly) {
   EXPECT_TRUE(trust_in(sides, {.up = Vec3{0, 0, 1}}).of_sensor.empty());
 }
 
-// A street faces the sensor inside it, surely; one behind a wall hides the other from it, and is told to be in a place that cannot have seen
-// the points.
+// A street faces the sensor inside it, surely; one behind a wall hides the other from it, and is told to be in a place that cannot have
+// seen the points.
 TEST(SensorTrust, ASensorThatCannotHaveSeenThePointsDecidesNothing) {
   Sides sides;
   sides.add_square({-1, 0, 0}, 0, 1, 0);

@@ -13,9 +13,9 @@ namespace g3r {
 /// A point of a surface that is looked at.
 struct SeenPoint {
   Vec3 point{};
-  Vec3 normal{};      ///< of the plane of its neighbours, to either side
+  Vec3 normal{};  ///< of the plane of its neighbours, to either side
   double spacing = 0;
-  double lift = 0;    ///< distance from that plane from which points are of other surfaces
+  double lift = 0;  ///< distance from that plane from which points are of other surfaces
 };
 /// Its plane is that of its 12 nearest points. Other surfaces begin at 2.5 times r = sqrt(2) h, h its spacing (smoothed_spacing()), and the
 /// residual of the plane, so that neither noise nor bends block anything. O(log N).

@@ -11,6 +11,7 @@
 #include "orient/facets.h"
 #include "orient/noise_settings.h"
 #include "orient/noisy_jets.h"
+#include "orient/open_to_views.h"
 #include "orient/planes.h"
 #include "orient/polish.h"
 #include "orient/projection.h"
@@ -89,7 +90,8 @@ bool polish_projected(const Problem& problem, const Options& options, Stages& st
 
 void fit_noisy_surface(const Problem& problem, Stages& stages, Solution& solution) {
   const double noise = std::max(problem.noise, problem.direction_noise);
-  if (noise == 0 || !runs(problem, Step::kPolish) || !runs(problem, Step::kNoisyJets)) return;
+  const bool is_each_alone = !is_seen_in_noise(problem) || problem.noise_together == 1;  // the noise of each point, as these fits take it
+  if (noise == 0 || !is_each_alone || !runs(problem, Step::kPolish) || !runs(problem, Step::kNoisyJets)) return;
   fit_noisy_jets(problem.cloud.set, noise, problem.known.wanted, solution.refinement.normals, stages.cancel());
   // Facets whose points scatter less than the noise of all by more than a step, to which both are known, are chance, or beside what is
   // noisy.

@@ -44,7 +44,7 @@ bool is_seen_in_noise(const Problem& problem) {
 Solution solve_by_sight(const Problem& problem, Stages& stages, Stats& stats) {
   stages.begin("solve");
   const PointSet& set = problem.cloud.set;
-  SightNormals seen = normals_by_sight(set, problem.direction_noise, stages.cancel());
+  SightNormals seen = normals_by_sight(set, {problem.direction_noise, problem.noise_together}, stages.cancel());
   Solution out;
   out.refinement.normals = std::move(seen.normals);
   for (std::size_t i = 0; i < set.size(); ++i) {

@@ -9,6 +9,7 @@
 #include "cloud/viewpoint.h"
 #include "orient/crowded.h"
 #include "orient/hints.h"
+#include "orient/sight_normals.h"
 #include "solve/part_system.h"
 
 #include <g3r/error.h>
@@ -119,7 +120,11 @@ Known known_of_points(const CanonicalCloud& cloud, Known given) {
 void choose_noise(const std::optional<double>& given, const std::optional<double>& found, Problem& problem) {
   const PointSet& set = problem.cloud.set;
   const bool is_seen = set.views().known();
-  if (is_seen) problem.direction_noise = given ? *given : largest_scatter(set);
+  if (is_seen) {
+    const SightNoise along = given ? SightNoise{*given} : find_sight_noise(set);
+    problem.direction_noise = given || along.deviation > 0 ? along.deviation : largest_scatter(set);
+    problem.noise_together = along.together;
+  }
   problem.noise = given ? *given : found ? *found : estimate_noise(set);
   if (problem.noise == 0 && !given && !is_seen) problem.direction_noise = fine_noise(set);
 }
@@ -211,6 +216,7 @@ Problem part_of(const Problem& problem, const std::vector<std::uint32_t>& some, 
   part.spacing = typical_spacing(spacing_before_thinning(part.cloud.set.local_spacing(), part.known.relative_spacing));
   part.noise = problem.noise;
   part.direction_noise = problem.direction_noise;
+  part.noise_together = problem.noise_together;
   part.outlier_share = problem.outlier_share;
   Options same = options;
   if (options.epsilon.unit == Length::Unit::kPercent) {  // of the whole cloud's box

@@ -20,14 +20,15 @@ namespace g3r {
 /// What a solve starts from. Lengths are in the unit frame of the cloud.
 struct Problem {
   CanonicalCloud cloud;
-  std::vector<Vec3> outliers;  ///< taken out of the cloud; their indices follow those of its points
-  std::size_t far = 0;         ///< of the caller's points, left out by far_points(), which outliers are too
-  double outlier_share = 0;    ///< of the whole cloud; that of its parts, which are among its outliers, too
-  double spacing = 0;          ///< typical_spacing()
-  double noise = 0;            ///< given_noise() or estimate_noise()
-  double direction_noise = 0;  ///< the largest that directions follow, each its place's: largest_scatter() where Views are known; without
-                               ///< noise that kernels have to hide, fine_noise()
-  double scatter = 0;          ///< facet_scatter(), where planes are fitted
+  std::vector<Vec3> outliers;      ///< taken out of the cloud; their indices follow those of its points
+  std::size_t far = 0;             ///< of the caller's points, left out by far_points(), which outliers are too
+  double outlier_share = 0;        ///< of the whole cloud; that of its parts, which are among its outliers, too
+  double spacing = 0;              ///< typical_spacing()
+  double noise = 0;                ///< given_noise() or estimate_noise()
+  double direction_noise = 0;      ///< the largest that directions follow, each its place's: find_sight_noise() where Views are known, or
+                                   ///< largest_scatter(); without noise that kernels have to hide, fine_noise()
+  std::size_t noise_together = 1;  ///< SightNoise::together
+  double scatter = 0;              ///< facet_scatter(), where planes are fitted
   std::vector<double> line_distance;  ///< surface_distances(): N, of the sites that lines are solved for on, 0 elsewhere; empty: no lines
   Known known;                        ///< of the points of the cloud, in its order
   Settings settings;

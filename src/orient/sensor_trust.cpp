@@ -80,7 +80,8 @@ SensorTrust find_sensor_trust(const PointSet& set, const Patches& patches, const
   (void)set.tree();
   const SomePlaces some = SomePlaces::at_least(kFewPlaces, open.size());
   std::vector<Sight> sights(some.size());
-  parallel::for_each(some.size(), [&](std::size_t k) { sights[k] = look_at(set, open[some[k]], hints, sensors); }, cancel);
+  parallel::for_each(
+      some.size(), [&](std::size_t k) { sights[k] = look_at(set, open[some[k]], hints, sensors); }, cancel);
   Share all;
   std::vector<Share> own(hints.sensors.size());
   for (const Sight& sight : sights) {
