@@ -3,7 +3,7 @@ function(g3r_target_defaults target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
   # -ffp-contract=off: the same bytes whatever instructions the compiler may use.
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -ffp-contract=off)
+  target_compile_options(${target} PRIVATE "$<IF:$<BOOL:${G3R_WARNINGS}>,-Wall;-Wextra;-Wconversion,-w>" -ffp-contract=off)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     # False alarms of GCC 12 about strings that are added up (its bugs 105329 and 105651), more of them with precompiled headers.
     target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
