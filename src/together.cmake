@@ -51,6 +51,5 @@ g3r_together(tiles base/control_groups gpu/nvrtc tiles/cells tiles/coarse_sides 
              tiles/survey tiles/thinned tiles/tile_cloud tiles/tile_memory)
 g3r_together(pictures gpu/opencl view/canvas view/pack view/picture view/png view/scene)
 
-# With nlohmann's JSON.
-g3r_together(documents io/ept io/file_lists report tiles/manifest view/page)
-g3r_together(lists io/ept_cells tiles/mesh_merge tiles/mesh_plan)
+# With nlohmann's JSON. Its parser is compiled for every type of text: these parse string views.
+g3r_together(documents io/ept io/ept_cells io/file_lists report tiles/manifest tiles/mesh_merge tiles/mesh_plan view/page)

@@ -18,7 +18,7 @@ namespace g3r::io {
 namespace {
 
 // The deepest level: cells of 2^-31 of the cube are smaller than the steps of its coordinates, so what names deeper ones is damaged.
-constexpr std::uint32_t kDeepest = 31;
+constexpr std::uint32_t kDeepestCell = 31;
 
 std::string name_of(const EptKey& key) {
   std::string name = std::to_string(key[0]);
@@ -34,7 +34,7 @@ std::optional<EptKey> parse_key(std::string_view text) {
     if (end == std::string_view::npos || !parse_integer(text.substr(0, end), key[i])) return std::nullopt;
     text.remove_prefix(std::min(end + 1, text.size()));
   }
-  if (key[0] > kDeepest) return std::nullopt;
+  if (key[0] > kDeepestCell) return std::nullopt;
   for (std::size_t i = 1; i < key.size(); ++i) {
     if (std::uint64_t{key[i]} >> key[0] != 0) return std::nullopt;
   }

@@ -244,8 +244,9 @@ Manifest read_manifest(const std::string& folder) {
     throw InvalidInput(escape_text(folder) + ": no plan of tiles is there (manifest.json); g3r tiles plan IN... FOLDER makes one");
   }
   Manifest manifest;
+  const std::string text = io::read_bytes(manifest_path(folder));
   try {
-    const json from = json::parse(io::read_bytes(manifest_path(folder)));
+    const json from = json::parse(std::string_view(text));
     if (from.at("schema") != kSchema) fail(folder, "not a plan of tiles");
     if (from.at("schema_version") != kVersion) fail(folder, "of another version of g3r, schema " + from.at("schema_version").dump());
     manifest = parsed(from);

@@ -22,6 +22,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <string_view>
 #include <system_error>
 
 namespace g3r::tiles {
@@ -29,8 +30,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kSchema = "g3r.tiles.mesh";
-constexpr int kVersion = 2;
+constexpr const char* kMeshSchema = "g3r.tiles.mesh";
+constexpr int kMeshVersion = 2;
 constexpr std::size_t kSamples = 32;         // places of the order of the points, that stand for the cloud
 constexpr int kSampleAround = 1;             // cells around them: 8 spacings or more
 constexpr std::uint64_t kFixed = 72u << 20;  // bytes beside what grows with the points (docs/algorithms/tiles.md)
@@ -39,7 +40,7 @@ constexpr std::uint64_t kPerPoint = 1400;    // bytes of the octree, the sides a
 constexpr double kLargestCell = 1.15;
 constexpr int kMaxLevel = mesh::kMaxOctreeLevel - 4;  // of the cells: leaves are finer
 
-[[noreturn]] void fail(const std::string& folder, const std::string& what) {
+[[noreturn]] void fail_mesh_plan(const std::string& folder, const std::string& what) {
   throw InvalidInput(escape_text(mesh_plan_path(folder)) + ": " + what + "; remove it and the other mesh-* files, and mesh again");
 }
 
@@ -122,8 +123,8 @@ void choose_tiles(MeshFolder& folder) {
 }
 
 void write_plan(const std::string& folder, const MeshPlan& plan) {
-  json out = {{"schema", kSchema},
-              {"schema_version", kVersion},
+  json out = {{"schema", kMeshSchema},
+              {"schema_version", kMeshVersion},
               {"spacing", plan.spacing},
               {"noise", {plan.noise.position, plan.noise.normal}},
               {"heights", {plan.heights.usual, plan.heights.stray_share}},
@@ -136,7 +137,7 @@ void write_plan(const std::string& folder, const MeshPlan& plan) {
   file.commit();
 }
 
-MeshPlan parsed(const json& from) {
+MeshPlan parsed_mesh_plan(const json& from) {
   MeshPlan plan;
   from.at("spacing").get_to(plan.spacing);
   plan.noise = {from.at("noise").at(0), from.at("noise").at(1)};
@@ -172,14 +173,15 @@ MeshFolder read_mesh_folder(const std::string& folder, const Manifest& manifest)
     throw InvalidInput(escape_text(folder) + ": its tiles are not meshed; g3r tiles mesh FOLDER does that");
   }
   MeshFolder out{folder, manifest, read_cells(folder, manifest), {}, {}};
+  const std::string text = io::read_bytes(mesh_plan_path(folder));
   try {
-    const json from = json::parse(io::read_bytes(mesh_plan_path(folder)));
-    if (from.at("schema") != kSchema || from.at("schema_version") != kVersion) fail(folder, "of another version of g3r");
-    out.plan = parsed(from);
+    const json from = json::parse(std::string_view(text));
+    if (from.at("schema") != kMeshSchema || from.at("schema_version") != kMeshVersion) fail_mesh_plan(folder, "of another version of g3r");
+    out.plan = parsed_mesh_plan(from);
   } catch (const json::exception&) {
-    fail(folder, "damaged");
+    fail_mesh_plan(folder, "damaged");
   }
-  if (!is_sound(out.plan, out.cells)) fail(folder, "damaged: its numbers do not go with the cells");
+  if (!is_sound(out.plan, out.cells)) fail_mesh_plan(folder, "damaged: its numbers do not go with the cells");
   find_first_codes(out);
   return out;
 }

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 namespace g3r {
 namespace view::files {
@@ -104,7 +105,7 @@ Json parse_report(const std::string& text) {
     if (depth > kDeepest) throw InvalidInput("view: the report is nested too deeply");
     return true;
   };
-  Json report = Json::parse(text, shallow, false);
+  Json report = Json::parse(std::string_view(text), shallow, false);
   if (report.is_discarded()) throw InvalidInput("view: the report is not JSON");
   const auto schema = report.is_object() ? report.find("schema") : report.end();
   if (schema == report.end() || *schema != "g3r.report")
