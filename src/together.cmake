@@ -1,6 +1,7 @@
 # Sources that are compiled as one where G3R_TOGETHER is on: what many of them instantiate of the standard library and of Eigen is compiled
 # once. No two of a group have a name of their own in common (of functions the compiler would not tell: it takes them for overloads). A
-# source that is in no group is compiled by itself.
+# source that is in no group is compiled by itself. So is cloud/heights: what it instantiates of Eigen the compiler would look through for
+# all that solve/dense_solver does.
 function(g3r_together group)
   list(TRANSFORM ARGN REPLACE "(.+)" "${CMAKE_CURRENT_SOURCE_DIR}/\\1.cpp" OUTPUT_VARIABLE sources)
   set_source_files_properties(${sources} PROPERTIES UNITY_GROUP ${group})
@@ -16,7 +17,7 @@ g3r_together(sums gpu/cuda gpu/device gpu/drivers gpu/execution gpu/kernel_cache
              gpu/neighbours_on_device gpu/sum_on_device gpu/vectors_on_device solve/energy_system sum/device_scope sum/direct_sum
              sum/fast_sum sum/solve_on_device sum/sum_engine sum/sum_geometry sum/sum_passes sum/sum_plan sum/target_shells)
 g3r_together(solve baselines/baseline baselines/gauss_system baselines/hard_cutoff baselines/near_pairs baselines/stretched_winding
-             baselines/wnnc cloud/heights cloud/layers cloud/two_layers field/areas field/field field/oriented_cloud field/points_with_normals
+             baselines/wnnc cloud/layers cloud/two_layers field/areas field/field field/oriented_cloud field/points_with_normals
              field/surface_points field/winding_sampler solve/dense_solver solve/green_system solve/harmonics solve/iterative_solver
              solve/part_system solve/refine)
 g3r_together(orient orient/attempt orient/clean_surface orient/clustered_polish orient/coarse_to_fine orient/jets

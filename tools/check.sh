@@ -43,7 +43,7 @@ check_spelling() {
   fi
   mapfile -t texts < <(git ls-files | grep -vE '\.(png|svg|ply|xyz|json|bib|ipynb)$|^docs/(images|results)/')
   # Words of ours that are misspellings of another: axes (normalY), constants (kOwn, kNo), tests, parts of formulas (nd) and file names (fo).
-  "$environment/bin/codespell" ${fix:+--write-changes} --ignore-words-list normaly,kown,nd,fo,kno,wallthickness,infinit "${texts[@]}"
+  "$environment/bin/codespell" ${fix:+--write-changes} --ignore-words-list normaly,kown,nd,fo,kno,wallthickness,infinit,hart "${texts[@]}"
   echo "spelling: ${#texts[@]} files"
 }
 
