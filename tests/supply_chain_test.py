@@ -84,12 +84,14 @@ class SupplyChain(unittest.TestCase):
                 self.assertNotIn(os.fsencode(SOURCE), file.read(), path)
 
 
-# Stands for python3, which makes an environment with this as its pip. It takes archives from $ARCHIVES and keeps what it was called with.
+# Stands for python3 and its pip, and makes environments with itself as their python. It takes archives from $ARCHIVES and keeps what it was
+# called with. With $NO_PIP only environments that were asked for a pip have one.
 PYTHON = """#!/bin/bash
-if [ "$1 $2" = "-m venv" ]; then
-  mkdir -p "$3/bin" && cp "$0" "$3/bin/pip"
-  exit
-fi
+case "$1 $2" in
+  "-m venv") mkdir -p "${@: -1}/bin" && cp "$0" "${@: -1}/bin/python" && exit ;;
+  "-m ensurepip") cp "$0" "$(dirname "$0")/pip3" && exit ;;
+  "-m pip") [ -z "$NO_PIP" ] || [ -e "$(dirname "$0")/pip3" ] || exit 1 ;;
+esac
 echo "$@" >> "$ARCHIVES/calls"
 [[ " $* " == *" download "* ]] || exit 0
 while [ $# -gt 1 ]; do
@@ -127,9 +129,9 @@ class Sources(unittest.TestCase):
             script = re.sub(re.escape(archive.name) + " [0-9a-f]{64}", archive.name + " " + self.sums[name], script)
         (self.folder / "tools" / "sources.sh").write_text(script)
 
-    def run_script(self, cache):
+    def run_script(self, cache, no_pip=""):
         return subprocess.run(["bash", "tools/sources.sh"], cwd=self.folder, capture_output=True, text=True,
-                              env={**os.environ, "G3R_CACHE": str(cache), "ARCHIVES": str(self.folder / "archives"),
+                              env={**os.environ, "G3R_CACHE": str(cache), "ARCHIVES": str(self.folder / "archives"), "NO_PIP": no_pip,
                                    "PATH": str(self.folder / "bin") + os.pathsep + os.environ["PATH"]})
 
     def kept(self):
@@ -150,6 +152,11 @@ class Sources(unittest.TestCase):
     def test_a_cache_that_cannot_be_written_costs_nothing(self):
         (self.folder / "file").write_text("")
         done = self.run_script(self.folder / "file" / "cache")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("a.cpp", self.kept())
+
+    def test_a_python_without_pip_gets_one(self):
+        done = self.run_script(self.folder / "cache", no_pip="1")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertIn("a.cpp", self.kept())
 

@@ -20,10 +20,14 @@ has_checksum() { [ -e "$1" ] && echo "$2  $1" | sha256sum --check --status; }
 # for its name before it hands it over, and holds what it runs against checksums first: the archive, and what tools/sources_helpers.txt names.
 from_pypi() {
   local archive=${1%.tar.gz}
-  if [ ! -x "$work/environment/bin/pip" ]; then
-    python3 -m venv "$work/environment" || return 1
+  local python=$work/environment/bin/python pip options=(--quiet --disable-pip-version-check --retries 1 --timeout 10)
+  if [ ! -x "$python" ]; then
+    python3 -m venv --without-pip "$work/environment" || return 1
+    # A pip of its own takes three seconds to install: most systems have one that serves any environment.
+    python3 -m pip --python "$python" --version > /dev/null 2>&1 || "$python" -m ensurepip > /dev/null || return 1
   fi
-  local pip=("$work/environment/bin/pip" --quiet --disable-pip-version-check --retries 1 --timeout 10)
+  pip=(python3 -m pip --python "$python" "${options[@]}")
+  [ ! -x "$work/environment/bin/pip3" ] || pip=("$python" -m pip "${options[@]}")
   "${pip[@]}" install --no-deps --only-binary :all: --require-hashes -r tools/sources_helpers.txt || return 1
   echo "${archive%-*}==${archive##*-} --hash=sha256:$2" > "$work/requirement.txt" || return 1
   "${pip[@]}" download --no-deps --ignore-requires-python --no-build-isolation --no-binary :all: --require-hashes \

@@ -91,7 +91,7 @@ class SmallLdlt {
     }
   }
 
-  Square m_;                                // D on the diagonal, L below it
+  Square m_;                            // D on the diagonal, L below it
   std::array<Eigen::Index, N> from_{};  // of each step: which row came to its place
 };
 
