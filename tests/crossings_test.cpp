@@ -135,6 +135,30 @@ TEST(Crossings, CreasesAndWallsOnOthersAreNone) {
   }
 }
 
+// Bumps and dents in turn, each as wide as half a wave, with slopes up to an angle: detail of a scan.
+OrientedSample bumps(std::size_t n, double wave, double steepest) {
+  OrientedSample out = patch(n, -1, 1, 1);
+  const double k = 2 * M_PI / wave, height = std::tan(steepest) / k;
+  for (std::size_t i = 0; i < n; ++i) {
+    Vec3& p = out.points[i];
+    const double sx = std::sin(k * p[0]), cx = std::cos(k * p[0]), sy = std::sin(k * p[1]), cy = std::cos(k * p[1]);
+    p[2] = height * sx * sy;
+    out.normals[i] = vector::normalised({-height * k * cx * sy, -height * k * sx * cy, 1});
+  }
+  return out;
+}
+
+TEST(Crossings, BumpsAreNone) {
+  const std::size_t n = 8000;
+  const double spacing = std::sqrt(4.0 / static_cast<double>(n));
+  for (const double wave : {4.0, 6.0, 8.0, 10.0}) {
+    for (const double steepest : {20.0, 25.0, 30.0}) {
+      const Crossings found = found_in(bumps(n, wave * spacing, steepest * kDegree));
+      EXPECT_FALSE(found.is_clear) << wave << " spacings, " << steepest << " degrees: " << found.share;
+    }
+  }
+}
+
 TEST(Crossings, ThinAndParallelWallsAndTipsAreNone) {
   const std::size_t n = 4000;
   const double spacing = std::sqrt(8.0 / static_cast<double>(n));  // of both sides of a slab

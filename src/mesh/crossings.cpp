@@ -36,14 +36,22 @@ struct OnLine {
   const std::vector<std::uint32_t>& around;
 };
 
-// Whether the surface with this normal goes on to both sides of the line, `along` being the direction in the surface across the line.
-bool goes_on(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const OnLine& line, const Vec3& normal, const Vec3& along) {
+// One of the two planes.
+struct Plane {
+  Vec3 normal;
+  Vec3 along;  // in it, across the line
+};
+
+// Whether the surface in this plane goes on to both sides of the line. A point whose place or normal is nearer to the other plane is of
+// that one: creases of little more than the angle of a patch, and rounded ones, have nothing else beyond the line.
+bool goes_on(const std::vector<Vec3>& points, const std::vector<Vec3>& normals, const OnLine& line, const Plane& plane, const Vec3& other) {
   const double layer = kLayer * line.spacing;
   std::array<std::size_t, 2> count{}, front{};
   for (const std::uint32_t j : line.around) {
     const Vec3 d = vector::subtract(points[j], line.place);
-    const double cosine = dot(normals[j], normal), t = dot(d, along);
-    if (std::fabs(dot(d, normal)) > layer || std::fabs(cosine) < kSameLocalPatch || std::fabs(t) < layer) continue;
+    const double cosine = dot(normals[j], plane.normal), t = dot(d, plane.along), height = std::fabs(dot(d, plane.normal));
+    if (height > layer || std::fabs(cosine) < kSameLocalPatch || std::fabs(t) < layer) continue;
+    if (std::fabs(dot(d, other)) < height || std::fabs(dot(normals[j], other)) > std::fabs(cosine)) continue;
     const std::size_t half = t > 0 ? 1 : 0;
     ++count[half];
     front[half] += cosine > 0 ? 1 : 0;
@@ -82,7 +90,7 @@ double crossing_at(const PointSet& set, const std::vector<Vec3>& normals, std::s
   // Where shapes are more than two surfaces, fewer are on one of the two planes.
   if (static_cast<double>(explained) < kNearlyAll * static_cast<double>(look.around.size())) return 0;
   const OnLine at{place, spacing, look.around};
-  const bool both = goes_on(points, normals, at, a, u) && goes_on(points, normals, at, b, v);
+  const bool both = goes_on(points, normals, at, {a, u}, b) && goes_on(points, normals, at, {b, v}, a);
   return both ? degrees(std::acos(std::min(1.0, std::fabs(dot(a, b))))) : 0;
 }
 
