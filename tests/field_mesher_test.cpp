@@ -111,6 +111,19 @@ TEST(FieldMesher, CubeKeepsItsEdgesAndMostCorners) {
   EXPECT_GE(corners, 6U);  // a face may have too few points near a corner
 }
 
+// A face with a gap in the sample at a corner does not go on beyond the points of the next one.
+TEST(FieldMesher, CubesHaveNoHorns) {
+  double worst = 0;  // in spacings
+  for (const std::uint64_t seed : {2U, 3U, 4U}) {
+    if (kSanitized && seed > 2) continue;
+    const OrientedSample s = cube_sample(600, 0.5, seed);
+    const double h = std::sqrt(6.0 / 600);
+    const DirectSampler field(s, h * h, 0.35 * h);
+    for (const Vec3& v : field_mesh(s.points, s.normals, field).vertices) worst = std::max(worst, cube_distance(v, 0.5) / h);
+  }
+  EXPECT_LT(worst, 0.05);
+}
+
 // The cube is centred like its octree, so that edges run between cells, which must not both take them.
 TEST(FieldMesher, CreasesBetweenCellsMakeNoTwoVerticesAtOnePlace) {
   for (const std::size_t n : {std::size_t{3000}, std::size_t{6000}, std::size_t{12000}}) {
