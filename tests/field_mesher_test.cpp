@@ -124,6 +124,23 @@ TEST(FieldMesher, CubesHaveNoHorns) {
   EXPECT_LT(worst, 0.05);
 }
 
+// Two cubes and a gap of 1.3 spacings: where its mouth has few points the sides may seem to be one, and all of them go.
+TEST(FieldMesher, ANarrowGapIsBridgedNowhere) {
+  for (const std::uint64_t seed : {3U, 5U, 7U}) {
+    if (kSanitized && seed > 3) continue;
+    OrientedSample s = cube_sample(800, 0.5, seed);
+    const OrientedSample other = cube_sample(800, 0.5, seed + 100);
+    const double h = std::sqrt(6.0 / 800);
+    for (std::size_t i = 0; i < other.points.size(); ++i) {
+      s.points.push_back({other.points[i][0] + 1 + 1.3 * h, other.points[i][1], other.points[i][2]});
+      s.normals.push_back(other.normals[i]);
+    }
+    const Topology t = topology(field_mesh(s.points, s.normals, DirectSampler(s, h * h, 0.35 * h)));
+    EXPECT_EQ(t.components, 2U) << seed;
+    EXPECT_EQ(t.genus, 0) << seed;
+  }
+}
+
 // The cube is centred like its octree, so that edges run between cells, which must not both take them.
 TEST(FieldMesher, CreasesBetweenCellsMakeNoTwoVerticesAtOnePlace) {
   for (const std::size_t n : {std::size_t{3000}, std::size_t{6000}, std::size_t{12000}}) {

@@ -56,11 +56,11 @@ Marks mark(const std::function<bool(const Vec3&)>& inside) {
 
 Marks no_centres(const std::vector<Vec3>& centres) { return Marks(centres.size(), 0); }
 
-Topology topology_after(Marks inside, const Marks& proposal) {
+Topology topology_after(Marks inside, const Marks& proposal, const HeldTest& held = {}) {
   DualSurface surface = contour(grid(), inside, no_centres);
   Marks open(inside.size(), 0);
   for (std::size_t c = 0; c < open.size(); ++c) open[c] = inside[c] != proposal[c] ? 1 : 0;
-  HandleRemoval removal(grid(), open, inside, surface, no_centres);
+  HandleRemoval removal(grid(), open, inside, surface, no_centres, held);
   if (removal.propose(proposal, inside)) surface = contour(grid(), inside, no_centres);
   EXPECT_EQ(removal.handles(), count_handles(surface));
   std::vector<Vec3> positions;
@@ -93,6 +93,35 @@ TEST(HandleRemoval, CutsThatSplitAPartAreNotMade) {
   const Topology kept = topology_after(whole, cut_twice);
   EXPECT_EQ(kept.genus, 1);
   EXPECT_EQ(kept.components, 1U);
+}
+
+// The true surface: crossings between a place inside of it and one outside are held.
+HeldTest held_by(const std::function<bool(const Vec3&)>& inside) {
+  return [=](const Vec3& within, const Vec3& outside) { return inside(within) && !inside(outside); };
+}
+
+// A solid with a cavity, and a hole from there to the outside: one sphere, of which filling the hole makes two.
+bool hollow(const Vec3& p) { return ball(p) && std::hypot(p[0], p[1], p[2]) > 0.45; }
+
+TEST(HandleRemoval, TheOnlyHoleInAWallIsFilledWherePointsHoldTheWall) {
+  const Marks drilled = mark([](const Vec3& p) { return hollow(p) && !(on_axis(p) && p[2] > 0); });
+  EXPECT_EQ(topology_after(drilled, mark(hollow), held_by(hollow)).components, 2U);
+  EXPECT_EQ(topology_after(drilled, mark(hollow)).components, 1U);
+  const auto all_drilled = mark([](const Vec3& p) { return hollow(p) && !on_axis(p); });
+  EXPECT_EQ(topology_after(all_drilled, all_drilled).genus, 1);
+  const Topology filled = topology_after(all_drilled, mark(hollow), held_by(hollow));
+  EXPECT_EQ(filled.genus, 0);
+  EXPECT_EQ(filled.components, 2U);
+}
+
+// Two parts, and a bar between them: a neck if points hold it, else a bridge over a gap.
+TEST(HandleRemoval, TheOnlyBarBetweenTwoPartsIsCutUnlessPointsHoldIt) {
+  const auto parts = [](const Vec3& p) { return ring(p) && std::abs(p[0]) > 0.2; };
+  const auto joined = [&](const Vec3& p) {
+    return parts(p) || (ring(p) && p[1] > 0 && std::abs(p[1] - 0.6) < 0.06 && std::abs(p[2]) < 0.06);
+  };
+  EXPECT_EQ(topology_after(mark(joined), mark(parts), held_by(parts)).components, 2U);
+  EXPECT_EQ(topology_after(mark(joined), mark(parts), held_by(joined)).components, 1U);
 }
 
 TEST(HandleRemoval, ALargeHandleStaysWhateverIsProposed) {
@@ -137,7 +166,7 @@ TEST(HandleRemoval, CountsTheHandlesOfTheSurfaceAfterEveryProposal) {
     };
     Marks inside = read(0);
     const DualSurface surface = contour(octree, inside, no_centres);
-    HandleRemoval removal(octree, open, inside, surface, no_centres);
+    HandleRemoval removal(octree, open, inside, surface, no_centres, {});
     long handles = count_handles(surface);
     before += handles;
     for (const double level : {0.1, -0.1, 0.3, -0.3, 0.1, 0.45}) {

@@ -131,6 +131,13 @@ std::vector<std::uint8_t> sides_by_fit(const LocalFit& local, const std::vector<
   return inside;
 }
 
+bool is_held(const LocalFit& local, const Vec3& inside, const Vec3& outside) {
+  const Eigen::Vector3d a(inside[0], inside[1], inside[2]), b(outside[0], outside[1], outside[2]), direction = (b - a).normalized();
+  const LocalSurface fit = local.fit((a + b) / 2, kFarSpacings, &direction);
+  const auto parts = [&](const QuadraticPatch& patch) { return patch.distance(a) < 0 && patch.distance(b) > 0; };
+  return std::any_of(fit.patch.begin(), fit.patch.begin() + fit.count, parts);
+}
+
 void match_values(const Octree& octree, const std::vector<std::uint8_t>& inside, double typical, std::vector<float>& value) {
   for (std::size_t c = 0; c < inside.size(); ++c) {
     if ((value[c] > 0) != (inside[c] != 0) && !octree.on_boundary(c))

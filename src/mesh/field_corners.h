@@ -73,6 +73,9 @@ class CornerSides {
 /// By the fitted surface alone; outside where there is none: what is asked where signs can be joined in two ways.
 [[nodiscard]] std::vector<std::uint8_t> sides_by_fit(const LocalFit& local, const std::vector<Vec3>& places);
 
+/// Whether the points hold surface that crosses between two places: a fitted patch has the first one inside and the second outside.
+[[nodiscard]] bool is_held(const LocalFit& local, const Vec3& inside, const Vec3& outside);
+
 /// Where handles were removed `inside` is not the sign of the values: they become small ones of that side, as vertices are placed by them.
 void match_values(const Octree& octree, const std::vector<std::uint8_t>& inside, double typical, std::vector<float>& value);
 

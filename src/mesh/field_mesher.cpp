@@ -127,7 +127,8 @@ class SurfaceMaker {
     for (std::size_t c = 0; c < out.inside.size(); ++c) out.inside[c] = out.value[c] > 0 && !octree.on_boundary(c) ? 1 : 0;
     report(monitor_, Done::kSigns);
     const double cell = std::ldexp(side_, -rule_.finest) / prepared_.typical;
-    mesh::remove_handles(octree, corners.ambiguous, {all, mesh::most_per_handle(prepared_.noise, cell)}, centre_inside, out.inside,
+    const auto held = [&](const Vec3& within, const Vec3& outside) { return mesh::is_held(local_, within, outside); };
+    mesh::remove_handles(octree, corners.ambiguous, {all, held, mesh::most_per_handle(prepared_.noise, cell)}, centre_inside, out.inside,
                          monitor_.cancel);
     mesh::match_values(octree, out.inside, prepared_.typical, out.value);
     report(monitor_, Done::kHandles);

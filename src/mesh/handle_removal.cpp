@@ -1,5 +1,6 @@
 #include "mesh/handle_removal.h"
 
+#include "cloud/constants.h"
 #include "mesh/constants.h"
 
 #include <g3r/error.h>
@@ -50,9 +51,11 @@ Patches patches_now(const Octree& octree, const OpenEdges& open, const std::vect
 }  // namespace
 
 HandleRemoval::HandleRemoval(const Octree& octree, const std::vector<std::uint8_t>& open, const std::vector<std::uint8_t>& inside,
-                             DualSurface surface, InsideTest centre_inside, double most_per_handle, const std::atomic<bool>* cancel)
+                             DualSurface surface, InsideTest centre_inside, HeldTest held, double most_per_handle,
+                             const std::atomic<bool>* cancel)
     : octree_(octree),
       centre_inside_(std::move(centre_inside)),
+      held_(std::move(held)),
       most_per_handle_(most_per_handle),
       cancel_(cancel),
       handles_(count_handles(surface)),
@@ -102,9 +105,40 @@ std::vector<HandleRemoval::Change> HandleRemoval::changes_of(const CornerGroups&
       if (!counted) change[groups.of[k]].twice_chi += 2 * (crosses(e, to) - crosses(e, from));
     }
   }
+  if (held_) count_bare(groups, from, to, change);
   const std::vector<long> before = components.count();
   for (std::size_t g = 0; g < change.size(); ++g) change[g].components = before[g];
   return change;
+}
+
+// At the corners of groups that cut tubes.
+void HandleRemoval::count_bare(const CornerGroups& groups, const std::vector<std::uint8_t>& from, const std::vector<std::uint8_t>& to,
+                               std::vector<Change>& change) const {
+  const auto bare = [&](const MinimalEdge& e, const std::vector<std::uint8_t>& inside) {
+    if (inside[e.low] == inside[e.high]) return 0;
+    const Vec3 low = octree_.corner_position(e.low), high = octree_.corner_position(e.high);
+    return (inside[e.low] != 0 ? held_(low, high) : held_(high, low)) ? 0 : 1;
+  };
+  for (std::size_t k = 0; k < groups.place.size(); ++k) {
+    Change& of = change[groups.of[k]];
+    if (!is_worth(of.tubes_cut(), groups.size[groups.of[k]])) continue;
+    for (const std::uint32_t edge : open_.at_corner.of(groups.place[k])) {
+      const MinimalEdge& e = open_.edges[edge];
+      if (e.high == open_.corners[groups.place[k]] && from[e.low] != to[e.low]) continue;  // counted with the other end
+      of.bare_now += bare(e, from);
+      of.bare_then += bare(e, to);
+    }
+  }
+}
+
+bool HandleRemoval::Change::is_held_better() const {
+  return bare_now > 0 && static_cast<double>(bare_now) >= kMostOf * static_cast<double>(bare_now + bare_then);
+}
+
+// The handles that a change is worth if so many components pass through its leaves afterwards.
+long HandleRemoval::worth(const Change& change, long after) const {
+  const long lost = change.handles_lost(after);
+  return lost == 0 && change.is_held_better() ? change.tubes_cut() : lost;
 }
 
 // Whether some group can be worth it: no handle is lost without a gain but by joining components.
@@ -113,6 +147,7 @@ bool HandleRemoval::can_lose(const CornerGroups& groups, const Patches& changed,
   for (const std::uint32_t leaf : changed.leaf) least[grouping_.at(leaf)] = 1;
   for (std::size_t g = 0; g < change.size(); ++g) {
     if (is_worth(change[g].handles_lost(least[g]), groups.size[g])) return true;
+    if (change[g].is_held_better() && is_worth(change[g].tubes_cut(), groups.size[g])) return true;
   }
   return false;
 }
@@ -133,7 +168,7 @@ std::vector<std::uint8_t> HandleRemoval::choose(const CornerGroups& groups, cons
     steady = true;
     for (std::size_t g = 0; g < take.size(); ++g) {
       if (take[g] == 0) continue;
-      take[g] = is_worth(change[g].handles_lost(after[g]), groups.size[g]) ? 1 : 0;
+      take[g] = is_worth(worth(change[g], after[g]), groups.size[g]) ? 1 : 0;
       steady = steady && take[g] != 0;
     }
   }
@@ -142,7 +177,7 @@ std::vector<std::uint8_t> HandleRemoval::choose(const CornerGroups& groups, cons
 
 bool HandleRemoval::propose(const std::vector<std::uint8_t>& proposal, std::vector<std::uint8_t>& inside) {
   if (cancel_ != nullptr && cancel_->load()) throw Cancelled();
-  const CornerGroups groups = grouping_.group(proposal, inside, [this](long corners) { return is_worth(handles_, corners); });
+  const CornerGroups groups = grouping_.group(proposal, inside, [this](long corners) { return is_worth(handles_ + 1, corners); });
   if (groups.count() == 0) return false;
   std::vector<std::uint8_t> next = inside;
   for (const std::uint32_t i : groups.place) next[open_.corners[i]] = proposal[open_.corners[i]];

@@ -141,6 +141,7 @@ void write_corners(const MeshFolder& folder, std::size_t tile, const std::atomic
   const std::vector<std::uint8_t> free = free_corners(octree, owned);
   const double cell = std::ldexp(2.0, -folder.levels().finest) / folder.plan.spacing;
   const mesh::HandlePrice price{[&](std::uint32_t c) { return free[c] != 0; },
+                                [&](const Vec3& within, const Vec3& outside) { return mesh::is_held(local, within, outside); },
                                 mesh::most_per_handle(mesh::noise_seen(folder.plan.noise), cell)};
   mesh::remove_handles(octree, corners.ambiguous, price, joined, inside, cancel);
   mesh::match_values(octree, inside, prepared.typical, corners.value);
