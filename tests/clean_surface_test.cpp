@@ -76,6 +76,26 @@ TEST(FitCleanSurface, TheFacetsTakeTheSideOfMostOfTheirPoints) {
   }
 }
 
+// Too few for facets to be solved for: single points, and two side by side.
+TEST(FitCleanSurface, SinglePointsTakeTheSideOfTheirFacet) {
+  const Plate plate(1.5);
+  const Problem& problem = plate.problem;
+  Solution solution = problems::solution_of(problem, plate.surface.normals);
+  std::vector<Vec3>& normals = solution.refinement.normals;
+  const std::size_t one = normals.size() / 2, other = problem.cloud.set.near()[one * problem.cloud.set.near_count() + 1];
+  for (const std::size_t i : {one, other}) {
+    normals[i] = vector::scale(normals[i], -1);
+    solution.eta[i] = vector::scale(solution.eta[i], -1);
+  }
+  const Monitor monitor;
+  Stages stages(monitor);
+  fit_clean_surface(problem, solution.eta, normals, stages);
+  for (const std::size_t i : {one, other}) {
+    EXPECT_GT(vector::dot(normals[i], plate.normals[i]), 0);
+    EXPECT_GT(vector::dot(solution.eta[i], plate.normals[i]), 0);
+  }
+}
+
 // How far an area vector and a normal agree tells the side, so it stays where facets give the normal another direction.
 TEST(FitCleanSurface, TurnsAreaVectorsWithTheNormalsAtEdges) {
   const Plate plate(10);

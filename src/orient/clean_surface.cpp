@@ -68,11 +68,14 @@ void fit_clean_surface(const Problem& problem, std::vector<Vec3>& eta, std::vect
   const auto fit = [&] { proven = fit_directions(problem, normals); };
   fit();
   Facets facets;
+  std::vector<Vec3> before;
   if (runs(problem, Step::kFacets)) {
     facets = agree_on_facets(problem, proven, fit, eta, normals, stages);
+    before = normals;
+    turn_single_points(problem.cloud.set, facets, problem.known.wanted, normals);
     if (problem.scatter != scatter_of_one_side(problem)) facets = facets_of(problem, problem.scatter, proven, normals);
   }
-  const std::vector<Vec3> before = normals;
+  if (before.empty()) before = normals;
   follow_facets(problem.cloud.set, facets, problem.known.wanted, normals);
   for (std::size_t i = 0; i < facets.of.size(); ++i) {
     if (facets.of[i] != Facets::kNone) proven[i] = 1;

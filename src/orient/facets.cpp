@@ -32,6 +32,24 @@ std::vector<Vec3> first_normals(const Facets& facets, const std::vector<Vec3>& n
   return first;
 }
 
+// 1 for each point whose normal is on another side than that of most points of its facet; of halves, the first point's.
+std::vector<std::uint8_t> in_minority(const Facets& facets, const std::vector<Vec3>& normals) {
+  const std::vector<Vec3> first = first_normals(facets, normals);
+  std::vector<std::size_t> same(facets.count, 0), all(facets.count, 0);
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const std::uint32_t f = facets.of[i];
+    if (f == Facets::kNone) continue;
+    ++all[f];
+    same[f] += vector::dot(normals[i], first[f]) > 0 ? 1 : 0;
+  }
+  std::vector<std::uint8_t> out(normals.size(), 0);
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const std::uint32_t f = facets.of[i];
+    out[i] = f != Facets::kNone && (vector::dot(normals[i], first[f]) > 0) == (2 * same[f] <= all[f]) ? 1 : 0;
+  }
+  return out;
+}
+
 // Area vectors that are c_f A_i n_i on facets, and the projector P on them.
 class Subspace {
  public:
@@ -223,19 +241,24 @@ Facets find_facets(const PointSet& set, const std::vector<std::uint8_t>& proven,
 }
 
 double minority_share(const Facets& facets, const std::vector<Vec3>& normals, const std::vector<std::uint8_t>& wanted) {
-  const std::vector<Vec3> first = first_normals(facets, normals);
-  std::vector<std::size_t> same(facets.count, 0);
-  std::vector<std::size_t> all(facets.count, 0);
+  const std::vector<std::uint8_t> minority = in_minority(facets, normals);
+  return share_of_wanted(wanted, normals.size(), [&](std::size_t i) { return minority[i] != 0; });
+}
+
+void turn_single_points(const PointSet& set, const Facets& facets, const std::vector<std::uint8_t>& wanted, std::vector<Vec3>& normals) {
+  const std::vector<std::uint8_t> minority = in_minority(facets, normals);
+  const std::size_t count = set.near_count();
   for (std::size_t i = 0; i < normals.size(); ++i) {
-    const std::uint32_t f = facets.of[i];
-    if (f == Facets::kNone) continue;
-    ++all[f];
-    same[f] += vector::dot(normals[i], first[f]) > 0 ? 1 : 0;
+    if (minority[i] == 0 || (!wanted.empty() && wanted[i] == 0)) continue;
+    std::size_t same = 0, all = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::uint32_t j = set.near()[i * count + k];
+      if (facets.of[j] != facets.of[i]) continue;
+      ++all;
+      same += minority[j];
+    }
+    if (2 * same < all) normals[i] = vector::scale(normals[i], -1);
   }
-  return share_of_wanted(wanted, normals.size(), [&](std::size_t i) {
-    const std::uint32_t f = facets.of[i];
-    return f != Facets::kNone && (vector::dot(normals[i], first[f]) > 0) == (2 * same[f] <= all[f]);
-  });
 }
 
 void choose_facet_sides(const PointSet& set, const Settings& settings, const Facets& facets, std::vector<Vec3>& eta,

@@ -41,6 +41,10 @@ struct Facets {
 /// Share of the wanted points (share_of_wanted()) whose normal is on another side than that of most points of their facet. O(N).
 [[nodiscard]] double minority_share(const Facets& facets, const std::vector<Vec3>& normals, const std::vector<std::uint8_t>& wanted = {});
 
+/// Turns single points that are on another side than most of their facet: where most of the nearest points on it are so too, itself
+/// included. Larger parts of a facet that differ from the rest stay. `normals`: N, in and out. O(N).
+void turn_single_points(const PointSet& set, const Facets& facets, const std::vector<std::uint8_t>& wanted, std::vector<Vec3>& normals);
+
 /// One side for every facet. Single points of a wall thinner than the spacing cannot tell their side, the whole facet can: the energy
 /// form's equations are restricted to area vectors eta_i = c_f A_i n_i on facets, with one unknown c_f per facet, its n_i on one side, and
 /// free ones elsewhere, which is Galerkin's method with the orthogonal projector P onto these: P M P eta = P b, by conjugate gradients from
