@@ -165,26 +165,6 @@ TEST(LocalSurface, ASinglePointTellsWhereTwoWallsEnd) {
   }
 }
 
-// Two sides of a cube, or one, that end at a single point of a further side: beyond it is outside, as that side has more points elsewhere.
-TEST(LocalSurface, ASinglePointTellsWhereACreaseOrAFaceEnds) {
-  for (const int sides : {1, 2}) {
-    for (const double end : {0.05, -0.1}) {  // beyond the points of the sides, and among them
-      std::vector<FitPoint> points;
-      for (const double u : {0.0, -0.1, -0.2}) {
-        for (const double v : {-0.05, -0.15}) {
-          points.push_back({{u, v, 0}, {0, 0, 1}, 1});
-          if (sides == 2) points.push_back({{u, 0, v}, {0, 1, 0}, 1});
-        }
-      }
-      points.push_back({{end, -0.3, -0.3}, {1, 0, 0}, 1});
-      const Eigen::Vector3d x(0.1, -0.1, -0.1);
-      const LocalSurface surface = surface_through(points, 0.2, x);
-      EXPECT_EQ(surface.count, end > 0 ? sides + 1 : sides);
-      EXPECT_NEAR(surface.distance(x), end > 0 ? 0.05 : -0.1, 1e-6);
-    }
-  }
-}
-
 TEST(WallThickness, IsTheDistanceOfWallsThatFaceApart) {
   OrientedPoints points;
   add_square(points, 0, -1);

@@ -111,19 +111,6 @@ TEST(FieldMesher, CubeKeepsItsEdgesAndMostCorners) {
   EXPECT_GE(corners, 6U);  // a face may have too few points near a corner
 }
 
-// A face with a gap in the sample at a corner does not go on beyond the points of the next one.
-TEST(FieldMesher, CubesHaveNoHorns) {
-  double worst = 0;  // in spacings
-  for (const std::uint64_t seed : {2U, 3U, 4U}) {
-    if (kSanitized && seed > 2) continue;
-    const OrientedSample s = cube_sample(600, 0.5, seed);
-    const double h = std::sqrt(6.0 / 600);
-    const DirectSampler field(s, h * h, 0.35 * h);
-    for (const Vec3& v : field_mesh(s.points, s.normals, field).vertices) worst = std::max(worst, cube_distance(v, 0.5) / h);
-  }
-  EXPECT_LT(worst, 0.05);
-}
-
 // Two cubes and a gap of 1.3 spacings: where its mouth has few points the sides may seem to be one, and all of them go.
 TEST(FieldMesher, ANarrowGapIsBridgedNowhere) {
   for (const std::uint64_t seed : {3U, 5U, 7U}) {

@@ -29,11 +29,8 @@ bool are_walls(const LocalSurface& s, int a, int b) {
 
 // Where the members of a patch are as seen from another one.
 struct Seen {
-  double mean = 0;  // signed distance
-  double size = 0;  // mean distance
-
-  // Whether so much of the distances is on the side of the mean: of a patch that goes on on both sides it is not.
-  [[nodiscard]] bool is_on_one_side(double share) const { return std::abs(mean) + size > 2 * share * size; }
+  double mean = 0;        // signed distance
+  bool one_side = false;  // a clear majority of the distances is on the side of the mean: a patch that goes on on both does not surely end
 };
 
 // Patch `b` from patch `a`. Members that are nearer to the opposite wall of `a`, the third patch, are beside that one: where a gap opens or
@@ -51,7 +48,7 @@ Seen see(const LocalSurface& s, const std::vector<FitPoint>& members, int a, int
       size += m.weight * std::abs(d);
       total += m.weight;
     }
-    if (total > 0) return {sum / total, size / total};
+    if (total > 0) return {sum / total, std::abs(sum) + size > 2 * kMostOf * size};
   }
   return {};
 }
@@ -70,25 +67,20 @@ void join(LocalSurface& s, const std::vector<FitPoint>& members, const Vector3d&
       const Seen b_from_a = see(s, members, a, b), a_from_b = see(s, members, b, a);
       const Joint joint = joint_of(b_from_a, a_from_b);
       s.joint[static_cast<std::size_t>(a + b - 1)] = joint;
-      meet = joint != Joint::kNone && b_from_a.is_on_one_side(kMostOf) && a_from_b.is_on_one_side(kMostOf);
+      meet = joint != Joint::kNone && b_from_a.one_side && a_from_b.one_side;
     }
   }
   s.unjoined = s.count == 2 && !s.walls && !meet && (s.patch[0].distance(x) > 0) != (s.patch[1].distance(x) > 0);
 }
 
-// Whether a further patch closes those there are, as the rim of a plate closes its walls and the third face of a cube's corner the crease
-// of the two others: it is square to each, and all of them are on one side of it. Of such a patch one point is often all there is, where
-// the sample has a gap or a rim is narrower than the spacing: without it the others would go on beyond their points.
-bool closes_others(const LocalSurface& s, const std::vector<FitPoint>& members) {
-  const auto normal = [&](int k) { return s.patch[static_cast<std::size_t>(k)].frame.row(2); };
-  bool outside = false;
-  for (int k = 0; k < s.count; ++k) {
-    const Seen seen = see(s, members, s.count, k);
-    if (std::abs(normal(k).dot(normal(s.count))) > kSlant || !seen.is_on_one_side(kNearlyAll)) return false;
-    if (k > 0 && (seen.mean > 0) != outside) return false;
-    outside = seen.mean > 0;
-  }
-  return true;
+// Whether the patch after two that are walls closes them, as the rim of a plate does: it is square to both, and both are on one side of it.
+// Of a rim narrower than the spacing one point is often all there is: without it the walls would go on.
+bool ends_walls(const LocalSurface& s, const std::vector<FitPoint>& members) {
+  const auto normal = [&](std::size_t k) { return s.patch[k].frame.row(2); };
+  if (s.count != 2 || !are_walls(s, 0, 1)) return false;
+  if (std::abs(normal(0).dot(normal(2))) > kSlant || std::abs(normal(1).dot(normal(2))) > kSlant) return false;
+  const Seen first = see(s, members, 2, 0), second = see(s, members, 2, 1);
+  return first.one_side && second.one_side && (first.mean < 0) == (second.mean < 0);
 }
 
 // The nearest point left seeds a patch, which takes those with similar normals: similar to the seed's, then to their mean. False if no
@@ -112,7 +104,7 @@ bool grow_patch(LocalSurface& s, std::vector<FitPoint>& members) {
     axis = mean.normalized();
   }
   s.patch[static_cast<std::size_t>(s.count)] = fit_quadratic_patch(members, s.count, s.spacing, kSlopeWeight);
-  if (taken < std::min(kPatchPoints, members.size()) && s.count > 0 && !closes_others(s, members)) {
+  if (taken < std::min(kPatchPoints, members.size()) && s.count > 0 && !ends_walls(s, members)) {
     for (FitPoint& m : members) {
       if (m.patch == s.count) m.patch = kLeftOut;
     }

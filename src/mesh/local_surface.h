@@ -42,7 +42,7 @@ struct LocalSurface {
 inline constexpr double kSlopeWeight = 0.25;
 
 /// The surface through the points, nearest to `x` first, at most kFitPoints of them; no patch without any. The nearest point seeds a patch,
-/// which takes those with similar normals; the nearest point left seeds the next, of three points at least, or of one where all before end
+/// which takes those with similar normals; the nearest point left seeds the next, of three points at least, or of one where two walls end
 /// at it and are square to it. Several patches that do not face each other are kept only if they leave at most 5 % of the squared misfit of
 /// one. `points`: with their weights; their patches are filled in. `spacing` > 0. O(points).
 [[nodiscard]] LocalSurface surface_through(std::vector<FitPoint>& points, double spacing, const Eigen::Vector3d& x);

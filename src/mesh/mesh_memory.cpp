@@ -18,7 +18,7 @@ namespace {
 // Peak memory, measured (docs/evidence/meshes.md). If it is planned too small a run is killed, if too large it is refused for nothing.
 constexpr double kBaseBytes = 25 * kMebibyte;  // Code, libraries, the stacks of threads, and queries of a sum take so many.
 constexpr double kBytesPerPoint = 340;         // A point takes so many, those of the winding field included.
-constexpr double kBytesPerLeaf = 85;           // A leaf takes so many,
+constexpr double kBytesPerLeaf = 95;           // A leaf takes so many,
 constexpr double kBytesPerThinLeaf = 270;      // and one of a thin wall or gap so many: most of its corners are ambiguous.
 constexpr double kPlainLeaves = 8.6;           // A point of a shape without thin walls has 5.7 to 8.6 leaves; what exceeds this is thin.
 
