@@ -5,10 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 namespace g3r {
 namespace {
@@ -55,19 +53,6 @@ TEST(IsBlocked, NotByStrays) {
   sides.add_square({0, 0, 0}, 2, 1, 0);
   for (int k = 0; k < 9; ++k) sides.add({0.6 * (k % 3) - 0.6, 0.6 * (k / 3) - 0.6, 1}, {0, 0, 1}, 1, true);
   EXPECT_EQ(blocked_share(sides, 0, {0, 0, 30}), 0);
-}
-
-// Half of the points by weight are hidden from a place that sees the back of what is in front, and none from where they are seen; each
-// point from its own place, where that is known.
-TEST(HiddenShare, IsOfThePointsThatOthersHide) {
-  const Sides sides = two_squares();
-  const PointSet set(sides.points);
-  const Vec3 above{0, 0, 30}, between{0, 0, 0.5};
-  EXPECT_NEAR(hidden_share(set, {{above}, {}}, nullptr), 0.5, 0.01);
-  EXPECT_EQ(hidden_share(set, {{between}, {}}, nullptr), 0);
-  std::vector<std::uint32_t> own(800, 0);
-  std::fill(own.begin(), own.begin() + 400, 1U);
-  EXPECT_EQ(hidden_share(set, {{above, between}, own}, nullptr), 0);
 }
 
 }  // namespace

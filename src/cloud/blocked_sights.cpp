@@ -3,8 +3,6 @@
 #include "base/vector.h"
 #include "cloud/constants.h"
 #include "cloud/plane_fit.h"
-#include "cloud/some_places.h"
-#include "cpu/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -42,31 +40,6 @@ bool is_blocked(const PointSet& set, const SeenPoint& seen, const Vec3& place) {
     t += std::max(std::sqrt(squared.front()) - radius, spacing / 2);
   }
   return false;
-}
-
-double hidden_share(const PointSet& set, const Views& views, const std::atomic<bool>* cancel) {
-  if (set.size() < kFewestSurfacePoints) return 0;
-  (void)set.smoothed_spacing();  // made here, as the loop below only reads them
-  (void)set.tree();
-  const SomePlaces some = SomePlaces::at_least(kFewPlaces, set.size());
-  std::vector<double> cosine(some.size(), 0);
-  std::vector<std::uint8_t> hidden(some.size(), 0);
-  parallel::for_each(
-      some.size(),
-      [&](std::size_t k) {
-        const auto i = static_cast<std::uint32_t>(some[k]);
-        const SeenPoint seen = seen_point(set, i);
-        cosine[k] = std::abs(vector::dot(seen.normal, vector::normalised(vector::subtract(views.place_of(i), seen.point))));
-        hidden[k] = is_blocked(set, seen, views.place_of(i)) ? 1 : 0;
-      },
-      cancel);
-  double of_hidden = 0;
-  double all = 0;
-  for (std::size_t k = 0; k < some.size(); ++k) {
-    all += cosine[k];
-    of_hidden += hidden[k] * cosine[k];
-  }
-  return all > 0 ? of_hidden / all : 0;
 }
 
 }  // namespace g3r

@@ -5,7 +5,6 @@
 
 #include <g3r/points.h>
 
-#include <atomic>
 #include <cstdint>
 
 namespace g3r {
@@ -26,12 +25,5 @@ struct SeenPoint {
 /// strays. The sight is walked by steps that skip as much as the nearest point is away, as in sphere tracing (Hart, "Sphere tracing", The
 /// Visual Computer 1996), of h / 2 at least. O(log N) for each.
 [[nodiscard]] bool is_blocked(const PointSet& set, const SeenPoint& seen, const Vec3& place);
-
-/// Share of the points that others hide from where they have been seen, each by the cosine under which it is seen. `views`: known, in the
-/// frame of the points. Looks at about 500 points, O(log N) each for some tens of steps. Throws Cancelled.
-[[nodiscard]] double hidden_share(const PointSet& set, const Views& views, const std::atomic<bool>* cancel);
-
-/// Share of what sensors should have seen that other points hide, above which they did not stand there: among pipes and leaves a tenth is.
-inline constexpr double kManyHidden = 0.1;
 
 }  // namespace g3r

@@ -1,4 +1,4 @@
-// Loops on oneTBB: the back end with threads, and the only file that names that library.
+// Loops on oneTBB: the back end with threads. Beside cpu/parallel_sort.h the only file that names that library.
 #include "cpu/parallel.h"
 
 #include "cpu/parallel_apart.h"

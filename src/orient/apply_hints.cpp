@@ -1,7 +1,6 @@
 #include "orient/apply_hints.h"
 
 #include "base/number_text.h"
-#include "cloud/blocked_sights.h"
 #include "orient/assess.h"
 #include "orient/confidence.h"
 #include "orient/describe.h"
@@ -42,6 +41,15 @@ Patches patches_of(const OpenSurfaces& surfaces) {
   patches.agreed = surfaces.certified;
   patches.held = surfaces.held;
   return patches;
+}
+
+// What sensors vote on.
+std::vector<std::uint32_t> open_points(std::size_t count, const Patches& patches) {
+  std::vector<std::uint32_t> open;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (!patches.is_closed(i)) open.push_back(i);
+  }
+  return open;
 }
 
 // Whether hints say of any side that it is seen, or is outside.
@@ -124,7 +132,7 @@ void apply_hints(const Problem& problem, const Options& options, Solution& solut
   SensorTrust trust;
   if (have_votes(hints) || hints.flip) {
     const SidedPoints sided{solution.refinement.normals, solution.eta, confidence};
-    if (!patches.seen) trust = find_sensor_trust(problem.cloud.set, patches, hints, cancel);
+    if (!patches.seen) trust = find_sensor_trust(problem.cloud.set, open_points(problem.cloud.size(), patches), hints, cancel);
     effect =
         follow_hints({problem.cloud.points(), problem.cloud.set.near(), problem.spacing, patches, hints, sided, trust.of_sensor}, cancel);
   }

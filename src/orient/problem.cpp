@@ -1,6 +1,5 @@
 #include "orient/problem.h"
 
-#include "cloud/blocked_sights.h"
 #include "cloud/far_points.h"
 #include "cloud/noise.h"
 #include "cloud/outliers.h"
@@ -9,6 +8,7 @@
 #include "cloud/viewpoint.h"
 #include "orient/crowded.h"
 #include "orient/hints.h"
+#include "orient/sensor_trust.h"
 #include "orient/sight_normals.h"
 #include "solve/part_system.h"
 
@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -56,6 +57,16 @@ std::vector<T> last_in_canonical_order(const CanonicalCloud& cloud, const std::v
   return in_canonical_order(cloud, values, T{}, [](const T&, const T& next) { return next; });
 }
 
+// Whether no more is hidden from where the points have been seen than clutter hides. `views`: known.
+bool hide_little(const PointSet& set, const Views& views, const std::atomic<bool>* cancel) {
+  Hints hints;
+  hints.sensors = views.places;
+  hints.sensor_of_point = views.of_point;
+  std::vector<std::uint32_t> all(set.size());
+  std::iota(all.begin(), all.end(), 0U);
+  return find_sensor_trust(set, all, hints, cancel).hidden_share <= kManyHidden;
+}
+
 // Where the caller says that the points have been seen from, if it says so of each and nothing hides anything; or the place that they show.
 Views find_views(const CanonicalCloud& cloud, const Hints& hints, const std::atomic<bool>* cancel) {
   Views views;
@@ -64,7 +75,7 @@ Views find_views(const CanonicalCloud& cloud, const Hints& hints, const std::ato
   const bool named = views.places.size() == 1 || !views.of_point.empty();
   const bool each = std::count(views.of_point.begin(), views.of_point.end(), kNoSensor) == 0;
   if (views.places.size() == 1) views.of_point.clear();
-  if (named && each && may_be_seen(cloud.points(), views) && hidden_share(cloud.set, views, cancel) <= kManyHidden) return views;
+  if (named && each && may_be_seen(cloud.points(), views) && hide_little(cloud.set, views, cancel)) return views;
   const std::optional<Vec3> shown = find_viewpoint(cloud.set, cloud.frame.to_unit({0, 0, 0}));
   return shown ? Views{{*shown}, {}} : Views{};
 }
@@ -117,11 +128,12 @@ Known known_of_points(const CanonicalCloud& cloud, Known given) {
 }
 
 // `found`: what make_cloud() has found.
-void choose_noise(const std::optional<double>& given, const std::optional<double>& found, Problem& problem) {
+void choose_noise(const std::optional<double>& given, const std::optional<double>& found, const std::atomic<bool>* cancel,
+                  Problem& problem) {
   const PointSet& set = problem.cloud.set;
   const bool is_seen = set.views().known();
   if (is_seen) {
-    const SightNoise along = given ? SightNoise{*given} : find_sight_noise(set);
+    const SightNoise along = given ? SightNoise{*given} : find_sight_noise(set, cancel);
     problem.direction_noise = given || along.deviation > 0 ? along.deviation : largest_scatter(set);
     problem.noise_together = along.together;
   }
@@ -170,7 +182,7 @@ Problem prepare(const PointsView& points, Known known, const Options& options, S
   problem.known = known_of_points(problem.cloud, std::move(known));
   problem.spacing = typical_spacing(spacing_before_thinning(set.local_spacing(), problem.known.relative_spacing));
   stages.check();
-  choose_noise(known_noise(options, without, problem.cloud, problem.spacing), found_noise, problem);
+  choose_noise(known_noise(options, without, problem.cloud, problem.spacing), found_noise, stages.cancel(), problem);
   stages.check();
   if (!contains(without, Step::kSites)) problem.line_distance = surface_distances(set, stages.cancel());
   stages.check();

@@ -59,29 +59,20 @@ struct Share {
   [[nodiscard]] double with(double of_all) const { return (hidden + of_all) / (all + 1); }
 };
 
-std::vector<std::uint32_t> open_points(const PointSet& set, const Patches& patches) {
-  std::vector<std::uint32_t> open;
-  for (std::uint32_t i = 0; i < set.size(); ++i) {
-    if (!patches.is_closed(i)) open.push_back(i);
-  }
-  return open;
-}
-
 }  // namespace
 
-SensorTrust find_sensor_trust(const PointSet& set, const Patches& patches, const Hints& hints, const std::atomic<bool>* cancel) {
+SensorTrust find_sensor_trust(const PointSet& set, const std::vector<std::uint32_t>& points, const Hints& hints,
+                              const std::atomic<bool>* cancel) {
   SensorTrust trust;
   trust.of_sensor.assign(hints.sensors.size(), 1);
-  if (hints.sensors.empty() || set.size() < kFewestSurfacePoints) return trust;
-  const std::vector<std::uint32_t> open = open_points(set, patches);
-  if (open.empty()) return trust;
+  if (hints.sensors.empty() || points.empty() || set.size() < kFewestSurfacePoints) return trust;
   const Neighbours sensors(hints.sensors);
   (void)set.smoothed_spacing();  // made here, as the loop below only reads them
   (void)set.tree();
-  const SomePlaces some = SomePlaces::at_least(kFewPlaces, open.size());
+  const SomePlaces some = SomePlaces::at_least(kFewPlaces, points.size());
   std::vector<Sight> sights(some.size());
   parallel::for_each(
-      some.size(), [&](std::size_t k) { sights[k] = look_at(set, open[some[k]], hints, sensors); }, cancel);
+      some.size(), [&](std::size_t k) { sights[k] = look_at(set, points[some[k]], hints, sensors); }, cancel);
   Share all;
   std::vector<Share> own(hints.sensors.size());
   for (const Sight& sight : sights) {

@@ -30,7 +30,7 @@ using Eigen::Vector3d;
 // Rounds of weights, which go from those of all points around to those of the points of one surface.
 constexpr int kSightRounds = 4;
 // Points, as they are seen next to each other, that noise is looked for in, each scale four times as many.
-constexpr std::array<std::size_t, kScales> kAlong{kTwoPatches, kTwiceAsFar* kTwoPatches, kTwiceAsFar* kTwiceAsFar* kTwoPatches};
+constexpr std::array<std::size_t, kScales> kAlong{kTwoPatches, (kTwiceAsFar * kTwoPatches), (kTwiceAsFar * kTwiceAsFar * kTwoPatches)};
 
 // The points that one sensor has seen, and fits of planes to them.
 class Seen {
@@ -54,7 +54,7 @@ class Seen {
     for (std::size_t k = begin; k < end; ++k) {
       tree.nearest(sight_[k], together > 1 ? kAlong.back() : kTwoPatches, index, squared);
       for (std::uint32_t& i : index) i *= static_cast<std::uint32_t>(step);
-      if (index.front() != k) {
+      if (k % step != 0) {  // the point is not in the tree
         index.insert(index.begin(), static_cast<std::uint32_t>(k));
         squared.insert(squared.begin(), 0);
       }
