@@ -3,8 +3,8 @@
 #include "cloud/constants.h"
 #include "cloud/noise.h"
 #include "cloud/quadratic_patch.h"
-#include "cloud/small_ldlt.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -74,7 +74,7 @@ Heights heights(const std::vector<Vec3>& points, const std::uint32_t* index, std
 class MixtureFit {
  public:
   // Starts from one layer's fit, with equal layers at equal distances that without scatter have its deviation.
-  MixtureFit(const Heights& h, std::size_t layers, const SmallLdlt<kVaryingTerms>& normal_equations, const Start& start)
+  MixtureFit(const Heights& h, std::size_t layers, const Eigen::LDLT<Square>& normal_equations, const Start& start)
       : h_(h),
         layers_(layers),
         normal_equations_(normal_equations),
@@ -152,7 +152,7 @@ class MixtureFit {
 
   const Heights& h_;
   std::size_t layers_;
-  const SmallLdlt<kVaryingTerms>& normal_equations_;
+  const Eigen::LDLT<Square>& normal_equations_;
   double one_deviation_;  // about one layer
   double sigma_;
   double likelihood_ = 0;  // its logarithm, but for a constant
@@ -173,14 +173,14 @@ double layered_deviation(const std::vector<Vec3>& points, const std::uint32_t* i
   // One layer: the constant is the mean of what the other terms leave, so both are taken about their means.
   const Eigen::RowVector<double, kVaryingTerms> mean_term = h.terms.colwise().mean();
   const Terms centred = h.terms.rowwise() - mean_term;
-  const SmallLdlt<kVaryingTerms> one(Square(centred.transpose().lazyProduct(centred)) + ridge);
+  const Eigen::LDLT<Square> one(Square(centred.transpose().lazyProduct(centred)) + ridge);
   const Slopes slopes = one.solve(centred.transpose().lazyProduct(h.z));
   const double middle = h.z.mean() - mean_term * slopes;
   const double misfit = ((h.z - h.terms.lazyProduct(slopes)).array() - middle).square().sum();
   if (misfit <= 0) return 0;
   const double deviation = std::sqrt(misfit / (total - kVaryingTerms - 1));
   Mixture best{deviation, total * std::log(misfit / total) + total};
-  const SmallLdlt<kVaryingTerms> several(Square(h.terms.transpose().lazyProduct(h.terms)) + ridge);
+  const Eigen::LDLT<Square> several(Square(h.terms.transpose().lazyProduct(h.terms)) + ridge);
   for (std::size_t layers = 2; layers <= kMostLayers; ++layers) {
     const Mixture mixture = MixtureFit(h, layers, several, {slopes, middle, deviation}).run();
     if (mixture.criterion < best.criterion) best = mixture;

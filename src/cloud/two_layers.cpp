@@ -3,8 +3,8 @@
 #include "cloud/constants.h"
 #include "cloud/exact_plane.h"
 #include "cloud/quadratic_patch.h"
-#include "cloud/small_ldlt.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -83,8 +83,7 @@ class TwoLayerFit {
   }
 
   [[nodiscard]] Numbers solve() const {
-    const SmallLdlt<kUnknowns> normal_equations(Normal(rows_.transpose().lazyProduct(rows_)) + ridge_);
-    return normal_equations.solve(rows_.transpose().lazyProduct(heights_));
+    return (Normal(rows_.transpose().lazyProduct(rows_)) + ridge_).ldlt().solve(rows_.transpose().lazyProduct(heights_));
   }
 
   Eigen::Index count_;

@@ -5,13 +5,12 @@
 #include "mesh/constants.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <tuple>
-#include <utility>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 
 namespace g3r::mesh {
 namespace {
@@ -24,60 +23,21 @@ constexpr int kNewtonSteps = 5;
 
 Vec3 array(const Vector3d& p) { return {p[0], p[1], p[2]}; }
 
-// Up to three of each: as many as patches meet.
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3>;
-using Numbers = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1>;
-using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
-
-// The determinant of A. Where it is not zero, b becomes A^-1 b. Gaussian elimination, the largest of what is left first. As Eigen's
-// FullPivLU, which is made for large matrices too and takes four seconds to compile.
-double solve(Square a, Numbers& b) {
-  const Eigen::Index n = a.rows();
-  double determinant = 1;
-  std::array<Eigen::Index, 3> order{0, 1, 2};  // of the columns
-  for (Eigen::Index k = 0; k < n; ++k) {
-    Eigen::Index row = k, column = k;
-    for (Eigen::Index c = k; c < n; ++c) {
-      for (Eigen::Index r = k; r < n; ++r) {
-        if (std::abs(a(r, c)) > std::abs(a(row, column))) row = r, column = c;
-      }
-    }
-    if (a(row, column) == 0) return 0;
-    for (Eigen::Index i = 0; i < n; ++i) std::swap(a(k, i), a(row, i));
-    for (Eigen::Index i = 0; i < n; ++i) std::swap(a(i, k), a(i, column));
-    std::swap(b[k], b[row]);
-    std::swap(order[static_cast<std::size_t>(k)], order[static_cast<std::size_t>(column)]);
-    determinant *= (row == k) == (column == k) ? a(k, k) : -a(k, k);
-    for (Eigen::Index r = k + 1; r < n; ++r) {
-      a(r, k) /= a(k, k);
-      for (Eigen::Index c = k + 1; c < n; ++c) a(r, c) -= a(r, k) * a(k, c);
-      b[r] -= b[k] * a(r, k);
-    }
-  }
-  Numbers x(n);
-  for (Eigen::Index k = n - 1; k >= 0; --k) {
-    b[k] /= a(k, k);
-    for (Eigen::Index r = 0; r < k; ++r) b[r] -= b[k] * a(r, k);
-    x[order[static_cast<std::size_t>(k)]] = b[k];
-  }
-  b = x;
-  return determinant;
-}
-
 // Nearest common zero of the given patches, by Newton steps of least length. False if they are nearly parallel.
 bool intersect(const LocalSurface& s, std::initializer_list<int> which, Vector3d& x) {
   for (int step = 0; step < kNewtonSteps; ++step) {
-    Rows j(static_cast<Eigen::Index>(which.size()), 3);
-    Numbers f(static_cast<Eigen::Index>(which.size()));
+    Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3> j(static_cast<Eigen::Index>(which.size()), 3);
+    Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> f(static_cast<Eigen::Index>(which.size()));
     Eigen::Index row = 0;
     for (const int k : which) {
       Vector3d g;
       f[row] = s.patch[static_cast<std::size_t>(k)].distance(x, &g);
       j.row(row++) = g;
     }
+    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3> gram = j * j.transpose();
     // The squared area or volume that the normals span: the intersection of nearly parallel patches is too far off to be one.
-    if (solve(j * j.transpose(), f) < std::pow(kSlant, which.size())) return false;
-    x -= j.transpose() * f;
+    if (gram.determinant() < std::pow(kSlant, which.size())) return false;
+    x -= j.transpose() * gram.fullPivLu().solve(f);
   }
   return x.allFinite();
 }

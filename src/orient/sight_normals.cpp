@@ -5,11 +5,11 @@
 #include "cloud/chance.h"
 #include "cloud/constants.h"
 #include "cloud/neighbours.h"
-#include "cloud/small_ldlt.h"
 #include "cloud/some_places.h"
 #include "cpu/parallel.h"
 #include "orient/confidence.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -94,7 +94,7 @@ class Seen {
       square += depth * depth;
     }
     matrix.diagonal().array() += kRidge * matrix.trace();
-    const double left = square - right.dot(SmallLdlt<kQuadraticTerms>(matrix).solve(right));
+    const double left = square - right.dot(matrix.ldlt().solve(right));
     return std::sqrt(std::max(0.0, left) / static_cast<double>(count - kQuadraticTerms));
   }
 
@@ -146,7 +146,7 @@ class Seen {
         total += weight;
       }
       normal_matrix.diagonal().array() += kRidge * normal_matrix.trace();
-      const SmallLdlt<3> solver(normal_matrix);
+      const Eigen::LDLT<Matrix3d> solver(normal_matrix);
       plane.m = solver.solve(right);
       double residuals = 0;
       for (std::size_t k = 0; k < count; ++k) {
@@ -158,7 +158,7 @@ class Seen {
       }
       likely.front() = 1;  // it is of its own surface
       const double variance = total > kPlaneTerms ? residuals / (total - kPlaneTerms) : HUGE_VAL;
-      for (Eigen::Index a = 0; a < 3; ++a) plane.covariance.col(a) = variance * solver.solve(Vector3d::Unit(a));
+      plane.covariance = variance * solver.solve(Matrix3d::Identity());
     }
     return plane;
   }
