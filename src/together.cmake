@@ -27,7 +27,7 @@ g3r_together(orient orient/attempt orient/clean_surface orient/clustered_polish 
 g3r_together(sides c_api describe_mesh mesh_run names orient/agreement orient/apply_hints orient/assess orient/callers_order
              orient/certificate orient/certified_sides orient/closed_sides orient/confidence orient/crowded orient/describe
              orient/facet_normals orient/facets orient/hints
-             orient/memory_plan orient/open_to_views orient/outside orient/patch_sides orient/same_side orient/sensor_trust
+             orient/memory_plan orient/open_to_views orient/outside orient/over_others orient/patch_sides orient/same_side orient/sensor_trust
              orient/separate_walls orient/sight_normals orient/sign_graph orient/two_walls orient/unsure orient/votes orient/walls pipeline reconstruct)
 g3r_together(fields mesh/automatic_depth mesh/box_tree mesh/component_support mesh/corner_groups mesh/field_arcs mesh/field_contour
              mesh/field_corners mesh/field_denoise mesh/field_labellings mesh/field_local_fit mesh/field_mesher mesh/field_octree

@@ -48,5 +48,34 @@ TEST(ApplyHints, AContradictionOfTheMajorityIsNotConsistent) {
   }
 }
 
+// A canopy over a floor, open all around: `--up` turns it, with a chance of two thirds and a warning; a sensor beneath it decides its side.
+TEST(ApplyHints, UpWarnsOfWhatLiesOverOthers) {
+  std::vector<Vec3> points;
+  for (int i = 0; i < 40; ++i) {
+    for (int j = 0; j < 40; ++j) {
+      const double x = i + 0.3 * std::sin(7.1 * i + 3.3 * j), y = j + 0.3 * std::sin(5.7 * i - 8.9 * j);
+      points.push_back({x, y, 0});
+      if (i >= 10 && i < 30 && j >= 10 && j < 30) points.push_back({y, x, 12});
+    }
+  }
+  const auto warns = [](const Orientation& found) {
+    return std::any_of(found.stats.warnings.begin(), found.stats.warnings.end(),
+                       [](const std::string& warning) { return warning.find("may have been seen from below") != std::string::npos; });
+  };
+  Options options;
+  options.hints.up = Vec3{0, 0, 1};
+  const Orientation up = orient(points, options);
+  options.hints = Hints{.sensors = {{20, 20, 6}}};
+  const Orientation seen = orient(points, options);
+  EXPECT_TRUE(warns(up));
+  EXPECT_FALSE(warns(seen));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool over = points[i][2] > 6;
+    EXPECT_GT(up.normals[i][2], 0) << i;
+    EXPECT_LE(up.confidence[i], over ? 2.0F / 3 : 1.0F) << i;
+    EXPECT_GT(over ? -seen.normals[i][2] : seen.normals[i][2], 0) << i;
+  }
+}
+
 }  // namespace
 }  // namespace g3r

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace g3r {
@@ -44,6 +45,22 @@ TEST(DecidePatches, PatchesVoteOneByOne) {
   const Vec3 sensor{0, 0, 2};
   (void)sides.follow({.sensors = {sensor}});
   for (std::size_t i = 0; i < sides.points.size(); ++i) EXPECT_GT(dot(sides.normals[i], between(sides.points[i], sensor)), 0);
+}
+
+// Up decides a canopy over a floor with a chance of two thirds, as it may have been seen from below; a sensor decides it for certain.
+TEST(DecidePatches, UpSaysLessOfWhatLiesOverOthers) {
+  Sides sides;
+  sides.add_square({0, 0, 0}, 2, -1, 0);
+  sides.add_square({0, 0, 2}, 2, -1, 1);
+  std::vector<std::uint8_t> over(sides.points.size(), 0);
+  std::fill(over.begin() + 400, over.end(), std::uint8_t{1});
+  const Hints hints{.up = Vec3{0, 0, 1}};
+  const HintEffect effect =
+      follow_hints({sides.points, {}, sides.spacing, sides.patches, hints, {sides.normals, sides.eta, sides.confidence}, {}, over});
+  EXPECT_EQ(std::count(effect.turned.begin(), effect.turned.end(), 1), 800);
+  EXPECT_EQ(std::count(effect.decided.begin(), effect.decided.end(), 1), 800);
+  EXPECT_EQ(sides.confidence.front(), 1);
+  EXPECT_FLOAT_EQ(sides.confidence.back(), 2.0F / 3);
 }
 
 // A patch that up says nothing of keeps its side and its confidence; one that it does faces that way.

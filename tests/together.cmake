@@ -15,7 +15,7 @@ g3r_tests_together(tests_of_noise layers noise noise_settings noisy_jets project
 g3r_tests_together(tests_of_attempts agreement assess attempt callers_order certified_sides clean_surface describe noise_choice noisy_surface
                                      outlier_normals outside problem restless separate_walls site_parts solution solve_apart solve_on_sites)
 g3r_tests_together(tests_of_clouds canonical_cloud certificate chance clusters clustered_polish confidence crowded disk_sample exact_plane far_points jets hints closed_sides patch_sides
-                                   votes morton neighbours open_to_views plane_fit point_set quadratic_patch separate_vertices sight_normals sites spacing two_layers two_walls unsure)
+                                   votes morton neighbours open_to_views over_others plane_fit point_set quadratic_patch separate_vertices sight_normals sites spacing two_layers two_walls unsure)
 g3r_tests_together(tests_of_sums adjoint coarse_to_fine dense_solver energy_system fast_sum harmonics heights iterative_solver memory_plan part_system polish refine
                                  pair_sums scattered_planes settings sign_graph tree)
 g3r_tests_together(tests_of_meshes coarsen edge_collapse fair field_arcs field_mesher field_scenes)

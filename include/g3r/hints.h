@@ -20,7 +20,8 @@ inline constexpr std::uint32_t kNoSensor = 0xffffffff;
 /// points; a hint that contradicts them is a warning with its share. Two hints do turn closed parts: `seen_from_inside`, and a sensor
 /// inside a closed part, from which nobody could have seen its outside; of the latter a warning tells.
 struct Hints {
-  /// Direction, of any length, that open surfaces face: terrain, roofs, what lies on a table.
+  /// Direction, of any length, that open surfaces face: terrain, roofs, what lies on a table. Alone it decides what lies over other points,
+  /// as canopies and decks do, with a confidence of two thirds at most: it may have been seen from below.
   std::optional<Vec3> up{};
   /// Places that the points were seen from, all of them. A point faces its own sensor; if `sensor_of_point` is empty, each may have seen
   /// it, and near ones are likelier (src/orient/votes.h).

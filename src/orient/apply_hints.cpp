@@ -1,11 +1,13 @@
 #include "orient/apply_hints.h"
 
 #include "base/number_text.h"
+#include "base/vector.h"
 #include "orient/assess.h"
 #include "orient/confidence.h"
 #include "orient/describe.h"
 #include "orient/hints.h"
 #include "orient/open_to_views.h"
+#include "orient/over_others.h"
 #include "orient/sensor_trust.h"
 
 #include <algorithm>
@@ -52,8 +54,20 @@ std::vector<std::uint32_t> open_points(std::size_t count, const Patches& patches
   return open;
 }
 
+// Of what hints decide: over_others().
+std::vector<std::uint8_t> open_over_others(const Problem& problem, const Patches& patches, const std::vector<Vec3>& normals, const Vec3& up,
+                                           const std::atomic<bool>* cancel) {
+  std::vector<std::uint8_t> over = over_others(problem.cloud.points(), normals, up, problem.noise, cancel);
+  for (std::size_t i = 0; i < over.size(); ++i) {
+    if (patches.is_closed(i) || patches.certainty[i] >= 1) over[i] = 0;
+  }
+  return over;
+}
+
 // Whether hints say of any side that it is seen, or is outside.
 bool have_votes(const Hints& hints) { return hints.up || !hints.sensors.empty() || !hints.inside.empty() || hints.seen_from_inside; }
+
+bool is_up_alone(const Hints& hints) { return hints.up && hints.sensors.empty() && hints.inside.empty() && !hints.seen_from_inside; }
 
 // Shares, with what views have decided before any vote: sides that they turned, or all, where these come from the lines of sight alone.
 void count_sides(const HintEffect& effect, const Problem& problem, const Solution& solution, bool flip, HintStats& hints) {
@@ -69,8 +83,8 @@ void count_sides(const HintEffect& effect, const Problem& problem, const Solutio
   hints.settled_share = share(decided);
 }
 
-// `given`: in the coordinates of the caller.
-void warn(const HintEffect& effect, const Hints& given, bool any_open, Stats& stats) {
+// `given`: in the coordinates of the caller; `over_others`: share of the points.
+void warn(const HintEffect& effect, const Hints& given, bool any_open, double over_others, Stats& stats) {
   const std::string against = percent(effect.contradicted_share);
   if (effect.contradicted_share > 0 && effect.closed_parts_turned) {
     stats.warnings.push_back("hint sensor: the scanner stood inside the closed parts, and " + against +
@@ -87,6 +101,11 @@ void warn(const HintEffect& effect, const Hints& given, bool any_open, Stats& st
     stats.warnings.push_back("hint sensor: " + percent(stats.hints.hidden_share) +
                              " of the points of open surfaces cannot be seen from there, as other points lie in front of them, so that "
                              "it decides little: check where the scanner stood, and give all its places");
+  }
+  if (over_others > kManyHidden) {
+    stats.warnings.push_back("hint up: " + percent(over_others) +
+                             " of the points lie over others, so that they may have been seen from below: their side is right with a "
+                             "chance of two thirds; --sensor decides it");
   }
   if (given.up && !any_open) stats.warnings.emplace_back("hint up: it decides nothing, as no part of the cloud is open");
 }
@@ -130,11 +149,13 @@ void apply_hints(const Problem& problem, const Options& options, Solution& solut
   patches.seen = views.known() && hints.sensors == views.places;
   HintEffect effect;
   SensorTrust trust;
+  std::vector<std::uint8_t> over;
   if (have_votes(hints) || hints.flip) {
     const SidedPoints sided{solution.refinement.normals, solution.eta, confidence};
     if (!patches.seen) trust = find_sensor_trust(problem.cloud.set, open_points(problem.cloud.size(), patches), hints, cancel);
-    effect =
-        follow_hints({problem.cloud.points(), problem.cloud.set.near(), problem.spacing, patches, hints, sided, trust.of_sensor}, cancel);
+    if (is_up_alone(hints)) over = open_over_others(problem, patches, sided.normals, vector::normalised(*hints.up), cancel);
+    effect = follow_hints({problem.cloud.points(), problem.cloud.set.near(), problem.spacing, patches, hints, sided, trust.of_sensor, over},
+                          cancel);
   }
   count_sides(effect, problem, solution, hints.flip, stats.hints);
   stats.hints.agreement = effect.agreement;
@@ -144,7 +165,7 @@ void apply_hints(const Problem& problem, const Options& options, Solution& solut
   if (effect.contradicted_share > kUndecided && !effect.closed_parts_turned) stats.consistent = false;
   if (trust.hidden_share > kManyHidden) stats.consistent = false;
   warn_of_unsure(solution.open_surfaces, confidence, stats);
-  warn(effect, given, stats.open_share > 0, stats);
+  warn(effect, given, stats.open_share > 0, share(over), stats);
   warn_of_choices(problem.cloud, solution.open_surfaces, given, stats);
 }
 

@@ -42,7 +42,8 @@ struct HintedCloud {
   const Patches& patches;
   const Hints& hints;
   SidedPoints sided;
-  std::vector<double> trusted{};  ///< how far each sensor is (SensorTrust); empty: 1
+  std::vector<double> trusted{};            ///< how far each sensor is (SensorTrust); empty: 1
+  std::vector<std::uint8_t> over_others{};  ///< over_others() along `up`, which says less of the side of these; empty: none is
 };
 
 /// What follow_hints() has done.

@@ -31,6 +31,7 @@ class PatchSides {
         patches_(cloud.patches),
         hints_(cloud.hints),
         sided_(cloud.sided),
+        over_others_(cloud.over_others),
         voters_(voters),
         effect_(effect) {}
 
@@ -56,7 +57,8 @@ class PatchSides {
       const double shown = patch_turned[i] != 0 ? 1 - certainty(i) : certainty(i);
       const double own = effect_.turned[i] != 0 ? -votes[i] : votes[i];
       const bool with_patch = effect_.turned[i] == patch_turned[i];
-      const double side = std::max(both_agree(both_say(shown, agreement), with_patch ? held(i) : 1 - held(i)), chance(own));
+      const double side =
+          std::min(most_certain(i), std::max(both_agree(both_say(shown, agreement), with_patch ? held(i) : 1 - held(i)), chance(own)));
       sided_.confidence[i] = static_cast<float>(side) * (patches_.agreed.empty() ? 1 : patches_.agreed[i]);
       effect_.decided[i] = are_all_seen() || side >= kMostOf ? 1 : 0;
       if (effect_.decided[i] == 0) continue;
@@ -74,6 +76,9 @@ class PatchSides {
   // Then a grazing view leaves a doubt, but no choice.
   [[nodiscard]] bool are_all_seen() const { return patches_.seen && !hints_.sensors.empty(); }
   [[nodiscard]] bool is_choice(std::size_t i) const { return certainty(i) < 1; }
+
+  // As people say that a surface faces up of canopies, too, that have been seen from below.
+  [[nodiscard]] double most_certain(std::size_t i) const { return !over_others_.empty() && over_others_[i] != 0 ? kMostOf : 1; }
 
   // Chance that a point has the side of the rest of its patch.
   [[nodiscard]] double held(std::size_t i) const { return patches_.held.empty() ? 1 : patches_.held[i]; }
@@ -242,6 +247,7 @@ class PatchSides {
   const Patches& patches_;
   const Hints& hints_;
   SidedPoints sided_;
+  const std::vector<std::uint8_t>& over_others_;
   Voters& voters_;
   HintEffect& effect_;
 };

@@ -9,8 +9,9 @@ namespace g3r {
 /// A patch takes the side that most of its votes (Voters) are for; one that is seen edge-on but for rounding keeps its side. It takes a
 /// share of the votes above the `certainty` of a side to turn it, but no more than two thirds. Where that was a choice the chance of the
 /// side becomes that of both (both_say()); of a point it is that times the chance that it has the side of its patch (both_agree() with
-/// `held`), or the chance (1 + v) / 2 that a point seen at the cosine v has by itself, if that is more. Its side is decided from two
-/// thirds on, and wherever all points have been `seen` by the sensors. The confidence is the chance times `agreed`.
+/// `held`), or the chance (1 + v) / 2 that a point seen at the cosine v has by itself, if that is more. No chance is above two thirds of
+/// what stands `over_others`, where up alone decides. Its side is decided from two thirds on, and wherever all points have been `seen` by
+/// the sensors. The confidence is the chance times `agreed`.
 ///
 /// Then pieces of a patch that are not consistent with the rest of it are turned where their votes, v in the mean, say more against them
 /// than `held` does for them (both_say() of the two); the chance of their points is 1 - `held` then. A piece ends too where adjacent points
