@@ -34,7 +34,12 @@ class Fitter {
       : points_(points), normals_(normals), noise_(noise), spacing_(spacing), side_(points, neighbours, normals) {}
 
   [[nodiscard]] double noise() const { return noise_; }
-  [[nodiscard]] double first_reach() const { return kWider * kNoiseReach * std::sqrt(noise_ * spacing_); }
+  // The first of the reaches that is no less than the spacing, as within less there are too few points for a fit; 0 without noise.
+  [[nodiscard]] double first_reach() const {
+    double reach = kWider * kNoiseReach * std::sqrt(noise_ * spacing_);
+    while (reach > 0 && reach < spacing_) reach *= kWider;
+    return reach;
+  }
 
   // From now on, fits with the noise of points [begin, end) where it is less than the cloud's: what is more may be detail. One of as many
   // points as are near one tells.
