@@ -127,6 +127,10 @@ class Result:
             self._field = Field(self.points, self.normals, self.areas, device=self._device)
         return self._field
 
+    def __getstate__(self) -> Dict[str, Any]:
+        """For pickle and copy: without the field, which is built again where it is used."""
+        return {**self.__dict__, "_field": None}
+
     def __repr__(self) -> str:
         mesh = "no mesh" if self.faces is None else f"{len(self.faces)} faces"
         return f"<g3r.Result: {len(self.normals)} normals, mean confidence {float(self.confidence.mean()):.3f}, {mesh}>"

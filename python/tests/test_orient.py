@@ -1,6 +1,8 @@
 """g3r.orient, g3r.run, g3r.reconstruct, g3r.mesh_oriented, g3r.Field."""
 
+import copy
 import os
+import pickle
 import signal
 import sys
 import threading
@@ -179,6 +181,15 @@ def test_field_tells_inside_from_outside(result, sphere):
     np.testing.assert_array_equal(there(queries), same(queries))
     with pytest.raises(g3r.UnavailableError, match="there is no device gpu:999"):
         g3r.Field(sphere, result.normals, result.areas, device="gpu:999")
+
+
+def test_a_result_can_be_pickled_and_copied_after_its_field_was_used(sphere):
+    result = g3r.run(sphere)
+    query = [[0.1, 0.2, 0.3]]
+    value = result.field(query)
+    for again in (pickle.loads(pickle.dumps(result)), copy.deepcopy(result)):
+        np.testing.assert_array_equal(again.normals, result.normals)
+        np.testing.assert_array_equal(again.field(query), value)
 
 
 def test_the_field_leaves_out_what_is_not_finite(result, sphere):
