@@ -104,7 +104,7 @@ def run_tiles(folder: str, client: Any, threads: int, retries: int, device: str,
                 if error is not None:
                     errors[number] = error
                 if progress is not None and progress("tiles", done / before.tiles) is False:
-                    raise Cancelled()
+                    raise Cancelled("cancelled")
         except BaseException:
             client.cancel(futures)
             raise
