@@ -28,6 +28,22 @@ bool fits_columns(std::string_view line, char separator, TextShape& shape) {
   return names == shape.columns;
 }
 
+// The line without the blanks before and in brackets: "X [m] Y [m]" has two names.
+std::string attach_units(std::string_view line) {
+  std::string out;
+  bool in_unit = false;
+  for (const char c : line) {
+    const bool blank = c == ' ' || c == '\t';
+    if (c == '[' || c == '(') {
+      in_unit = true;
+      out.erase(out.find_last_not_of(" \t") + 1);
+    }
+    if (!in_unit || !blank) out += c;
+    if (c == ']' || c == ')') in_unit = false;
+  }
+  return out;
+}
+
 // Half as many names as columns, and all separated by commas.
 bool may_be_decimal_commas(std::string_view line, char separator, const TextShape& shape) {
   return separator == ',' && shape.separator == ',' && 2 * count_values(line, separator) == shape.columns;
@@ -64,9 +80,15 @@ void find_names(const Text& text, TextShape& shape) {
     if (begin == std::string_view::npos) continue;
     line.remove_prefix(begin);
     const char separator = count_values(line, shape.separator) == shape.columns ? shape.separator : separator_of(line);
-    const bool fits = fits_columns(line, separator, shape);
+    bool fits = fits_columns(line, separator, shape);
+    std::string attached;
+    std::string_view names = line;
+    if (!fits && separator == ' ') {
+      names = attached = attach_units(line);
+      fits = fits_columns(names, separator, shape);
+    }
     if (!fits && !comment && may_be_decimal_commas(line, separator, shape)) halves = lines.number();
-    ColumnNames header = fits && !shape.header.axes ? column_names(line, separator) : ColumnNames();
+    ColumnNames header = fits && !shape.header.axes ? column_names(names, separator) : ColumnNames();
     const bool is_worse = !shape.header.names.empty() && !are_distinct(header.names);
     if (header.names.empty() || is_worse || (comment && !header.axes)) {
       if (!comment) leave_unused(lines.number(), line);
