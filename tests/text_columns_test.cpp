@@ -147,13 +147,22 @@ TEST(Names, AreOursOnlyWhereAllThreeAreThere) {
 
 TEST(Names, HaveUnitsBehindBlanks) {
   const std::string row = "5000 1000 3 7\n";
-  for (const char* header : {"# Northing [m] Easting [m] Height [m] i [1]", "Northing (m) Easting (m) Height (m) i", "N[m]\tE [ m ] H [m] i"}) {
+  for (const char* header :
+       {"# Northing [m] Easting [m] Height [m] i [1]", "Northing (m) Easting (m) Height (m) i", "N[m]\tE [ m ] H [m] i"}) {
     const Cloud cloud = read(header + ("\n" + row), "a.txt");
     EXPECT_EQ(cloud.positions[0], (Vec3{1000, 5000, 3})) << header;
     EXPECT_TRUE(cloud.warnings.empty()) << header;
   }
   EXPECT_EQ(read("# z y x [m]\n3 2 1\n").positions[0], (Vec3{1, 2, 3}));
   EXPECT_EQ(read("# x y z (a) [b]\n1 2 3 4 5\n").property_names[3], "(a)");  // names of their own, where the columns ask for it
+}
+
+TEST(Names, MayBeSeparatedByCommasWherePointsAreByBlanks) {
+  for (const char* header : {"# y, x, z, t", "y, x, z, t", "# y; x; z; t", "#y,x,z,t"}) {
+    const Cloud cloud = read(header + std::string("\n5000 1000 3 7\n"), "a.txt");  // as numpy.savetxt() writes
+    EXPECT_EQ(cloud.positions[0], (Vec3{1000, 5000, 3})) << header;
+    EXPECT_EQ(cloud.property_names[3], "t") << header;
+  }
 }
 
 TEST(Names, OfAxesAreFoundWhereverTheyStand) {

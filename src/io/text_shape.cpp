@@ -21,6 +21,13 @@ bool are_distinct(std::vector<std::string> names) {
   return std::adjacent_find(names.begin(), names.end()) == names.end();
 }
 
+// That of the points, if it gives a name for every column, but of blanks behind commas ("x, y, z") the commas.
+char separator_of_names(std::string_view line, const TextShape& shape) {
+  const char own = separator_of(line);
+  if (own != ' ' && count_values(line, own) == shape.columns) return own;
+  return count_values(line, shape.separator) == shape.columns ? shape.separator : own;
+}
+
 // Whether a line of words has a name for every column of the points. An empty cell may end the first of these.
 bool fits_columns(std::string_view line, char separator, TextShape& shape) {
   const std::size_t names = count_values(line, separator);
@@ -79,7 +86,7 @@ void find_names(const Text& text, TextShape& shape) {
     const std::size_t begin = line.find_first_not_of("#/ \t");
     if (begin == std::string_view::npos) continue;
     line.remove_prefix(begin);
-    const char separator = count_values(line, shape.separator) == shape.columns ? shape.separator : separator_of(line);
+    const char separator = separator_of_names(line, shape);
     bool fits = fits_columns(line, separator, shape);
     std::string attached;
     std::string_view names = line;
