@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -30,12 +31,18 @@ struct Shared {
   std::atomic<bool> cancel = false;
 };
 
+// False itself, or NumPy's, which comparisons of its numbers give; 0 is none.
+bool is_false(const nb::object& answer) {
+  const std::string_view type = Py_TYPE(answer.ptr())->tp_name;
+  return answer.is(nb::bool_(false)) || ((type == "numpy.bool" || type == "numpy.bool_") && PyObject_IsTrue(answer.ptr()) == 0);
+}
+
 // Hands on what there is. Throws what Python raises, and Cancelled when the callable returns False.
 void hand_on(const nb::object& progress, std::optional<std::pair<std::string, double>> news) {
   if (PyErr_CheckSignals() != 0) throw nb::python_error();
   if (!news || progress.is_none()) return;
   const nb::object answer = progress(news->first, news->second);
-  if (answer.is(nb::bool_(false))) throw Cancelled();
+  if (is_false(answer)) throw Cancelled();
 }
 
 }  // namespace

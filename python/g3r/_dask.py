@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Optional
 
 from . import _g3r
 from ._errors import Cancelled, InputError, UnavailableError
+from ._kinds import is_false
 from ._tile_status import Status, status
 
 if TYPE_CHECKING:
@@ -103,7 +104,7 @@ def run_tiles(folder: str, client: Any, threads: int, retries: int, device: str,
                 error = _error_of(future, number, folder)
                 if error is not None:
                     errors[number] = error
-                if progress is not None and progress("tiles", done / before.tiles) is False:
+                if progress is not None and is_false(progress("tiles", done / before.tiles)):
                     raise Cancelled("cancelled")
         except BaseException:
             client.cancel(futures)

@@ -41,3 +41,10 @@ def number(name: str, value: Any) -> float:
     except (TypeError, ValueError, OverflowError):
         pass
     raise InputError(f"{name} must be a number, not {value!r}")
+
+
+def is_false(answer: Any) -> bool:
+    """Whether a function that reports progress has returned False or NumPy's, which comparisons of its numbers give; 0 is none."""
+    import numpy as np
+
+    return isinstance(answer, (bool, np.bool_)) and not answer

@@ -324,9 +324,15 @@ def test_progress_is_called_on_this_thread_with_growing_fractions():
     assert {ident for _, _, ident in seen} == {threading.get_ident()}
 
 
-def test_returning_false_cancels():
+@pytest.mark.parametrize("answer", [False, np.False_])
+def test_returning_false_cancels(answer):
     with pytest.raises(g3r.Cancelled):
-        g3r.orient(sphere_points(6000), progress=lambda stage, fraction: False)
+        g3r.orient(sphere_points(6000), progress=lambda stage, fraction: answer)
+
+
+@pytest.mark.parametrize("answer", [None, 0, 0.0, "", np.int64(0), np.True_])
+def test_returning_anything_else_goes_on(sphere, answer):
+    assert is_outward(g3r.orient(sphere, progress=lambda stage, fraction: answer), sphere)
 
 
 def test_an_exception_in_the_callback_comes_back():

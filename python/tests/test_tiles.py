@@ -173,7 +173,7 @@ def test_cancelling_takes_the_tasks_back(whole, tmp_path, cluster):
     work = planned(whole, tmp_path)
     with distributed.Client(cluster) as client:
         with pytest.raises(g3r.Cancelled, match="cancelled"):
-            g3r.tiles.dask_run(work, client, progress=lambda stage, fraction: False)
+            g3r.tiles.dask_run(work, client, progress=lambda stage, fraction: np.False_)
         assert not client.futures  # both may have been done by then
         assert g3r.tiles.dask_run(work, client).done == TILES
 
