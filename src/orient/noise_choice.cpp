@@ -50,9 +50,11 @@ std::vector<OtherNoise> other_noises(const Problem& problem, const Oriented& fou
 Attempt with_best_noise(Attempt first, const PointsView& points, const Options& options, Stages& stages) {
   if (!may_try_noises(first.problem, options)) return first;
   const double estimate = first.problem.noise;
+  const double first_doubt = first.oriented.doubt;
   Attempt best = separate_walls(std::move(first), points, options, stages);
-  const bool has_walls = best.problem.noise < estimate || best.oriented.about_walls.is_two_walls();
   const double doubt = best.oriented.doubt;
+  const bool walls_explain_it = best.problem.noise < estimate && doubt <= kClearlyLess * first_doubt;
+  const bool has_walls = walls_explain_it || best.oriented.about_walls.is_two_walls();
   // Kernels for this estimate, or those of clean clouds, hide so much noise, and merge what it merges.
   const double hidden_anyway = std::max(estimate, noise_of_clean_widths() * best.problem.spacing);
   for (const OtherNoise& other : other_noises(best.problem, best.oriented)) {

@@ -24,11 +24,12 @@ struct OtherNoise {
 [[nodiscard]] std::vector<OtherNoise> other_noises(const Problem& problem, const Oriented& found);
 
 /// The attempt with the best noise, `first` being that with the estimate: narrower kernels where these separate walls (separate_walls()),
-/// then the other_noises() that leave clearly less doubt. Thin walls and layers of scans that do not fit onto each other look alike from
-/// near. But few sides of walls are unsure when they are solved for as what they are, of layers when they are solved for as noise. More
-/// noise may also make one surface of thin walls, of which all sides are sure: it is not taken where points then lie about that surface as
-/// about two. Nothing else is tried where noise or kernels are given, sides are known, the samples are lines, by earlier methods and the
-/// paper's, and without Step::kNoise or Step::kNoiseChoice. `points`, `options`: of `first`. Throws Cancelled.
+/// then the other_noises() that leave clearly less doubt: less than the estimate where walls explain the doubt, more else, also where
+/// narrower kernels have left it. Thin walls and layers of scans that do not fit onto each other look alike from near. But few sides of
+/// walls are unsure when they are solved for as what they are, of layers when they are solved for as noise. More noise may also make one
+/// surface of thin walls, of which all sides are sure: it is not taken where points then lie about that surface as about two. Nothing else
+/// is tried where noise or kernels are given, sides are known, the samples are lines, by earlier methods and the paper's, and without
+/// Step::kNoise or Step::kNoiseChoice. `points`, `options`: of `first`. Throws Cancelled.
 [[nodiscard]] Attempt with_best_noise(Attempt first, const PointsView& points, const Options& options, Stages& stages);
 
 }  // namespace g3r
