@@ -574,4 +574,26 @@ TEST(MeshFinish, SpuriousComponentsAreNotAmongTheLargestThatAreKept) {
   EXPECT_EQ(dropped.components, 1U);
 }
 
+// As the field of an open surface may make them in the air; what only few points hold is kept where there are no strays.
+TEST(MeshFinish, ComponentsThatNoPointIsNearAreNotKept) {
+  std::vector<mesh::Support> support(3);
+  for (std::size_t k = 0; k < support.size(); ++k) {
+    mesh::Support& of = support[k];
+    of.area = 100;
+    of.stands_for = of.stands_for_under_noise = 1000;
+    of.near_area = k == 1 ? 0 : 10.0 / static_cast<double>(1 + k);
+  }
+  Dropped dropped;
+  EXPECT_EQ(mesh::kept_components(support, {}, 0, dropped), (std::vector<std::uint8_t>{1, 0, 1}));
+  EXPECT_EQ(dropped.components, 1U);
+  EXPECT_EQ(dropped.area, 100);
+  MeshOptions all;
+  all.keep_all = true;
+  MeshOptions by_area;
+  by_area.min_component = 8;
+  for (const MeshOptions& options : {all, by_area}) {
+    EXPECT_EQ(mesh::kept_components(support, options, 0, dropped), (std::vector<std::uint8_t>{1, 1, 1}));
+  }
+}
+
 }  // namespace

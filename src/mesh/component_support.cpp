@@ -111,7 +111,8 @@ std::vector<std::uint8_t> kept_components(const std::vector<Support>& support, c
   for (std::size_t k = 1; k < order.size(); ++k) {
     const Support& of = support[order[k]];
     const double stands_for = options.min_component ? of.stands_for : of.stands_for_under_noise;
-    if (stands_for < least_area || (by_points && of.points < std::max(least_points, of.strays))) {
+    const bool is_guess = of.near_area == 0 || of.points < std::max(least_points, of.strays);
+    if (stands_for < least_area || (by_points && is_guess)) {
       keep[order[k]] = 0;
       ++dropped.components;
       dropped.area += of.area;

@@ -44,8 +44,9 @@ struct Unmet {
 [[nodiscard]] Unmet unmet_points(const Mesh& mesh, const HoldingPoints& points, const std::vector<Vec3>& normals);
 
 /// Marks (1) the components that stay. The one with most area near points always does. Of the others go, and are added to `dropped`,
-/// spurious ones (MeshOptions::min_component), those that fewer points hold than least_points_of_a_part(strays), and those that fewer
-/// points hold than strays are beside them, as in a cloud that fills space; and those beyond MeshOptions::keep_largest.
+/// spurious ones (MeshOptions::min_component), those that no point is near, those that fewer points hold than
+/// least_points_of_a_part(strays), and those that fewer points hold than strays are beside them, as in a cloud that fills space; and those
+/// beyond MeshOptions::keep_largest.
 [[nodiscard]] std::vector<std::uint8_t> kept_components(const std::vector<Support>& support, const MeshOptions& options, std::size_t strays,
                                                         Dropped& dropped);
 
