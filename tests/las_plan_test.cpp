@@ -145,6 +145,19 @@ TEST(NewLas, BytesOfSeveralFieldsComeBackAsTheyWere) {
   EXPECT_EQ(mixed.field<std::uint8_t>(1, 15), 0);
 }
 
+// Of files of new formats whose writer knew of no returns: the flags are a scan direction and an edge, a synthetic point, a channel.
+TEST(NewLas, PointsOfNewFormatsThatNumberNoReturnKeepTheirFlags) {
+  const WrittenLas las("x,y,z,return_numbers,return_flags\n0,0,0,0,192\n1,0,0,0,1\n2,0,0,0,16\n3,0,0,0,0\n");
+  EXPECT_TRUE(las.warnings.empty()) << las.warnings[0];
+  EXPECT_EQ(las.format, 6U);
+  EXPECT_EQ(las.field<std::uint8_t>(0, 15), 192);
+  EXPECT_EQ(las.field<std::uint8_t>(2, 15), 16);
+  for (const char* other : {"0,9", "17,0"}) {  // a return of an old format; a point of a writer that knew of them
+    const WrittenLas mixed("x,y,z,return_numbers,return_flags\n0,0,0,0,1\n1,0,0," + std::string(other) + "\n");
+    EXPECT_EQ(mixed.warnings.size(), 1U) << other;
+  }
+}
+
 TEST(NewLas, CoordinatesKeepTheirDecimals) {
   for (const char* text :
        {"36.354 86.43 -34.76\n-79.057 54.924 27.08\n", "500363.537 5000864.299 447.6026\n499209.429 5000549.242 370.7968\n",

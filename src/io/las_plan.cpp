@@ -66,9 +66,19 @@ void LasPlan::add(const PointData& data) {
       if (&named == returns && value >= 0 && value < 256) ++return_bytes_[static_cast<std::size_t>(value)];
     }
     for (LasColumn& channel : channels_) channel.add(rows.number(channel.column));
-    // The first return is number 1 in new formats: where no number is, the flags are those of an old one.
-    if (numbers != nullptr && flags != nullptr && !mixed_) mixed_ = rows.number(numbers->column) == 0 && rows.number(flags->column) != 0;
+    if (numbers != nullptr && flags != nullptr) add_returns(rows.number(numbers->column), rows.number(flags->column));
   }
+}
+
+// The first return is number 1 in new formats. Where no number is the flags are those of an old one, if they number a return, or if other
+// points have numbers, so that those of this one would be known too; else all come from a new one whose writer knew of no returns.
+void LasPlan::add_returns(double numbers, double flags) {
+  is_numbered_ = is_numbered_ || numbers != 0;
+  if (numbers != 0 || flags == 0 || !(flags >= 0 && flags < 256)) return;
+  has_flags_alone_ = true;
+  const auto byte = static_cast<unsigned>(flags);
+  const unsigned number = byte % 8, count = byte / 8 % 8;
+  has_old_ = has_old_ || (number >= 1 && number <= count);
 }
 
 LasPlace LasPlan::place(const LasColumn& named, LasFamily family) const {
@@ -88,7 +98,7 @@ LasPlace LasPlan::place(const LasColumn& named, LasFamily family) const {
       break;
     case LasPart::kReturnFlags:
     case LasPart::kScanAngle:
-      if (mixed_) return {};  // means one thing in some points and another in others
+      if (is_mixed()) return {};  // means one thing in some points and another in others
       break;
     default:
       break;
@@ -109,7 +119,7 @@ std::string LasPlan::misfit(const LasColumn& named) const {
   LasPlace best = place(named, LasFamily::kNew);
   if (best.bits == 0) best = place(named, LasFamily::kOld);
   if (best.bits == 0)
-    return mixed_ ? "old and new point formats mean different things by it" : "return_flags or return_numbers hold the same";
+    return is_mixed() ? "old and new point formats mean different things by it" : "return_flags or return_numbers hold the same";
   if (named.fits(best)) return "the point formats that other columns need hold it differently";
   return named.misfit(best);
 }

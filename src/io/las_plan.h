@@ -63,6 +63,9 @@ class LasPlan {
  private:
   [[nodiscard]] LasPlace place(const LasColumn& named, LasFamily family) const;
   [[nodiscard]] const LasColumn* find(LasPart part) const;
+  void add_returns(double numbers, double flags);
+  /// Whether the points are of formats of both families, whose bytes of several fields differ.
+  [[nodiscard]] bool is_mixed() const { return has_old_ || (is_numbered_ && has_flags_alone_); }
   void choose_family();
   void place_columns();
   void name_extras();
@@ -76,7 +79,9 @@ class LasPlan {
   LasCoordinates coordinates_;
   bool colored_;
   std::array<std::uint64_t, 256> return_bytes_{};  // points by the number that says which return they are
-  bool mixed_ = false;                             // of point formats of both families, whose bytes of several fields differ
+  bool is_numbered_ = false;                       // any point, by return_numbers
+  bool has_flags_alone_ = false;                   // any point: return_flags, and no return_numbers
+  bool has_old_ = false;                           // such a point whose flags number a return of an old format
 
   LasFamily family_ = LasFamily::kOld;
   std::vector<Field> fields_;
