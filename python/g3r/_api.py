@@ -10,7 +10,7 @@ from ._arrays import as_areas, as_colors, as_points, member, opened, points_and_
 from ._cloud import Cloud
 from ._errors import InputError
 from ._hints import HINTS, checked_numbers, take_hints
-from ._kinds import integer, number, truth, whole
+from ._kinds import integer, number, text, truth, whole
 from ._view import DEFAULT_HEIGHT, DEFAULT_POINTS, View
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def _depth(depth: Union[str, int]) -> Dict[str, Any]:
         return {}
     if isinstance(depth, str):
         raise InputError(f"depth must be 'auto' or an integer, not {depth!r}")
-    return {"depth": whole("depth", depth)}
+    return {"depth": integer("depth", depth, 0)}
 
 
 def _trim(trim: Union[None, bool, str, float]) -> Dict[str, Any]:
@@ -78,7 +78,7 @@ class Field:
 
         array = as_points(points)
         self._field = _g3r.field(array, np.ascontiguousarray(as_points(normals, "normals"), dtype=np.float64),
-                                 as_areas(areas, len(array)), number("width", width), device)
+                                 as_areas(areas, len(array)), number("width", width), text("device", device))
 
     def __call__(self, queries: Any) -> Floats:
         """The field at (q, 3) query points: (q,) float64. O(n + q log n). Ctrl-C works. Raises InputError."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, List, Optional, Sequence, Tuple, Union
 
 from . import _g3r
 from ._errors import InputError
-from ._kinds import integer, number, truth, whole
+from ._kinds import integer, number, truth
 
 if TYPE_CHECKING:
     from ._types import Bytes, Floats, Indices, Singles
@@ -106,7 +106,7 @@ def read(
         sides = (low[0], low[1], low[2], high[0], high[1], high[2])
     depth = 0 if levels is None else integer("levels", levels, 1)
     return Cloud(_g3r.read_cloud(os.fsencode(path), number("min_opacity", min_opacity), truth("all_splats", all_splats), sides, depth,
-                                 whole("threads", threads)))
+                                 integer("threads", threads, 0)))
 
 
 def read_mesh(path: Path) -> Tuple[Floats, Indices]:

@@ -2,25 +2,41 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Any, Optional
 
 from ._errors import InputError
 
 
-def integer(name: str, value: Any, least: Optional[int] = None) -> int:
-    """An integer, of any type that holds one, `least` or more."""
+MOST = 2**31 - 1  # of an int of the library
+MOST_WHOLE = 2 * sys.maxsize + 1  # of one of its counts
+
+
+def integer(name: str, value: Any, least: Optional[int] = None, most: int = MOST) -> int:
+    """An integer, of any type that holds one, `least` or more and `most` at most."""
+    lowest = -MOST if least is None else least
+    kind = "an integer" if least is None else f"an integer, {least} or more"
     try:
         number = int(value)
-        if number == value and (least is None or number >= least):
-            return number
+        if number == value:
+            if lowest <= number <= most:
+                return number
+            kind = f"{most} at most" if number > most else f"an integer, {lowest} or more"
     except (TypeError, ValueError, OverflowError):
         pass
-    raise InputError(f"{name} must be an integer{'' if least is None else f', {least} or more'}, not {value!r}")
+    raise InputError(f"{name} must be {kind}, not {value!r}")
 
 
 def whole(name: str, value: Any) -> int:
     """An integer, 0 or more."""
-    return integer(name, value, 0)
+    return integer(name, value, 0, MOST_WHOLE)
+
+
+def text(name: str, value: Any) -> str:
+    """A text."""
+    if not isinstance(value, str):
+        raise InputError(f"{name} must be a text, not {value!r}")
+    return value
 
 
 def truth(name: str, value: Any) -> bool:

@@ -8,7 +8,7 @@ from . import _g3r
 from ._api import Result
 from ._arrays import as_colors, as_faces, as_points, as_values, faces_in, opened, warn_of_file
 from ._cloud import Cloud
-from ._kinds import whole
+from ._kinds import text, whole
 from ._view import DEFAULT_HEIGHT, DEFAULT_POINTS, View
 
 
@@ -71,7 +71,7 @@ def show(what: Any, *, normals: Any = None, confidence: Any = None, colors: Any 
     def rows(value: Any, name: str) -> Any:
         return None if value is None else as_points(value, name)
 
-    scene = _g3r.scene(title, rows(points, "points"), rows(normals, "normals"),
+    scene = _g3r.scene(text("title", title), rows(points, "points"), rows(normals, "normals"),
                        None if confidence is None or count == 0 else as_values(confidence, count, "confidence"),
                        None if colors is None or count == 0 else as_colors(colors, count), rows(true_normals, "true_normals"),
                        vertices, triangles, vertex_colors, vertex_confidence, report)

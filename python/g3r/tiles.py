@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Sequence, Union
 from . import _g3r
 from ._errors import InputError
 from ._hints import HINTS, take_hints
-from ._kinds import integer, whole
+from ._kinds import integer, text, whole
 from ._tile_status import Status, status
 
 if TYPE_CHECKING:
@@ -66,8 +66,8 @@ def run(folder: Path, *, worker: int = 1, workers: int = 1, threads: int = 0, de
     threads: 0 for all cores. The interpreter lock is released; Ctrl-C works. Two workers that do the same tile do no harm. Raises
     InputError (no plan, a damaged one, a worker that is not 1 to workers), FileError, Cancelled.
     """
-    return Status(*_g3r.tiles_run(os.fsencode(folder), whole("worker", worker), whole("workers", workers), integer("threads", threads), device,
-                                  progress))
+    return Status(*_g3r.tiles_run(os.fsencode(folder), whole("worker", worker), whole("workers", workers), integer("threads", threads),
+                                  text("device", device), progress))
 
 
 def dask_run(folder: Path, client: Any = None, *, threads: int = 0, retries: int = 3, device: str = "auto",

@@ -169,7 +169,7 @@ def test_folders_and_boxes(tmp_path):
     np.testing.assert_array_equal(g3r.read(tmp_path / "*.xyz", box=((2, 2, 2), (9, 9, 9))).points, [[4, 5, 6]])
     assert "no COPC" in g3r.read(tmp_path / "a.xyz", levels=2).warnings[0]
     for options in ({"box": ((7, 7, 7), (9, 9, 9))}, {"box": ((0, 0, 0),)}, {"box": ((1, 1, 1), (0, 0, 0))}, {"box": ((0, 0, "low"), (1, 1, 1))}, {"levels": 0},
-                    {"levels": 1.5}, {"threads": -1}, {"threads": 2.5}, {"min_opacity": 7}, {"min_opacity": np.nan}, {"min_opacity": "none"}, {"all_splats": "no"}):
+                    {"levels": 1.5}, {"levels": 2**40}, {"threads": -1}, {"threads": 10**12}, {"threads": 2.5}, {"min_opacity": 7}, {"min_opacity": np.nan}, {"min_opacity": "none"}, {"all_splats": "no"}):
         with pytest.raises(g3r.InputError):
             g3r.read(tmp_path, **options)
 

@@ -27,6 +27,6 @@ def test_meshes_are_scored_at_distances():
     assert score["hd"] == pytest.approx(0.1, abs=1e-3) and score["normal_consistency"] > 0.9
     same = g3r.score_mesh(CUBE, CUBE, samples=500)
     assert same["cd"] == pytest.approx(0, abs=1e-12) and same["f_scores"] == []
-    for wrong in ({"distances": [0]}, {"distances": ["near"]}, {"samples": 0}, {"samples": -1}, {"samples": 10.5}, {"seed": -1}, {"seed": 0.5}):
+    for wrong in ({"distances": [0]}, {"distances": ["near"]}, {"samples": 0}, {"samples": -1}, {"samples": 10.5}, {"seed": -1}, {"seed": 0.5}, {"seed": 2**64}, {"samples": 2**64}):
         with pytest.raises(g3r.InputError):
             g3r.score_mesh(CUBE, CUBE, **wrong)

@@ -293,7 +293,7 @@ def test_unusable_options_are_refused(sphere, options):
 
 
 @pytest.mark.parametrize("option, value", [
-    ("degree", -3), ("degree", 2.9), ("threads", 2.7), ("threads", None), ("trim", [1]), ("trim", float("nan")), ("faces", "500"),
+    ("degree", -3), ("degree", 2.9), ("threads", 2.7), ("threads", None), ("threads", 10**12), ("trim", [1]), ("trim", float("nan")), ("faces", "500"),
     ("faces", None),
     ("faces", float("nan")), ("faces", 1e30), ("faces", 10**30), ("max_memory", "8G"), ("keep_all", "no"), ("keep_all", None),
     ("min_component", "a"), ("tolerance", "1e-3"), ("tolerance", None), ("accuracy", "x"), ("device", None), ("method", None),

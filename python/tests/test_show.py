@@ -66,6 +66,10 @@ def test_save_writes_a_page_or_a_picture(tmp_path, result):
     assert view.png(tile=64).startswith(b"\x89PNG")
     with pytest.raises(g3r.InputError, match="tile must be an integer"):
         view.png(tile=64.5)
+    with pytest.raises(g3r.InputError, match="tile must be 2147483647 at most"):
+        view.png(tile=2**40)
+    with pytest.raises(g3r.InputError, match="title must be a text, not None"):
+        g3r.show(result, title=None, open=False)
 
 
 def test_a_notebook_gets_a_frame(result):
