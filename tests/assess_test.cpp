@@ -128,6 +128,24 @@ TEST(Assess, SaysForHowManySidesNothingIsShown) {
   }
 }
 
+// A sphere seen from its middle has an inside: what is known is that its points face what has seen them.
+TEST(Assess, DoesNotSayOfWhatFacesItsSensorsThatItHasNoInside) {
+  Options seen;
+  seen.hints.sensors = {{0, 0, 0}};
+  seen.hints.sensor_of_point.assign(kPoints, 0);
+  for (const Options& options : {Options{}, seen}) {
+    const Problem problem = prepared(sphere().points, options);
+    const bool are_seen = problem.cloud.set.views().known();
+    ASSERT_EQ(are_seen, !options.hints.sensors.empty());
+    Solution solution = solution_of(problem, sphere().normals);
+    solution.open_surfaces = open_part(kPoints, 0.9F);
+    Stats stats;
+    (void)assess(problem, std::move(solution), stats);
+    EXPECT_NE(warns(stats, "without an inside"), are_seen);
+    EXPECT_EQ(warns(stats, "as they face what has seen them"), are_seen);
+  }
+}
+
 TEST(Assess, WhatIsOpenAsAWholeHasConverged) {
   const Problem problem = prepared(sphere().points);
   for (const std::size_t open : {kPoints - 1, kPoints}) {

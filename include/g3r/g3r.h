@@ -128,7 +128,7 @@ struct Stats {
   bool converged = false;  ///< the last residual is 0.1 at most, or the tolerance if one is given; or nothing depends on it, as all is open
   bool consistent = true;  ///< false: more than a fifth of the points could face either way: there may be no clear inside
   bool doubtful = false;   ///< a warning says that the result is most likely not what was measured, though the solver found no fault
-  double open_share = 0;   ///< share of the points, 0..1, on open surfaces, whose sides follow from neighbour to neighbour
+  double open_share = 0;   ///< share of the points, 0..1, on open surfaces; all, if they are to face what has seen them
   double undecided_share = 0;  ///< of all points, those on open surfaces either side of which could be the outside, after the hints
   HintStats hints;
   double condition_number = 0;  ///< 0 unless asked for

@@ -25,7 +25,7 @@ std::vector<float> confidence_of_solution(const Problem& problem, const Solution
 }
 
 // The sides of points on open surfaces do not come from the equations, and their confidence neither.
-void add_open_surfaces(const OpenSurfaces& surfaces, std::vector<float>& confidence, Stats& stats) {
+void add_open_surfaces(const OpenSurfaces& surfaces, bool are_seen, std::vector<float>& confidence, Stats& stats) {
   if (surfaces.part.empty()) return;
   std::size_t open = 0;
   std::size_t agreed = 0;
@@ -43,7 +43,10 @@ void add_open_surfaces(const OpenSurfaces& surfaces, std::vector<float>& confide
   if (open == 0) return;
   const auto all = static_cast<double>(confidence.size());
   stats.open_share = static_cast<double>(open) / all;
-  stats.warnings.push_back("open: " + percent(stats.open_share) + " of the points lie on surfaces without an inside; " +
+  stats.warnings.push_back("open: " + percent(stats.open_share) +
+                           (are_seen
+                                ? " of the points are taken for open surfaces, with an inside or not, as they face what has seen them; "
+                                : " of the points lie on surfaces without an inside; ") +
                            (agreed < open  ? "their sides do not agree everywhere"
                             : unshown == 0 ? "their sides are consistent"
                                            : "their sides are consistent, but the neighbours of " +
@@ -70,7 +73,7 @@ Oriented assess(const Problem& problem, Solution solution, Stats& stats) {
   out.solution = std::move(solution);
   out.confidence = confidence_of_solution(problem, out.solution);
   const OpenSurfaces& surfaces = out.solution.open_surfaces;
-  add_open_surfaces(surfaces, out.confidence, stats);
+  add_open_surfaces(surfaces, problem.cloud.set.views().known(), out.confidence, stats);
   const auto is_open = [&](std::size_t i) { return surfaces.is_open(i); };
   const auto share = [&](const auto& is_so) { return share_of_wanted(problem.known.wanted, problem.cloud.size(), is_so); };
   out.agreed = share([&](std::size_t i) { return is_open(i) && surfaces.agrees[i] != 0; });

@@ -10,9 +10,10 @@
 
 namespace g3r {
 
-/// A sensor sees the front of every point, so that nothing it has seen is closed: what the equations took for closed parts, most often
-/// thick noise, becomes one open surface, and its points are turned to face their sensors. Where n . v is 0, v the direction from the point
-/// to its sensor, the side is a choice: it is certified to (1 + |n . v|) / 2. What it turns is marked in Solution::turned_to_views. O(N).
+/// A sensor sees the front of every point, whether the surface has an inside or not: what the equations took for closed parts, most often
+/// thick noise, is treated as one open surface, and its points are turned to face their sensors. Where n . v is 0, v the direction from the
+/// point to its sensor, the side is a choice: it is certified to (1 + |n . v|) / 2. What it turns is marked in Solution::turned_to_views.
+/// O(N).
 void open_to_views(const Views& views, const std::vector<Vec3>& points, Solution& solution);
 
 /// Whether solve_by_sight() is for this problem: its points have been seen from known places, with more noise than the equations' own
