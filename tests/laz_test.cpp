@@ -338,5 +338,11 @@ TEST(Laz, WhatCannotBeReadIsSaid) {
   EXPECT_NE(message_of(changed).find("more than 256 times"), std::string::npos);
 }
 
+TEST(Laz, WhatLaszipWarnsOfIsNotPrinted) {
+  testing::internal::CaptureStderr();
+  LASMessage(LAS_WARNING, "as where %d bytes may lack", 1);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
 }  // namespace
 }  // namespace g3r
