@@ -89,6 +89,23 @@ TEST(Describe, AGivenEpsilonThatHidesTheInsideIsDoubtful) {
   }
 }
 
+TEST(Describe, AGivenNoiseLargerThanTheCloudIsDoubtful) {
+  const std::vector<Vec3> points = shapes::sphere(2000, 0.9).points;
+  const auto with = [&](double noise) {
+    Options options;
+    options.noise = {Length::Unit::kInput, noise};
+    return described(points, options);
+  };
+  EXPECT_FALSE(with(0.1).doubtful);
+  EXPECT_TRUE(with(0.1).warnings.empty());
+  for (const double noise : {1.9, 1e9}) {
+    const Stats stats = with(noise);
+    EXPECT_TRUE(stats.doubtful) << noise;
+    ASSERT_EQ(stats.warnings.size(), 1U) << noise;
+    EXPECT_NE(stats.warnings[0].find("more than all of the cloud is wide"), std::string::npos);
+  }
+}
+
 // Within so little height no kernels show an inside: a narrow epsilon is not to blame.
 TEST(Describe, AnEpsilonAsTheSpacingAsksForIsNeverTooWide) {
   std::vector<Vec3> ground;

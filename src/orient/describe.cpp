@@ -68,6 +68,15 @@ void warn_of_width(const Problem& problem, const Options& options, Stats& stats)
                            short_number(most / problem.spacing, 2) + " spacings)");
 }
 
+// No points are farther from their surface than the cloud is wide.
+void warn_of_noise(const Options& options, Stats& stats) {
+  if (options.noise.unit == Length::Unit::kAuto || stats.noise <= stats.box_side) return;
+  stats.doubtful = true;
+  stats.warnings.push_back("noise is " + short_number(stats.noise, 2) + ", more than all of the cloud is wide, " +
+                           short_number(stats.box_side, 2) +
+                           ": leave noise out, or give the standard deviation of the points from their surface");
+}
+
 void warn_of_points(const Problem& problem, Stats& stats) {
   if (stats.dropped_non_finite > 0) {
     stats.warnings.push_back(std::to_string(stats.dropped_non_finite) + " points with a non-finite coordinate were left out");
@@ -108,6 +117,7 @@ void describe(const Problem& problem, const PointsView& points, const Options& o
   if (problem.baseline) describe_baseline(problem, stats);
   warn_of_points(problem, stats);
   warn_of_width(problem, options, stats);
+  warn_of_noise(options, stats);
 }
 
 void warn_of_far(std::size_t far, Stats& stats) {

@@ -12,8 +12,8 @@ namespace g3r {
 
 /// Writes into `stats` how many points there are and what became of them, the box, spacing, noise and width of the kernels in the units of
 /// `points`, the method, and the memory that the solve takes. Warns of points that are not finite and that are too close together for the
-/// solver; calls the result doubtful, with a warning, where a given epsilon is so wide that no body in the
-/// box of the points has a field above 1/2. `problem`: made of these points with these options. O(N).
+/// solver; calls the result doubtful, with a warning, where a given epsilon is so wide that no body in the box of the points has a field
+/// above 1/2, or a given noise is larger than the box. `problem`: made of these points with these options. O(N).
 void describe(const Problem& problem, const PointsView& points, const Options& options, Stats& stats);
 
 /// Warns of so many of the caller's points that far_points() left out, and calls the result doubtful, where they may be a part of their own
