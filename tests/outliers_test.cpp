@@ -129,6 +129,26 @@ TEST(Outliers, NoiseMakesNone) {
   }
 }
 
+// Of a ball that is 20 times as dense at one end as at the other, under noise of one to four spacings, next to none are; in a box of
+// outliers as many are found as without such noise.
+TEST(Outliers, NoiseMakesNoneOfSparsePointsEither) {
+  shapes::Random random(3);
+  std::vector<Vec3> points;
+  while (points.size() < kPoints) {
+    const Vec3 n = random.direction();
+    if (random.uniform() > std::exp(-1.5 * (1 + n[0]))) continue;
+    Vec3 p = n;
+    for (double& x : p) x += 0.07 * random.normal();
+    points.push_back(p);
+  }
+  EXPECT_LT(flagged(points), kPoints / 50);
+  for (std::size_t i = 0; i < kPoints / 10; ++i) {
+    points.push_back({random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3)});
+  }
+  const std::vector<std::uint32_t> found = find_outliers(PointSet(points)).indices;
+  EXPECT_GT(std::count_if(found.begin(), found.end(), [](std::uint32_t i) { return i >= kPoints; }), kPoints * 8 / 100);
+}
+
 TEST(Outliers, RemovedPointsAreNumberedAfterTheOthers) {
   CanonicalCloud cloud = canonical_cloud(shapes::torus(200, 0.6, 0.25, 1).points);
   const CanonicalCloud before = cloud;

@@ -25,8 +25,9 @@ struct Outliers {
 ///   - and its spacing is more than chance explains: of as many points as are taken, one in fifty are as far apart on an even surface.
 ///     That is from 1.5 typical spacings on among many outliers, from 2 on where there is one.
 /// Noise scatters points as well, as far apart as outliers. So where a ball of 5 standard deviations holds more than 8 points of the noisy
-/// layer, spacings are measured over as many, and chance moves points from its middle too. `noise`: if known; otherwise that of the points
-/// left without it is estimated, where outliers are found. A density that changes smoothly, by whatever factor, is no reason. Never more
+/// layer, spacings are measured over as many, and chance moves points from its middle too; and none is taken about which a ball of 10
+/// deviations has so many in one of 5 as no points that fill space do but for one in fifty, which says so of sparse layers too. `noise`: if
+/// known; otherwise that of the other points, found in turn with the outliers. A density that changes smoothly is no reason. Never more
 /// than half of the points: then the cloud is something else, and none is returned; nor of 64 points or fewer. O(N log N).
 /// `relative_spacing`: how many times as far apart the points of a cloud are that has been thinned, which is no reason either; or empty.
 [[nodiscard]] Outliers find_outliers(const PointSet& set, const std::vector<double>& relative_spacing = {},

@@ -1,5 +1,5 @@
-// What LASzip has to say, in place of its lasmessage.cpp, which prints it: nothing. It warns of memory that the system may lack, by what
-// Linux says of it, so everywhere else of any megabyte; what is wrong with a file it throws.
+// In place of LASzip's lasmessage.cpp, which prints warnings to the standard error, as no library should. What is wrong with a file it
+// throws.
 #include <lasmessage.hpp>
 
 long lasmessage_cnt[LAS_QUIET];
