@@ -12,7 +12,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -96,10 +95,13 @@ TEST(OtherNoises, AgreeingSidesOfOpenSurfacesAskForNone) {
 
 // The attempt with the estimate, and the best.
 struct Chosen {
-  explicit Chosen(const shapes::Surface& s, const Options& options = {}) {
+  // `share`: of the noise of the points, that is taken for it at first.
+  explicit Chosen(const shapes::Surface& s, const Options& options = {}, double share = 1) {
     const Monitor monitor;
     Stages stages(monitor);
-    Attempt found = attempt(prepare(s.points, {}, options, stages), s.points, options, stages);
+    Problem problem = prepare(s.points, {}, options, stages);
+    if (share < 1) problem = with_noise(problem, share * problem.noise, options);
+    Attempt found = attempt(std::move(problem), s.points, options, stages);
     const std::vector<Vec3> truth = problems::in_its_order(found.problem, s.normals);
     estimate = found.problem.noise;
     doubt_before = found.oriented.doubt;
@@ -124,24 +126,20 @@ TEST(WithBestNoise, ScansThatDoNotFitAreTakenForNoise) {
   EXPECT_GT(scans.right, 0.999);
 }
 
-// A ball of a density that falls 16 to 1, under noise of which a third is found: points lie farther from the surface than such noise
-// carries them, so that narrower kernels are tried, as for walls. They leave as much doubt, which wider ones for more noise do not.
+// A noisy ball of which too little of the noise is found: points lie farther from the surface than that carries them, so that narrower
+// kernels are tried, as for walls. They leave as much doubt, which wider ones for more noise do not.
 TEST(WithBestNoise, WallsThatLeaveTheDoubtAreNoise) {
   shapes::Random random(2);
-  const double fall = random.uniform(1, 4), sigma = random.uniform(0.05, 0.09);
-  shapes::Surface ball;
-  while (ball.points.size() < 6000) {
-    const Vec3 n = random.direction();
-    if (random.uniform() > std::exp(-fall * (1 + n[0]) / 2)) continue;
-    Vec3 p = n;
-    for (double& x : p) x += sigma * random.normal();
-    ball.points.push_back(p);
-    ball.normals.push_back(n);
+  shapes::Surface ball = shapes::sphere(6000, 1);
+  for (Vec3& p : ball.points) {
+    for (double& x : p) x += 0.08 * random.normal();
   }
-  const Chosen chosen(ball);
-  EXPECT_LT(chosen.right_before, 0.98);
-  EXPECT_GT(chosen.noise, chosen.estimate);
-  EXPECT_GT(chosen.right, 0.999);
+  for (const double share : {0.4, 0.7}) {
+    const Chosen chosen(ball, {}, share);
+    EXPECT_LT(chosen.right_before, 0.95) << share;
+    EXPECT_GT(chosen.noise, chosen.estimate) << share;
+    EXPECT_EQ(chosen.right, 1) << share;
+  }
 }
 
 // Noise that differs by sixteen from place to place, as that of scanners does with the distance: the estimate is near the least of it, and
