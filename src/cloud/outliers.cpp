@@ -189,9 +189,9 @@ std::vector<double> wide_spacing(const PointSet& set, const std::vector<std::uin
 // quarter of its points in one of 5; where they fill space an eighth of them. More than chance would put there prove a layer.
 std::vector<std::uint32_t> off_layers(const PointSet& set, const std::vector<std::uint32_t>& strays, double noise) {
   const double inner = kNoiseBreadth * noise, outer = kLevelRatio * inner;
-  const double share_in_space = 1 / (kLevelRatio * kLevelRatio * kLevelRatio);
+  const double by_chance = 1 / (kLevelRatio * kLevelRatio * kLevelRatio);
   std::vector<std::size_t> proving;  // of so many others, which stand for all
-  for (std::size_t n = 0; n <= kFewPlaces; ++n) proving.push_back(proving_number(n, share_in_space, 1));
+  for (std::size_t n = 0; n <= kFewPlaces; ++n) proving.push_back(proving_number(n, by_chance, 1));
   std::vector<std::uint8_t> is_held(strays.size(), 0);
   parallel::for_blocks(strays.size(), parallel::kSmallBlock, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> near;

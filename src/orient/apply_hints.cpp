@@ -83,8 +83,8 @@ void count_sides(const HintEffect& effect, const Problem& problem, const Solutio
   hints.settled_share = share(decided);
 }
 
-// `given`: in the coordinates of the caller; `over_others`: share of the points.
-void warn(const HintEffect& effect, const Hints& given, bool any_open, double over_others, Stats& stats) {
+// `given`: in the coordinates of the caller; `over_share`: of the points, those that lie over others.
+void warn(const HintEffect& effect, const Hints& given, bool any_open, double over_share, Stats& stats) {
   const std::string against = percent(effect.contradicted_share);
   if (effect.contradicted_share > 0 && effect.closed_parts_turned) {
     stats.warnings.push_back("hint sensor: the scanner stood inside the closed parts, and " + against +
@@ -102,8 +102,8 @@ void warn(const HintEffect& effect, const Hints& given, bool any_open, double ov
                              " of the points of open surfaces cannot be seen from there, as other points lie in front of them, so that "
                              "it decides little: check where the scanner stood, and give all its places");
   }
-  if (over_others > kManyHidden) {
-    stats.warnings.push_back("hint up: " + percent(over_others) +
+  if (over_share > kManyHidden) {
+    stats.warnings.push_back("hint up: " + percent(over_share) +
                              " of the points lie over others, so that they may have been seen from below: their side is right with a "
                              "chance of two thirds; --sensor decides it");
   }
